@@ -1,0 +1,16 @@
+# Debian 12's packages; `./run` installs them.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)   # dense linear algebra
+find_package(TBB REQUIRED)                    # threads
+find_package(fmt REQUIRED)                    # text
+find_package(spdlog REQUIRED)                 # log
+find_package(nlohmann_json REQUIRED)          # --json
+find_package(hwy REQUIRED)                    # SIMD chosen at run time
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOCore IOXML IOLegacy)
+find_path(CLI11_INCLUDE_DIR CLI/CLI.hpp REQUIRED)
+
+# METIS ships without a CMake file
+find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
+find_library(METIS_LIBRARY metis REQUIRED)
+add_library(metis::metis UNKNOWN IMPORTED)
+set_target_properties(metis::metis PROPERTIES IMPORTED_LOCATION ${METIS_LIBRARY}
+                                              INTERFACE_INCLUDE_DIRECTORIES ${METIS_INCLUDE_DIR})
