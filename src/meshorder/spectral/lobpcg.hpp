@@ -1,0 +1,32 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/spectral/hierarchy.hpp>
+
+#include <array>
+
+namespace meshorder {
+
+struct LobpcgOptions {
+  double tolerance = 0.1;    ///< on ‖L x − λ B x‖ / (λ ‖x‖) of the first column
+  int max_iterations = 500;  ///< more are not made; the result says whether it converged
+};
+
+struct LobpcgResult {
+  double eigenvalue = 0;  ///< of the first column
+  double residual = 0;    ///< ‖L x − λ B x‖ / ‖x‖ of the first column
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Improves the columns of `x` towards the eigenvectors of L x = λ B x with the smallest eigenvalues after
+/// that of the constant vector, on one level of a hierarchy (B its masses, the identity on the finest).
+///
+/// Locally optimal block preconditioned conjugate gradients (Knyazev 2001): each iteration minimises the
+/// Rayleigh quotient over the span of x, the V-cycle applied to the residuals, and the previous directions,
+/// all kept orthogonal to constants. Columns end in rising order of their eigenvalues, ‖x‖_B = 1. Columns of
+/// x that depend on others or are constant are replaced by the search itself. O(graph) an iteration.
+template <int M>
+LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x);
+
+}  // namespace meshorder
