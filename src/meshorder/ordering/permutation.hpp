@@ -1,0 +1,66 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/base/index.hpp>
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace meshorder {
+
+/// A bijection of 0 … n−1 that holds both directions by name, so that nobody confuses one with the other.
+///
+/// `old_to_new()[i]` is the new place of what stood at place i; `new_to_old()[k]` is where the thing that
+/// now stands at place k came from. Every constructor checks that its argument is a bijection.
+class Permutation {
+ public:
+  /// The empty permutation, n = 0.
+  Permutation() = default;
+
+  static Permutation identity(Index n);
+
+  /// `map[i]` is the new place of old i. Throws InvalidArgument unless it is a bijection. O(n).
+  static Permutation from_old_to_new(std::vector<Index> map);
+
+  /// `map[k]` is the old place of new k, that is, the old things in their new order. O(n).
+  static Permutation from_new_to_old(std::vector<Index> map);
+
+  [[nodiscard]] Index size() const noexcept { return index_size(old_to_new_); }
+  [[nodiscard]] const std::vector<Index>& old_to_new() const noexcept { return old_to_new_; }
+  [[nodiscard]] const std::vector<Index>& new_to_old() const noexcept { return new_to_old_; }
+  [[nodiscard]] bool is_identity() const noexcept;
+
+  /// The permutation that puts everything back.
+  [[nodiscard]] Permutation inverse() const;
+
+  /// This permutation, and after it `next`: the result's old_to_new is next.old_to_new[old_to_new[i]].
+  [[nodiscard]] Permutation then(const Permutation& next) const;
+
+  bool operator==(const Permutation&) const = default;
+
+  /// `values`, `width` entries for each place, moved to their new places. Throws InvalidArgument when the
+  /// sizes differ. O(n · width) time and memory.
+  template <class T>
+  [[nodiscard]] std::vector<T> moved(const std::vector<T>& values, std::size_t width = 1) const {
+    check_size(values.size(), width);
+    std::vector<T> result;
+    result.reserve(values.size());
+    for (const Index old : new_to_old_) {
+      const auto first = values.begin() + Offset{old} * static_cast<Offset>(width);
+      result.insert(result.end(), first, first + static_cast<Offset>(width));
+    }
+    return result;
+  }
+
+ private:
+  Permutation(std::vector<Index> old_to_new, std::vector<Index> new_to_old)
+      : old_to_new_(std::move(old_to_new)), new_to_old_(std::move(new_to_old)) {}
+  void check_size(std::size_t values, std::size_t width) const;
+
+  std::vector<Index> old_to_new_;
+  std::vector<Index> new_to_old_;
+};
+
+}  // namespace meshorder
