@@ -1,0 +1,521 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
+#include <meshorder/io/format.hpp>
+#include <meshorder/mesh/reorder.hpp>
+#include <support/files.hpp>
+#include <support/sample_meshes.hpp>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <io/gmsh_files.hpp>
+
+#include <map>
+
+namespace meshorder::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+using Ints = std::vector<std::int32_t>;
+using Reals = std::vector<double>;
+
+Mesh read_text(std::string_view content, Notes* notes = nullptr) {
+  const TemporaryFolder folder;
+  return read_mesh(folder.file("mesh.msh", content), notes);
+}
+
+std::string written(const Mesh& mesh, Notes* notes = nullptr) {
+  const TemporaryFolder folder;
+  write_mesh(mesh, folder.path() / "mesh.msh", notes);
+  return content_of(folder.path() / "mesh.msh");
+}
+
+/// The array's values, which must be of type T.
+template <class T>
+std::vector<T> values(const Mesh& mesh, std::string_view name, Attached on) {
+  const DataArray* array = find_array(mesh, name, on);
+  if (!array || !std::holds_alternative<std::vector<T>>(array->values)) {
+    ADD_FAILURE() << "no such array: " << name;
+    return {};
+  }
+  return std::get<std::vector<T>>(array->values);
+}
+
+const Set& set_of(const Mesh& mesh, std::string_view name) {
+  static const Set none{};
+  for (const Set& set : mesh.sets) {
+    if (set.name == name) return set;
+  }
+  ADD_FAILURE() << "no such set: " << name;
+  return none;
+}
+
+/// What stands between $name and $Endname.
+std::string section(const std::string& content, const std::string& name) {
+  const auto begin = content.find("$" + name + "\n");
+  const auto end = content.find("$End" + name + "\n");
+  if (begin == std::string::npos || end == std::string::npos) return "";
+  return content.substr(begin + name.size() + 2, end - begin - name.size() - 2);
+}
+
+std::string replaced(std::string text, std::string_view what, std::string_view by) {
+  const auto at = text.find(what);
+  if (at == std::string::npos) ADD_FAILURE() << "not there: " << what;
+  return at == std::string::npos ? text : text.replace(at, what.size(), by);
+}
+
+// ---- reading
+
+TEST(Gmsh, ReadsAllOfVersion41) {
+  const Mesh mesh = read_text(kGmsh41);
+  ASSERT_EQ(mesh.vertex_count(), 6);
+  EXPECT_EQ(mesh.points[2], (Point{0, 1, 0}));
+  EXPECT_EQ(mesh.vertex_ids, (std::vector<std::int64_t>{2, 10, 20, 30, 35, 40}));
+  EXPECT_EQ(mesh.cell_ids, (std::vector<std::int64_t>{3, 7, 9}));
+  EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::triangle, Shape::tetrahedron, Shape::tetrahedron}));
+  EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 0, 1, 2, 3, 0, 2, 1, 5}));
+  EXPECT_EQ(mesh.cell_blocks, (std::vector<Index>{0, 1, 2}));
+  EXPECT_EQ(values<std::int32_t>(mesh, kLabel, Attached::cells), (Ints{7, 4, 9}));
+  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:geometrical", Attached::cells), (Ints{3, 5, 6}));
+  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:dim_tags", Attached::vertices),
+            (Ints{0, 1, 2, 3, 2, 3, 3, 5, 3, 5, 3, 5}));
+  EXPECT_EQ(values<double>(mesh, "gmsh:parametric", Attached::vertices),
+            (Reals{0, 0, 0, 0, 1, 0.5, 0.25, 0, 1, 0.75, 0.125, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+}
+
+TEST(Gmsh, GivesNamedGroupsAndPeriodicNodesAsSets) {
+  const Mesh mesh = read_text(kGmsh41);
+  EXPECT_THAT(set_of(mesh, "inlet").members, ElementsAre(0));
+  EXPECT_THAT(set_of(mesh, "rock").members, ElementsAre(1));
+  EXPECT_THAT(set_of(mesh, "all of it").members, ElementsAre(1, 2));
+  EXPECT_THAT(set_of(mesh, "gmsh:periodic 2 3").members, ElementsAre(1, 2));
+  EXPECT_THAT(set_of(mesh, "gmsh:periodic 2 3 master").members, ElementsAre(0, 3));
+}
+
+TEST(Gmsh, KeepsStepsOfDataApartAndKnowsPartialData) {
+  const Mesh mesh = read_text(kGmsh41);
+  EXPECT_EQ(values<double>(mesh, "heat step 0", Attached::vertices), (Reals{1.5, 2.5, 3.5, 4.5, 5.5, 6.5}));
+  const DataArray* second = find_array(mesh, "heat step 1", Attached::vertices);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->components, 3);
+  EXPECT_EQ(second->rows, (std::vector<Index>{5, 1}));
+  EXPECT_EQ(find_array(mesh, "stress", Attached::cells)->rows, (std::vector<Index>{2}));
+  // one value for each node of a cell, filled up with 0
+  EXPECT_EQ(values<double>(mesh, "jump", Attached::cells), (Reals{1, 2, 3, 0, 4, 5, 6, 7}));
+  EXPECT_THAT(mesh.residue->contents(), Contains("the times and steps of data"));
+  EXPECT_THAT(mesh.residue->contents(), Contains("the section $Entities"));
+}
+
+TEST(Gmsh, ReadsAllOfVersion22) {
+  const Mesh mesh = read_text(kGmsh22);
+  EXPECT_THAT(mesh.vertex_ids, IsEmpty());
+  EXPECT_THAT(mesh.cell_ids, IsEmpty());
+  EXPECT_THAT(mesh.cell_blocks, IsEmpty());
+  EXPECT_EQ(mesh.cells.shapes,
+            (std::vector{Shape::vertex, Shape::tetrahedron, Shape::triangle, Shape::tetrahedron}));
+  EXPECT_EQ(values<std::int32_t>(mesh, kLabel, Attached::cells), (Ints{0, 4, 7, 9}));
+  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:geometrical", Attached::cells), (Ints{1, 5, 3, 6}));
+  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:partitions", Attached::cells),
+            (Ints{0, 0, 0, 1, 2, 0, 0, 0, 0, 2, 1, -2}));
+  EXPECT_EQ(values<double>(mesh, "stress", Attached::cells), (Reals{0.5, 1.5, 2.5, 3.5}));
+  EXPECT_THAT(set_of(mesh, "rock").members, ElementsAre(1));
+}
+
+TEST(Gmsh, ReadsBinaryFilesOfBothByteOrdersAlike) {
+  expect_same(read_text(gmsh_41_binary(std::endian::big)), read_text(gmsh_41_binary(std::endian::little)));
+  expect_same(read_text(gmsh_22_binary(std::endian::big)), read_text(gmsh_22_binary(std::endian::little)));
+  EXPECT_EQ(read_text(gmsh_41_binary(std::endian::big)).points, read_text(kGmsh41).points);
+  EXPECT_EQ(read_text(gmsh_22_binary(std::endian::big)).points, read_text(kGmsh22).points);
+  EXPECT_EQ(read_text(gmsh_41_binary(std::endian::big)).cells, read_text(kGmsh41).cells);
+  EXPECT_EQ(values<double>(read_text(gmsh_22_binary(std::endian::big)), "heat", Attached::vertices),
+            (Reals{0.1}));
+}
+
+TEST(Gmsh, UnderstandsAnyLineEnds) {
+  std::string content;
+  int line = 0;
+  for (const char c : kGmsh41) {
+    if (c != '\n') {
+      content += c;
+    } else {
+      content += std::array{"\n", "\r\n", "\r"}[line++ % 3];
+    }
+  }
+  expect_same(read_text(content), read_text(kGmsh41));
+}
+
+TEST(Gmsh, TakesFilesWithoutEntitiesAndGroups) {
+  const Mesh mesh = read_text(
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 3 1 3\n2 0 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 "
+      "0\n$EndNodes\n"
+      "$Elements\n1 1 1 1\n2 0 2 1\n1 1 2 3\n$EndElements\n");
+  EXPECT_EQ(mesh.cell_count(), 1);
+  EXPECT_FALSE(find_array(mesh, kLabel, Attached::cells));
+}
+
+// ---- writing what was read
+
+TEST(Gmsh, WritesAgainWhatItReadByteForByte) {
+  for (const std::string& content : {std::string(kGmsh41), std::string(kGmsh22),
+                                     gmsh_41_binary(std::endian::little), gmsh_41_binary(std::endian::big),
+                                     gmsh_22_binary(std::endian::little), gmsh_22_binary(std::endian::big)}) {
+    Notes notes;
+    const std::string again = written(read_text(content), &notes);
+    EXPECT_TRUE(again == content) << content.substr(0, 20) << "\n" << again;
+    EXPECT_THAT(notes, IsEmpty());
+  }
+}
+
+TEST(Gmsh, OrdersEveryKindOfFileAndBack) {
+  const TemporaryFolder folder;
+  for (const std::string& content :
+       {std::string(kGmsh41), std::string(kGmsh22), gmsh_41_binary(std::endian::little),
+        gmsh_41_binary(std::endian::big), gmsh_22_binary(std::endian::little)}) {
+    expect_order_and_back(folder.file("mesh.msh", content));
+  }
+}
+
+TEST(Gmsh, OrdersRealFilesAndBack) {
+  for (const char* name : {"monkey.msh", "armadillo-p4.msh", "multimaterial-cubes-v22.msh"}) {
+    SCOPED_TRACE(name);
+    const auto path = shared_mesh(name);
+    if (path.empty()) GTEST_SKIP() << "the shared meshes are absent";
+    expect_order_and_back(path);
+  }
+}
+
+TEST(Gmsh, SplitsNodeBlocksSoThatFileAndNumbersFollowTheOrder) {
+  Mesh mesh = read_text(kGmsh41);
+  const Permutation vertices = Permutation::from_new_to_old({1, 0, 2, 5, 4, 3});
+  reorder(mesh, vertices, Permutation::identity(3));
+  EXPECT_EQ(section(written(mesh), "Nodes"),
+            "4 6 2 40\n"
+            "2 3 1 1\n2\n1 0 0 0.5 0.25\n"
+            "0 1 0 1\n10\n0 0 0\n"
+            "2 3 1 1\n20\n0 1 0 0.75 0.125\n"
+            "3 5 0 3\n30\n35\n40\n0 0 -1\n0.5 0.5 0.5\n0 0 1\n");
+  EXPECT_EQ(section(written(mesh), "Periodic"),
+            "1\n2 3 8\n16 1 0 0 0 0 1 0 0 0 0 1 0.5 0 0 0 1\n2\n2 10\n20 40\n");
+  reorder(mesh, vertices.inverse(), Permutation::identity(3));
+  EXPECT_EQ(written(mesh), kGmsh41);
+}
+
+TEST(Gmsh, DataFollowTheirCells) {
+  Mesh mesh = read_text(kGmsh22);
+  reorder(mesh, Permutation::identity(5), Permutation::from_new_to_old({0, 3, 2, 1}));
+  const std::string content = written(mesh);
+  EXPECT_EQ(section(content, "Elements"),
+            "4\n1 15 2 0 1 1\n2 4 5 9 6 2 1 -2 1 3 2 5\n3 2 2 7 3 1 2 3\n4 4 4 4 5 1 2 1 2 3 4\n");
+  EXPECT_THAT(section(content, "ElementData"), HasSubstr("1 0.5\n2 3.5\n3 2.5\n4 1.5\n"));
+}
+
+TEST(Gmsh, KeepsParametricNodesOfVersion2) {
+  const std::string content =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$ParametricNodes\n3\n1 0 0 0 0 1\n2 1 0 0 1 4 0.5\n"
+      "3 0 1 0 2 6 0.25 0.75\n$EndParametricNodes\n$Elements\n1\n1 2 2 0 6 1 2 3\n$EndElements\n";
+  Mesh mesh = read_text(content);
+  EXPECT_EQ(written(mesh), content);
+  reorder(mesh, Permutation::from_new_to_old({2, 1, 0}), Permutation::identity(1));
+  EXPECT_EQ(section(written(mesh), "ParametricNodes"),
+            "3\n1 0 1 0 2 6 0.25 0.75\n2 1 0 0 1 4 0.5\n3 0 0 0 0 1\n");
+}
+
+TEST(Gmsh, WritesLabelsThatWereChangedAsData) {
+  Mesh mesh = read_text(kGmsh41);
+  for (DataArray& array : mesh.data) {
+    if (array.name == kLabel) array.values = Ints{1, 2, 3};
+  }
+  EXPECT_THAT(written(mesh), HasSubstr("\"label\"\n1\n0\n3\n0\n1\n3\n3 1\n7 2\n9 3\n"));
+}
+
+TEST(Gmsh, NotesSetsAddedToAGmshFile) {
+  Mesh mesh = read_text(kGmsh41);
+  mesh.sets.push_back({"mine", Attached::cells, {0}});
+  Notes notes;
+  written(mesh, &notes);
+  EXPECT_THAT(notes, ElementsAre("the set 'mine' of cells is left out: Gmsh cannot hold it"));
+}
+
+TEST(Gmsh, LeavesOutPeriodicPairsOfNodesThatAreNotThere) {
+  Notes notes;
+  const Mesh mesh = read_text(replaced(std::string(kGmsh41), "20 30\n$EndP", "20 31\n$EndP"), &notes);
+  EXPECT_THAT(set_of(mesh, "gmsh:periodic 2 3").members, ElementsAre(1));
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("1 pairs of $Periodic are left out")));
+}
+
+TEST(Gmsh, KeepsUnknownSectionsWithoutNumbers) {
+  const std::string content = std::string(kGmsh22) + "$Author\nJane Doe, version2\n$EndAuthor\n";
+  EXPECT_EQ(written(read_text(content)), content);
+}
+
+// ---- element types
+
+/// The nodes of second-order elements by the corners that they lie between, in the order of Gmsh's manual
+/// ("Node ordering") and of VTK's classes.
+struct SecondOrder {
+  int type;
+  Shape shape;
+  std::vector<std::vector<int>> gmsh;
+  std::vector<std::vector<int>> vtk;
+};
+
+std::vector<SecondOrder> second_order() {
+  const std::vector<std::vector<int>> hex_gmsh{{0, 1},
+                                               {0, 3},
+                                               {0, 4},
+                                               {1, 2},
+                                               {1, 5},
+                                               {2, 3},
+                                               {2, 6},
+                                               {3, 7},
+                                               {4, 5},
+                                               {4, 7},
+                                               {5, 6},
+                                               {6, 7},
+                                               {0, 3, 2, 1},
+                                               {0, 1, 5, 4},
+                                               {0, 4, 7, 3},
+                                               {1, 2, 6, 5},
+                                               {2, 3, 7, 6},
+                                               {4, 5, 6, 7},
+                                               {0, 1, 2, 3, 4, 5, 6, 7}};
+  const std::vector<std::vector<int>> hex_vtk{{0, 1},
+                                              {1, 2},
+                                              {2, 3},
+                                              {3, 0},
+                                              {4, 5},
+                                              {5, 6},
+                                              {6, 7},
+                                              {7, 4},
+                                              {0, 4},
+                                              {1, 5},
+                                              {2, 6},
+                                              {3, 7},
+                                              {0, 4, 7, 3},
+                                              {1, 2, 6, 5},
+                                              {0, 1, 5, 4},
+                                              {3, 7, 6, 2},
+                                              {0, 3, 2, 1},
+                                              {4, 5, 6, 7},
+                                              {0, 1, 2, 3, 4, 5, 6, 7}};
+  const std::vector<std::vector<int>> wedge_gmsh{{0, 1}, {0, 2},       {0, 3},       {1, 2},
+                                                 {1, 4}, {2, 5},       {3, 4},       {3, 5},
+                                                 {4, 5}, {0, 1, 4, 3}, {0, 3, 5, 2}, {1, 2, 5, 4}};
+  const std::vector<std::vector<int>> wedge_vtk{{0, 1}, {1, 2},       {2, 0},       {3, 4},
+                                                {4, 5}, {5, 3},       {0, 3},       {1, 4},
+                                                {2, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
+  const std::vector<std::vector<int>> pyramid_gmsh{{0, 1}, {0, 3}, {0, 4}, {1, 2},      {1, 4},
+                                                   {2, 3}, {2, 4}, {3, 4}, {0, 1, 2, 3}};
+  const std::vector<std::vector<int>> pyramid_vtk{{0, 1}, {1, 2}, {2, 3}, {3, 0},      {0, 4},
+                                                  {1, 4}, {2, 4}, {3, 4}, {0, 1, 2, 3}};
+  const std::vector<std::vector<int>> quad{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 1, 2, 3}};
+  const auto first = [](const std::vector<std::vector<int>>& nodes, int count) {
+    return std::vector(nodes.begin(), nodes.begin() + count);
+  };
+  return {{8, Shape::line, {{0, 1}}, {{0, 1}}},
+          {9, Shape::triangle, {{0, 1}, {1, 2}, {2, 0}}, {{0, 1}, {1, 2}, {2, 0}}},
+          {10, Shape::quad, quad, quad},
+          {16, Shape::quad, first(quad, 4), first(quad, 4)},
+          {11,
+           Shape::tetrahedron,
+           {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}},
+           {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}},
+          {12, Shape::hexahedron, hex_gmsh, hex_vtk},
+          {17, Shape::hexahedron, first(hex_gmsh, 12), first(hex_vtk, 12)},
+          {13, Shape::wedge, wedge_gmsh, wedge_vtk},
+          {18, Shape::wedge, first(wedge_gmsh, 9), first(wedge_vtk, 9)},
+          {14, Shape::pyramid, pyramid_gmsh, pyramid_vtk},
+          {19, Shape::pyramid, first(pyramid_gmsh, 8), first(pyramid_vtk, 8)}};
+}
+
+Point middle(const std::vector<Point>& points, const std::vector<int>& of) {
+  Point sum{};
+  for (const int i : of) {
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += points[i][k] / static_cast<double>(of.size());
+  }
+  return sum;
+}
+
+TEST(Gmsh, PutsMiddleNodesWhereVtkHasThem) {
+  for (const SecondOrder& type : second_order()) {
+    SCOPED_TRACE(type.type);
+    // corners at powers of two, so that the middle of any set of corners is exact and no other's
+    const int corner_count = corners(type.shape, 0);
+    std::vector<Point> points;
+    for (int i = 0; i < corner_count; ++i)
+      points.push_back({static_cast<double>(8 << i), 64.0 * i, 8.0 * i * i});
+    for (const auto& of : type.gmsh) points.push_back(middle(points, of));
+    std::string content =
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(points.size()) + "\n";
+    std::string element = "1 " + std::to_string(type.type) + " 0";
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      content += fmt::format("{} {} {} {}\n", i + 1, points[i][0], points[i][1], points[i][2]);
+      element += " " + std::to_string(i + 1);
+    }
+    content += "$EndNodes\n$Elements\n1\n" + element + "\n$EndElements\n";
+
+    const Mesh mesh = read_text(content);
+    ASSERT_EQ(mesh.cells.vertex_count(0), corner_count + static_cast<int>(type.vtk.size()));
+    EXPECT_EQ(mesh.cells.shapes[0], type.shape);
+    for (std::size_t k = 0; k < type.vtk.size(); ++k) {
+      const Index node = mesh.cells[0][corner_count + k];
+      EXPECT_EQ(mesh.points[node], middle(mesh.points, type.vtk[k])) << "node " << corner_count + k;
+    }
+    EXPECT_EQ(written(mesh), content);
+  }
+}
+
+TEST(Gmsh, HoldsCellsOfEveryTypeThatItHas) {
+  auto types = linear_types();
+  for (const auto& type : quadratic_types()) types.push_back(type);
+  for (const auto& type : {std::pair{Shape::tetrahedron, 20},
+                           {Shape::tetrahedron, 35},
+                           {Shape::tetrahedron, 56},
+                           {Shape::triangle, 10},
+                           {Shape::triangle, 15},
+                           {Shape::triangle, 21},
+                           {Shape::line, 4},
+                           {Shape::line, 6},
+                           {Shape::quad, 16},
+                           {Shape::quad, 25},
+                           {Shape::hexahedron, 64},
+                           {Shape::hexahedron, 125},
+                           {Shape::wedge, 40},
+                           {Shape::pyramid, 14},
+                           {Shape::pyramid, 30}}) {
+    types.push_back(type);
+  }
+  for (const auto& [shape, count] : types) {
+    SCOPED_TRACE(type_name(shape, count));
+    const Mesh mesh = cells_of_type(shape, count, 3);
+    const Mesh again = read_text(written(mesh));
+    EXPECT_EQ(again.cells, mesh.cells);
+    EXPECT_EQ(again.points, mesh.points);
+  }
+}
+
+TEST(Gmsh, KeepsTheTypeOfSerendipityCells) {
+  // types 36 and 40 are both quads of 16 nodes
+  std::string content = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n16\n";
+  for (int i = 1; i <= 16; ++i) content += fmt::format("{} {} {} 0\n", i, i, i * i);
+  const std::string nodes = " 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16\n";
+  content += "$EndNodes\n$Elements\n2\n1 36" + nodes + "2 40" + nodes + "$EndElements\n";
+  EXPECT_EQ(written(read_text(content)), content);
+}
+
+TEST(Gmsh, RefusesCellsThatItLacks) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "mesh.msh";
+  try {
+    write_mesh(cells_of_type(Shape::polygon, 5, 2), path);
+    FAIL() << "a polygon was written";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("polygon"));
+    EXPECT_THAT(error.what(), HasSubstr("mesh.msh"));
+  }
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+// ---- from other formats
+
+/// The same mesh, as far as Gmsh can hold what others have: data are double, sets of vertices are left out.
+void expect_converted(const Mesh& actual, const Mesh& expected) {
+  EXPECT_EQ(actual.points, expected.points);
+  EXPECT_EQ(actual.cells, expected.cells);
+  for (const DataArray& array : expected.data) {
+    const DataArray* found = find_array(actual, array.name, array.on);
+    ASSERT_TRUE(found) << array.name;
+    EXPECT_EQ(found->values, array.values) << array.name;
+    EXPECT_EQ(found->components, array.components) << array.name;
+  }
+  for (const Set& set : expected.sets) {
+    if (set.on == Attached::cells) {
+      EXPECT_EQ(set_of(actual, set.name).members, set.members);
+    }
+  }
+}
+
+TEST(Gmsh, HoldsAMeshFromElsewhere) {
+  for (const Mesh& mesh : {mixed_mesh(), tetrahedral_bar(5)}) {
+    Notes notes;
+    const std::string content = written(mesh, &notes);
+    EXPECT_THAT(notes, ElementsAre("the set 'fixed' of vertices is left out: Gmsh cannot hold it"));
+    const Mesh again = read_text(content);
+    expect_converted(again, mesh);
+    EXPECT_EQ(written(again), content);
+    // the order counts more than the blocks: a later one is free again
+    EXPECT_THAT(again.cell_blocks, IsEmpty());
+  }
+}
+
+TEST(Gmsh, WritesAMeshFromElsewhereInVersion41) {
+  Mesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  mesh.cells.push_back(Shape::tetrahedron, std::array<Index, 4>{0, 1, 2, 3});
+  mesh.cells.push_back(Shape::tetrahedron, std::array<Index, 4>{1, 2, 3, 4});
+  mesh.cells.push_back(Shape::triangle, std::array<Index, 3>{0, 2, 1});
+  mesh.data.push_back({std::string(kLabel), Attached::cells, 1, Ints{5, 2, 0}, {}, {}});
+  mesh.data.push_back(
+      {"uv", Attached::vertices, 2, std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10.5F}, {}, {}});
+  mesh.sets.push_back({"a \"set\"", Attached::cells, {2, 1}});
+  mesh.vertex_ids = {0, 1, 2, 3, 4};
+  Notes notes;
+  EXPECT_EQ(
+      written(mesh, &notes),
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+      "$PhysicalNames\n2\n2 6 \"a 'set'\"\n3 6 \"a 'set'\"\n$EndPhysicalNames\n"
+      "$Entities\n0 0 1 2\n1 0 0 0 1 1 0 1 6 0\n2 0 0 0 1 1 1 2 2 6 0\n5 0 0 0 1 1 1 1 5 0\n$EndEntities\n"
+      "$Nodes\n1 5 1 5\n3 2 0 5\n1\n2\n3\n4\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n"
+      "$Elements\n3 3 1 3\n3 5 4 1\n1 1 2 3 4\n3 2 4 1\n2 2 3 4 5\n2 1 2 1\n3 1 3 2\n$EndElements\n"
+      "$NodeData\n1\n\"uv\"\n1\n0\n3\n0\n3\n5\n1 1 2 0\n2 3 4 0\n3 5 6 0\n4 7 8 0\n5 9 10.5 "
+      "0\n$EndNodeData\n");
+  EXPECT_THAT(notes, ElementsAre("the vertices are numbered anew: Gmsh's numbers are positive and different",
+                                 HasSubstr("'uv' is filled up with zeros")));
+}
+
+TEST(Gmsh, NotesWhatItCannotHold) {
+  Mesh mesh = tetrahedral_bar(1);
+  mesh.data.clear();
+  mesh.sets.clear();
+  mesh.data.push_back({std::string(kLabel), Attached::cells, 1, Ints{-1, 1, 1, 1, 1, 1}, {}, {}});
+  mesh.data.push_back({"names", Attached::cells, 1, std::vector<std::string>(6, "a"), {}, {}});
+  mesh.data.push_back({"wide", Attached::cells, 10, Reals(60), {}, {}});
+  mesh.data.push_back(
+      {"big", Attached::cells, 1, std::vector<std::int64_t>(6, (std::int64_t{1} << 60) + 1), {}, {}});
+  Notes notes;
+  const Mesh again = read_text(written(mesh, &notes));
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("labels of cells are written as data"), HasSubstr("'names'"),
+                                 HasSubstr("'wide'"), HasSubstr("'big' loses digits")));
+  EXPECT_EQ(values<std::int32_t>(again, kLabel, Attached::cells), (Ints{-1, 1, 1, 1, 1, 1}));
+}
+
+TEST(Gmsh, FindsItsEntitiesAgainAfterADetour) {
+  // another format keeps arrays and sets, but not the residue
+  Mesh mesh = read_text(kGmsh41);
+  mesh.residue.reset();
+  mesh.cell_blocks.clear();
+  std::erase_if(mesh.sets, [](const Set& set) { return set.on == Attached::vertices; });
+  const Mesh again = read_text(written(mesh));
+  EXPECT_EQ(values<std::int32_t>(again, "gmsh:geometrical", Attached::cells), (Ints{3, 5, 6}));
+  EXPECT_EQ(values<std::int32_t>(again, "gmsh:dim_tags", Attached::vertices),
+            values<std::int32_t>(mesh, "gmsh:dim_tags", Attached::vertices));
+  EXPECT_EQ(*find_array(again, "gmsh:parametric", Attached::vertices),
+            *find_array(mesh, "gmsh:parametric", Attached::vertices));
+  EXPECT_EQ(values<std::int32_t>(again, kLabel, Attached::cells), (Ints{7, 4, 9}));
+  EXPECT_EQ(set_of(again, "all of it").members, set_of(mesh, "all of it").members);
+}
+
+TEST(Gmsh, LeavesNothingBehindWhenTheTargetCannotBeWritten) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_mesh(tetrahedral_bar(1), folder.path() / "absent" / "mesh.msh"), Error);
+  std::filesystem::create_directory(folder.path() / "mesh.msh");
+  EXPECT_THROW(write_mesh(tetrahedral_bar(1), folder.path() / "mesh.msh"), Error);
+  EXPECT_THAT(folder.names(), ElementsAre("mesh.msh"));
+}
+
+}  // namespace
+}  // namespace meshorder::test

@@ -1,0 +1,448 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
+#include <meshorder/io/format.hpp>
+#include <meshorder/mesh/reorder.hpp>
+#include <support/files.hpp>
+#include <support/sample_meshes.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+namespace meshorder {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::string_view kFile =
+    "# made by hand\n"
+    "MeshVersionFormatted 1\n"
+    "Dimension\n3\n"
+    "Identifier\n\"two # tetrahedra\"\n"
+    "\n"
+    "Vertices\n5\n"
+    "0 0 0 1\n"
+    "1 0 0 2\n"
+    "0 1 0 3   # a comment\n"
+    "0 0 1 4\n"
+    "1 1 1.5e0 -5\n"
+    "Corners 2\n5\n1\n"
+    "Edges\n2\n1 2 8\n2 3 9\n"
+    "Ridges\n1\n2\n"
+    "Triangles\n2\n1 2 3 6\n3 4 5 7\n"
+    "RequiredTriangles\n2\n2 1\n"
+    "Quadrilaterals\n0\n"
+    "Tetrahedra\n2\n1 2 3 4 10\n2 3 4 5 20\n"
+    "Normals\n2\n0 0 1\n1 0 0\n"
+    "NormalAtVertices\n3\n4 1\n2 2\n5 1\n"
+    "VertexOnGeometricEdge\n1\n3 7 0.25\n"
+    "BoundingBox\n0 0 0 1 1 1.5\n"
+    "End\n"
+    "# fin\n";
+
+template <class T>
+const std::vector<T>& values(const Mesh& mesh, std::string_view name, Attached on) {
+  return std::get<std::vector<T>>(find_array(mesh, name, on)->values);
+}
+
+Mesh read(std::string_view content, Notes* notes = nullptr) {
+  const TemporaryFolder folder;
+  return read_mesh(folder.file("m.mesh", content), notes);
+}
+
+std::string written(const Mesh& mesh, Notes* notes = nullptr) {
+  const TemporaryFolder folder;
+  write_mesh(mesh, folder.path() / "m.mesh", notes);
+  return test::content_of(folder.path() / "m.mesh");
+}
+
+std::string replaced(std::string_view text, std::string_view old, std::string_view by) {
+  std::string result(text);
+  const std::size_t at = result.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return result.replace(at, old.size(), by);
+}
+
+TEST(Medit, ReadsEverySectionOfAFile) {
+  Notes notes;
+  const Mesh mesh = read(kFile, &notes);
+  EXPECT_THAT(notes, IsEmpty());
+  EXPECT_EQ(mesh.points[4], (Point{1, 1, 1.5}));
+  EXPECT_THAT(mesh.cells.shapes, ElementsAre(Shape::line, Shape::line, Shape::triangle, Shape::triangle,
+                                             Shape::tetrahedron, Shape::tetrahedron));
+  EXPECT_THAT(mesh.cells.vertices, ElementsAre(0, 1, 1, 2, 0, 1, 2, 2, 3, 4, 0, 1, 2, 3, 1, 2, 3, 4));
+  EXPECT_THAT(mesh.cell_blocks, ElementsAre(0, 2, 4));
+  EXPECT_THAT(values<std::int32_t>(mesh, kLabel, Attached::vertices), ElementsAre(1, 2, 3, 4, -5));
+  EXPECT_THAT(values<std::int32_t>(mesh, kLabel, Attached::cells), ElementsAre(8, 9, 6, 7, 10, 20));
+
+  ASSERT_EQ(mesh.sets.size(), 3U);
+  EXPECT_EQ(mesh.sets[0], (Set{"Corners", Attached::vertices, {4, 0}}));
+  EXPECT_EQ(mesh.sets[1], (Set{"Ridges", Attached::cells, {1}}));
+  EXPECT_EQ(mesh.sets[2], (Set{"RequiredTriangles", Attached::cells, {3, 2}}));
+
+  EXPECT_THAT(find_array(mesh, "NormalAtVertices", Attached::vertices)->rows, ElementsAre(3, 1, 4));
+  EXPECT_THAT(values<double>(mesh, "NormalAtVertices", Attached::vertices), ElementsAre(1, 2, 1));
+  EXPECT_THAT(values<double>(mesh, "VertexOnGeometricEdge", Attached::vertices), ElementsAre(7, 0.25));
+}
+
+TEST(Medit, WritesAFileAsItWas) {
+  const Mesh mesh = read(kFile);
+  const std::string text = written(mesh);
+  EXPECT_EQ(text,
+            "# made by hand\n"
+            "MeshVersionFormatted 1\n"
+            "Dimension 3\n"
+            "\nIdentifier\n\"two # tetrahedra\"\n"
+            "\n\nVertices\n5\n0 0 0 1\n1 0 0 2\n0 1 0 3\n0 0 1 4\n1 1 1.5 -5\n"
+            "\nEdges\n2\n1 2 8\n2 3 9\n"
+            "\nTriangles\n2\n1 2 3 6\n3 4 5 7\n"
+            "\nTetrahedra\n2\n1 2 3 4 10\n2 3 4 5 20\n"
+            "\nQuadrilaterals\n0\n"
+            "\nCorners\n2\n5\n1\n"
+            "\nRidges\n1\n2\n"
+            "\nRequiredTriangles\n2\n2\n1\n"
+            "\nNormalAtVertices\n3\n4 1\n2 2\n5 1\n"
+            "\nVertexOnGeometricEdge\n1\n3 7 0.25\n"
+            "\nNormals\n2\n0 0 1\n1 0 0\n"
+            "\nBoundingBox\n0 0 0 1 1 1.5\n"
+            "\nEnd\n# fin\n");
+  test::expect_same(read(text), mesh);
+  EXPECT_EQ(written(read(text)), text);
+}
+
+TEST(Medit, PositionsFollowTheNewOrder) {
+  const TemporaryFolder folder;
+  test::expect_order_and_back(folder.file("m.mesh", kFile));
+  Mesh mesh = read(kFile);
+  reorder(mesh, Permutation::from_old_to_new({4, 3, 2, 1, 0}),
+          Permutation::from_old_to_new({1, 0, 3, 2, 4, 5}));
+  const std::string text = written(mesh);
+  EXPECT_THAT(text, HasSubstr("\nTriangles\n2\n3 2 1 7\n5 4 3 6\n"));
+  EXPECT_THAT(text, HasSubstr("\nCorners\n2\n1\n5\n"));
+  EXPECT_THAT(text, HasSubstr("\nRidges\n1\n1\n"));
+  EXPECT_THAT(text, HasSubstr("\nRequiredTriangles\n2\n1\n2\n"));
+  EXPECT_THAT(text, HasSubstr("\nNormalAtVertices\n3\n2 1\n4 2\n1 1\n"));
+}
+
+TEST(Medit, ReadsSectionsInAnyOrderAndKeywordsInAnyCase) {
+  const Mesh mesh = read(
+      "MeshVersionFormatted 2 Dimension 2\r\n"
+      "RequiredEdges 1\r 2\n"
+      "TRIANGLES 1 1 2 3 5\n"
+      "RequiredVertices 1 3\n"
+      "Edges 2 1 2 1 2 3 1\n"
+      "Vertices 3 0 0 0 1.0D0 0 0 0 +1 0\n"
+      "END");
+  EXPECT_EQ(mesh.dimension, 2);
+  EXPECT_THAT(mesh.cells.shapes, ElementsAre(Shape::triangle, Shape::line, Shape::line));
+  EXPECT_EQ(mesh.points[2], (Point{0, 1, 0}));
+  EXPECT_EQ(mesh.sets[0], (Set{"RequiredEdges", Attached::cells, {2}}));
+  EXPECT_EQ(mesh.sets[1], (Set{"RequiredVertices", Attached::vertices, {2}}));
+}
+
+TEST(Medit, ReadsOldNamesOfSections) {
+  const Mesh mesh = read(
+      "MeshVersionFormatted 0\nDimension 3\nVertices 8\n0 0 0 0 1 0 0 0 1 1 0 0 0 1 0 0\n"
+      "0 0 1 0 1 0 1 0 1 1 1 0 0 1 1 0\nPentahedra 1\n1 2 3 5 6 7 1\nHexaedra 1\n1 2 3 4 5 6 7 8 2\nEnd\n");
+  EXPECT_THAT(mesh.cells.shapes, ElementsAre(Shape::wedge, Shape::hexahedron));
+}
+
+TEST(Medit, KeepsReferencesOf64Bits) {
+  const Mesh mesh =
+      read("MeshVersionFormatted 4\nDimension 2\nVertices 2\n0 0 5000000000\n1 0 0\nEdges 1\n1 2 7\nEnd\n");
+  EXPECT_THAT(values<std::int64_t>(mesh, kLabel, Attached::vertices), ElementsAre(5000000000, 0));
+  test::expect_write_and_read(mesh, "m.mesh");
+}
+
+TEST(Medit, AcceptsAFileWithoutEndAndSaysSo) {
+  Notes notes;
+  const std::string_view content =
+      "MeshVersionFormatted 2\nDimension 2\nVertices 2\n0 0 1\n1 0 2\nEdges 1\n1 2 34";
+  EXPECT_EQ(read(content, &notes).cell_count(), 1);
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("has no End"), HasSubstr("without a line end")));
+  notes.clear();
+  (void)read(std::string(content) + "\n", &notes);
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("has no End")));
+}
+
+TEST(Medit, NotesSolutionsBesideTheMesh) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.file("m.mesh", kFile);
+  (void)folder.file("m.sol", "MeshVersionFormatted 2\n");
+  Notes notes;
+  const Mesh mesh = read_mesh(path, &notes);
+  EXPECT_THAT(notes, ElementsAre(AllOf(HasSubstr("m.sol"), HasSubstr("original order"))));
+  notes.clear();
+  write_mesh(mesh, path, &notes);
+  EXPECT_THAT(notes, ElementsAre(AllOf(HasSubstr("m.sol"), HasSubstr("does not fit"))));
+}
+
+// ---- second order
+
+constexpr std::string_view kQuadratic =
+    "MeshVersionFormatted 2\nDimension 2\n"
+    "Vertices\n6\n0 0 0\n2 0 0\n0 2 0\n1 0 0\n1 1 0\n0 1 0\n";
+
+TEST(Medit, SecondOrderNodesComeInVtksOrderWithoutAnOrdering) {
+  const Mesh mesh =
+      read(std::string(kQuadratic) + "TrianglesP2\n1\n1 2 3 4 5 6 7\nRequiredTriangles\n1\n1\nEnd\n");
+  EXPECT_THAT(mesh.cells.vertices, ElementsAre(0, 1, 2, 3, 4, 5));
+  EXPECT_THAT(mesh.sets[0].members, ElementsAre(0));
+  EXPECT_THAT(written(mesh), testing::Not(HasSubstr("Ordering")));
+}
+
+TEST(Medit, FollowsTheOrderingThatAFileGives) {
+  // lexicographic, as many high-order codes have it
+  const std::string text = std::string(kQuadratic) +
+                           "TrianglesP2\n1\n1 4 2 6 5 3 7\n"
+                           "TrianglesP2Ordering\n6\n2 0 0\n1 1 0\n0 2 0\n1 0 1\n0 1 1\n0 0 2\nEnd\n";
+  const Mesh mesh = read(text);
+  EXPECT_THAT(mesh.cells.vertices, ElementsAre(0, 1, 2, 3, 4, 5));
+  const std::string back = written(mesh);
+  EXPECT_THAT(back, HasSubstr("\nTrianglesP2\n1\n1 4 2 6 5 3 7\n"));
+  EXPECT_THAT(back, HasSubstr("\nTrianglesP2Ordering\n6\n2 0 0\n1 1 0\n0 2 0\n1 0 1\n0 1 1\n0 0 2\n"));
+  test::expect_same(read(back), mesh);
+}
+
+TEST(Medit, AnOrderingThatMakesNoSenseLeavesNodesAsTheyAre) {
+  Notes notes;
+  const Mesh mesh = read(std::string(kQuadratic) +
+                             "TrianglesP2\n1\n1 4 2 6 5 3 7\n"
+                             "TrianglesP2Ordering\n6\n2 0 0\n2 0 0\n0 2 0\n1 0 1\n0 1 1\n0 0 2\nEnd\n",
+                         &notes);
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("TrianglesP2Ordering is not understood")));
+  EXPECT_THAT(mesh.cells.vertices, ElementsAre(0, 3, 1, 5, 4, 2));
+  EXPECT_THAT(written(mesh), HasSubstr("\nTrianglesP2\n1\n1 4 2 6 5 3 7\n"));
+}
+
+TEST(Medit, TellsTheOrderOfNodesOfCellsFromOtherFormats) {
+  Mesh mesh = test::cells_of_type(Shape::hexahedron, 27, 1);
+  mesh.sets.clear();
+  const std::string text = written(mesh);
+  // VTK's faces come as x = 0, x = 1, y = 0, y = 1, z = 0, z = 1
+  EXPECT_THAT(text,
+              HasSubstr("\nHexahedraQ2Ordering\n27\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n0 0 2\n2 0 2\n2 2 2\n0 2 2\n"
+                        "1 0 0\n2 1 0\n1 2 0\n0 1 0\n1 0 2\n2 1 2\n1 2 2\n0 1 2\n0 0 1\n2 0 1\n2 2 1\n0 2 1\n"
+                        "0 1 1\n2 1 1\n1 0 1\n1 2 1\n1 1 0\n1 1 2\n1 1 1\n"));
+  Notes notes;
+  const std::string without =
+      text.substr(0, text.find("\nHexahedraQ2Ordering")) + text.substr(text.find("\nHexahedraQ2\n"));
+  (void)read(without, &notes);
+  EXPECT_THAT(notes, ElementsAre(AllOf(HasSubstr("HexahedraQ2"), HasSubstr("VTK's order"))));
+}
+
+// ---- meshes of other formats
+
+Mesh with_labels_only(Mesh mesh) {
+  std::erase_if(mesh.data, [](const DataArray& array) { return array.name != kLabel; });
+  mesh.sets.clear();
+  group_cells_by_type(mesh);
+  return mesh;
+}
+
+TEST(Medit, WritesAndReadsEveryTypeThatItHolds) {
+  auto types = test::linear_types();
+  std::erase(types, std::pair{Shape::vertex, 1});
+  types.insert(types.end(), {{Shape::line, 3},
+                             {Shape::triangle, 6},
+                             {Shape::quad, 9},
+                             {Shape::tetrahedron, 10},
+                             {Shape::pyramid, 14},
+                             {Shape::wedge, 18},
+                             {Shape::hexahedron, 27}});
+  for (const auto& [shape, nodes] : types) {
+    SCOPED_TRACE(type_name(shape, nodes));
+    test::expect_write_and_read(with_labels_only(test::cells_of_type(shape, nodes, 4)), "m.mesh");
+  }
+}
+
+/// The cells of the mixed mesh that Medit holds, interleaved, with labels.
+Mesh interleaved() {
+  const Mesh all = test::mixed_mesh();
+  Mesh mesh = all;
+  mesh.cells = {};
+  std::vector<std::int32_t> labels;
+  for (Index c = 0; c < all.cell_count(); ++c) {
+    const Shape shape = all.cells.shapes[c];
+    const int nodes = all.cells.vertex_count(c);
+    if (shape == Shape::vertex || nodes == 20 || nodes == 15 || nodes == 13 ||
+        (shape == Shape::quad && nodes == 8))
+      continue;
+    mesh.cells.push_back(shape, all.cells[c]);
+    labels.push_back(c);
+  }
+  std::erase_if(mesh.data,
+                [](const DataArray& array) { return array.on == Attached::cells || array.name != kLabel; });
+  mesh.data.push_back({std::string(kLabel), Attached::cells, 1, labels, {}, {}});
+  mesh.sets.clear();
+  return mesh;
+}
+
+TEST(Medit, GroupsInterleavedCells) {
+  const TemporaryFolder folder;
+  const Mesh mesh = interleaved();
+  ASSERT_GT(mesh.cell_count(), 30);
+  write_mesh(mesh, folder.path() / "m.mesh");
+  const Mesh back = read_mesh(folder.path() / "m.mesh");
+  Mesh expected = mesh;
+  group_cells_by_type(expected);
+  test::expect_same(back, expected);
+  test::expect_order_and_back(folder.path() / "m.mesh");
+}
+
+TEST(Medit, KeepsSetsThatItKnowsAndNamesWhatIsLost) {
+  Mesh mesh = test::tetrahedral_bar(2);
+  mesh.sets.push_back({"RequiredVertices", Attached::vertices, {3, 1}});
+  mesh.sets.push_back({"RequiredTriangles", Attached::cells, {0}});  // which is a tetrahedron
+  mesh.cell_ids.resize(mesh.cell_count(), 0);
+  mesh.data.push_back({"NormalAtVertices", Attached::vertices, 1, std::vector<double>{1}, {0}, {}});
+  mesh.data.push_back({"names", Attached::cells, 1, std::vector<std::string>(mesh.cell_count()), {}, {}});
+  Notes notes;
+  const std::string text = written(mesh, &notes);
+  EXPECT_THAT(text, HasSubstr("\nRequiredVertices\n2\n4\n2\n"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("RequiredTriangles")));
+  EXPECT_THAT(notes,
+              testing::UnorderedElementsAre(
+                  HasSubstr("'fixed'"), HasSubstr("'part'"), HasSubstr("'RequiredTriangles'"),
+                  HasSubstr("'temperature' on vertices"), HasSubstr("'stress' on vertices"),
+                  HasSubstr("'temperature' on cells"), HasSubstr("'stress' on cells"),
+                  HasSubstr("'NormalAtVertices'"), HasSubstr("'names'"), HasSubstr("numbers of cells")));
+}
+
+TEST(Medit, CellsWithoutALabelGetZero) {
+  Mesh mesh = test::cells_of_type(Shape::tetrahedron, 4, 2);
+  mesh.sets.clear();
+  mesh.data = {{std::string(kLabel), Attached::cells, 1, std::vector<std::int32_t>{8}, {1}, {}}};
+  Notes notes;
+  EXPECT_THAT(written(mesh, &notes), HasSubstr("\nTetrahedra\n2\n1 2 3 4 0\n5 6 7 8 8\n"));
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("1 cells have no label")));
+}
+
+TEST(Medit, TellsOtherFormatsWhatTheyLose) {
+  const TemporaryFolder folder;
+  Mesh mesh = read(
+      "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0\n"
+      "Tetrahedra 1\n1 2 3 4 5\nBoundingBox 0 0 0 1 1 1\nEnd\n");
+  Notes notes;
+  write_mesh(mesh, folder.path() / "m.node", &notes);
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("the section BoundingBox")));
+}
+
+TEST(Medit, RefusesCellsThatItCannotHold) {
+  const TemporaryFolder folder;
+  for (const auto& [shape, nodes] :
+       {std::pair{Shape::hexahedron, 20}, {Shape::quad, 8}, {Shape::vertex, 1}, {Shape::polygon, 5}}) {
+    try {
+      write_mesh(test::cells_of_type(shape, nodes, 1), folder.path() / "m.mesh");
+      ADD_FAILURE() << type_name(shape, nodes);
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr(type_name(shape, nodes)), HasSubstr("instead")));
+    }
+  }
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(Medit, SaysWhereItCannotWrite) {
+  const TemporaryFolder folder;
+  const Mesh mesh = read(kFile);
+  EXPECT_THROW(write_mesh(mesh, folder.path() / "none" / "m.mesh"), Error);
+  fs::create_directory(folder.path() / "m.mesh");
+  EXPECT_THROW(write_mesh(mesh, folder.path() / "m.mesh"), Error);
+  EXPECT_THAT(folder.names(), ElementsAre("m.mesh"));
+}
+
+// ---- broken files
+
+TEST(Medit, SaysWhatIsWrongAndWhere) {
+  const std::string head = "MeshVersionFormatted 2\nDimension 3\n";
+  const std::string vertices = head + "Vertices\n4\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n";  // 8 lines
+  const std::string cell = "Tetrahedra\n1\n1 2 3 4 5\n";
+  test::expect_broken(
+      "m.mesh",
+      {{"empty", "", "is empty"},
+       {"comments", "# nothing\n", ":2: this is no Medit mesh"},
+       {"MFEM", "MFEM mesh v1.0\n\ndimension\n2\n", ":1: this is no Medit mesh"},
+       {"binary", std::string("\1\0\0\0\2\0\0\0\3\0\0\0", 12), "is binary"},
+       {"garbage", "\xff\xfe\x80zzz", ":1: this is no Medit mesh"},
+       {"garbage within", head + "\x80\xff", " stands where a keyword should"},
+       {"no version", "MeshVersionFormatted", "the file ends where the version"},
+       {"unknown version", "MeshVersionFormatted 9\n", ":1: the version is 9"},
+       {"no dimension", "MeshVersionFormatted 2\nVertices 0\n",
+        ":2: the section Vertices stands before the Dimension"},
+       {"dimension 4", "MeshVersionFormatted 2\nDimension 4\n", ":2: the dimension is 4"},
+       {"only a head", head, "has no Vertices"},
+       {"no vertices", head + "End\n", "has no Vertices"},
+       {"no cells", vertices + "End\n", "has no cells"},
+       {"no cells but their section", vertices + "Tetrahedra 0\nEnd\n", "has no cells"},
+       {"absurd vertices", head + "Vertices\n1000000000000\n0 0 0 1\n",
+        ":4: the count of Vertices is 1000000000000"},
+       {"large vertices", head + "Vertices\n2000000000\n0 0 0 1\n", "bytes follow"},
+       {"negative vertices", head + "Vertices\n-3\n", ":4: the count of Vertices is -3"},
+       {"one vertex too many", replaced(vertices, "4\n", "3\n") + cell, ":8: '0' stands where a keyword"},
+       {"one vertex too few", replaced(vertices, "4\n", "5\n") + cell, ":9: a coordinate is 'Tetrahedra'"},
+       {"nan", replaced(vertices, "0 1 0", "0 nan 0") + cell, ":7: a coordinate is not finite"},
+       {"infinite", replaced(vertices, "0 1 0", "0 inf 0") + cell, ":7: a coordinate is not finite"},
+       {"huge", replaced(vertices, "0 1 0", "0 1e400 0") + cell, ":7: a coordinate is 1e400"},
+       {"reference missing", replaced(vertices, "0 1 0 1", "0 1 0 x") + cell,
+        ":7: the reference of a vertex is 'x'"},
+       {"vertex 0", vertices + "Tetrahedra\n1\n0 2 3 4 5\nEnd\n", ":11: a vertex of the cell is 0; 1 to 4"},
+       {"vertex beyond", vertices + "Tetrahedra\n1\n1 2 3 5 5\nEnd\n", ":11: a vertex of the cell is 5"},
+       {"negative vertex", vertices + "Tetrahedra\n1\n1 2 -3 4 5\nEnd\n", ":11: a vertex of the cell is -3"},
+       {"absurd cells", vertices + "Tetrahedra\n1000000000000\n1 2 3 4 5\nEnd\n",
+        ":10: the count of Tetrahedra is 1"},
+       {"negative cells", vertices + "Tetrahedra\n-1\nEnd\n", ":10: the count of Tetrahedra is -1"},
+       {"cells without vertices", head + cell + "End\n", "has no Vertices"},
+       {"cells twice", vertices + cell + cell + "End\n", ":12: a second section Tetrahedra"},
+       {"vertices twice", vertices + "Vertices\n1\n0 0 0 0\n" + cell, ":9: a second section Vertices"},
+       {"list beyond", vertices + cell + "Corners\n1\n5\nEnd\n", ":14: a number of Corners is 5"},
+       {"list of what is not there", vertices + cell + "Ridges\n1\n1\nEnd\n",
+        "Ridges counts cells of type line"},
+       {"absurd list", vertices + cell + "Corners\n1000000000000\n5\nEnd\n",
+        ":13: the count of Corners is 1"},
+       {"table twice", vertices + cell + "NormalAtVertices\n2\n1 1\n1 2\nEnd\n",
+        ":15: NormalAtVertices names 1 twice"},
+       {"table beyond", vertices + cell + "NormalAtVertices\n1\n9 1\nEnd\n",
+        ":14: a number of NormalAtVertices is 9"},
+       {"short normals", vertices + cell + "Normals\n2\n0 0 1\n1 0\nEnd\n",
+        ":16: a number of Normals is 'End'"},
+       {"ordering of another size", vertices + cell + "TetrahedraP2Ordering\n4\n2 0 0 0\n", "10 are needed"},
+       {"section with numbers of triangles", vertices + cell + "SubDomainFromMesh\n1\n3 1 1 0\nEnd\n",
+        ":12: the section SubDomainFromMesh is not understood"},
+       {"section of cubic cells", vertices + "TetrahedraP3\n0\nEnd\n",
+        "the section TetrahedraP3 is not understood"}});
+}
+
+TEST(Medit, RefusesFoldersAndMissingFiles) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "m.mesh");
+  EXPECT_THAT(test::read_error(folder.path() / "m.mesh"), HasSubstr("is a folder"));
+  EXPECT_THAT(test::read_error(folder.path() / "none.mesh"), HasSubstr("no such file"));
+}
+
+TEST(Medit, NoticesTruncation) {
+  test::expect_truncation_is_noticed(
+      "m.mesh",
+      "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n1 1 1.5 1\n"
+      "Tetrahedra\n2\n1 2 3 4 5\n2 3 4 5 6\nEnd\n");
+  // between two sections nothing but a note can tell
+  const Mesh whole = read(kFile);
+  for (std::size_t size = 0; size < kFile.find("End"); ++size) {
+    Notes notes;
+    try {
+      (void)read(kFile.substr(0, size), &notes);
+      EXPECT_FALSE(notes.empty()) << "cut after " << size;
+    } catch (const Error&) {
+      continue;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshorder

@@ -1,0 +1,240 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/io/format.hpp>
+#include <meshorder/mesh/reorder.hpp>
+#include <support/files.hpp>
+#include <support/sample_meshes.hpp>
+
+#include <gtest/gtest.h>
+
+namespace meshorder {
+namespace {
+
+using namespace test;
+
+constexpr std::string_view kHouse = R"(# a house
+# with a roof
+mtllib house.mtl more.mtl
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0 0.5
+v 0.5 1.5 0.1
+v 5 5 5
+vt 0 0
+vt 1.0 0 # kept as it stands
+vt 0.50 1
+vn 0 0 1
+vn 0 1 0
+g walls
+o house
+usemtl brick
+s 1
+f 1/1/1 2/2/1 3/3/2 4/1/2
+g roof top
+usemtl shingle
+s off
+f 3/1 5/2 4/3
+g
+o
+usemtl
+f 1//1 3//2 4//1
+f 1 2 3 4 5
+l 1/1 2/2
+l 1 2 3
+p 6
+)";
+
+TEST(Obj, ReadsCellsWithTheirStates) {
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(folder.file("a.obj", kHouse));
+  EXPECT_EQ(mesh.vertex_count(), 6);
+  EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::quad, Shape::triangle, Shape::triangle, Shape::polygon,
+                                            Shape::line, Shape::polyline, Shape::vertex}));
+  EXPECT_EQ(mesh.cells.vertices,
+            (std::vector<Index>{0, 1, 2, 3, 2, 4, 3, 0, 2, 3, 0, 1, 2, 3, 4, 0, 1, 0, 1, 2, 5}));
+  using Ints = std::vector<std::int32_t>;
+  const std::vector<DataArray> expected{{"obj:weight", Attached::vertices, 1, std::vector{0.5}, {3}, {}},
+                                        {"obj:texture2", Attached::cells, 2, Ints{0, 1}, {4}, {}},
+                                        {"obj:texture3", Attached::cells, 3, Ints{0, 1, 2}, {1}, {}},
+                                        {"obj:texture4", Attached::cells, 4, Ints{0, 1, 2, 0}, {0}, {}},
+                                        {"obj:normal3", Attached::cells, 3, Ints{0, 1, 0}, {2}, {}},
+                                        {"obj:normal4", Attached::cells, 4, Ints{0, 0, 1, 1}, {0}, {}},
+                                        {"object", Attached::cells, 1, Ints{1, 1, 0, 0, 0, 0, 0}, {}, {}},
+                                        {"label", Attached::cells, 1, Ints{1, 2, 0, 0, 0, 0, 0}, {}, {}},
+                                        {"smoothing", Attached::cells, 1, Ints{1, 0, 0, 0, 0, 0, 0}, {}, {}}};
+  EXPECT_EQ(mesh.data, expected);
+  EXPECT_EQ(mesh.sets, (std::vector<Set>{{"roof", Attached::cells, {1}},
+                                         {"top", Attached::cells, {1}},
+                                         {"walls", Attached::cells, {0}}}));
+}
+
+TEST(Obj, OrdersAndPutsBackEverything) {
+  expect_order_and_back_to("a.obj", kHouse);
+  const TemporaryFolder folder;
+  Notes notes;
+  write_mesh(read_mesh(folder.file("a.obj", kHouse)), folder.path() / "b.obj", &notes);
+  EXPECT_TRUE(notes.empty());
+}
+
+TEST(Obj, StatesChangeWhereTheyChangeInTheNewOrder) {
+  const TemporaryFolder folder;
+  Mesh mesh =
+      read_mesh(folder.file("a.obj",
+                            "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 1\nusemtl b\nf 1/1 2/1 3/2\nusemtl a\n"
+                            "f 2 3 1\nusemtl b\nf 3/2 1/2 2/1\n"));
+  reorder(mesh, Permutation::from_old_to_new({2, 1, 0}), Permutation::from_new_to_old({0, 2, 1}));
+  write_mesh(mesh, folder.path() / "b.obj");
+  EXPECT_EQ(content_of(folder.path() / "b.obj"),
+            "v 0 1 0\nv 1 0 0\nv 0 0 0\nvt 0 0\nvt 1 1\nusemtl b\nf 3/1 2/1 1/2\nf 1/2 3/2 2/1\nusemtl a\nf "
+            "2 1 3\n");
+}
+
+TEST(Obj, TakesNegativeIndicesContinuedLinesAndIndicesAhead) {
+  const TemporaryFolder folder;
+  const Mesh mesh =
+      read_mesh(folder.file("a.obj",
+                            "f 1 2 4\r\nv 0 0 0\rv 1 0 0\nv 0 \\\n 1 \\\r\n0\nf -3 -2 \\\r-1\nv 1 1 1\n"
+                            "vt 0 # late\nf -1/-1 -2/-1 -3/-1\n"
+                            "f 1 2 3 # done"));
+  EXPECT_EQ(mesh.points[2], (Point{0, 1, 0}));
+  EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 3, 0, 1, 2, 3, 2, 1, 0, 1, 2}));
+}
+
+TEST(Obj, KeepsVertexColors) {
+  expect_order_and_back_to("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0 0 1\nv 0 1 0 0.25 0 0\nf 1 2 3\n");
+  expect_order_and_back_to("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0.5\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 4 3\n");
+}
+
+TEST(Obj, KeepsNamesThatNoCellHas) {
+  expect_order_and_back_to(
+      "a.obj",
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\ng empty\no none\nusemtl gold\ng\no\nusemtl a b#1\ns 3\nlod 2\n"
+      "f 1 2 3\nf 3 2 1\n");
+}
+
+TEST(Obj, NumbersMaterialsByTheirNamesWhereThoseAreNumbers) {
+  const TemporaryFolder folder;
+  const std::string lists = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  using Ints = std::vector<std::int32_t>;
+  const auto labels = [&](const std::string& cells) {
+    const Mesh mesh = read_mesh(folder.file("a.obj", lists + cells));
+    return find_array(mesh, kLabel, Attached::cells)->values;
+  };
+  EXPECT_EQ(labels("usemtl 7\nf 1 2 3\nusemtl -2\nf 1 2 3\n"), Values(Ints{7, -2}));
+  EXPECT_EQ(labels("usemtl z\nf 1 2 3\nusemtl 5\nf 1 2 3\n"), Values(Ints{2, 1}));
+  EXPECT_EQ(labels("f 1 2 3\nusemtl 0\nf 1 2 3\n"), Values(Ints{0, 1}));
+}
+
+TEST(Obj, BrokenFilesStopWithTheirLine) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  expect_broken(
+      "a.obj",
+      {{"garbage", "\x7f\x45\x4c\x46 garbage", ":1: the statement '?ELF' is unknown"},
+       {"binary", std::string("\0\1\2\3", 4), ":1: the statement"},
+       {"only comments", "# nothing\n", "has no cells"},
+       {"only vertices", vertices, "has no cells"},
+       {"two coordinates", "v 0 0\n", ":1: a vertex of 2 numbers"},
+       {"five numbers", "v 0 0 0 1 1\n", ":1: a vertex of 5 numbers"},
+       {"seven numbers", "v 0 0 0 1 1 1 1\n", ":1: a vertex of more than 6 numbers"},
+       {"nan", "v 0 0 0\nv 0 nan 0\n", ":2: a coordinate is not finite"},
+       {"infinite", "v 0 0 inf\n", ":1: a coordinate is not finite"},
+       {"no number", "v 0 x 0\n", ":1: a coordinate is 'x'"},
+       {"texture of words", "vt a\n", ":1: a number of vt is 'a'"},
+       {"texture of none", "vt\n", ":1: a line vt of 0 numbers; 1 to 3 are right"},
+       {"normal of two", "vn 0 0\n", ":1: a line vn of 2 numbers; 3 are needed"},
+       {"vertex zero", vertices + "f 0 1 2\n", ":4: v 0 does not exist"},
+       {"vertex too large", vertices + "f 1 2 4\n\n", ":4: v 4 does not exist; there are 3, counted from 1"},
+       {"absurd vertex", vertices + "f 1 2 1000000000000\n",
+        ":4: a number of v is 1000000000000; that is too large"},
+       {"too far back", vertices + "f -1 -2 -4\n", ":4: v -4 does not exist"},
+       {"vertex no number", vertices + "f 1 2 x\n", ":4: a number of v is 'x'"},
+       {"texture too large", vertices + "vt 0\nf 1/1 2/1 3/2\n", ":5: vt 2 does not exist"},
+       {"no normals", vertices + "f 1//1 2//1 3//1\n", ":4: vn 1 does not exist"},
+       {"mixed corners", vertices + "vt 0\nf 1/1 2/1 3\n", ":5: corners of one cell have different"},
+       {"ends in slash", vertices + "f 1/ 2/ 3/\n", ":4: a corner ends in a slash"},
+       {"too many slashes", vertices + "vt 0\nvn 1 0 0\nf 1/1/1/1 2 3\n", ":6: a number of vn is '1/1'"},
+       {"face of two", vertices + "f 1 2\n", ":4: a cell of 2 vertices; this kind needs at least 3"},
+       {"line of one", vertices + "l 1\n", ":4: a cell of 1 vertices; this kind needs at least 2"},
+       {"point of none", vertices + "p\n", ":4: a cell of 0 vertices"},
+       {"error in a continued line", vertices + "f 1 \\\n2 \\\nx\n", ":4: a number of v is 'x'"},
+       {"ends continued", vertices + "f 1 2 \\", ":4: a cell of 2 vertices"},
+       {"smoothing", vertices + "s smooth\nf 1 2 3\n", ":4: the smoothing group 'smooth'"},
+       {"free form", vertices + "cstype bspline\n", ":4: free-form geometry ('cstype') is not read"},
+       {"parameter vertex", "vp 0 1\n", ":1: free-form geometry ('vp') is not read"},
+       {"curve", vertices + "curv 0 1 1 2 3\n", ":4: free-form geometry ('curv') is not read"},
+       {"unknown", vertices + "call other.obj\n", ":4: the statement 'call' is unknown"}});
+}
+
+// a file that ends after a whole line, or within a number, is whole for OBJ: it promises no counts
+TEST(Obj, NoticesThatVerticesAreMissing) {
+  const std::string text = "f 1 2 3\nf 2 3 4\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\n";
+  expect_truncation_is_noticed("a.obj", text);
+}
+
+TEST(Obj, WritesAndReadsItsTypes) {
+  for (const auto& [shape, width] : std::vector<std::pair<Shape, int>>{{Shape::vertex, 1},
+                                                                       {Shape::poly_vertex, 4},
+                                                                       {Shape::line, 2},
+                                                                       {Shape::polyline, 5},
+                                                                       {Shape::triangle, 3},
+                                                                       {Shape::quad, 4},
+                                                                       {Shape::polygon, 7}}) {
+    Mesh mesh = cells_of_type(shape, width, 5);
+    std::erase_if(mesh.data,
+                  [](const DataArray& a) { return a.on == Attached::vertices || a.name != kLabel; });
+    std::erase_if(mesh.sets, [](const Set& set) { return set.on == Attached::vertices; });
+    expect_write_and_read(mesh, "a.obj");
+  }
+}
+
+TEST(Obj, WritesOtherMeshesExactlySoAndNotesWhatItCannotHold) {
+  const TemporaryFolder folder;
+  Mesh mesh = cells_of_type(Shape::triangle, 3, 1);
+  mesh.points = {{0.1, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.cell_ids = {77};
+  mesh.sets.push_back({"two words", Attached::cells, {0}});
+  for (const char* component : {"nx", "ny", "nz"}) {
+    mesh.data.push_back({component, Attached::vertices, 1, std::vector<float>{0, 0.5F, 1}, {}, {}});
+  }
+  mesh.data.push_back({"texture", Attached::vertices, 2, std::vector<double>{0, 0, 1, 0, 0, 1}, {}, {}});
+  mesh.data.push_back(
+      {"color", Attached::vertices, 3, std::vector<std::uint8_t>{255, 0, 0, 0, 51, 0, 0, 0, 0}, {}, {}});
+  Notes notes;
+  write_mesh(mesh, folder.path() / "a.obj", &notes);
+  EXPECT_EQ(
+      content_of(folder.path() / "a.obj"),
+      "v 0.1 0 0 1 0 0\nv 1 0 0 0 0.2 0\nv 0 1 0 0 0 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 0\nvn 0.5 0.5 0.5\n"
+      "vn 1 1 1\ng part two_words\nusemtl 1\nf 1/1/1 2/2/2 3/3/3\n");
+  EXPECT_EQ(notes, (Notes{"labels of cells are written as materials (usemtl) of their numbers",
+                          "the array 'label' on vertices is left out: OBJ cannot hold it",
+                          "the array 'temperature' on vertices is left out: OBJ cannot hold it",
+                          "the array 'stress' on vertices is left out: OBJ cannot hold it",
+                          "the array 'temperature' on cells is left out: OBJ cannot hold it",
+                          "the array 'stress' on cells is left out: OBJ cannot hold it",
+                          "the set 'fixed' of vertices is left out: OBJ cannot hold it",
+                          "the set 'two words' is written as the group 'two_words'",
+                          "the numbers of cells are left out: OBJ counts them by place"}));
+}
+
+TEST(Obj, OtherFormatsNameWhatIsLost) {
+  const TemporaryFolder folder;
+  Notes notes;
+  write_mesh(
+      read_mesh(folder.file("a.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n")),
+      folder.path() / "a.off", &notes);
+  EXPECT_EQ(notes, (Notes{"the array 'label' on cells is left out: OFF cannot hold it",
+                          "left out, as OFF cannot hold it: the names of material libraries",
+                          "left out, as OFF cannot hold it: usemtl red, which is 1 in the array 'label'"}));
+}
+
+TEST(Obj, RefusesVolumesAndCurvedCells) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "a.obj";
+  EXPECT_NE(write_error(tetrahedral_bar(1), path).find("OBJ cannot hold a cell of type tetrahedron"),
+            std::string::npos);
+  EXPECT_NE(write_error(cells_of_type(Shape::quad, 9, 1), path).find("of type quad9"), std::string::npos);
+  EXPECT_TRUE(folder.names().empty());
+}
+
+}  // namespace
+}  // namespace meshorder

@@ -1,0 +1,147 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/mesh/reorder.hpp>
+#include <support/sample_meshes.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace meshorder::test {
+namespace {
+
+Point irregular_point(Index v) { return {v + 0.1, std::sin(v * 12.9898) / 3, std::cos(v * 78.233) * 1e-3}; }
+
+void attach_everything(Mesh& mesh) {
+  for (const Attached on : {Attached::vertices, Attached::cells}) {
+    const Index n = on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
+    std::vector<std::int32_t> labels(n);
+    std::vector<double> temperatures(n);
+    std::vector<double> stresses(3 * static_cast<std::size_t>(n));
+    for (Index i = 0; i < n; ++i) {
+      labels[i] = i % 3 + 1;
+      temperatures[i] = std::sqrt(i + 2.0);
+    }
+    for (std::size_t i = 0; i < stresses.size(); ++i) stresses[i] = 1.0 / (static_cast<double>(i) + 3.0);
+    mesh.data.push_back({std::string(kLabel), on, 1, labels, {}, {}});
+    mesh.data.push_back({"temperature", on, 1, temperatures, {}, {}});
+    mesh.data.push_back({"stress", on, 3, stresses, {}, {}});
+    mesh.sets.push_back({on == Attached::vertices ? "fixed" : "part", on, {0, n - 1}});
+  }
+}
+
+}  // namespace
+
+Mesh cells_of_type(Shape shape, int vertices_per_cell, Index copies) {
+  Mesh mesh;
+  for (Index c = 0; c < copies; ++c) {
+    std::vector<Index> vertices(vertices_per_cell);
+    std::iota(vertices.begin(), vertices.end(), c * vertices_per_cell);
+    mesh.cells.push_back(shape, vertices);
+  }
+  for (Index v = 0; v < copies * vertices_per_cell; ++v) mesh.points.push_back(irregular_point(v));
+  attach_everything(mesh);
+  return mesh;
+}
+
+Mesh tetrahedral_bar(Index n) {
+  Mesh mesh;
+  for (Index i = 0; i <= n; ++i) {
+    for (const double y : {0.0, 1.0}) {
+      for (const double z : {0.0, 1.0}) mesh.points.push_back({1.0 * i, y, z});
+    }
+  }
+  // Kuhn's six tetrahedra around the diagonal from corner 0 to corner 7 of a cube
+  const std::array<std::array<Index, 4>, 6> kuhn{
+      {{0, 4, 6, 7}, {0, 6, 2, 7}, {0, 2, 3, 7}, {0, 3, 1, 7}, {0, 1, 5, 7}, {0, 5, 4, 7}}};
+  for (Index i = 0; i < n; ++i) {
+    for (std::array<Index, 4> tetrahedron : kuhn) {
+      for (Index& v : tetrahedron) v += 4 * i;
+      mesh.cells.push_back(Shape::tetrahedron, tetrahedron);
+    }
+  }
+  attach_everything(mesh);
+  return mesh;
+}
+
+Mesh mixed_mesh() {
+  Mesh mesh;
+  auto types = linear_types();
+  const auto quadratic = quadratic_types();
+  types.insert(types.end(), quadratic.begin(), quadratic.end());
+  Index next = 0;
+  for (int round = 0; round < 3; ++round) {
+    for (const auto& [shape, count] : types) {
+      std::vector<Index> vertices(count);
+      std::iota(vertices.begin(), vertices.end(), next);
+      mesh.cells.push_back(shape, vertices);
+      next += count / 2;  // the next cell shares vertices with this one
+    }
+  }
+  const Index last = *std::max_element(mesh.cells.vertices.begin(), mesh.cells.vertices.end());
+  for (Index v = 0; v <= last; ++v) mesh.points.push_back(irregular_point(v));
+  attach_everything(mesh);
+  return mesh;
+}
+
+std::vector<std::pair<Shape, int>> linear_types() {
+  return {{Shape::vertex, 1},      {Shape::line, 2},    {Shape::triangle, 3}, {Shape::quad, 4},
+          {Shape::tetrahedron, 4}, {Shape::pyramid, 5}, {Shape::wedge, 6},    {Shape::hexahedron, 8}};
+}
+
+std::vector<std::pair<Shape, int>> quadratic_types() {
+  return {{Shape::line, 3},         {Shape::triangle, 6},   {Shape::quad, 8},   {Shape::quad, 9},
+          {Shape::tetrahedron, 10}, {Shape::pyramid, 13},   {Shape::wedge, 15}, {Shape::wedge, 18},
+          {Shape::hexahedron, 20},  {Shape::hexahedron, 27}};
+}
+
+Permutation shuffled(Index n, std::uint64_t seed) {
+  std::vector<Index> order(n);
+  std::iota(order.begin(), order.end(), Index{0});
+  std::mt19937_64 random(seed);
+  std::shuffle(order.begin(), order.end(), random);
+  return Permutation::from_new_to_old(std::move(order));
+}
+
+Permutation shuffled_cells(const Mesh& mesh, std::uint64_t seed) {
+  return permutation_within_blocks(mesh, shuffled(mesh.cell_count(), seed).new_to_old());
+}
+
+Mesh sorted_members(Mesh mesh) {
+  for (Set& set : mesh.sets) std::sort(set.members.begin(), set.members.end());
+  for (DataArray& array : mesh.data) {
+    std::vector<Index> order(array.rows.size());
+    std::iota(order.begin(), order.end(), Index{0});
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return array.rows[a] < array.rows[b]; });
+    if (order.empty()) continue;
+    const Permutation sorting = Permutation::from_new_to_old(order);
+    array.rows = sorting.moved(array.rows);
+    std::visit(
+        [&](auto& values) { values = sorting.moved(values, static_cast<std::size_t>(array.components)); },
+        array.values);
+  }
+  return mesh;
+}
+
+void expect_same(const Mesh& actual, const Mesh& expected) {
+  EXPECT_EQ(actual.points, expected.points);
+  EXPECT_EQ(actual.dimension, expected.dimension);
+  EXPECT_EQ(actual.cells.shapes, expected.cells.shapes);
+  EXPECT_EQ(actual.cells.offsets, expected.cells.offsets);
+  EXPECT_EQ(actual.cells.vertices, expected.cells.vertices);
+  ASSERT_EQ(actual.data.size(), expected.data.size());
+  for (std::size_t i = 0; i < expected.data.size(); ++i) {
+    EXPECT_EQ(actual.data[i], expected.data[i]) << "array " << expected.data[i].name;
+  }
+  ASSERT_EQ(actual.sets.size(), expected.sets.size());
+  for (std::size_t i = 0; i < expected.sets.size(); ++i) {
+    EXPECT_EQ(actual.sets[i], expected.sets[i]) << "set " << expected.sets[i].name;
+  }
+  EXPECT_EQ(actual.vertex_ids, expected.vertex_ids);
+  EXPECT_EQ(actual.cell_ids, expected.cell_ids);
+  EXPECT_EQ(actual.cell_blocks, expected.cell_blocks);
+}
+
+}  // namespace meshorder::test

@@ -1,0 +1,40 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/mesh/mesh.hpp>
+#include <meshorder/ordering/permutation.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace meshorder::test {
+
+/// `copies` disjoint cells of one type, each on vertices of its own, with an int label and a double array on
+/// vertices and on cells ("label", "temperature", "stress" of 3 components), and a set of each kind ("fixed",
+/// "part"). Coordinates are irregular, so that any mix-up shows.
+Mesh cells_of_type(Shape shape, int vertices_per_cell, Index copies);
+
+/// A row of `n` unit cubes cut into six tetrahedra each, sharing vertices; attachments as above.
+Mesh tetrahedral_bar(Index n);
+
+/// Tetrahedra, hexahedra, wedges, pyramids, triangles, quads, lines and vertices in one mesh, interleaved,
+/// linear and quadratic; attachments as above.
+Mesh mixed_mesh();
+
+/// The types, as (shape, vertices per cell), that a format must carry: all linear and second-order ones.
+std::vector<std::pair<Shape, int>> linear_types();
+std::vector<std::pair<Shape, int>> quadratic_types();
+
+/// A seeded random permutation of 0 … n−1.
+Permutation shuffled(Index n, std::uint64_t seed);
+
+/// A seeded random permutation of the mesh's cells that keeps blocks and dimensions.
+Permutation shuffled_cells(const Mesh& mesh, std::uint64_t seed);
+
+/// The mesh with the rows of partial arrays and the members of sets in rising order.
+Mesh sorted_members(Mesh mesh);
+
+/// EXPECTs that two meshes are the same: points, cells, data, sets, ids, blocks (not residues).
+void expect_same(const Mesh& actual, const Mesh& expected);
+
+}  // namespace meshorder::test
