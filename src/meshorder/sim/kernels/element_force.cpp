@@ -1,0 +1,114 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/sim/kernels/element_force.hpp>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "meshorder/sim/kernels/element_force.cpp"
+#include <hwy/foreach_target.h>
+// from here on once for each instruction set
+#include <meshorder/sim/kernels/stvk-inl.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace meshorder::HWY_NAMESPACE {
+namespace {
+
+template <int D, class Lanes>
+HWY_INLINE void add_forces(const RestShapes& rest, const Lame& lame, const double* positions,
+                           double* forces) {
+  const double* geometry = rest.geometry.data();
+  const Index* vertices = rest.vertices.data();
+  for (Offset batch = 0; batch < rest.batches(); ++batch) {
+    for (Index lane = 0; lane < kBatch; lane += Lanes::kCount) {
+      Stvk<D, Lanes> stvk;
+      stvk.load(geometry + lane, vertices + lane, positions);
+      stvk.strain_and_stress(lame);
+      stvk.add_forces(vertices + lane, forces);
+    }
+    geometry += kBatch * (D * (D + 1) / 2 + 1);
+    vertices += kBatch * (D + 1);
+  }
+}
+
+template <class Lanes>
+HWY_INLINE void add_forces_of_any(const RestShapes& rest, const Lame& lame, const double* positions,
+                                  double* forces) {
+  if (rest.dimension == 3) add_forces<3, Lanes>(rest, lame, positions, forces);
+  if (rest.dimension == 2) add_forces<2, Lanes>(rest, lame, positions, forces);
+  if (rest.dimension == 1) add_forces<1, Lanes>(rest, lame, positions, forces);
+}
+
+void add_forces_in_batches(const RestShapes& rest, const Lame& lame, const double* positions,
+                           double* forces) {
+  add_forces_of_any<ManyLanes>(rest, lame, positions, forces);
+}
+
+#if HWY_ONCE
+void add_forces_one_by_one(const RestShapes& rest, const Lame& lame, const double* positions,
+                           double* forces) {
+  add_forces_of_any<OneLane>(rest, lame, positions, forces);
+}
+
+template <int D>
+double energy_of_all(const RestShapes& rest, const Lame& lame, const double* positions) {
+  double sum = 0.0;
+  for (Offset s = 0; s < rest.count; ++s) {
+    Stvk<D, OneLane> stvk;
+    stvk.load(rest.geometry.data() + s / kBatch * kBatch * rest.quantities() + s % kBatch,
+              rest.vertices.data() + s / kBatch * kBatch * (D + 1) + s % kBatch, positions);
+    stvk.strain_and_stress(lame);
+    sum += stvk.energy(lame);
+  }
+  return sum;
+}
+
+double energy(const RestShapes& rest, const Lame& lame, const double* positions) {
+  switch (rest.dimension) {
+    case 3:
+      return energy_of_all<3>(rest, lame, positions);
+    case 2:
+      return energy_of_all<2>(rest, lame, positions);
+    case 1:
+      return energy_of_all<1>(rest, lame, positions);
+    default:
+      return 0.0;
+  }
+}
+#endif
+
+}  // namespace
+}  // namespace meshorder::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <meshorder/base/error.hpp>
+
+namespace meshorder {
+namespace {
+
+HWY_EXPORT(add_forces_in_batches);
+
+void check_sizes(std::span<const double> positions, std::span<double> forces) {
+  if (positions.size() != forces.size()) {
+    throw InvalidArgument("add_stvk_forces: positions and forces must have the same size");
+  }
+}
+
+}  // namespace
+
+double stvk_energy(const RestShapes& rest, const Lame& lame, std::span<const double> positions) {
+  return HWY_STATIC_DISPATCH(energy)(rest, lame, positions.data());
+}
+
+void add_stvk_forces(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
+                     std::span<double> forces) {
+  check_sizes(positions, forces);
+  HWY_DYNAMIC_DISPATCH(add_forces_in_batches)(rest, lame, positions.data(), forces.data());
+}
+
+void add_stvk_forces_scalar(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
+                            std::span<double> forces) {
+  check_sizes(positions, forces);
+  HWY_STATIC_DISPATCH(add_forces_one_by_one)(rest, lame, positions.data(), forces.data());
+}
+
+}  // namespace meshorder
+#endif

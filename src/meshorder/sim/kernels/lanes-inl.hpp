@@ -1,0 +1,152 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// Included once for each instruction set: Highway's foreach_target.h compiles the including file repeatedly.
+#if defined(MESHORDER_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MESHORDER_LANES_INL
+#undef MESHORDER_LANES_INL
+#else
+#define MESHORDER_LANES_INL
+#endif
+
+#include <meshorder/sim/kernels/positions.hpp>
+#include <meshorder/sim/kernels/simplices.hpp>
+
+#include <hwy/highway.h>
+
+#include <cmath>
+
+/// Before a loop over rows, columns or corners: without it GCC keeps the small matrices in memory.
+#undef MESHORDER_UNROLL
+#define MESHORDER_UNROLL _Pragma("GCC unroll 16")
+
+HWY_BEFORE_NAMESPACE();
+namespace meshorder::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// One simplex at a time: the scalar reference.
+struct OneLane {
+  using Value = double;
+  static constexpr Index kCount = 1;
+
+  static HWY_INLINE double set(double value) { return value; }
+  static HWY_INLINE double load(const double* from) { return *from; }
+  static HWY_INLINE void store(double value, double* to) { *to = value; }
+  static HWY_INLINE double mul_add(double a, double b, double c) { return a * b + c; }
+  static HWY_INLINE double square_root(double a) { return std::sqrt(a); }
+  /// where > 0 ? value : 0
+  static HWY_INLINE double if_positive(double where, double value) { return where > 0.0 ? value : 0.0; }
+  /// p = the three coordinates of vertex v[0]
+  static HWY_INLINE void gather(const double* positions, const Index* v, double (&p)[3]) {
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c) p[c] = positions[Offset{kPaddedStride} * v[0] + c];
+  }
+  static HWY_INLINE void scatter_add(const double (&f)[3], const Index* v, double* forces) {
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c) forces[Offset{kPaddedStride} * v[0] + c] += f[c];
+  }
+};
+
+#if HWY_TARGET == HWY_SCALAR
+using ManyLanes = OneLane;
+#else
+/// As many simplices at a time as a register holds, at most a batch.
+struct ManyLanes {
+  using Tag = hn::CappedTag<double, kBatch>;
+  using Value = hn::Vec<Tag>;
+  static constexpr Index kCount = static_cast<Index>(MaxLanes(Tag()));
+
+  static HWY_INLINE Value set(double value) { return hn::Set(Tag(), value); }
+  static HWY_INLINE Value load(const double* from) { return hn::Load(Tag(), from); }
+  static HWY_INLINE void store(Value value, double* to) { hn::Store(value, Tag(), to); }
+  static HWY_INLINE Value mul_add(Value a, Value b, Value c) { return hn::MulAdd(a, b, c); }
+  static HWY_INLINE Value square_root(Value a) { return hn::Sqrt(a); }
+  static HWY_INLINE Value if_positive(Value where, Value value) {
+    return hn::IfThenElseZero(hn::Gt(where, hn::Zero(Tag())), value);
+  }
+
+  /// p = the coordinates of the vertices v[0] … v[kCount − 1], by loads and a transposition: gather
+  /// instructions are slower wherever measured.
+  static HWY_INLINE void gather(const double* positions, const Index* v, Value (&p)[3]) {
+    const Tag d;
+    if constexpr (kCount == 2) {
+      const Value xy0 = hn::Load(d, at(positions, v[0]));
+      const Value xy1 = hn::Load(d, at(positions, v[1]));
+      p[0] = hn::InterleaveLower(d, xy0, xy1);
+      p[1] = hn::InterleaveUpper(d, xy0, xy1);
+      p[2] =
+          hn::InterleaveLower(d, hn::Load(d, at(positions, v[0]) + 2), hn::Load(d, at(positions, v[1]) + 2));
+    } else {
+      // blocks of two doubles: x₀x₁ z₀z₁ x₄x₅ z₄z₅, x₂x₃ z₂z₃ x₆x₇ z₆z₇, and so for y and the padding
+      const Value v0 = load_fourth(d, positions, v);
+      const Value v1 = load_fourth(d, positions, v + 1);
+      const Value v2 = load_fourth(d, positions, v + 2);
+      const Value v3 = load_fourth(d, positions, v + 3);
+      const Value xz01 = hn::InterleaveLower(d, v0, v1);
+      const Value xz23 = hn::InterleaveLower(d, v2, v3);
+      const Value yw01 = hn::InterleaveUpper(d, v0, v1);
+      const Value yw23 = hn::InterleaveUpper(d, v2, v3);
+      p[0] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(xz23), xz01);
+      p[1] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(yw23), yw01);
+      p[2] = hn::OddEvenBlocks(xz23, hn::SwapAdjacentBlocks(xz01));
+    }
+  }
+
+  /// The way back. A vertex may occur several times among v[0] … v[kCount − 1].
+  static HWY_INLINE void scatter_add(const Value (&f)[3], const Index* v, double* forces) {
+    const Tag d;
+    const Value xy_even = hn::InterleaveLower(d, f[0], f[1]);
+    const Value xy_odd = hn::InterleaveUpper(d, f[0], f[1]);
+    const Value z_even = hn::InterleaveLower(d, f[2], hn::Zero(d));
+    const Value z_odd = hn::InterleaveUpper(d, f[2], hn::Zero(d));
+    if constexpr (kCount == 2) {
+      add_to(d, xy_even, at(forces, v[0]));
+      add_to(d, z_even, at(forces, v[0]) + 2);
+      add_to(d, xy_odd, at(forces, v[1]));
+      add_to(d, z_odd, at(forces, v[1]) + 2);
+    } else {
+      add_fourth(d, hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_even), xy_even), v, forces);
+      add_fourth(d, hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_odd), xy_odd), v + 1, forces);
+      add_fourth(d, hn::OddEvenBlocks(z_even, hn::SwapAdjacentBlocks(xy_even)), v + 2, forces);
+      add_fourth(d, hn::OddEvenBlocks(z_odd, hn::SwapAdjacentBlocks(xy_odd)), v + 3, forces);
+    }
+  }
+
+ private:
+  template <class T>
+  static HWY_INLINE T* at(T* vectors, Index v) {
+    return vectors + Offset{kPaddedStride} * v;
+  }
+
+  template <class D>
+  static HWY_INLINE void add_to(D d, hn::Vec<D> value, double* place) {
+    hn::Store(hn::Add(hn::Load(d, place), value), d, place);
+  }
+
+  /// The padded coordinates of v[0], v[4] … side by side.
+  template <class D>
+  static HWY_INLINE hn::Vec<D> load_fourth(D d, const double* positions, const Index* v) {
+    if constexpr (MaxLanes(D()) <= kPaddedStride) {
+      return hn::Load(d, at(positions, v[0]));
+    } else {
+      const hn::Half<D> half;
+      return hn::Combine(d, load_fourth(half, positions, v + MaxLanes(half)),
+                         load_fourth(half, positions, v));
+    }
+  }
+
+  template <class D>
+  static HWY_INLINE void add_fourth(D d, hn::Vec<D> vectors, const Index* v, double* forces) {
+    if constexpr (MaxLanes(D()) <= kPaddedStride) {
+      add_to(d, vectors, at(forces, v[0]));
+    } else {
+      const hn::Half<D> half;
+      add_fourth(half, hn::LowerHalf(half, vectors), v, forces);
+      add_fourth(half, hn::UpperHalf(half, vectors), v + MaxLanes(half), forces);
+    }
+  }
+};
+#endif
+
+}  // namespace meshorder::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

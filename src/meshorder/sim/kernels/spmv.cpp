@@ -1,0 +1,39 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
+#include <meshorder/sim/kernels/spmv.hpp>
+
+namespace meshorder {
+
+void multiply(const BlockCsr& matrix, std::span<const double> x, std::span<double> y) {
+  const auto entries = 3 * static_cast<std::size_t>(matrix.size());
+  if (x.size() != entries || y.size() != entries) {
+    throw InvalidArgument("multiply: x and y must hold 3 doubles for each row of blocks");
+  }
+  const double* const values = matrix.values.data();
+  const Index* const columns = matrix.columns.data();
+  Offset k = 0;
+  for (Index v = 0; v < matrix.size(); ++v) {
+    // nine sums, since the additions of three would wait for each other
+    double s[9] = {};
+    for (const Offset end = matrix.offsets[v + 1]; k < end; ++k) {
+      const double* const block = values + 9 * k;
+      const double* const p = x.data() + Offset{3} * columns[k];
+      const double p0 = p[0], p1 = p[1], p2 = p[2];
+      s[0] += block[0] * p0;
+      s[1] += block[1] * p1;
+      s[2] += block[2] * p2;
+      s[3] += block[3] * p0;
+      s[4] += block[4] * p1;
+      s[5] += block[5] * p2;
+      s[6] += block[6] * p0;
+      s[7] += block[7] * p1;
+      s[8] += block[8] * p2;
+    }
+    double* const q = y.data() + Offset{3} * v;
+    q[0] = s[0] + s[1] + s[2];
+    q[1] = s[3] + s[4] + s[5];
+    q[2] = s[6] + s[7] + s[8];
+  }
+}
+
+}  // namespace meshorder
