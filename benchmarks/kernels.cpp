@@ -1,0 +1,44 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// kernels [cubes across, default 40]: the simulators' kernels on a lattice of tetrahedra, scrambled, in its
+// own order and along a Hilbert curve: best time, rate of compulsory memory traffic, speedup over scrambled.
+#include <meshorder/mesh/graphs.hpp>
+#include <meshorder/mesh/mesh_ordering.hpp>
+#include <meshorder/models/procedural.hpp>
+#include <meshorder/study/bandwidth.hpp>
+#include <meshorder/study/kernel_timing.hpp>
+
+#include <fmt/core.h>
+
+#include <cstdlib>
+#include <string>
+
+namespace mo = meshorder;
+
+int main(int argc, char** argv) {
+  const mo::Mesh grid = mo::make_grid({.size = argc > 1 ? std::atoi(argv[1]) : 40});
+  const std::array<std::array<std::string, 2>, 3> orders{
+      {{"scrambled", "scrambled"}, {"original", "original"}, {"hilbert", "lexmax"}}};
+  std::vector<std::array<double, mo::kKernels.size()>> bytes(orders.size());
+  const auto prepare = [&](mo::Index order) {
+    mo::Mesh mesh = grid;
+    mo::reorder(mesh, {.vertices = orders[order][0], .elements = orders[order][1], .ordering = {}});
+    mo::KernelBench bench(mesh);
+    for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
+      bytes[order][k] = bench.streamed_bytes(mo::kKernels[k]);
+    }
+    return bench;
+  };
+  const auto times = mo::time_orders(mo::index_size(orders), prepare);
+
+  fmt::print("{} vertices, {} tetrahedra; one thread reads {:.1f} GB/s\n", grid.vertex_count(),
+             grid.cell_count(), mo::read_bandwidth());
+  fmt::print("{:<20}{:<10}{:>10}{:>10}{:>8}{:>9}\n", "order", "kernel", "best ms", "median", "GB/s",
+             "speedup");
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
+      const mo::KernelTimes& t = times[i].times[k];
+      fmt::print("{:<20}{:<10}{:>10.3f}{:>10.3f}{:>8.1f}{:>9.2f}\n", orders[i][0], mo::name(mo::kKernels[k]),
+                 t.best_ms, t.median_ms, 1e-6 * bytes[i][k] / t.best_ms, t.speedup);
+    }
+  }
+}

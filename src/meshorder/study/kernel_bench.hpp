@@ -1,0 +1,62 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/mesh/mesh.hpp>
+#include <meshorder/sim/kernels/assembly.hpp>
+#include <meshorder/sim/kernels/springs.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace meshorder {
+
+/// The simulators' hot loops: the product with the stiffness matrix, elastic element forces, assembly of the
+/// stiffness matrix, forces of springs on the edges.
+enum class Kernel : std::uint8_t { spmv, element, assembly, springs };
+
+inline constexpr std::array kKernels{Kernel::spmv, Kernel::element, Kernel::assembly, Kernel::springs};
+
+/// "spmv", "element", "assembly", "springs".
+std::string_view name(Kernel kernel);
+
+/// A mesh in one order, prepared for its kernels to run again and again: the stiffness matrix on the vertex
+/// graph, the elements cut into simplices, a spring on every edge, and vertices off their rest positions by a
+/// smooth deformation that depends on where a vertex rests and on nothing else. Two orders of a mesh
+/// therefore compute the same physics, and no force, strain or matrix entry is trivial.
+class KernelBench {
+ public:
+  /// `graph` is the mesh's vertex graph. O(size of the mesh · log degree). Throws InvalidArgument when the
+  /// graph belongs to another mesh.
+  KernelBench(const Mesh& mesh, const CsrGraph& graph);
+  explicit KernelBench(const Mesh& mesh);
+
+  /// Runs a kernel once, from cleared to complete results.
+  void run(Kernel kernel);
+
+  /// What the last run of that kernel computed: 3 doubles a vertex for spmv, 4 for forces (see
+  /// padded_positions), 9 a block for assembly. The forces of elements and springs share their place.
+  [[nodiscard]] std::span<const double> result(Kernel kernel) const;
+
+  [[nodiscard]] const BlockCsr& matrix() const noexcept { return matrix_; }
+
+  /// The bytes that one run moves when every array passes through the processor once: divided by the memory's
+  /// bandwidth, the least time of a mesh much larger than the caches.
+  [[nodiscard]] double streamed_bytes(Kernel kernel) const;
+
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  BlockCsr matrix_;
+  RestShapes rest_;
+  AssemblyMap map_;
+  Springs springs_;
+  AlignedVector<double> positions_;
+  AlignedVector<double> forces_;
+  AlignedVector<double> x_;
+  AlignedVector<double> y_;
+};
+
+}  // namespace meshorder
