@@ -1,0 +1,82 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "command.hpp"
+#include "console.hpp"
+#include "maps.hpp"
+#include "progress.hpp"
+#include <meshorder/base/error.hpp>
+#include <meshorder/base/stopwatch.hpp>
+#include <meshorder/io/format.hpp>
+#include <meshorder/io/output_file.hpp>
+#include <meshorder/mesh/reorder.hpp>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace meshorder::command {
+namespace {
+
+struct ApplyArguments : Common {
+  std::string prefix;
+  std::string input;
+  std::string output;
+  bool inverse = false;
+};
+
+void run(const ApplyArguments& arguments) {
+  const Console console(arguments);
+  const Stopwatch total;
+  (void)format_of(arguments.output);
+  (void)OutputFile(arguments.output);  // whether it can be written is known before the work begins
+
+  Progress progress(!console.quiet());
+  progress.stage("reading " + arguments.input, 0, 0.5);
+  Notes notes;
+  Mesh mesh = read_mesh(arguments.input, &notes);
+  Maps maps = read_maps(arguments.prefix, mesh);
+  if (arguments.inverse) {
+    maps.vertices = maps.vertices.inverse();
+    maps.elements = maps.elements.inverse();
+  }
+  try {
+    reorder(mesh, maps.vertices, maps.elements);
+  } catch (const InvalidArgument& error) {
+    throw Error(arguments.input, error.what(), "give the maps that were written with this mesh");
+  }
+  if (arguments.inverse) {
+    // the numbers that the file gave before it was ordered
+    if (!maps.vertex_ids.empty()) mesh.vertex_ids = maps.vertex_ids;
+    if (!maps.element_ids.empty()) mesh.cell_ids = maps.element_ids;
+  }
+
+  progress.stage("writing " + arguments.output, 0.5, 1);
+  write_mesh(mesh, arguments.output, &notes);
+  console.log_notes(notes);
+  console.print("wrote {}: {} vertices and {} cells {}", arguments.output, with_commas(mesh.vertex_count()),
+                with_commas(mesh.cell_count()), arguments.inverse ? "put back" : "moved");
+  console.print_json({{"input", arguments.input},
+                      {"output", arguments.output},
+                      {"inverse", arguments.inverse},
+                      {"vertices", mesh.vertex_count()},
+                      {"elements", mesh.cell_count()},
+                      {"seconds", total.seconds()}});
+}
+
+}  // namespace
+
+void add_apply(CLI::App& app) {
+  CLI::App* subcommand =
+      app.add_subcommand("apply", "Move a mesh by the maps that `order --maps` wrote, or put it back");
+  const auto arguments = std::make_shared<ApplyArguments>();
+  subcommand->add_option("PREFIX", arguments->prefix, "What was given to `order --maps`")->required();
+  subcommand
+      ->add_option("MESH", arguments->input,
+                   "Mesh file: the unordered one, or with --inverse the ordered one")
+      ->required();
+  subcommand->add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
+  subcommand->add_flag("--inverse", arguments->inverse, "Put back what was ordered");
+  add_common(*subcommand, *arguments);
+  subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+}
+
+}  // namespace meshorder::command

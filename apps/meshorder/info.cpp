@@ -1,0 +1,136 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "command.hpp"
+#include "console.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include <meshorder/base/stopwatch.hpp>
+#include <meshorder/graph/components.hpp>
+#include <meshorder/io/format.hpp>
+#include <meshorder/mesh/check.hpp>
+#include <meshorder/mesh/graphs.hpp>
+#include <meshorder/metrics/edge_span.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+namespace meshorder::command {
+namespace {
+
+struct InfoArguments : Common {
+  std::string input;
+};
+
+/// One bar for each power of two, as long as its share of the edges.
+void print_histogram(const Console& console, const std::vector<Offset>& bins) {
+  constexpr double kWidth = 50;
+  const Offset largest = *std::max_element(bins.begin(), bins.end());
+  console.print("\nEdges by span");
+  for (std::size_t k = 0; k < bins.size(); ++k) {
+    const auto length =
+        static_cast<int>(kWidth * static_cast<double>(bins[k]) / static_cast<double>(largest) + 0.5);
+    std::string bar;
+    for (int i = 0; i < length; ++i) bar += "█";
+    if (length == 0 && bins[k] > 0) bar = "▏";
+    console.print("{:>13} {:>12}  {}", "from " + with_commas(1LL << k), with_commas(bins[k]), bar);
+  }
+}
+
+nlohmann::ordered_json attachments(const Mesh& mesh) {
+  auto data = nlohmann::ordered_json::array();
+  for (const DataArray& array : mesh.data) {
+    data.push_back({{"name", array.name},
+                    {"on", array.on == Attached::vertices ? "vertices" : "cells"},
+                    {"components", array.components},
+                    {"rows", row_count(array)}});
+  }
+  auto sets = nlohmann::ordered_json::array();
+  for (const Set& set : mesh.sets) {
+    sets.push_back({{"name", set.name},
+                    {"on", set.on == Attached::vertices ? "vertices" : "cells"},
+                    {"members", set.members.size()}});
+  }
+  return {{"data", data}, {"sets", sets}};
+}
+
+void print_attachments(const Console& console, const Mesh& mesh) {
+  const auto list = [&](Attached on) {
+    std::string names;
+    const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
+    for (const DataArray& array : mesh.data) {
+      if (array.on == on) add(array.name);
+    }
+    for (const Set& set : mesh.sets) {
+      if (set.on == on) add("set " + set.name);
+    }
+    return names;
+  };
+  for (const auto& [on, title] :
+       {std::pair(Attached::vertices, "on vertices"), std::pair(Attached::cells, "on cells")}) {
+    const std::string names = list(on);
+    if (!names.empty()) console.print("{:<12} {}", title, names);
+  }
+}
+
+void run(const InfoArguments& arguments) {
+  const Console console(arguments);
+  Progress progress(!console.quiet());
+  progress.stage("reading " + arguments.input, 0, 0.5);
+  Notes notes;
+  const Mesh mesh = read_mesh(arguments.input, &notes);
+  console.log_notes(notes);
+
+  progress.stage("measuring", 0.5, 1);
+  const CsrGraph graph = vertex_graph(mesh);
+  const Permutation order = Permutation::identity(mesh.vertex_count());
+  const EdgeSpan span = edge_span(graph, order);
+  const Offset envelope = profile(graph, order);
+  const std::vector<Offset> histogram = span_histogram_log2(graph, order);
+  const auto components = connected_components(graph);
+  const auto isolated =
+      std::count_if(components.begin(), components.end(), [](const auto& c) { return c.size() == 1; });
+  const auto connected = static_cast<long long>(components.size()) - isolated;
+  const auto degenerate = static_cast<long long>(degenerate_cells(mesh).size());
+
+  console.print("{}, {}", arguments.input, format_of(arguments.input).name);
+  console.print("{:<12} {} in {} dimensions", "vertices", with_commas(mesh.vertex_count()), mesh.dimension);
+  console.print("{:<12} {}", "cells", cells_in_words(mesh));
+  print_attachments(console, mesh);
+  console.print("{:<12} {} edges, {} {}{}", "graph", with_commas(graph.edge_count()), with_commas(connected),
+                connected == 1 ? "component" : "components",
+                isolated > 0 ? fmt::format(", {} vertices that no element uses", with_commas(isolated)) : "");
+  if (degenerate > 0)
+    console.print("{:<12} {} cells name a vertex twice", "degenerate", with_commas(degenerate));
+  console.print("{:<12} mean {:.1f}, largest {}, mean log2 {:.2f} (a random order: mean {:.0f})", "edge span",
+                span.mean, with_commas(span.max), span.mean_log2, (mesh.vertex_count() + 1) / 3.0);
+  console.print("{:<12} {}", "bandwidth", with_commas(span.max));
+  console.print("{:<12} {}", "profile", with_commas(envelope));
+  if (!histogram.empty()) print_histogram(console, histogram);
+
+  nlohmann::ordered_json result{
+      {"file", arguments.input},
+      {"format", format_of(arguments.input).name},
+      {"vertices", mesh.vertex_count()},
+      {"dimension", mesh.dimension},
+      {"cells", cells_by_type(mesh)},
+      {"degenerate_cells", degenerate},
+      {"graph", {{"edges", graph.edge_count()}, {"components", connected}, {"isolated_vertices", isolated}}},
+      {"edge_span", to_json(span)},
+      {"bandwidth", span.max},
+      {"profile", envelope},
+      {"span_histogram_log2", histogram}};
+  result.update(attachments(mesh));
+  console.print_json(result);
+}
+
+}  // namespace
+
+void add_info(CLI::App& app) {
+  CLI::App* subcommand = app.add_subcommand("info", "What a mesh holds, and how good its order is");
+  const auto arguments = std::make_shared<InfoArguments>();
+  subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
+  add_common(*subcommand, *arguments);
+  subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+}
+
+}  // namespace meshorder::command

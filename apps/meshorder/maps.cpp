@@ -1,0 +1,74 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "maps.hpp"
+
+#include <meshorder/base/error.hpp>
+#include <meshorder/io/npy.hpp>
+
+#include <filesystem>
+
+namespace meshorder::command {
+namespace {
+
+std::string old_to_new_path(const std::string& prefix, const std::string& what) {
+  return prefix + "." + what + ".old_to_new.npy";
+}
+std::string new_to_old_path(const std::string& prefix, const std::string& what) {
+  return prefix + "." + what + ".new_to_old.npy";
+}
+std::string ids_path(const std::string& prefix, const std::string& what) {
+  return prefix + "." + what + ".ids.npy";
+}
+
+void write_map(const Permutation& map, const std::vector<std::int64_t>& ids, const std::string& prefix,
+               const std::string& what, std::vector<std::string>& written) {
+  write_npy(map.old_to_new(), written.emplace_back(old_to_new_path(prefix, what)));
+  write_npy(map.new_to_old(), written.emplace_back(new_to_old_path(prefix, what)));
+  if (!ids.empty()) {
+    write_npy(ids, written.emplace_back(ids_path(prefix, what)));
+  } else {
+    std::filesystem::remove(ids_path(prefix, what));  // of an earlier run with this prefix
+  }
+}
+
+Permutation read_map(const std::string& path, Index count, const std::string& what) {
+  const std::vector<std::int64_t> values = read_npy(path);
+  if (index_size(values) != count) {
+    throw Error(
+        path,
+        "maps " + std::to_string(values.size()) + " " + what + ", the mesh has " + std::to_string(count),
+        "give the maps that were written with this mesh");
+  }
+  try {
+    return Permutation::from_old_to_new({values.begin(), values.end()});
+  } catch (const InvalidArgument& error) {
+    throw Error(path, error.what(), "give a map that meshorder wrote");
+  }
+}
+
+std::vector<std::int64_t> read_ids(const std::string& path, Index count) {
+  if (!std::filesystem::exists(path)) return {};
+  std::vector<std::int64_t> ids = read_npy(path);
+  if (index_size(ids) != count) {
+    throw Error(path, "has " + std::to_string(ids.size()) + " numbers for " + std::to_string(count),
+                "give the maps that were written with this mesh");
+  }
+  return ids;
+}
+
+}  // namespace
+
+std::vector<std::string> write_maps(const Maps& maps, const std::string& prefix) {
+  std::vector<std::string> written;
+  write_map(maps.vertices, maps.vertex_ids, prefix, "vertices", written);
+  write_map(maps.elements, maps.element_ids, prefix, "elements", written);
+  return written;
+}
+
+Maps read_maps(const std::string& prefix, const Mesh& mesh) {
+  return {read_map(old_to_new_path(prefix, "vertices"), mesh.vertex_count(), "vertices"),
+          read_map(old_to_new_path(prefix, "elements"), mesh.cell_count(), "cells"),
+          read_ids(ids_path(prefix, "vertices"), mesh.vertex_count()),
+          read_ids(ids_path(prefix, "elements"), mesh.cell_count())};
+}
+
+}  // namespace meshorder::command

@@ -1,0 +1,41 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "command.hpp"
+#include "console.hpp"
+#include <meshorder/ordering/method.hpp>
+
+#include <memory>
+
+namespace meshorder::command {
+namespace {
+
+template <class Methods>
+nlohmann::ordered_json list_json(const Methods& methods) {
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& method : methods) list.push_back({{"name", method.name}, {"sentence", method.sentence}});
+  return list;
+}
+
+template <class Methods>
+void list_text(const Console& console, const Methods& methods) {
+  for (const auto& method : methods) console.print("  {:<14} {}", method.name, method.sentence);
+}
+
+void run(const Common& common) {
+  const Console console(common);
+  console.print("Vertex orders (--vertices):");
+  list_text(console, vertex_methods());
+  console.print("\nElement orders (--elements); cells of lower dimension follow lexmax:");
+  list_text(console, element_methods());
+  console.print_json({{"vertices", list_json(vertex_methods())}, {"elements", list_json(element_methods())}});
+}
+
+}  // namespace
+
+void add_methods(CLI::App& app) {
+  CLI::App* subcommand = app.add_subcommand("methods", "List the orders, with a sentence each");
+  const auto common = std::make_shared<Common>();
+  add_common(*subcommand, *common);
+  subcommand->callback([common] { run(*common); });
+}
+
+}  // namespace meshorder::command

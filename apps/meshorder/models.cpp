@@ -1,0 +1,113 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "command.hpp"
+#include "console.hpp"
+#include "progress.hpp"
+#include <meshorder/models/catalogue.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace meshorder::command {
+namespace {
+
+struct MakeArguments : Common {
+  std::string name;
+  MakeOptions options;
+};
+
+nlohmann::ordered_json to_json(const Model& model) {
+  const bool made = !model.path.empty();
+  return {{"name", model.name},
+          {"sentence", model.sentence},
+          {"path", made ? nlohmann::ordered_json(model.path.string()) : nlohmann::ordered_json(nullptr)},
+          {"vertices", made ? nlohmann::ordered_json(model.vertices) : nlohmann::ordered_json(nullptr)},
+          {"elements", made ? nlohmann::ordered_json(model.elements) : nlohmann::ordered_json(nullptr)}};
+}
+
+void print_model(const Console& console, const Model& model) {
+  if (model.path.empty()) {
+    console.print("  {:<16} {:>10} {:>12}  {}", model.name, "–", "–", model.sentence);
+  } else {
+    console.print("  {:<16} {:>10} {:>12}  {}", model.name, with_commas(model.vertices),
+                  with_commas(model.elements), model.path.string());
+  }
+}
+
+void list(const Common& common) {
+  const Console console(common);
+  auto models = nlohmann::ordered_json::array();
+  console.print("  {:<16} {:>10} {:>12}", "model", "vertices", "elements");
+  for (const Model& model : list_models()) {
+    print_model(console, model);
+    models.push_back(to_json(model));
+  }
+  console.print("`meshorder models make NAME` makes those that have no path yet.");
+  console.print_json({{"models", models}});
+}
+
+void make(const MakeArguments& arguments) {
+  const Console console(arguments);
+  std::vector<std::string> names;
+  if (arguments.name == "all") {
+    for (const Model& model : list_models()) {
+      if (!model.procedural) names.push_back(model.name);
+    }
+  } else {
+    names.push_back(arguments.name);
+  }
+
+  Progress progress(!console.quiet());
+  auto made = nlohmann::ordered_json::array();
+  const double share = 1.0 / static_cast<double>(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double from = share * static_cast<double>(i);
+    MakeOptions options = arguments.options;
+    options.progress = [&](std::string_view step, double fraction) {
+      if (fraction < 0) {
+        progress.stage(names[i] + ": " + std::string(step), from, from + share);
+      } else {
+        progress.stage(names[i] + ": " + std::string(step), from + share * fraction, from + share);
+        progress.at(from + share * fraction);
+      }
+    };
+    const Model model = make_model(names[i], options);
+    print_model(console, model);
+    made.push_back(to_json(model));
+  }
+  console.print_json({{"models", made}});
+}
+
+}  // namespace
+
+void add_models(CLI::App& app) {
+  CLI::App* subcommand = app.add_subcommand("models", "Real and procedural meshes to try things on");
+  const auto common = std::make_shared<Common>();
+  add_common(*subcommand, *common);
+  subcommand->require_subcommand(0, 1);
+  CLI::App* list_command = subcommand->add_subcommand("list", "Which there are, and where those made stand");
+  add_common(*list_command, *common);
+  list_command->callback([common] { list(*common); });
+
+  CLI::App* make_command =
+      subcommand->add_subcommand("make",
+                                 "Make a model, once; it is kept in your cache folder.\nThe scanned ones "
+                                 "need Debian's package archive.");
+  const auto arguments = std::make_shared<MakeArguments>();
+  make_command
+      ->add_option("NAME", arguments->name,
+                   "A name from `meshorder models`, or all (that are not procedural)")
+      ->required();
+  make_command->add_option("--size", arguments->options.size, "Procedural models: lattice cubes across")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  make_command->add_flag("--force", arguments->options.force, "Make it anew");
+  add_common(*make_command, *arguments);
+  make_command->callback([arguments] { make(*arguments); });
+
+  subcommand->callback([subcommand, common] {
+    if (subcommand->get_subcommands().empty()) list(*common);
+  });
+}
+
+}  // namespace meshorder::command

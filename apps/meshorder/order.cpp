@@ -1,0 +1,125 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "command.hpp"
+#include "console.hpp"
+#include "maps.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include <meshorder/base/stopwatch.hpp>
+#include <meshorder/io/format.hpp>
+#include <meshorder/io/output_file.hpp>
+#include <meshorder/mesh/graphs.hpp>
+#include <meshorder/mesh/mesh_ordering.hpp>
+#include <meshorder/mesh/reorder.hpp>
+#include <meshorder/metrics/edge_span.hpp>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace meshorder::command {
+namespace {
+
+struct OrderArguments : Common {
+  std::string input;
+  std::string output;
+  std::string maps;
+  ReorderingOptions reordering;
+};
+
+void print_result(const Console& console, const OrderArguments& arguments, const Reordering& order,
+                  const EdgeSpan& before, const EdgeSpan& after) {
+  console.print("{:<10} {:<14} {}", "vertices", arguments.reordering.vertices,
+                duration(order.vertex_seconds));
+  console.print("{:<10} {:<14} {}", "elements", arguments.reordering.elements,
+                duration(order.element_seconds));
+  console.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}", "edge span",
+                before.mean, after.mean, with_commas(before.max), with_commas(after.max), before.mean_log2,
+                after.mean_log2);
+}
+
+void run(const OrderArguments& arguments) {
+  const Console console(arguments);
+  const Format& target = format_of(arguments.output);
+  (void)OutputFile(arguments.output);  // whether it can be written is known before the work begins
+
+  Progress progress(!console.quiet());
+  progress.stage("reading " + arguments.input, 0, 0.4);
+  const Stopwatch reading;
+  Notes notes;
+  Mesh mesh = read_mesh(arguments.input, &notes);
+  const double read_seconds = reading.seconds();
+  console.log_notes(std::exchange(notes, {}));
+
+  progress.stage("ordering", 0.4, 0.7);
+  const Stopwatch ordering;
+  Maps maps;
+  maps.vertex_ids = mesh.vertex_ids;
+  maps.element_ids = mesh.cell_ids;
+  const Permutation arranged = arrange_cells(mesh, format_of(arguments.input), target);
+  const CsrGraph graph = vertex_graph(mesh);
+  const Reordering order = compute_reordering(mesh, graph, arguments.reordering);
+  reorder(mesh, order.vertices, order.cells);
+  const double order_seconds = ordering.seconds();
+  maps.vertices = order.vertices;
+  maps.elements = arranged.then(order.cells);
+  const EdgeSpan before = edge_span(graph, Permutation::identity(mesh.vertex_count()));
+  const EdgeSpan after = edge_span(graph, order.vertices);
+  for (const std::string& warning : convergence_warnings(order.vertex_fiedler, "the vertices"))
+    console.log("{}", warning);
+  for (const std::string& warning : convergence_warnings(order.element_fiedler, "the elements")) {
+    console.log("{}", warning);
+  }
+
+  progress.stage("writing " + arguments.output, 0.7, 1);
+  const Stopwatch writing;
+  write_mesh(mesh, arguments.output, &notes);
+  std::vector<std::string> map_files;
+  if (!arguments.maps.empty()) map_files = write_maps(maps, arguments.maps);
+  const double write_seconds = writing.seconds();
+  console.log_notes(notes);
+
+  print_result(console, arguments, order, before, after);
+  console.print("{:<10} {}", "wrote", arguments.output);
+  for (const std::string& file : map_files) console.print("{:<10} {}", "", file);
+  nlohmann::ordered_json result{
+      {"input", arguments.input},
+      {"output", arguments.output},
+      {"vertices",
+       {{"count", mesh.vertex_count()},
+        {"method", arguments.reordering.vertices},
+        {"seconds", order.vertex_seconds}}},
+      {"elements",
+       {{"count", mesh.cell_count()},
+        {"method", arguments.reordering.elements},
+        {"seconds", order.element_seconds}}},
+      {"edge_span", {{"before", to_json(before)}, {"after", to_json(after)}}},
+      {"fiedler", to_json(order.vertex_fiedler)},
+      {"element_fiedler", to_json(order.element_fiedler)},
+      {"maps", map_files},
+      {"seconds", {{"read", read_seconds}, {"order", order_seconds}, {"write", write_seconds}}}};
+  console.print_json(result);
+}
+
+}  // namespace
+
+void add_order(CLI::App& app) {
+  CLI::App* subcommand = app.add_subcommand(
+      "order", "Reorder a mesh, everything attached included.\nThe output's extension names its format.");
+  const auto arguments = std::make_shared<OrderArguments>();
+  subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
+  subcommand->add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
+  subcommand
+      ->add_option("--vertices", arguments->reordering.vertices, "Vertex order, see `meshorder methods`")
+      ->capture_default_str();
+  subcommand
+      ->add_option("--elements", arguments->reordering.elements, "Element order, see `meshorder methods`")
+      ->capture_default_str();
+  subcommand->add_option(
+      "--maps", arguments->maps,
+      "Also write which vertex and cell was which: PREFIX.vertices.old_to_new.npy and so on");
+  add_ordering_options(*subcommand, arguments->reordering.ordering);
+  add_common(*subcommand, *arguments);
+  subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+}
+
+}  // namespace meshorder::command

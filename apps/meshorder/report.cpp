@@ -1,0 +1,80 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "report.hpp"
+
+#include "console.hpp"
+
+#include <array>
+#include <map>
+#include <utility>
+
+namespace meshorder::command {
+namespace {
+
+/// Cells of each type, highest dimension first.
+std::vector<std::pair<std::string, Index>> type_counts(const Mesh& mesh) {
+  std::map<std::array<int, 3>, Index> counts;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const Shape shape = mesh.cells.shapes[c];
+    const bool fixed = corners(shape, 0) > 0;  // polygons are one type, whatever their number of corners
+    ++counts[{-dimension(shape), static_cast<int>(shape), fixed ? mesh.cells.vertex_count(c) : 0}];
+  }
+  std::vector<std::pair<std::string, Index>> result;
+  for (const auto& [type, count] : counts) {
+    result.emplace_back(type_name(static_cast<Shape>(type[1]), type[2]), count);
+  }
+  return result;
+}
+
+std::string plural(const std::string& type) {
+  const std::map<std::string, std::string> irregular{
+      {"tetrahedron", "tetrahedra"}, {"hexahedron", "hexahedra"}, {"vertex", "vertex cells"}};
+  const auto found = irregular.find(type);
+  return found == irregular.end() ? type + "s" : found->second;
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const EdgeSpan& span) {
+  return {{"mean", span.mean}, {"max", span.max}, {"mean_log2", span.mean_log2}};
+}
+
+nlohmann::ordered_json to_json(const std::vector<FiedlerComponent>& components) {
+  auto list = nlohmann::ordered_json::array();
+  for (const FiedlerComponent& component : components) {
+    list.push_back({{"size", component.size},
+                    {"lambda2", component.lambda2},
+                    {"residual", component.residual},
+                    {"iterations", component.iterations},
+                    {"converged", component.converged}});
+  }
+  return {{"components", list}};
+}
+
+nlohmann::ordered_json cells_by_type(const Mesh& mesh) {
+  auto result = nlohmann::ordered_json::object();
+  for (const auto& [type, count] : type_counts(mesh)) result[type] = count;
+  return result;
+}
+
+std::string cells_in_words(const Mesh& mesh) {
+  std::string words;
+  for (const auto& [type, count] : type_counts(mesh)) {
+    words += (words.empty() ? "" : ", ") + with_commas(count) + " " + (count == 1 ? type : plural(type));
+  }
+  return words;
+}
+
+std::vector<std::string> convergence_warnings(const std::vector<FiedlerComponent>& components,
+                                              const std::string& of) {
+  std::vector<std::string> warnings;
+  for (const FiedlerComponent& component : components) {
+    if (component.converged) continue;
+    warnings.push_back(fmt::format(
+        "the Fiedler vector of {} did not converge on a component of {}: residual {:.2g} of lambda2 after {} "
+        "iterations; the best vector so far gives the order",
+        of, with_commas(component.size), component.residual / component.lambda2, component.iterations));
+  }
+  return warnings;
+}
+
+}  // namespace meshorder::command

@@ -1,0 +1,68 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""The built command, run as a user runs it. MESHORDER names it; without, build/bin/meshorder is taken."""
+import json
+import os
+import pathlib
+import subprocess
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MESHORDER = os.environ.get("MESHORDER", str(ROOT / "build" / "bin" / "meshorder"))
+SHARED = ROOT.parent / "shared" / "meshes"
+
+
+class Command:
+    """Runs `meshorder …` in a folder of the test's own."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def run(self, *arguments, **options):
+        return subprocess.run([MESHORDER, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, timeout=600, check=False, **options)
+
+    def ok(self, *arguments):
+        done = self.run(*arguments)
+        assert done.returncode == 0, done.stderr
+        return done
+
+    def json(self, *arguments):
+        return json.loads(self.ok(*arguments, "--json").stdout)
+
+    def fails(self, *arguments, status=2):
+        """Runs what must fail, and returns the one line that says why."""
+        done = self.run(*arguments)
+        assert done.returncode == status, done.stderr
+        lines = done.stderr.strip().splitlines()
+        assert len(lines) == 1 and lines[0].startswith("meshorder: "), done.stderr
+        assert done.stdout == ""
+        return lines[0]
+
+
+@pytest.fixture
+def command(tmp_path):
+    return Command(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def model(tmp_path_factory):
+    """The path of a model by its name, made if it is not yet in the cache."""
+    maker = Command(tmp_path_factory.mktemp("models"))
+
+    def make(name, *options):
+        return maker.json("models", "make", name, *options)["models"][0]["path"]
+
+    return make
+
+
+@pytest.fixture
+def shared():
+    """The path of a real mesh; the test is skipped where there are none."""
+
+    def find(name):
+        if not (SHARED / name).exists():
+            pytest.skip(f"needs {SHARED / name}")
+        return SHARED / name
+
+    return find

@@ -1,0 +1,108 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""What is ordered is the same mesh, everything attached included, and can be put back."""
+import itertools
+import shutil
+
+import meshio
+import numpy
+import pytest
+
+import meshes
+
+REAL = ["monkey.msh", "armadillo-p4.msh", "multimaterial-cubes-v22.msh", "simpleBridge-hex.veg", "torus.node"]
+
+
+def load(folder, prefix, what):
+    return (numpy.load(folder / f"{prefix}.{what}.old_to_new.npy"), numpy.load(folder / f"{prefix}.{what}.new_to_old.npy"))
+
+
+@pytest.mark.parametrize("name", REAL)
+def test_inverse_gives_the_file_back(command, shared, tmp_path, name):
+    source = shared(name)
+    extension = source.suffix
+    command.ok("order", source, "-o", f"ordered{extension}", "--maps", "m")
+    command.ok("apply", "m", f"ordered{extension}", "-o", f"back{extension}", "--inverse")
+    # the file as meshorder writes it without a change, to compare byte by byte
+    command.ok("order", source, "-o", f"same{extension}", "--vertices", "original", "--elements", "original")
+    for suffix in {extension, ".ele"} if extension == ".node" else {extension}:
+        assert (tmp_path / f"back{suffix}").read_bytes() == (tmp_path / f"same{suffix}").read_bytes()
+    command.ok("apply", "m", source, "-o", f"again{extension}")
+    assert (tmp_path / f"again{extension}").read_bytes() == (tmp_path / f"ordered{extension}").read_bytes()
+
+
+def test_maps_tell_which_was_which(command, tmp_path):
+    meshes.write_tetgen(tmp_path)
+    command.ok("order", "mesh.node", "-o", "new.node", "--vertices", "scrambled", "--elements", "scrambled", "--seed",
+               "3", "--maps", "m")
+    points, cells = meshes.read_tetgen(tmp_path / "mesh.node")
+    new_points, new_cells = meshes.read_tetgen(tmp_path / "new.node")
+    vertex_new, vertex_old = load(tmp_path, "m", "vertices")
+    cell_new, cell_old = load(tmp_path, "m", "elements")
+    assert (new_points[vertex_new] == points).all() and (new_points == points[vertex_old]).all()
+    assert (new_cells[cell_new] == vertex_new[cells]).all() and (new_cells == vertex_new[cells[cell_old]]).all()
+    assert not (vertex_new == numpy.arange(5)).all()
+
+
+def test_attached_data_moves_along_into_another_format(command, tmp_path):
+    meshes.write_tetgen(tmp_path)
+    command.ok("order", "mesh.node", "-o", "new.vtu", "--vertices", "scrambled", "--elements", "scrambled", "--maps", "m")
+    mesh = meshio.read(tmp_path / "new.vtu")
+    vertex_new, _ = load(tmp_path, "m", "vertices")
+    cell_new, _ = load(tmp_path, "m", "elements")
+    assert mesh.point_data["label"].ravel()[vertex_new].tolist() == [7, 8, 7, 8, 9]
+    assert mesh.cell_data["label"][0].ravel()[cell_new].tolist() == [10, 20]
+
+
+TARGETS = ["node", "mesh", "msh", "vtu", "vtk", "veg"]
+
+
+@pytest.mark.parametrize("extension", TARGETS)
+def test_order_of_a_converted_file_is_the_one_computed(command, tmp_path, extension):
+    made = command.json("models", "make", "grid", "--size", "4")["models"][0]["path"]
+    ordered = command.json("order", made, "-o", f"grid.{extension}", "--maps", "m")
+    info = command.json("info", f"grid.{extension}")
+    assert info["edge_span"] == ordered["edge_span"]["after"]
+    assert info["cells"] == {"tetrahedron": 384}
+    command.ok("apply", "m", f"grid.{extension}", "-o", "back.vtu", "--inverse")
+    original, back = meshio.read(made), meshio.read(tmp_path / "back.vtu")
+    assert (original.points == back.points).all()
+    assert (original.cells[0].data == back.cells[0].data).all()
+
+
+def test_all_orders_give_the_same_mesh(command, tmp_path):
+    meshes.write_tetgen(tmp_path)
+    listed = command.json("methods")
+    points, cells = meshes.read_tetgen(tmp_path / "mesh.node")
+    expected = sorted(sorted(map(tuple, points[c])) for c in cells)
+    vertex_names = [m["name"] for m in listed["vertices"]]
+    element_names = [m["name"] for m in listed["elements"]]
+    assert len(vertex_names) >= 9 and len(element_names) >= 9
+    for vertices, elements in itertools.zip_longest(vertex_names, element_names):
+        command.ok("order", "mesh.node", "-o", "new.node", "--vertices", vertices or "fiedler", "--elements",
+                   elements or "lexmax")
+        new_points, new_cells = meshes.read_tetgen(tmp_path / "new.node")
+        assert sorted(sorted(map(tuple, new_points[c])) for c in new_cells) == expected
+
+
+@pytest.mark.parametrize("vertices", ["fiedler", "rcm", "metis-nd", "scrambled"])
+def test_threads_do_not_change_a_byte(command, tmp_path, vertices):
+    made = command.json("models", "make", "ball", "--size", "12")["models"][0]["path"]
+    for threads in (1, 2):
+        command.ok("order", made, "-o", f"{threads}.node", "--vertices", vertices, "--elements", "fiedler", "--threads",
+                   threads)
+    for extension in ("node", "ele"):
+        assert (tmp_path / f"1.{extension}").read_bytes() == (tmp_path / f"2.{extension}").read_bytes()
+
+
+def test_a_set_of_elements_in_included_files_follows(command, shared, tmp_path):
+    shutil.copy(shared("turtle-volumetric-heterogeneous.veg"), tmp_path / "turtle.veg")
+    line = command.fails("info", "turtle.veg")
+    assert "turtle.veg:1545" in line and "shellElementList.txt" in line
+    (tmp_path / "shellElementList.txt").write_text(", ".join(str(i) for i in range(1, 101)) + "\n")
+    (tmp_path / "nonShellElementList.txt").write_text(", ".join(str(i) for i in range(101, 1186)) + "\n")
+    command.ok("order", "turtle.veg", "-o", "ordered.veg", "--maps", "m")
+    cell_new, _ = load(tmp_path, "m", "elements")
+    text = "\n".join(line.split("#")[0] for line in (tmp_path / "ordered.veg").read_text().splitlines())
+    block = text[text.index("*SET backshell") + len("*SET backshell"):]
+    members = {int(word) for word in block[:block.index("*")].replace(",", " ").split()}
+    assert members == {int(i) + 1 for i in cell_new[:100]}
