@@ -1,0 +1,120 @@
+# shellcheck shell=bash
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#
+# What ./run and ./test share: the Debian packages that they need, and how the project is configured and built.
+# To be sourced from the project's root.
+
+# a Debian 12 package and its reason
+packages_to_run=(
+  build-essential      "C++ compiler"
+  cmake                "configures the build"
+  ninja-build          "runs the build"
+  libcli11-dev         "command line"
+  libeigen3-dev        "dense linear algebra"
+  libfmt-dev           "text"
+  libhwy-dev           "SIMD chosen at run time"
+  libmetis-dev         "orders by nested dissection and by parts"
+  libspdlog-dev        "log"
+  libtbb-dev           "threads"
+  libvtk9-dev          ".vtu and .vtk files"
+  nlohmann-json3-dev   "JSON results"
+  libcgal-dev          "makes the models' surfaces"
+  libgmp-dev           "exact numbers for CGAL"
+  libmpfr-dev          "exact numbers for CGAL"
+  tetgen               "fills the surfaces with tetrahedra"
+)
+packages_to_test=(
+  "${packages_to_run[@]}"
+  libgtest-dev         "unit tests"
+  libgmock-dev         "matchers of the unit tests"
+  python3              "end-to-end tests"
+  python3-pytest       "end-to-end tests"
+  python3-numpy        "independent answers for the end-to-end tests"
+  python3-scipy        "independent answers for the end-to-end tests"
+  python3-meshio       "an independent reader of mesh files"
+  clang-format         "checks the layout of the sources"
+  clang-tidy           "looks for mistakes in the sources"
+)
+
+die() { printf '%s\n' "$*" >&2; exit 1; }
+
+# as_root COMMAND…: without a terminal, sudo must not wait for a password
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"
+  elif [ -t 0 ]; then sudo "$@"
+  else sudo -n "$@"; fi
+}
+
+apt_get() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=600 "$@" </dev/null; }
+
+# the mtime of the lists is the server's; that of partial/ is the time of the last update
+package_lists_are_fresh() { [ -n "$(find /var/lib/apt/lists/partial -maxdepth 0 -mtime -1 2>/dev/null)" ]; }
+
+# install_missing PACKAGE REASON PACKAGE REASON …
+install_missing() {
+  local -A reasons=()
+  while [ $# -gt 0 ]; do reasons[$1]=$2; shift 2; done
+  command -v dpkg-query >/dev/null || {
+    echo "No Debian system: taking for granted what these Debian packages hold: ${!reasons[*]}"
+    return 0
+  }
+  local installed missing
+  # shellcheck disable=SC2016  # dpkg-query's own variables
+  installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "${!reasons[@]}" 2>/dev/null | sed -n 's/^installed //p' || true)
+  mapfile -t missing < <(comm -23 <(printf '%s\n' "${!reasons[@]}" | sort) <(sort -u <<<"$installed"))
+  [ ${#missing[@]} -gt 0 ] || return 0
+
+  local list='' name log=build/setup.log
+  for name in "${missing[@]}"; do list+="${list:+, }$name (${reasons[$name]})"; done
+  [ "$(id -u)" = 0 ] || command -v sudo >/dev/null ||
+    die "Missing packages. As root, run: apt-get install --no-install-recommends ${missing[*]}"
+  mkdir -p build
+  echo "Installing Debian packages, with what they depend on; it takes minutes, apt's log is $log:"
+  echo "  $list"
+  local install=(install --no-install-recommends "${missing[@]}")
+  : >"$log"
+  { package_lists_are_fresh && apt_get "${install[@]}" >>"$log" 2>&1; } ||
+    { apt_get update >>"$log" 2>&1 && apt_get "${install[@]}" >>"$log" 2>&1; } ||
+    { tail -n 5 "$log" >&2; die "The packages could not be installed; $log has it all."; }
+}
+
+# compilers take up to 2 GB each
+build_jobs() {
+  local cores memory limit
+  cores=$(nproc)
+  memory=$(awk '/^MemAvailable:/ {print int($2 / 1024 / 1024 / 2)}' /proc/meminfo)
+  limit=$(cat /sys/fs/cgroup/memory.max 2>/dev/null || echo max)
+  [ "$limit" = max ] || [ $((limit >> 31)) -ge "$memory" ] || memory=$((limit >> 31))
+  [ "$memory" -ge 1 ] || memory=1
+  echo $((cores < memory ? cores : memory))
+}
+
+# configure FOLDER OPTION…: ninja itself runs CMake again when a CMake file changed
+configure() {
+  local folder=$1 launcher=()
+  shift
+  command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  mkdir -p "$folder"
+  cmake -S . -B "$folder" -G Ninja "${launcher[@]}" "$@" >"$folder/configure.log" 2>&1 ||
+    { tail -n 20 "$folder/configure.log" >&2; die "CMake failed; $folder/configure.log has it all."; }
+}
+
+# build FOLDER TARGET…
+build() { ninja -C "$1" -j "$(build_jobs)" "${@:2}"; }
+
+# all sources of ours, each ended by a zero byte
+sources() { find src apps tests benchmarks -name '*.[ch]pp' -print0; }
+
+# tidy FOLDER: clang-tidy over what is built there, but for the tests and the CGAL tool. A file that passed is
+# looked at again when it, a header or the checks change.
+tidy() {
+  local folder=$1 newest
+  newest=$(find .clang-tidy src apps \( -name '*.hpp' -o -name .clang-tidy \) -printf '%T@ %p\n' | sort -n | tail -n 1 | cut -d' ' -f2-)
+  mkdir -p "$folder/tidy"
+  # shellcheck disable=SC2016  # the inner shell's variables
+  find src apps/meshorder -name '*.cpp' -print0 | sort -z | xargs -0 -P "$(build_jobs)" -I {} bash -c '
+    passed=$1/tidy/${2//\//.}
+    [ "$passed" -nt "$2" ] && [ "$passed" -nt "$3" ] && exit 0
+    if found=$(clang-tidy --quiet -p "$1" "$2" 2>&1); then touch "$passed"; else printf "%s\n" "$found"; exit 1; fi
+  ' _ "$folder" {} "$newest"
+}
