@@ -91,6 +91,10 @@ void normalise(std::vector<double>& values, const std::vector<Index>& vertices) 
     norm_squared += values[v] * values[v];
     largest = std::max(largest, std::abs(values[v]));
   }
+  if (!(largest > 0)) {  // no vector was found; sorting needs numbers
+    for (const Index v : vertices) values[v] = 0;
+    return;
+  }
   const auto first = std::find_if(vertices.begin(), vertices.end(),
                                   [&](Index v) { return std::abs(values[v]) >= 0.5 * largest; });
   const double sign = values[*first] > 0 ? -1 : 1;

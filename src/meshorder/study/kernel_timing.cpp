@@ -41,7 +41,7 @@ struct Plan {
 Plan plan_samples(KernelBench& bench, Kernel kernel, double sample_seconds) {
   constexpr double kMostRepeats = 1e5;
   // a kernel that runs longer than this many samples streams far more than caches keep
-  constexpr double kLong = 25.0;
+  constexpr double kLong = 5.0;
   bench.run(kernel);
   const double once = std::max(seconds_per_run(bench, kernel, 1), 1e-9);
   return {.repeats = static_cast<int>(std::clamp(std::ceil(sample_seconds / once), 1.0, kMostRepeats)),

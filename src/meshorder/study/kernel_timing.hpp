@@ -15,8 +15,9 @@ struct TimingOptions {
   double budget_seconds = 12.0;
   int least_rounds = 3;  ///< whatever they cost
   int most_rounds = 25;
-  /// A kernel that takes less is repeated until one sample takes as long.
-  double sample_seconds = 0.004;
+  /// A kernel that takes less is repeated until one sample takes as long: solvers repeat it too, and find in
+  /// the caches what the last run left there.
+  double sample_seconds = 0.02;
   /// For time_orders: what all prepared orders may hold together; 0 for half of the machine's memory.
   std::size_t memory_bytes = 0;
 };
