@@ -11,6 +11,7 @@
 #include <meshorder/metrics/edge_span.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -27,10 +28,9 @@ void print_histogram(const Console& console, const std::vector<Offset>& bins) {
   const Offset largest = *std::max_element(bins.begin(), bins.end());
   console.print("\nEdges by span");
   for (std::size_t k = 0; k < bins.size(); ++k) {
-    const auto length =
-        static_cast<int>(kWidth * static_cast<double>(bins[k]) / static_cast<double>(largest) + 0.5);
+    const long length = std::lround(kWidth * static_cast<double>(bins[k]) / static_cast<double>(largest));
     std::string bar;
-    for (int i = 0; i < length; ++i) bar += "█";
+    for (long i = 0; i < length; ++i) bar += "█";
     if (length == 0 && bins[k] > 0) bar = "▏";
     console.print("{:>13} {:>12}  {}", "from " + with_commas(1LL << k), with_commas(bins[k]), bar);
   }

@@ -19,6 +19,7 @@ std::vector<std::pair<std::string, Index>> type_counts(const Mesh& mesh) {
     ++counts[{-dimension(shape), static_cast<int>(shape), fixed ? mesh.cells.vertex_count(c) : 0}];
   }
   std::vector<std::pair<std::string, Index>> result;
+  result.reserve(counts.size());
   for (const auto& [type, count] : counts) {
     result.emplace_back(type_name(static_cast<Shape>(type[1]), type[2]), count);
   }

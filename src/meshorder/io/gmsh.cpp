@@ -140,7 +140,7 @@ void read_verbatim(Reading& reading, const std::string& section) {
   Source& source = reading.source;
   const std::int64_t line = source.in.line();
   const std::string_view text = body(source, section);
-  if (kVerbatimSections.count(section) == 0 && (has_numbers(text) || !is_text(text))) {
+  if (!kVerbatimSections.contains(section) && (has_numbers(text) || !is_text(text))) {
     source.fail(fmt::format("the section ${} from line {} on holds numbers of unknown meaning, which another "
                             "order could falsify",
                             section, line - 1),
@@ -222,7 +222,7 @@ void read_section(Reading& reading, const std::string& name) {
   if (name == "PhysicalNames") return read_names(reading);
   const bool entities = name == "Entities" || name == "PartitionedEntities";
   if (entities && !reading.residue.is_version_2()) return read_entities(reading, name);
-  if (kDataSections.count(name) > 0) {
+  if (kDataSections.contains(name)) {
     if (!has_section(reading.residue, SectionKind::elements)) {
       source.fail("$" + name + " stands before $Elements", "put $Nodes and $Elements first");
     }
@@ -363,7 +363,7 @@ void note_sets(const Mesh& mesh, const GmshResidue& layout, Notes& notes) {
   std::set<std::string> periodic;
   for (const PeriodicLink& link : layout.periodic) periodic.insert({link.nodes, link.master_nodes});
   for (const Set& set : mesh.sets) {
-    if (set.on == Attached::vertices && periodic.count(set.name) > 0) continue;
+    if (set.on == Attached::vertices && periodic.contains(set.name)) continue;
     std::vector<Index> members = set.members;
     std::sort(members.begin(), members.end());
     const bool held = std::any_of(physical.begin(), physical.end(), [&](const Set& other) {

@@ -154,7 +154,7 @@ struct Source {
   /// Numbers that are text in binary files too.
   std::int64_t text_integer(std::string_view what);
   double text_real(std::string_view what);
-  Index checked(std::int64_t number, std::string_view what, std::int64_t bytes) const;
+  [[nodiscard]] Index checked(std::int64_t number, std::string_view what, std::int64_t bytes) const;
   /// Moves behind the end of the line if the numbers that follow are binary.
   void begin_binary();
   void expect_end(std::string_view section);

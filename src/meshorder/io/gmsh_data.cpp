@@ -318,7 +318,7 @@ void write_view(Sink& sink, const Output& output, const View& view) {
             nodes = nodes_of_entry(mesh, place, view.per, view.nodes);
             sink.int32(nodes);
           }
-          for (std::size_t k = 0; k < static_cast<std::size_t>(nodes * components); ++k) {
+          for (std::size_t k = 0; k < static_cast<std::size_t>(nodes) * components; ++k) {
             sink.real(k < width ? as_double(values[row * width + k]) : 0.0);
           }
           sink.end_line();

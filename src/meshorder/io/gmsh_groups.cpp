@@ -124,7 +124,7 @@ void split_by_set(Groups& groups, const Set& set, std::int32_t physical) {
   std::set<Index> parts;
   for (const Index c : set.members) {
     const Index group = groups.of_cell[c];
-    if (parts.count(group) > 0) continue;  // the set names this cell twice
+    if (parts.contains(group)) continue;  // the set names this cell twice
     const auto [found, is_new] = inside.try_emplace(group, index_size(groups.groups));
     if (is_new) {
       Group part = groups.groups[group];

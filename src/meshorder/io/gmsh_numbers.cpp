@@ -73,7 +73,7 @@ double Source::real(std::string_view what) { return binary ? in.binary<double>(w
 
 double Source::finite(std::string_view what) {
   if (!binary) return in.finite(what);
-  const double value = in.binary<double>(what, order);
+  const auto value = in.binary<double>(what, order);
   if (!std::isfinite(value)) fail(std::string(what) + " is not finite", "a finite number is needed");
   return value;
 }

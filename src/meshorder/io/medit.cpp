@@ -120,8 +120,8 @@ Index position_in(const Writing& from, const Target& target, Index item) {
 }
 
 /// The kind of section with that name that all `items` fit, or nullptr.
-template <std::size_t n>
-const ListKind* fitting_kind(const std::array<ListKind, n>& kinds, const Writing& from, std::string_view name,
+template <std::size_t N>
+const ListKind* fitting_kind(const std::array<ListKind, N>& kinds, const Writing& from, std::string_view name,
                              Attached on, const std::vector<Index>& items) {
   const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const ListKind& kind) {
     return kind.keyword == name && (kind.target ? Attached::cells : Attached::vertices) == on;

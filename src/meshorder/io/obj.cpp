@@ -165,7 +165,7 @@ class Writer {
   }
 
   /// A set's name as one word, which a group's name is.
-  std::string group_name(const Set& set) const {
+  static std::string group_name(const Set& set) {
     std::string name = set.name.empty() ? "unnamed" : set.name;
     std::replace_if(
         name.begin(), name.end(),

@@ -168,7 +168,8 @@ struct ColorGroup {
 };
 
 constexpr int kMostColors = 4;
-using ColorGroups = std::array<ColorGroup, 2 * (kMostColors + 1)>;  // by 2 · width + whether whole
+using ColorGroups =
+    std::array<ColorGroup, std::size_t{2} * (kMostColors + 1)>;  // by 2 · width + whether whole
 
 void read_color(Scanner& scanner, Index face, ColorGroups& groups) {
   if (scanner.at_line_end()) return;
@@ -325,13 +326,14 @@ void write_face_color(OutputFile& out, const Content& content, Index face) {
   if (content.face_colors.width > 0) {
     return write_color(out, content.face_colors[face], content.face_colors.integers);
   }
-  const auto [array, row] = content.color_rows[face];
+  const DataArray* const array = content.color_rows[face].first;
+  const Offset row = content.color_rows[face].second;
   if (!array) return;
   std::visit(
       [&](const auto& values) {
         if constexpr (std::is_arithmetic_v<typename std::decay_t<decltype(values)>::value_type>) {
           for (Index k = 0; k < array->components; ++k) {
-            const auto x = static_cast<double>(values[static_cast<Offset>(row) * array->components + k]);
+            const auto x = static_cast<double>(values[row * array->components + k]);
             write_color(out, {&x, 1}, holds_integers(array->values));
           }
         }

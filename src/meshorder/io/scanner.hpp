@@ -62,7 +62,8 @@ class Scanner {
   /// cannot promise (and make us allocate) what is not there. At most kMaxIndex.
   Index count(std::string_view what, std::int64_t least_bytes);
   /// The same check for a number that was read already.
-  Index checked_count(std::int64_t number, std::string_view what, std::int64_t least_bytes) const;
+  [[nodiscard]] Index checked_count(std::int64_t number, std::string_view what,
+                                    std::int64_t least_bytes) const;
 
   // ---- lines
   /// The rest of the line without its end and without the comment; moves to the next line.

@@ -77,10 +77,10 @@ std::int64_t whole(Scanner& in, std::string_view what) {
 }
 
 /// The numbers of a header line, `standard` where the line leaves some out.
-template <std::size_t n>
-std::array<std::int64_t, n> header(Scanner& in, std::array<std::int64_t, n> standard) {
+template <std::size_t N>
+std::array<std::int64_t, N> header(Scanner& in, std::array<std::int64_t, N> standard) {
   begin_record(in, "the header");
-  for (std::size_t i = 0; i < n && (i == 0 || !in.at_line_end()); ++i) {
+  for (std::size_t i = 0; i < N && (i == 0 || !in.at_line_end()); ++i) {
     standard[i] =
         parse_integer<std::int64_t>(in, column(in, "a number of the header"), "a number of the header");
   }

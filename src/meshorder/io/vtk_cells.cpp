@@ -223,7 +223,7 @@ void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& ty
             using Number = typename std::decay_t<decltype(values)>::value_type;
             if constexpr (!std::is_same_v<Number, std::string>) {
               for (int i = 0; i < 3; ++i) {
-                const double degree = static_cast<double>(values[3 * Offset{c} + i]);
+                const auto degree = static_cast<double>(values[3 * Offset{c} + i]);
                 degrees[i] = degree >= 1 && degree <= n ? static_cast<Offset>(degree) : same;
               }
             }

@@ -189,7 +189,7 @@ class Writer {
   /// The number type under which an array is written: the file's own, while it can hold the values.
   std::string type_of(const DataArray& array, std::optional<Attached> on) const {
     const VtkArrayFacts* facts = find_facts(residue_, on, array.name);
-    const std::string usual(kVtkTypeNames[array.values.index()]);
+    std::string usual(kVtkTypeNames[array.values.index()]);
     if (facts == nullptr || facts->type.empty()) return usual;
     const auto is = [&](std::string_view name) { return same_but_for_case(facts->type, name); };
     if (const auto* wide = std::get_if<std::vector<std::int64_t>>(&array.values)) {

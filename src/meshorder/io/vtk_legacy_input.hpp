@@ -38,7 +38,7 @@ class VtkLegacyInput {
   /// A number of things, 0 … kMaxIndex.
   std::int64_t count(std::string_view what);
   /// Stops unless `count` numbers of `bytes` bytes (in text: a digit and a blank) can follow.
-  void check_room(std::int64_t count, std::int64_t bytes, const std::string& what) const;
+  void check_room(std::int64_t entries, std::int64_t bytes, const std::string& what) const;
   /// Goes to the line, in binary files the byte, after a heading.
   void end_heading();
   /// A 32-bit integer of a list whose heading has ended.
@@ -57,7 +57,7 @@ class VtkLegacyInput {
   Notes notes;
 
  private:
-  std::int64_t parsed(std::string_view text, std::string_view what) const;
+  [[nodiscard]] std::int64_t parsed(std::string_view text, std::string_view what) const;
   template <class Number>
   Number number(const std::string& what);
   template <class Number, class Stored = Number>

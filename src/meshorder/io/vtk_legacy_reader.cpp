@@ -182,7 +182,7 @@ class Reader {
                "its size counts all numbers that follow");
   }
 
-  Index checked_vertex(std::int64_t vertex, std::int64_t cell) const {
+  [[nodiscard]] Index checked_vertex(std::int64_t vertex, std::int64_t cell) const {
     const std::int64_t points = has_points_ ? mesh_.vertex_count() : std::int64_t{kMaxIndex};
     if (vertex < 0 || vertex >= points) {
       in_.fail("cell " + std::to_string(cell) + " (counted from 0) names the point " + std::to_string(vertex),

@@ -25,9 +25,9 @@ struct VtuElement {
   std::vector<VtuElement> children;
 
   /// The value of an attribute, or nullptr.
-  [[nodiscard]] const std::string* attribute(std::string_view name) const;
+  [[nodiscard]] const std::string* attribute(std::string_view wanted) const;
   /// The first child of that name, or nullptr.
-  [[nodiscard]] const VtuElement* child(std::string_view name) const;
+  [[nodiscard]] const VtuElement* child(std::string_view wanted) const;
 };
 
 /// A .vtu file taken apart: its elements, and where its arrays' bytes are.
@@ -76,7 +76,7 @@ class VtuDocument {
   [[nodiscard]] std::vector<std::uint8_t> bits(const VtuElement& array, std::int64_t count) const;
   [[nodiscard]] std::vector<std::string> strings(const VtuElement& array, std::int64_t count) const;
   [[nodiscard]] Stored locate(const VtuElement& array) const;
-  void locate_blocks(const VtuElement& array, std::string_view data, bool base64, Stored& stored) const;
+  void locate_blocks(const VtuElement& array, std::string_view data, bool coded, Stored& stored) const;
   void copy(const VtuElement& array, const Stored& stored, char* target) const;
   [[nodiscard]] std::string base64(const VtuElement& array, std::string_view text, std::uint64_t bytes) const;
   [[nodiscard]] std::uint64_t header_word(std::string_view bytes, std::size_t index) const;
