@@ -44,8 +44,9 @@ Mesh read_mesh(const std::filesystem::path& path, Notes* notes) {
   const std::vector<Index> degenerate = degenerate_cells(mesh);
   if (!degenerate.empty()) {
     noted.push_back(std::to_string(degenerate.size()) +
-                    " cells name a vertex twice and are kept, the first is cell " +
-                    std::to_string(degenerate.front()) + " (counted from 0)");
+                    (degenerate.size() == 1 ? " cell names a vertex twice and is kept"
+                                            : " cells name a vertex twice and are kept") +
+                    ": the first is cell " + std::to_string(degenerate.front()) + ", counted from 0");
   }
   return mesh;
 }

@@ -1,0 +1,93 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
+#include <meshorder/io/format.hpp>
+#include <meshorder/mesh/mesh_ordering.hpp>
+#include <meshorder/mesh/reorder.hpp>
+#include <support/files.hpp>
+#include <support/sample_meshes.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace meshorder {
+namespace {
+
+using test::TemporaryFolder;
+
+/// Cells of all linear volumes and surfaces, interleaved.
+Mesh interleaved(const std::vector<Shape>& shapes) {
+  const Mesh all = test::mixed_mesh();
+  Mesh mesh;
+  mesh.points = all.points;
+  for (Index c = 0; c < all.cell_count(); ++c) {
+    const bool linear = all.cells.vertex_count(c) == corners(all.cells.shapes[c], 0);
+    const bool wanted = std::find(shapes.begin(), shapes.end(), all.cells.shapes[c]) != shapes.end();
+    if (linear && wanted) mesh.cells.push_back(all.cells.shapes[c], all.cells[c]);
+  }
+  return mesh;
+}
+
+TEST(Format, IsFoundByItsExtensionInAnyCase) {
+  EXPECT_EQ(format_of("a.MSH").name, format_of("b.msh").name);
+  EXPECT_THROW((void)format_of("a.txt"), Error);
+  EXPECT_THROW((void)format_of("mesh"), Error);
+}
+
+TEST(Format, ExtensionsAreUnique) {
+  std::vector<std::string_view> all;
+  for (const Format& format : formats()) {
+    all.insert(all.end(), format.extensions.begin(), format.extensions.end());
+  }
+  std::sort(all.begin(), all.end());
+  EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
+}
+
+TEST(ArrangeCells, MakesAConvertedFileHoldTheOrderThatWasComputed) {
+  const std::vector<std::pair<std::string, std::vector<Shape>>> targets{
+      {".node", {Shape::tetrahedron, Shape::triangle, Shape::line}},
+      {".mesh",
+       {Shape::tetrahedron, Shape::hexahedron, Shape::wedge, Shape::triangle, Shape::quad, Shape::line}},
+      {".msh",
+       {Shape::tetrahedron, Shape::hexahedron, Shape::wedge, Shape::triangle, Shape::quad, Shape::line}},
+      {".vtu",
+       {Shape::tetrahedron, Shape::hexahedron, Shape::pyramid, Shape::quad, Shape::line, Shape::vertex}},
+      {".vtk",
+       {Shape::tetrahedron, Shape::hexahedron, Shape::pyramid, Shape::quad, Shape::line, Shape::vertex}},
+      {".veg", {Shape::tetrahedron}},
+      {".off", {Shape::triangle, Shape::quad}},
+      {".ply", {Shape::triangle, Shape::quad}},
+      {".obj", {Shape::triangle, Shape::quad}},
+  };
+  for (const auto& [extension, shapes] : targets) {
+    SCOPED_TRACE(extension);
+    const TemporaryFolder folder;
+    Mesh mesh = interleaved(shapes);
+    const Mesh original = mesh;
+    const Format& from = format_of(extension == ".vtu" ? "a.vtk" : "a.vtu");
+    const Permutation arranged = arrange_cells(mesh, from, format_of("a" + extension));
+    for (Index c = 0; c < original.cell_count(); ++c) {
+      EXPECT_EQ(mesh.cells.shapes[arranged.old_to_new()[c]], original.cells.shapes[c]);
+    }
+    reorder(mesh, test::shuffled(mesh.vertex_count(), 1), test::shuffled_cells(mesh, 2));
+    const auto path = folder.path() / ("a" + extension);
+    write_mesh(mesh, path);
+    const Mesh read = read_mesh(path);
+    EXPECT_EQ(read.points, mesh.points);
+    EXPECT_EQ(read.cells, mesh.cells);
+  }
+}
+
+TEST(ReadMesh, ReportsDegenerateCellsAndKeepsThem) {
+  const TemporaryFolder folder;
+  Mesh mesh = test::tetrahedral_bar(1);
+  mesh.cells[2][3] = mesh.cells[2][0];
+  write_mesh(mesh, folder.path() / "a.vtu");
+  Notes notes;
+  EXPECT_EQ(read_mesh(folder.path() / "a.vtu", &notes).cells, mesh.cells);
+  ASSERT_FALSE(notes.empty());
+  EXPECT_NE(notes.back().find("1 cell names a vertex twice"), std::string::npos) << notes.back();
+}
+
+}  // namespace
+}  // namespace meshorder
