@@ -51,6 +51,7 @@ void run(const ApplyArguments& arguments) {
 
   progress.stage("writing " + arguments.output, 0.5, 1);
   write_mesh(mesh, arguments.output, &notes);
+  progress.finish();
   console.log_notes(notes);
   console.print("wrote {}: {} vertices and {} cells {}", arguments.output, with_commas(mesh.vertex_count()),
                 with_commas(mesh.cell_count()), arguments.inverse ? "put back" : "moved");

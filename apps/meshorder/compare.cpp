@@ -123,7 +123,6 @@ void run(const CompareArguments& arguments) {
   progress.stage("reading " + arguments.input, 0, 0.05);
   Notes notes;
   Mesh mesh = read_mesh(arguments.input, &notes);
-  console.log_notes(notes);
   mesh.cell_blocks.clear();  // what is compared is the orders, not a file's layout
   const CsrGraph graph = vertex_graph(mesh);
 
@@ -135,9 +134,7 @@ void run(const CompareArguments& arguments) {
     progress.stage("ordering by " + c.vertices + "/" + c.elements, from, from + share);
     c.order = compute_reordering(mesh, graph, {c.vertices, c.elements, arguments.ordering});
     c.span = edge_span(graph, c.order.vertices);
-    for (const std::string& warning : convergence_warnings(c.order.vertex_fiedler, "the vertices")) {
-      console.log("{}", warning);
-    }
+    note_convergence(c.order.vertex_fiedler, "the vertices by " + c.vertices, notes);
   }
 
   progress.stage("running kernels", 0.4, 1);
@@ -152,6 +149,8 @@ void run(const CompareArguments& arguments) {
       },
       timing);
 
+  progress.finish();
+  console.log_notes(notes);
   console.print("{}: {} vertices, {}", arguments.input, with_commas(mesh.vertex_count()),
                 cells_in_words(mesh));
   print_quality(console, candidates);

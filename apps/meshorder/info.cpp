@@ -78,7 +78,6 @@ void run(const InfoArguments& arguments) {
   progress.stage("reading " + arguments.input, 0, 0.5);
   Notes notes;
   const Mesh mesh = read_mesh(arguments.input, &notes);
-  console.log_notes(notes);
 
   progress.stage("measuring", 0.5, 1);
   const CsrGraph graph = vertex_graph(mesh);
@@ -92,6 +91,8 @@ void run(const InfoArguments& arguments) {
   const auto connected = static_cast<long long>(components.size()) - isolated;
   const auto degenerate = static_cast<long long>(degenerate_cells(mesh).size());
 
+  progress.finish();
+  console.log_notes(notes);
   console.print("{}, {}", arguments.input, format_of(arguments.input).name);
   console.print("{:<12} {} in {} dimensions", "vertices", with_commas(mesh.vertex_count()), mesh.dimension);
   console.print("{:<12} {}", "cells", cells_in_words(mesh));

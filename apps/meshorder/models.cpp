@@ -58,7 +58,7 @@ void make(const MakeArguments& arguments) {
   }
 
   Progress progress(!console.quiet());
-  auto made = nlohmann::ordered_json::array();
+  std::vector<Model> made;
   const double share = 1.0 / static_cast<double>(names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double from = share * static_cast<double>(i);
@@ -71,11 +71,15 @@ void make(const MakeArguments& arguments) {
         progress.at(from + share * fraction);
       }
     };
-    const Model model = make_model(names[i], options);
-    print_model(console, model);
-    made.push_back(to_json(model));
+    made.push_back(make_model(names[i], options));
   }
-  console.print_json({{"models", made}});
+  progress.finish();
+  auto models = nlohmann::ordered_json::array();
+  for (const Model& model : made) {
+    print_model(console, model);
+    models.push_back(to_json(model));
+  }
+  console.print_json({{"models", models}});
 }
 
 }  // namespace

@@ -14,7 +14,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 
 namespace meshorder::command {
 namespace {
@@ -48,7 +47,6 @@ void run(const OrderArguments& arguments) {
   Notes notes;
   Mesh mesh = read_mesh(arguments.input, &notes);
   const double read_seconds = reading.seconds();
-  console.log_notes(std::exchange(notes, {}));
 
   progress.stage("ordering", 0.4, 0.7);
   const Stopwatch ordering;
@@ -64,11 +62,8 @@ void run(const OrderArguments& arguments) {
   maps.elements = arranged.then(order.cells);
   const EdgeSpan before = edge_span(graph, Permutation::identity(mesh.vertex_count()));
   const EdgeSpan after = edge_span(graph, order.vertices);
-  for (const std::string& warning : convergence_warnings(order.vertex_fiedler, "the vertices"))
-    console.log("{}", warning);
-  for (const std::string& warning : convergence_warnings(order.element_fiedler, "the elements")) {
-    console.log("{}", warning);
-  }
+  note_convergence(order.vertex_fiedler, "the vertices", notes);
+  note_convergence(order.element_fiedler, "the elements", notes);
 
   progress.stage("writing " + arguments.output, 0.7, 1);
   const Stopwatch writing;
@@ -76,8 +71,9 @@ void run(const OrderArguments& arguments) {
   std::vector<std::string> map_files;
   if (!arguments.maps.empty()) map_files = write_maps(maps, arguments.maps);
   const double write_seconds = writing.seconds();
-  console.log_notes(notes);
 
+  progress.finish();
+  console.log_notes(notes);
   print_result(console, arguments, order, before, after);
   console.print("{:<10} {}", "wrote", arguments.output);
   for (const std::string& file : map_files) console.print("{:<10} {}", "", file);

@@ -27,7 +27,9 @@ Progress::Progress(bool enabled) : began_(now()) {
   if (enabled && ::isatty(STDERR_FILENO) == 1) drawer_ = std::thread([this] { draw_until_done(); });
 }
 
-Progress::~Progress() {
+Progress::~Progress() { finish(); }
+
+void Progress::finish() {
   {
     const std::lock_guard lock(mutex_);
     finished_ = true;
@@ -67,7 +69,8 @@ void Progress::draw(double elapsed) {
   }
   std::string line = what_;
   if (share > 0.01) {
-    line += fmt::format(", {:.0f} %, about {} left", 100 * share, duration(elapsed / share * (1 - share)));
+    line += fmt::format(", {:.0f} %, about {} left", 100 * share,
+                        duration(std::max(1.0, elapsed / share * (1 - share))));
   } else {
     line += fmt::format(", {} so far", duration(elapsed));
   }

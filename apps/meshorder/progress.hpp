@@ -27,6 +27,9 @@ class Progress {
   /// The share of the whole that is done, 0 … 1, for stages that know it.
   void at(double share);
 
+  /// Clears the line, before results are printed; nothing is drawn from then on.
+  void finish();
+
  private:
   void draw_until_done();
   void draw(double elapsed);

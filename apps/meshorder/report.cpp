@@ -65,17 +65,14 @@ std::string cells_in_words(const Mesh& mesh) {
   return words;
 }
 
-std::vector<std::string> convergence_warnings(const std::vector<FiedlerComponent>& components,
-                                              const std::string& of) {
-  std::vector<std::string> warnings;
+void note_convergence(const std::vector<FiedlerComponent>& components, const std::string& of, Notes& notes) {
   for (const FiedlerComponent& component : components) {
     if (component.converged) continue;
-    warnings.push_back(fmt::format(
+    notes.push_back(fmt::format(
         "the Fiedler vector of {} did not converge on a component of {}: residual {:.2g} of lambda2 after {} "
         "iterations; the best vector so far gives the order",
         of, with_commas(component.size), component.residual / component.lambda2, component.iterations));
   }
-  return warnings;
 }
 
 }  // namespace meshorder::command

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <meshorder/graph/csr_graph.hpp>
+#include <meshorder/io/format.hpp>
 #include <meshorder/mesh/mesh.hpp>
 #include <meshorder/metrics/edge_span.hpp>
 #include <meshorder/spectral/fiedler.hpp>
@@ -25,8 +26,7 @@ nlohmann::ordered_json cells_by_type(const Mesh& mesh);
 /// "161,222 tetrahedra, 12 triangles"
 std::string cells_in_words(const Mesh& mesh);
 
-/// One line for each component that did not converge.
-std::vector<std::string> convergence_warnings(const std::vector<FiedlerComponent>& components,
-                                              const std::string& of);
+/// Notes each component that did not converge.
+void note_convergence(const std::vector<FiedlerComponent>& components, const std::string& of, Notes& notes);
 
 }  // namespace meshorder::command
