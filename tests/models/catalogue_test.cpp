@@ -144,8 +144,10 @@ TEST_F(Catalogue, LeavesWhatIsMadeUnlessForced) {
   const std::string content = test::content_of(path);
 
   steps.clear();
+  fs::remove(models_folder() / ".grid-2.lock");
   EXPECT_EQ(make_model("grid", options).vertices, 27);
   EXPECT_TRUE(steps.empty());
+  EXPECT_FALSE(fs::exists(models_folder() / ".grid-2.lock"));  // a cache that is read only will do
 
   fs::resize_file(path, 10);  // its first line is still whole
   EXPECT_EQ(make_model("grid", options).vertices, 27);
@@ -214,14 +216,15 @@ TEST_F(Catalogue, FillsASurfaceAndKeepsTheMesh) {
 TEST_F(Catalogue, ClearsWhatAnInterruptedRunLeft) {
   keep_surface("armadillo.off");
   install("tetgen", kWritesOneTetrahedron);
-  fs::create_directories(models_folder() / ".armadillo-300k.making/old");
+  fs::create_directories(models_folder() / ".armadillo-300k.making");
+  (void)std::ofstream(models_folder() / ".armadillo-300k.making/armadillo-300k.off");
   EXPECT_EQ(make_model("armadillo-300k").vertices, 4);
   EXPECT_EQ(kept(), (std::vector<std::string>{"armadillo-300k.ele", "armadillo-300k.node"}));
 }
 
 TEST_F(Catalogue, OfTwoAtOnceOneMakesTheModel) {
   keep_surface("armadillo.off");
-  install("tetgen", kWritesOneTetrahedron);
+  install("tetgen", kWritesOneTetrahedron + std::string("while [ ${#i} -lt 2000 ]; do i=$i.; done"));
   {
     std::vector<std::jthread> makers;
     for (int i = 0; i < 4; ++i) {
