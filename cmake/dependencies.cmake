@@ -5,12 +5,17 @@ find_package(fmt REQUIRED)                    # text
 find_package(spdlog REQUIRED)                 # log
 find_package(nlohmann_json REQUIRED)          # --json
 find_package(hwy REQUIRED)                    # SIMD chosen at run time
-find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOCore IOXML IOLegacy)
+find_package(ZLIB REQUIRED)                   # compressed arrays of .vtu
+find_package(LibLZMA REQUIRED)
 find_path(CLI11_INCLUDE_DIR CLI/CLI.hpp REQUIRED)
 
-# METIS ships without a CMake file
+# METIS and LZ4 ship without a CMake file
 find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
 find_library(METIS_LIBRARY metis REQUIRED)
 add_library(metis::metis UNKNOWN IMPORTED)
 set_target_properties(metis::metis PROPERTIES IMPORTED_LOCATION ${METIS_LIBRARY}
                                               INTERFACE_INCLUDE_DIRECTORIES ${METIS_INCLUDE_DIR})
+find_path(LZ4_INCLUDE_DIR lz4.h REQUIRED)
+find_library(LZ4_LIBRARY lz4 REQUIRED)
+add_library(lz4::lz4 UNKNOWN IMPORTED)
+set_target_properties(lz4::lz4 PROPERTIES IMPORTED_LOCATION ${LZ4_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${LZ4_INCLUDE_DIR})

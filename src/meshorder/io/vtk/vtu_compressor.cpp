@@ -1,35 +1,46 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/base/error.hpp>
 #include <meshorder/io/vtk/vtu_compressor.hpp>
 
-#include <vtkCallbackCommand.h>
-#include <vtkDataCompressor.h>
-#include <vtkLZ4DataCompressor.h>
-#include <vtkLZMADataCompressor.h>
-#include <vtkNew.h>
-#include <vtkSmartPointer.h>
-#include <vtkZLibDataCompressor.h>
+#include <lz4.h>
+#include <lzma.h>
+#include <zlib.h>
+
+#include <limits>
+#include <stdexcept>
 
 namespace meshorder {
+namespace {
 
-struct VtuCompressor::Implementation {
-  vtkSmartPointer<vtkDataCompressor> compressor;
-};
+constexpr int kLevel = 5;  // VTK's default, of 1 to 9
 
-VtuCompressor::VtuCompressor(VtuEncoding::Compressor kind)
-    : implementation_(std::make_unique<Implementation>()) {
-  auto& compressor = implementation_->compressor;
-  if (kind == VtuEncoding::Compressor::zlib) compressor = vtkSmartPointer<vtkZLibDataCompressor>::New();
-  if (kind == VtuEncoding::Compressor::lz4) compressor = vtkSmartPointer<vtkLZ4DataCompressor>::New();
-  if (kind == VtuEncoding::Compressor::lzma) compressor = vtkSmartPointer<vtkLZMADataCompressor>::New();
-  // an observed object does not print its errors; they show in what it returns
-  const vtkNew<vtkCallbackCommand> silence;
-  silence->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
-  compressor->AddObserver(vtkCommand::ErrorEvent, silence);
-  compressor->AddObserver(vtkCommand::WarningEvent, silence);
+const Bytef* bytes_of(std::span<const char> bytes) { return reinterpret_cast<const Bytef*>(bytes.data()); }
+
+/// Compresses `bytes` into `room`; the bytes that took, 0 on failure.
+std::size_t compress_with(VtuEncoding::Compressor kind, std::span<const char> bytes, std::span<char> room) {
+  auto* const target = reinterpret_cast<Bytef*>(room.data());
+  if (kind == VtuEncoding::Compressor::zlib) {
+    uLongf size = room.size();
+    return compress2(target, &size, bytes_of(bytes), bytes.size(), kLevel) == Z_OK ? size : 0;
+  }
+  if (kind == VtuEncoding::Compressor::lz4) {
+    return static_cast<std::size_t>(LZ4_compress_default(
+        bytes.data(), room.data(), static_cast<int>(bytes.size()), static_cast<int>(room.size())));
+  }
+  std::size_t size = 0;
+  const lzma_ret status = lzma_easy_buffer_encode(kLevel, LZMA_CHECK_CRC32, nullptr, bytes_of(bytes),
+                                                  bytes.size(), target, &size, room.size());
+  return status == LZMA_OK ? size : 0;
 }
 
-VtuCompressor::~VtuCompressor() = default;
+std::size_t greatest_size(VtuEncoding::Compressor kind, std::size_t bytes) {
+  if (kind == VtuEncoding::Compressor::zlib) return compressBound(bytes);
+  if (kind == VtuEncoding::Compressor::lz4) {
+    return static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(bytes)));
+  }
+  return lzma_stream_buffer_bound(bytes);
+}
+
+}  // namespace
 
 std::uint64_t VtuCompressor::greatest_ratio(VtuEncoding::Compressor kind) {
   switch (kind) {
@@ -46,19 +57,33 @@ std::uint64_t VtuCompressor::greatest_ratio(VtuEncoding::Compressor kind) {
 }
 
 std::string VtuCompressor::compress(std::span<const char> bytes) const {
-  vtkDataCompressor& compressor = *implementation_->compressor;
-  std::string result(compressor.GetMaximumCompressionSpace(bytes.size()), '\0');
-  result.resize(compressor.Compress(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(),
-                                    reinterpret_cast<unsigned char*>(result.data()), result.size()));
-  if (result.empty()) throw InvalidArgument("VTK's compressor failed");
+  std::string result(greatest_size(kind_, bytes.size()), '\0');
+  result.resize(compress_with(kind_, bytes, result));
+  if (result.empty()) throw std::runtime_error("a block of an array could not be compressed");
   return result;
 }
 
 bool VtuCompressor::uncompress(std::span<const char> bytes, std::span<char> target) const {
   if (bytes.empty() || target.empty()) return target.empty();
-  return implementation_->compressor->Uncompress(
-             reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(),
-             reinterpret_cast<unsigned char*>(target.data()), target.size()) == target.size();
+  if (kind_ == VtuEncoding::Compressor::zlib) {
+    uLongf size = target.size();
+    return ::uncompress(reinterpret_cast<Bytef*>(target.data()), &size, bytes_of(bytes), bytes.size()) ==
+               Z_OK &&
+           size == target.size();
+  }
+  if (kind_ == VtuEncoding::Compressor::lz4) {
+    constexpr std::size_t kMost = std::numeric_limits<int>::max();
+    if (bytes.size() > kMost || target.size() > kMost) return false;
+    return LZ4_decompress_safe(bytes.data(), target.data(), static_cast<int>(bytes.size()),
+                               static_cast<int>(target.size())) == static_cast<int>(target.size());
+  }
+  std::uint64_t memory = std::uint64_t{1} << 30;
+  std::size_t read = 0;
+  std::size_t written = 0;
+  return lzma_stream_buffer_decode(&memory, 0, nullptr, bytes_of(bytes), &read, bytes.size(),
+                                   reinterpret_cast<Bytef*>(target.data()), &written,
+                                   target.size()) == LZMA_OK &&
+         written == target.size();
 }
 
 }  // namespace meshorder

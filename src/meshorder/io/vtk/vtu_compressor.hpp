@@ -3,24 +3,18 @@
 
 #include <meshorder/io/vtk/vtk_residue.hpp>
 
-#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 
 namespace meshorder {
 
-/// One of the compressors of .vtu files, VTK's own; it prints nothing.
+/// One of the compressors of .vtu files: zlib, LZ4 blocks, or xz streams, as VTK's vtkZLibDataCompressor,
+/// vtkLZ4DataCompressor and vtkLZMADataCompressor write them.
 class VtuCompressor {
  public:
   /// `kind` is not `none`.
-  explicit VtuCompressor(VtuEncoding::Compressor kind);
-  ~VtuCompressor();
-  VtuCompressor(VtuCompressor&&) = delete;
-  VtuCompressor& operator=(VtuCompressor&&) = delete;
-  VtuCompressor(const VtuCompressor&) = delete;
-  VtuCompressor& operator=(const VtuCompressor&) = delete;
+  explicit VtuCompressor(VtuEncoding::Compressor kind) : kind_(kind) {}
 
   /// More bytes than that cannot come out of one compressed byte.
   static std::uint64_t greatest_ratio(VtuEncoding::Compressor kind);
@@ -31,8 +25,7 @@ class VtuCompressor {
   [[nodiscard]] bool uncompress(std::span<const char> bytes, std::span<char> target) const;
 
  private:
-  struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  VtuEncoding::Compressor kind_;
 };
 
 }  // namespace meshorder
