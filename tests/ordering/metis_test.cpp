@@ -83,5 +83,19 @@ TEST(Metis, RecursiveBisectionKeepsHalvesTogether) {
   }
 }
 
+TEST(Metis, PrintsNothingOnGraphsThatBisectBadly) {
+  std::vector<Edge> star;
+  for (Index v = 1; v < 3000; ++v) star.push_back({0, v});
+  std::vector<Edge> pairs;
+  for (Index v = 0; v + 1 < 3000; v += 2) pairs.push_back({v, v + 1});
+  testing::internal::CaptureStdout();
+  for (const auto& edges : {star, pairs}) {
+    for (const char* method : {"metis-nd", "metis-rb"}) {
+      EXPECT_EQ(order_of(graph_from_edges(3000, edges), method).size(), 3000);
+    }
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
 }  // namespace
 }  // namespace meshorder
