@@ -79,18 +79,10 @@ double energy(const RestShapes& rest, const Lame& lame, const double* positions)
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <meshorder/base/error.hpp>
-
 namespace meshorder {
 namespace {
 
 HWY_EXPORT(add_forces_in_batches);
-
-void check_sizes(std::span<const double> positions, std::span<double> forces) {
-  if (positions.size() != forces.size()) {
-    throw InvalidArgument("add_stvk_forces: positions and forces must have the same size");
-  }
-}
 
 }  // namespace
 
@@ -100,13 +92,13 @@ double stvk_energy(const RestShapes& rest, const Lame& lame, std::span<const dou
 
 void add_stvk_forces(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
                      std::span<double> forces) {
-  check_sizes(positions, forces);
+  check_same_size(positions, forces, "add_stvk_forces");
   HWY_DYNAMIC_DISPATCH(add_forces_in_batches)(rest, lame, positions.data(), forces.data());
 }
 
 void add_stvk_forces_scalar(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
                             std::span<double> forces) {
-  check_sizes(positions, forces);
+  check_same_size(positions, forces, "add_stvk_forces");
   HWY_STATIC_DISPATCH(add_forces_one_by_one)(rest, lame, positions.data(), forces.data());
 }
 

@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
 
 #include <algorithm>
+#include <string>
 
 namespace meshorder {
 
@@ -16,5 +18,12 @@ AlignedVector<double> padded_positions(std::span<const Point> points) {
 }
 
 AlignedVector<double> padded_zeros(Index n) { return AlignedVector<double>(Offset{kPaddedStride} * n, 0.0); }
+
+void check_same_size(std::span<const double> positions, std::span<const double> forces,
+                     const char* function) {
+  if (positions.size() != forces.size()) {
+    throw InvalidArgument(std::string(function) + ": positions and forces must have the same size");
+  }
+}
 
 }  // namespace meshorder

@@ -18,4 +18,7 @@ AlignedVector<double> padded_positions(std::span<const Point> points);
 /// n vertices at zero in that layout. O(n).
 AlignedVector<double> padded_zeros(Index n);
 
+/// Throws InvalidArgument, naming `function`, unless positions and forces have the same size.
+void check_same_size(std::span<const double> positions, std::span<const double> forces, const char* function);
+
 }  // namespace meshorder

@@ -58,20 +58,12 @@ void add_forces_one_by_one(const Springs& springs, double stiffness, const doubl
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <meshorder/base/error.hpp>
-
 #include <cmath>
 
 namespace meshorder {
 namespace {
 
 HWY_EXPORT(add_forces_in_batches);
-
-void check_sizes(std::span<const double> positions, std::span<double> forces) {
-  if (positions.size() != forces.size()) {
-    throw InvalidArgument("add_spring_forces: positions and forces must have the same size");
-  }
-}
 
 double distance(const double* a, const double* b) {
   return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
@@ -112,13 +104,13 @@ double spring_energy(const Springs& springs, double stiffness, std::span<const d
 
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces) {
-  check_sizes(positions, forces);
+  check_same_size(positions, forces, "add_spring_forces");
   HWY_DYNAMIC_DISPATCH(add_forces_in_batches)(springs, stiffness, positions.data(), forces.data());
 }
 
 void add_spring_forces_scalar(const Springs& springs, double stiffness, std::span<const double> positions,
                               std::span<double> forces) {
-  check_sizes(positions, forces);
+  check_same_size(positions, forces, "add_spring_forces");
   HWY_STATIC_DISPATCH(add_forces_one_by_one)(springs, stiffness, positions.data(), forces.data());
 }
 
