@@ -31,16 +31,21 @@ Laplacian weighted_path(const std::vector<double>& weights) {
   return result;
 }
 
+/// All rows in one chunk.
+Aggregation aggregated(const Laplacian& laplacian) {
+  return aggregate(laplacian, RowChunks::whole(laplacian.size()), kStrength);
+}
+
 TEST(Aggregation, PutsEveryVertexIntoAConnectedAggregate) {
   for (const CsrGraph& graph :
        {test::path(100), test::grid(17, 12), test::grid(7, 6, 5), test::star(50), test::complete(20),
         test::random_connected(500, 300, 1), test::preferential_attachment(500, 2, 2), test::hypercube(7)}) {
-    const Aggregation aggregation = aggregate(combinatorial_laplacian(graph), kStrength);
+    const Aggregation aggregation = aggregated(combinatorial_laplacian(graph));
     ASSERT_EQ(index_size(aggregation.aggregate_of), graph.size());
-    std::vector<std::vector<Index>> members(aggregation.count);
+    std::vector<std::vector<Index>> members(aggregation.count());
     for (Index v = 0; v < graph.size(); ++v) {
       ASSERT_GE(aggregation.aggregate_of[v], 0);
-      ASSERT_LT(aggregation.aggregate_of[v], aggregation.count);
+      ASSERT_LT(aggregation.aggregate_of[v], aggregation.count());
       members[aggregation.aggregate_of[v]].push_back(v);
     }
     for (const std::vector<Index>& of_one : members) {
@@ -53,27 +58,50 @@ TEST(Aggregation, PutsEveryVertexIntoAConnectedAggregate) {
 
 TEST(Aggregation, FoundsWithWholeFreeNeighbourhoodsInOrder) {
   // 0 takes 1; 2 has 1, which is taken; 3 takes 2 and 4; 6 takes 5 and 7
-  EXPECT_EQ(aggregate(combinatorial_laplacian(test::path(8)), kStrength).aggregate_of,
+  EXPECT_EQ(aggregated(combinatorial_laplacian(test::path(8))).aggregate_of,
             (std::vector<Index>{0, 0, 1, 1, 1, 2, 2, 2}));
   // 5 is left over and joins its only neighbour
-  EXPECT_EQ(aggregate(combinatorial_laplacian(test::path(6)), kStrength).aggregate_of,
+  EXPECT_EQ(aggregated(combinatorial_laplacian(test::path(6))).aggregate_of,
             (std::vector<Index>{0, 0, 1, 1, 1, 1}));
 }
 
 TEST(Aggregation, DoesNotReachAcrossWeakEdges) {
   // the middle edge is weak for both of its ends
-  const Aggregation cut = aggregate(weighted_path({1, 0.01, 1}), kStrength);
+  const Aggregation cut = aggregated(weighted_path({1, 0.01, 1}));
   EXPECT_EQ(cut.aggregate_of, (std::vector<Index>{0, 0, 1, 1}));
   // the vertex left over goes with the neighbour that pulls it more
-  EXPECT_EQ(aggregate(weighted_path({1, 0.4, 0.6, 10}), kStrength).aggregate_of,
-            (std::vector<Index>{0, 0, 1, 1, 1}));
-  EXPECT_EQ(aggregate(weighted_path({1, 0.6, 0.4, 10}), kStrength).aggregate_of,
-            (std::vector<Index>{0, 0, 0, 1, 1}));
+  EXPECT_EQ(aggregated(weighted_path({1, 0.4, 0.6, 10})).aggregate_of, (std::vector<Index>{0, 0, 1, 1, 1}));
+  EXPECT_EQ(aggregated(weighted_path({1, 0.6, 0.4, 10})).aggregate_of, (std::vector<Index>{0, 0, 0, 1, 1}));
+}
+
+TEST(Aggregation, KeepsToTheChunksOfRows) {
+  const Laplacian laplacian = combinatorial_laplacian(test::grid(300, 100));
+  const RowChunks chunks(laplacian);
+  ASSERT_GT(chunks.count(), 1);
+  const Aggregation aggregation = aggregate(laplacian, chunks, kStrength);
+  EXPECT_EQ(aggregation.alone, 0);
+  ASSERT_EQ(index_size(aggregation.first_of_chunk), chunks.count() + 1);
+  std::set<Index> seen;
+  for (Index v = 0; v < laplacian.size(); ++v) {
+    const Index chunk = chunks.chunk_of(v);
+    ASSERT_GE(aggregation.aggregate_of[v], aggregation.first_of_chunk[chunk]);
+    ASSERT_LT(aggregation.aggregate_of[v], aggregation.first_of_chunk[chunk + 1]);
+    seen.insert(aggregation.aggregate_of[v]);
+  }
+  EXPECT_EQ(index_size(seen), aggregation.count());
+}
+
+TEST(Aggregation, CountsWhoIsAloneInItsChunk) {
+  // the hub is in the first chunk, most leaves are not
+  const Laplacian laplacian = combinatorial_laplacian(test::star(20000));
+  const RowChunks chunks(laplacian);
+  ASSERT_GT(chunks.count(), 1);
+  EXPECT_EQ(aggregate(laplacian, chunks, kStrength).alone, 20000 - chunks.size());
 }
 
 TEST(Aggregation, OfOneVertexIsOne) {
-  EXPECT_EQ(aggregate(combinatorial_laplacian(test::path(1)), kStrength).count, 1);
-  EXPECT_EQ(aggregate(combinatorial_laplacian(test::path(0)), kStrength).count, 0);
+  EXPECT_EQ(aggregated(combinatorial_laplacian(test::path(1))).count(), 1);
+  EXPECT_EQ(aggregated(combinatorial_laplacian(test::path(0))).count(), 0);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
 #include <meshorder/graph/components.hpp>
 #include <meshorder/spectral/fiedler.hpp>
 #include <support/dense.hpp>
@@ -6,6 +7,8 @@
 #include <support/sample_meshes.hpp>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -385,6 +388,101 @@ TEST(FiedlerVector, OfManyIsolatedVertices) {
   const FiedlerResult result = fiedler_vector(graph);
   expect_sound(graph, result);
   EXPECT_EQ(result.components[0].size, 500);
+}
+
+/// A weight for every neighbour, the same in both rows of an edge.
+template <class WeightOf>
+std::vector<double> weights_of(const CsrGraph& graph, WeightOf weight_of) {
+  std::vector<double> weights;
+  for (Index v = 0; v < graph.size(); ++v) {
+    for (const Index u : graph[v]) weights.push_back(weight_of(std::min(u, v), std::max(u, v)));
+  }
+  return weights;
+}
+
+TEST(FiedlerVector, OfWeightsThatAreAllOneIsThatWithoutWeights) {
+  const CsrGraph graph = test::grid(40, 15);
+  const FiedlerResult plain = fiedler_vector(graph);
+  const FiedlerResult weighted = fiedler_vector(graph, weights_of(graph, [](Index, Index) { return 1.0; }));
+  for (Index v = 0; v < graph.size(); ++v) EXPECT_NEAR(weighted.values[v], plain.values[v], 1e-12);
+}
+
+TEST(FiedlerVector, OfWeightedGraphsIsThatOfTheDenseSolver) {
+  for (const double decades : {1.0, 3.0, 6.0}) {
+    const CsrGraph graph = test::random_connected(kDenseSize, 3 * kDenseSize, 5);
+    const auto weights = weights_of(graph, [&](Index a, Index b) {
+      return std::pow(10.0, decades * ((7919 * a + 104729 * b) % 1000 / 1000.0 - 0.5));
+    });
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(graph.size(), graph.size());
+    for (Index v = 0; v < graph.size(); ++v) {
+      for (Offset k = graph.offsets[v]; k < graph.offsets[v + 1]; ++k) {
+        matrix(v, v) += weights[k];
+        matrix(v, graph.neighbours[k]) -= weights[k];
+      }
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> exact(matrix);
+    const FiedlerResult result = fiedler_vector(graph, weights, to(1e-6));
+    ASSERT_TRUE(result.components[0].converged) << decades;
+    EXPECT_NEAR(result.components[0].lambda2 / exact.eigenvalues()[1], 1, 1e-6) << decades;
+    double along = 0;
+    for (Index v = 0; v < graph.size(); ++v) along += result.values[v] * exact.eigenvectors()(v, 1);
+    EXPECT_GT(std::abs(along), 1 - 1e-6) << decades;
+  }
+}
+
+TEST(FiedlerVector, CutsWhereTheWeightsAreWeak) {
+  // twelve decades: two halves of strong edges, joined by weak ones
+  const CsrGraph graph = test::grid(40, 25);
+  const auto half = [](Index v) { return v / 25 < 20; };
+  const FiedlerResult result = fiedler_vector(
+      graph, weights_of(graph, [&](Index a, Index b) { return half(a) == half(b) ? 1e6 : 1e-6; }));
+  // λ₂ is that of two vertices of mass 500 joined by 25 weak edges
+  // and 14 decades below the largest eigenvalue, where the vector itself has few digits left
+  EXPECT_GE(result.components[0].lambda2, 0.999 * 25e-6 * 2 / 500);
+  EXPECT_LT(result.components[0].lambda2, 3 * 25e-6 * 2 / 500);
+  for (Index v = 1; v < graph.size(); ++v) {
+    EXPECT_EQ(result.values[v] < 0, (result.values[0] < 0) == (half(v) == half(0)));
+  }
+}
+
+TEST(FiedlerVector, ReturnsOnWeightsOverTwelveDecades) {
+  for (const CsrGraph& graph : {test::grid(60, 50), test::random_connected(test::large(20000), 30000, 3),
+                                test::path(test::large(20000))}) {
+    const auto weights = weights_of(graph, [](Index a, Index b) {
+      return std::pow(10.0, 12 * (static_cast<double>((7919LL * a + 104729LL * b) % 1000) / 1000 - 0.5));
+    });
+    FiedlerOptions options = to(0.1);
+    options.max_iterations = 100;
+    const FiedlerResult result = fiedler_vector(graph, weights, options);
+    const FiedlerComponent& component = result.components[0];
+    EXPECT_TRUE(std::isfinite(component.lambda2));
+    EXPECT_GE(component.lambda2, 0);
+    EXPECT_EQ(component.converged, component.residual <= 0.1 * component.lambda2);
+    for (const double value : result.values) ASSERT_TRUE(std::isfinite(value));
+  }
+}
+
+TEST(FiedlerVector, RejectsWeightsThatAreNone) {
+  const CsrGraph graph = test::path(3);
+  EXPECT_THROW(fiedler_vector(graph, std::vector<double>{1, 1, 1}), InvalidArgument);
+  EXPECT_THROW(fiedler_vector(graph, std::vector<double>{1, 1, 0, 1}), InvalidArgument);
+  EXPECT_THROW(fiedler_vector(graph, std::vector<double>{1, -1, -1, 1}), InvalidArgument);
+  EXPECT_THROW(fiedler_vector(graph, std::vector<double>{1, 1, NAN, 1}), InvalidArgument);
+  EXPECT_THROW(fiedler_vector(graph, std::vector<double>{1, 1, INFINITY, 1}), InvalidArgument);
+}
+
+TEST(FiedlerVector, IsTheSameBitsOnAnyNumberOfThreads) {
+  const CsrGraph graph =
+      test::disjoint_union({test::grid(test::large(200), 30, 20), test::random_connected(30000, 20000, 1),
+                            test::path(20000), test::path(40)});
+  std::vector<double> expected;
+  for (const int threads : {1, 2, 3, 7}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    tbb::task_arena arena(threads);
+    const FiedlerResult result = arena.execute([&] { return fiedler_vector(graph); });
+    if (expected.empty()) expected = result.values;
+    EXPECT_EQ(result.values, expected) << threads << " threads";
+  }
 }
 
 }  // namespace

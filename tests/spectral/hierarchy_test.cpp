@@ -41,13 +41,13 @@ Eigen::MatrixXd dense_prolongation(const Hierarchy& hierarchy, int level) {
     VectorBlock<1> unit(coarse, {0.0});
     unit[column][0] = 1;
     VectorBlock<1> image(fine, {0.0});
-    hierarchy.add_prolonged<1>(level, unit, image);
+    hierarchy.add_prolonged<1>(level, 1, unit, image);
     for (Index v = 0; v < fine; ++v) result(v, column) = image[v][0];
   }
   return result;
 }
 
-/// The V-cycle on level 0 as a matrix on the vectors that sum to 0: C M C with the centring matrix C.
+/// The cycle on level 0 as a matrix on the vectors that sum to 0: C M C with the centring matrix C.
 Eigen::MatrixXd dense_cycle(const Hierarchy& hierarchy) {
   const Index n = hierarchy.levels()[0].laplacian.size();
   const Eigen::MatrixXd centring = Eigen::MatrixXd::Identity(n, n) - Eigen::MatrixXd::Constant(n, n, 1.0 / n);
@@ -56,7 +56,8 @@ Eigen::MatrixXd dense_cycle(const Hierarchy& hierarchy) {
     VectorBlock<1> b(n);
     for (Index v = 0; v < n; ++v) b[v][0] = centring(v, column);
     VectorBlock<1> x;
-    hierarchy.v_cycle<1>(0, b, x);
+    CycleWorkspace<1> workspace;
+    hierarchy.cycle<1>(0, b, x, workspace);
     for (Index v = 0; v < n; ++v) result(v, column) = x[v][0];
   }
   return centring * result;
@@ -137,7 +138,7 @@ TEST(Hierarchy, TheCycleIsSymmetricAndPositiveOnVectorsThatSumToZero) {
 }
 
 TEST(Hierarchy, TheCycleIsCloseToTheInverse) {
-  // the error I − M L of one cycle, in the energy norm: below 1 it converges by itself
+  // the error I − M L of one cycle, in the energy norm: at most 1 it never diverges
   for (const auto& [name, graph] : small_graphs()) {
     SCOPED_TRACE(name);
     const auto exact = test::dense_eigen(graph);
@@ -149,31 +150,34 @@ TEST(Hierarchy, TheCycleIsCloseToTheInverse) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
         0.5 * (preconditioned + preconditioned.transpose()));
     EXPECT_GT(solver.eigenvalues()[0], 0.01);
-    EXPECT_LT(solver.eigenvalues()[n - 2], 1 + 1e-9);
+    // corrections of plain coarsening are made twice as large
+    EXPECT_LT(solver.eigenvalues()[n - 2], 2 + 1e-9);
   }
 }
 
 TEST(Hierarchy, SeveralColumnsAreThoseOfOneAtATime) {
   const Hierarchy hierarchy = hierarchy_of(test::grid(25, 18));
   std::mt19937 random(1);
-  VectorBlock<3> b(450);
+  VectorBlock<2> b(450);
   for (auto& row : b) {
     for (double& entry : row) entry = static_cast<double>(random() % 1000U) / 1000 - 0.5;
   }
-  VectorBlock<3> x;
-  hierarchy.v_cycle<3>(0, b, x);
-  for (int m = 0; m < 3; ++m) {
+  VectorBlock<2> x;
+  CycleWorkspace<2> workspace;
+  hierarchy.cycle<2>(0, b, x, workspace);
+  for (int m = 0; m < 2; ++m) {
     VectorBlock<1> one(450);
     for (Index v = 0; v < 450; ++v) one[v][0] = b[v][m];
     VectorBlock<1> y;
-    hierarchy.v_cycle<1>(0, one, y);
+    CycleWorkspace<1> workspace_of_one;
+    hierarchy.cycle<1>(0, one, y, workspace_of_one);
     for (Index v = 0; v < 450; ++v) ASSERT_NEAR(y[v][0], x[v][m], 1e-9);
   }
 }
 
 TEST(Hierarchy, TheCoarsestLevelIsSolvedExactly) {
-  // up to 100 vertices there is one level, and the cycle is the pseudo-inverse
-  for (const CsrGraph& graph : {test::path(2), test::grid(8, 7), test::random_connected(100, 50, 1)}) {
+  // up to 60 vertices there is one level, and the cycle is the pseudo-inverse
+  for (const CsrGraph& graph : {test::path(2), test::grid(8, 7), test::random_connected(60, 30, 1)}) {
     const Hierarchy hierarchy = hierarchy_of(graph);
     ASSERT_EQ(hierarchy.levels().size(), 1U);
     ASSERT_TRUE(hierarchy.has_exact_coarsest());
@@ -195,20 +199,34 @@ TEST(Hierarchy, TheCoarsestLevelIsSolvedExactly) {
   }
 }
 
+TEST(Hierarchy, SmoothingDampsWhatIsRough) {
+  const CsrGraph graph = test::grid(30, 30);
+  const Hierarchy hierarchy = hierarchy_of(graph);
+  VectorBlock<1> rough(900), constant(900, {3.0});
+  for (Index v = 0; v < 900; ++v) rough[v][0] = (v + v / 30) % 2 == 0 ? 1 : -1;  // a chessboard
+  hierarchy.smooth<1>(0, rough);
+  hierarchy.smooth<1>(0, constant);
+  double squares = 0;
+  for (const auto& row : rough) squares += row[0] * row[0];
+  EXPECT_LT(squares, 0.1 * 900);
+  for (const auto& row : constant) EXPECT_DOUBLE_EQ(row[0], 3);
+}
+
 TEST(Hierarchy, OfOneVertexGivesZero) {
   for (const CsrGraph& graph : {test::path(1), test::star(1000), test::complete(150)}) {
     const Hierarchy hierarchy = hierarchy_of(graph);
     const int last = static_cast<int>(hierarchy.levels().size()) - 1;
     ASSERT_EQ(hierarchy.levels()[last].laplacian.size(), 1);
     VectorBlock<1> x;
-    hierarchy.v_cycle<1>(last, {{1e-16}}, x);
+    CycleWorkspace<1> workspace;
+    hierarchy.cycle<1>(last, {{1e-16}}, x, workspace);
     EXPECT_EQ(x[0][0], 0) << "rounding must not grow to a correction";
   }
 }
 
 TEST(Hierarchy, CoarsensQuickly) {
-  for (const auto& [graph, levels] : {std::pair(test::path(20000), 6U), std::pair(test::grid(100, 100), 4U),
-                                      std::pair(test::grid(20, 20, 20), 3U), std::pair(test::star(20000), 2U),
+  for (const auto& [graph, levels] : {std::pair(test::path(20000), 7U), std::pair(test::grid(100, 100), 4U),
+                                      std::pair(test::grid(20, 20, 20), 4U), std::pair(test::star(20000), 2U),
                                       std::pair(test::preferential_attachment(5000, 2, 1), 4U)}) {
     const Hierarchy hierarchy = hierarchy_of(graph);
     EXPECT_TRUE(hierarchy.has_exact_coarsest());

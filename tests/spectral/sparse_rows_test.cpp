@@ -54,22 +54,5 @@ TEST(SparseRows, TransposedSwapsRowsAndColumns) {
   }
 }
 
-TEST(SparseRows, ProductIsThatOfTheDenseMatrices) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    const SparseRows a = random_rows(30, 20, 8, seed);
-    const SparseRows b = random_rows(20, 45, 8, seed + 100);
-    const SparseRows c = product(a, b);
-    EXPECT_EQ(c.rows(), 30);
-    EXPECT_EQ(c.columns_count, 45);
-    EXPECT_EQ(dense(c), dense(a) * dense(b)) << "seed " << seed;
-  }
-}
-
-TEST(SparseRows, ProductOfNothingIsEmpty) {
-  const SparseRows c = product(random_rows(0, 4, 2, 1), random_rows(4, 3, 2, 1));
-  EXPECT_EQ(c.rows(), 0);
-  EXPECT_EQ(c.columns_count, 3);
-}
-
 }  // namespace
 }  // namespace meshorder

@@ -6,18 +6,37 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace meshorder {
+
+/// How many chunks of `size` make up 0 … n−1, the last one perhaps shorter.
+constexpr Index chunk_count(Index n, Index size) { return static_cast<Index>((Offset{n} + size - 1) / size); }
 
 /// Calls `work(chunk, begin, end)` for the chunks of `size` that make up 0 … n−1, on all threads. The chunks
 /// do not depend on the number of threads, so neither does what is computed chunk by chunk.
 template <class Work>
 void for_each_chunk(Index n, Index size, Work work) {
-  const auto chunks = static_cast<Index>((Offset{n} + size - 1) / size);
+  const Index chunks = chunk_count(n, size);
+  if (chunks <= 1) {
+    if (n > 0) work(Index{0}, Index{0}, n);
+    return;
+  }
   tbb::parallel_for(Index{0}, chunks, [&](Index chunk) {
     const Index begin = chunk * size;
     work(chunk, begin, static_cast<Index>(std::min(Offset{begin} + size, Offset{n})));
   });
+}
+
+/// The sum of `part(begin, end)` over the chunks, added up in their order, so that the result is the same for
+/// any number of threads. `Sum` needs a zero by `Sum{}` and +=.
+template <class Sum, class Part>
+Sum sum_over_chunks(Index n, Index size, Part part) {
+  std::vector<Sum> parts(chunk_count(n, size));
+  for_each_chunk(n, size, [&](Index chunk, Index begin, Index end) { parts[chunk] = part(begin, end); });
+  Sum sum{};
+  for (const Sum& p : parts) sum += p;
+  return sum;
 }
 
 }  // namespace meshorder

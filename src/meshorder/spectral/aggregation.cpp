@@ -2,15 +2,13 @@
 #include <meshorder/spectral/aggregation.hpp>
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 namespace meshorder {
 namespace {
 
 constexpr Index kFree = -1;
-
-double weight(const Laplacian& laplacian, Offset k) {
-  return laplacian.is_weighted() ? laplacian.weights[k] : 1.0;
-}
 
 /// The least weight of a strong neighbour of v.
 double strong_weight(const Laplacian& laplacian, Index v, double strength) {
@@ -22,42 +20,82 @@ double strong_weight(const Laplacian& laplacian, Index v, double strength) {
   return std::max(strength * largest, 1e-300);
 }
 
-}  // namespace
+struct Counts {
+  Index aggregates = 0;
+  Index alone = 0;
+};
 
-Aggregation aggregate(const Laplacian& laplacian, double strength) {
-  const Index n = laplacian.size();
-  Aggregation result;
-  result.aggregate_of.assign(n, kFree);
-  std::vector<Index>& of = result.aggregate_of;
+/// Aggregates the rows begin … end−1, numbers from 0.
+Counts aggregate_rows(const Laplacian& laplacian, Index begin, Index end, double strength,
+                      std::vector<Index>& of) {
+  Counts counts;
+  Index& count = counts.aggregates;
+  const auto inside = [&](Index u) { return u >= begin && u < end; };
 
-  // found aggregates where the whole neighbourhood is free
-  for (Index v = 0; v < n; ++v) {
+  // found aggregates where there is a neighbourhood and all of it is free
+  for (Index v = begin; v < end; ++v) {
     if (of[v] != kFree) continue;
     const double least = strong_weight(laplacian, v, strength);
     bool all_free = true;
+    bool any = false;
     for (Offset k = laplacian.offsets[v]; k < laplacian.offsets[v + 1] && all_free; ++k) {
-      all_free = weight(laplacian, k) < least || of[laplacian.neighbours[k]] == kFree;
+      const Index u = laplacian.neighbours[k];
+      if (!inside(u) || laplacian.weight(k) < least) continue;
+      any = true;
+      all_free = of[u] == kFree;
     }
-    if (!all_free) continue;
+    if (!all_free || !any) continue;
     for (Offset k = laplacian.offsets[v]; k < laplacian.offsets[v + 1]; ++k) {
-      if (weight(laplacian, k) >= least) of[laplacian.neighbours[k]] = result.count;
+      const Index u = laplacian.neighbours[k];
+      if (inside(u) && laplacian.weight(k) >= least) of[u] = count;
     }
-    of[v] = result.count++;
+    of[v] = count++;
   }
 
   // the rest joins the founded aggregate that pulls it most
-  const std::vector<Index> founded = of;
-  for (Index v = 0; v < n; ++v) {
-    if (founded[v] != kFree) continue;
+  std::vector<std::pair<Index, Index>> joining;
+  for (Index v = begin; v < end; ++v) {
+    if (of[v] != kFree) continue;
+    const double least = strong_weight(laplacian, v, strength);
     double strongest = 0;
+    Index joined = kFree;
     for (Offset k = laplacian.offsets[v]; k < laplacian.offsets[v + 1]; ++k) {
       const Index u = laplacian.neighbours[k];
-      if (founded[u] == kFree || weight(laplacian, k) <= strongest) continue;
-      strongest = weight(laplacian, k);
-      of[v] = founded[u];
+      if (!inside(u) || of[u] == kFree || laplacian.weight(k) < least || laplacian.weight(k) <= strongest)
+        continue;
+      strongest = laplacian.weight(k);
+      joined = of[u];
+      if (!laplacian.is_weighted()) break;
     }
-    if (of[v] == kFree) of[v] = result.count++;  // only where no neighbour has a positive weight
+    if (joined == kFree) {  // no strong neighbour is in the chunk
+      joined = count++;
+      ++counts.alone;
+    }
+    joining.emplace_back(v, joined);
   }
+  for (const auto& [v, joined] : joining) of[v] = joined;
+  return counts;
+}
+
+}  // namespace
+
+Aggregation aggregate(const Laplacian& laplacian, const RowChunks& chunks, double strength) {
+  Aggregation result;
+  std::vector<Index>& of = result.aggregate_of;
+  of.assign(laplacian.size(), kFree);
+  result.first_of_chunk.assign(Offset{chunks.count()} + 1, 0);
+  std::vector<Counts> counts(chunks.count());
+  chunks.for_each([&](Index chunk, Index begin, Index end) {
+    counts[chunk] = aggregate_rows(laplacian, begin, end, strength, of);
+  });
+  for (Index chunk = 0; chunk < chunks.count(); ++chunk) {
+    result.first_of_chunk[chunk + 1] = counts[chunk].aggregates;
+    result.alone += counts[chunk].alone;
+  }
+  std::partial_sum(result.first_of_chunk.begin(), result.first_of_chunk.end(), result.first_of_chunk.begin());
+  chunks.for_each([&](Index chunk, Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) of[v] += result.first_of_chunk[chunk];
+  });
   return result;
 }
 

@@ -1,86 +1,88 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
 #include <meshorder/base/random.hpp>
-#include <meshorder/graph/breadth_first.hpp>
-#include <meshorder/graph/components.hpp>
+#include <meshorder/spectral/component_numbering.hpp>
 #include <meshorder/spectral/fiedler.hpp>
 #include <meshorder/spectral/hierarchy.hpp>
 #include <meshorder/spectral/lobpcg.hpp>
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <string>
 
 namespace meshorder {
 namespace {
 
-// Two columns on all graphs but the finest keep λ₂ and λ₃ apart where they are close.
-constexpr int kCoarseColumns = 2;
-constexpr double kCoarseTolerance = 0.1;
+// Two columns keep λ₂ and λ₃ apart where they are close.
+constexpr int kColumns = 2;
+// The start on the next finer graph is no better than prolongation makes it.
+constexpr double kCoarseTolerance = 1;
 constexpr int kCoarseIterations = 30;
 
-/// The Laplacian of one component, its vertices numbered breadth first, and that numbering.
-struct LocalLaplacian {
-  Laplacian laplacian;
-  std::vector<Index> vertices;  ///< in the graph's numbers
-};
+using Block = VectorBlock<kColumns>;
 
-LocalLaplacian local_laplacian(const CsrGraph& graph, Index start, std::vector<Index>& marks, Index mark) {
-  LocalLaplacian local;
-  local.vertices = breadth_first(graph, start, marks, mark).order;
-  const Index n = index_size(local.vertices);
-  std::vector<Index>& number = marks;  // from here on the new number of each vertex of the component
-  Offset entries = 0;
-  for (Index k = 0; k < n; ++k) {
-    number[local.vertices[k]] = k;
-    entries += graph.degree(local.vertices[k]);
-  }
-  Laplacian& laplacian = local.laplacian;
-  laplacian.offsets.reserve(Offset{n} + 1);
-  laplacian.diagonal.reserve(n);
-  laplacian.neighbours.reserve(entries);
-  for (const Index v : local.vertices) {
-    for (const Index u : graph[v]) laplacian.neighbours.push_back(number[u]);
-    laplacian.offsets.push_back(static_cast<Offset>(laplacian.neighbours.size()));
-    laplacian.diagonal.push_back(graph.degree(v));
-  }
-  return local;
-}
-
-template <int M>
-void fill_with_noise(VectorBlock<M>& x, int first_column, std::uint64_t seed) {
+void fill_with_noise(Block& x, int first_column, std::uint64_t seed) {
   Random random(seed);
   for (auto& row : x) {
-    for (int m = first_column; m < M; ++m) row[m] = random.unit() - 0.5;
+    for (int m = first_column; m < kColumns; ++m) row[m] = random.unit() - 0.5;
   }
 }
 
-/// The start vector on the finest graph: exact on the coarsest, improved on every graph between.
-VectorBlock<1> nested_start(const Hierarchy& hierarchy, std::uint64_t seed) {
+/// The start vectors on the finest graph: exact on the coarsest, improved on every graph between.
+Block nested_start(const Hierarchy& hierarchy, std::uint64_t seed) {
   const auto& levels = hierarchy.levels();
-  const int last = static_cast<int>(levels.size()) - 1;
-  VectorBlock<1> start(levels.front().laplacian.size(), std::array<double, 1>{});
-  if (last == 0 || !hierarchy.has_exact_coarsest()) {
-    fill_with_noise<1>(start, 0, seed);
-    return start;
+  int level = static_cast<int>(levels.size()) - 1;
+  Block x;
+  int known = 0;  // columns
+  if (hierarchy.has_exact_coarsest()) {
+    x = hierarchy.coarsest_eigenvectors<kColumns>();
+    known = std::min(kColumns, static_cast<int>(x.size()) - 1);
+    --level;
+  } else {
+    level = 0;
   }
-  VectorBlock<kCoarseColumns> x = hierarchy.coarsest_eigenvectors<kCoarseColumns>();
-  const int known = std::min(kCoarseColumns, static_cast<int>(x.size()) - 1);
-  for (int level = last - 1; level >= 1; --level) {
-    VectorBlock<kCoarseColumns> finer(levels[level].laplacian.size(), std::array<double, kCoarseColumns>{});
-    hierarchy.add_prolonged<kCoarseColumns>(level, x, finer);
+  for (; level >= 0; --level) {
+    Block finer(levels[level].laplacian.size(), std::array<double, kColumns>{});
+    if (known > 0) hierarchy.add_prolonged<kColumns>(level, 1, x, finer);
     x = std::move(finer);
-    if (level == last - 1 && known < kCoarseColumns) fill_with_noise<kCoarseColumns>(x, known, seed);
-    lobpcg<kCoarseColumns>(hierarchy, level, {kCoarseTolerance, kCoarseIterations}, x);
+    if (known == kColumns) {
+      hierarchy.smooth<kColumns>(level, x);
+    } else {
+      fill_with_noise(x, known, seed);
+      known = kColumns;
+    }
+    if (level > 0) lobpcg<kColumns>(hierarchy, level, {kCoarseTolerance, kCoarseIterations}, x);
   }
-  if (last == 1 && known < 1) {
-    fill_with_noise<1>(start, 0, seed);
-    return start;
+  return x;
+}
+
+VectorBlock<1> column(const Block& x, int m) {
+  VectorBlock<1> result(x.size());
+  for (std::size_t v = 0; v < x.size(); ++v) result[v][0] = x[v][m];
+  return result;
+}
+
+/// The Fiedler vector of a component with that Laplacian into the entries `vertices` of `values`.
+FiedlerComponent solve_component(Laplacian laplacian, std::span<const Index> vertices,
+                                 const FiedlerOptions& options, std::vector<double>& values) {
+  const Hierarchy hierarchy(std::move(laplacian));
+  VectorBlock<1> x;
+  LobpcgResult solved;
+  if (hierarchy.levels().size() == 1 && hierarchy.has_exact_coarsest()) {
+    x = hierarchy.coarsest_eigenvectors<1>();
+    solved = lobpcg<1>(hierarchy, 0, {options.tolerance, 0}, x);
+  } else {
+    VectorBlock<1> companion;
+    {
+      const Block start = nested_start(hierarchy, options.seed);
+      x = column(start, 0);
+      companion = column(start, 1);
+    }
+    solved = lobpcg<1, 1>(hierarchy, 0, {options.tolerance, options.max_iterations}, x, std::move(companion));
   }
-  VectorBlock<1> first(x.size());
-  for (std::size_t v = 0; v < x.size(); ++v) first[v][0] = x[v][0];
-  hierarchy.add_prolonged<1>(0, first, start);
-  return start;
+  for (std::size_t k = 0; k < x.size(); ++k) values[vertices[k]] = x[k][0];
+  return {index_size(x), solved.eigenvalue, solved.residual, solved.iterations, solved.converged};
 }
 
 /// Norm 1, sum 0, and the sign that FiedlerResult promises. `vertices` are the component's, rising.
@@ -98,49 +100,77 @@ void normalise(std::vector<double>& values, const std::vector<Index>& vertices) 
   const auto first = std::find_if(vertices.begin(), vertices.end(),
                                   [&](Index v) { return std::abs(values[v]) >= 0.5 * largest; });
   const double sign = values[*first] > 0 ? -1 : 1;
-  for (const Index v : vertices) values[v] *= sign / std::sqrt(norm_squared);
+  const double scale = sign / std::sqrt(norm_squared);
+  for (const Index v : vertices) values[v] *= scale;
 }
 
-FiedlerComponent solve_component(LocalLaplacian local, const FiedlerOptions& options,
-                                 std::vector<double>& values) {
-  FiedlerComponent report;
-  report.size = index_size(local.vertices);
-  const Hierarchy hierarchy(std::move(local.laplacian));
-  VectorBlock<1> x;
-  int max_iterations = options.max_iterations;
-  if (hierarchy.levels().size() == 1 && hierarchy.has_exact_coarsest()) {
-    x = hierarchy.coarsest_eigenvectors<1>();
-    max_iterations = 0;
-  } else {
-    x = nested_start(hierarchy, options.seed);
+/// The components by falling size, ties in the order in which they are numbered.
+std::vector<Index> largest_first(const ComponentNumbering& numbering) {
+  std::vector<Index> result(numbering.component_count());
+  std::iota(result.begin(), result.end(), Index{0});
+  std::stable_sort(result.begin(), result.end(), [&](Index a, Index b) {
+    return numbering.component(a).size() > numbering.component(b).size();
+  });
+  return result;
+}
+
+/// The vertices of each of those components, rising.
+std::vector<std::vector<Index>> rising_vertices(const ComponentNumbering& numbering,
+                                                const std::vector<Index>& components) {
+  std::vector<std::vector<Index>> result(components.size());
+  std::vector<Index> rank_of(numbering.order.size());  // of each vertex's component
+  for (std::size_t rank = 0; rank < components.size(); ++rank) {
+    const auto vertices = numbering.component(components[rank]);
+    result[rank].reserve(vertices.size());
+    for (const Index v : vertices) rank_of[v] = static_cast<Index>(rank);
   }
-  const LobpcgResult solved = lobpcg<1>(hierarchy, 0, {options.tolerance, max_iterations}, x);
-  report.lambda2 = solved.eigenvalue;
-  report.residual = solved.residual;
-  report.iterations = solved.iterations;
-  report.converged = solved.converged;
-  for (Index k = 0; k < report.size; ++k) values[local.vertices[k]] = x[k][0];
-  return report;
+  for (Index v = 0; v < index_size(rank_of); ++v) result[rank_of[v]].push_back(v);
+  return result;
+}
+
+void check_weights(const CsrGraph& graph, std::span<const double> weights) {
+  if (weights.size() != graph.neighbours.size()) {
+    throw InvalidArgument("fiedler_vector: " + std::to_string(weights.size()) + " weights for " +
+                          std::to_string(graph.neighbours.size()) + " neighbours");
+  }
+  const auto bad =
+      std::find_if(weights.begin(), weights.end(), [](double w) { return !(w > 0 && std::isfinite(w)); });
+  if (bad != weights.end()) {
+    throw InvalidArgument("fiedler_vector: weight " + std::to_string(bad - weights.begin()) + " is " +
+                          std::to_string(*bad) + "; weights must be positive");
+  }
+}
+
+FiedlerResult solve(const CsrGraph& graph, std::span<const double> weights, const FiedlerOptions& options) {
+  const ComponentNumbering numbering = number_components(graph);
+  const std::vector<Index> components = largest_first(numbering);
+  FiedlerResult result;
+  result.values.assign(graph.size(), 0);
+  result.component_vertices = rising_vertices(numbering, components);
+  result.components.resize(components.size());
+  for_each_chunk(index_size(components), 1, [&](Index rank, Index, Index) {
+    const auto vertices = numbering.component(components[rank]);
+    if (vertices.size() == 1) {
+      result.components[rank] = {1, 0, 0, 0, true};
+      return;
+    }
+    result.components[rank] = solve_component(
+        component_laplacian(graph, weights, numbering, components[rank]), vertices, options, result.values);
+    normalise(result.values, result.component_vertices[rank]);
+  });
+  return result;
 }
 
 }  // namespace
 
 FiedlerResult fiedler_vector(const CsrGraph& graph, const FiedlerOptions& options) {
-  FiedlerResult result;
-  result.values.assign(graph.size(), 0);
-  result.component_vertices = connected_components(graph);
-  std::vector<Index> marks(graph.size(), -1);
-  for (const std::vector<Index>& vertices : result.component_vertices) {
-    if (vertices.size() == 1) {
-      result.components.push_back({1, 0, 0, 0, true});
-      continue;
-    }
-    // marks below n are numbers of an earlier component, whose vertices no search meets again
-    LocalLaplacian local = local_laplacian(graph, vertices.front(), marks, kMaxIndex);
-    result.components.push_back(solve_component(std::move(local), options, result.values));
-    normalise(result.values, vertices);
-  }
-  return result;
+  return solve(graph, {}, options);
+}
+
+FiedlerResult fiedler_vector(const CsrGraph& graph, std::span<const double> weights,
+                             const FiedlerOptions& options) {
+  check_weights(graph, weights);
+  return solve(graph, weights, options);
 }
 
 }  // namespace meshorder

@@ -1,162 +1,51 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/spectral/aggregation.hpp>
+#include <meshorder/spectral/coarsening.hpp>
 #include <meshorder/spectral/hierarchy.hpp>
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace meshorder {
 namespace {
 
-constexpr Index kDenseSize = 100;         // a dense eigensolver takes under 2 ms there
-constexpr double kStrength = 0.1;         // of the strongest neighbour, on coarse levels
-constexpr double kSmoothing = 2.0 / 3.0;  // 4/3 over the bound 2 of the spectral radius of D⁻¹L
-constexpr double kWorthwhile = 0.8;       // coarsening that keeps more vertices than this is given up
-
-/// The rows of L with their diagonals.
-SparseRows rows_of(const Laplacian& laplacian) {
-  SparseRows rows;
-  const Index n = laplacian.size();
-  rows.columns_count = n;
-  rows.offsets.reserve(Offset{n} + 1);
-  rows.columns.reserve(laplacian.neighbours.size() + n);
-  rows.values.reserve(laplacian.neighbours.size() + n);
-  for (Index v = 0; v < n; ++v) {
-    rows.columns.push_back(v);
-    rows.values.push_back(laplacian.diagonal[v]);
-    for (Offset k = laplacian.offsets[v]; k < laplacian.offsets[v + 1]; ++k) {
-      rows.columns.push_back(laplacian.neighbours[k]);
-      rows.values.push_back(laplacian.is_weighted() ? -laplacian.weights[k] : -1.0);
-    }
-    rows.offsets.push_back(static_cast<Offset>(rows.columns.size()));
-  }
-  return rows;
-}
-
-/// The Laplacian whose off-diagonal entries are those of `rows`; the diagonal is what makes constants vanish.
-Laplacian laplacian_of(const SparseRows& rows) {
-  Laplacian result;
-  const Index n = rows.rows();
-  result.offsets.reserve(rows.offsets.size());
-  result.diagonal.assign(n, 0);
-  for (Index v = 0; v < n; ++v) {
-    for (Offset k = rows.offsets[v]; k < rows.offsets[v + 1]; ++k) {
-      if (rows.columns[k] == v) continue;
-      result.neighbours.push_back(rows.columns[k]);
-      result.weights.push_back(-rows.values[k]);
-      result.diagonal[v] -= rows.values[k];
-    }
-    result.offsets.push_back(static_cast<Offset>(result.neighbours.size()));
-  }
-  return result;
-}
-
-/// Vertices by aggregate: those of a are `members[starts[a]] … members[starts[a + 1] − 1]`.
-struct Members {
-  std::vector<Index> starts;
-  std::vector<Index> members;
-};
-
-Members members_of(const Aggregation& aggregation) {
-  Members result;
-  result.starts.assign(Offset{aggregation.count} + 1, 0);
-  for (const Index a : aggregation.aggregate_of) ++result.starts[a + 1];
-  std::partial_sum(result.starts.begin(), result.starts.end(), result.starts.begin());
-  std::vector<Index> next(result.starts.begin(), result.starts.end() - 1);
-  result.members.resize(aggregation.aggregate_of.size());
-  for (Index v = 0; v < index_size(aggregation.aggregate_of); ++v) {
-    result.members[next[aggregation.aggregate_of[v]]++] = v;
-  }
-  return result;
-}
-
-/// Pᵀ L P for piecewise constant P: the weights between two aggregates added up.
-Laplacian collapsed(const Laplacian& fine, const Aggregation& aggregation) {
-  const Members members = members_of(aggregation);
-  const std::vector<Index>& of = aggregation.aggregate_of;
-  Laplacian coarse;
-  coarse.offsets.reserve(Offset{aggregation.count} + 1);
-  coarse.diagonal.assign(aggregation.count, 0);
-  std::vector<Offset> place_of(aggregation.count, -1);
-  for (Index a = 0; a < aggregation.count; ++a) {
-    const auto begin = static_cast<Offset>(coarse.neighbours.size());
-    for (Index m = members.starts[a]; m < members.starts[a + 1]; ++m) {
-      const Index v = members.members[m];
-      for (Offset k = fine.offsets[v]; k < fine.offsets[v + 1]; ++k) {
-        const Index b = of[fine.neighbours[k]];
-        if (b == a) continue;
-        const double weight = fine.is_weighted() ? fine.weights[k] : 1.0;
-        if (place_of[b] >= begin) {
-          coarse.weights[place_of[b]] += weight;
-        } else {
-          place_of[b] = static_cast<Offset>(coarse.neighbours.size());
-          coarse.neighbours.push_back(b);
-          coarse.weights.push_back(weight);
-        }
-        coarse.diagonal[a] += weight;
-      }
-    }
-    coarse.offsets.push_back(static_cast<Offset>(coarse.neighbours.size()));
-  }
-  return coarse;
-}
-
-/// (I − ω D⁻¹ L) P₀ with P₀ piecewise constant. Rows sum to 1, as those of P₀ do.
-SparseRows smoothed_prolongation(const Laplacian& fine, const Aggregation& aggregation) {
-  SparseRows result;
-  result.columns_count = aggregation.count;
-  result.offsets.reserve(Offset{fine.size()} + 1);
-  std::vector<Offset> place_of(aggregation.count, -1);
-  for (Index v = 0; v < fine.size(); ++v) {
-    const auto begin = static_cast<Offset>(result.columns.size());
-    const auto add = [&](Index column, double value) {
-      if (place_of[column] >= begin) {
-        result.values[place_of[column]] += value;
-      } else {
-        place_of[column] = static_cast<Offset>(result.columns.size());
-        result.columns.push_back(column);
-        result.values.push_back(value);
-      }
-    };
-    add(aggregation.aggregate_of[v], 1 - kSmoothing);
-    for (Offset k = fine.offsets[v]; k < fine.offsets[v + 1]; ++k) {
-      const double weight = fine.is_weighted() ? fine.weights[k] : 1.0;
-      add(aggregation.aggregate_of[fine.neighbours[k]], kSmoothing * weight / fine.diagonal[v]);
-    }
-    result.offsets.push_back(static_cast<Offset>(result.columns.size()));
-  }
-  return result;
-}
+constexpr Index kDenseSize = 60;       // a dense eigensolver takes half a millisecond there
+constexpr double kStrength = 0.1;      // of the strongest neighbour, on coarse levels
+constexpr double kWorthwhile = 0.8;    // coarsening that keeps more vertices than this is given up
+constexpr double kOverCorrection = 2;  // of plain coarsening; 1.5 to 3 serve as well
 
 /// Makes the next coarser level of `fine`, and in `fine` the way to it; false when that is not worth it.
 bool coarsen(Level& fine, bool smoothed, Level& coarse) {
-  const Aggregation aggregation = aggregate(fine.laplacian, kStrength);
-  if (aggregation.count > kWorthwhile * fine.laplacian.size()) return false;
-  coarse.mass.assign(aggregation.count, 0);
+  constexpr Index kFewAlone = 50;  // one in so many
+  const Index n = fine.laplacian.size();
+  Aggregation aggregation = aggregate(fine.laplacian, fine.chunks, kStrength);
+  if (aggregation.alone > n / kFewAlone && fine.chunks.count() > 1) {
+    fine.chunks = RowChunks::whole(n);
+    aggregation = aggregate(fine.laplacian, fine.chunks, kStrength);
+  }
+  if (aggregation.count() > kWorthwhile * n) return false;
   if (smoothed) {
-    SparseRows prolongation = smoothed_prolongation(fine.laplacian, aggregation);
-    const SparseRows coarse_rows =
-        product(transposed(prolongation), product(rows_of(fine.laplacian), prolongation));
-    if (coarse_rows.columns.size() > 2 * fine.laplacian.neighbours.size()) {
-      return coarsen(fine, false, coarse);  // smoothing would fill the coarse graph
-    }
-    coarse.laplacian = laplacian_of(coarse_rows);
-    for (Index v = 0; v < prolongation.rows(); ++v) {
-      for (Offset k = prolongation.offsets[v]; k < prolongation.offsets[v + 1]; ++k) {
-        coarse.mass[prolongation.columns[k]] += prolongation.values[k] * fine.mass[v];
+    fine.prolongation = smoothed_prolongation(fine.laplacian, aggregation);
+    coarse.laplacian = galerkin_product(fine.laplacian, fine.prolongation);
+    // where smoothing fills the coarse graph it is left out
+    smoothed = coarse.laplacian.neighbours.size() <= 2 * fine.laplacian.neighbours.size();
+  }
+  coarse.mass.assign(aggregation.count(), 0);
+  if (smoothed) {
+    const SparseRows& p = fine.prolongation;
+    for (Index v = 0; v < n; ++v) {
+      for (Offset k = p.offsets[v]; k < p.offsets[v + 1]; ++k) {
+        coarse.mass[p.columns[k]] += p.values[k] * fine.mass[v];
       }
     }
-    fine.prolongation = std::move(prolongation);
   } else {
-    coarse.laplacian = collapsed(fine.laplacian, aggregation);
-    for (Index v = 0; v < fine.laplacian.size(); ++v) {
-      coarse.mass[aggregation.aggregate_of[v]] += fine.mass[v];
-    }
-    fine.aggregate_of = aggregation.aggregate_of;
+    fine.prolongation = {};
+    coarse.laplacian = collapsed(fine.laplacian, fine.chunks, aggregation);
+    for (Index v = 0; v < n; ++v) coarse.mass[aggregation.aggregate_of[v]] += fine.mass[v];
+    fine.aggregate_of = std::move(aggregation.aggregate_of);
   }
+  coarse.chunks = RowChunks(coarse.laplacian);
   return true;
 }
 
@@ -182,41 +71,58 @@ Eigen::MatrixXd dense_inverse(const Laplacian& laplacian) {
   return shifted.llt().solve(Eigen::MatrixXd::Identity(n, n));
 }
 
-template <int M>
-void smooth_row(const Laplacian& laplacian, Index v, const VectorBlock<M>& b, VectorBlock<M>& x) {
+/// x in row v so that the row of L x = b holds.
+template <int M, class RightSide>
+void relax_row(const Laplacian& laplacian, Index v, RightSide b, VectorBlock<M>& x) {
   const auto sum = laplacian.neighbour_sum<M>(v, x);
   const double inverse = 1 / laplacian.diagonal[v];
-  for (int m = 0; m < M; ++m) x[v][m] = (b[v][m] + sum[m]) * inverse;
+  for (int m = 0; m < M; ++m) x[v][m] = (b(v, m) + sum[m]) * inverse;
+}
+
+template <int M, class RightSide>
+void forward_gauss_seidel(const Level& level, RightSide b, VectorBlock<M>& x) {
+  level.chunks.for_each_forwards([&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) relax_row<M>(level.laplacian, v, b, x);
+  });
+}
+
+/// Every row in the opposite order, so that the cycle is symmetric.
+template <int M, class RightSide>
+void backward_gauss_seidel(const Level& level, RightSide b, VectorBlock<M>& x) {
+  level.chunks.for_each_backwards([&](Index begin, Index end) {
+    for (Index v = end; v-- > begin;) relax_row<M>(level.laplacian, v, b, x);
+  });
 }
 
 template <int M>
-void forward_gauss_seidel(const Laplacian& laplacian, const VectorBlock<M>& b, VectorBlock<M>& x) {
-  for (Index v = 0; v < laplacian.size(); ++v) smooth_row<M>(laplacian, v, b, x);
+std::array<double, M> residual_of_row(const Laplacian& laplacian, Index v, const VectorBlock<M>& b,
+                                      const VectorBlock<M>& x) {
+  std::array<double, M> residual = laplacian.neighbour_sum<M>(v, x);
+  for (int m = 0; m < M; ++m) residual[m] += b[v][m] - laplacian.diagonal[v] * x[v][m];
+  return residual;
 }
 
+/// result = Pᵀ (b − L x)
 template <int M>
-void backward_gauss_seidel(const Laplacian& laplacian, const VectorBlock<M>& b, VectorBlock<M>& x) {
-  for (Index v = laplacian.size(); v-- > 0;) smooth_row<M>(laplacian, v, b, x);
-}
-
-/// Pᵀ (b − L x)
-template <int M>
-VectorBlock<M> restricted_residual(const Level& level, Index coarse_size, const VectorBlock<M>& b,
-                                   const VectorBlock<M>& x) {
-  VectorBlock<M> result(coarse_size, std::array<double, M>{});
-  for (Index v = 0; v < level.laplacian.size(); ++v) {
-    std::array<double, M> residual = level.laplacian.neighbour_sum<M>(v, x);
-    for (int m = 0; m < M; ++m) residual[m] += b[v][m] - level.laplacian.diagonal[v] * x[v][m];
-    if (!level.aggregate_of.empty()) {
-      for (int m = 0; m < M; ++m) result[level.aggregate_of[v]][m] += residual[m];
-    } else {
-      const SparseRows& p = level.prolongation;
-      for (Offset k = p.offsets[v]; k < p.offsets[v + 1]; ++k) {
-        for (int m = 0; m < M; ++m) result[p.columns[k]][m] += p.values[k] * residual[m];
+void restrict_residual(const Level& level, const VectorBlock<M>& b, const VectorBlock<M>& x,
+                       VectorBlock<M>& result) {
+  std::fill(result.begin(), result.end(), std::array<double, M>{});
+  if (!level.aggregate_of.empty()) {
+    level.chunks.for_each([&](Index, Index begin, Index end) {  // aggregates keep to their chunks
+      for (Index v = begin; v < end; ++v) {
+        const auto residual = residual_of_row<M>(level.laplacian, v, b, x);
+        for (int m = 0; m < M; ++m) result[level.aggregate_of[v]][m] += residual[m];
       }
+    });
+    return;
+  }
+  const SparseRows& p = level.prolongation;
+  for (Index v = 0; v < level.laplacian.size(); ++v) {
+    const auto residual = residual_of_row<M>(level.laplacian, v, b, x);
+    for (Offset k = p.offsets[v]; k < p.offsets[v + 1]; ++k) {
+      for (int m = 0; m < M; ++m) result[p.columns[k]][m] += p.values[k] * residual[m];
     }
   }
-  return result;
 }
 
 }  // namespace
@@ -224,6 +130,7 @@ VectorBlock<M> restricted_residual(const Level& level, Index coarse_size, const 
 Hierarchy::Hierarchy(Laplacian finest) {
   Level level;
   level.mass.assign(finest.size(), 1.0);
+  level.chunks = RowChunks(finest);
   level.laplacian = std::move(finest);
   levels_.push_back(std::move(level));
   while (levels_.back().laplacian.size() > kDenseSize) {
@@ -236,41 +143,67 @@ Hierarchy::Hierarchy(Laplacian finest) {
 }
 
 template <int M>
-void Hierarchy::add_prolonged(int level, const VectorBlock<M>& coarse, VectorBlock<M>& fine) const {
-  const Level& here = levels_[level];
-  for (Index v = 0; v < here.laplacian.size(); ++v) {
-    if (!here.aggregate_of.empty()) {
-      for (int m = 0; m < M; ++m) fine[v][m] += coarse[here.aggregate_of[v]][m];
-    } else {
-      const SparseRows& p = here.prolongation;
-      for (Offset k = p.offsets[v]; k < p.offsets[v + 1]; ++k) {
-        for (int m = 0; m < M; ++m) fine[v][m] += p.values[k] * coarse[p.columns[k]][m];
-      }
-    }
-  }
+void Hierarchy::smooth(int level, VectorBlock<M>& x) const {
+  const auto zero = [](Index, int) { return 0.0; };
+  forward_gauss_seidel<M>(levels_[level], zero, x);
+  backward_gauss_seidel<M>(levels_[level], zero, x);
 }
 
 template <int M>
-void Hierarchy::v_cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x) const {
-  const Laplacian& laplacian = levels_[level].laplacian;
-  const bool coarsest = level + 1 == static_cast<int>(levels_.size());
-  if (coarsest && has_exact_coarsest()) {
+void Hierarchy::add_prolonged(int level, double scale, const VectorBlock<M>& coarse,
+                              VectorBlock<M>& fine) const {
+  const Level& here = levels_[level];
+  const SparseRows& p = here.prolongation;
+  here.chunks.for_each([&](Index, Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) {
+      if (!here.aggregate_of.empty()) {
+        for (int m = 0; m < M; ++m) fine[v][m] += scale * coarse[here.aggregate_of[v]][m];
+        continue;
+      }
+      for (Offset k = p.offsets[v]; k < p.offsets[v + 1]; ++k) {
+        for (int m = 0; m < M; ++m) fine[v][m] += scale * p.values[k] * coarse[p.columns[k]][m];
+      }
+    }
+  });
+}
+
+template <int M>
+void Hierarchy::cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x,
+                      CycleWorkspace<M>& workspace) const {
+  const Level& here = levels_[level];
+  const auto size = static_cast<std::size_t>(here.laplacian.size());
+  const int coarsest = static_cast<int>(levels_.size()) - 1;
+  if (level == coarsest && has_exact_coarsest()) {
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, M, M == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
-    x.resize(b.size());
-    Eigen::Map<Rows>(x.front().data(), laplacian.size(), M).noalias() =
-        coarsest_inverse_ * Eigen::Map<const Rows>(b.front().data(), laplacian.size(), M);
+    x.resize(size);
+    Eigen::Map<Rows>(x.front().data(), here.laplacian.size(), M).noalias() =
+        coarsest_inverse_ * Eigen::Map<const Rows>(b.front().data(), here.laplacian.size(), M);
     return;
   }
-  x.assign(laplacian.size(), std::array<double, M>{});
-  forward_gauss_seidel<M>(laplacian, b, x);
-  if (!coarsest) {
-    const Index coarse_size = levels_[level + 1].laplacian.size();
-    const VectorBlock<M> coarse_b = restricted_residual<M>(levels_[level], coarse_size, b, x);
-    VectorBlock<M> coarse_x;
-    v_cycle<M>(level + 1, coarse_b, coarse_x);
-    add_prolonged<M>(level, coarse_x, x);
+  x.assign(size, std::array<double, M>{});
+  const auto entry_of_b = [&](Index v, int m) { return b[v][m]; };
+  forward_gauss_seidel<M>(here, entry_of_b, x);
+  if (level < coarsest) {
+    workspace.levels.resize(levels_.size());
+    auto& [coarse_b, coarse_x, second_x] = workspace.levels[level + 1];
+    const Level& coarse = levels_[level + 1];
+    coarse_b.resize(coarse.laplacian.size());
+    restrict_residual<M>(here, b, x, coarse_b);
+    cycle<M>(level + 1, coarse_b, coarse_x, workspace);
+    if (level + 1 < coarsest) {
+      coarse.chunks.for_each([&](Index, Index begin, Index end) {
+        for (Index v = begin; v < end; ++v) {
+          coarse_b[v] = residual_of_row<M>(coarse.laplacian, v, coarse_b, coarse_x);
+        }
+      });
+      cycle<M>(level + 1, coarse_b, second_x, workspace);
+      for (std::size_t v = 0; v < coarse_x.size(); ++v) {
+        for (int m = 0; m < M; ++m) coarse_x[v][m] += second_x[v][m];
+      }
+    }
+    add_prolonged<M>(level, here.aggregate_of.empty() ? 1 : kOverCorrection, coarse_x, x);
   }
-  backward_gauss_seidel<M>(laplacian, b, x);
+  backward_gauss_seidel<M>(here, entry_of_b, x);
 }
 
 template <int M>
@@ -288,14 +221,13 @@ VectorBlock<M> Hierarchy::coarsest_eigenvectors() const {
   return result;
 }
 
-template void Hierarchy::add_prolonged<1>(int, const VectorBlock<1>&, VectorBlock<1>&) const;
-template void Hierarchy::add_prolonged<2>(int, const VectorBlock<2>&, VectorBlock<2>&) const;
-template void Hierarchy::add_prolonged<3>(int, const VectorBlock<3>&, VectorBlock<3>&) const;
-template void Hierarchy::v_cycle<1>(int, const VectorBlock<1>&, VectorBlock<1>&) const;
-template void Hierarchy::v_cycle<2>(int, const VectorBlock<2>&, VectorBlock<2>&) const;
-template void Hierarchy::v_cycle<3>(int, const VectorBlock<3>&, VectorBlock<3>&) const;
+template void Hierarchy::add_prolonged<1>(int, double, const VectorBlock<1>&, VectorBlock<1>&) const;
+template void Hierarchy::cycle<1>(int, const VectorBlock<1>&, VectorBlock<1>&, CycleWorkspace<1>&) const;
+template void Hierarchy::smooth<1>(int, VectorBlock<1>&) const;
 template VectorBlock<1> Hierarchy::coarsest_eigenvectors<1>() const;
+template void Hierarchy::add_prolonged<2>(int, double, const VectorBlock<2>&, VectorBlock<2>&) const;
+template void Hierarchy::cycle<2>(int, const VectorBlock<2>&, VectorBlock<2>&, CycleWorkspace<2>&) const;
+template void Hierarchy::smooth<2>(int, VectorBlock<2>&) const;
 template VectorBlock<2> Hierarchy::coarsest_eigenvectors<2>() const;
-template VectorBlock<3> Hierarchy::coarsest_eigenvectors<3>() const;
 
 }  // namespace meshorder

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <meshorder/graph/laplacian.hpp>
+#include <meshorder/spectral/row_chunks.hpp>
 #include <meshorder/spectral/sparse_rows.hpp>
 
 #include <Eigen/Dense>
@@ -13,31 +14,48 @@ namespace meshorder {
 /// One graph of the hierarchy, and the way to the next coarser.
 struct Level {
   Laplacian laplacian;
+  RowChunks chunks;
   std::vector<double> mass;         ///< how many vertices of the finest graph each stands for
   std::vector<Index> aggregate_of;  ///< plain coarsening: the coarser vertex of each vertex
   SparseRows prolongation;          ///< smoothed coarsening: the way from the next coarser level
 };
 
-/// A hierarchy of ever coarser Laplacians of one connected graph, made by aggregation, with the V-cycle that
+/// Room for the vectors of a cycle on the levels below the one where it starts.
+template <int M>
+struct CycleWorkspace {
+  struct OfLevel {
+    VectorBlock<M> right_side, correction, second_correction;
+  };
+  std::vector<OfLevel> levels;
+};
+
+/// A hierarchy of ever coarser Laplacians of one connected graph, made by aggregation, with the cycle that
 /// approximates the pseudo-inverse of the finest one.
 ///
 /// The first coarsening is plain (piecewise constant prolongation), the later ones are smoothed aggregation
 /// (Vaněk, Mandel, Brezina 1996): the finest operator keeps its sparsity where it costs most. Coarse
-/// operators are Galerkin products Pᵀ L P. Memory: about 1.5 times the graph. Set-up: O(n + edges).
+/// operators are Galerkin products Pᵀ L P. Memory: about 1.2 times the graph. Set-up: O(n + edges). Set-up
+/// and cycles use all threads and give the same numbers on any number of them.
 class Hierarchy {
  public:
   explicit Hierarchy(Laplacian finest);
 
   [[nodiscard]] const std::vector<Level>& levels() const noexcept { return levels_; }
 
-  /// x ≈ L⁺ b on level `level` by one symmetric V-cycle: Gauss–Seidel forwards before and backwards after the
-  /// coarse correction, the coarsest level exactly. The columns of b must sum to 0.
+  /// x ≈ L⁺ b on level `level` by one symmetric W-cycle: Gauss–Seidel forwards before and backwards after the
+  /// coarse correction, which two cycles find on the next level, and the coarsest level exactly. Plain
+  /// coarsening makes L too stiff for smooth vectors; its corrections are therefore made larger (Braess
+  /// 1995). The columns of b must sum to 0.
   template <int M>
-  void v_cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x) const;
+  void cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x, CycleWorkspace<M>& workspace) const;
 
-  /// x += P y, from y on the next coarser level to x on `level`.
+  /// One Gauss–Seidel sweep forwards and one backwards on L x = 0: damps what prolongation left rough.
   template <int M>
-  void add_prolonged(int level, const VectorBlock<M>& coarse, VectorBlock<M>& fine) const;
+  void smooth(int level, VectorBlock<M>& x) const;
+
+  /// x += scale P y, from y on the next coarser level to x on `level`.
+  template <int M>
+  void add_prolonged(int level, double scale, const VectorBlock<M>& coarse, VectorBlock<M>& fine) const;
 
   /// The eigenvectors of L x = λ mass x on the coarsest level for the M smallest eigenvalues after that of
   /// the constant; columns that do not exist are 0. Only when `has_exact_coarsest`.

@@ -5,9 +5,23 @@
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
+#include <utility>
 
 namespace meshorder {
 namespace {
+
+constexpr Index kRows = 2048;  // in a chunk for threads; what a pass touches stays in the L2 cache
+
+/// Numbers that are added up entry by entry.
+template <std::size_t N>
+struct Sums {
+  std::array<double, N> values{};
+  double& operator[](std::size_t i) { return values[i]; }
+  Sums& operator+=(const Sums& other) {
+    for (std::size_t i = 0; i < N; ++i) values[i] += other.values[i];
+    return *this;
+  }
+};
 
 /// A block of vectors and L times it.
 template <int M>
@@ -15,74 +29,89 @@ struct WithImage {
   VectorBlock<M> vectors;
   VectorBlock<M> images;
 
-  explicit WithImage(std::size_t n)
-      : vectors(n, std::array<double, M>{}), images(n, std::array<double, M>{}) {}
+  explicit WithImage(std::size_t n) : WithImage(VectorBlock<M>(n, std::array<double, M>{})) {}
+  explicit WithImage(VectorBlock<M> block) : vectors(std::move(block)), images(vectors.size()) {}
 };
 
-/// Numbers for the 3 M vectors of a search space, and for their pairs.
-template <int M>
-using RowOfSpace = std::array<double, std::size_t{3} * M>;
-template <int M>
-using SquareOfSpace = std::array<RowOfSpace<M>, std::size_t{3} * M>;
-
-/// The three blocks whose span an iteration searches: iterates, preconditioned residuals, last directions.
-template <int M>
+/// The blocks whose span an iteration searches: iterates, preconditioned residuals, last directions, and C
+/// companions that stay.
+template <int M, int C>
 struct SearchSpace {
+  static constexpr int kSize = 3 * M + C;
+
   WithImage<M> x, w, p;
+  WithImage<C> companions;
 
-  explicit SearchSpace(std::size_t n) : x(n), w(n), p(n) {}
-
-  /// Row v of the 3 M vectors (or images) side by side.
-  [[nodiscard]] RowOfSpace<M> row(VectorBlock<M> WithImage<M>::*part, std::size_t v) const {
-    RowOfSpace<M> result;
-    for (int m = 0; m < M; ++m) {
-      result[m] = (x.*part)[v][m];
-      result[M + m] = (w.*part)[v][m];
-      result[2 * M + m] = (p.*part)[v][m];
-    }
-    return result;
-  }
+  SearchSpace(VectorBlock<M> start, VectorBlock<C> fixed)
+      : x(std::move(start)), w(x.vectors.size()), p(x.vectors.size()), companions(std::move(fixed)) {}
 };
 
-template <int M>
-using Gram = Eigen::Matrix<double, 3 * M, 3 * M>;
+/// Row v of all vectors of the space (or of their images) side by side.
+template <int M, int C, class Part>
+std::array<double, SearchSpace<M, C>::kSize> row(const SearchSpace<M, C>& s, Index v, Part part) {
+  std::array<double, SearchSpace<M, C>::kSize> result;
+  for (int m = 0; m < M; ++m) {
+    result[m] = part(s.x)[v][m];
+    result[M + m] = part(s.w)[v][m];
+    result[2 * M + m] = part(s.p)[v][m];
+  }
+  if constexpr (C > 0) {
+    for (int c = 0; c < C; ++c) result[3 * M + c] = part(s.companions)[v][c];
+  }
+  return result;
+}
+
+constexpr auto kVectors = [](auto& block) -> auto& { return block.vectors; };
+constexpr auto kImages = [](auto& block) -> auto& { return block.images; };
+
+template <int N>
+using Square = Eigen::Matrix<double, N, N>;
 
 /// Sᵀ B S and Sᵀ L S of the search space S.
-template <int M>
-void gram_matrices(const SearchSpace<M>& s, const std::vector<double>& mass, Gram<M>& gram, Gram<M>& energy) {
-  SquareOfSpace<M> g{};
-  SquareOfSpace<M> e{};
-  for (std::size_t v = 0; v < mass.size(); ++v) {
-    const auto vectors = s.row(&WithImage<M>::vectors, v);
-    const auto images = s.row(&WithImage<M>::images, v);
-    for (int i = 0; i < 3 * M; ++i) {
-      for (int j = i; j < 3 * M; ++j) {
-        g[i][j] += mass[v] * vectors[i] * vectors[j];
-        e[i][j] += vectors[i] * images[j];
+template <int M, int C, int N = SearchSpace<M, C>::kSize>
+void gram_matrices(const SearchSpace<M, C>& s, const std::vector<double>& mass, Square<N>& gram,
+                   Square<N>& energy) {
+  using Squares = Sums<std::size_t{2} * N * N>;
+  Squares sums = sum_over_chunks<Squares>(index_size(mass), kRows, [&](Index begin, Index end) {
+    Squares part;
+    // one after the other: the sums of both at once do not fit in registers
+    for (Index v = begin; v < end; ++v) {
+      const auto vectors = row(s, v, kVectors);
+      for (int i = 0; i < N; ++i) {
+        const double weighted = mass[v] * vectors[i];
+        for (int j = i; j < N; ++j) part[N * i + j] += weighted * vectors[j];
       }
     }
-  }
-  for (int i = 0; i < 3 * M; ++i) {
-    for (int j = i; j < 3 * M; ++j) {
-      gram(i, j) = gram(j, i) = g[i][j];
-      energy(i, j) = energy(j, i) = e[i][j];
+    for (Index v = begin; v < end; ++v) {
+      const auto vectors = row(s, v, kVectors);
+      const auto images = row(s, v, kImages);
+      for (int i = 0; i < N; ++i) {
+        for (int j = i; j < N; ++j) part[N * (N + i) + j] += vectors[i] * images[j];
+      }
+    }
+    return part;
+  });
+  for (int i = 0; i < N; ++i) {
+    for (int j = i; j < N; ++j) {
+      gram(i, j) = gram(j, i) = sums[N * i + j];
+      energy(i, j) = energy(j, i) = sums[N * (N + i) + j];
     }
   }
 }
 
 /// The coefficients of the M Ritz vectors with the smallest Ritz values, and those values. Directions of the
 /// basis that nearly depend on the others are left out.
-template <int M>
-void rayleigh_ritz(const Gram<M>& gram, const Gram<M>& energy, Eigen::Matrix<double, 3 * M, M>& coefficients,
+template <int M, int N>
+void rayleigh_ritz(const Square<N>& gram, const Square<N>& energy, Eigen::Matrix<double, N, M>& coefficients,
                    Eigen::Matrix<double, M, 1>& values) {
   constexpr double kDependent = 1e-12;
-  Eigen::Matrix<double, 3 * M, 1> scale = gram.diagonal();
-  for (int i = 0; i < 3 * M; ++i) scale[i] = scale[i] > 0 ? 1 / std::sqrt(scale[i]) : 0;
-  const Eigen::SelfAdjointEigenSolver<Gram<M>> independent(
-      Gram<M>(scale.asDiagonal() * gram * scale.asDiagonal()));
+  Eigen::Matrix<double, N, 1> scale = gram.diagonal();
+  for (int i = 0; i < N; ++i) scale[i] = scale[i] > 0 ? 1 / std::sqrt(scale[i]) : 0;
+  const Eigen::SelfAdjointEigenSolver<Square<N>> independent(
+      Square<N>(scale.asDiagonal() * gram * scale.asDiagonal()));
   int kept = 0;
-  Eigen::Matrix<double, 3 * M, Eigen::Dynamic> basis(3 * M, 3 * M);
-  for (int i = 3 * M - 1; i >= 0; --i) {
+  Eigen::Matrix<double, N, Eigen::Dynamic> basis(N, N);
+  for (int i = N - 1; i >= 0; --i) {
     const double eigenvalue = independent.eigenvalues()[i];
     if (eigenvalue < kDependent) break;
     basis.col(kept++) = scale.asDiagonal() * independent.eigenvectors().col(i) / std::sqrt(eigenvalue);
@@ -98,100 +127,133 @@ void rayleigh_ritz(const Gram<M>& gram, const Gram<M>& energy, Eigen::Matrix<dou
   }
 }
 
+/// ‖r‖² and ‖x‖² of the first column.
+using Norms = Sums<2>;
+
+/// r = L x − λ B x in row v, and its part in the norms.
+template <int M>
+void residual_of_row(const WithImage<M>& x, const Eigen::Matrix<double, M, 1>& values, double mass, Index v,
+                     VectorBlock<M>& r, Norms& norms) {
+  for (int m = 0; m < M; ++m) r[v][m] = x.images[v][m] - values[m] * mass * x.vectors[v][m];
+  norms[0] += r[v][0] * r[v][0];
+  norms[1] += x.vectors[v][0] * x.vectors[v][0];
+}
+
 /// x ← S c, p ← the part of that which is not from x, the same for the images, and r = L x − λ B x. Returns
 /// ‖r‖ / ‖x‖ of the first column.
-template <int M>
-double update(SearchSpace<M>& s, const Eigen::Matrix<double, 3 * M, M>& coefficients,
+template <int M, int C, int N = SearchSpace<M, C>::kSize>
+double update(SearchSpace<M, C>& s, const Eigen::Matrix<double, N, M>& coefficients,
               const Eigen::Matrix<double, M, 1>& values, const std::vector<double>& mass, VectorBlock<M>& r) {
-  std::array<std::array<double, M>, std::size_t{3} * M> c;
-  for (int i = 0; i < 3 * M; ++i) {
+  std::array<std::array<double, M>, N> c;
+  for (int i = 0; i < N; ++i) {
     for (int m = 0; m < M; ++m) c[i][m] = coefficients(i, m);
   }
-  double residual_squared = 0;
-  double norm_squared = 0;
-  for (std::size_t v = 0; v < mass.size(); ++v) {
-    for (const auto part : {&WithImage<M>::vectors, &WithImage<M>::images}) {
-      const auto row = s.row(part, v);
+  const auto combine = [&](Index v, auto part) {
+    const auto old = row(s, v, part);
+    for (int m = 0; m < M; ++m) {
+      double from_x = 0;
+      double direction = 0;
+      for (int i = 0; i < M; ++i) from_x += old[i] * c[i][m];
+      for (int i = M; i < N; ++i) direction += old[i] * c[i][m];
+      part(s.x)[v][m] = from_x + direction;
+      part(s.p)[v][m] = direction;
+    }
+  };
+  Norms norms = sum_over_chunks<Norms>(index_size(mass), kRows, [&](Index begin, Index end) {
+    Norms part;
+    for (Index v = begin; v < end; ++v) {
+      combine(v, kVectors);
+      combine(v, kImages);
+      residual_of_row<M>(s.x, values, mass[v], v, r, part);
+    }
+    return part;
+  });
+  return std::sqrt(norms[0] / norms[1]);
+}
+
+/// Computes L x afresh, since images that follow x by recurrence drift by rounding, and with it the Rayleigh
+/// quotients and r. Returns what `update` does.
+template <int M>
+double refresh(WithImage<M>& x, const Laplacian& laplacian, const std::vector<double>& mass,
+               Eigen::Matrix<double, M, 1>& values, VectorBlock<M>& r) {
+  laplacian.apply<M>(x.vectors, x.images);
+  using Quotients = Sums<std::size_t{2} * M>;
+  Quotients quotients = sum_over_chunks<Quotients>(index_size(mass), kRows, [&](Index begin, Index end) {
+    Quotients part;
+    for (Index v = begin; v < end; ++v) {
       for (int m = 0; m < M; ++m) {
-        double from_x = 0;
-        double direction = 0;
-        for (int i = 0; i < M; ++i) from_x += row[i] * c[i][m];
-        for (int i = M; i < 3 * M; ++i) direction += row[i] * c[i][m];
-        (s.x.*part)[v][m] = from_x + direction;
-        (s.p.*part)[v][m] = direction;
+        part[m] += x.vectors[v][m] * x.images[v][m];
+        part[M + m] += mass[v] * x.vectors[v][m] * x.vectors[v][m];
       }
     }
-    for (int m = 0; m < M; ++m) r[v][m] = s.x.images[v][m] - values[m] * mass[v] * s.x.vectors[v][m];
-    residual_squared += r[v][0] * r[v][0];
-    norm_squared += s.x.vectors[v][0] * s.x.vectors[v][0];
-  }
-  return std::sqrt(residual_squared / norm_squared);
+    return part;
+  });
+  for (int m = 0; m < M; ++m) values[m] = quotients[M + m] > 0 ? quotients[m] / quotients[M + m] : 0;
+  Norms norms = sum_over_chunks<Norms>(index_size(mass), kRows, [&](Index begin, Index end) {
+    Norms part;
+    for (Index v = begin; v < end; ++v) residual_of_row<M>(x, values, mass[v], v, r, part);
+    return part;
+  });
+  return std::sqrt(norms[0] / norms[1]);
 }
 
-/// Computes L x afresh, since images that follow x by recurrence drift by rounding, and r with it. Returns
-/// what `update` does.
+/// Makes the vectors B-orthogonal to constants, and their images.
 template <int M>
-double refresh_images(WithImage<M>& x, const Laplacian& laplacian, const Eigen::Matrix<double, M, 1>& values,
-                      const std::vector<double>& mass, VectorBlock<M>& r) {
-  laplacian.apply<M>(x.vectors, x.images);
-  double residual_squared = 0;
-  double norm_squared = 0;
-  for (std::size_t v = 0; v < mass.size(); ++v) {
-    for (int m = 0; m < M; ++m) r[v][m] = x.images[v][m] - values[m] * mass[v] * x.vectors[v][m];
-    residual_squared += r[v][0] * r[v][0];
-    norm_squared += x.vectors[v][0] * x.vectors[v][0];
-  }
-  return std::sqrt(residual_squared / norm_squared);
-}
-
-/// Makes the columns B-orthogonal to constants.
-template <int M>
-void remove_constants(const std::vector<double>& mass, double total_mass, VectorBlock<M>& x) {
-  std::array<double, M> mean{};
-  for (std::size_t v = 0; v < mass.size(); ++v) {
-    for (int m = 0; m < M; ++m) mean[m] += mass[v] * x[v][m];
-  }
+void prepare(const Laplacian& laplacian, const std::vector<double>& mass, double total_mass,
+             WithImage<M>& block) {
+  VectorBlock<M>& x = block.vectors;
+  Sums<M> mean = sum_over_chunks<Sums<M>>(index_size(mass), kRows, [&](Index begin, Index end) {
+    Sums<M> part;
+    for (Index v = begin; v < end; ++v) {
+      for (int m = 0; m < M; ++m) part[m] += mass[v] * x[v][m];
+    }
+    return part;
+  });
   for (int m = 0; m < M; ++m) mean[m] /= total_mass;
-  for (auto& row : x) {
-    for (int m = 0; m < M; ++m) row[m] -= mean[m];
-  }
+  for_each_chunk(index_size(mass), kRows, [&](Index, Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) {
+      for (int m = 0; m < M; ++m) x[v][m] -= mean[m];
+    }
+  });
+  laplacian.apply<M>(x, block.images);
 }
 
 }  // namespace
 
-template <int M>
-LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x) {
+template <int M, int Companions>
+LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
+                    VectorBlock<Companions> companions) {
+  constexpr int kSize = SearchSpace<M, Companions>::kSize;
   const Laplacian& laplacian = hierarchy.levels()[level].laplacian;
   const std::vector<double>& mass = hierarchy.levels()[level].mass;
   double total_mass = 0;
   for (const double m : mass) total_mass += m;
 
-  SearchSpace<M> s(mass.size());
+  SearchSpace<M, Companions> s(std::move(x), std::move(companions));
   VectorBlock<M> r(mass.size());
-  Gram<M> gram, energy;
-  Eigen::Matrix<double, 3 * M, M> coefficients;
+  CycleWorkspace<M> workspace;
+  Square<kSize> gram, energy;
+  Eigen::Matrix<double, kSize, M> coefficients;
   Eigen::Matrix<double, M, 1> values;
   const auto search = [&] {
-    gram_matrices<M>(s, mass, gram, energy);
-    rayleigh_ritz<M>(gram, energy, coefficients, values);
-    return update<M>(s, coefficients, values, mass, r);
+    gram_matrices<M, Companions>(s, mass, gram, energy);
+    rayleigh_ritz<M, kSize>(gram, energy, coefficients, values);
+    return update<M, Companions>(s, coefficients, values, mass, r);
   };
 
-  s.x.vectors = std::move(x);
-  remove_constants<M>(mass, total_mass, s.x.vectors);
-  laplacian.apply<M>(s.x.vectors, s.x.images);
+  prepare(laplacian, mass, total_mass, s.x);
+  if constexpr (Companions > 0) prepare(laplacian, mass, total_mass, s.companions);
   LobpcgResult result;
   result.residual = search();
   const auto converged = [&] { return result.residual <= options.tolerance * values[0]; };
   for (;; ++result.iterations) {
     const bool last = result.iterations >= options.max_iterations;
     if (last || converged()) {
-      result.residual = refresh_images<M>(s.x, laplacian, values, mass, r);
+      result.residual = refresh<M>(s.x, laplacian, mass, values, r);
       if (last || converged()) break;
     }
-    hierarchy.v_cycle<M>(level, r, s.w.vectors);
-    remove_constants<M>(mass, total_mass, s.w.vectors);
-    laplacian.apply<M>(s.w.vectors, s.w.images);
+    hierarchy.cycle<M>(level, r, s.w.vectors, workspace);
+    prepare(laplacian, mass, total_mass, s.w);
     result.residual = search();
   }
   result.eigenvalue = values[0];
@@ -200,8 +262,11 @@ LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& 
   return result;
 }
 
-template LobpcgResult lobpcg<1>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<1>&);
-template LobpcgResult lobpcg<2>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<2>&);
-template LobpcgResult lobpcg<3>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<3>&);
+template LobpcgResult lobpcg<1, 0>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<1>&,
+                                   VectorBlock<0>);
+template LobpcgResult lobpcg<1, 1>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<1>&,
+                                   VectorBlock<1>);
+template LobpcgResult lobpcg<2, 0>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<2>&,
+                                   VectorBlock<0>);
 
 }  // namespace meshorder

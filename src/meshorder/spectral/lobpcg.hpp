@@ -23,10 +23,20 @@ struct LobpcgResult {
 /// that of the constant vector, on one level of a hierarchy (B its masses, the identity on the finest).
 ///
 /// Locally optimal block preconditioned conjugate gradients (Knyazev 2001): each iteration minimises the
-/// Rayleigh quotient over the span of x, the V-cycle applied to the residuals, and the previous directions,
-/// all kept orthogonal to constants. Columns end in rising order of their eigenvalues, ‖x‖_B = 1. Columns of
-/// x that depend on others or are constant are replaced by the search itself. O(graph) an iteration.
+/// Rayleigh quotient over the span of x, the hierarchy's cycle applied to the residuals, the previous
+/// directions, and `companions`, all kept orthogonal to constants. Companions are rough guesses of the next
+/// eigenvectors: a single column that is slow to part from a close λ₃ parts quickly when it may subtract what
+/// resembles that eigenvector, for far less than a second column costs. Columns end in rising order of their
+/// eigenvalues, ‖x‖_B = 1. Columns of x that depend on others or are constant are replaced by the search
+/// itself. O(graph) an iteration.
+template <int M, int Companions>
+LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
+                    VectorBlock<Companions> companions);
+
+/// The same without companions.
 template <int M>
-LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x);
+LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x) {
+  return lobpcg<M, 0>(hierarchy, level, options, x, {});
+}
 
 }  // namespace meshorder

@@ -20,7 +20,4 @@ struct SparseRows {
 /// Aᵀ. O(rows + columns + entries).
 SparseRows transposed(const SparseRows& a);
 
-/// A B by Gustavson's method. O(multiplications).
-SparseRows product(const SparseRows& a, const SparseRows& b);
-
 }  // namespace meshorder
