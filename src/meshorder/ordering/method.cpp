@@ -15,6 +15,7 @@ constexpr std::array kVertexMethods{
     VertexMethod{"scrambled", "a seeded random order, the paper's point of reference", scrambled_vertices},
     VertexMethod{"fiedler", "sorted by the Fiedler vector of the vertex graph, the paper's order",
                  fiedler_vertices},
+    VertexMethod{"minla", "the Fiedler order, improved towards the least sum of edge spans", minla_vertices},
     VertexMethod{"rcm", "reverse Cuthill-McKee: breadth first, neighbours by degree, reversed", rcm_vertices},
     VertexMethod{"bfs", "breadth first from a vertex at the rim", bfs_vertices},
     VertexMethod{"morton", "along Morton's Z curve through the coordinates", morton_vertices},

@@ -1,0 +1,14 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/graph/csr_graph.hpp>
+#include <meshorder/ordering/arrangement_graph.hpp>
+
+namespace meshorder::test {
+
+/// The graph as it is: all weights and volumes 1.
+inline ArrangementGraph arrangement_graph(const CsrGraph& graph) {
+  return {graph.offsets, graph.neighbours, {}, std::vector<Index>(graph.size(), 1)};
+}
+
+}  // namespace meshorder::test
