@@ -72,7 +72,7 @@ class InsertionSearch {
 
   /// The best place on one side of `from`; `step` is 1 or −1. `weight_at_` is set for the vertex's
   /// neighbours.
-  Slide slide(Index from, Index step, Index last, Offset allowance) const {
+  [[nodiscard]] Slide slide(Index from, Index step, Index last, Offset allowance) const {
     Slide best{from};
     const Offset volume = volume_at_[from];
     Offset ahead = step * balance_at_[from];  // weight of the edges ahead minus that of those behind
