@@ -110,6 +110,11 @@ TEST(Minla, IsNeverWorseThanFiedler) {
                                test::random_connected(1000, 50, 1),
                                vertex_graph(test::mixed_mesh()),
                                vertex_graph(test::tetrahedral_bar(30)),
+                               vertex_graph(test::tetrahedral_bar(700)),
+                               test::grid(3, 3, 900),
+                               test::grid(700, 4),
+                               test::path(20000),
+                               test::cycle(5000),
                                test::grid(3000, 2)};
   graphs.push_back(test::disjoint_union(graphs));
   for (const CsrGraph& graph : graphs) {
@@ -167,7 +172,7 @@ TEST(Minla, KeepsComponentsWhereFiedlerPutsThem) {
   EXPECT_EQ(order.fiedler.size(), components.size());
   // each as good as by itself
   EXPECT_LE(minla(graph),
-            minla(test::grid(20, 9)) * 1.02 + 150 * 150 / 4 + minla(test::grid(7, 5)) * 1.02 + 5);
+            minla(test::grid(20, 9)) * 1.02 + 150.0 * 150 / 4 + minla(test::grid(7, 5)) * 1.02 + 5);
 }
 
 TEST(Minla, IsTheSameForEveryNumberOfThreads) {
@@ -187,7 +192,7 @@ TEST(Minla, TakesTimeInProportionOnGraphsThatDoNotCoarsenWell) {
         test::preferential_attachment(test::large(60000), 4, 1), test::complete(test::large(1500))}) {
     const Stopwatch watch;
     EXPECT_EQ(order_of(graph).size(), graph.size());
-    EXPECT_LT(watch.seconds(), 10) << graph.size();
+    EXPECT_LT(watch.seconds(), 5) << graph.size();
   }
 }
 

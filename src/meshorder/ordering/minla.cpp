@@ -68,7 +68,7 @@ void search(const ArrangementGraph& graph, std::vector<Index>& order) {
         candidate = expanded(coarse_order, coarse.group_of, order);
       }
       // else the visits would take more than O(edges · log n) in all
-      twice = shrinks && 2 * coarse.graph.neighbours.size() <= graph.neighbours.size();
+      twice = 2 * coarse.graph.neighbours.size() <= graph.neighbours.size();
     }
     const Offset span = improve_by_insertions(graph, candidate, kPasses);
     if (span < least) {
