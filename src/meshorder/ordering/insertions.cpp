@@ -18,6 +18,8 @@ struct Places {
   Index end;
 };
 
+/// The state of the search. Threads work on chunks of their own and touch only what stands there: `chunk_of_`
+/// says so of a vertex without a look at its place, which another thread may be writing.
 class InsertionSearch {
  public:
   InsertionSearch(const ArrangementGraph& graph, std::vector<Index>& order)
@@ -38,7 +40,8 @@ class InsertionSearch {
     }
   }
 
-  /// Whether anything moved.
+  /// Takes every vertex out and puts it back, chunk by chunk, the first one shorter by `shift`. Yields
+  /// whether anything moved.
   bool pass(Index shift) {
     const Index n = graph_.size();
     for (Index k = 0; k < n; ++k) chunk_of_[order_[k]] = (k + shift) / kChunk;
@@ -70,8 +73,8 @@ class InsertionSearch {
     Offset change = 0;  ///< of the total span, there
   };
 
-  /// The best place on one side of `from`; `step` is 1 or −1. `weight_at_` is set for the vertex's
-  /// neighbours.
+  /// The best place on one side of `from`, where `step` of 1 or −1 leads; `weight_at_` holds the edges of the
+  /// vertex.
   [[nodiscard]] Slide slide(Index from, Index step, Index last, Offset allowance) const {
     Slide best{from};
     const Offset volume = volume_at_[from];
@@ -87,6 +90,7 @@ class InsertionSearch {
     return best;
   }
 
+  /// Puts v where the total span is least within reach. Yields whether it moved.
   bool reinsert(Index v, Index chunk, const Places& places) {
     const Index from = place_[v];
     Offset degree = 0;
@@ -112,6 +116,7 @@ class InsertionSearch {
     return true;
   }
 
+  /// Moves v to the place `to`, on the side of `step`; those between move up by one.
   void move(Index v, Index chunk, Index to, Index step) {
     const Index from = place_[v];
     const Index volume = volume_at_[from];
@@ -143,7 +148,7 @@ class InsertionSearch {
   std::vector<Index> volume_at_;
   std::vector<Offset> balance_at_;  // weight of the edges to later vertices minus that to earlier ones
   std::vector<Offset> weight_at_;   // of the edge to the vertex at hand
-  std::vector<Index> chunk_of_;     // of each vertex; others' places are being written
+  std::vector<Index> chunk_of_;     // of each vertex
 };
 
 }  // namespace
