@@ -26,7 +26,7 @@ struct Incidence {
 Incidence transposed(const Incidence& incidence);
 
 /// Joins any two vertices of a common element: the vertex graph of a mesh (the paper, section 3).
-/// Repeated vertices of an element make no loop. O(sum of element sizes squared · log degree).
+/// Repeated vertices of an element make no loop. O(sum of element sizes squared).
 CsrGraph vertex_graph(const Incidence& elements);
 
 /// Joins any two elements that share a vertex: the dual graph of the paper, section 4.1. This is

@@ -15,6 +15,9 @@ template <class Wanted>
 CellIncidence cells_that(const Mesh& mesh, Wanted wanted) {
   CellIncidence result;
   result.incidence.vertex_count = mesh.vertex_count();
+  result.incidence.vertices.reserve(mesh.cells.vertices.size());
+  result.incidence.offsets.reserve(mesh.cells.offsets.size());
+  result.cells.reserve(mesh.cells.shapes.size());
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     if (!wanted(c)) continue;
     result.cells.push_back(c);
