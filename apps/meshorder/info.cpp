@@ -40,15 +40,13 @@ nlohmann::ordered_json attachments(const Mesh& mesh) {
   auto data = nlohmann::ordered_json::array();
   for (const DataArray& array : mesh.data) {
     data.push_back({{"name", array.name},
-                    {"on", array.on == Attached::vertices ? "vertices" : "cells"},
+                    {"on", name(array.on)},
                     {"components", array.components},
                     {"rows", row_count(array)}});
   }
   auto sets = nlohmann::ordered_json::array();
   for (const Set& set : mesh.sets) {
-    sets.push_back({{"name", set.name},
-                    {"on", set.on == Attached::vertices ? "vertices" : "cells"},
-                    {"members", set.members.size()}});
+    sets.push_back({{"name", set.name}, {"on", name(set.on)}, {"members", set.members.size()}});
   }
   return {{"data", data}, {"sets", sets}};
 }

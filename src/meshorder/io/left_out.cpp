@@ -5,20 +5,15 @@
 #include <fmt/format.h>
 
 namespace meshorder {
-namespace {
-
-std::string_view plural(Attached on) { return on == Attached::vertices ? "vertices" : "cells"; }
-
-}  // namespace
 
 void note_array_left_out(const DataArray& array, std::string_view format, Notes& notes) {
   notes.push_back(fmt::format("the array '{}' on {} is left out: {} cannot hold it", array.name,
-                              plural(array.on), format));
+                              name(array.on), format));
 }
 
 void note_set_left_out(const Set& set, std::string_view format, Notes& notes) {
   notes.push_back(
-      fmt::format("the set '{}' of {} is left out: {} cannot hold it", set.name, plural(set.on), format));
+      fmt::format("the set '{}' of {} is left out: {} cannot hold it", set.name, name(set.on), format));
 }
 
 void note_ids_left_out(const Mesh& mesh, std::string_view format, Notes& notes) {
@@ -26,7 +21,7 @@ void note_ids_left_out(const Mesh& mesh, std::string_view format, Notes& notes) 
     const auto& ids = on == Attached::vertices ? mesh.vertex_ids : mesh.cell_ids;
     if (ids.empty()) continue;
     notes.push_back(
-        fmt::format("the numbers of {} are left out: {} counts them by place", plural(on), format));
+        fmt::format("the numbers of {} are left out: {} counts them by place", name(on), format));
   }
 }
 

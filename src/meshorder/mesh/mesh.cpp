@@ -5,6 +5,8 @@
 
 namespace meshorder {
 
+std::string_view name(Attached on) { return on == Attached::vertices ? "vertices" : "cells"; }
+
 Index row_count(const DataArray& array) {
   const auto entries = std::visit([](const auto& values) { return values.size(); }, array.values);
   return static_cast<Index>(entries / static_cast<std::size_t>(array.components));

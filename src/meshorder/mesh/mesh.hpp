@@ -17,6 +17,9 @@ namespace meshorder {
 /// What an array or a set belongs to.
 enum class Attached : std::uint8_t { vertices, cells };
 
+/// "vertices", "cells".
+std::string_view name(Attached on);
+
 /// The values of an array in the number type that the file gave them.
 using Values = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int8_t>,
                             std::vector<std::uint8_t>, std::vector<std::int16_t>, std::vector<std::uint16_t>,

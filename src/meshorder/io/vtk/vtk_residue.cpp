@@ -15,8 +15,6 @@ namespace {
 
 constexpr std::string_view kSetPrefix = "set:";
 
-std::string_view owner(Attached on) { return on == Attached::vertices ? "vertices" : "cells"; }
-
 Index owner_count(const Mesh& mesh, Attached on) {
   return on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
 }
@@ -81,7 +79,7 @@ class Names {
     }
     for (int i = 2; !taken_.emplace(on, name).second; ++i) name = wanted + "_" + std::to_string(i);
     if (name != wanted)
-      notes.push_back("the array '" + wanted + "' on " + std::string(owner(on)) + " is written as '" + name +
+      notes.push_back("the array '" + wanted + "' on " + std::string(meshorder::name(on)) + " is written as '" + name +
                       "'");
     return name;
   }
@@ -161,7 +159,7 @@ VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes) {
       continue;
     }
     if (!array.covers_all()) {
-      notes.push_back("the array '" + array.name + "' is given for some " + std::string(owner(array.on)) +
+      notes.push_back("the array '" + array.name + "' is given for some " + std::string(meshorder::name(array.on)) +
                       "; the others get " + (filled_with_nan(array) ? "NaN" : "0"));
     }
     make(full_copy(array, owner_count(mesh, array.on)));
@@ -172,7 +170,7 @@ VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes) {
   for (const Set& set : mesh.sets) {
     const std::string name = names.unused(std::string(kSetPrefix) + set.name, set.on, notes);
     if (!from_vtk) {
-      notes.push_back("the set '" + set.name + "' of " + std::string(owner(set.on)) +
+      notes.push_back("the set '" + set.name + "' of " + std::string(meshorder::name(set.on)) +
                       " is written as the array '" + name + "'");
     }
     make({name, set.on, 1, marks_of(set, owner_count(mesh, set.on)), {}, {}});
@@ -181,7 +179,7 @@ VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes) {
   const auto add_ids = [&](const std::vector<std::int64_t>& ids, const char* wanted, Attached on) {
     if (ids.empty()) return;
     const std::string name = names.unused(wanted, on, notes);
-    notes.push_back("the ids of " + std::string(owner(on)) + " are written as the array '" + name + "'");
+    notes.push_back("the ids of " + std::string(meshorder::name(on)) + " are written as the array '" + name + "'");
     make({name, on, 1, label_values(ids), {}, {}});
   };
   add_ids(mesh.vertex_ids, "vertex_id", Attached::vertices);
