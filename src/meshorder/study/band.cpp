@@ -28,17 +28,34 @@ Index corner_vertices(const Simplices& simplices, Index vertices) {
   return static_cast<Index>(std::count(seen.begin(), seen.end(), true));
 }
 
-/// Simplices of that dimension on consecutive vertices, spread evenly over the first `corners` ones.
-Cells consecutive_simplices(int dimension, Offset count, Index corners) {
+/// The corners' distances from the first one, in every way that D of 1 … k can be chosen.
+std::vector<std::array<Index, 4>> stencils(int dimension, Index k) {
+  std::vector<std::array<Index, 4>> result;
+  std::array<Index, 4> offsets{0, 1, 2, 3};
+  for (;;) {
+    result.push_back(offsets);
+    int a = dimension;
+    while (a > 0 && offsets[a] == k - (dimension - a)) --a;
+    if (a == 0) return result;
+    ++offsets[a];
+    for (int b = a + 1; b <= dimension; ++b) offsets[b] = offsets[b - 1] + 1;
+  }
+}
+
+/// Simplices of that dimension, each within k + 1 consecutive vertices, spread evenly over the first
+/// `corners` ones.
+Cells streamed_simplices(int dimension, Offset count, Index corners, Index k) {
   constexpr std::array kShape{Shape::vertex, Shape::line, Shape::triangle, Shape::tetrahedron};
   Cells cells;
   if (dimension == 0) return cells;
+  const auto ways = stencils(dimension, k);
+  const Offset starts = std::max<Offset>(1, Offset{corners} - k);
   cells.reserve(count, count * (dimension + 1));
-  const Offset starts = std::max<Offset>(1, Offset{corners} - dimension);
   std::array<Index, 4> vertices{};
   for (Offset s = 0; s < count; ++s) {
+    const std::array<Index, 4>& offsets = ways[s % static_cast<Offset>(ways.size())];
     for (int a = 0; a <= dimension; ++a) {
-      vertices[a] = static_cast<Index>(std::min<Offset>(starts * s / count + a, corners - 1));
+      vertices[a] = static_cast<Index>(std::min<Offset>(starts * s / count + offsets[a], corners - 1));
     }
     cells.push_back(kShape[dimension], std::span(vertices).first(dimension + 1));
   }
@@ -110,9 +127,13 @@ Band ideal_band(const Mesh& mesh, const CsrGraph& graph) {
   const Index corners = corner_vertices(simplices, n);
   Band band;
   band.mesh.points = helix(n);
-  band.mesh.cells = consecutive_simplices(d, d == 0 ? 0 : simplices.size(), corners);
+  const Index joined = joined_vertices(graph);
+  // as many edges for a vertex as a lattice cut into simplices has; more join nodes of no simplex
+  const auto per_vertex = static_cast<Index>(graph.edge_count() / std::max<Index>(1, joined));
+  const Index k = std::clamp<Index>(per_vertex, d, std::max<Index>(d, (Index{1} << d) - 1));
+  band.mesh.cells = streamed_simplices(d, d == 0 ? 0 : simplices.size(), corners, k);
   Reaches reaches = needed(band.mesh.cells, n);
-  fill(reaches, joined_vertices(graph), graph.edge_count());
+  fill(reaches, joined, graph.edge_count());
   band.graph = joined_to_next(reaches);
   return band;
 }
