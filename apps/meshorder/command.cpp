@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <optional>
+#include <string>
 
 namespace meshorder::command {
 
@@ -13,6 +14,24 @@ void add_common(CLI::App& subcommand, Common& common) {
   subcommand
       .add_option("--threads", common.threads, "Threads at most; 0 takes all. Results do not depend on it")
       ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+void add_ordering_options(CLI::App& subcommand, OrderingOptions& options) {
+  std::string uses;
+  for (const Use use : kUses) uses += (uses.empty() ? "" : "|") + std::string(name(use));
+  subcommand
+      .add_option_function<std::string>(
+          "--for", [&options](const std::string& use) { options.use = use_of(use); },
+          "The hot loop that `auto` shall choose the order for: " + uses)
+      ->type_name("USE")
+      ->default_str(std::string(name(options.use)));
+  subcommand.add_option("--seed", options.seed, "Seed of random orders, METIS and start vectors")
+      ->capture_default_str();
+  subcommand
+      .add_option("--tolerance", options.tolerance,
+                  "Residual of Fiedler vectors, relative to lambda2; the order settles at 0.1")
+      ->check(CLI::PositiveNumber)
       ->capture_default_str();
 }
 

@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <meshorder/ordering/method.hpp>
+
 #include <CLI/CLI.hpp>
 
 #include <functional>
@@ -25,17 +27,8 @@ void add_methods(CLI::App& app);
 /// --json, --quiet and --threads.
 void add_common(CLI::App& subcommand, Common& common);
 
-/// --seed and --tolerance, into OrderingOptions.
-template <class Options>
-void add_ordering_options(CLI::App& subcommand, Options& options) {
-  subcommand.add_option("--seed", options.seed, "Seed of random orders, METIS and start vectors")
-      ->capture_default_str();
-  subcommand
-      .add_option("--tolerance", options.tolerance,
-                  "Residual of Fiedler vectors, relative to lambda2; the order settles at 0.1")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-}
+/// --for, --seed and --tolerance.
+void add_ordering_options(CLI::App& subcommand, OrderingOptions& options);
 
 /// Runs `work` with at most `threads` threads (0: all).
 void with_threads(int threads, const std::function<void()>& work);

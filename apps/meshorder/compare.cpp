@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
+#include "compare_report.hpp"
 #include "console.hpp"
 #include "progress.hpp"
 #include "report.hpp"
@@ -9,6 +10,7 @@
 #include <meshorder/mesh/mesh_ordering.hpp>
 #include <meshorder/mesh/reorder.hpp>
 #include <meshorder/metrics/edge_span.hpp>
+#include <meshorder/study/band.hpp>
 #include <meshorder/study/kernel_timing.hpp>
 
 #include <algorithm>
@@ -26,95 +28,53 @@ struct CompareArguments : Common {
   double budget_seconds = TimingOptions{}.budget_seconds;
 };
 
-/// One order in the comparison: its names, what it cost and how good it is.
-struct Candidate {
-  std::string vertices;
-  std::string elements;
-  Reordering order;
-  EdgeSpan span;
-};
-
 std::vector<std::string> default_methods() {
   std::vector<std::string> names;
-  for (const VertexMethod& method : vertex_methods()) names.emplace_back(method.name);
+  for (const VertexMethod& method : vertex_methods()) {
+    if (method.name != "auto") names.emplace_back(method.name);  // auto takes one of the others
+  }
   names.insert(std::find(names.begin(), names.end(), "fiedler") + 1, "fiedler/fiedler");
   return names;
 }
 
-/// VERTICES or VERTICES/ELEMENTS; elements follow the default where only vertices are named, and stay or are
+/// VERTICES or VERTICES/ELEMENTS; elements follow lexmax where only vertices are named, and stay or are
 /// scrambled when vertices do or are.
-Candidate parsed(const std::string& name) {
-  Candidate candidate;
+ComparedOrder parsed(const std::string& name) {
+  ComparedOrder order;
   const auto slash = name.find('/');
-  candidate.vertices = name.substr(0, slash);
-  const bool plain = candidate.vertices == "original" || candidate.vertices == "scrambled";
-  candidate.elements = slash != std::string::npos ? name.substr(slash + 1)
-                       : plain                    ? candidate.vertices
-                                                  : ReorderingOptions{}.elements;
-  return candidate;
+  order.vertices = name.substr(0, slash);
+  const bool plain = order.vertices == "original" || order.vertices == "scrambled";
+  order.elements = slash != std::string::npos ? name.substr(slash + 1) : plain ? order.vertices : "lexmax";
+  return order;
 }
 
-/// The candidates with scrambled/scrambled, the point of reference, in front.
-std::vector<Candidate> candidates_of(const std::vector<std::string>& names) {
-  std::vector<Candidate> candidates{parsed("scrambled")};
+/// The orders with scrambled/scrambled, the point of reference, in front.
+std::vector<ComparedOrder> orders_of(const std::vector<std::string>& names) {
+  std::vector<ComparedOrder> orders{parsed("scrambled")};
   for (const std::string& name : names) {
-    const Candidate candidate = parsed(name);
-    const bool known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
-      return c.vertices == candidate.vertices && c.elements == candidate.elements;
+    const ComparedOrder order = parsed(name);
+    const bool known = std::any_of(orders.begin(), orders.end(), [&](const ComparedOrder& c) {
+      return c.vertices == order.vertices && c.elements == order.elements;
     });
-    if (!known) candidates.push_back(candidate);
+    if (!known) orders.push_back(order);
   }
-  return candidates;
+  return orders;
 }
 
-void print_quality(const Console& console, const std::vector<Candidate>& candidates) {
-  console.print("\n{:<11} {:<14} {:>8} {:>12} {:>10} {:>10}", "vertices", "elements", "cost", "span: mean",
-                "max", "mean log2");
-  for (const Candidate& c : candidates) {
-    console.print("{:<11} {:<14} {:>8} {:>12.1f} {:>10} {:>10.2f}", c.vertices, c.elements,
-                  duration(c.order.vertex_seconds + c.order.element_seconds), c.span.mean,
-                  with_commas(c.span.max), c.span.mean_log2);
-  }
-}
-
-void print_kernels(const Console& console, const std::vector<Candidate>& candidates,
-                   const std::vector<OrderTimes>& times) {
-  console.print(
-      "\nKernels: best and median milliseconds, speedup of the best over scrambled (one thread, rounds "
-      "interleaved)");
-  console.print("{:<11} {:<14} {:>20} {:>20} {:>20} {:>20}", "vertices", "elements", "SpMV", "element force",
-                "assembly", "springs");
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    std::string row = fmt::format("{:<11} {:<14}", candidates[i].vertices, candidates[i].elements);
-    for (const Kernel kernel : kKernels) {
-      const KernelTimes& t = times[i][kernel];
-      row += fmt::format(" {:>6.3g} {:>6.3g} {:>5.2f}x", t.best_ms, t.median_ms, t.speedup);
-    }
-    console.print("{}", row);
-  }
-}
-
-nlohmann::ordered_json table_json(const std::vector<Candidate>& candidates,
-                                  const std::vector<OrderTimes>& times) {
-  auto methods = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& c = candidates[i];
-    nlohmann::ordered_json kernels;
-    for (const Kernel kernel : kKernels) {
-      const KernelTimes& t = times[i][kernel];
-      kernels[std::string(name(kernel))] = {{"milliseconds", t.median_ms},
-                                            {"best_milliseconds", t.best_ms},
-                                            {"samples", t.samples},
-                                            {"speedup", t.speedup}};
-    }
-    methods.push_back({{"vertices", c.vertices},
-                       {"elements", c.elements},
-                       {"seconds", c.order.vertex_seconds + c.order.element_seconds},
-                       {"edge_span", to_json(c.span)},
-                       {"fiedler", to_json(c.order.vertex_fiedler)},
-                       {"kernels", kernels}});
-  }
-  return methods;
+/// The kernels of all orders and of the band, in interleaved rounds.
+KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<ComparedOrder>& orders,
+                  const Band& band, const TimingOptions& options) {
+  const auto prepare = [&](Index i) {
+    if (i == index_size(orders)) return KernelBench(band.mesh, band.graph);
+    Mesh ordered = mesh;
+    reorder(ordered, orders[i].order.vertices, orders[i].order.cells);
+    return KernelBench(ordered, renumbered(graph, orders[i].order.vertices.old_to_new()));
+  };
+  KernelTable table;
+  table.orders = time_orders(index_size(orders) + 1, prepare, options);
+  table.floor = table.orders.back();
+  table.orders.pop_back();
+  return table;
 }
 
 void run(const CompareArguments& arguments) {
@@ -126,10 +86,11 @@ void run(const CompareArguments& arguments) {
   mesh.cell_blocks.clear();  // what is compared is the orders, not a file's layout
   const CsrGraph graph = vertex_graph(mesh);
 
-  std::vector<Candidate> candidates = candidates_of(arguments.methods);
-  const double share = 0.35 / static_cast<double>(candidates.size());
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    Candidate& c = candidates[i];
+  Comparison comparison;
+  comparison.orders = orders_of(arguments.methods);
+  const double share = 0.35 / static_cast<double>(comparison.orders.size());
+  for (std::size_t i = 0; i < comparison.orders.size(); ++i) {
+    ComparedOrder& c = comparison.orders[i];
     const double from = 0.05 + share * static_cast<double>(i);
     progress.stage("ordering by " + c.vertices + "/" + c.elements, from, from + share);
     c.order = compute_reordering(mesh, graph, {c.vertices, c.elements, arguments.ordering});
@@ -140,26 +101,21 @@ void run(const CompareArguments& arguments) {
   progress.stage("running kernels", 0.4, 1);
   TimingOptions timing;
   timing.budget_seconds = arguments.budget_seconds;
-  const std::vector<OrderTimes> times = time_orders(
-      index_size(candidates),
-      [&](Index i) {
-        Mesh ordered = mesh;
-        reorder(ordered, candidates[i].order.vertices, candidates[i].order.cells);
-        return KernelBench(ordered, renumbered(graph, candidates[i].order.vertices.old_to_new()));
-      },
-      timing);
+  const Band band = ideal_band(mesh, graph);
+  comparison.floor_span = edge_span(band.graph, Permutation::identity(band.graph.size()));
+  comparison.kernels.push_back(timed(mesh, graph, comparison.orders, band, timing));
 
   progress.finish();
   console.log_notes(notes);
   console.print("{}: {} vertices, {}", arguments.input, with_commas(mesh.vertex_count()),
                 cells_in_words(mesh));
-  print_quality(console, candidates);
-  print_kernels(console, candidates, times);
-  console.print_json({{"file", arguments.input},
-                      {"vertices", mesh.vertex_count()},
-                      {"cells", cells_by_type(mesh)},
-                      {"reference", "scrambled"},
-                      {"methods", table_json(candidates, times)}});
+  print_comparison(console, comparison);
+  nlohmann::ordered_json result{{"file", arguments.input},
+                                {"vertices", mesh.vertex_count()},
+                                {"cells", cells_by_type(mesh)},
+                                {"reference", "scrambled"}};
+  result.update(to_json(comparison));
+  console.print_json(result);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
       "Reorders the vertices and elements of a simulation mesh so that physics on it runs faster, and "
       "carries\n"
       "everything in the file along.\n\n"
-      "  meshorder order  dragon.veg -o ordered.veg   the sensible default: vertices by the Fiedler vector\n"
+      "  meshorder order  dragon.veg -o ordered.veg   the sensible default, chosen for the mesh\n"
       "  meshorder info   dragon.veg                  counts, spans, is it in a good order?\n"
       "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n",
       "meshorder"};

@@ -25,15 +25,26 @@ struct OrderArguments : Common {
   ReorderingOptions reordering;
 };
 
-void print_result(const Console& console, const OrderArguments& arguments, const Reordering& order,
-                  const EdgeSpan& before, const EdgeSpan& after) {
-  console.print("{:<10} {:<14} {}", "vertices", arguments.reordering.vertices,
-                duration(order.vertex_seconds));
-  console.print("{:<10} {:<14} {}", "elements", arguments.reordering.elements,
-                duration(order.element_seconds));
+void print_result(const Console& console, const Reordering& order, const EdgeSpan& before,
+                  const EdgeSpan& after) {
+  const auto print_method = [&](const char* of, const MethodChoice& method, double seconds) {
+    console.print("{:<10} {:<14} {}", of, method_in_words(method), duration(seconds));
+    if (!method.because.empty()) console.print("{:<10} {}", "", method.because);
+  };
+  print_method("vertices", order.vertex_method, order.vertex_seconds);
+  print_method("elements", order.element_method, order.element_seconds);
+  if (order.groups) console.print("{:<10} {}", "groups", groups_in_words(*order.groups));
   console.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}", "edge span",
                 before.mean, after.mean, with_commas(before.max), with_commas(after.max), before.mean_log2,
                 after.mean_log2);
+}
+
+/// {"count", "method", "chosen_by", "because", "seconds"}
+nlohmann::ordered_json half_json(Index count, const MethodChoice& method, double seconds) {
+  nlohmann::ordered_json result{{"count", count}};
+  result.update(to_json(method));
+  result["seconds"] = seconds;
+  return result;
 }
 
 void run(const OrderArguments& arguments) {
@@ -74,20 +85,16 @@ void run(const OrderArguments& arguments) {
 
   progress.finish();
   console.log_notes(notes);
-  print_result(console, arguments, order, before, after);
+  print_result(console, order, before, after);
   console.print("{:<10} {}", "wrote", arguments.output);
   for (const std::string& file : map_files) console.print("{:<10} {}", "", file);
   nlohmann::ordered_json result{
       {"input", arguments.input},
       {"output", arguments.output},
-      {"vertices",
-       {{"count", mesh.vertex_count()},
-        {"method", arguments.reordering.vertices},
-        {"seconds", order.vertex_seconds}}},
-      {"elements",
-       {{"count", mesh.cell_count()},
-        {"method", arguments.reordering.elements},
-        {"seconds", order.element_seconds}}},
+      {"vertices", half_json(mesh.vertex_count(), order.vertex_method, order.vertex_seconds)},
+      {"elements", half_json(mesh.cell_count(), order.element_method, order.element_seconds)},
+      {"for", name(arguments.reordering.ordering.use)},
+      {"group_by", order.groups ? to_json(*order.groups) : nullptr},
       {"edge_span", {{"before", to_json(before)}, {"after", to_json(after)}}},
       {"fiedler", to_json(order.vertex_fiedler)},
       {"element_fiedler", to_json(order.element_fiedler)},
@@ -110,6 +117,20 @@ void add_order(CLI::App& app) {
   subcommand
       ->add_option("--elements", arguments->reordering.elements, "Element order, see `meshorder methods`")
       ->capture_default_str();
+  subcommand
+      ->add_option(
+          "--group-by", arguments->reordering.group_by,
+          "Keep groups together: the name of an array of whole numbers, as `meshorder info` lists "
+          "them.\n"
+          "`label` is the file's own cell tag: Gmsh's first physical group, Medit's reference, Vega's\n"
+          "material; gmsh:geometrical its entities, attribute TetGen's regions. Cells of one value "
+          "stand\n"
+          "together, groups by rising value, each in the methods' order; a vertex belongs to the "
+          "smallest\n"
+          "value among its elements. An array on vertices groups the vertices alone. "
+          "cells:NAME and\n"
+          "vertices:NAME say which where both have one; cells come first. What has no value is last")
+      ->type_name("NAME");
   subcommand->add_option(
       "--maps", arguments->maps,
       "Also write which vertex and cell was which: PREFIX.vertices.old_to_new.npy and so on");

@@ -3,6 +3,7 @@
 
 #include "console.hpp"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <utility>
@@ -51,6 +52,26 @@ nlohmann::ordered_json to_json(const std::vector<FiedlerComponent>& components) 
   return {{"components", list}};
 }
 
+nlohmann::ordered_json to_json(const MethodChoice& choice) {
+  const bool by_auto = !choice.because.empty();
+  return {{"method", choice.name},
+          {"chosen_by", by_auto ? "auto" : "user"},
+          {"because", by_auto ? nlohmann::ordered_json(choice.because) : nullptr}};
+}
+
+nlohmann::ordered_json to_json(const Grouping& grouping) {
+  auto list = nlohmann::ordered_json::array();
+  Index first_vertex = 0;
+  for (const GroupSize& group : group_sizes(grouping)) {
+    list.push_back({{"value", group.value ? nlohmann::ordered_json(*group.value) : nullptr},
+                    {"first_vertex", first_vertex},
+                    {"vertices", group.vertices},
+                    {"cells", grouping.of_cells.empty() ? nullptr : nlohmann::ordered_json(group.cells)}});
+    first_vertex += group.vertices;
+  }
+  return {{"name", grouping.name}, {"on", name(grouping.on)}, {"groups", list}};
+}
+
 nlohmann::ordered_json cells_by_type(const Mesh& mesh) {
   auto result = nlohmann::ordered_json::object();
   for (const auto& [type, count] : type_counts(mesh)) result[type] = count;
@@ -63,6 +84,21 @@ std::string cells_in_words(const Mesh& mesh) {
     words += (words.empty() ? "" : ", ") + with_commas(count) + " " + (count == 1 ? type : plural(type));
   }
   return words;
+}
+
+std::string method_in_words(const MethodChoice& choice) {
+  return choice.name + (choice.because.empty() ? "" : " (auto)");
+}
+
+std::string groups_in_words(const Grouping& grouping) {
+  constexpr std::size_t kShown = 8;
+  const std::size_t count = grouping.values.size();
+  std::string words = fmt::format("{} group{} by {} on {}:", with_commas(static_cast<long long>(count)),
+                                  count == 1 ? "" : "s", grouping.name, name(grouping.on));
+  for (std::size_t g = 0; g < std::min(count, kShown); ++g) {
+    words += fmt::format("{} {}", g == 0 ? "" : ",", grouping.values[g]);
+  }
+  return words + (count > kShown ? ", …" : "");
 }
 
 void note_convergence(const std::vector<FiedlerComponent>& components, const std::string& of, Notes& notes) {

@@ -3,8 +3,10 @@
 
 #include <meshorder/graph/csr_graph.hpp>
 #include <meshorder/io/format.hpp>
+#include <meshorder/mesh/grouping.hpp>
 #include <meshorder/mesh/mesh.hpp>
 #include <meshorder/metrics/edge_span.hpp>
+#include <meshorder/ordering/method.hpp>
 #include <meshorder/spectral/fiedler.hpp>
 
 #include <nlohmann/json.hpp>
@@ -17,6 +19,12 @@ namespace meshorder::command {
 /// {"mean", "max", "mean_log2"}
 nlohmann::ordered_json to_json(const EdgeSpan& span);
 
+/// {"method", "chosen_by", "because"}: "auto" and why, or "user" and null
+nlohmann::ordered_json to_json(const MethodChoice& choice);
+
+/// {"name", "on", "groups": [{"value", "first_vertex", "vertices", "cells"}]}
+nlohmann::ordered_json to_json(const Grouping& grouping);
+
 /// {"components": [{"size", "lambda2", "residual", "iterations", "converged"}]}
 nlohmann::ordered_json to_json(const std::vector<FiedlerComponent>& components);
 
@@ -25,6 +33,12 @@ nlohmann::ordered_json cells_by_type(const Mesh& mesh);
 
 /// "161,222 tetrahedra, 12 triangles"
 std::string cells_in_words(const Mesh& mesh);
+
+/// "hilbert", or "hilbert (auto)"
+std::string method_in_words(const MethodChoice& choice);
+
+/// "3 groups by label on cells: 1, 2, 7"
+std::string groups_in_words(const Grouping& grouping);
 
 /// Notes each component that did not converge.
 void note_convergence(const std::vector<FiedlerComponent>& components, const std::string& of, Notes& notes);

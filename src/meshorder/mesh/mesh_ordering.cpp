@@ -3,7 +3,9 @@
 #include <meshorder/mesh/graphs.hpp>
 #include <meshorder/mesh/mesh_ordering.hpp>
 #include <meshorder/mesh/reorder.hpp>
+#include <meshorder/ordering/grouped.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace meshorder {
@@ -16,6 +18,7 @@ std::vector<Index> cells_in_order(const Mesh& mesh, const ReorderingOptions& opt
   Ordering by_method = order_elements(
       options.elements, {top.incidence, result.vertices, mesh.points, facets_of_mesh}, options.ordering);
   result.element_fiedler = std::move(by_method.fiedler);
+  result.element_method = std::move(by_method.method);
 
   std::vector<Index> order;
   order.reserve(mesh.cells.shapes.size());
@@ -25,6 +28,10 @@ std::vector<Index> cells_in_order(const Mesh& mesh, const ReorderingOptions& opt
   const Ordering of_lower = order_elements(
       lower_method, {lower.incidence, result.vertices, mesh.points, facets_of_mesh}, options.ordering);
   for (const Index e : of_lower.permutation.new_to_old()) order.push_back(lower.cells[e]);
+  if (result.groups && result.groups->on == Attached::cells) {
+    const std::vector<Index>& group_of = result.groups->of_cells;
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return group_of[a] < group_of[b]; });
+  }
   return order;
 }
 
@@ -33,9 +40,15 @@ std::vector<Index> cells_in_order(const Mesh& mesh, const ReorderingOptions& opt
 Reordering compute_reordering(const Mesh& mesh, const CsrGraph& graph, const ReorderingOptions& options) {
   Reordering result;
   const Stopwatch vertices;
-  Ordering by_method = order_vertices(options.vertices, {graph, mesh.points}, options.ordering);
+  if (!options.group_by.empty()) result.groups = grouping_by(mesh, options.group_by);
+  Ordering by_method =
+      result.groups
+          ? order_vertices_in_groups(options.vertices, {graph, mesh.points}, result.groups->of_vertices,
+                                     result.groups->count(), options.ordering)
+          : order_vertices(options.vertices, {graph, mesh.points}, options.ordering);
   result.vertices = std::move(by_method.permutation);
   result.vertex_fiedler = std::move(by_method.fiedler);
+  result.vertex_method = std::move(by_method.method);
   result.vertex_seconds = vertices.seconds();
 
   const Stopwatch cells;

@@ -6,6 +6,7 @@
 namespace meshorder {
 
 // Each is defined in the file of its name; method.cpp lists them.
+Ordering auto_vertices(const VertexProblem&, const OrderingOptions&);
 Ordering original_vertices(const VertexProblem&, const OrderingOptions&);
 Ordering scrambled_vertices(const VertexProblem&, const OrderingOptions&);
 Ordering fiedler_vertices(const VertexProblem&, const OrderingOptions&);
@@ -17,6 +18,7 @@ Ordering hilbert_vertices(const VertexProblem&, const OrderingOptions&);
 Ordering metis_nd_vertices(const VertexProblem&, const OrderingOptions&);
 Ordering metis_rb_vertices(const VertexProblem&, const OrderingOptions&);
 
+Ordering auto_elements(const ElementProblem&, const OrderingOptions&);
 Ordering original_elements(const ElementProblem&, const OrderingOptions&);
 Ordering scrambled_elements(const ElementProblem&, const OrderingOptions&);
 Ordering fiedler_elements(const ElementProblem&, const OrderingOptions&);

@@ -11,6 +11,8 @@ namespace meshorder {
 namespace {
 
 constexpr std::array kVertexMethods{
+    VertexMethod{"auto", "the one below that measurements favour for the mesh's size and use (--for)",
+                 auto_vertices},
     VertexMethod{"original", "the order of the file", original_vertices},
     VertexMethod{"scrambled", "a seeded random order, the paper's point of reference", scrambled_vertices},
     VertexMethod{"fiedler", "sorted by the Fiedler vector of the vertex graph, the paper's order",
@@ -25,6 +27,7 @@ constexpr std::array kVertexMethods{
 };
 
 constexpr std::array kElementMethods{
+    ElementMethod{"auto", "the one below that measurements favour: lexmax", auto_elements},
     ElementMethod{"original", "the order of the file", original_elements},
     ElementMethod{"scrambled", "a seeded random order, the paper's point of reference", scrambled_elements},
     ElementMethod{
@@ -77,12 +80,15 @@ Ordering order_vertices(std::string_view method, const VertexProblem& problem,
   if (found.order != original_vertices) {
     result.permutation = with_isolated_last(result.permutation, problem.graph);
   }
+  if (result.method.name.empty()) result.method.name = method;
   return result;
 }
 
 Ordering order_elements(std::string_view method, const ElementProblem& problem,
                         const OrderingOptions& options) {
-  return find_method(kElementMethods, method, "element").order(problem, options);
+  Ordering result = find_method(kElementMethods, method, "element").order(problem, options);
+  if (result.method.name.empty()) result.method.name = method;
+  return result;
 }
 
 }  // namespace meshorder

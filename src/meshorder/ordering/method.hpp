@@ -5,11 +5,13 @@
 #include <meshorder/graph/csr_graph.hpp>
 #include <meshorder/graph/incidence.hpp>
 #include <meshorder/ordering/permutation.hpp>
+#include <meshorder/ordering/use.hpp>
 #include <meshorder/spectral/fiedler.hpp>
 
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,12 +20,22 @@ namespace meshorder {
 struct OrderingOptions {
   std::uint64_t seed = 0;  ///< of `scrambled`, of METIS and of eigensolvers' start vectors
   double tolerance = 0.1;  ///< of Fiedler vectors, relative to λ₂
+  Use use = Use::all;      ///< what `auto` chooses a method for
+};
+
+/// Which method made an order.
+struct MethodChoice {
+  std::string name;
+  std::string because;  ///< why `auto` took it; empty where it was asked for by its name
+
+  bool operator==(const MethodChoice&) const = default;
 };
 
 /// An order, and how the eigensolver fared where there was one (a report for each connected component).
 struct Ordering {
   Permutation permutation;
   std::vector<FiedlerComponent> fiedler;
+  MethodChoice method = {};  ///< filled in by order_vertices and order_elements
 };
 
 /// What a vertex method may look at.
@@ -59,7 +71,8 @@ std::span<const ElementMethod> element_methods();
 
 /// Orders the vertices by the method of that name. Vertices without neighbours come last, in their old order
 /// (but stay where they are under `original`). Throws InvalidArgument for an unknown name, which lists the
-/// known ones, and for a geometric method without coordinates.
+/// known ones, and for a geometric method without coordinates. `auto` chooses one of the others, and the
+/// result says which.
 Ordering order_vertices(std::string_view method, const VertexProblem& problem,
                         const OrderingOptions& options = {});
 

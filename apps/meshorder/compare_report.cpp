@@ -1,0 +1,104 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "compare_report.hpp"
+
+#include "report.hpp"
+
+namespace meshorder::command {
+namespace {
+
+constexpr const char* kFloor = "band";
+
+/// The time over the band's. Both are compared through the reference, since orders that do not fit into the
+/// memory together are timed in groups, each beside the reference.
+double of_floor(const KernelTimes& times, const KernelTimes& floor) { return floor.speedup / times.speedup; }
+
+void print_quality(const Console& console, const Comparison& comparison) {
+  console.print("\n{:<11} {:<14} {:>8} {:>12} {:>10} {:>10}", "vertices", "elements", "cost", "span: mean",
+                "max", "mean log2");
+  const auto print_row = [&](const std::string& vertices, const std::string& elements,
+                             const std::string& cost, const EdgeSpan& span) {
+    console.print("{:<11} {:<14} {:>8} {:>12.1f} {:>10} {:>10.2f}", vertices, elements, cost, span.mean,
+                  with_commas(span.max), span.mean_log2);
+  };
+  for (const ComparedOrder& c : comparison.orders) {
+    print_row(c.vertices, c.elements, duration(c.order.vertex_seconds + c.order.element_seconds), c.span);
+  }
+  print_row(kFloor, kFloor, "-", comparison.floor_span);
+  for (const ComparedOrder& c : comparison.orders) {
+    const MethodChoice& taken = c.order.vertex_method;
+    if (!taken.because.empty()) console.print("auto takes {}: {}", taken.name, taken.because);
+  }
+}
+
+void print_kernels(const Console& console, const Comparison& comparison, const KernelTable& table) {
+  console.print("\nKernels on {} thread{}: best milliseconds; speedup over scrambled; time over the floor's",
+                table.threads, table.threads == 1 ? "" : "s");
+  console.print("{:<11} {:<14} {:>20} {:>20} {:>20} {:>20}", "vertices", "elements", "SpMV", "element force",
+                "assembly", "springs");
+  const auto print_row = [&](const std::string& vertices, const std::string& elements,
+                             const OrderTimes& times) {
+    std::string row = fmt::format("{:<11} {:<14}", vertices, elements);
+    for (const Kernel kernel : kKernels) {
+      const KernelTimes& t = times[kernel];
+      row +=
+          fmt::format(" {:>7.3g} {:>5.2f}x {:>5.2f}", t.best_ms, t.speedup, of_floor(t, table.floor[kernel]));
+    }
+    console.print("{}", row);
+  };
+  for (std::size_t i = 0; i < comparison.orders.size(); ++i) {
+    print_row(comparison.orders[i].vertices, comparison.orders[i].elements, table.orders[i]);
+  }
+  print_row(kFloor, kFloor, table.floor);
+}
+
+nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& floor) {
+  nlohmann::ordered_json kernels;
+  for (const Kernel kernel : kKernels) {
+    const KernelTimes& t = times[kernel];
+    kernels[std::string(name(kernel))] = {{"milliseconds", t.median_ms},
+                                          {"best_milliseconds", t.best_ms},
+                                          {"samples", t.samples},
+                                          {"speedup", t.speedup},
+                                          {"of_floor", of_floor(t, floor[kernel])}};
+  }
+  return kernels;
+}
+
+/// "kernels" on one thread, and "parallel_kernels" where they ran on several.
+template <class TimesOf>
+void add_kernels(nlohmann::ordered_json& to, const Comparison& comparison, TimesOf times_of) {
+  for (const KernelTable& table : comparison.kernels) {
+    to[table.threads == 1 ? "kernels" : "parallel_kernels"] = kernels_json(times_of(table), table.floor);
+  }
+}
+
+}  // namespace
+
+void print_comparison(const Console& console, const Comparison& comparison) {
+  print_quality(console, comparison);
+  for (const KernelTable& table : comparison.kernels) print_kernels(console, comparison, table);
+  console.print("\n{} is no order of this mesh but the floor: a made-up problem of its size that streams.",
+                kFloor);
+}
+
+nlohmann::ordered_json to_json(const Comparison& comparison) {
+  auto methods = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < comparison.orders.size(); ++i) {
+    const ComparedOrder& c = comparison.orders[i];
+    nlohmann::ordered_json method{
+        {"vertices", c.vertices},
+        {"elements", c.elements},
+        {"taken", {{"vertices", c.order.vertex_method.name}, {"elements", c.order.element_method.name}}},
+        {"seconds", c.order.vertex_seconds + c.order.element_seconds},
+        {"edge_span", to_json(c.span)},
+        {"fiedler", to_json(c.order.vertex_fiedler)}};
+    add_kernels(method, comparison,
+                [&](const KernelTable& table) -> const OrderTimes& { return table.orders[i]; });
+    methods.push_back(method);
+  }
+  nlohmann::ordered_json floor{{"vertices", kFloor}, {"edge_span", to_json(comparison.floor_span)}};
+  add_kernels(floor, comparison, [&](const KernelTable& table) -> const OrderTimes& { return table.floor; });
+  return {{"methods", methods}, {"floor", floor}};
+}
+
+}  // namespace meshorder::command
