@@ -120,16 +120,13 @@ void add_order(CLI::App& app) {
   subcommand
       ->add_option(
           "--group-by", arguments->reordering.group_by,
-          "Keep groups together: the name of an array of whole numbers, as `meshorder info` lists "
-          "them.\n"
-          "`label` is the file's own cell tag: Gmsh's first physical group, Medit's reference, Vega's\n"
-          "material; gmsh:geometrical its entities, attribute TetGen's regions. Cells of one value "
-          "stand\n"
-          "together, groups by rising value, each in the methods' order; a vertex belongs to the "
-          "smallest\n"
-          "value among its elements. An array on vertices groups the vertices alone. "
-          "cells:NAME and\n"
-          "vertices:NAME say which where both have one; cells come first. What has no value is last")
+          "Keep groups together, by an array of whole numbers that `meshorder info` lists, or by sets.\n"
+          "`label` is the file's own cell tag (Gmsh's first physical group, Medit's reference);\n"
+          "gmsh:geometrical are Gmsh's entities, attribute TetGen's regions, sets Vega's regions and\n"
+          "named physical groups. Cells of one value stand together, by rising value, each group in\n"
+          "the methods' order; a vertex belongs to the smallest value among its elements. An array on\n"
+          "vertices groups these alone; cells:NAME, vertices:NAME say which, else cells. What has no\n"
+          "value is last")
       ->type_name("NAME");
   subcommand->add_option(
       "--maps", arguments->maps,

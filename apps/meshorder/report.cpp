@@ -63,7 +63,10 @@ nlohmann::ordered_json to_json(const Grouping& grouping) {
   auto list = nlohmann::ordered_json::array();
   Index first_vertex = 0;
   for (const GroupSize& group : group_sizes(grouping)) {
-    list.push_back({{"value", group.value ? nlohmann::ordered_json(*group.value) : nullptr},
+    nlohmann::ordered_json value;
+    if (group.value) value = *group.value;
+    if (!group.name.empty()) value = group.name;
+    list.push_back({{"value", value},
                     {"first_vertex", first_vertex},
                     {"vertices", group.vertices},
                     {"cells", grouping.of_cells.empty() ? nullptr : nlohmann::ordered_json(group.cells)}});
@@ -96,7 +99,8 @@ std::string groups_in_words(const Grouping& grouping) {
   std::string words = fmt::format("{} group{} by {} on {}:", with_commas(static_cast<long long>(count)),
                                   count == 1 ? "" : "s", grouping.name, name(grouping.on));
   for (std::size_t g = 0; g < std::min(count, kShown); ++g) {
-    words += fmt::format("{} {}", g == 0 ? "" : ",", grouping.values[g]);
+    words += (g == 0 ? " " : ", ") +
+             (grouping.names.empty() ? std::to_string(grouping.values[g]) : grouping.names[g]);
   }
   return words + (count > kShown ? ", …" : "");
 }

@@ -47,13 +47,37 @@ def test_info_for_people_shows_spans(command, tmp_path):
 
 def test_order_keys(command, tmp_path):
     meshes.write_tetgen(tmp_path)
-    done = command.run("order", "mesh.node", "-o", "a.vtu", "--json")
+    done = command.run("order", "mesh.node", "-o", "a.vtu", "--json", "--vertices", "fiedler")
     result = json.loads(done.stdout)
-    assert result["vertices"]["method"] == "fiedler" and result["vertices"]["seconds"] >= 0
+    assert set(result["vertices"]) == {"count", "method", "chosen_by", "because", "seconds"}
+    assert result["vertices"]["count"] == 5 and result["vertices"]["seconds"] >= 0
+    assert result["vertices"]["method"] == "fiedler"
+    assert result["vertices"]["chosen_by"] == "user" and result["vertices"]["because"] is None
     assert result["elements"]["method"] == "lexmax"
+    assert result["for"] == "all" and result["group_by"] is None
     assert set(result["edge_span"]) == {"before", "after"}
     assert set(result["fiedler"]["components"][0]) == {"size", "lambda2", "residual", "iterations", "converged"}
     assert set(result["seconds"]) == {"read", "order", "write"}
+
+
+def test_auto_says_what_it_took_and_why(command):
+    made = command.json("models", "make", "grid", "--size", "6")["models"][0]["path"]
+    names = {m["name"] for m in command.json("methods")["vertices"]}
+    taken = {}
+    for use in ("all", "element", "spmv", "assembly", "springs"):
+        result = command.json("order", made, "-o", "a.node", "--for", use)
+        taken[use] = result["vertices"]["method"]
+        assert result["for"] == use
+        for half in ("vertices", "elements"):
+            assert result[half]["chosen_by"] == "auto" and result[half]["because"]
+        assert taken[use] in names - {"auto"}
+        named = command.json("order", made, "-o", "b.node", "--vertices", taken[use], "--elements", "lexmax")
+        assert named["edge_span"] == result["edge_span"]
+    assert len(set(taken.values())) > 1
+    text = command.ok("order", made, "-o", "a.node").stdout
+    assert f"{taken['all']} (auto)" in text and "lexmax (auto)" in text
+    line = command.fails("order", made, "-o", "a.node", "--for", "everything")
+    assert "springs" in line
 
 
 def test_quiet_says_nothing_on_stderr(command, tmp_path):
@@ -70,9 +94,23 @@ def test_compare_keys(command):
     for method in result["methods"]:
         assert method["seconds"] >= 0 and method["edge_span"]["mean"] > 0
         assert set(method["kernels"]) == {"spmv", "element", "assembly", "springs"}
+        assert method["taken"] == {half: method[half] for half in ("vertices", "elements")}
         for kernel in method["kernels"].values():
-            assert kernel["milliseconds"] > 0 and kernel["speedup"] > 0
+            assert kernel["milliseconds"] > 0 and kernel["speedup"] > 0 and kernel["of_floor"] > 0
+    floor = result["floor"]
+    assert floor["vertices"] == "band" and floor["edge_span"]["max"] < 10
+    assert set(floor["kernels"]) == {"spmv", "element", "assembly", "springs"}
+    for name, kernel in floor["kernels"].items():
+        assert kernel["of_floor"] == pytest.approx(1)
+        reference = result["methods"][0]["kernels"][name]
+        assert reference["of_floor"] == pytest.approx(reference["best_milliseconds"] / kernel["best_milliseconds"])
     assert all(kernel["speedup"] == 1 for kernel in result["methods"][0]["kernels"].values())
+
+
+def test_compare_for_people(command):
+    made = command.json("models", "make", "grid", "--size", "4")["models"][0]["path"]
+    text = command.ok("compare", made, "--methods", "auto", "--for", "springs", "--budget", "0.1").stdout
+    assert "auto takes " in text and "\nband " in text
 
 
 def test_models_keys(command, tmp_path, monkeypatch):

@@ -187,8 +187,9 @@ TEST(GroupBy, RefusesWhatHoldsNoWholeNumbers) {
     EXPECT_NE(message.find("'region' on cells"), std::string::npos) << message;
     EXPECT_NE(message.find("good on vertices"), std::string::npos) << message;
   }
+  mesh.sets.clear();
   mesh.data = {{"pairs", Attached::cells, 2, std::vector<std::int32_t>(12, 1), {}, {}}};
-  EXPECT_NE(refusal(mesh, "pairs").find("are: none"), std::string::npos);
+  EXPECT_NE(refusal(mesh, "pairs").find("is: none"), std::string::npos);
 }
 
 TEST(GroupBy, FindsArraysByNameCellsFirstOrByPrefix) {
@@ -207,6 +208,28 @@ TEST(GroupBy, FindsArraysByNameCellsFirstOrByPrefix) {
     EXPECT_NE(message.find("tag on cells"), std::string::npos) << message;
     EXPECT_NE(message.find("zone on vertices"), std::string::npos) << message;
   }
+}
+
+TEST(GroupBy, SetsOfCellsGroupByTheSmallestThatHoldsACell) {
+  Mesh mesh = test::tetrahedral_bar(2);
+  mesh.data.clear();
+  mesh.sets = {{"fixed", Attached::vertices, {0, 1}},
+               {"all", Attached::cells, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}},
+               {"left", Attached::cells, {5, 4, 3, 2}},
+               {"unused", Attached::cells, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}},
+               {"right", Attached::cells, {9, 8, 5}}};
+  const Grouping grouping = grouping_by(mesh, "sets");
+  EXPECT_EQ(grouping.names, (std::vector<std::string>{"all", "left", "right"}));
+  EXPECT_EQ(grouping.values, (std::vector<std::int64_t>{1, 2, 4}));
+  EXPECT_EQ(grouping.of_cells, (std::vector<Index>{0, 0, 1, 1, 1, 2, 0, 0, 2, 2, 0, 3}));
+  EXPECT_EQ(group_sizes(grouping)[2].name, "right");
+  const Reordering result = reorder(mesh, grouped("sets"));
+  std::vector<Index> after(12);
+  for (Index c = 0; c < 12; ++c) after[result.cells.old_to_new()[c]] = result.groups->of_cells[c];
+  EXPECT_TRUE(std::is_sorted(after.begin(), after.end()));
+  EXPECT_NE(refusal(mesh, "set").find("is: sets"), std::string::npos);
+  mesh.sets.resize(1);
+  EXPECT_NE(refusal(mesh, "sets").find("is: none"), std::string::npos);
 }
 
 TEST(GroupBy, OfOneGroupIsTheOrderWithoutGroups) {

@@ -41,13 +41,19 @@ std::optional<std::vector<std::int64_t>> whole_numbers(const DataArray& array) {
       array.values);
 }
 
-/// "label on cells, part on vertices"
-std::string usable_arrays(const Mesh& mesh) {
+bool has_cell_sets(const Mesh& mesh) {
+  return std::any_of(mesh.sets.begin(), mesh.sets.end(),
+                     [](const Set& set) { return set.on == Attached::cells; });
+}
+
+/// "label on cells, part on vertices, sets"
+std::string usable_names(const Mesh& mesh) {
   std::string list;
   for (const DataArray& array : mesh.data) {
     if (!whole_numbers(array)) continue;
     list += (list.empty() ? "" : ", ") + array.name + " on " + std::string(meshorder::name(array.on));
   }
+  if (has_cell_sets(mesh)) list += list.empty() ? "sets" : ", sets";
   return list.empty() ? "none" : list;
 }
 
@@ -89,21 +95,49 @@ std::vector<Index> smallest_at_vertices(const Mesh& mesh, const std::vector<Inde
   return groups;
 }
 
+/// A group for each set of cells that is the smallest one of some cell.
+Grouping grouping_by_sets(const Mesh& mesh) {
+  std::vector<const Set*> set_of(mesh.cells.shapes.size(), nullptr);
+  for (const Set& set : mesh.sets) {
+    if (set.on != Attached::cells) continue;
+    for (const Index c : set.members) {
+      if (!set_of[c] || set.members.size() < set_of[c]->members.size()) set_of[c] = &set;
+    }
+  }
+  Grouping result;
+  result.name = "sets";
+  DataArray numbers{"sets", Attached::cells, 1, {}, {}, {}};
+  std::vector<std::int64_t> values;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (!set_of[c]) continue;
+    numbers.rows.push_back(c);
+    values.push_back(set_of[c] - mesh.sets.data());
+  }
+  result.of_cells = numbered(numbers, values, mesh.cell_count(), result.values);
+  for (const std::int64_t s : result.values) result.names.push_back(mesh.sets[s].name);
+  return result;
+}
+
 }  // namespace
 
 Grouping grouping_by(const Mesh& mesh, std::string_view name) {
   const DataArray* array = array_meant(mesh, name);
+  Grouping result;
+  if (!array && name == "sets" && has_cell_sets(mesh)) {
+    result = grouping_by_sets(mesh);
+    result.of_vertices = smallest_at_vertices(mesh, result.of_cells, index_size(result.values));
+    return result;
+  }
   if (!array) {
     throw InvalidArgument("group by: the mesh has no array '" + std::string(name) +
-                          "'; arrays of whole numbers are: " + usable_arrays(mesh));
+                          "'; what can group is: " + usable_names(mesh));
   }
   const std::optional<std::vector<std::int64_t>> numbers = whole_numbers(*array);
   if (!numbers) {
     throw InvalidArgument("group by: the array '" + array->name + "' on " +
                           std::string(meshorder::name(array->on)) +
-                          " does not hold one whole number each; arrays that do are: " + usable_arrays(mesh));
+                          " does not hold one whole number each; what can group is: " + usable_names(mesh));
   }
-  Grouping result;
   result.name = array->name;
   result.on = array->on;
   if (array->on == Attached::vertices) {
@@ -117,7 +151,10 @@ Grouping grouping_by(const Mesh& mesh, std::string_view name) {
 
 std::vector<GroupSize> group_sizes(const Grouping& grouping) {
   std::vector<GroupSize> sizes(grouping.values.size() + 1);
-  for (std::size_t g = 0; g < grouping.values.size(); ++g) sizes[g].value = grouping.values[g];
+  for (std::size_t g = 0; g < grouping.values.size(); ++g) {
+    sizes[g].value = grouping.values[g];
+    if (!grouping.names.empty()) sizes[g].name = grouping.names[g];
+  }
   for (const Index group : grouping.of_vertices) ++sizes[group].vertices;
   for (const Index group : grouping.of_cells) ++sizes[group].cells;
   if (sizes.back().vertices == 0 && sizes.back().cells == 0) sizes.pop_back();

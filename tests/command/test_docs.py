@@ -1,0 +1,52 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""The examples of the documentation do what it says."""
+import re
+import shlex
+import textwrap
+
+import numpy
+import pytest
+import scipy.sparse
+
+import conftest
+import meshes
+
+
+def blocks(document, language):
+    text = (conftest.ROOT / "docs" / document).read_text()
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
+
+
+def test_dofs_in_python(command, tmp_path, monkeypatch):
+    made = command.json("models", "make", "grid", "--size", "4")["models"][0]["path"]
+    command.ok("order", made, "-o", "mesh.node", "--vertices", "scrambled")
+    points, cells = meshes.read_tetgen(tmp_path / "mesh.node")
+    shell, = blocks("dofs.md", "sh")
+    program, *arguments = shlex.split(shell)
+    assert program == "meshorder"
+    command.ok(*arguments)
+    new_points, new_cells = meshes.read_tetgen(tmp_path / "ordered.node")
+
+    def stiffness(of_points, of_cells):
+        """Some matrix of three dofs a vertex that depends on nothing but the mesh."""
+        graph = meshes.adjacency(len(of_points), of_cells)
+        return scipy.sparse.kron(graph + scipy.sparse.diags(of_points[:, 0]), numpy.arange(9).reshape(3, 3) + 1).tocsr()
+
+    monkeypatch.chdir(tmp_path)
+    names = {"u": numpy.random.default_rng(1).random(3 * len(points)), "matrix": stiffness(points, cells),
+             "fixed": numpy.array([0, 5, 17])}
+    code, = blocks("dofs.md", "python")
+    exec(compile(code, "docs/dofs.md", "exec"), names)
+    assert (new_points[names["old_to_new"]] == points).all()
+    assert abs(names["matrix_new"] - stiffness(new_points, new_cells)).max() == 0
+    assert (names["u_new"][names["fixed_new"]] == names["u"][names["fixed"]]).all()
+    assert (names["back"] == names["u"]).all()
+    assert names["matrix_new"] @ names["u_new"] == \
+        pytest.approx((names["matrix"] @ names["u"])[names["rows"]])
+
+
+def test_dofs_in_cpp_are_those_that_are_compiled():
+    shown, = blocks("dofs.md", "cpp")
+    test = (conftest.ROOT / "tests" / "io" / "dofs_test.cpp").read_text()
+    compiled = re.search(r"// \[docs/dofs.md\n(.*?)^ *// docs/dofs.md\]", test, flags=re.MULTILINE | re.DOTALL).group(1)
+    assert textwrap.dedent(compiled) == shown
