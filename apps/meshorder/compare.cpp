@@ -63,14 +63,17 @@ std::vector<ComparedOrder> orders_of(const std::vector<std::string>& names) {
 
 /// The kernels of all orders and of the band, in interleaved rounds.
 KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<ComparedOrder>& orders,
-                  const Band& band, const TimingOptions& options) {
+                  const Band& band, int threads, const TimingOptions& options) {
+  KernelTable table;
+  table.threads = threads;
   const auto prepare = [&](Index i) {
-    if (i == index_size(orders)) return KernelBench(band.mesh, band.graph);
+    if (i == index_size(orders)) return KernelBench(band.mesh, band.graph, threads);
     Mesh ordered = mesh;
     reorder(ordered, orders[i].order.vertices, orders[i].order.cells);
-    return KernelBench(ordered, renumbered(graph, orders[i].order.vertices.old_to_new()));
+    KernelBench bench(ordered, renumbered(graph, orders[i].order.vertices.old_to_new()), threads);
+    table.redundancy.push_back(bench.redundancy());
+    return bench;
   };
-  KernelTable table;
   table.orders = time_orders(index_size(orders) + 1, prepare, options);
   table.floor = table.orders.back();
   table.orders.pop_back();
@@ -103,7 +106,12 @@ void run(const CompareArguments& arguments) {
   timing.budget_seconds = arguments.budget_seconds;
   const Band band = ideal_band(mesh, graph);
   comparison.floor_span = edge_span(band.graph, Permutation::identity(band.graph.size()));
-  comparison.kernels.push_back(timed(mesh, graph, comparison.orders, band, timing));
+  std::vector<int> thread_counts{1};
+  if (arguments.threads > 1) thread_counts.push_back(arguments.threads);
+  timing.budget_seconds /= static_cast<double>(thread_counts.size());
+  for (const int threads : thread_counts) {
+    comparison.kernels.push_back(timed(mesh, graph, comparison.orders, band, threads, timing));
+  }
 
   progress.finish();
   console.log_notes(notes);
@@ -122,7 +130,9 @@ void run(const CompareArguments& arguments) {
 
 void add_compare(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
-      "compare", "Every order's cost, quality and measured simulation kernels on this machine, in one table");
+      "compare",
+      "Every order's cost, quality and measured simulation kernels on this machine, in one table.\n"
+      "With --threads N, N > 1, the kernels run on one thread and then on N.");
   const auto arguments = std::make_shared<CompareArguments>();
   arguments->methods = default_methods();
   subcommand->add_option("MESH", arguments->input, "Mesh file")->required();

@@ -33,22 +33,24 @@ void print_quality(const Console& console, const Comparison& comparison) {
 void print_kernels(const Console& console, const Comparison& comparison, const KernelTable& table) {
   console.print("\nKernels on {} thread{}: best milliseconds; speedup over scrambled; time over the floor's",
                 table.threads, table.threads == 1 ? "" : "s");
-  console.print("{:<11} {:<14} {:>20} {:>20} {:>20} {:>20}", "vertices", "elements", "SpMV", "element force",
-                "assembly", "springs");
+  const bool parallel = table.threads > 1;
+  console.print("{:<11} {:<14} {:>20} {:>20} {:>20} {:>20}{}", "vertices", "elements", "SpMV",
+                "element force", "assembly", "springs", parallel ? "     twice" : "");
   const auto print_row = [&](const std::string& vertices, const std::string& elements,
-                             const OrderTimes& times) {
+                             const OrderTimes& times, const std::string& twice) {
     std::string row = fmt::format("{:<11} {:<14}", vertices, elements);
     for (const Kernel kernel : kKernels) {
       const KernelTimes& t = times[kernel];
       row +=
           fmt::format(" {:>7.3g} {:>5.2f}x {:>5.2f}", t.best_ms, t.speedup, of_floor(t, table.floor[kernel]));
     }
-    console.print("{}", row);
+    console.print("{}{}", row, twice);
   };
   for (std::size_t i = 0; i < comparison.orders.size(); ++i) {
-    print_row(comparison.orders[i].vertices, comparison.orders[i].elements, table.orders[i]);
+    print_row(comparison.orders[i].vertices, comparison.orders[i].elements, table.orders[i],
+              parallel ? fmt::format(" {:>8.1f}%", 100 * table.redundancy[i]) : "");
   }
-  print_row(kFloor, kFloor, table.floor);
+  print_row(kFloor, kFloor, table.floor, "");
 }
 
 nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& floor) {
@@ -77,6 +79,9 @@ void add_kernels(nlohmann::ordered_json& to, const Comparison& comparison, Times
 void print_comparison(const Console& console, const Comparison& comparison) {
   print_quality(console, comparison);
   for (const KernelTable& table : comparison.kernels) print_kernels(console, comparison, table);
+  if (comparison.kernels.back().threads > 1) {
+    console.print("\ntwice: elements that two threads compute, since each adds to its own vertices alone.");
+  }
   console.print("\n{} is no order of this mesh but the floor: a made-up problem of its size that streams.",
                 kFloor);
 }
@@ -94,11 +99,14 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
         {"fiedler", to_json(c.order.vertex_fiedler)}};
     add_kernels(method, comparison,
                 [&](const KernelTable& table) -> const OrderTimes& { return table.orders[i]; });
+    for (const KernelTable& table : comparison.kernels) {
+      if (table.threads > 1) method["redundancy"] = table.redundancy[i];
+    }
     methods.push_back(method);
   }
   nlohmann::ordered_json floor{{"vertices", kFloor}, {"edge_span", to_json(comparison.floor_span)}};
   add_kernels(floor, comparison, [&](const KernelTable& table) -> const OrderTimes& { return table.floor; });
-  return {{"methods", methods}, {"floor", floor}};
+  return {{"threads", comparison.kernels.back().threads}, {"methods", methods}, {"floor", floor}};
 }
 
 }  // namespace meshorder::command

@@ -26,6 +26,7 @@ struct KernelTable {
   int threads = 1;
   std::vector<OrderTimes> orders;  ///< the reference first
   OrderTimes floor;                ///< of the ideal band
+  std::vector<double> redundancy;  ///< of each order: see KernelBench::redundancy
 };
 
 /// The orders, the first of which is the reference, and the band of the mesh's size, which is none of them.

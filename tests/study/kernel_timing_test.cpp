@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace meshorder {
 namespace {
@@ -63,6 +65,36 @@ TEST(KernelBench, ComputesTheSamePhysicsInEveryOrder) {
       }
     }
   }
+}
+
+TEST(KernelBench, ComputesTheSameBitsOnAnyNumberOfThreads) {
+  std::vector<Mesh> meshes{test::tetrahedral_bar(30), test::mixed_mesh(),
+                           test::cells_of_type(Shape::quad, 4, 50), test::cells_of_type(Shape::line, 2, 50)};
+  meshes.push_back(meshes.front());  // scrambled: most elements touch several shares
+  reorder(meshes.back(), test::shuffled(meshes.back().vertex_count(), 3),
+          test::shuffled_cells(meshes.back(), 4));
+  for (const Mesh& mesh : meshes) {
+    KernelBench serial(mesh);
+    EXPECT_EQ(serial.redundancy(), 0.0);
+    for (const int threads : {2, 3, 8}) {
+      KernelBench shared(mesh, threads);
+      for (const Kernel kernel : kKernels) {
+        SCOPED_TRACE(std::string(name(kernel)) + " on " + std::to_string(threads));
+        serial.run(kernel);
+        shared.run(kernel);
+        shared.run(kernel);  // what the first run left must be cleared
+        const auto expected = serial.result(kernel);
+        const auto actual = shared.result(kernel);
+        ASSERT_EQ(actual.size(), expected.size());
+        EXPECT_TRUE(std::equal(actual.begin(), actual.end(), expected.begin()));
+        EXPECT_GT(largest(expected), 0.0);
+      }
+    }
+  }
+  EXPECT_LT(KernelBench(meshes.front(), 2).redundancy(), 0.15);
+  EXPECT_GT(KernelBench(meshes.back(), 2).redundancy(), 0.9);
+  KernelBench empty(Mesh{}, 2);
+  for (const Kernel kernel : kKernels) empty.run(kernel);
 }
 
 TEST(KernelBench, RunsOnCellsOfEveryType) {

@@ -39,4 +39,11 @@ Sum sum_over_chunks(Index n, Index size, Part part) {
   return sum;
 }
 
+/// Calls `work(part)` for 0 … parts−1, each on a thread of its own as far as there are threads, and as far as
+/// possible the same as the last time, whose caches still hold what the part works on.
+template <class Work>
+void for_each_part(Index parts, Work work) {
+  tbb::parallel_for(Index{0}, parts, work, tbb::static_partitioner());
+}
+
 }  // namespace meshorder

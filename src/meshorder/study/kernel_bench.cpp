@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/error.hpp>
+#include <meshorder/base/parallel.hpp>
 #include <meshorder/mesh/graphs.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
 #include <meshorder/sim/kernels/spmv.hpp>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -61,7 +63,7 @@ std::string_view name(Kernel kernel) {
   return "";
 }
 
-KernelBench::KernelBench(const Mesh& mesh, const CsrGraph& graph) {
+KernelBench::KernelBench(const Mesh& mesh, const CsrGraph& graph, int threads) {
   if (graph.size() != mesh.vertex_count()) {
     throw InvalidArgument("kernels: a graph of " + std::to_string(graph.size()) + " vertices for a mesh of " +
                           std::to_string(mesh.vertex_count()));
@@ -81,13 +83,63 @@ KernelBench::KernelBench(const Mesh& mesh, const CsrGraph& graph) {
       positions_[kPaddedStride * v + c] += moves[v][c];
     }
   }
+  if (threads > 1) share_out(threads);
   // the matrix that spmv multiplies by
   run(Kernel::assembly);
 }
 
-KernelBench::KernelBench(const Mesh& mesh) : KernelBench(mesh, vertex_graph(mesh)) {}
+KernelBench::KernelBench(const Mesh& mesh, int threads) : KernelBench(mesh, vertex_graph(mesh), threads) {}
+
+void KernelBench::share_out(int threads) {
+  const std::vector<Index> bounds = balanced_ranges(matrix_.offsets, threads);
+  std::vector<OwnedBatches> of_elements = owned_batches(rest_.vertices, rest_.dimension + 1, bounds);
+  std::vector<OwnedBatches> of_springs = owned_batches(springs_.ends, 2, bounds);
+  for (Index part = 0; part < threads; ++part) {
+    OwnedBlocks blocks = owned_blocks(rest_, map_, matrix_, of_elements[part], part);
+    shares_.push_back({std::move(of_elements[part]), std::move(blocks), std::move(of_springs[part])});
+  }
+  forces_ = padded_zeros(std::max(shares_.back().elements.room, shares_.back().springs.room));
+  matrix_.values.resize(9 * static_cast<std::size_t>(shares_.back().blocks.room), 0.0);
+}
+
+void KernelBench::run_shared(Kernel kernel) {
+  for_each_part(index_size(shares_), [&](Index part) {
+    const Share& share = shares_[part];
+    const Index begin = share.elements.begin;
+    const Index end = share.elements.end;
+    // each thread clears what it owns
+    const auto clear = [](AlignedVector<double>& values, Offset first, Offset last) {
+      std::fill(values.begin() + first, values.begin() + last, 0.0);
+    };
+    switch (kernel) {
+      case Kernel::spmv:
+        multiply_rows(matrix_, x_, y_, begin, end);
+        return;
+      case Kernel::element:
+        clear(forces_, Offset{kPaddedStride} * begin, Offset{kPaddedStride} * end);
+        add_stvk_forces(rest_, kMaterial, positions_, forces_, share.elements);
+        return;
+      case Kernel::assembly:
+        clear(matrix_.values, 9 * matrix_.offsets[begin], 9 * matrix_.offsets[end]);
+        add_stvk_stiffness(rest_, kMaterial, positions_, map_, share.elements, share.blocks, matrix_);
+        return;
+      case Kernel::springs:
+        clear(forces_, Offset{kPaddedStride} * begin, Offset{kPaddedStride} * end);
+        add_spring_forces(springs_, kStiffness, positions_, forces_, share.springs);
+        return;
+    }
+  });
+}
+
+double KernelBench::redundancy() const {
+  if (shares_.empty() || rest_.count == 0) return 0.0;
+  Offset computed = 0;
+  for (const Share& share : shares_) computed += static_cast<Offset>(share.elements.batches.size());
+  return static_cast<double>(computed - rest_.batches()) / static_cast<double>(rest_.batches());
+}
 
 void KernelBench::run(Kernel kernel) {
+  if (!shares_.empty()) return run_shared(kernel);
   switch (kernel) {
     case Kernel::spmv:
       multiply(matrix_, x_, y_);
@@ -112,12 +164,12 @@ std::span<const double> KernelBench::result(Kernel kernel) const {
     case Kernel::spmv:
       return y_;
     case Kernel::assembly:
-      return matrix_.values;
+      return std::span(matrix_.values).first(9 * static_cast<std::size_t>(matrix_.block_count()));
     case Kernel::element:
     case Kernel::springs:
       break;
   }
-  return forces_;
+  return std::span(forces_).first(positions_.size());
 }
 
 double KernelBench::streamed_bytes(Kernel kernel) const {
@@ -144,7 +196,14 @@ double KernelBench::streamed_bytes(Kernel kernel) const {
 }
 
 std::size_t KernelBench::bytes() const {
-  return bytes_of(matrix_.offsets) + bytes_of(matrix_.columns) + bytes_of(matrix_.values) +
+  std::size_t of_shares = 0;
+  for (const Share& share : shares_) {
+    of_shares += bytes_of(share.blocks.blocks);
+    for (const OwnedBatches* owned : {&share.elements, &share.springs}) {
+      of_shares += bytes_of(owned->batches) + bytes_of(owned->boundary) + bytes_of(owned->targets);
+    }
+  }
+  return of_shares + bytes_of(matrix_.offsets) + bytes_of(matrix_.columns) + bytes_of(matrix_.values) +
          bytes_of(rest_.vertices) + bytes_of(rest_.geometry) + bytes_of(map_.blocks) +
          bytes_of(springs_.ends) + bytes_of(springs_.rest_lengths) + bytes_of(positions_) +
          bytes_of(forces_) + bytes_of(x_) + bytes_of(y_);

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace meshorder {
 
@@ -28,9 +29,10 @@ std::string_view name(Kernel kernel);
 class KernelBench {
  public:
   /// `graph` is the mesh's vertex graph. O(size of the mesh · log degree). Throws InvalidArgument when the
-  /// graph belongs to another mesh.
-  KernelBench(const Mesh& mesh, const CsrGraph& graph);
-  explicit KernelBench(const Mesh& mesh);
+  /// graph belongs to another mesh. With several `threads` the kernels share their work among so many by
+  /// ranges of vertices (see owned_batches): the same results, bit for bit.
+  KernelBench(const Mesh& mesh, const CsrGraph& graph, int threads = 1);
+  explicit KernelBench(const Mesh& mesh, int threads = 1);
 
   /// Runs a kernel once, from cleared to complete results.
   void run(Kernel kernel);
@@ -48,7 +50,21 @@ class KernelBench {
   /// Memory held.
   [[nodiscard]] std::size_t bytes() const;
 
+  /// By how much the threads together compute more elements than there are: 0 on one thread, 0.02 where every
+  /// fiftieth batch is computed twice.
+  [[nodiscard]] double redundancy() const;
+
  private:
+  /// What one thread does.
+  struct Share {
+    OwnedBatches elements;
+    OwnedBlocks blocks;
+    OwnedBatches springs;
+  };
+
+  void share_out(int threads);
+  void run_shared(Kernel kernel);
+
   BlockCsr matrix_;
   RestShapes rest_;
   AssemblyMap map_;
@@ -57,6 +73,7 @@ class KernelBench {
   AlignedVector<double> forces_;
   AlignedVector<double> x_;
   AlignedVector<double> y_;
+  std::vector<Share> shares_;  ///< none on one thread
 };
 
 }  // namespace meshorder

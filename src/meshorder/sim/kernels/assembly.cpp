@@ -155,34 +155,52 @@ HWY_INLINE void add_blocks(const BatchTerms<D>& terms, const Lame& lame, Index l
   }
 }
 
+/// Adds a batch of simplices to their blocks.
+template <int D>
+HWY_INLINE void add_batch(const RestShapes& rest, Offset batch, const Lame& lame, const double* positions,
+                          const Index* blocks, double* values) {
+  const double* const geometry = rest.geometry.data() + batch * kBatch * (D * (D + 1) / 2 + 1);
+  const Index* const vertices = rest.vertices.data() + batch * kBatch * (D + 1);
+  BatchTerms<D> terms;
+  for (Index lane = 0; lane < kBatch; lane += ManyLanes::kCount) {
+    Stvk<D, ManyLanes> stvk;
+    stvk.load(geometry + lane, vertices + lane, positions);
+    stvk.strain_and_stress(lame);
+    compute_terms(stvk, lame, lane, terms);
+  }
+  const auto lanes = static_cast<Index>(std::min<Offset>(kBatch, rest.count - batch * kBatch));
+  for (Index lane = 0; lane < lanes; ++lane) {
+    add_blocks<D>(terms, lame, lane, blocks, values);
+    blocks += (D + 1) * (D + 1);
+  }
+}
+
+/// All batches, or those of a share, whose boundary batches have blocks of their own.
 template <int D>
 HWY_INLINE void add_stiffness(const RestShapes& rest, const Lame& lame, const double* positions,
-                              const Index* blocks, double* values) {
-  const double* geometry = rest.geometry.data();
-  const Index* vertices = rest.vertices.data();
-  BatchTerms<D> terms;
+                              const Index* blocks, double* values, const OwnedBatches* share,
+                              const Index* boundary_blocks) {
+  constexpr Offset kBlocks = kBatch * (D + 1) * (D + 1);
+  if (share) {
+    for (std::size_t i = 0; i < share->batches.size(); ++i) {
+      const Offset batch = share->batches[i];
+      const Offset boundary = share->boundary[i];
+      add_batch<D>(rest, batch, lame, positions,
+                   boundary < 0 ? blocks + kBlocks * batch : boundary_blocks + kBlocks * boundary, values);
+    }
+    return;
+  }
   for (Offset batch = 0; batch < rest.batches(); ++batch) {
-    for (Index lane = 0; lane < kBatch; lane += ManyLanes::kCount) {
-      Stvk<D, ManyLanes> stvk;
-      stvk.load(geometry + lane, vertices + lane, positions);
-      stvk.strain_and_stress(lame);
-      compute_terms(stvk, lame, lane, terms);
-    }
-    geometry += kBatch * (D * (D + 1) / 2 + 1);
-    vertices += kBatch * (D + 1);
-    const auto lanes = static_cast<Index>(std::min<Offset>(kBatch, rest.count - batch * kBatch));
-    for (Index lane = 0; lane < lanes; ++lane) {
-      add_blocks<D>(terms, lame, lane, blocks, values);
-      blocks += (D + 1) * (D + 1);
-    }
+    add_batch<D>(rest, batch, lame, positions, blocks + kBlocks * batch, values);
   }
 }
 
 void add_stiffness_of_any(const RestShapes& rest, const Lame& lame, const double* positions,
-                          const Index* blocks, double* values) {
-  if (rest.dimension == 3) add_stiffness<3>(rest, lame, positions, blocks, values);
-  if (rest.dimension == 2) add_stiffness<2>(rest, lame, positions, blocks, values);
-  if (rest.dimension == 1) add_stiffness<1>(rest, lame, positions, blocks, values);
+                          const Index* blocks, double* values, const OwnedBatches* share,
+                          const Index* boundary_blocks) {
+  if (rest.dimension == 3) add_stiffness<3>(rest, lame, positions, blocks, values, share, boundary_blocks);
+  if (rest.dimension == 2) add_stiffness<2>(rest, lame, positions, blocks, values, share, boundary_blocks);
+  if (rest.dimension == 1) add_stiffness<1>(rest, lame, positions, blocks, values, share, boundary_blocks);
 }
 
 }  // namespace
@@ -229,13 +247,60 @@ AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix) {
   return map;
 }
 
-void add_stvk_stiffness(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
-                        const AssemblyMap& map, BlockCsr& matrix) {
+OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const BlockCsr& matrix,
+                         const OwnedBatches& share, Index part) {
+  // the most that a simplex has, on cache lines of their own
+  constexpr Offset kSpareBlocks = 16 + 2;
+  const Index corners = rest.dimension + 1;
+  const Offset first_spare = matrix.block_count() + 2 + kSpareBlocks * part;
+  OwnedBlocks result;
+  result.room = first_spare + kSpareBlocks;
+  if (result.room > kMaxIndex) {
+    throw InvalidArgument("assembly: " + std::to_string(result.room) +
+                          " blocks, spare ones included; at most 2,147,483,647 can be numbered");
+  }
+  for (std::size_t i = 0; i < share.batches.size(); ++i) {
+    if (share.boundary[i] < 0) continue;
+    const Offset batch = share.batches[i];
+    for (Index lane = 0; lane < kBatch; ++lane) {
+      const Offset simplex = batch * kBatch + lane;
+      for (Index pair = 0; pair < corners * corners; ++pair) {
+        const Index row = rest.vertices[(batch * corners + pair / corners) * kBatch + lane];
+        const bool owned = simplex < rest.count && row >= share.begin && row < share.end;
+        result.blocks.push_back(owned ? map.blocks[corners * corners * simplex + pair]
+                                      : static_cast<Index>(first_spare) + pair);
+      }
+    }
+  }
+  return result;
+}
+
+namespace {
+
+void check_map(const RestShapes& rest, const AssemblyMap& map) {
   if (static_cast<Offset>(map.blocks.size()) != rest.count * (rest.dimension + 1) * (rest.dimension + 1)) {
     throw InvalidArgument("add_stvk_stiffness: the map belongs to other simplices");
   }
+}
+
+}  // namespace
+
+void add_stvk_stiffness(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
+                        const AssemblyMap& map, BlockCsr& matrix) {
+  check_map(rest, map);
   HWY_DYNAMIC_DISPATCH(add_stiffness_of_any)
-  (rest, lame, positions.data(), map.blocks.data(), matrix.values.data());
+  (rest, lame, positions.data(), map.blocks.data(), matrix.values.data(), nullptr, nullptr);
+}
+
+void add_stvk_stiffness(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
+                        const AssemblyMap& map, const OwnedBatches& share, const OwnedBlocks& boundary,
+                        BlockCsr& matrix) {
+  check_map(rest, map);
+  if (static_cast<Offset>(matrix.values.size()) < 9 * boundary.room) {
+    throw InvalidArgument("add_stvk_stiffness: the matrix has no room for the spare blocks");
+  }
+  HWY_DYNAMIC_DISPATCH(add_stiffness_of_any)
+  (rest, lame, positions.data(), map.blocks.data(), matrix.values.data(), &share, boundary.blocks.data());
 }
 
 }  // namespace meshorder

@@ -19,6 +19,18 @@ struct AssemblyMap {
 /// block. O(simplices · log row length).
 AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix);
 
+/// The map of one share of `owned_batches` (of rest.vertices): for its boundary batches, in their order, the
+/// blocks of the map, with spare blocks in place of those in rows that are not owned.
+struct OwnedBlocks {
+  AlignedVector<Index> blocks;
+  Offset room = 0;  ///< blocks that the matrix's values must hold, spare ones included
+};
+
+/// The map of share number `part`, whose spare blocks stand behind the matrix's and those of the shares
+/// before it. Throws InvalidArgument when they cannot be numbered. O(boundary simplices).
+OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const BlockCsr& matrix,
+                         const OwnedBatches& share, Index part);
+
 /// matrix += K = ∂²E/∂x², the exact Hessian of stvk_energy (symmetric; indefinite under compression).
 /// `positions` has the layout of padded_positions. O(simplices).
 ///
@@ -28,5 +40,11 @@ AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix);
 /// entries of a block at a time.
 void add_stvk_stiffness(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
                         const AssemblyMap& map, BlockCsr& matrix);
+
+/// The rows of that sum that one share owns, for threads to share the work; over all shares the same bits.
+/// Throws InvalidArgument when the matrix has no room for the spare blocks.
+void add_stvk_stiffness(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
+                        const AssemblyMap& map, const OwnedBatches& share, const OwnedBlocks& boundary,
+                        BlockCsr& matrix);
 
 }  // namespace meshorder

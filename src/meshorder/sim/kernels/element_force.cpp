@@ -11,40 +11,59 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
+/// A batch of simplices, which adds to `targets`: its vertices, or spare ones in place of them.
 template <int D, class Lanes>
-HWY_INLINE void add_forces(const RestShapes& rest, const Lame& lame, const double* positions,
-                           double* forces) {
+HWY_INLINE void add_batch(const double* geometry, const Index* vertices, const Index* targets,
+                          const Lame& lame, const double* positions, double* forces) {
+  for (Index lane = 0; lane < kBatch; lane += Lanes::kCount) {
+    Stvk<D, Lanes> stvk;
+    stvk.load(geometry + lane, vertices + lane, positions);
+    stvk.strain_and_stress(lame);
+    stvk.add_forces(targets + lane, forces);
+  }
+}
+
+/// All batches, or those of a share.
+template <int D, class Lanes>
+HWY_INLINE void add_forces(const RestShapes& rest, const Lame& lame, const double* positions, double* forces,
+                           const OwnedBatches* share) {
+  constexpr Offset kGeometry = kBatch * (D * (D + 1) / 2 + 1);
+  constexpr Offset kVertices = kBatch * (D + 1);
   const double* geometry = rest.geometry.data();
   const Index* vertices = rest.vertices.data();
-  for (Offset batch = 0; batch < rest.batches(); ++batch) {
-    for (Index lane = 0; lane < kBatch; lane += Lanes::kCount) {
-      Stvk<D, Lanes> stvk;
-      stvk.load(geometry + lane, vertices + lane, positions);
-      stvk.strain_and_stress(lame);
-      stvk.add_forces(vertices + lane, forces);
+  if (share) {
+    for (std::size_t i = 0; i < share->batches.size(); ++i) {
+      const Offset batch = share->batches[i];
+      const Index* const of_batch = vertices + kVertices * batch;
+      add_batch<D, Lanes>(geometry + kGeometry * batch, of_batch, share->targets_of(i, of_batch, D + 1), lame,
+                          positions, forces);
     }
-    geometry += kBatch * (D * (D + 1) / 2 + 1);
-    vertices += kBatch * (D + 1);
+    return;
+  }
+  for (Offset batch = 0; batch < rest.batches(); ++batch) {
+    add_batch<D, Lanes>(geometry, vertices, vertices, lame, positions, forces);
+    geometry += kGeometry;
+    vertices += kVertices;
   }
 }
 
 template <class Lanes>
 HWY_INLINE void add_forces_of_any(const RestShapes& rest, const Lame& lame, const double* positions,
-                                  double* forces) {
-  if (rest.dimension == 3) add_forces<3, Lanes>(rest, lame, positions, forces);
-  if (rest.dimension == 2) add_forces<2, Lanes>(rest, lame, positions, forces);
-  if (rest.dimension == 1) add_forces<1, Lanes>(rest, lame, positions, forces);
+                                  double* forces, const OwnedBatches* share) {
+  if (rest.dimension == 3) add_forces<3, Lanes>(rest, lame, positions, forces, share);
+  if (rest.dimension == 2) add_forces<2, Lanes>(rest, lame, positions, forces, share);
+  if (rest.dimension == 1) add_forces<1, Lanes>(rest, lame, positions, forces, share);
 }
 
-void add_forces_in_batches(const RestShapes& rest, const Lame& lame, const double* positions,
-                           double* forces) {
-  add_forces_of_any<ManyLanes>(rest, lame, positions, forces);
+void add_forces_in_batches(const RestShapes& rest, const Lame& lame, const double* positions, double* forces,
+                           const OwnedBatches* share) {
+  add_forces_of_any<ManyLanes>(rest, lame, positions, forces, share);
 }
 
 #if HWY_ONCE
 void add_forces_one_by_one(const RestShapes& rest, const Lame& lame, const double* positions,
                            double* forces) {
-  add_forces_of_any<OneLane>(rest, lame, positions, forces);
+  add_forces_of_any<OneLane>(rest, lame, positions, forces, nullptr);
 }
 
 template <int D>
@@ -93,7 +112,13 @@ double stvk_energy(const RestShapes& rest, const Lame& lame, std::span<const dou
 void add_stvk_forces(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
                      std::span<double> forces) {
   check_same_size(positions, forces, "add_stvk_forces");
-  HWY_DYNAMIC_DISPATCH(add_forces_in_batches)(rest, lame, positions.data(), forces.data());
+  HWY_DYNAMIC_DISPATCH(add_forces_in_batches)(rest, lame, positions.data(), forces.data(), nullptr);
+}
+
+void add_stvk_forces(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
+                     std::span<double> forces, const OwnedBatches& share) {
+  check_room(forces, share, "add_stvk_forces");
+  HWY_DYNAMIC_DISPATCH(add_forces_in_batches)(rest, lame, positions.data(), forces.data(), &share);
 }
 
 void add_stvk_forces_scalar(const RestShapes& rest, const Lame& lame, std::span<const double> positions,

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <meshorder/sim/kernels/simplices.hpp>
+#include <meshorder/sim/kernels/owned_batches.hpp>
 
 #include <span>
 
@@ -29,6 +29,12 @@ double stvk_energy(const RestShapes& rest, const Lame& lame, std::span<const dou
 /// those have, the result on nothing else. Throws InvalidArgument when the sizes differ. O(simplices).
 void add_stvk_forces(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
                      std::span<double> forces);
+
+/// The forces on the vertices of one share of `owned_batches` (of rest.vertices), for threads to share the
+/// work; over all shares the same bits. Throws InvalidArgument when `forces` has no room for share.room
+/// vertices. O(simplices of the share).
+void add_stvk_forces(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
+                     std::span<double> forces, const OwnedBatches& share);
 
 /// The same from the same source, one simplex at a time and without vector instructions: the reference.
 void add_stvk_forces_scalar(const RestShapes& rest, const Lame& lame, std::span<const double> positions,

@@ -5,14 +5,19 @@
 namespace meshorder {
 
 void multiply(const BlockCsr& matrix, std::span<const double> x, std::span<double> y) {
+  multiply_rows(matrix, x, y, 0, matrix.size());
+}
+
+void multiply_rows(const BlockCsr& matrix, std::span<const double> x, std::span<double> y, Index begin,
+                   Index end_row) {
   const auto entries = 3 * static_cast<std::size_t>(matrix.size());
   if (x.size() != entries || y.size() != entries) {
     throw InvalidArgument("multiply: x and y must hold 3 doubles for each row of blocks");
   }
   const double* const values = matrix.values.data();
   const Index* const columns = matrix.columns.data();
-  Offset k = 0;
-  for (Index v = 0; v < matrix.size(); ++v) {
+  Offset k = matrix.offsets[begin];
+  for (Index v = begin; v < end_row; ++v) {
     // nine sums, since the additions of three would wait for each other
     double s[9] = {};
     for (const Offset end = matrix.offsets[v + 1]; k < end; ++k) {

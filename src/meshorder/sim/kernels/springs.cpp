@@ -11,45 +11,62 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
+/// A batch of springs, which adds to `targets`: its ends, or spare vertices in place of them.
 template <class Lanes>
-HWY_INLINE void add_forces(const Springs& springs, double stiffness, const double* positions,
-                           double* forces) {
+HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const Index* targets,
+                          double stiffness, const double* positions, double* forces) {
   using Value = typename Lanes::Value;
   const Value k = Lanes::set(stiffness);
+  for (Index lane = 0; lane < kBatch; lane += Lanes::kCount) {
+    Value a[3];
+    Value b[3];
+    Lanes::gather(positions, ends + lane, a);
+    Lanes::gather(positions, ends + kBatch + lane, b);
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c) b[c] = b[c] - a[c];
+    const Value length =
+        Lanes::square_root(Lanes::mul_add(b[2], b[2], Lanes::mul_add(b[1], b[1], b[0] * b[0])));
+    const Value scale = Lanes::if_positive(length, k - k * Lanes::load(rest_length + lane) / length);
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c) {
+      a[c] = scale * b[c];
+      b[c] = Lanes::set(0.0) - a[c];
+    }
+    Lanes::scatter_add(a, targets + lane, forces);
+    Lanes::scatter_add(b, targets + kBatch + lane, forces);
+  }
+}
+
+/// All batches, or those of a share.
+template <class Lanes>
+HWY_INLINE void add_forces(const Springs& springs, double stiffness, const double* positions, double* forces,
+                           const OwnedBatches* share) {
   const Index* ends = springs.ends.data();
   const double* rest_length = springs.rest_lengths.data();
-  for (Offset s = 0; s < springs.count; s += kBatch) {
-    for (Index lane = 0; lane < kBatch; lane += Lanes::kCount) {
-      Value a[3];
-      Value b[3];
-      Lanes::gather(positions, ends + lane, a);
-      Lanes::gather(positions, ends + kBatch + lane, b);
-      MESHORDER_UNROLL
-      for (int c = 0; c < 3; ++c) b[c] = b[c] - a[c];
-      const Value length =
-          Lanes::square_root(Lanes::mul_add(b[2], b[2], Lanes::mul_add(b[1], b[1], b[0] * b[0])));
-      const Value scale = Lanes::if_positive(length, k - k * Lanes::load(rest_length + s + lane) / length);
-      MESHORDER_UNROLL
-      for (int c = 0; c < 3; ++c) {
-        a[c] = scale * b[c];
-        b[c] = Lanes::set(0.0) - a[c];
-      }
-      Lanes::scatter_add(a, ends + lane, forces);
-      Lanes::scatter_add(b, ends + kBatch + lane, forces);
+  if (share) {
+    for (std::size_t i = 0; i < share->batches.size(); ++i) {
+      const Offset batch = share->batches[i];
+      const Index* const of_batch = ends + 2 * kBatch * batch;
+      add_batch<Lanes>(rest_length + kBatch * batch, of_batch, share->targets_of(i, of_batch, 2), stiffness,
+                       positions, forces);
     }
+    return;
+  }
+  for (Offset s = 0; s < springs.count; s += kBatch) {
+    add_batch<Lanes>(rest_length + s, ends, ends, stiffness, positions, forces);
     ends += 2 * kBatch;
   }
 }
 
-void add_forces_in_batches(const Springs& springs, double stiffness, const double* positions,
-                           double* forces) {
-  add_forces<ManyLanes>(springs, stiffness, positions, forces);
+void add_forces_in_batches(const Springs& springs, double stiffness, const double* positions, double* forces,
+                           const OwnedBatches* share) {
+  add_forces<ManyLanes>(springs, stiffness, positions, forces, share);
 }
 
 #if HWY_ONCE
 void add_forces_one_by_one(const Springs& springs, double stiffness, const double* positions,
                            double* forces) {
-  add_forces<OneLane>(springs, stiffness, positions, forces);
+  add_forces<OneLane>(springs, stiffness, positions, forces, nullptr);
 }
 #endif
 
@@ -105,7 +122,15 @@ double spring_energy(const Springs& springs, double stiffness, std::span<const d
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces) {
   check_same_size(positions, forces, "add_spring_forces");
-  HWY_DYNAMIC_DISPATCH(add_forces_in_batches)(springs, stiffness, positions.data(), forces.data());
+  HWY_DYNAMIC_DISPATCH(add_forces_in_batches)
+  (springs, stiffness, positions.data(), forces.data(), nullptr);
+}
+
+void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
+                       std::span<double> forces, const OwnedBatches& share) {
+  check_room(forces, share, "add_spring_forces");
+  HWY_DYNAMIC_DISPATCH(add_forces_in_batches)
+  (springs, stiffness, positions.data(), forces.data(), &share);
 }
 
 void add_spring_forces_scalar(const Springs& springs, double stiffness, std::span<const double> positions,

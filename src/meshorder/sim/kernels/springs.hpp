@@ -2,7 +2,7 @@
 #pragma once
 
 #include <meshorder/graph/csr_graph.hpp>
-#include <meshorder/sim/kernels/simplices.hpp>
+#include <meshorder/sim/kernels/owned_batches.hpp>
 
 #include <span>
 
@@ -29,6 +29,10 @@ double spring_energy(const Springs& springs, double stiffness, std::span<const d
 /// InvalidArgument when the sizes differ. Spring after spring, in batches, as add_stvk_forces. O(springs).
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces);
+
+/// The forces on the vertices of one share of `owned_batches` (of springs.ends), as add_stvk_forces has it.
+void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
+                       std::span<double> forces, const OwnedBatches& share);
 
 /// The same from the same source, one spring at a time and without vector instructions: the reference.
 void add_spring_forces_scalar(const Springs& springs, double stiffness, std::span<const double> positions,
