@@ -69,7 +69,7 @@ TEST(OwnedBatches, AddToEveryOwnedVertexWhatTheSerialKernelAdds) {
     EXPECT_EQ(share.begin, bounds[part]);
     EXPECT_EQ(share.end, bounds[part + 1]);
     EXPECT_TRUE(std::is_sorted(share.batches.begin(), share.batches.end()));
-    for (std::size_t i = 0; i < share.batches.size(); ++i) {
+    for (Index i = 0; i < index_size(share.batches); ++i) {
       const Index first = share.batches[i] * kCorners * kBatch;
       const Index* const targets = share.targets_of(i, vertices.data() + first, kCorners);
       for (Index k = 0; k < kCorners * kBatch; ++k) {

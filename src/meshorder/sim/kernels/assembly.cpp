@@ -181,17 +181,12 @@ HWY_INLINE void add_stiffness(const RestShapes& rest, const Lame& lame, const do
                               const Index* blocks, double* values, const OwnedBatches* share,
                               const Index* boundary_blocks) {
   constexpr Offset kBlocks = kBatch * (D + 1) * (D + 1);
-  if (share) {
-    for (std::size_t i = 0; i < share->batches.size(); ++i) {
-      const Offset batch = share->batches[i];
-      const Offset boundary = share->boundary[i];
-      add_batch<D>(rest, batch, lame, positions,
-                   boundary < 0 ? blocks + kBlocks * batch : boundary_blocks + kBlocks * boundary, values);
-    }
-    return;
-  }
-  for (Offset batch = 0; batch < rest.batches(); ++batch) {
-    add_batch<D>(rest, batch, lame, positions, blocks + kBlocks * batch, values);
+  const Offset count = share ? static_cast<Offset>(share->batches.size()) : rest.batches();
+  for (Offset i = 0; i < count; ++i) {
+    const Offset batch = share ? share->batches[i] : i;
+    const Offset boundary = share ? share->boundary[i] : -1;
+    add_batch<D>(rest, batch, lame, positions,
+                 boundary < 0 ? blocks + kBlocks * batch : boundary_blocks + kBlocks * boundary, values);
   }
 }
 

@@ -29,21 +29,12 @@ HWY_INLINE void add_forces(const RestShapes& rest, const Lame& lame, const doubl
                            const OwnedBatches* share) {
   constexpr Offset kGeometry = kBatch * (D * (D + 1) / 2 + 1);
   constexpr Offset kVertices = kBatch * (D + 1);
-  const double* geometry = rest.geometry.data();
-  const Index* vertices = rest.vertices.data();
-  if (share) {
-    for (std::size_t i = 0; i < share->batches.size(); ++i) {
-      const Offset batch = share->batches[i];
-      const Index* const of_batch = vertices + kVertices * batch;
-      add_batch<D, Lanes>(geometry + kGeometry * batch, of_batch, share->targets_of(i, of_batch, D + 1), lame,
-                          positions, forces);
-    }
-    return;
-  }
-  for (Offset batch = 0; batch < rest.batches(); ++batch) {
-    add_batch<D, Lanes>(geometry, vertices, vertices, lame, positions, forces);
-    geometry += kGeometry;
-    vertices += kVertices;
+  const Offset count = share ? static_cast<Offset>(share->batches.size()) : rest.batches();
+  for (Offset i = 0; i < count; ++i) {
+    const Offset batch = share ? share->batches[i] : i;
+    const Index* const vertices = rest.vertices.data() + kVertices * batch;
+    add_batch<D, Lanes>(rest.geometry.data() + kGeometry * batch, vertices,
+                        share ? share->targets_of(i, vertices, D + 1) : vertices, lame, positions, forces);
   }
 }
 

@@ -25,7 +25,7 @@ struct OwnedBatches {
   AlignedVector<Index> targets;
 
   /// The vertices that batch `i` of `batches`, which has these `vertices`, adds to.
-  [[nodiscard]] const Index* targets_of(std::size_t i, const Index* vertices, Index corners) const {
+  [[nodiscard]] const Index* targets_of(Offset i, const Index* vertices, Index corners) const {
     return boundary[i] < 0 ? vertices : targets.data() + Offset{boundary[i]} * corners * kBatch;
   }
 };

@@ -41,20 +41,13 @@ HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const In
 template <class Lanes>
 HWY_INLINE void add_forces(const Springs& springs, double stiffness, const double* positions, double* forces,
                            const OwnedBatches* share) {
-  const Index* ends = springs.ends.data();
-  const double* rest_length = springs.rest_lengths.data();
-  if (share) {
-    for (std::size_t i = 0; i < share->batches.size(); ++i) {
-      const Offset batch = share->batches[i];
-      const Index* const of_batch = ends + 2 * kBatch * batch;
-      add_batch<Lanes>(rest_length + kBatch * batch, of_batch, share->targets_of(i, of_batch, 2), stiffness,
-                       positions, forces);
-    }
-    return;
-  }
-  for (Offset s = 0; s < springs.count; s += kBatch) {
-    add_batch<Lanes>(rest_length + s, ends, ends, stiffness, positions, forces);
-    ends += 2 * kBatch;
+  const Offset count =
+      share ? static_cast<Offset>(share->batches.size()) : (springs.count + kBatch - 1) / kBatch;
+  for (Offset i = 0; i < count; ++i) {
+    const Offset batch = share ? share->batches[i] : i;
+    const Index* const ends = springs.ends.data() + 2 * kBatch * batch;
+    add_batch<Lanes>(springs.rest_lengths.data() + kBatch * batch, ends,
+                     share ? share->targets_of(i, ends, 2) : ends, stiffness, positions, forces);
   }
 }
 
