@@ -3,7 +3,6 @@
 
 #include <tbb/global_control.h>
 
-#include <optional>
 #include <string>
 
 namespace meshorder::command {
@@ -36,9 +35,11 @@ void add_ordering_options(CLI::App& subcommand, OrderingOptions& options) {
 }
 
 void with_threads(int threads, const std::function<void()>& work) {
-  std::optional<tbb::global_control> limit;
   if (threads > 0) {
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    // never ended: when a limit ends, TBB starts a thread though nothing is left to do
+    static const auto* const limit = new tbb::global_control(
+        tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    (void)limit;
   }
   work();
 }

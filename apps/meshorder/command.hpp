@@ -30,7 +30,7 @@ void add_common(CLI::App& subcommand, Common& common);
 /// --for, --seed and --tolerance.
 void add_ordering_options(CLI::App& subcommand, OrderingOptions& options);
 
-/// Runs `work` with at most `threads` threads (0: all).
+/// Runs `work`, and what comes after it in this process, with at most `threads` threads (0: all).
 void with_threads(int threads, const std::function<void()>& work);
 
 }  // namespace meshorder::command

@@ -107,7 +107,7 @@ void add_models(CLI::App& app) {
       ->capture_default_str();
   make_command->add_flag("--force", arguments->options.force, "Make it anew");
   add_common(*make_command, *arguments);
-  make_command->callback([arguments] { make(*arguments); });
+  make_command->callback([arguments] { with_threads(arguments->threads, [&] { make(*arguments); }); });
 
   subcommand->callback([subcommand, common] {
     if (subcommand->get_subcommands().empty()) list(*common);

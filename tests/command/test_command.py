@@ -107,6 +107,24 @@ def test_compare_keys(command):
     assert all(kernel["speedup"] == 1 for kernel in result["methods"][0]["kernels"].values())
 
 
+def test_compare_on_two_threads(command):
+    made = command.json("models", "make", "grid", "--size", "6")["models"][0]["path"]
+    arguments = ["compare", made, "--methods", "hilbert", "--budget", "0.5"]
+    result = command.json(*arguments, "--threads", "2")
+    assert result["threads"] == 2
+    scrambled, hilbert = result["methods"]
+    assert 0 < hilbert["redundancy"] < scrambled["redundancy"] <= 1
+    for row in (scrambled, hilbert, result["floor"]):
+        assert set(row["parallel_kernels"]) == set(row["kernels"])
+        for kernel in row["parallel_kernels"].values():
+            assert kernel["milliseconds"] > 0 and kernel["speedup"] > 0 and kernel["of_floor"] > 0
+    assert all(kernel["speedup"] == 1 for kernel in scrambled["parallel_kernels"].values())
+    text = command.ok(*arguments, "--threads", "2").stdout
+    assert "Kernels on 1 thread:" in text and "Kernels on 2 threads:" in text
+    alone = command.json(*arguments, "--threads", "1")
+    assert alone["threads"] == 1 and "parallel_kernels" not in alone["methods"][0]
+
+
 def test_compare_for_people(command):
     made = command.json("models", "make", "grid", "--size", "4")["models"][0]["path"]
     text = command.ok("compare", made, "--methods", "auto", "--for", "springs", "--budget", "0.1").stdout

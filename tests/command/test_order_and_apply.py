@@ -1,12 +1,15 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """What is ordered is the same mesh, everything attached included, and can be put back."""
 import itertools
+import os
 import shutil
+import subprocess
 
 import meshio
 import numpy
 import pytest
 
+import conftest
 import meshes
 
 REAL = ["monkey.msh", "armadillo-p4.msh", "multimaterial-cubes-v22.msh", "simpleBridge-hex.veg", "torus.node"]
@@ -84,14 +87,44 @@ def test_all_orders_give_the_same_mesh(command, tmp_path):
         assert sorted(sorted(map(tuple, new_points[c])) for c in new_cells) == expected
 
 
-@pytest.mark.parametrize("vertices", ["fiedler", "rcm", "metis-nd", "scrambled"])
-def test_threads_do_not_change_a_byte(command, tmp_path, vertices):
+@pytest.mark.parametrize("vertices", ["auto", "fiedler", "rcm", "metis-nd", "scrambled"])
+@pytest.mark.parametrize("group_by", [None, "half"])
+def test_threads_do_not_change_a_byte(command, tmp_path, vertices, group_by):
     made = command.json("models", "make", "ball", "--size", "12")["models"][0]["path"]
+    points, cells = meshes.read_tetgen(made)
+    half = (points[cells].mean(axis=1)[:, 0] > 0).astype(int)
+    meshio.Mesh(points, [("tetra", cells)], cell_data={"half": [half]}).write(tmp_path / "ball.vtu")
+    options = ["--vertices", vertices, "--elements", "fiedler"] + (["--group-by", group_by] if group_by else [])
+    written = []
+    for threads in (1, 2, 3):
+        command.ok("order", "ball.vtu", "-o", f"{threads}.vtu", "--maps", str(threads), "--threads", threads, *options)
+        written.append([path.read_bytes() for path in sorted(tmp_path.glob(f"{threads}.*"))])
+    assert len(written[0]) == 5
+    assert written[0] == written[1] == written[2]
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self/task"), reason="needs Linux's list of threads")
+@pytest.mark.parametrize("arguments", [
+    ["order", "big.node", "-o", "out.node", "--elements", "fiedler"],
+    ["order", "big.node", "-o", "out.node", "--vertices", "fiedler", "--maps", "m"],
+    ["info", "big.node"],
+    ["compare", "big.node", "--methods", "fiedler", "--budget", "0.2"],
+])
+def test_there_are_no_more_threads_than_asked_for(command, tmp_path, arguments):
+    made = command.json("models", "make", "ball", "--size", "24")["models"][0]["path"]
+    for suffix in (".node", ".ele"):
+        shutil.copy(made.replace(".node", suffix), tmp_path / f"big{suffix}")
     for threads in (1, 2):
-        command.ok("order", made, "-o", f"{threads}.node", "--vertices", vertices, "--elements", "fiedler", "--threads",
-                   threads)
-    for extension in ("node", "ele"):
-        assert (tmp_path / f"1.{extension}").read_bytes() == (tmp_path / f"2.{extension}").read_bytes()
+        process = subprocess.Popen([conftest.MESHORDER, *arguments, "--threads", str(threads)], cwd=tmp_path,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        most = 0
+        while process.poll() is None:
+            try:
+                most = max(most, len(os.listdir(f"/proc/{process.pid}/task")))
+            except OSError:
+                pass
+        assert process.returncode == 0
+        assert 1 <= most <= threads
 
 
 def test_a_set_of_elements_in_included_files_follows(command, shared, tmp_path):
