@@ -22,6 +22,6 @@ inline constexpr std::array kUses{Use::all, Use::element, Use::spmv, Use::assemb
 std::string_view name(Use use);
 
 /// The use of that name. Throws InvalidArgument, which lists the known ones.
-Use use_of(std::string_view name);
+Use use_of(std::string_view wanted);
 
 }  // namespace meshorder

@@ -8,7 +8,7 @@ void multiply(const BlockCsr& matrix, std::span<const double> x, std::span<doubl
   multiply_rows(matrix, x, y, 0, matrix.size());
 }
 
-void multiply_rows(const BlockCsr& matrix, std::span<const double> x, std::span<double> y, Index begin,
+void multiply_rows(const BlockCsr& matrix, std::span<const double> x, std::span<double> y, Index begin_row,
                    Index end_row) {
   const auto entries = 3 * static_cast<std::size_t>(matrix.size());
   if (x.size() != entries || y.size() != entries) {
@@ -16,8 +16,8 @@ void multiply_rows(const BlockCsr& matrix, std::span<const double> x, std::span<
   }
   const double* const values = matrix.values.data();
   const Index* const columns = matrix.columns.data();
-  Offset k = matrix.offsets[begin];
-  for (Index v = begin; v < end_row; ++v) {
+  Offset k = matrix.offsets[begin_row];
+  for (Index v = begin_row; v < end_row; ++v) {
     // nine sums, since the additions of three would wait for each other
     double s[9] = {};
     for (const Offset end = matrix.offsets[v + 1]; k < end; ++k) {

@@ -12,8 +12,8 @@ namespace meshorder {
 /// that in a good order the memory's bandwidth is the limit.
 void multiply(const BlockCsr& matrix, std::span<const double> x, std::span<double> y);
 
-/// The rows begin … end − 1 of that product alone, for threads to share the rows; the same bits.
-void multiply_rows(const BlockCsr& matrix, std::span<const double> x, std::span<double> y, Index begin,
-                   Index end);
+/// The rows begin_row … end_row − 1 of that product alone, for threads to share the rows; the same bits.
+void multiply_rows(const BlockCsr& matrix, std::span<const double> x, std::span<double> y, Index begin_row,
+                   Index end_row);
 
 }  // namespace meshorder
