@@ -22,6 +22,7 @@ Mesh bar_of_parts() {
   mesh.data.clear();
   mesh.sets.clear();
   std::vector<std::int64_t> parts;
+  parts.reserve(mesh.cells.shapes.size() + 9);
   for (Index c = 0; c < mesh.cell_count(); ++c) parts.push_back(std::array{30, -4, 7}[c / 6 / 3]);
   for (Index i = 0; i < 9; ++i) {
     mesh.cells.push_back(Shape::triangle, std::vector<Index>{4 * i, 4 * i + 4, 4 * i + 5});
@@ -86,6 +87,7 @@ TEST(GroupBy, PutsEachVertexWithTheSmallestValueAmongItsElements) {
     Mesh mesh = bar_of_parts();
     const Reordering result = reorder(mesh, grouped("part", vertices));
     std::vector<std::int64_t> at_vertices;
+    at_vertices.reserve(mesh.points.size());
     for (Index v = 0; v < mesh.vertex_count(); ++v) at_vertices.push_back(smallest_part_at(mesh, v));
     EXPECT_TRUE(std::is_sorted(at_vertices.begin(), at_vertices.end())) << vertices;
     // −4 takes both interfaces: 4 layers of 4; the others keep 3; then what no element uses
@@ -130,6 +132,7 @@ TEST(GroupBy, StaysWithinBlocks) {
 TEST(GroupBy, AnArrayOnVerticesGroupsThemAndLeavesElementsToTheirMethod) {
   Mesh mesh = bar_of_parts();
   std::vector<std::int64_t> zones;
+  zones.reserve(mesh.points.size());
   for (Index v = 0; v < mesh.vertex_count(); ++v) zones.push_back(v % 3);
   mesh.data.push_back({"zone", Attached::vertices, 1, zones, {}, {}});
   const Reordering result = reorder(mesh, grouped("zone"));

@@ -18,7 +18,7 @@ struct Lattice {
   std::vector<Point> points;
 
   Lattice() {
-    for (Index v = 0; v < graph.size(); ++v) points.push_back({1.0 * (v % 12), 1.0 * (v / 12), 0.0});
+    for (Index v = 0; v < graph.size(); ++v) points.push_back({1.0 * (v % 12), 0.1 * v, 0.0});
   }
 };
 

@@ -28,7 +28,7 @@ std::vector<Mesh> some_meshes() {
   meshes.push_back(test::tetrahedral_bar(10));
   meshes.back().points.resize(meshes.back().points.size() + 13, Point{});
   Mesh surface;  // a triangulated strip
-  for (Index v = 0; v < 60; ++v) surface.points.push_back({1.0 * (v / 2), 1.0 * (v % 2), 0.1 * (v % 3)});
+  for (Index v = 0; v < 60; ++v) surface.points.push_back({0.5 * v, 1.0 * (v % 2), 0.1 * (v % 3)});
   for (Index v = 0; v + 2 < 60; ++v) surface.cells.push_back(Shape::triangle, std::vector{v, v + 1, v + 2});
   meshes.push_back(surface);
   return meshes;
@@ -59,7 +59,7 @@ TEST(IdealBand, JoinsEachVertexToItsNearestOnes) {
   const CsrGraph graph = vertex_graph(mesh);
   const Band band = ideal_band(mesh, graph);
   // 4 vertices a cube and k or k + 1 edges for each: the average, and nothing beyond
-  const Index k = static_cast<Index>(graph.edge_count() / graph.size());
+  const auto k = static_cast<Index>(graph.edge_count() / graph.size());
   for (Index v = 0; v + k + 1 < band.graph.size(); ++v) {
     const auto row = band.graph[v];
     const auto after = static_cast<Index>(row.end() - std::upper_bound(row.begin(), row.end(), v));
@@ -73,7 +73,7 @@ TEST(IdealBand, RunsThroughTheVerticesInSimplicesThatUseTheEdges) {
   const Mesh mesh = make_grid({.size = 12});
   const CsrGraph graph = vertex_graph(mesh);
   const Band band = ideal_band(mesh, graph);
-  const Index k = static_cast<Index>(graph.edge_count() / graph.size());
+  const auto k = static_cast<Index>(graph.edge_count() / graph.size());
   EXPECT_EQ(band.mesh.cells[0].front(), 0);
   EXPECT_GE(band.mesh.cells[band.mesh.cell_count() - 1].back(), mesh.vertex_count() - 1 - k);
   for (Index c = 0; c < band.mesh.cell_count(); ++c) {
