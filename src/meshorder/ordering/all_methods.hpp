@@ -11,6 +11,7 @@ Ordering original_vertices(const VertexProblem&, const OrderingOptions&);
 Ordering scrambled_vertices(const VertexProblem&, const OrderingOptions&);
 Ordering fiedler_vertices(const VertexProblem&, const OrderingOptions&);
 Ordering minla_vertices(const VertexProblem&, const OrderingOptions&);
+Ordering spectral_vertices(const VertexProblem&, const OrderingOptions&);
 Ordering rcm_vertices(const VertexProblem&, const OrderingOptions&);
 Ordering bfs_vertices(const VertexProblem&, const OrderingOptions&);
 Ordering morton_vertices(const VertexProblem&, const OrderingOptions&);

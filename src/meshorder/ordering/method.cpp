@@ -18,6 +18,8 @@ constexpr std::array kVertexMethods{
     VertexMethod{"fiedler", "sorted by the Fiedler vector of the vertex graph, the paper's order",
                  fiedler_vertices},
     VertexMethod{"minla", "the Fiedler order, improved towards the least sum of edge spans", minla_vertices},
+    VertexMethod{"spectral", "cut along Fiedler vectors again and again, down to a few vertices",
+                 spectral_vertices},
     VertexMethod{"rcm", "reverse Cuthill-McKee: breadth first, neighbours by degree, reversed", rcm_vertices},
     VertexMethod{"bfs", "breadth first from a vertex at the rim", bfs_vertices},
     VertexMethod{"morton", "along Morton's Z curve through the coordinates", morton_vertices},

@@ -1,0 +1,168 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/ordering/smoothed_bisection.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+constexpr Index kLeaf = 16;  // smaller pieces are sorted and left
+constexpr int kSmoothingSteps = 12;
+
+/// What vertices of a piece are sorted by: components by falling pull, each along its smooth function.
+struct Key {
+  float component_pull;
+  Index component;
+  float value;
+  Index vertex;
+
+  bool operator<(const Key& other) const {
+    return std::tie(other.component_pull, component, value, vertex) <
+           std::tie(component_pull, other.component, other.value, other.vertex);
+  }
+};
+
+class Bisection {
+ public:
+  Bisection(CsrGraph graph, std::vector<float> pull)
+      : graph_(std::move(graph)),
+        pull_(std::move(pull)),
+        row_end_(graph_.offsets.begin() + 1, graph_.offsets.end()),
+        sequence_(graph_.size()),
+        in_first_half_(graph_.size(), 0),
+        reached_(graph_.size(), 0),
+        distance_(graph_.size(), 0),
+        value_(graph_.size(), 0),
+        next_value_(graph_.size(), 0) {
+    std::iota(sequence_.begin(), sequence_.end(), Index{0});
+    queue_.reserve(graph_.size());
+    keys_.reserve(graph_.size());
+  }
+
+  std::vector<Index> run() {
+    order(0, graph_.size());
+    return std::move(sequence_);
+  }
+
+ private:
+  /// Orders the piece that stands at [begin, end) of the sequence and whose rows end within it.
+  void order(Index begin, Index end) {
+    if (end - begin < 2) return;
+    collect_keys(begin, end);
+    if (end - begin <= kLeaf) {
+      std::sort(keys_.begin(), keys_.end());
+      for (Index k = begin; k < end; ++k) sequence_[k] = keys_[k - begin].vertex;
+      return;
+    }
+    const Index middle = begin + (end - begin) / 2;
+    std::nth_element(keys_.begin(), keys_.begin() + (middle - begin), keys_.end());
+    for (Index k = begin; k < end; ++k) {
+      sequence_[k] = keys_[k - begin].vertex;
+      in_first_half_[sequence_[k]] = k < middle ? 1 : 0;
+    }
+    for (Index k = begin; k < end; ++k) drop_neighbours_in_other_half(sequence_[k]);
+    order(begin, middle);
+    order(middle, end);
+  }
+
+  void collect_keys(Index begin, Index end) {
+    keys_.clear();
+    const Index first_mark = ++mark_;
+    Index component = 0;
+    for (Index k = begin; k < end; ++k) {
+      if (reached_[sequence_[k]] >= first_mark) continue;
+      add_component(sequence_[k], component++);
+    }
+  }
+
+  /// Appends the keys of the component of `start`.
+  void add_component(Index start, Index component) {
+    // searches from a far end and from the end that is farthest from it
+    search(start, mark_);
+    search(queue_.back(), ++mark_);
+    for (const Index v : queue_) value_[v] = static_cast<float>(distance_[v]);
+    search(queue_.back(), ++mark_);
+    for (const Index v : queue_) value_[v] -= static_cast<float>(distance_[v]);
+    smooth();
+    float pull = 0;
+    float along = 0;
+    for (const Index v : queue_) {
+      pull += pull_[v];
+      along += pull_[v] * value_[v];
+    }
+    pull /= static_cast<float>(queue_.size());
+    for (const Index v : queue_) keys_.push_back({pull, component, along > 0 ? -value_[v] : value_[v], v});
+  }
+
+  void search(Index start, Index mark) {
+    queue_.assign(1, start);
+    reached_[start] = mark;
+    distance_[start] = 0;
+    for (std::size_t k = 0; k < queue_.size(); ++k) {
+      const Index v = queue_[k];
+      for (Offset m = graph_.offsets[v]; m < row_end_[v]; ++m) {
+        const Index u = graph_.neighbours[m];
+        if (reached_[u] == mark) continue;
+        reached_[u] = mark;
+        distance_[u] = distance_[v] + 1;
+        queue_.push_back(u);
+      }
+    }
+  }
+
+  /// Moves the value of each vertex in the queue half way to the mean of its neighbours, several times, and
+  /// keeps the mean over all edges' ends at 0.
+  void smooth() {
+    if (queue_.size() < 3) return;
+    float ends = 0;
+    for (const Index v : queue_) ends += static_cast<float>(row_end_[v] - graph_.offsets[v]);
+    for (int step = 0; step < kSmoothingSteps; ++step) {
+      float sum_of_all = 0;
+      for (const Index v : queue_) {
+        float sum = 0;
+        for (Offset m = graph_.offsets[v]; m < row_end_[v]; ++m) sum += value_[graph_.neighbours[m]];
+        const auto degree = static_cast<float>(row_end_[v] - graph_.offsets[v]);
+        next_value_[v] = 0.5F * (value_[v] + sum / degree);
+        sum_of_all += next_value_[v] * degree;
+      }
+      const float mean = sum_of_all / ends;
+      for (const Index v : queue_) value_[v] = next_value_[v] - mean;
+    }
+  }
+
+  /// Takes the neighbours in the other half of its piece out of the row of v, and lets them pull.
+  void drop_neighbours_in_other_half(Index v) {
+    Offset kept = graph_.offsets[v];
+    for (Offset m = kept; m < row_end_[v]; ++m) {
+      const Index u = graph_.neighbours[m];
+      if (in_first_half_[u] == in_first_half_[v]) graph_.neighbours[kept++] = u;
+    }
+    const auto dropped = static_cast<float>(row_end_[v] - kept);
+    pull_[v] += in_first_half_[v] != 0 ? -dropped : dropped;
+    row_end_[v] = kept;
+  }
+
+  CsrGraph graph_;
+  std::vector<float> pull_;
+  std::vector<Offset> row_end_;  ///< where the neighbours of each vertex within its piece end
+  std::vector<Index> sequence_;
+  std::vector<char> in_first_half_;
+  std::vector<Index> reached_;  ///< the mark of the last search that reached each vertex
+  std::vector<Index> distance_;
+  std::vector<float> value_;
+  std::vector<float> next_value_;
+  std::vector<Index> queue_;
+  std::vector<Key> keys_;
+  Index mark_ = 0;
+};
+
+}  // namespace
+
+std::vector<Index> smoothed_bisection(CsrGraph graph, std::vector<float> pull) {
+  return Bisection(std::move(graph), std::move(pull)).run();
+}
+
+}  // namespace meshorder
