@@ -12,16 +12,16 @@ namespace {
 constexpr Index kLeaf = 16;  // smaller pieces are sorted and left
 constexpr int kSmoothingSteps = 12;
 
-/// What vertices of a piece are sorted by: components by falling pull, each along its smooth function.
+/// What the vertices of a piece are sorted by: components by falling pull, each along its smooth function.
 struct Key {
-  float component_pull;
+  float push;  ///< minus the mean pull of the component
   Index component;
   float value;
   Index vertex;
 
   bool operator<(const Key& other) const {
-    return std::tie(other.component_pull, component, value, vertex) <
-           std::tie(component_pull, other.component, other.value, other.vertex);
+    return std::tie(push, component, value, vertex) <
+           std::tie(other.push, other.component, other.value, other.vertex);
   }
 };
 
@@ -93,8 +93,9 @@ class Bisection {
       pull += pull_[v];
       along += pull_[v] * value_[v];
     }
-    pull /= static_cast<float>(queue_.size());
-    for (const Index v : queue_) keys_.push_back({pull, component, along > 0 ? -value_[v] : value_[v], v});
+    const float push = -pull / static_cast<float>(queue_.size());
+    const float sign = along > 0 ? -1.0F : 1.0F;
+    for (const Index v : queue_) keys_.push_back({push, component, sign * value_[v], v});
   }
 
   void search(Index start, Index mark) {
