@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 namespace meshorder {
@@ -12,17 +11,11 @@ namespace {
 constexpr Index kLeaf = 16;  // smaller pieces are sorted and left
 constexpr int kSmoothingSteps = 12;
 
-/// What the vertices of a piece are sorted by: components by falling pull, each along its smooth function.
-struct Key {
-  float push;  ///< minus the mean pull of the component
-  Index component;
-  float value;
-  Index vertex;
-
-  bool operator<(const Key& other) const {
-    return std::tie(push, component, value, vertex) <
-           std::tie(other.push, other.component, other.value, other.vertex);
-  }
+/// A connected part of a piece; its vertices stand at [begin, end) of the sorted ones.
+struct Component {
+  float push;  ///< minus the mean pull of its vertices: what is pulled forward most comes first
+  Index begin;
+  Index end;
 };
 
 class Bisection {
@@ -39,7 +32,7 @@ class Bisection {
         next_value_(graph_.size(), 0) {
     std::iota(sequence_.begin(), sequence_.end(), Index{0});
     queue_.reserve(graph_.size());
-    keys_.reserve(graph_.size());
+    sorted_.reserve(graph_.size());
   }
 
   std::vector<Index> run() {
@@ -51,36 +44,33 @@ class Bisection {
   /// Orders the piece that stands at [begin, end) of the sequence and whose rows end within it.
   void order(Index begin, Index end) {
     if (end - begin < 2) return;
-    collect_keys(begin, end);
-    if (end - begin <= kLeaf) {
-      std::sort(keys_.begin(), keys_.end());
-      for (Index k = begin; k < end; ++k) sequence_[k] = keys_[k - begin].vertex;
-      return;
-    }
+    sort(begin, end);
+    if (end - begin <= kLeaf) return;
     const Index middle = begin + (end - begin) / 2;
-    std::nth_element(keys_.begin(), keys_.begin() + (middle - begin), keys_.end());
-    for (Index k = begin; k < end; ++k) {
-      sequence_[k] = keys_[k - begin].vertex;
-      in_first_half_[sequence_[k]] = k < middle ? 1 : 0;
-    }
+    for (Index k = begin; k < end; ++k) in_first_half_[sequence_[k]] = k < middle ? 1 : 0;
     for (Index k = begin; k < end; ++k) drop_neighbours_in_other_half(sequence_[k]);
     order(begin, middle);
     order(middle, end);
   }
 
-  void collect_keys(Index begin, Index end) {
-    keys_.clear();
+  /// Sorts a piece by components, each along its smooth function.
+  void sort(Index begin, Index end) {
+    components_.clear();
+    sorted_.clear();
     const Index first_mark = ++mark_;
-    Index component = 0;
     for (Index k = begin; k < end; ++k) {
-      if (reached_[sequence_[k]] >= first_mark) continue;
-      add_component(sequence_[k], component++);
+      if (reached_[sequence_[k]] < first_mark) add_component(sequence_[k]);
+    }
+    std::stable_sort(components_.begin(), components_.end(),
+                     [](const Component& a, const Component& b) { return a.push < b.push; });
+    Index place = begin;
+    for (const Component& component : components_) {
+      for (Index k = component.begin; k < component.end; ++k) sequence_[place++] = sorted_[k].second;
     }
   }
 
-  /// Appends the keys of the component of `start`.
-  void add_component(Index start, Index component) {
-    // searches from a far end and from the end that is farthest from it
+  void add_component(Index start) {
+    // to a far end, from there to the end farthest from it, and back
     search(start, mark_);
     search(queue_.back(), ++mark_);
     for (const Index v : queue_) value_[v] = static_cast<float>(distance_[v]);
@@ -93,11 +83,15 @@ class Bisection {
       pull += pull_[v];
       along += pull_[v] * value_[v];
     }
-    const float push = -pull / static_cast<float>(queue_.size());
     const float sign = along > 0 ? -1.0F : 1.0F;
-    for (const Index v : queue_) keys_.push_back({push, component, sign * value_[v], v});
+    const Index begin = index_size(sorted_);
+    for (const Index v : queue_) sorted_.emplace_back(sign * value_[v], v);
+    std::sort(sorted_.begin() + begin, sorted_.end());
+    components_.push_back({-pull / static_cast<float>(queue_.size()), begin, index_size(sorted_)});
   }
 
+  /// Breadth first over the component of `start`: into the queue with it, by rising distance. Marks rise from
+  /// search to search.
   void search(Index start, Index mark) {
     queue_.assign(1, start);
     reached_[start] = mark;
@@ -156,7 +150,8 @@ class Bisection {
   std::vector<float> value_;
   std::vector<float> next_value_;
   std::vector<Index> queue_;
-  std::vector<Key> keys_;
+  std::vector<Component> components_;
+  std::vector<std::pair<float, Index>> sorted_;  ///< values and vertices
   Index mark_ = 0;
 };
 
