@@ -1,0 +1,91 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/base/index.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace meshorder {
+
+/// How often each reuse distance occurs in a stream of accesses to cache lines: the number of other lines
+/// accessed since a line's last access. A fully associative cache of c lines that drops the least recently
+/// used one misses the accesses of distance c and more, and the cold ones, the first to a line (Mattson,
+/// Gecsei, Slutz and Traiger 1970: Evaluation techniques for storage hierarchies).
+///
+/// Distances below 256 are counted one by one, larger ones in 128 bins to each power of two.
+class ReuseHistogram {
+ public:
+  /// `distance` ≥ 0. O(1).
+  void add(Index distance) { ++bins_[bin_of(distance)]; }
+  void add_cold() noexcept { ++cold_; }
+  void forget_cold() noexcept { cold_ = 0; }
+
+  /// All accesses, cold ones among them. O(bins).
+  [[nodiscard]] Offset accesses() const;
+  [[nodiscard]] Offset cold() const noexcept { return cold_; }
+
+  /// The misses of a cache of that many lines, ≥ 0: exact where the number has at most 8 significant bits, as
+  /// those of caches have; else it is rounded down to such a number, by less than 1 %. O(bins).
+  [[nodiscard]] Offset misses(Offset lines) const;
+
+  /// The mean of log₂(distance + 1) over the accesses that are not cold; 0 when there is none. Every factor
+  /// of two in distance counts the same, whatever the caches. O(bins).
+  [[nodiscard]] double mean_log2() const;
+
+  bool operator==(const ReuseHistogram&) const = default;
+
+ private:
+  static std::size_t bin_of(Index distance);
+  static double middle_of(std::size_t bin);
+
+  std::vector<Offset> bins_ = std::vector<Offset>(3200, 0);
+  Offset cold_ = 0;
+};
+
+/// Measures the reuse distances of a stream that is fed access after access and not kept.
+///
+/// Time is a row of slots, each marked while it is the last access of some line, so that a distance is the
+/// number of marks after a line's own (Bennett and Kruskal 1975, LRU stack processing). The marks are bits,
+/// counted by a tree of 16 children a node; an access goes up the tree only until its line's old and new
+/// slots meet, and so costs O(log distance) steps. When the slots run out, the marks are moved together.
+/// Memory: 8 bytes for each line and a quarter more.
+class ReuseDistance {
+ public:
+  /// For accesses to lines 0 … lines − 1.
+  explicit ReuseDistance(Index lines);
+
+  /// Amortised O(1 + log distance).
+  void access(Index line);
+
+  /// The accesses so far. Every line's first one is cold.
+  [[nodiscard]] const ReuseHistogram& histogram() const noexcept { return histogram_; }
+
+  /// Lines accessed so far.
+  [[nodiscard]] Index distinct() const noexcept { return index_size(first_accesses_); }
+
+  /// The accesses of every run but the first, when the stream so far is repeated for ever: nothing is cold,
+  /// since the first access to a line in a run is a reuse from the run before. Ends the measurement.
+  /// O(distinct lines · log distance).
+  [[nodiscard]] ReuseHistogram repeated() &&;
+
+ private:
+  using Slot = std::uint32_t;
+  static constexpr Slot kNever = ~Slot{0};
+
+  void mark_first(Slot slot);
+  Index move_mark(Slot from, Slot to);
+  void close_gaps();
+
+  std::vector<Slot> slot_of_line_;     ///< of the last access
+  std::vector<Index> first_accesses_;  ///< lines in the order of their first accesses
+  std::vector<std::uint64_t> marks_;   ///< a bit for each slot
+  /// counts_[0][w] marks in the word marks_[w], counts_[k + 1][i] in entries 16 i … 16 i + 15 of counts_[k]
+  std::vector<std::vector<std::uint32_t>> counts_;
+  Slot slot_count_ = 0;
+  Slot next_ = 0;
+  ReuseHistogram histogram_;
+};
+
+}  // namespace meshorder
