@@ -1,0 +1,61 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
+#include <meshorder/study/access_stream.hpp>
+
+#include <string>
+#include <utility>
+
+namespace meshorder {
+
+AccessStream::AccessStream(Kernel kernel, const CsrGraph& graph, const Simplices& simplices)
+    : kernel_(kernel), graph_(graph), simplices_(simplices) {
+  const Offset n = graph.size();
+  const Offset blocks = n + static_cast<Offset>(graph.neighbours.size());
+  const Offset corners = simplices.dimension + 1;
+  const Offset elements = corners == 1 ? 0 : simplices.size();
+  const Offset batches = (elements + kBatch - 1) / kBatch;
+  if (kernel == Kernel::spmv || kernel == Kernel::assembly) values_ = place(kBlockBytes * blocks);
+  if (kernel == Kernel::spmv) {
+    offsets_ = place(static_cast<Offset>(sizeof(Offset)) * (n + 1));
+    columns_ = place(static_cast<Offset>(sizeof(Index)) * blocks);
+    x_ = place(static_cast<Offset>(3 * sizeof(double)) * n);
+    y_ = place(static_cast<Offset>(3 * sizeof(double)) * n);
+  } else {
+    positions_ = place(kPaddedBytes * n);
+  }
+  if (kernel == Kernel::element || kernel == Kernel::springs) forces_ = place(kPaddedBytes * n);
+  if (kernel == Kernel::element || kernel == Kernel::assembly) {
+    const int d = simplices.dimension;
+    vertices_of_batch_ = static_cast<Offset>(sizeof(Index)) * kBatch * corners;
+    geometry_of_batch_ = static_cast<Offset>(sizeof(double)) * kBatch * (d * (d + 1) / 2 + 1);
+    vertices_ = place(batches * vertices_of_batch_);
+    geometry_ = place(batches * geometry_of_batch_);
+  }
+  if (kernel == Kernel::assembly) {
+    map_ = place(static_cast<Offset>(sizeof(Index)) * elements * corners * corners);
+  }
+  if (kernel == Kernel::springs) {
+    const Offset springs = (graph.edge_count() + kBatch - 1) / kBatch * kBatch;
+    ends_ = place(static_cast<Offset>(2 * sizeof(Index)) * springs);
+    rest_lengths_ = place(static_cast<Offset>(sizeof(double)) * springs);
+  }
+  if (lines_ > kMaxIndex) {
+    throw InvalidArgument("access stream: " + std::to_string(lines_) +
+                          " cache lines; at most 2,147,483,647 can be numbered");
+  }
+}
+
+AccessStream::Array AccessStream::place(Offset bytes) {
+  const Array array{lines_, bytes};
+  lines_ += (bytes + kLineBytes - 1) / kLineBytes;
+  return array;
+}
+
+ReuseHistogram reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices) {
+  const AccessStream stream(kernel, graph, simplices);
+  ReuseDistance reuse(stream.line_count());
+  stream.visit([&](Index line) { reuse.access(line); });
+  return std::move(reuse).repeated();
+}
+
+}  // namespace meshorder
