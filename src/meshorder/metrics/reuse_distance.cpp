@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace meshorder {
@@ -15,7 +16,24 @@ constexpr Index kFine = 128;
 constexpr int kFineBits = 7;
 
 constexpr std::uint32_t kWord = 64;
-constexpr std::uint32_t kChildren = 16;
+constexpr std::uint32_t kSisters = 16;
+
+/// Entry i of row k is 1 where i < k: rows to be added in vector registers, where a loop that ends at k would
+/// be mispredicted.
+constexpr auto kOneBefore = [] {
+  std::array<std::array<std::uint32_t, kSisters>, kSisters> rows{};
+  for (std::uint32_t k = 0; k < kSisters; ++k) {
+    for (std::uint32_t i = 0; i < k; ++i) rows[k][i] = 1;
+  }
+  return rows;
+}();
+
+/// Through a copy, without which the compiler takes entry after entry.
+void subtract(const std::array<std::uint32_t, kSisters>& what, std::array<std::uint32_t, kSisters>& from) {
+  std::array<std::uint32_t, kSisters> rest;
+  for (std::uint32_t i = 0; i < kSisters; ++i) rest[i] = from[i] - what[i];
+  from = rest;
+}
 
 /// std::popcount calls a function where the instruction set does not promise the instruction.
 std::uint32_t count_ones(std::uint64_t word) {
@@ -23,14 +41,6 @@ std::uint32_t count_ones(std::uint64_t word) {
   word = (word & 0x3333333333333333U) + (word >> 2 & 0x3333333333333333U);
   word = (word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fU;
   return static_cast<std::uint32_t>(word * 0x0101010101010101U >> 56);
-}
-
-/// The sum of those of the 16 entries that come after entry `k`.
-std::uint32_t sum_after(const std::uint32_t* entries, std::uint32_t k) {
-  std::uint32_t sum = 0;
-  // all 16 in vector registers: cheaper than a loop of unforeseeable length
-  for (std::uint32_t i = 0; i < kChildren; ++i) sum += i > k ? entries[i] : 0;
-  return sum;
 }
 
 }  // namespace
@@ -70,14 +80,13 @@ ReuseDistance::ReuseDistance(Index lines) : slot_of_line_(lines, kNever) {
   // closing the gaps then leaves at least half of the slots free
   constexpr Slot kFewest = 2 * kWord;
   slot_count_ = std::max(kFewest, 2 * static_cast<Slot>(lines));
-  std::size_t entries = slot_count_ / kWord + 1;
-  marks_.assign(entries, 0);
-  while (true) {
-    const std::size_t parents = (entries + kChildren - 1) / kChildren;
-    counts_.emplace_back(parents * kChildren, 0);
-    if (parents == 1) break;
-    entries = parents;
-  }
+  std::size_t nodes = slot_count_ / kWord + 1;
+  marks_.assign(nodes, 0);
+  do {
+    nodes = (nodes + kSisters - 1) / kSisters;
+    levels_.emplace_back(nodes);
+  } while (nodes > 1);
+  marks_in_open_.assign(levels_.size(), 0);
 }
 
 void ReuseDistance::access(Index line) {
@@ -88,6 +97,7 @@ void ReuseDistance::access(Index line) {
     return;
   }
   if (next_ == slot_count_) close_gaps();
+  if (next_ % kWord == 0 && next_ > 0) close_word(next_ / kWord - 1);
   if (slot == kNever) {
     mark_first(next_);
     first_accesses_.push_back(line);
@@ -99,12 +109,8 @@ void ReuseDistance::access(Index line) {
 }
 
 void ReuseDistance::mark_first(Slot slot) {
-  std::uint32_t entry = slot / kWord;
-  marks_[entry] |= std::uint64_t{1} << slot % kWord;
-  for (std::vector<std::uint32_t>& counts : counts_) {
-    ++counts[entry];
-    entry /= kChildren;
-  }
+  marks_[slot / kWord] |= std::uint64_t{1} << slot % kWord;
+  for (std::uint32_t& marks : marks_in_open_) ++marks;
 }
 
 /// Marks `to`, after all marks, instead of `from`; returns the marks between.
@@ -116,22 +122,35 @@ Index ReuseDistance::move_mark(Slot from, Slot to) {
   std::uint32_t between = count_ones(marks_[a] & ~(mark | (mark - 1)));
   marks_[a] &= ~mark;
   marks_[b] |= std::uint64_t{1} << to % kWord;
+  std::uint32_t in_open = 0;
   for (std::size_t level = 0; a != b; ++level) {
-    std::uint32_t* const counts = counts_[level].data();
-    between += sum_after(counts + a / kChildren * kChildren, a % kChildren);
-    --counts[a];
-    ++counts[b];
-    a /= kChildren;
-    b /= kChildren;
+    auto& marks_after = levels_[level][a / kSisters].marks_after;
+    between += marks_after[a % kSisters];
+    subtract(kOneBefore[a % kSisters], marks_after);
+    in_open = marks_in_open_[level]++;
+    a /= kSisters;
+    b /= kSisters;
   }
-  return static_cast<Index>(between);
+  return static_cast<Index>(between + in_open);
+}
+
+/// The next slot comes after this word, and so after every node that the word completes.
+void ReuseDistance::close_word(std::size_t word) {
+  std::size_t node = word;
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    auto& marks_after = levels_[level][node / kSisters].marks_after;
+    for (std::size_t i = 0; i < node % kSisters; ++i) marks_after[i] += marks_in_open_[level];
+    marks_in_open_[level] = 0;
+    if (node % kSisters + 1 < kSisters) return;
+    node /= kSisters;
+  }
 }
 
 /// Moves all marks to the first slots, in their order.
 void ReuseDistance::close_gaps() {
   std::vector<Slot> marks_before(marks_.size());
-  std::exclusive_scan(counts_[0].begin(), counts_[0].begin() + static_cast<std::ptrdiff_t>(marks_.size()),
-                      marks_before.begin(), Slot{0});
+  std::transform_exclusive_scan(marks_.begin(), marks_.end(), marks_before.begin(), Slot{0}, std::plus<>(),
+                                count_ones);
   for (Slot& slot : slot_of_line_) {
     if (slot == kNever) continue;
     const std::uint32_t word = slot / kWord;
@@ -139,14 +158,14 @@ void ReuseDistance::close_gaps() {
   }
   next_ = static_cast<Slot>(distinct());
   std::fill(marks_.begin(), marks_.end(), 0);
-  std::fill_n(marks_.begin(), next_ / kWord, ~std::uint64_t{0});
-  marks_[next_ / kWord] = (std::uint64_t{1} << next_ % kWord) - 1;
-  std::transform(marks_.begin(), marks_.end(), counts_[0].begin(), count_ones);
-  for (std::size_t level = 1; level < counts_.size(); ++level) {
-    for (std::size_t i = 0; i < counts_[level - 1].size(); i += kChildren) {
-      const auto first = counts_[level - 1].begin() + static_cast<std::ptrdiff_t>(i);
-      counts_[level][i / kChildren] = std::accumulate(first, first + kChildren, std::uint32_t{0});
-    }
+  for (std::vector<Sisters>& level : levels_) std::fill(level.begin(), level.end(), Sisters());
+  std::fill(marks_in_open_.begin(), marks_in_open_.end(), 0);
+  const std::size_t full = next_ / kWord;
+  for (std::size_t word = 0; word <= full; ++word) {
+    const std::uint32_t marks = word < full ? kWord : next_ % kWord;
+    marks_[word] = word < full ? ~std::uint64_t{0} : (std::uint64_t{1} << marks) - 1;
+    for (std::uint32_t& in_open : marks_in_open_) in_open += marks;
+    if (word < full) close_word(word);
   }
 }
 
