@@ -58,7 +58,8 @@ int main(int argc, char** argv) try {
     return 0;
   }
   if (what.empty() || !run(mo::read_mesh(argv[1]), what, std::atoi(how.c_str()))) {
-    fmt::print(stderr, "usage: cache_misses MESH predict [CACHES] | MESH spmv|element|assembly|springs RUNS\n");
+    fmt::print(stderr,
+               "usage: cache_misses MESH predict [CACHES] | MESH spmv|element|assembly|springs RUNS\n");
     return 2;
   }
   return 0;

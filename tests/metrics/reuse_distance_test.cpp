@@ -147,6 +147,9 @@ TEST(ReuseDistance, OfASweepAndBackIsEveryDistanceOnce) {
   for (const Index capacity : {0, 1, 100, 255, 256, 300, 2048, 4096}) {
     EXPECT_EQ(histogram.misses(capacity), 2 * n - capacity) << capacity;
   }
+  double sum = 0.0;
+  for (Index distance = 0; distance < n; ++distance) sum += std::log2(distance + 1.0);
+  EXPECT_NEAR(histogram.mean_log2(), sum / n, 1e-4);
 }
 
 TEST(ReuseHistogram, HasTheMissesOfALeastRecentlyUsedCache) {

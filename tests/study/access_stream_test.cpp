@@ -191,6 +191,14 @@ TEST(ReuseOf, HasNoColdAccessesAndMissesTheLeastWithTheLargestCache) {
   }
 }
 
+TEST(ReuseOfKernels, IsThatOfEachByItself) {
+  const Prepared prepared(test::mixed_mesh());
+  const KernelReuse reuse = reuse_of_kernels(prepared.graph, prepared.simplices);
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    EXPECT_EQ(reuse[k], reuse_of(kKernels[k], prepared.graph, prepared.simplices)) << name(kKernels[k]);
+  }
+}
+
 TEST(ReuseOf, IsFartherInAScrambledOrder) {
   const Mesh ordered = test::tetrahedral_bar(400);
   Mesh scrambled = ordered;

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/error.hpp>
+#include <meshorder/base/parallel.hpp>
 #include <meshorder/study/access_stream.hpp>
 
 #include <string>
@@ -56,6 +57,14 @@ ReuseHistogram reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& s
   ReuseDistance reuse(stream.line_count());
   stream.visit([&](Index line) { reuse.access(line); });
   return std::move(reuse).repeated();
+}
+
+KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices) {
+  KernelReuse result;
+  for_each_chunk(index_size(kKernels), 1, [&](Index k, Index /*begin*/, Index /*end*/) {
+    result[k] = reuse_of(kKernels[k], graph, simplices);
+  });
+  return result;
 }
 
 }  // namespace meshorder

@@ -199,4 +199,10 @@ class AccessStream {
 /// distance) time, about 9 bytes of memory for each line, so a seventh of what the kernel itself needs.
 ReuseHistogram reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices);
 
+/// By kernel, as kKernels lists them.
+using KernelReuse = std::array<ReuseHistogram, kKernels.size()>;
+
+/// Those of all kernels, each on a thread of its own.
+KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices);
+
 }  // namespace meshorder
