@@ -199,6 +199,18 @@ TEST(ReuseOfKernels, IsThatOfEachByItself) {
   }
 }
 
+TEST(ReuseOfKernels, OfAnOrderIsThatOfTheReorderedMesh) {
+  for (const Mesh& mesh : {test::tetrahedral_bar(30), test::mixed_mesh()}) {
+    const Permutation vertices = test::shuffled(mesh.vertex_count(), 3);
+    const Permutation cells = test::shuffled_cells(mesh, 4);
+    Mesh ordered = mesh;
+    reorder(ordered, vertices, cells);
+    const Prepared prepared(ordered);
+    EXPECT_EQ(reuse_of_kernels(mesh, vertex_graph(mesh), vertices, cells),
+              reuse_of_kernels(prepared.graph, prepared.simplices));
+  }
+}
+
 TEST(ReuseOf, IsFartherInAScrambledOrder) {
   const Mesh ordered = test::tetrahedral_bar(400);
   Mesh scrambled = ordered;

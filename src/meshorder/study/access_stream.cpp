@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/error.hpp>
 #include <meshorder/base/parallel.hpp>
+#include <meshorder/mesh/reorder.hpp>
 #include <meshorder/study/access_stream.hpp>
 
 #include <string>
@@ -65,6 +66,15 @@ KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices) 
     result[k] = reuse_of(kKernels[k], graph, simplices);
   });
   return result;
+}
+
+KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
+                             const Permutation& cells) {
+  Mesh ordered;
+  ordered.points = mesh.points;
+  ordered.cells = mesh.cells;
+  reorder(ordered, vertices, cells);
+  return reuse_of_kernels(renumbered(graph, vertices.old_to_new()), cut_into_simplices(ordered));
 }
 
 }  // namespace meshorder

@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <meshorder/mesh/mesh.hpp>
 #include <meshorder/metrics/cache.hpp>
+#include <meshorder/ordering/permutation.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
 #include <meshorder/sim/kernels/simplices.hpp>
 #include <meshorder/study/kernel_bench.hpp>
@@ -204,5 +206,10 @@ using KernelReuse = std::array<ReuseHistogram, kKernels.size()>;
 
 /// Those of all kernels, each on a thread of its own.
 KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices);
+
+/// Those that a mesh of that vertex graph has once `reorder` has moved its vertices and cells to these
+/// places.
+KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
+                             const Permutation& cells);
 
 }  // namespace meshorder
