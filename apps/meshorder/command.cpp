@@ -37,8 +37,8 @@ void add_ordering_options(CLI::App& subcommand, OrderingOptions& options) {
 void with_threads(int threads, const std::function<void()>& work) {
   if (threads > 0) {
     // never ended: when a limit ends, TBB starts a thread though nothing is left to do
-    static const auto* const limit = new tbb::global_control(
-        tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    static const auto* const limit = new tbb::global_control(tbb::global_control::max_allowed_parallelism,
+                                                             static_cast<std::size_t>(threads));
     (void)limit;
   }
   work();

@@ -4,6 +4,7 @@
 #include "console.hpp"
 #include "progress.hpp"
 #include "report.hpp"
+#include "reuse_report.hpp"
 #include <meshorder/base/stopwatch.hpp>
 #include <meshorder/io/format.hpp>
 #include <meshorder/mesh/graphs.hpp>
@@ -26,6 +27,7 @@ struct CompareArguments : Common {
   std::vector<std::string> methods;
   OrderingOptions ordering;
   double budget_seconds = TimingOptions{}.budget_seconds;
+  std::string caches = "this";
 };
 
 std::vector<std::string> default_methods() {
@@ -82,6 +84,8 @@ KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<Com
 
 void run(const CompareArguments& arguments) {
   const Console console(arguments);
+  Comparison comparison;
+  comparison.caches = parse_caches(arguments.caches);
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.05);
   Notes notes;
@@ -89,7 +93,6 @@ void run(const CompareArguments& arguments) {
   mesh.cell_blocks.clear();  // what is compared is the orders, not a file's layout
   const CsrGraph graph = vertex_graph(mesh);
 
-  Comparison comparison;
   comparison.orders = orders_of(arguments.methods);
   const double share = 0.35 / static_cast<double>(comparison.orders.size());
   for (std::size_t i = 0; i < comparison.orders.size(); ++i) {
@@ -98,6 +101,7 @@ void run(const CompareArguments& arguments) {
     progress.stage("ordering by " + c.vertices + "/" + c.elements, from, from + share);
     c.order = compute_reordering(mesh, graph, {c.vertices, c.elements, arguments.ordering});
     c.span = edge_span(graph, c.order.vertices);
+    c.reuse = reuse_of_kernels(mesh, graph, c.order.vertices, c.order.cells);
     note_convergence(c.order.vertex_fiedler, "the vertices by " + c.vertices, notes);
   }
 
@@ -144,6 +148,7 @@ void add_compare(CLI::App& app) {
   subcommand->add_option("--budget", arguments->budget_seconds, "Seconds to spend on running kernels")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  add_cache_option(*subcommand, arguments->caches)->capture_default_str();
   add_ordering_options(*subcommand, arguments->ordering);
   add_common(*subcommand, *arguments);
   subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });

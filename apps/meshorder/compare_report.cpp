@@ -2,6 +2,7 @@
 #include "compare_report.hpp"
 
 #include "report.hpp"
+#include "reuse_report.hpp"
 
 namespace meshorder::command {
 namespace {
@@ -27,6 +28,14 @@ void print_quality(const Console& console, const Comparison& comparison) {
   for (const ComparedOrder& c : comparison.orders) {
     const MethodChoice& taken = c.order.vertex_method;
     if (!taken.because.empty()) console.print("auto takes {}: {}", taken.name, taken.because);
+  }
+}
+
+void print_reuse(const Console& console, const Comparison& comparison) {
+  console.print("\nPredicted for each run: mean log2 of reuse distances, misses of caches of these sizes");
+  console.print("{}", reuse_header(comparison.caches, 26));
+  for (const ComparedOrder& c : comparison.orders) {
+    console.print("{:<11} {:<14}{}", c.vertices, c.elements, reuse_cells(c.reuse, comparison.caches));
   }
 }
 
@@ -78,6 +87,7 @@ void add_kernels(nlohmann::ordered_json& to, const Comparison& comparison, Times
 
 void print_comparison(const Console& console, const Comparison& comparison) {
   print_quality(console, comparison);
+  print_reuse(console, comparison);
   for (const KernelTable& table : comparison.kernels) print_kernels(console, comparison, table);
   if (comparison.kernels.back().threads > 1) {
     console.print("\ntwice: elements that two threads compute, since each adds to its own vertices alone.");
@@ -96,7 +106,8 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
         {"taken", {{"vertices", c.order.vertex_method.name}, {"elements", c.order.element_method.name}}},
         {"seconds", c.order.vertex_seconds + c.order.element_seconds},
         {"edge_span", to_json(c.span)},
-        {"fiedler", to_json(c.order.vertex_fiedler)}};
+        {"fiedler", to_json(c.order.vertex_fiedler)},
+        {"reuse", to_json(c.reuse, comparison.caches)}};
     add_kernels(method, comparison,
                 [&](const KernelTable& table) -> const OrderTimes& { return table.orders[i]; });
     for (const KernelTable& table : comparison.kernels) {
@@ -106,7 +117,10 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
   }
   nlohmann::ordered_json floor{{"vertices", kFloor}, {"edge_span", to_json(comparison.floor_span)}};
   add_kernels(floor, comparison, [&](const KernelTable& table) -> const OrderTimes& { return table.floor; });
-  return {{"threads", comparison.kernels.back().threads}, {"methods", methods}, {"floor", floor}};
+  return {{"threads", comparison.kernels.back().threads},
+          {"caches", comparison.caches.level_bytes},
+          {"methods", methods},
+          {"floor", floor}};
 }
 
 }  // namespace meshorder::command

@@ -3,7 +3,9 @@
 
 #include "console.hpp"
 #include <meshorder/mesh/mesh_ordering.hpp>
+#include <meshorder/metrics/cache.hpp>
 #include <meshorder/metrics/edge_span.hpp>
+#include <meshorder/study/access_stream.hpp>
 #include <meshorder/study/kernel_timing.hpp>
 
 #include <nlohmann/json.hpp>
@@ -19,6 +21,7 @@ struct ComparedOrder {
   std::string elements;
   Reordering order;
   EdgeSpan span;
+  KernelReuse reuse;  ///< in the steady state
 };
 
 /// Kernels measured on some number of threads.
@@ -31,6 +34,7 @@ struct KernelTable {
 
 /// The orders, the first of which is the reference, and the band of the mesh's size, which is none of them.
 struct Comparison {
+  Caches caches;  ///< for which misses are predicted
   std::vector<ComparedOrder> orders;
   EdgeSpan floor_span;
   std::vector<KernelTable> kernels;

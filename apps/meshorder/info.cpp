@@ -3,6 +3,7 @@
 #include "console.hpp"
 #include "progress.hpp"
 #include "report.hpp"
+#include "reuse_report.hpp"
 #include <meshorder/base/stopwatch.hpp>
 #include <meshorder/graph/components.hpp>
 #include <meshorder/io/format.hpp>
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace meshorder::command {
@@ -20,7 +22,17 @@ namespace {
 
 struct InfoArguments : Common {
   std::string input;
+  std::string caches;  ///< empty: this machine's, unless that takes long
 };
+
+/// The reuse of the mesh in its order; nothing for a large mesh when nobody asked for it.
+std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph) {
+  // predicting takes a few seconds for so many, and 9 bytes for each line of 64 that a kernel touches
+  constexpr Offset kMostElements = 2'000'000;
+  const Simplices simplices = cut_into_simplices(mesh);
+  if (arguments.caches.empty() && simplices.size() > kMostElements) return std::nullopt;
+  return reuse_of_kernels(graph, simplices);
+}
 
 /// One bar for each power of two, as long as its share of the edges.
 void print_histogram(const Console& console, const std::vector<Offset>& bins) {
@@ -72,6 +84,7 @@ void print_attachments(const Console& console, const Mesh& mesh) {
 
 void run(const InfoArguments& arguments) {
   const Console console(arguments);
+  const Caches caches = parse_caches(arguments.caches);
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.5);
   Notes notes;
@@ -83,6 +96,7 @@ void run(const InfoArguments& arguments) {
   const EdgeSpan span = edge_span(graph, order);
   const Offset envelope = profile(graph, order);
   const std::vector<Offset> histogram = span_histogram_log2(graph, order);
+  const std::optional<KernelReuse> reuse = reuse_of(arguments, mesh, graph);
   const auto components = connected_components(graph);
   const auto isolated =
       std::count_if(components.begin(), components.end(), [](const auto& c) { return c.size() == 1; });
@@ -105,6 +119,12 @@ void run(const InfoArguments& arguments) {
   console.print("{:<12} {}", "bandwidth", with_commas(span.max));
   console.print("{:<12} {}", "profile", with_commas(envelope));
   if (!histogram.empty()) print_histogram(console, histogram);
+  if (reuse) {
+    console.print("\nPredicted for each run of a kernel: mean log2 of reuse distances, misses of caches");
+    console.print("{}\n{}", reuse_header(caches, 0), reuse_cells(*reuse, caches));
+  } else {
+    console.log("a large mesh: --cache this predicts its kernels' cache misses");
+  }
 
   nlohmann::ordered_json result{
       {"file", arguments.input},
@@ -118,6 +138,7 @@ void run(const InfoArguments& arguments) {
       {"bandwidth", span.max},
       {"profile", envelope},
       {"span_histogram_log2", histogram}};
+  if (reuse) result.update({{"caches", caches.level_bytes}, {"reuse", to_json(*reuse, caches)}});
   result.update(attachments(mesh));
   console.print_json(result);
 }
@@ -128,6 +149,7 @@ void add_info(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand("info", "What a mesh holds, and how good its order is");
   const auto arguments = std::make_shared<InfoArguments>();
   subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
+  add_cache_option(*subcommand, arguments->caches);
   add_common(*subcommand, *arguments);
   subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

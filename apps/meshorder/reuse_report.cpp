@@ -1,0 +1,66 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "reuse_report.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+namespace meshorder::command {
+namespace {
+
+constexpr int kLogWidth = 8;
+constexpr int kMissesWidth = 7;
+
+/// Three digits: "954k", "1.09M".
+std::string short_count(Offset count) {
+  const auto number = static_cast<double>(count);
+  if (number < 1e3) return std::to_string(count);
+  if (number < 999.5e3) return fmt::format("{:.3g}k", number * 1e-3);
+  if (number < 999.5e6) return fmt::format("{:.3g}M", number * 1e-6);
+  return fmt::format("{:.3g}G", number * 1e-9);
+}
+
+}  // namespace
+
+CLI::Option* add_cache_option(CLI::App& subcommand, std::string& caches) {
+  return subcommand.add_option(
+      "--cache", caches,
+      "Caches to predict misses for: this (machine), paper, or the sizes of the levels, such as "
+      "48K,1M,32M");
+}
+
+nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches) {
+  nlohmann::ordered_json result;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    result[std::string(name(kKernels[k]))] = {{"accesses", reuse[k].accesses()},
+                                              {"misses", misses(reuse[k], caches)},
+                                              {"mean_log2", reuse[k].mean_log2()}};
+  }
+  return result;
+}
+
+std::string reuse_header(const Caches& caches, int left) {
+  std::string levels = fmt::format("{:>{}}", "log2", kLogWidth);
+  std::istringstream sizes(to_string(caches));
+  for (std::string size; std::getline(sizes, size, ',');) levels += fmt::format("{:>{}}", size, kMissesWidth);
+  std::string first(left, ' ');
+  std::string second(left, ' ');
+  for (const char* const kernel : {"SpMV", "element force", "assembly", "springs"}) {
+    first += fmt::format("{:>{}}", kernel, levels.size());
+    second += levels;
+  }
+  return first + "\n" + second;
+}
+
+std::string reuse_cells(const KernelReuse& reuse, const Caches& caches) {
+  std::string row;
+  for (const ReuseHistogram& of_kernel : reuse) {
+    row += fmt::format("{:>{}.2f}", of_kernel.mean_log2(), kLogWidth);
+    for (const Offset count : misses(of_kernel, caches)) {
+      row += fmt::format("{:>{}}", short_count(count), kMissesWidth);
+    }
+  }
+  return row;
+}
+
+}  // namespace meshorder::command
