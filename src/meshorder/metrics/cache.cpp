@@ -61,6 +61,7 @@ Caches caches_in_sysfs() {
     if (type != "Instruction") size_of_level[level] = parse_size(size);
   }
   std::vector<Offset> sizes;
+  sizes.reserve(size_of_level.size());
   for (const auto& [level, size] : size_of_level) sizes.push_back(size);
   return rising(sizes);
 }
