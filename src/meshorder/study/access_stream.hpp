@@ -86,8 +86,15 @@ class AccessStream {
   /// The number of the block in row a and column b of the matrix on the graph: each row has a block for each
   /// neighbour and one for the diagonal.
   [[nodiscard]] Offset block(Index a, Index b) const {
-    const std::span<const Index> row = graph_[a];
-    const auto before = std::lower_bound(row.begin(), row.end(), b) - row.begin();
+    // std::lower_bound without branches, which would be mispredicted half the time
+    const Index* row = graph_.neighbours.data() + graph_.offsets[a];
+    Index left = graph_.degree(a);
+    Offset before = 0;
+    while (left > 0) {
+      const Index half = (left + 1) / 2;
+      before += row[before + half - 1] < b ? half : 0;
+      left -= half;
+    }
     return graph_.offsets[a] + a + before + (b > a ? 1 : 0);
   }
 
