@@ -29,10 +29,10 @@ void predict(const mo::Mesh& mesh, const mo::Caches& caches) {
              mo::to_string(caches));
   for (const mo::Kernel kernel : mo::kKernels) {
     stopwatch = {};
-    const mo::ReuseHistogram reuse = mo::reuse_of(kernel, graph, simplices);
+    const mo::Reuse reuse = mo::reuse_of(kernel, graph, simplices);
     fmt::print("{} seconds {:.3f} accesses {} mean_log2 {:.3f} misses", mo::name(kernel), stopwatch.seconds(),
-               reuse.accesses(), reuse.mean_log2());
-    for (const mo::Offset misses : mo::misses(reuse, caches)) fmt::print(" {}", misses);
+               reuse.all.accesses(), reuse.all.mean_log2());
+    for (const mo::Offset misses : mo::misses(reuse.all, caches)) fmt::print(" {}", misses);
     fmt::print("\n");
   }
 }

@@ -32,7 +32,9 @@ void print_quality(const Console& console, const Comparison& comparison) {
 }
 
 void print_reuse(const Console& console, const Comparison& comparison) {
-  console.print("\nPredicted for each run: mean log2 of reuse distances, misses of caches of these sizes");
+  console.print(
+      "\nPredicted for each run: mean log2 of reuse distances, misses of caches, jumps among the last "
+      "cache's misses");
   console.print("{}", reuse_header(comparison.caches, 26));
   for (const ComparedOrder& c : comparison.orders) {
     console.print("{:<11} {:<14}{}", c.vertices, c.elements, reuse_cells(c.reuse, comparison.caches));

@@ -120,7 +120,10 @@ void run(const InfoArguments& arguments) {
   console.print("{:<12} {}", "profile", with_commas(envelope));
   if (!histogram.empty()) print_histogram(console, histogram);
   if (reuse) {
-    console.print("\nPredicted for each run of a kernel: mean log2 of reuse distances, misses of caches");
+    console.print(
+        "\nPredicted for each run of a kernel: mean log2 of reuse distances, misses of caches, jumps among "
+        "the "
+        "last cache's misses");
     console.print("{}\n{}", reuse_header(caches, 0), reuse_cells(*reuse, caches));
   } else {
     console.log("a large mesh: --cache this predicts its kernels' cache misses");

@@ -20,6 +20,8 @@ std::string short_count(Offset count) {
   return fmt::format("{:.3g}G", number * 1e-9);
 }
 
+std::string count_cell(Offset count) { return fmt::format("{:>{}}", short_count(count), kMissesWidth); }
+
 }  // namespace
 
 CLI::Option* add_cache_option(CLI::App& subcommand, std::string& caches) {
@@ -32,9 +34,10 @@ CLI::Option* add_cache_option(CLI::App& subcommand, std::string& caches) {
 nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches) {
   nlohmann::ordered_json result;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    result[std::string(name(kKernels[k]))] = {{"accesses", reuse[k].accesses()},
-                                              {"misses", misses(reuse[k], caches)},
-                                              {"mean_log2", reuse[k].mean_log2()}};
+    result[std::string(name(kKernels[k]))] = {{"accesses", reuse[k].all.accesses()},
+                                              {"misses", misses(reuse[k].all, caches)},
+                                              {"jumps", misses(reuse[k].jumps, caches)},
+                                              {"mean_log2", reuse[k].all.mean_log2()}};
   }
   return result;
 }
@@ -43,6 +46,7 @@ std::string reuse_header(const Caches& caches, int left) {
   std::string levels = fmt::format("{:>{}}", "log2", kLogWidth);
   std::istringstream sizes(to_string(caches));
   for (std::string size; std::getline(sizes, size, ',');) levels += fmt::format("{:>{}}", size, kMissesWidth);
+  levels += fmt::format("{:>{}}", "jumps", kMissesWidth);
   std::string first(left, ' ');
   std::string second(left, ' ');
   for (const char* const kernel : {"SpMV", "element force", "assembly", "springs"}) {
@@ -54,11 +58,10 @@ std::string reuse_header(const Caches& caches, int left) {
 
 std::string reuse_cells(const KernelReuse& reuse, const Caches& caches) {
   std::string row;
-  for (const ReuseHistogram& of_kernel : reuse) {
-    row += fmt::format("{:>{}.2f}", of_kernel.mean_log2(), kLogWidth);
-    for (const Offset count : misses(of_kernel, caches)) {
-      row += fmt::format("{:>{}}", short_count(count), kMissesWidth);
-    }
+  for (const Reuse& of_kernel : reuse) {
+    row += fmt::format("{:>{}.2f}", of_kernel.all.mean_log2(), kLogWidth);
+    for (const Offset count : misses(of_kernel.all, caches)) row += count_cell(count);
+    row += count_cell(misses(of_kernel.jumps, caches).back());
   }
   return row;
 }

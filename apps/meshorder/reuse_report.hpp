@@ -14,14 +14,15 @@ namespace meshorder::command {
 /// --cache, for parse_caches.
 CLI::Option* add_cache_option(CLI::App& subcommand, std::string& caches);
 
-/// {"spmv": {"accesses", "misses": […], "mean_log2"}, …}, misses level by level
+/// {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …}, misses and jumps level by level
 nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches);
 
 /// What `reuse_cells` shows, in two lines: the kernels, and for each its mean log2 of reuse distances and its
-/// misses in each level. `left` is how wide the columns before them are.
+/// misses in each level, and those jumps among the last level's. `left` is how wide the columns before them
+/// are.
 std::string reuse_header(const Caches& caches, int left);
 
-/// One row of the table: "14.6  1.09M   954k   681k" for each kernel.
+/// One row of the table: "14.6  1.09M   954k   681k  20.1k" for each kernel.
 std::string reuse_cells(const KernelReuse& reuse, const Caches& caches);
 
 }  // namespace meshorder::command

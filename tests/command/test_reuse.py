@@ -71,6 +71,7 @@ def test_info_predicts_the_misses_of_caches(command):
     spmv = result["reuse"]["spmv"]
     assert spmv["accesses"] == len(lines)
     assert spmv["misses"] == [misses_when_repeated(lines, size // 64) for size in result["caches"]]
+    assert all(0 <= jumps <= misses for jumps, misses in zip(spmv["jumps"], spmv["misses"]))
     assert 0 < spmv["misses"][1] < spmv["misses"][0] < len(lines) and spmv["misses"][3] == 0
     assert spmv["mean_log2"] == pytest.approx(mean_log2_when_repeated(lines), abs=1e-2)
 

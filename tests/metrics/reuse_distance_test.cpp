@@ -49,6 +49,28 @@ ReuseHistogram by_stack(const std::vector<Index>& stream, Stack stack = {}) {
   return histogram;
 }
 
+/// The accesses from 512 lines away and farther, cold ones among them, after none of whose two predecessors
+/// in memory among the last 64 of these, by looking at all of them.
+ReuseHistogram jumps_by_stack(const std::vector<Index>& stream, Stack stack = {}) {
+  ReuseHistogram histogram;
+  std::vector<Index> far;
+  for (const Index line : stream) {
+    const Index distance = stack.access(line);
+    if (distance >= 0 && distance < 512) continue;
+    const auto first = far.end() - std::min<std::ptrdiff_t>(64, static_cast<std::ptrdiff_t>(far.size()));
+    const bool led_to =
+        std::any_of(first, far.end(), [&](Index f) { return f == line - 1 || f == line - 2; });
+    far.push_back(line);
+    if (led_to) continue;
+    if (distance < 0) {
+      histogram.add_cold();
+    } else {
+      histogram.add(distance);
+    }
+  }
+  return histogram;
+}
+
 ReuseDistance measured(const std::vector<Index>& stream, Index lines) {
   ReuseDistance reuse(lines);
   for (const Index line : stream) reuse.access(line);
@@ -106,9 +128,9 @@ TEST(ReuseDistance, IsThePlaceInTheStack) {
     SCOPED_TRACE(lines);
     const std::vector<Index> stream = wandering(lines, length, 7);
     const ReuseDistance reuse = measured(stream, lines);
-    EXPECT_EQ(reuse.histogram(), by_stack(stream));
-    EXPECT_EQ(reuse.histogram().accesses(), length);
-    EXPECT_EQ(reuse.histogram().cold(), reuse.distinct());
+    EXPECT_EQ(reuse.reuse().all, by_stack(stream));
+    EXPECT_EQ(reuse.reuse().all.accesses(), length);
+    EXPECT_EQ(reuse.reuse().all.cold(), reuse.distinct());
   }
 }
 
@@ -120,30 +142,70 @@ TEST(ReuseDistance, WhenRepeatedIsThatOfEveryLaterRun) {
     for (int run = 0; run < 2; ++run) {
       for (const Index line : stream) stack.access(line);
     }
-    const ReuseHistogram repeated = measured(stream, lines).repeated();
+    const ReuseHistogram repeated = measured(stream, lines).repeated().all;
     EXPECT_EQ(repeated, by_stack(stream, stack));
     EXPECT_EQ(repeated.cold(), 0);
     EXPECT_EQ(repeated.accesses(), length);
   }
 }
 
+TEST(ReuseDistance, JumpsWhereNoStreamLeads) {
+  for (const auto& [lines, length] : {std::pair(600, 3000), {5000, 40000}, {20000, 60000}}) {
+    SCOPED_TRACE(lines);
+    const std::vector<Index> stream = wandering(lines, length, 11);
+    EXPECT_EQ(measured(stream, lines).reuse().jumps, jumps_by_stack(stream));
+  }
+}
+
+TEST(ReuseDistance, WhenRepeatedJumpsAsInEveryLaterRun) {
+  const Index lines = 20000;
+  const std::vector<Index> stream = wandering(lines, 60000, 12);
+  Stack stack;
+  for (const Index line : stream) stack.access(line);
+  const ReuseHistogram later = jumps_by_stack(stream, stack);
+  const ReuseHistogram repeated = measured(stream, lines).repeated().jumps;
+  EXPECT_EQ(repeated.cold(), 0);
+  for (const Offset capacity : {512, 2048, 8192}) {
+    // but for what the end of the run before leads to, or keeps near
+    const auto expected = static_cast<double>(later.misses(capacity));
+    EXPECT_GT(expected, 300.0);
+    EXPECT_NEAR(static_cast<double>(repeated.misses(capacity)), expected, 0.01 * expected + 3.0) << capacity;
+  }
+}
+
+TEST(ReuseDistance, OfASweepJumpsOnce) {
+  const Index n = 3000;
+  EXPECT_EQ(measured(count_up(n, 1), n).repeated().jumps.accesses(), 1);
+  // of 80 sweeps side by side, each access comes too long after the line before
+  std::vector<Index> interleaved;
+  for (Index k = 0; k < 40; ++k) {
+    for (Index sweep = 0; sweep < 80; ++sweep) interleaved.push_back(50 * sweep + k);
+  }
+  EXPECT_EQ(measured(interleaved, 4000).reuse().jumps.accesses(), 3200);
+  std::vector<Index> few;
+  for (Index k = 0; k < 400; ++k) {
+    for (Index sweep = 0; sweep < 8; ++sweep) few.push_back(500 * sweep + k);
+  }
+  EXPECT_EQ(measured(few, 4000).reuse().jumps.accesses(), 8);
+}
+
 TEST(ReuseDistance, OfASweepIsAllOtherLines) {
   const Index n = 100000;
-  const ReuseHistogram twice = measured(count_up(n, 2), n).histogram();
+  const ReuseHistogram twice = measured(count_up(n, 2), n).reuse().all;
   EXPECT_EQ(twice.cold(), n);
   EXPECT_EQ(twice.accesses(), 2 * n);
   // 512 lines and their multiples by powers of two are exact capacities
   EXPECT_EQ(twice.misses(512 << 7), 2 * n);
   EXPECT_EQ(twice.misses(512 << 8), n);
   EXPECT_NEAR(twice.mean_log2(), std::log2(n), 0.006);
-  EXPECT_EQ(measured(count_up(n, 1), n).repeated().misses(512 << 7), n);
+  EXPECT_EQ(measured(count_up(n, 1), n).repeated().all.misses(512 << 7), n);
 }
 
 TEST(ReuseDistance, OfASweepAndBackIsEveryDistanceOnce) {
   const Index n = 5000;
   std::vector<Index> stream = count_up(n, 1);
   for (Index line = n; line-- > 0;) stream.push_back(line);
-  const ReuseHistogram histogram = measured(stream, n).histogram();
+  const ReuseHistogram histogram = measured(stream, n).reuse().all;
   for (const Index capacity : {0, 1, 100, 255, 256, 300, 2048, 4096}) {
     EXPECT_EQ(histogram.misses(capacity), 2 * n - capacity) << capacity;
   }
@@ -154,7 +216,7 @@ TEST(ReuseDistance, OfASweepAndBackIsEveryDistanceOnce) {
 
 TEST(ReuseHistogram, HasTheMissesOfALeastRecentlyUsedCache) {
   const std::vector<Index> stream = wandering(30000, 200000, 9);
-  const ReuseHistogram histogram = measured(stream, 30000).histogram();
+  const ReuseHistogram histogram = measured(stream, 30000).reuse().all;
   // caches of 32K, 48K, 256K, 1M and 1.25M, and small ones
   for (const std::size_t capacity : {1U, 17U, 255U, 512U, 768U, 4096U, 16384U, 20480U}) {
     EXPECT_EQ(histogram.misses(static_cast<Offset>(capacity)), misses_of_lru(stream, capacity)) << capacity;
@@ -164,7 +226,7 @@ TEST(ReuseHistogram, HasTheMissesOfALeastRecentlyUsedCache) {
 
 TEST(ReuseHistogram, RoundsOtherCapacitiesDownByLessThanAHundredth) {
   const std::vector<Index> stream = wandering(30000, 200000, 10);
-  const ReuseHistogram histogram = measured(stream, 30000).histogram();
+  const ReuseHistogram histogram = measured(stream, 30000).reuse().all;
   for (const std::size_t capacity : {257U, 1001U, 4099U, 16385U, 29999U}) {
     EXPECT_GE(histogram.misses(static_cast<Offset>(capacity)), misses_of_lru(stream, capacity));
     EXPECT_LE(histogram.misses(static_cast<Offset>(capacity)), misses_of_lru(stream, capacity * 99 / 100));
@@ -191,8 +253,8 @@ TEST(ReuseHistogram, HasTheMeanOfLogarithms) {
 
 TEST(ReuseDistance, OfNothingIsNothing) {
   ReuseDistance none(0);
-  EXPECT_EQ(none.histogram(), ReuseHistogram());
-  EXPECT_EQ(std::move(none).repeated().accesses(), 0);
+  EXPECT_EQ(none.reuse(), Reuse());
+  EXPECT_EQ(std::move(none).repeated(), Reuse());
 }
 
 }  // namespace

@@ -179,7 +179,7 @@ TEST(ReuseOf, HasNoColdAccessesAndMissesTheLeastWithTheLargestCache) {
   const Prepared prepared(test::tetrahedral_bar(200));
   for (const Kernel kernel : kKernels) {
     SCOPED_TRACE(name(kernel));
-    const ReuseHistogram histogram = reuse_of(kernel, prepared.graph, prepared.simplices);
+    const ReuseHistogram histogram = reuse_of(kernel, prepared.graph, prepared.simplices).all;
     const Index lines = AccessStream(kernel, prepared.graph, prepared.simplices).line_count();
     EXPECT_EQ(histogram.cold(), 0);
     EXPECT_EQ(histogram.accesses(), static_cast<Offset>(recorded(kernel, prepared).size()));
@@ -219,8 +219,8 @@ TEST(ReuseOf, IsFartherInAScrambledOrder) {
   const Prepared bad(scrambled);
   for (const Kernel kernel : kKernels) {
     SCOPED_TRACE(name(kernel));
-    const ReuseHistogram few = reuse_of(kernel, good.graph, good.simplices);
-    const ReuseHistogram many = reuse_of(kernel, bad.graph, bad.simplices);
+    const ReuseHistogram few = reuse_of(kernel, good.graph, good.simplices).all;
+    const ReuseHistogram many = reuse_of(kernel, bad.graph, bad.simplices).all;
     EXPECT_LT(few.misses(128), many.misses(128));
     EXPECT_LT(few.mean_log2() + 0.2, many.mean_log2());
   }

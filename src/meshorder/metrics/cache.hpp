@@ -37,7 +37,8 @@ Caches parse_caches(std::string_view text);
 /// "48K,1M,32M", which parse_caches reads.
 std::string to_string(const Caches& caches);
 
-/// The misses of each level.
+/// The misses of each level, when the histogram is a `Reuse`'s `all`; when it is its `jumps`, those misses
+/// that no stream leads to.
 std::vector<Offset> misses(const ReuseHistogram& histogram, const Caches& caches);
 
 }  // namespace meshorder

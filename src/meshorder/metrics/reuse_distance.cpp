@@ -76,7 +76,7 @@ double ReuseHistogram::mean_log2() const {
   return reuses > 0 ? sum / static_cast<double>(reuses) : 0.0;
 }
 
-ReuseDistance::ReuseDistance(Index lines) : slot_of_line_(lines, kNever) {
+ReuseDistance::ReuseDistance(Index lines) : slot_of_line_(lines, kNever), far_access_of_line_(lines, 0) {
   // closing the gaps then leaves at least half of the slots free
   constexpr Slot kFewest = 2 * kWord;
   slot_count_ = std::max(kFewest, 2 * static_cast<Slot>(lines));
@@ -89,23 +89,45 @@ ReuseDistance::ReuseDistance(Index lines) : slot_of_line_(lines, kNever) {
   marks_in_open_.assign(levels_.size(), 0);
 }
 
-void ReuseDistance::access(Index line) {
+Index ReuseDistance::access(Index line) {
+  const Index distance = move_to_front(line);
+  if (distance >= 0) {
+    reuse_.all.add(distance);
+    if (distance >= kFar && is_jump(line)) reuse_.jumps.add(distance);
+    return distance;
+  }
+  first_accesses_.push_back(line);
+  first_access_jumps_.push_back(is_jump(line));
+  reuse_.all.add_cold();
+  if (first_access_jumps_.back()) reuse_.jumps.add_cold();
+  return distance;
+}
+
+Index ReuseDistance::move_to_front(Index line) {
   assert(line >= 0 && line < index_size(slot_of_line_));
   Slot& slot = slot_of_line_[line];
-  if (slot == next_ - 1 && slot != kNever) {
-    histogram_.add(0);
-    return;
-  }
+  if (slot == next_ - 1 && slot != kNever) return 0;
   if (next_ == slot_count_) close_gaps();
   if (next_ % kWord == 0 && next_ > 0) close_word(next_ / kWord - 1);
+  Index distance = -1;
   if (slot == kNever) {
     mark_first(next_);
-    first_accesses_.push_back(line);
-    histogram_.add_cold();
   } else {
-    histogram_.add(move_mark(slot, next_));
+    distance = move_mark(slot, next_);
   }
   slot = next_++;
+  return distance;
+}
+
+/// Notes an access from afar; whether no other led to it.
+bool ReuseDistance::is_jump(Index line) {
+  ++far_accesses_;
+  bool jump = true;
+  for (Index before = std::max(0, line - 2); before < line; ++before) {
+    jump = jump && far_accesses_ - far_access_of_line_[before] > kFollowing;
+  }
+  far_access_of_line_[line] = far_accesses_;
+  return jump;
 }
 
 void ReuseDistance::mark_first(Slot slot) {
@@ -169,12 +191,17 @@ void ReuseDistance::close_gaps() {
   }
 }
 
-ReuseHistogram ReuseDistance::repeated() && {
+Reuse ReuseDistance::repeated() && {
   // within a run distances are the same in every run; across its start, a line that has been accessed in the
   // new run counts once, however often it was
-  histogram_.forget_cold();
-  for (const Index line : first_accesses_) access(line);
-  return std::move(histogram_);
+  reuse_.all.forget_cold();
+  reuse_.jumps.forget_cold();
+  for (std::size_t k = 0; k < first_accesses_.size(); ++k) {
+    const Index distance = move_to_front(first_accesses_[k]);
+    reuse_.all.add(distance);
+    if (distance >= kFar && first_access_jumps_[k]) reuse_.jumps.add(distance);
+  }
+  return std::move(reuse_);
 }
 
 }  // namespace meshorder

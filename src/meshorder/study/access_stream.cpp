@@ -53,7 +53,7 @@ AccessStream::Array AccessStream::place(Offset bytes) {
   return array;
 }
 
-ReuseHistogram reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices) {
+Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices) {
   const AccessStream stream(kernel, graph, simplices);
   ReuseDistance reuse(stream.line_count());
   stream.visit([&](Index line) { reuse.access(line); });

@@ -205,11 +205,11 @@ class AccessStream {
 };
 
 /// The reuse distances of a kernel that a solver repeats: of every run but the first. O(accesses · log
-/// distance) time, about 9 bytes of memory for each line, so a seventh of what the kernel itself needs.
-ReuseHistogram reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices);
+/// distance) time, about 13 bytes of memory for each line, so a fifth of what the kernel itself needs.
+Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices);
 
 /// By kernel, as kKernels lists them.
-using KernelReuse = std::array<ReuseHistogram, kKernels.size()>;
+using KernelReuse = std::array<Reuse, kKernels.size()>;
 
 /// Those of all kernels, each on a thread of its own.
 KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices);
