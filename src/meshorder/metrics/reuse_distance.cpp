@@ -76,7 +76,7 @@ double ReuseHistogram::mean_log2() const {
   return reuses > 0 ? sum / static_cast<double>(reuses) : 0.0;
 }
 
-ReuseDistance::ReuseDistance(Index lines) : slot_of_line_(lines, kNever), far_access_of_line_(lines, 0) {
+ReuseDistance::ReuseDistance(Index lines) : last_access_of_line_(lines) {
   // closing the gaps then leaves at least half of the slots free
   constexpr Slot kFewest = 2 * kWord;
   slot_count_ = std::max(kFewest, 2 * static_cast<Slot>(lines));
@@ -104,8 +104,8 @@ Index ReuseDistance::access(Index line) {
 }
 
 Index ReuseDistance::move_to_front(Index line) {
-  assert(line >= 0 && line < index_size(slot_of_line_));
-  Slot& slot = slot_of_line_[line];
+  assert(line >= 0 && line < index_size(last_access_of_line_));
+  Slot& slot = last_access_of_line_[line].slot;
   if (slot == next_ - 1 && slot != kNever) return 0;
   if (next_ == slot_count_) close_gaps();
   if (next_ % kWord == 0 && next_ > 0) close_word(next_ / kWord - 1);
@@ -124,9 +124,9 @@ bool ReuseDistance::is_jump(Index line) {
   ++far_accesses_;
   bool jump = true;
   for (Index before = std::max(0, line - 2); before < line; ++before) {
-    jump = jump && far_accesses_ - far_access_of_line_[before] > kFollowing;
+    jump = jump && far_accesses_ - last_access_of_line_[before].far > kFollowing;
   }
-  far_access_of_line_[line] = far_accesses_;
+  last_access_of_line_[line].far = far_accesses_;
   return jump;
 }
 
@@ -173,10 +173,10 @@ void ReuseDistance::close_gaps() {
   std::vector<Slot> marks_before(marks_.size());
   std::transform_exclusive_scan(marks_.begin(), marks_.end(), marks_before.begin(), Slot{0}, std::plus<>(),
                                 count_ones);
-  for (Slot& slot : slot_of_line_) {
-    if (slot == kNever) continue;
-    const std::uint32_t word = slot / kWord;
-    slot = marks_before[word] + count_ones(marks_[word] & ((std::uint64_t{1} << slot % kWord) - 1));
+  for (LastAccess& last : last_access_of_line_) {
+    if (last.slot == kNever) continue;
+    const std::uint32_t word = last.slot / kWord;
+    last.slot = marks_before[word] + count_ones(marks_[word] & ((std::uint64_t{1} << last.slot % kWord) - 1));
   }
   next_ = static_cast<Slot>(distinct());
   std::fill(marks_.begin(), marks_.end(), 0);

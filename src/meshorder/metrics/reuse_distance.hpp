@@ -89,6 +89,12 @@ class ReuseDistance {
   static constexpr Index kFar = 512;
   static constexpr std::uint32_t kFollowing = 64;
 
+  /// Side by side, since both are wanted together and lie far from what is in this machine's caches.
+  struct LastAccess {
+    Slot slot = kNever;
+    std::uint32_t far = 0;  ///< number of the last access from afar, cold ones among them
+  };
+
   /// For each of 16 sister nodes the marks in those after it.
   struct alignas(64) Sisters {
     std::array<std::uint32_t, 16> marks_after{};
@@ -101,7 +107,7 @@ class ReuseDistance {
   void close_gaps();
   bool is_jump(Index line);
 
-  std::vector<Slot> slot_of_line_;     ///< of the last access
+  std::vector<LastAccess> last_access_of_line_;
   std::vector<Index> first_accesses_;  ///< lines in the order of their first accesses
   std::vector<std::uint64_t> marks_;   ///< a bit for each slot
   /// From the words of marks_ up; the nodes that hold the next slot count as empty here.
@@ -109,8 +115,6 @@ class ReuseDistance {
   std::vector<std::uint32_t> marks_in_open_;  ///< at each level those in the node that holds the next slot
   Slot slot_count_ = 0;
   Slot next_ = 0;
-  /// For each line the number of its last access from afar, cold ones among them.
-  std::vector<std::uint32_t> far_access_of_line_;
   std::uint32_t far_accesses_ = kFollowing;
   std::vector<bool> first_access_jumps_;  ///< as first_accesses_
   Reuse reuse_;
