@@ -27,7 +27,7 @@ struct InfoArguments : Common {
 
 /// The reuse of the mesh in its order; nothing for a large mesh when nobody asked for it.
 std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph) {
-  // predicting takes a few seconds for so many, and 9 bytes for each line of 64 that a kernel touches
+  // predicting takes a few seconds for so many, and 13 bytes for each line that a kernel touches
   constexpr Offset kMostElements = 2'000'000;
   const Simplices simplices = cut_into_simplices(mesh);
   if (arguments.caches.empty() && simplices.size() > kMostElements) return std::nullopt;
