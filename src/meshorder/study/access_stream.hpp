@@ -181,9 +181,9 @@ class AccessStream {
       batch.fill(0);
       lane = 0;
     };
-    for (Index a = 0; a < graph_.size(); ++a) {
-      for (const Index b : graph_[a]) {
-        if (b < a) continue;
+    for (Index b = 0; b < graph_.size(); ++b) {
+      for (const Index a : graph_[b]) {
+        if (a > b) break;
         batch[lane] = a;
         batch[kBatch + lane] = b;
         if (++lane == kBatch) visit_batch();

@@ -2,6 +2,8 @@
 #include <meshorder/base/error.hpp>
 #include <meshorder/sim/kernels/spmv.hpp>
 
+#include <algorithm>
+
 namespace meshorder {
 
 void multiply(const BlockCsr& matrix, std::span<const double> x, std::span<double> y) {
@@ -16,11 +18,16 @@ void multiply_rows(const BlockCsr& matrix, std::span<const double> x, std::span<
   }
   const double* const values = matrix.values.data();
   const Index* const columns = matrix.columns.data();
+  // the entries of x that later rows gather are asked for early; nearer than this they come too late, and
+  // much farther they are gone again
+  constexpr Offset kAhead = 100;
+  const Offset last_block = matrix.block_count() - 1;
   Offset k = matrix.offsets[begin_row];
   for (Index v = begin_row; v < end_row; ++v) {
     // nine sums, since the additions of three would wait for each other
     double s[9] = {};
     for (const Offset end = matrix.offsets[v + 1]; k < end; ++k) {
+      __builtin_prefetch(x.data() + Offset{3} * columns[std::min(k + kAhead, last_block)]);
       const double* const block = values + 9 * k;
       const double* const p = x.data() + Offset{3} * columns[k];
       const double p0 = p[0], p1 = p[1], p2 = p[2];

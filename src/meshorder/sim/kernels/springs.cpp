@@ -88,9 +88,9 @@ Springs springs_on_edges(const CsrGraph& graph, std::span<const Point> points) {
   springs.ends.assign(2 * batches * kBatch, 0);
   springs.rest_lengths.assign(batches * kBatch, 0.0);
   Offset s = 0;
-  for (Index a = 0; a < graph.size(); ++a) {
-    for (const Index b : graph[a]) {
-      if (b < a) continue;
+  for (Index b = 0; b < graph.size(); ++b) {
+    for (const Index a : graph[b]) {
+      if (a > b) break;  // rows rise
       Index* const ends = springs.ends.data() + 2 * (s / kBatch) * kBatch + s % kBatch;
       ends[0] = a;
       ends[kBatch] = b;

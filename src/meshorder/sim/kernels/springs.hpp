@@ -17,8 +17,9 @@ struct Springs {
   AlignedVector<double> rest_lengths;
 };
 
-/// Every edge of the graph once, by its smaller end and then its larger one, at rest at the given points.
-/// O(n + edges).
+/// Every edge of the graph once, from its smaller end to its larger one, at rest at the given points. Sorted
+/// by the larger end and then the smaller, as `lexmax` sorts elements: whatever the order of the vertices,
+/// each is then met for the first time in the order in which they lie in memory. O(n + edges).
 Springs springs_on_edges(const CsrGraph& graph, std::span<const Point> points);
 
 /// The energy Σ ½ k (‖d‖ − ℓ₀)² of springs of stiffness k, d = x_b − x_a. O(springs).
