@@ -32,12 +32,16 @@ void print_quality(const Console& console, const Comparison& comparison) {
 }
 
 void print_reuse(const Console& console, const Comparison& comparison) {
+  if (!comparison.orders.front().reuse) {
+    console.log("a large mesh: --cache this predicts its kernels' cache misses");
+    return;
+  }
   console.print(
       "\nPredicted for each run: mean log2 of reuse distances, misses of caches, jumps among the last "
       "cache's misses");
   console.print("{}", reuse_header(comparison.caches, 26));
   for (const ComparedOrder& c : comparison.orders) {
-    console.print("{:<11} {:<14}{}", c.vertices, c.elements, reuse_cells(c.reuse, comparison.caches));
+    console.print("{:<11} {:<14}{}", c.vertices, c.elements, reuse_cells(*c.reuse, comparison.caches));
   }
 }
 
@@ -108,8 +112,8 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
         {"taken", {{"vertices", c.order.vertex_method.name}, {"elements", c.order.element_method.name}}},
         {"seconds", c.order.vertex_seconds + c.order.element_seconds},
         {"edge_span", to_json(c.span)},
-        {"fiedler", to_json(c.order.vertex_fiedler)},
-        {"reuse", to_json(c.reuse, comparison.caches)}};
+        {"fiedler", to_json(c.order.vertex_fiedler)}};
+    if (c.reuse) method["reuse"] = to_json(*c.reuse, comparison.caches);
     add_kernels(method, comparison,
                 [&](const KernelTable& table) -> const OrderTimes& { return table.orders[i]; });
     for (const KernelTable& table : comparison.kernels) {

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct ComparedOrder {
   std::string elements;
   Reordering order;
   EdgeSpan span;
-  KernelReuse reuse;  ///< in the steady state
+  std::optional<KernelReuse> reuse;  ///< in the steady state; none for a large mesh
 };
 
 /// Kernels measured on some number of threads.

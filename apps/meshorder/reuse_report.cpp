@@ -31,6 +31,11 @@ CLI::Option* add_cache_option(CLI::App& subcommand, std::string& caches) {
       "48K,1M,32M");
 }
 
+bool is_quick_to_predict(const Mesh& mesh) {
+  constexpr Offset kMostSimplices = 2'000'000;
+  return cut_into_simplices(mesh).size() <= kMostSimplices;
+}
+
 nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches) {
   nlohmann::ordered_json result;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {

@@ -14,6 +14,9 @@ namespace meshorder::command {
 /// --cache, for parse_caches.
 CLI::Option* add_cache_option(CLI::App& subcommand, std::string& caches);
 
+/// Whether predicting the mesh's kernels takes seconds rather than minutes.
+bool is_quick_to_predict(const Mesh& mesh);
+
 /// {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …}, misses and jumps level by level
 nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches);
 

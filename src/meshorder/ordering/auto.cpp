@@ -24,19 +24,15 @@ struct Rule {
 // tables stand in docs/auto.md.
 constexpr std::array kVertexRules{
     Rule{.use = Use::springs,
-         .method = "bfs",
-         .because = "springs run along edges, which breadth-first levels make a few forward streams"},
-    Rule{.use = Use::spmv,
          .least_vertices = 1'000'000,
-         .method = "bfs",
-         .because =
-             "matrix products of this size run fastest on the few forward streams of breadth-first levels"},
+         .method = "rcm",
+         .because = "springs of a mesh this large run fastest on the few forward streams of its levels"},
     Rule{.geometric = true,
          .method = "hilbert",
          .because =
              "within a few per cent of the best order measured, at the cost of one sort of the coordinates"},
-    Rule{.method = "metis-rb",
-         .because = "as good as the best order measured, and needs no coordinates, of which there are none"},
+    Rule{.method = "spectral",
+         .because = "the best order measured that needs no coordinates, of which there are none"},
 };
 
 bool fits(const Rule& rule, Index vertices, bool coordinates, Use use) {

@@ -185,7 +185,9 @@ void Hierarchy::cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x,
   forward_gauss_seidel<M>(here, entry_of_b, x);
   if (level < coarsest) {
     workspace.levels.resize(levels_.size());
-    auto& [coarse_b, coarse_x, second_x] = workspace.levels[level + 1];
+    VectorBlock<M>& coarse_b = workspace.levels[level + 1].right_side;
+    VectorBlock<M>& coarse_x = workspace.levels[level + 1].correction;
+    VectorBlock<M>& second_x = workspace.levels[level + 1].second_correction;
     const Level& coarse = levels_[level + 1];
     coarse_b.resize(coarse.laplacian.size());
     restrict_residual<M>(here, b, x, coarse_b);

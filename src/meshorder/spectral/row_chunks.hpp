@@ -39,13 +39,13 @@ class RowChunks {
   /// Calls `work(begin, end)` for every chunk, those of a colour at the same time, colour after colour.
   template <class Work>
   void for_each_forwards(Work work) const {
-    for (auto colour = colours_.begin(); colour != colours_.end(); ++colour) run(*colour, work);
+    for (const std::vector<Index>& chunks : colours_) run(chunks, work);
   }
 
   /// The same, last colour first.
   template <class Work>
   void for_each_backwards(Work work) const {
-    for (auto colour = colours_.rbegin(); colour != colours_.rend(); ++colour) run(*colour, work);
+    for (std::size_t colour = colours_.size(); colour-- > 0;) run(colours_[colour], work);
   }
 
  private:
