@@ -31,18 +31,18 @@ bool coarsen(Level& fine, bool smoothed, Level& coarse) {
     // where smoothing fills the coarse graph it is left out
     smoothed = coarse.laplacian.neighbours.size() <= 2 * fine.laplacian.neighbours.size();
   }
-  coarse.mass.assign(aggregation.count(), 0);
+  coarse.masses.assign(aggregation.count(), 0);
   if (smoothed) {
     const SparseRows& p = fine.prolongation;
     for (Index v = 0; v < n; ++v) {
       for (Offset k = p.offsets[v]; k < p.offsets[v + 1]; ++k) {
-        coarse.mass[p.columns[k]] += p.values[k] * fine.mass[v];
+        coarse.masses[p.columns[k]] += p.values[k] * fine.mass(v);
       }
     }
   } else {
     fine.prolongation = {};
     coarse.laplacian = collapsed(fine.laplacian, fine.chunks, aggregation);
-    for (Index v = 0; v < n; ++v) coarse.mass[aggregation.aggregate_of[v]] += fine.mass[v];
+    for (Index v = 0; v < n; ++v) coarse.masses[aggregation.aggregate_of[v]] += fine.mass(v);
     fine.aggregate_of = std::move(aggregation.aggregate_of);
   }
   coarse.chunks = RowChunks(coarse.laplacian);
@@ -129,7 +129,6 @@ void restrict_residual(const Level& level, const VectorBlock<M>& b, const Vector
 
 Hierarchy::Hierarchy(Laplacian finest) {
   Level level;
-  level.mass.assign(finest.size(), 1.0);
   level.chunks = RowChunks(finest);
   level.laplacian = std::move(finest);
   levels_.push_back(std::move(level));
@@ -212,8 +211,8 @@ template <int M>
 VectorBlock<M> Hierarchy::coarsest_eigenvectors() const {
   const Level& coarsest = levels_.back();
   const Index n = coarsest.laplacian.size();
-  const Eigen::VectorXd scale =
-      Eigen::Map<const Eigen::VectorXd>(coarsest.mass.data(), n).cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd scale = Eigen::VectorXd::NullaryExpr(
+      n, [&](Eigen::Index v) { return 1 / std::sqrt(coarsest.mass(static_cast<Index>(v))); });
   const Eigen::MatrixXd scaled = scale.asDiagonal() * dense(coarsest.laplacian) * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
   VectorBlock<M> result(n, std::array<double, M>{});

@@ -15,9 +15,12 @@ namespace meshorder {
 struct Level {
   Laplacian laplacian;
   RowChunks chunks;
-  std::vector<double> mass;         ///< how many vertices of the finest graph each stands for
+  std::vector<double> masses;       ///< see `mass`; empty on the finest level
   std::vector<Index> aggregate_of;  ///< plain coarsening: the coarser vertex of each vertex
   SparseRows prolongation;          ///< smoothed coarsening: the way from the next coarser level
+
+  /// How many vertices of the finest graph v stands for.
+  [[nodiscard]] double mass(Index v) const { return masses.empty() ? 1.0 : masses[v]; }
 };
 
 /// Room for the vectors of a cycle on the levels below the one where it starts.

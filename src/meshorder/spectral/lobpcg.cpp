@@ -69,16 +69,15 @@ using Square = Eigen::Matrix<double, N, N>;
 
 /// Sᵀ B S and Sᵀ L S of the search space S.
 template <int M, int C, int N = SearchSpace<M, C>::kSize>
-void gram_matrices(const SearchSpace<M, C>& s, const std::vector<double>& mass, Square<N>& gram,
-                   Square<N>& energy) {
+void gram_matrices(const SearchSpace<M, C>& s, const Level& level, Square<N>& gram, Square<N>& energy) {
   using Squares = Sums<std::size_t{2} * N * N>;
-  Squares sums = sum_over_chunks<Squares>(index_size(mass), kRows, [&](Index begin, Index end) {
+  auto sums = sum_over_chunks<Squares>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
     Squares part;
     // one after the other: the sums of both at once do not fit in registers
     for (Index v = begin; v < end; ++v) {
       const auto vectors = row(s, v, kVectors);
       for (int i = 0; i < N; ++i) {
-        const double weighted = mass[v] * vectors[i];
+        const double weighted = level.mass(v) * vectors[i];
         for (int j = i; j < N; ++j) part[N * i + j] += weighted * vectors[j];
       }
     }
@@ -143,7 +142,7 @@ void residual_of_row(const WithImage<M>& x, const Eigen::Matrix<double, M, 1>& v
 /// ‖r‖ / ‖x‖ of the first column.
 template <int M, int C, int N = SearchSpace<M, C>::kSize>
 double update(SearchSpace<M, C>& s, const Eigen::Matrix<double, N, M>& coefficients,
-              const Eigen::Matrix<double, M, 1>& values, const std::vector<double>& mass, VectorBlock<M>& r) {
+              const Eigen::Matrix<double, M, 1>& values, const Level& level, VectorBlock<M>& r) {
   std::array<std::array<double, M>, N> c;
   for (int i = 0; i < N; ++i) {
     for (int m = 0; m < M; ++m) c[i][m] = coefficients(i, m);
@@ -159,12 +158,12 @@ double update(SearchSpace<M, C>& s, const Eigen::Matrix<double, N, M>& coefficie
       part(s.p)[v][m] = direction;
     }
   };
-  Norms norms = sum_over_chunks<Norms>(index_size(mass), kRows, [&](Index begin, Index end) {
+  auto norms = sum_over_chunks<Norms>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
     Norms part;
     for (Index v = begin; v < end; ++v) {
       combine(v, kVectors);
       combine(v, kImages);
-      residual_of_row<M>(s.x, values, mass[v], v, r, part);
+      residual_of_row<M>(s.x, values, level.mass(v), v, r, part);
     }
     return part;
   });
@@ -174,24 +173,24 @@ double update(SearchSpace<M, C>& s, const Eigen::Matrix<double, N, M>& coefficie
 /// Computes L x afresh, since images that follow x by recurrence drift by rounding, and with it the Rayleigh
 /// quotients and r. Returns what `update` does.
 template <int M>
-double refresh(WithImage<M>& x, const Laplacian& laplacian, const std::vector<double>& mass,
-               Eigen::Matrix<double, M, 1>& values, VectorBlock<M>& r) {
-  laplacian.apply<M>(x.vectors, x.images);
+double refresh(WithImage<M>& x, const Level& level, Eigen::Matrix<double, M, 1>& values, VectorBlock<M>& r) {
+  level.laplacian.apply<M>(x.vectors, x.images);
   using Quotients = Sums<std::size_t{2} * M>;
-  Quotients quotients = sum_over_chunks<Quotients>(index_size(mass), kRows, [&](Index begin, Index end) {
-    Quotients part;
-    for (Index v = begin; v < end; ++v) {
-      for (int m = 0; m < M; ++m) {
-        part[m] += x.vectors[v][m] * x.images[v][m];
-        part[M + m] += mass[v] * x.vectors[v][m] * x.vectors[v][m];
-      }
-    }
-    return part;
-  });
+  Quotients quotients =
+      sum_over_chunks<Quotients>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+        Quotients part;
+        for (Index v = begin; v < end; ++v) {
+          for (int m = 0; m < M; ++m) {
+            part[m] += x.vectors[v][m] * x.images[v][m];
+            part[M + m] += level.mass(v) * x.vectors[v][m] * x.vectors[v][m];
+          }
+        }
+        return part;
+      });
   for (int m = 0; m < M; ++m) values[m] = quotients[M + m] > 0 ? quotients[m] / quotients[M + m] : 0;
-  Norms norms = sum_over_chunks<Norms>(index_size(mass), kRows, [&](Index begin, Index end) {
+  auto norms = sum_over_chunks<Norms>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
     Norms part;
-    for (Index v = begin; v < end; ++v) residual_of_row<M>(x, values, mass[v], v, r, part);
+    for (Index v = begin; v < end; ++v) residual_of_row<M>(x, values, level.mass(v), v, r, part);
     return part;
   });
   return std::sqrt(norms[0] / norms[1]);
@@ -199,23 +198,22 @@ double refresh(WithImage<M>& x, const Laplacian& laplacian, const std::vector<do
 
 /// Makes the vectors B-orthogonal to constants, and their images.
 template <int M>
-void prepare(const Laplacian& laplacian, const std::vector<double>& mass, double total_mass,
-             WithImage<M>& block) {
+void prepare(const Level& level, double total_mass, WithImage<M>& block) {
   VectorBlock<M>& x = block.vectors;
-  Sums<M> mean = sum_over_chunks<Sums<M>>(index_size(mass), kRows, [&](Index begin, Index end) {
+  auto mean = sum_over_chunks<Sums<M>>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
     Sums<M> part;
     for (Index v = begin; v < end; ++v) {
-      for (int m = 0; m < M; ++m) part[m] += mass[v] * x[v][m];
+      for (int m = 0; m < M; ++m) part[m] += level.mass(v) * x[v][m];
     }
     return part;
   });
   for (int m = 0; m < M; ++m) mean[m] /= total_mass;
-  for_each_chunk(index_size(mass), kRows, [&](Index, Index begin, Index end) {
+  for_each_chunk(level.laplacian.size(), kRows, [&](Index, Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
       for (int m = 0; m < M; ++m) x[v][m] -= mean[m];
     }
   });
-  laplacian.apply<M>(x, block.images);
+  level.laplacian.apply<M>(x, block.images);
 }
 
 }  // namespace
@@ -224,36 +222,36 @@ template <int M, int Companions>
 LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
                     VectorBlock<Companions> companions) {
   constexpr int kSize = SearchSpace<M, Companions>::kSize;
-  const Laplacian& laplacian = hierarchy.levels()[level].laplacian;
-  const std::vector<double>& mass = hierarchy.levels()[level].mass;
+  const Level& here = hierarchy.levels()[level];
+  const Index n = here.laplacian.size();
   double total_mass = 0;
-  for (const double m : mass) total_mass += m;
+  for (Index v = 0; v < n; ++v) total_mass += here.mass(v);
 
   SearchSpace<M, Companions> s(std::move(x), std::move(companions));
-  VectorBlock<M> r(mass.size());
+  VectorBlock<M> r(n);
   CycleWorkspace<M> workspace;
   Square<kSize> gram, energy;
   Eigen::Matrix<double, kSize, M> coefficients;
   Eigen::Matrix<double, M, 1> values;
   const auto search = [&] {
-    gram_matrices<M, Companions>(s, mass, gram, energy);
+    gram_matrices<M, Companions>(s, here, gram, energy);
     rayleigh_ritz<M, kSize>(gram, energy, coefficients, values);
-    return update<M, Companions>(s, coefficients, values, mass, r);
+    return update<M, Companions>(s, coefficients, values, here, r);
   };
 
-  prepare(laplacian, mass, total_mass, s.x);
-  if constexpr (Companions > 0) prepare(laplacian, mass, total_mass, s.companions);
+  prepare(here, total_mass, s.x);
+  if constexpr (Companions > 0) prepare(here, total_mass, s.companions);
   LobpcgResult result;
   result.residual = search();
   const auto converged = [&] { return result.residual <= options.tolerance * values[0]; };
   for (;; ++result.iterations) {
     const bool last = result.iterations >= options.max_iterations;
     if (last || converged()) {
-      result.residual = refresh<M>(s.x, laplacian, mass, values, r);
+      result.residual = refresh<M>(s.x, here, values, r);
       if (last || converged()) break;
     }
     hierarchy.cycle<M>(level, r, s.w.vectors, workspace);
-    prepare(laplacian, mass, total_mass, s.w);
+    prepare(here, total_mass, s.w);
     result.residual = search();
   }
   result.eigenvalue = values[0];
