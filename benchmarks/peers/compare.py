@@ -18,6 +18,7 @@ Debian's; where the Python that runs this has it, it takes part. What is missing
 import argparse
 import hashlib
 import json
+import math
 import os
 import pathlib
 import subprocess
@@ -116,14 +117,14 @@ def run(name, problem, tolerance, options):
     return {"tolerance": tolerance, "seconds": float(done.stdout), **problem.judged(y)}
 
 
-def loosest_tolerance(name, problem, accuracy, options):
-    """The loosest tolerance that reaches the accuracy and the right vector. By decades, then within one."""
+def loosest_tolerance(name, problem, accuracy, start, options):
+    """The loosest tolerance up to `start` that reaches the accuracy and the right vector. By decades, then in one."""
     def reaches(tolerance):
         result = run(name, problem, tolerance, options)
         return result["residual"] <= accuracy and result["cosine"] > MIN_COSINE
 
     last = "no tolerance reaches it"
-    for exponent in range(0, -13, -1):
+    for exponent in range(min(0, math.ceil(math.log10(start))), -13, -1):
         try:
             if not reaches(10.0 ** exponent):
                 continue
@@ -152,8 +153,11 @@ def chosen_tolerances(problem, accuracy, options):
             chosen[name] = accuracy
             continue
         if key not in known:
+            # what was found for a lower accuracy bounds what to look for
+            start = min([known[f"{name} {lower:g}"] for lower in options.accuracy
+                         if lower > accuracy and isinstance(known.get(f"{name} {lower:g}"), float)], default=1.0)
             try:
-                known[key] = loosest_tolerance(name, problem, accuracy, options)
+                known[key] = loosest_tolerance(name, problem, accuracy, start, options)
             except Missing as missing:
                 chosen[name] = str(missing)
                 continue
@@ -213,6 +217,7 @@ def arguments():
     parser.add_argument("--work", type=pathlib.Path, default=root / "build/peers", help="folder for what is kept")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="write the results there as well")
     options = parser.parse_args()
+    options.accuracy.sort(reverse=True)
     options.peers = [OURS, *(name for name in options.peers if name != OURS)]
     return options
 
