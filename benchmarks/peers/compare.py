@@ -25,8 +25,6 @@ import subprocess
 import sys
 
 import numpy
-import scipy.sparse
-import scipy.sparse.linalg
 
 from peer import SOLVERS, eigenpairs, laplacian_of
 
@@ -217,6 +215,8 @@ def arguments():
     parser.add_argument("--work", type=pathlib.Path, default=root / "build/peers", help="folder for what is kept")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="write the results there as well")
     options = parser.parse_args()
+    if not (options.programs / "peer-graph_of").exists():
+        parser.error(f"no peer-graph_of in {options.programs}; build with -DMESHORDER_BENCHMARKS=ON, or see --programs")
     options.accuracy.sort(reverse=True)
     options.peers = [OURS, *(name for name in options.peers if name != OURS)]
     return options
