@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/error.hpp>
+#include <meshorder/base/parallel.hpp>
 #include <meshorder/mesh/check.hpp>
 
 #include <algorithm>
@@ -76,14 +77,19 @@ void check(const Mesh& mesh) {
 }
 
 std::vector<Index> degenerate_cells(const Mesh& mesh) {
+  constexpr Index kCellsAtOnce = 65536;
+  std::vector<std::vector<Index>> found(chunk_count(mesh.cell_count(), kCellsAtOnce));
+  for_each_chunk(mesh.cell_count(), kCellsAtOnce, [&](Index chunk, Index begin, Index end) {
+    std::vector<Index> sorted;
+    for (Index c = begin; c < end; ++c) {
+      const auto vertices = mesh.cells[c];
+      sorted.assign(vertices.begin(), vertices.end());
+      std::sort(sorted.begin(), sorted.end());
+      if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) found[chunk].push_back(c);
+    }
+  });
   std::vector<Index> result;
-  std::vector<Index> sorted;
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const auto vertices = mesh.cells[c];
-    sorted.assign(vertices.begin(), vertices.end());
-    std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) result.push_back(c);
-  }
+  for (const std::vector<Index>& cells : found) result.insert(result.end(), cells.begin(), cells.end());
   return result;
 }
 

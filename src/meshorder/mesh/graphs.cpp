@@ -15,11 +15,17 @@ template <class Wanted>
 CellIncidence cells_that(const Mesh& mesh, Wanted wanted) {
   CellIncidence result;
   result.incidence.vertex_count = mesh.vertex_count();
-  result.incidence.vertices.reserve(mesh.cells.vertices.size());
-  result.incidence.offsets.reserve(mesh.cells.offsets.size());
-  result.cells.reserve(mesh.cells.shapes.size());
+  const std::vector<Shape>& shapes = mesh.cells.shapes;
+  const auto left_out = std::find_if(shapes.begin(), shapes.end(), [&](Shape s) { return !wanted(s); });
+  if (left_out == shapes.end()) {
+    result.cells.resize(shapes.size());
+    std::iota(result.cells.begin(), result.cells.end(), Index{0});
+    result.incidence.offsets = mesh.cells.offsets;
+    result.incidence.vertices = mesh.cells.vertices;
+    return result;
+  }
   for (Index c = 0; c < mesh.cell_count(); ++c) {
-    if (!wanted(c)) continue;
+    if (!wanted(shapes[c])) continue;
     result.cells.push_back(c);
     const auto vertices = mesh.cells[c];
     result.incidence.vertices.insert(result.incidence.vertices.end(), vertices.begin(), vertices.end());
@@ -68,12 +74,12 @@ std::vector<Facet> bucketed(const std::vector<Facet>& all, std::vector<Offset>& 
 
 CellIncidence elements(const Mesh& mesh) {
   const int highest = mesh.cells.highest_dimension();
-  return cells_that(mesh, [&](Index c) { return dimension(mesh.cells.shapes[c]) == highest; });
+  return cells_that(mesh, [&](Shape shape) { return dimension(shape) == highest; });
 }
 
 CellIncidence lower_cells(const Mesh& mesh) {
   const int highest = mesh.cells.highest_dimension();
-  return cells_that(mesh, [&](Index c) { return dimension(mesh.cells.shapes[c]) < highest; });
+  return cells_that(mesh, [&](Shape shape) { return dimension(shape) < highest; });
 }
 
 CsrGraph vertex_graph(const Mesh& mesh) { return vertex_graph(elements(mesh).incidence); }

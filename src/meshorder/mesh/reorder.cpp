@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/error.hpp>
+#include <meshorder/base/parallel.hpp>
 #include <meshorder/mesh/reorder.hpp>
 
 #include <algorithm>
@@ -24,14 +25,28 @@ std::vector<Index> slot_classes(const Mesh& mesh) {
 
 Index class_count(const Mesh& mesh) { return 4 * std::max<Index>(1, index_size(mesh.cell_blocks)); }
 
+/// Whether all cells may change places with each other, as in most meshes.
+bool is_one_class(const std::vector<Index>& classes) {
+  return std::all_of(classes.begin(), classes.end(), [&](Index k) { return k == classes.front(); });
+}
+
 Cells reordered(const Cells& cells, const Permutation& vertices, const Permutation& order) {
+  constexpr Index kCellsAtOnce = 65536;
+  const auto for_cells = [&](auto work) {
+    for_each_chunk(cells.size(), kCellsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
+      for (Index c = begin; c < end; ++c) work(c, order.new_to_old()[c]);
+    });
+  };
   Cells result;
-  result.reserve(cells.size(), static_cast<Offset>(cells.vertices.size()));
-  for (const Index old : order.new_to_old()) {
-    result.shapes.push_back(cells.shapes[old]);
-    for (const Index v : cells[old]) result.vertices.push_back(vertices.old_to_new()[v]);
-    result.offsets.push_back(static_cast<Offset>(result.vertices.size()));
-  }
+  result.shapes = order.moved(cells.shapes);
+  result.offsets.resize(cells.offsets.size());
+  for_cells([&](Index c, Index old) { result.offsets[c + 1] = cells.vertex_count(old); });
+  std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
+  result.vertices.resize(cells.vertices.size());
+  for_cells([&](Index c, Index old) {
+    std::transform(cells[old].begin(), cells[old].end(), result[c].begin(),
+                   [&](Index v) { return vertices.old_to_new()[v]; });
+  });
   return result;
 }
 
@@ -77,7 +92,8 @@ void check_fits(const Mesh& mesh, const Permutation& vertices, const Permutation
 void reorder(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
   check_fits(mesh, vertices, cells);
   const std::vector<Index> classes = slot_classes(mesh);
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
+  const Index to_check = is_one_class(classes) ? 0 : mesh.cell_count();
+  for (Index c = 0; c < to_check; ++c) {
     if (classes[cells.old_to_new()[c]] != classes[c]) {
       throw InvalidArgument("reorder: cell " + std::to_string(c) +
                             " would leave its block or take the place of a cell of another dimension");
@@ -94,6 +110,7 @@ Permutation permutation_within_blocks(const Mesh& mesh, const std::vector<Index>
                           std::to_string(mesh.cell_count()) + " cells");
   }
   const std::vector<Index> classes = slot_classes(mesh);
+  if (is_one_class(classes)) return Permutation::from_new_to_old(cells_in_order);
 
   // places of each class, in their order, one class after another
   std::vector<Index> start(class_count(mesh) + 1, 0);

@@ -1,11 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Skilling: Programming the Hilbert Curve (2004), which gives the transformation used here.
+#include <meshorder/base/parallel.hpp>
 #include <meshorder/ordering/all_methods.hpp>
 #include <meshorder/ordering/sorted.hpp>
 #include <meshorder/ordering/space_filling.hpp>
 
 namespace meshorder {
 namespace {
+
+constexpr Index kPointsAtOnce = 16384;  // whose keys a thread finds together
 
 /// The number of a lattice cell along Hilbert's curve.
 std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x, int axes, int bits) {
@@ -35,9 +38,11 @@ std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x, int axes, int bits) {
 
 Permutation along_hilbert_curve(std::span<const Point> points) {
   const LatticePoints lattice = on_lattice(points);
-  std::vector<std::uint64_t> keys;
-  keys.reserve(lattice.coordinates.size());
-  for (const auto& cell : lattice.coordinates) keys.push_back(hilbert_key(cell, lattice.axes, lattice.bits));
+  std::vector<std::uint64_t> keys(points.size());
+  for_each_chunk(index_size(points), kPointsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+      keys[i] = hilbert_key(lattice.coordinates[i], lattice.axes, lattice.bits);
+  });
   return sorted_by(keys);
 }
 

@@ -1,18 +1,19 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/error.hpp>
+#include <meshorder/base/parallel.hpp>
 #include <meshorder/ordering/permutation.hpp>
 
+#include <atomic>
 #include <numeric>
 #include <string>
 
 namespace meshorder {
 namespace {
 
-/// The inverse of `map`, which is checked to be a bijection of 0 … n−1.
-std::vector<Index> inverted(const std::vector<Index>& map) {
-  if (map.size() > static_cast<std::size_t>(kMaxIndex)) {
-    throw InvalidArgument("permutation: more than 2,147,483,647 entries");
-  }
+constexpr Index kChunk = 65536;  // entries that a thread inverts together
+
+/// Throws, naming the first entry that keeps `map` from being a bijection of 0 … n−1.
+[[noreturn]] void fail(const std::vector<Index>& map) {
   const Index n = index_size(map);
   std::vector<Index> inverse(map.size(), -1);
   for (Index i = 0; i < n; ++i) {
@@ -28,6 +29,26 @@ std::vector<Index> inverted(const std::vector<Index>& map) {
     }
     source = i;
   }
+  throw InvalidArgument("permutation: no bijection");
+}
+
+/// The inverse of `map`, which is checked to be a bijection of 0 … n−1.
+std::vector<Index> inverted(const std::vector<Index>& map) {
+  if (map.size() > static_cast<std::size_t>(kMaxIndex)) {
+    throw InvalidArgument("permutation: more than 2,147,483,647 entries");
+  }
+  const Index n = index_size(map);
+  std::vector<Index> inverse(map.size(), -1);
+  std::atomic<bool> bijection = true;
+  for_each_chunk(n, kChunk, [&](Index /*chunk*/, Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      const Index target = map[i];
+      const bool first = target >= 0 && target < n &&
+                         std::atomic_ref(inverse[target]).exchange(i, std::memory_order_relaxed) < 0;
+      if (!first) bijection = false;
+    }
+  });
+  if (!bijection) fail(map);
   return inverse;
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <meshorder/base/index.hpp>
+#include <meshorder/base/parallel.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -45,12 +47,13 @@ class Permutation {
   template <class T>
   [[nodiscard]] std::vector<T> moved(const std::vector<T>& values, std::size_t width = 1) const {
     check_size(values.size(), width);
-    std::vector<T> result;
-    result.reserve(values.size());
-    for (const Index old : new_to_old_) {
-      const auto first = values.begin() + Offset{old} * static_cast<Offset>(width);
-      result.insert(result.end(), first, first + static_cast<Offset>(width));
-    }
+    std::vector<T> result(values.size());
+    for_each_chunk(size(), kPlacesAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
+      const auto row = static_cast<Offset>(width);
+      for (Index place = begin; place < end; ++place) {
+        std::copy_n(values.begin() + new_to_old_[place] * row, row, result.begin() + place * row);
+      }
+    });
     return result;
   }
 
@@ -59,6 +62,7 @@ class Permutation {
       : old_to_new_(std::move(old_to_new)), new_to_old_(std::move(new_to_old)) {}
   void check_size(std::size_t values, std::size_t width) const;
 
+  static constexpr Index kPlacesAtOnce = 65536;  // that a thread moves together
   std::vector<Index> old_to_new_;
   std::vector<Index> new_to_old_;
 };

@@ -3,6 +3,8 @@
 
 #include <meshorder/ordering/permutation.hpp>
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -16,7 +18,7 @@ Permutation sorted_by(std::span<const Key> keys) {
   // sorting the pairs keeps each comparison within two neighbouring memory places
   std::vector<std::pair<Key, Index>> pairs(keys.size());
   for (Index i = 0; i < index_size(keys); ++i) pairs[i] = {keys[i], i};
-  std::sort(pairs.begin(), pairs.end());
+  tbb::parallel_sort(pairs.begin(), pairs.end());  // no two are equal
   std::vector<Index> new_to_old(keys.size());
   std::transform(pairs.begin(), pairs.end(), new_to_old.begin(),
                  [](const auto& pair) { return pair.second; });

@@ -154,46 +154,49 @@ class Reader {
     const VtuElement& offsets = cell_array(*cells, "offsets");
     const Offset first_entry = cells_.offsets.back();
     Offset last = 0;
-    for_integers(offsets, count, [&](std::int64_t c, auto end) {
+    append_integers(offsets, count, cells_.offsets, [&](std::int64_t c, auto end) {
       if (!std::in_range<Offset>(end) || std::cmp_less(end, last)) {
         throw file_.error(
             offsets, fmt::format("cell {} (counted from 0) ends at {}, before it begins at {}", c, end, last),
             "offsets rise");
       }
       last = static_cast<Offset>(end);
-      cells_.offsets.push_back(first_entry + last);
+      return first_entry + last;
     });
 
     const VtuElement& connectivity = cell_array(*cells, "connectivity");
     const Index points = mesh_.vertex_count() - first_point;
-    for_integers(connectivity, last, [&](std::int64_t, auto point) {
+    append_integers(connectivity, last, cells_.vertices, [&](std::int64_t, auto point) {
       if (std::cmp_less(point, 0) || std::cmp_greater_equal(point, points)) {
         throw file_.error(connectivity, fmt::format("a cell names the point {}", point),
                           fmt::format("the piece has points 0 to {}", points - 1));
       }
-      cells_.vertices.push_back(first_point + static_cast<Index>(point));
+      return first_point + static_cast<Index>(point);
     });
 
-    for_integers(*types_, count, [&](std::int64_t c, auto type) {
+    append_integers(*types_, count, cells_.types, [&](std::int64_t c, auto type) {
       if (std::cmp_less(type, 0) || std::cmp_greater(type, 255)) {
         throw file_.error(*types_, fmt::format("cell {} (counted from 0) has the type {}", c, type),
                           "VTK's types run from 0 to 81");
       }
-      cells_.types.push_back(static_cast<std::uint8_t>(type));
+      return static_cast<std::uint8_t>(type);
     });
   }
 
-  template <class Take>
-  void for_integers(const VtuElement& array, std::int64_t count, const Take& take) {
+  /// Appends `checked(i, number)` of every number of an array.
+  template <class Number, class Checked>
+  void append_integers(const VtuElement& array, std::int64_t count, std::vector<Number>& target,
+                       const Checked& checked) {
     if (components_of(array) != 1)
       throw file_.error(array, "the array has several components", "1 is needed");
     const Values values = file_.values(array, count);
     std::visit(
         [&](const auto& numbers) {
-          using Number = typename std::decay_t<decltype(numbers)>::value_type;
-          if constexpr (std::is_integral_v<Number>) {
+          using Stored = typename std::decay_t<decltype(numbers)>::value_type;
+          if constexpr (std::is_integral_v<Stored>) {
+            target.reserve(target.size() + numbers.size());
             std::int64_t i = 0;
-            for (const Number number : numbers) take(i++, number);
+            for (const Stored number : numbers) target.push_back(checked(i++, number));
           } else {
             throw file_.error(array, "the array holds no integers", "Int32 or Int64 is usual");
           }
