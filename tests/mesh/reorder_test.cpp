@@ -11,8 +11,7 @@
 namespace meshorder {
 namespace {
 
-TEST(Reorder, MovesEverythingWithItsVerticesAndCells) {
-  const Mesh before = test::mixed_mesh();
+void expect_everything_moves(const Mesh& before) {
   Mesh after = before;
   const Permutation vertices = test::shuffled(before.vertex_count(), 7);
   const Permutation cells = test::shuffled_cells(before, 8);
@@ -39,6 +38,12 @@ TEST(Reorder, MovesEverythingWithItsVerticesAndCells) {
     const auto& map = (before.sets[s].on == Attached::vertices ? vertices : cells).old_to_new();
     EXPECT_EQ(after.sets[s].members[0], map[before.sets[s].members[0]]);
   }
+}
+
+TEST(Reorder, MovesEverythingWithItsVerticesAndCells) { expect_everything_moves(test::mixed_mesh()); }
+
+TEST(Reorder, MovesEverythingOfAMeshThatSeveralThreadsShare) {
+  expect_everything_moves(test::tetrahedral_bar(20000));
 }
 
 TEST(Reorder, ThereAndBackIsTheSameMesh) {
@@ -108,6 +113,13 @@ TEST(DegenerateCells, AreThoseThatNameAVertexTwice) {
   Mesh mesh = test::tetrahedral_bar(1);
   mesh.cells[2][3] = mesh.cells[2][0];
   EXPECT_EQ(degenerate_cells(mesh), std::vector<Index>{2});
+}
+
+TEST(DegenerateCells, RiseWhenSeveralThreadsFindThem) {
+  Mesh mesh = test::tetrahedral_bar(30000);
+  const std::vector<Index> wanted{0, 65535, 65536, 150000};
+  for (const Index c : wanted) mesh.cells[c][1] = mesh.cells[c][2];
+  EXPECT_EQ(degenerate_cells(mesh), wanted);
 }
 
 TEST(CheckMesh, NamesTheFirstFault) {

@@ -60,6 +60,25 @@ TEST(ElementsByRanks, LexmaxComparesFallingRanksLikeWords) {
   expect_sorted("lexmax", [](const Ranks& a, const Ranks& b) { return falling(a) < falling(b); });
 }
 
+TEST(ElementsByRanks, LexmaxComparesAllRanksOfLargeElements) {
+  // of three vertices, so that many of up to nine tie in their largest four or in all
+  const Incidence elements = random_elements(3, 500, 9, 5);
+  const Permutation order = test::shuffled(3, 2);
+  EXPECT_EQ(order_elements("lexmax", {elements, order, {}, {}}).permutation.new_to_old(),
+            sorted_elements(elements, order,
+                            [](const Ranks& a, const Ranks& b) { return falling(a) < falling(b); }));
+}
+
+TEST(ElementsByRanks, LexmaxSortsElementsThatSeveralThreadsShare) {
+  for (const Index vertices : {50, 150000}) {
+    const Incidence elements = random_elements(vertices, 150000, 4, 6);
+    const Permutation order = test::shuffled(vertices, 2);
+    EXPECT_EQ(order_elements("lexmax", {elements, order, {}, {}}).permutation.new_to_old(),
+              sorted_elements(elements, order,
+                              [](const Ranks& a, const Ranks& b) { return falling(a) < falling(b); }));
+  }
+}
+
 TEST(ElementsByRanks, MaxComparesTheLargest) {
   expect_sorted("max",
                 [](const Ranks& a, const Ranks& b) { return falling(a).front() < falling(b).front(); });

@@ -1,8 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/error.hpp>
 #include <meshorder/ordering/permutation.hpp>
+#include <support/sample_meshes.hpp>
 
 #include <gtest/gtest.h>
+
+#include <string>
 
 namespace meshorder {
 namespace {
@@ -32,6 +35,36 @@ TEST(Permutation, RefusesWhatIsNoBijection) {
   EXPECT_THROW(Permutation::from_old_to_new({0, 2}), InvalidArgument);
   EXPECT_THROW(Permutation::from_new_to_old({-1, 0}), InvalidArgument);
   EXPECT_THROW((void)Permutation::identity(3).moved(std::vector<int>{1, 2}), InvalidArgument);
+}
+
+constexpr Index kMany = 200000;  // more than one thread takes at once
+
+TEST(Permutation, OfManyPlacesHoldsBothDirectionsAndMovesRows) {
+  const auto p = test::shuffled(kMany, 3);
+  std::vector<Index> rows(2 * kMany);
+  for (Index i = 0; i < kMany; ++i) {
+    ASSERT_EQ(p.new_to_old()[p.old_to_new()[i]], i);
+    rows[2 * i] = i;
+    rows[2 * i + 1] = -i;
+  }
+  const std::vector<Index> moved = p.moved(rows, 2);
+  for (Index i = 0; i < kMany; ++i) {
+    ASSERT_EQ(moved[2 * p.old_to_new()[i]], i);
+    ASSERT_EQ(moved[2 * p.old_to_new()[i] + 1], -i);
+  }
+}
+
+TEST(Permutation, NamesTheFirstFaultOfManyPlaces) {
+  std::vector<Index> map = Permutation::identity(kMany).old_to_new();
+  map[150000] = 5;
+  map[190000] = kMany;
+  try {
+    (void)Permutation::from_old_to_new(map);
+    FAIL() << "was taken";
+  } catch (const InvalidArgument& error) {
+    EXPECT_NE(std::string(error.what()).find("entries 5 and 150000 are both 5"), std::string::npos)
+        << error.what();
+  }
 }
 
 TEST(Permutation, OfNothingIsTheIdentity) { EXPECT_TRUE(Permutation::identity(0).is_identity()); }
