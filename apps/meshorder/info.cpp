@@ -4,6 +4,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "reuse_report.hpp"
+#include "verdict.hpp"
 #include <meshorder/base/stopwatch.hpp>
 #include <meshorder/graph/components.hpp>
 #include <meshorder/io/format.hpp>
@@ -23,14 +24,39 @@ namespace {
 struct InfoArguments : Common {
   std::string input;
   std::string caches;  ///< empty: this machine's, unless that takes long
+  bool measure = false;
 };
 
-/// The reuse of the mesh in its order; nothing for a large mesh when nobody asked for it.
+/// Predicting takes a few seconds for so many simplices, and 13 bytes for each line that a kernel touches.
+constexpr Offset kMostPredicted = 2'000'000;
+
+/// --measure ends about then, counted from the command's start, for meshes of some 300 thousand vertices.
+constexpr double kMeasureWithin = 4.5;
+/// More than one order would not be prepared for measuring by then.
+constexpr Offset kMostOfTwoOrders = 500'000;
+
+/// What reordering is worth; nothing for a mesh without elements, and for a large one when nobody asked.
+std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph,
+                                double graph_seconds, const Stopwatch& since_start) {
+  const Offset simplices = mesh.cells.highest_dimension() < 1 ? 0 : cut_into_simplices(mesh).size();
+  AdviceOptions options;
+  options.caches = parse_caches(arguments.caches);
+  options.graph_seconds = graph_seconds;
+  options.predict = simplices <= kMostPredicted || !arguments.caches.empty();
+  if (simplices == 0 || !(options.predict || arguments.measure)) return std::nullopt;
+  if (arguments.measure) {
+    options.measure_within = kMeasureWithin - since_start.seconds();
+    options.for_springs_too = simplices <= kMostOfTwoOrders;
+  }
+  return advise(mesh, graph, options);
+}
+
+/// The reuse of the mesh in its order; nothing for a large mesh when nobody asked for it, and when there is
+/// no time for it beside measurements.
 std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph) {
-  // predicting takes a few seconds for so many, and 13 bytes for each line that a kernel touches
-  constexpr Offset kMostElements = 2'000'000;
   const Simplices simplices = cut_into_simplices(mesh);
-  if (arguments.caches.empty() && simplices.size() > kMostElements) return std::nullopt;
+  const Offset most = arguments.measure ? kMostOfTwoOrders : kMostPredicted;
+  if (arguments.caches.empty() && simplices.size() > most) return std::nullopt;
   return reuse_of_kernels(graph, simplices);
 }
 
@@ -83,15 +109,18 @@ void print_attachments(const Console& console, const Mesh& mesh) {
 }
 
 void run(const InfoArguments& arguments) {
+  const Stopwatch since_start;
   const Console console(arguments);
   const Caches caches = parse_caches(arguments.caches);
   Progress progress(!console.quiet());
-  progress.stage("reading " + arguments.input, 0, 0.5);
+  progress.stage("reading " + arguments.input, 0, 0.3);
   Notes notes;
   const Mesh mesh = read_mesh(arguments.input, &notes);
 
-  progress.stage("measuring", 0.5, 1);
+  progress.stage("measuring", 0.3, 0.6);
+  const Stopwatch building_graph;
   const CsrGraph graph = vertex_graph(mesh);
+  const double graph_seconds = building_graph.seconds();
   const Permutation order = Permutation::identity(mesh.vertex_count());
   const EdgeSpan span = edge_span(graph, order);
   const Offset envelope = profile(graph, order);
@@ -102,6 +131,8 @@ void run(const InfoArguments& arguments) {
       std::count_if(components.begin(), components.end(), [](const auto& c) { return c.size() == 1; });
   const auto connected = static_cast<long long>(components.size()) - isolated;
   const auto degenerate = static_cast<long long>(degenerate_cells(mesh).size());
+  progress.stage(arguments.measure ? "running kernels" : "predicting", 0.6, 1);
+  const std::optional<Advice> advice = advice_on(arguments, mesh, graph, graph_seconds, since_start);
 
   progress.finish();
   console.log_notes(notes);
@@ -125,9 +156,14 @@ void run(const InfoArguments& arguments) {
         "the "
         "last cache's misses");
     console.print("{}\n{}", reuse_header(caches, 0), reuse_cells(*reuse, caches));
+  } else if (arguments.measure) {
+    console.log("left out, to measure in time: the reuse table, orders for springs alone; see compare");
   } else {
-    console.log("a large mesh: --cache this predicts its kernels' cache misses");
+    console.log(
+        "left out, to answer in time: the kernels' cache misses and the verdict. --cache this predicts them, "
+        "--measure runs the kernels");
   }
+  if (advice) print_verdict(console, *advice);
 
   nlohmann::ordered_json result{
       {"file", arguments.input},
@@ -142,6 +178,7 @@ void run(const InfoArguments& arguments) {
       {"profile", envelope},
       {"span_histogram_log2", histogram}};
   if (reuse) result.update({{"caches", caches.level_bytes}, {"reuse", to_json(*reuse, caches)}});
+  result["verdict"] = advice ? to_json(*advice) : nullptr;
   result.update(attachments(mesh));
   console.print_json(result);
 }
@@ -153,6 +190,10 @@ void add_info(CLI::App& app) {
   const auto arguments = std::make_shared<InfoArguments>();
   subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
   add_cache_option(*subcommand, arguments->caches);
+  subcommand->add_flag(
+      "--measure", arguments->measure,
+      "Run the kernels in the mesh's order and in a better one, for some seconds, instead of\n"
+      "predicting what that is worth");
   add_common(*subcommand, *arguments);
   subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

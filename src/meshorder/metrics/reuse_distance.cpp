@@ -65,6 +65,19 @@ Offset ReuseHistogram::misses(Offset lines) const {
   return std::accumulate(bins_.begin() + first, bins_.end(), cold_);
 }
 
+ReuseHistogram ReuseHistogram::scaled(int halvings, double times) const {
+  ReuseHistogram result;
+  for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
+    if (bins_[bin] == 0) continue;
+    // a line more or less among those seen is 2^halvings more or less in truth: take the middle
+    const double distance = std::ldexp(middle_of(bin) + 0.5, halvings) - 0.5;
+    const auto in_range = static_cast<Index>(std::min<double>(distance, kMaxIndex));
+    result.bins_[bin_of(in_range)] += std::llround(times * static_cast<double>(bins_[bin]));
+  }
+  result.cold_ = std::llround(times * static_cast<double>(cold_));
+  return result;
+}
+
 double ReuseHistogram::mean_log2() const {
   double sum = 0.0;
   Offset reuses = 0;
@@ -76,7 +89,7 @@ double ReuseHistogram::mean_log2() const {
   return reuses > 0 ? sum / static_cast<double>(reuses) : 0.0;
 }
 
-ReuseDistance::ReuseDistance(Index lines) : last_access_of_line_(lines) {
+ReuseDistance::ReuseDistance(Index lines, int halvings) : halvings_(halvings), last_access_of_line_(lines) {
   // closing the gaps then leaves at least half of the slots free
   constexpr Slot kFewest = 2 * kWord;
   slot_count_ = std::max(kFewest, 2 * static_cast<Slot>(lines));
@@ -92,14 +105,19 @@ ReuseDistance::ReuseDistance(Index lines) : last_access_of_line_(lines) {
 Index ReuseDistance::access(Index line) {
   const Index distance = move_to_front(line);
   if (distance >= 0) {
-    reuse_.all.add(distance);
-    if (distance >= kFar && is_jump(line)) reuse_.jumps.add(distance);
+    const bool jump = distance >= (kFar >> halvings_) && is_jump(line);
+    if (counts(line)) {
+      reuse_.all.add(distance);
+      if (jump) reuse_.jumps.add(distance);
+    }
     return distance;
   }
   first_accesses_.push_back(line);
   first_access_jumps_.push_back(is_jump(line));
-  reuse_.all.add_cold();
-  if (first_access_jumps_.back()) reuse_.jumps.add_cold();
+  if (counts(line)) {
+    reuse_.all.add_cold();
+    if (first_access_jumps_.back()) reuse_.jumps.add_cold();
+  }
   return distance;
 }
 
@@ -124,7 +142,7 @@ bool ReuseDistance::is_jump(Index line) {
   ++far_accesses_;
   bool jump = true;
   for (Index before = std::max(0, line - 2); before < line; ++before) {
-    jump = jump && far_accesses_ - last_access_of_line_[before].far > kFollowing;
+    jump = jump && far_accesses_ - last_access_of_line_[before].far > (kFollowing >> halvings_);
   }
   last_access_of_line_[line].far = far_accesses_;
   return jump;
@@ -198,8 +216,9 @@ Reuse ReuseDistance::repeated() && {
   reuse_.jumps.forget_cold();
   for (std::size_t k = 0; k < first_accesses_.size(); ++k) {
     const Index distance = move_to_front(first_accesses_[k]);
+    if (!counts(first_accesses_[k])) continue;
     reuse_.all.add(distance);
-    if (distance >= kFar && first_access_jumps_[k]) reuse_.jumps.add(distance);
+    if (distance >= (kFar >> halvings_) && first_access_jumps_[k]) reuse_.jumps.add(distance);
   }
   return std::move(reuse_);
 }

@@ -23,6 +23,9 @@ class ReuseHistogram {
   void add_cold() noexcept { ++cold_; }
   void forget_cold() noexcept { cold_ = 0; }
 
+  /// As if every distance were 2^`halvings` times as long and had occurred `times` times. O(bins).
+  [[nodiscard]] ReuseHistogram scaled(int halvings, double times) const;
+
   /// All accesses, cold ones among them. O(bins).
   [[nodiscard]] Offset accesses() const;
   [[nodiscard]] Offset cold() const noexcept { return cold_; }
@@ -65,8 +68,10 @@ struct Reuse {
 /// Memory: 13 bytes for each line.
 class ReuseDistance {
  public:
-  /// For accesses to lines 0 … lines − 1.
-  explicit ReuseDistance(Index lines);
+  /// For accesses to lines 0 … lines − 1. With `halvings` > 0 these are told to be a sample of 2^-halvings of
+  /// the lines, as ReuseSample draws it: the last three of five lines count, and what is far is nearer by
+  /// that.
+  explicit ReuseDistance(Index lines, int halvings = 0);
 
   /// Returns the distance, −1 for a cold access. Amortised O(1 + log distance).
   Index access(Index line);
@@ -88,6 +93,8 @@ class ReuseDistance {
   static constexpr Slot kNever = ~Slot{0};
   static constexpr Index kFar = 512;
   static constexpr std::uint32_t kFollowing = 64;
+  static constexpr Index kSampledBlock = 5;
+  static constexpr Index kUncounted = 2;  ///< the first of a block
 
   /// Side by side, since both are wanted together and lie far from what is in this machine's caches.
   struct LastAccess {
@@ -107,6 +114,11 @@ class ReuseDistance {
   void close_gaps();
   bool is_jump(Index line);
 
+  [[nodiscard]] bool counts(Index line) const noexcept {
+    return halvings_ == 0 || line % kSampledBlock >= kUncounted;
+  }
+
+  int halvings_;
   std::vector<LastAccess> last_access_of_line_;
   std::vector<Index> first_accesses_;  ///< lines in the order of their first accesses
   std::vector<std::uint64_t> marks_;   ///< a bit for each slot
@@ -118,6 +130,7 @@ class ReuseDistance {
   std::uint32_t far_accesses_ = kFollowing;
   std::vector<bool> first_access_jumps_;  ///< as first_accesses_
   Reuse reuse_;
+  friend class ReuseSample;
 };
 
 }  // namespace meshorder

@@ -2,6 +2,7 @@
 #include <meshorder/base/error.hpp>
 #include <meshorder/base/parallel.hpp>
 #include <meshorder/mesh/reorder.hpp>
+#include <meshorder/metrics/reuse_sample.hpp>
 #include <meshorder/study/access_stream.hpp>
 
 #include <string>
@@ -53,28 +54,28 @@ AccessStream::Array AccessStream::place(Offset bytes) {
   return array;
 }
 
-Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices) {
+Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings) {
   const AccessStream stream(kernel, graph, simplices);
-  ReuseDistance reuse(stream.line_count());
+  ReuseSample reuse(stream.line_count(), halvings);
   stream.visit([&](Index line) { reuse.access(line); });
   return std::move(reuse).repeated();
 }
 
-KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices) {
+KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings) {
   KernelReuse result;
   for_each_chunk(index_size(kKernels), 1, [&](Index k, Index /*begin*/, Index /*end*/) {
-    result[k] = reuse_of(kKernels[k], graph, simplices);
+    result[k] = reuse_of(kKernels[k], graph, simplices, halvings);
   });
   return result;
 }
 
 KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
-                             const Permutation& cells) {
+                             const Permutation& cells, int halvings) {
   Mesh ordered;
   ordered.points = mesh.points;
   ordered.cells = mesh.cells;
   reorder(ordered, vertices, cells);
-  return reuse_of_kernels(renumbered(graph, vertices.old_to_new()), cut_into_simplices(ordered));
+  return reuse_of_kernels(renumbered(graph, vertices.old_to_new()), cut_into_simplices(ordered), halvings);
 }
 
 }  // namespace meshorder

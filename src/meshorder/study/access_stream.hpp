@@ -205,18 +205,20 @@ class AccessStream {
 };
 
 /// The reuse distances of a kernel that a solver repeats: of every run but the first. O(accesses · log
-/// distance) time, about 13 bytes of memory for each line, so a fifth of what the kernel itself needs.
-Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices);
+/// distance) time, about 13 bytes of memory for each line, so a fifth of what the kernel itself needs. With
+/// `halvings` > 0 estimated from 2^-halvings of the lines (see ReuseSample), whose accesses alone cost more
+/// than telling them.
+Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings = 0);
 
 /// By kernel, as kKernels lists them.
 using KernelReuse = std::array<Reuse, kKernels.size()>;
 
 /// Those of all kernels, each on a thread of its own.
-KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices);
+KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings = 0);
 
 /// Those that a mesh of that vertex graph has once `reorder` has moved its vertices and cells to these
 /// places.
 KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
-                             const Permutation& cells);
+                             const Permutation& cells, int halvings = 0);
 
 }  // namespace meshorder

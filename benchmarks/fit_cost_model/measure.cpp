@@ -1,0 +1,150 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// measure predict MESH CACHES FOLDER VERTICES/ELEMENTS…: computes the orders of a mesh, keeps them in FOLDER
+// and prints what the reuse model says of every kernel in every order: mesh, vertices, simplices, dimension,
+// order, kernel, accesses, misses of three levels, jumps of three levels.
+// measure time MESH BUDGET FOLDER VERTICES/ELEMENTS…: times the kernels in the orders that FOLDER keeps, and
+// prints order, kernel, best and median milliseconds, samples. The first order is the one to compare with.
+//
+// MESH is the name of a model, "grid-20", "dragon", or a file; with "-skin" behind it, the triangles on its
+// surface. benchmarks/fit_cost_model/collect.py calls this for all of them.
+#include <meshorder/io/format.hpp>
+#include <meshorder/io/npy.hpp>
+#include <meshorder/mesh/graphs.hpp>
+#include <meshorder/mesh/mesh_ordering.hpp>
+#include <meshorder/mesh/reorder.hpp>
+#include <meshorder/models/catalogue.hpp>
+#include <meshorder/study/access_stream.hpp>
+#include <meshorder/study/kernel_timing.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace mo = meshorder;
+
+namespace {
+
+constexpr std::string_view kSkin = "-skin";
+
+/// The triangles that belong to one tetrahedron alone, in the order of the tetrahedra, on their vertices in
+/// the order of the mesh.
+mo::Mesh skin(const mo::Mesh& mesh) {
+  const auto for_each_face = [&](const auto& visit) {
+    for (mo::Index cell = 0; cell < mesh.cell_count(); ++cell) {
+      for (const std::vector<int>& facet :
+           mo::facets(mesh.cells.shapes[cell], mesh.cells.vertex_count(cell))) {
+        visit(std::array{mesh.cells[cell][facet[0]], mesh.cells[cell][facet[1]], mesh.cells[cell][facet[2]]});
+      }
+    }
+  };
+  const auto key = [](std::array<mo::Index, 3> face) {
+    std::sort(face.begin(), face.end());
+    return face;
+  };
+  std::map<std::array<mo::Index, 3>, int> uses;
+  for_each_face([&](const auto& face) { ++uses[key(face)]; });
+  std::vector<mo::Index> number(mesh.points.size(), -1);
+  for_each_face([&](const auto& face) {
+    if (uses[key(face)] > 1) return;
+    for (const mo::Index v : face) number[v] = 0;
+  });
+  mo::Mesh result;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] < 0) continue;
+    number[v] = result.vertex_count();
+    result.points.push_back(mesh.points[v]);
+  }
+  for_each_face([&](const auto& face) {
+    if (uses[key(face)] > 1) return;
+    result.cells.push_back(mo::Shape::triangle,
+                           std::array{number[face[0]], number[face[1]], number[face[2]]});
+  });
+  return result;
+}
+
+mo::Mesh mesh_of(std::string name) {
+  const bool skinned = name.ends_with(kSkin);
+  if (skinned) name.resize(name.size() - kSkin.size());
+  const bool file = name.find_first_of("./") != std::string::npos;
+  mo::Mesh mesh = mo::read_mesh(file ? name : mo::make_model(name).path.string());
+  mesh.cell_blocks.clear();
+  return skinned ? skin(mesh) : mesh;
+}
+
+std::string file_of(const std::string& folder, std::string order, const char* what) {
+  std::replace(order.begin(), order.end(), '/', '-');
+  return folder + "/" + order + "." + what + ".npy";
+}
+
+mo::Permutation kept(const std::string& file) {
+  std::vector<mo::Index> old_to_new;
+  for (const std::int64_t place : mo::read_npy(file)) old_to_new.push_back(static_cast<mo::Index>(place));
+  return mo::Permutation::from_old_to_new(std::move(old_to_new));
+}
+
+void predict(const std::string& name, const mo::Caches& caches, const std::string& folder,
+             const std::vector<std::string>& orders) {
+  const mo::Mesh mesh = mesh_of(name);
+  const mo::CsrGraph graph = mo::vertex_graph(mesh);
+  const mo::Simplices simplices = mo::cut_into_simplices(mesh);
+  for (const std::string& order : orders) {
+    const auto slash = order.find('/');
+    const mo::Reordering r = mo::compute_reordering(
+        mesh, graph, {.vertices = order.substr(0, slash), .elements = order.substr(slash + 1)});
+    mo::write_npy(r.vertices.old_to_new(), file_of(folder, order, "vertices"));
+    mo::write_npy(r.cells.old_to_new(), file_of(folder, order, "cells"));
+    const mo::KernelReuse reuse = mo::reuse_of_kernels(mesh, graph, r.vertices, r.cells);
+    for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
+      fmt::print("{},{},{},{},{},{},{},{},{}\n", name, mesh.vertex_count(), simplices.size(),
+                 simplices.dimension, order, mo::name(mo::kKernels[k]), reuse[k].all.accesses(),
+                 fmt::join(mo::misses(reuse[k].all, caches), ","),
+                 fmt::join(mo::misses(reuse[k].jumps, caches), ","));
+    }
+    std::fflush(stdout);
+  }
+}
+
+void time(const std::string& name, double budget, const std::string& folder,
+          const std::vector<std::string>& orders) {
+  const mo::Mesh mesh = mesh_of(name);
+  const mo::CsrGraph graph = mo::vertex_graph(mesh);
+  const auto prepare = [&](mo::Index i) {
+    const mo::Permutation vertices = kept(file_of(folder, orders[i], "vertices"));
+    mo::Mesh ordered = mesh;
+    mo::reorder(ordered, vertices, kept(file_of(folder, orders[i], "cells")));
+    return mo::KernelBench(ordered, mo::renumbered(graph, vertices.old_to_new()));
+  };
+  const std::vector<mo::OrderTimes> times = mo::time_orders(
+      mo::index_size(orders), prepare, {.budget_seconds = budget, .least_rounds = 3, .sample_seconds = 0.01});
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    for (const mo::Kernel kernel : mo::kKernels) {
+      const mo::KernelTimes& t = times[i][kernel];
+      fmt::print("{},{},{:.6f},{:.6f},{}\n", orders[i], mo::name(kernel), t.best_ms, t.median_ms, t.samples);
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() >= 5 && words[0] == "predict") {
+    predict(words[1], mo::parse_caches(words[2]), words[3], {words.begin() + 4, words.end()});
+  } else if (words.size() >= 5 && words[0] == "time") {
+    time(words[1], std::atof(words[2].c_str()), words[3], {words.begin() + 4, words.end()});
+  } else {
+    fmt::print(stderr, "measure predict MESH CACHES FOLDER ORDER…; measure time MESH BUDGET FOLDER ORDER…\n");
+    return 2;
+  }
+  return 0;
+} catch (const std::exception& error) {
+  fmt::print(stderr, "measure: {}\n", error.what());
+  return 1;
+}

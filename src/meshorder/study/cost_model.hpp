@@ -1,0 +1,45 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/metrics/cache.hpp>
+#include <meshorder/metrics/reuse_distance.hpp>
+#include <meshorder/study/access_stream.hpp>
+#include <meshorder/study/kernel_bench.hpp>
+
+#include <array>
+#include <string_view>
+
+namespace meshorder {
+
+/// Nanoseconds that a kernel spends on what happens in its stream of accesses, none negative: on each access,
+/// each miss and, on top of it, each jump (a miss that no stream leads to) of the first, second and last
+/// level of caches.
+struct KernelCosts {
+  double access = 0.0;
+  std::array<double, 3> miss{};
+  std::array<double, 3> jump{};
+};
+
+/// What kernels cost on a class of machines, one thread.
+struct CostModel {
+  std::string_view machine;
+  std::array<KernelCosts, kKernels.size()> kernels;
+};
+
+/// Fitted by benchmarks/fit_cost_model to what was measured on a 2-core Zen 5 server processor (48 KB L1, 1
+/// MB L2, 32 MB L3). docs/prediction.md tells how well it predicts meshes that it was not fitted to.
+const CostModel& zen5_costs();
+
+/// The predicted milliseconds of one run of a kernel, when it is repeated, on a processor with these caches:
+/// the ratio between two orders of one mesh is what it is good for, the milliseconds are those of the model's
+/// machine. Where there are not three levels, the first and the last count as what they are, and the last
+/// also as the second. O(levels · bins of the histograms). Throws InvalidArgument without caches.
+double predicted_ms(Kernel kernel, const Reuse& reuse, const Caches& caches,
+                    const CostModel& model = zen5_costs());
+
+/// Of all kernels, as kKernels lists them.
+using KernelMilliseconds = std::array<double, kKernels.size()>;
+KernelMilliseconds predicted_ms(const KernelReuse& reuse, const Caches& caches,
+                                const CostModel& model = zen5_costs());
+
+}  // namespace meshorder
