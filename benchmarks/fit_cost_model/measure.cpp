@@ -32,6 +32,8 @@ namespace mo = meshorder;
 namespace {
 
 constexpr std::string_view kSkin = "-skin";
+// what `info` takes
+constexpr int kHalvings = 3;
 
 /// The triangles that belong to one tetrahedron alone, in the order of the tetrahedra, on their vertices in
 /// the order of the mesh.
@@ -100,7 +102,7 @@ void predict(const std::string& name, const mo::Caches& caches, const std::strin
         mesh, graph, {.vertices = order.substr(0, slash), .elements = order.substr(slash + 1)});
     mo::write_npy(r.vertices.old_to_new(), file_of(folder, order, "vertices"));
     mo::write_npy(r.cells.old_to_new(), file_of(folder, order, "cells"));
-    const mo::KernelReuse reuse = mo::reuse_of_kernels(mesh, graph, r.vertices, r.cells);
+    const mo::KernelReuse reuse = mo::reuse_of_kernels(mesh, graph, r.vertices, r.cells, kHalvings);
     for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
       fmt::print("{},{},{},{},{},{},{},{},{}\n", name, mesh.vertex_count(), simplices.size(),
                  simplices.dimension, order, mo::name(mo::kKernels[k]), reuse[k].all.accesses(),
