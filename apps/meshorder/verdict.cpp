@@ -42,7 +42,7 @@ std::string losses(const Advice& advice, std::size_t candidate) {
   const KernelMilliseconds& ordered = advice.candidates[candidate].costs.best_known();
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     const double as_is = advice.as_is.best_known()[k];
-    if (as_is <= 0 || ordered[k] < same_time(!advice.as_is.measured) * as_is) continue;
+    if (as_is <= 0 || ordered[k] < same_time(kKernels[k], !advice.as_is.measured) * as_is) continue;
     words += fmt::format("{} {} {:.2g}× slower", words.empty() ? "; it makes" : " and", kTitles[k],
                          ordered[k] / as_is);
   }
@@ -76,12 +76,12 @@ std::string verdict_sentence(const Advice& advice) {
   const auto kernels = kernel_advice(advice);
   const std::size_t k = worst(kernels);
   if (kernels[k].factor <= 1) {
-    return fmt::format("nothing to gain: no kernel is {} to run more than {:.0f} % faster in another order",
-                       measured ? "measured" : "predicted", 100 * (same_time(!measured) - 1));
+    return fmt::format("nothing to gain: no kernel is {} to run faster in another order by more than is sure",
+                       measured ? "measured" : "predicted");
   }
   // the order for all kernels, unless only another one helps
   const double with_first = advice.as_is.best_known()[k] / advice.candidates.front().costs.best_known()[k];
-  const std::size_t taken = with_first >= same_time(!measured) ? 0 : kernels[k].candidate;
+  const std::size_t taken = with_first >= same_time(kKernels[k], !measured) ? 0 : kernels[k].candidate;
   const Candidate& candidate = advice.candidates[taken];
   const double steps = steps_to_pay(advice, taken);
   const double factor = advice.as_is.best_known()[k] / candidate.costs.best_known()[k];

@@ -3,7 +3,7 @@
 """Measures what the cost model is fitted to: every kernel in every order on many meshes, with what the reuse model
 says of each, as one CSV table.
 
-    collect.py MEASURE TABLE.csv [--caches 48K,1M,32M] [--predict-with COMMAND] [--time-with COMMAND] [MESH …]
+    collect.py MEASURE TABLE.csv [--predict-with COMMAND] [--time-with COMMAND] [MESH …]
 
 MEASURE is the program build/bin/measure (benchmarks/fit_cost_model/measure.cpp). Meshes that the table holds already
 are left alone, so that it can be collected in pieces. The two COMMANDs stand before each run: one that waits until
@@ -16,10 +16,12 @@ import shlex
 import subprocess
 import tempfile
 
-COLUMNS = ["mesh", "vertices", "simplices", "dimension", "order", "kernel", "accesses", "miss1", "miss2", "miss3",
-           "jump1", "jump2", "jump3", "best_ms", "median_ms", "samples"]
+# more sizes than a machine has caches: what part of a shared one a thread has is seen by fitting
+CACHES = ["48K", "256K", "1M", "4M", "8M", "16M", "32M"]
+COLUMNS = ["mesh", "vertices", "simplices", "dimension", "order", "kernel", "accesses", *(f"miss_{c}" for c in CACHES),
+           *(f"jump_{c}" for c in CACHES), "best_ms", "median_ms", "samples"]
 
-# the same seventeen on every machine, none of them anybody's own
+# anybody can make them, on any machine
 MESHES = ["grid-17", "torus-12", "ball-24", "grid-64-skin", "grid-32", "bunny", "ball-80-skin", "armadillo", "dragon",
           "dragon-skin", "torus-20", "ball-45", "armadillo-300k-skin", "torus-30", "grid-64", "armadillo-300k", "ball-80"]
 
@@ -42,7 +44,7 @@ def rows_of(mesh, arguments):
             command = [*shlex.split(before), arguments.measure, *map(str, words), folder, *orders_of(mesh)]
             return [line.split(",") for line in subprocess.check_output(command, text=True).split()]
 
-        predicted = run(arguments.predict_with, "predict", mesh, arguments.caches)
+        predicted = run(arguments.predict_with, "predict", mesh, ",".join(CACHES))
         times = {tuple(row[:2]): row[2:] for row in run(arguments.time_with, "time", mesh, arguments.budget)}
     return [row + times[tuple(row[4:6])] for row in predicted]
 
@@ -52,7 +54,6 @@ def main():
     parser.add_argument("measure")
     parser.add_argument("table", type=pathlib.Path)
     parser.add_argument("meshes", nargs="*", default=MESHES)
-    parser.add_argument("--caches", default="this")
     parser.add_argument("--budget", type=float, default=8, help="seconds a mesh, preparation not counted")
     parser.add_argument("--predict-with", default="")
     parser.add_argument("--time-with", default="")

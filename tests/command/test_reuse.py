@@ -90,7 +90,9 @@ def test_compare_predicts_what_info_says_of_the_reordered_file(command):
 
 def test_threads_do_not_change_predictions(command):
     made = command.json("models", "make", "grid", "--size", "6")["models"][0]["path"]
-    assert command.json("info", made, "--threads", "1") == command.json("info", made, "--threads", "3")
+    one, three = (command.json("info", made, "--threads", threads) for threads in "13")
+    del one["verdict"], three["verdict"]  # in which are times
+    assert one == three
 
 
 def test_caches_are_the_papers_or_this_machines(command, tmp_path):

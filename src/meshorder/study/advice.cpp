@@ -99,11 +99,13 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   return advice;
 }
 
-double same_time(bool predicted) { return predicted ? 1.1 : 1.05; }
+double same_time(Kernel kernel, bool predicted) {
+  if (!predicted) return 1.05;
+  return kernel == Kernel::spmv ? 1.25 : 1.1;
+}
 
 std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice) {
   std::array<KernelAdvice, kKernels.size()> result;
-  const double same = same_time(!advice.as_is.measured);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     KernelAdvice& of_kernel = result[k];
     const double as_is = advice.as_is.best_known()[k];
@@ -114,7 +116,7 @@ std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice) {
       best = ms;
       of_kernel.candidate = i;
     }
-    if (best <= 0.0 || as_is < same * best) continue;
+    if (best <= 0.0 || as_is < same_time(kKernels[k], !advice.as_is.measured) * best) continue;
     of_kernel.factor = as_is / best;
     of_kernel.runs_to_pay = std::ceil(1e3 * advice.candidates[of_kernel.candidate].seconds / (as_is - best));
   }
@@ -122,11 +124,11 @@ std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice) {
 }
 
 double saved_in_time_step(const Advice& advice, std::size_t candidate) {
-  const double same = same_time(!advice.as_is.measured);
   double saved = 0;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     const double as_is = advice.as_is.best_known()[k];
     const double ordered = advice.candidates[candidate].costs.best_known()[k];
+    const double same = same_time(kKernels[k], !advice.as_is.measured);
     if (std::max(as_is, ordered) < same * std::min(as_is, ordered)) continue;
     saved += kRunsInTimeStep[k] * (as_is - ordered);
   }

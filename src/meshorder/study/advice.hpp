@@ -67,9 +67,10 @@ struct AdviceOptions {
 /// InvalidArgument where neither prediction nor measurement is asked for.
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options = {});
 
-/// Times that differ by less than this factor are the same: measured ones, or where `predicted` those of the
-/// model, which docs/prediction.md compares with measurements.
-double same_time(bool predicted);
+/// Times of a kernel that differ by less than this factor are the same: measured ones by 1.05; predicted ones
+/// by 1.1 and of products with the matrix by 1.25, since of smaller differences that the model saw in these,
+/// too many were none (docs/prediction.md).
+double same_time(Kernel kernel, bool predicted);
 
 /// What the best candidate is worth for each kernel, as kKernels lists them. Meshes without cells have
 /// nothing to gain.

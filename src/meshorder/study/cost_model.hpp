@@ -12,12 +12,13 @@
 namespace meshorder {
 
 /// Nanoseconds that a kernel spends on what happens in its stream of accesses, none negative: on each access,
-/// each miss and, on top of it, each jump (a miss that no stream leads to) of the first, second and last
-/// level of caches.
+/// each miss and, on top of it, each jump (a miss that no stream leads to) of four caches: the first level,
+/// the second, half of the last and all of it. A thread has some part of the last level to itself, and its
+/// misses begin to show when half of it is full.
 struct KernelCosts {
   double access = 0.0;
-  std::array<double, 3> miss{};
-  std::array<double, 3> jump{};
+  std::array<double, 4> miss{};
+  std::array<double, 4> jump{};
 };
 
 /// What kernels cost on a class of machines, one thread.
@@ -32,8 +33,9 @@ const CostModel& zen5_costs();
 
 /// The predicted milliseconds of one run of a kernel, when it is repeated, on a processor with these caches:
 /// the ratio between two orders of one mesh is what it is good for, the milliseconds are those of the model's
-/// machine. Where there are not three levels, the first and the last count as what they are, and the last
-/// also as the second. O(levels · bins of the histograms). Throws InvalidArgument without caches.
+/// machine. Of one or two levels the last
+/// counts as the second too, of four or more those between do not count. O(levels · bins of the histograms).
+/// Throws InvalidArgument without caches.
 double predicted_ms(Kernel kernel, const Reuse& reuse, const Caches& caches,
                     const CostModel& model = zen5_costs());
 

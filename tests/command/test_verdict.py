@@ -1,0 +1,77 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""What `info` says at its end: what the order costs, and what another is worth."""
+import time
+
+import pytest
+
+import meshes
+
+KERNELS = {"spmv", "element", "assembly", "springs"}
+
+
+@pytest.fixture
+def scrambled(command, model):
+    command.ok("order", model("grid", "--size", "24"), "-o", "scrambled.node", "--vertices", "scrambled", "--elements",
+               "scrambled")
+    return "scrambled.node"
+
+
+def test_a_scrambled_grid_is_told_what_it_loses(command, scrambled):
+    text = command.ok("info", scrambled).stdout
+    verdict = text.splitlines()[-1]
+    assert verdict.startswith("Verdict: as it is, ") and "slower than it could" in verdict
+    assert "`meshorder order` takes" in verdict and "pays for itself within" in verdict and "time step" in verdict
+    assert "A time step: " in text and "hilbert/lexmax" in text
+
+
+def test_the_order_that_was_advised_has_nothing_to_gain(command, scrambled):
+    command.ok("order", scrambled, "-o", "ordered.node")
+    result = command.json("info", "ordered.node")["verdict"]
+    assert "nothing to gain" in result["sentence"]
+    for kernel in KERNELS:
+        assert result["kernels"][kernel] == {"factor": 1, "order": None, "runs_to_pay": None}
+    assert "nothing to gain" in command.ok("info", "ordered.node").stdout.splitlines()[-1]
+
+
+def test_verdict_keys(command, scrambled):
+    result = command.json("info", scrambled)["verdict"]
+    assert set(result) == {"sentence", "by", "kernels", "as_it_is", "orders", "time_step"}
+    assert result["by"] == "prediction"
+    assert set(result["kernels"]) == set(result["time_step"]) == KERNELS
+    assert set(result["as_it_is"]["predicted_milliseconds"]) == KERNELS
+    assert result["as_it_is"]["measured_milliseconds"] is None
+    for order in result["orders"]:
+        assert set(order) == {"command", "vertices", "elements", "seconds", "time_steps_to_pay",
+                              "predicted_milliseconds", "measured_milliseconds"}
+        assert order["seconds"] > 0
+    assembly = result["kernels"]["assembly"]
+    best = result["orders"][assembly["order"]]
+    as_is = result["as_it_is"]["predicted_milliseconds"]["assembly"]
+    ordered = best["predicted_milliseconds"]["assembly"]
+    assert assembly["factor"] == pytest.approx(as_is / ordered) and assembly["factor"] > 1.3
+    assert assembly["runs_to_pay"] - 1 <= 1e3 * best["seconds"] / (as_is - ordered) <= assembly["runs_to_pay"]
+
+
+def test_measuring_replaces_what_is_predicted(command, scrambled):
+    start = time.monotonic()
+    result = command.json("info", scrambled, "--measure")["verdict"]
+    assert time.monotonic() - start < 15  # 5 on a machine that does nothing else
+    assert result["by"] == "measurement"
+    for costs in [result["as_it_is"], *result["orders"]]:
+        assert set(costs["measured_milliseconds"]) == set(costs["predicted_milliseconds"]) == KERNELS
+        assert all(ms > 0 for ms in costs["measured_milliseconds"].values())
+    text = command.ok("info", scrambled, "--measure").stdout
+    assert "measured here (predicted)" in text and "Verdict: " in text.splitlines()[-1]
+
+
+def test_predictions_are_the_same_on_every_run(command, scrambled):
+    first, second = (command.json("info", scrambled, "--threads", threads)["verdict"] for threads in "12")
+    assert first["kernels"]["assembly"]["factor"] == second["kernels"]["assembly"]["factor"]
+    assert first["as_it_is"] == second["as_it_is"]
+
+
+def test_a_mesh_without_elements_has_no_verdict(command, tmp_path):
+    meshes.write_tetgen(tmp_path)
+    (tmp_path / "points.mesh").write_text("MeshVersionFormatted 2\nDimension 3\nVertices\n2\n0 0 0 0\n1 0 0 0\nEnd\n")
+    assert command.json("info", "points.mesh")["verdict"] is None
+    assert command.json("info", "mesh.node")["verdict"] is not None
