@@ -4,8 +4,6 @@ import time
 
 import pytest
 
-import meshes
-
 KERNELS = {"spmv", "element", "assembly", "springs"}
 
 
@@ -69,9 +67,3 @@ def test_predictions_are_the_same_on_every_run(command, scrambled):
     assert first["kernels"]["assembly"]["factor"] == second["kernels"]["assembly"]["factor"]
     assert first["as_it_is"] == second["as_it_is"]
 
-
-def test_a_mesh_without_elements_has_no_verdict(command, tmp_path):
-    meshes.write_tetgen(tmp_path)
-    (tmp_path / "points.mesh").write_text("MeshVersionFormatted 2\nDimension 3\nVertices\n2\n0 0 0 0\n1 0 0 0\nEnd\n")
-    assert command.json("info", "points.mesh")["verdict"] is None
-    assert command.json("info", "mesh.node")["verdict"] is not None
