@@ -47,8 +47,17 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
   if (arguments.measure) {
     options.measure_within = kMeasureWithin - since_start.seconds();
     options.for_springs_too = simplices <= kMostOfTwoOrders;
+    if (simplices > kMostOfTwoOrders) options.halvings = 5;
   }
   return advise(mesh, graph, options);
+}
+
+/// Of larger meshes the reuse is estimated from a part of the lines, unless --cache asks for all.
+constexpr Index kMostExact = 200'000;
+constexpr int kHalvings = 3;
+
+bool is_estimated(const InfoArguments& arguments, const Mesh& mesh) {
+  return arguments.caches.empty() && mesh.cell_count() > kMostExact;
 }
 
 /// The reuse of the mesh in its order; nothing for a large mesh when nobody asked for it, and when there is
@@ -57,7 +66,7 @@ std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const Mesh& 
   const Simplices simplices = cut_into_simplices(mesh);
   const Offset most = arguments.measure ? kMostOfTwoOrders : kMostPredicted;
   if (arguments.caches.empty() && simplices.size() > most) return std::nullopt;
-  return reuse_of_kernels(graph, simplices);
+  return reuse_of_kernels(graph, simplices, is_estimated(arguments, mesh) ? kHalvings : 0);
 }
 
 /// One bar for each power of two, as long as its share of the edges.
@@ -152,9 +161,9 @@ void run(const InfoArguments& arguments) {
   if (!histogram.empty()) print_histogram(console, histogram);
   if (reuse) {
     console.print(
-        "\nPredicted for each run of a kernel: mean log2 of reuse distances, misses of caches, jumps among "
-        "the "
-        "last cache's misses");
+        "\nPredicted for each run of a kernel{}: mean log2 of reuse distances, misses of caches, jumps among "
+        "the last cache's misses",
+        is_estimated(arguments, mesh) ? fmt::format(", from 1/{} of the lines", 1 << kHalvings) : "");
     console.print("{}\n{}", reuse_header(caches, 0), reuse_cells(*reuse, caches));
   } else if (arguments.measure) {
     console.log("left out, to measure in time: the reuse table, orders for springs alone; see compare");

@@ -7,8 +7,8 @@
 namespace meshorder {
 
 void note_array_left_out(const DataArray& array, std::string_view format, Notes& notes) {
-  notes.push_back(fmt::format("the array '{}' on {} is left out: {} cannot hold it", array.name,
-                              name(array.on), format));
+  notes.push_back(
+      fmt::format("the array '{}' on {} is left out: {} cannot hold it", array.name, name(array.on), format));
 }
 
 void note_set_left_out(const Set& set, std::string_view format, Notes& notes) {
@@ -20,8 +20,7 @@ void note_ids_left_out(const Mesh& mesh, std::string_view format, Notes& notes) 
   for (const Attached on : {Attached::vertices, Attached::cells}) {
     const auto& ids = on == Attached::vertices ? mesh.vertex_ids : mesh.cell_ids;
     if (ids.empty()) continue;
-    notes.push_back(
-        fmt::format("the numbers of {} are left out: {} counts them by place", name(on), format));
+    notes.push_back(fmt::format("the numbers of {} are left out: {} counts them by place", name(on), format));
   }
 }
 

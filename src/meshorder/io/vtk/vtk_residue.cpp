@@ -79,8 +79,8 @@ class Names {
     }
     for (int i = 2; !taken_.emplace(on, name).second; ++i) name = wanted + "_" + std::to_string(i);
     if (name != wanted)
-      notes.push_back("the array '" + wanted + "' on " + std::string(meshorder::name(on)) + " is written as '" + name +
-                      "'");
+      notes.push_back("the array '" + wanted + "' on " + std::string(meshorder::name(on)) +
+                      " is written as '" + name + "'");
     return name;
   }
 
@@ -159,8 +159,9 @@ VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes) {
       continue;
     }
     if (!array.covers_all()) {
-      notes.push_back("the array '" + array.name + "' is given for some " + std::string(meshorder::name(array.on)) +
-                      "; the others get " + (filled_with_nan(array) ? "NaN" : "0"));
+      notes.push_back("the array '" + array.name + "' is given for some " +
+                      std::string(meshorder::name(array.on)) + "; the others get " +
+                      (filled_with_nan(array) ? "NaN" : "0"));
     }
     make(full_copy(array, owner_count(mesh, array.on)));
     result.made.back()->name = name;
@@ -179,7 +180,8 @@ VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes) {
   const auto add_ids = [&](const std::vector<std::int64_t>& ids, const char* wanted, Attached on) {
     if (ids.empty()) return;
     const std::string name = names.unused(wanted, on, notes);
-    notes.push_back("the ids of " + std::string(meshorder::name(on)) + " are written as the array '" + name + "'");
+    notes.push_back("the ids of " + std::string(meshorder::name(on)) + " are written as the array '" + name +
+                    "'");
     make({name, on, 1, label_values(ids), {}, {}});
   };
   add_ids(mesh.vertex_ids, "vertex_id", Attached::vertices);
