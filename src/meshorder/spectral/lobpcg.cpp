@@ -176,17 +176,16 @@ template <int M>
 double refresh(WithImage<M>& x, const Level& level, Eigen::Matrix<double, M, 1>& values, VectorBlock<M>& r) {
   level.laplacian.apply<M>(x.vectors, x.images);
   using Quotients = Sums<std::size_t{2} * M>;
-  Quotients quotients =
-      sum_over_chunks<Quotients>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
-        Quotients part;
-        for (Index v = begin; v < end; ++v) {
-          for (int m = 0; m < M; ++m) {
-            part[m] += x.vectors[v][m] * x.images[v][m];
-            part[M + m] += level.mass(v) * x.vectors[v][m] * x.vectors[v][m];
-          }
-        }
-        return part;
-      });
+  auto quotients = sum_over_chunks<Quotients>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+    Quotients part;
+    for (Index v = begin; v < end; ++v) {
+      for (int m = 0; m < M; ++m) {
+        part[m] += x.vectors[v][m] * x.images[v][m];
+        part[M + m] += level.mass(v) * x.vectors[v][m] * x.vectors[v][m];
+      }
+    }
+    return part;
+  });
   for (int m = 0; m < M; ++m) values[m] = quotients[M + m] > 0 ? quotients[m] / quotients[M + m] : 0;
   auto norms = sum_over_chunks<Norms>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
     Norms part;

@@ -15,7 +15,7 @@ constexpr Index kFewColours = 3;
 
 RowChunks::RowChunks(const Laplacian& laplacian) : rows_(laplacian.size()) {
   const auto rows = static_cast<std::uint32_t>(std::max(kLeastRows, chunk_count(rows_, kChunks)));
-  shift_ = std::bit_width(rows - 1);
+  shift_ = static_cast<int>(std::bit_width(rows - 1));
 
   // which chunks each chunk touches, as bits
   std::vector<std::uint32_t> touched(count(), 0);
@@ -42,7 +42,7 @@ RowChunks::RowChunks(const Laplacian& laplacian) : rows_(laplacian.size()) {
 RowChunks RowChunks::whole(Index rows) {
   RowChunks one;
   one.rows_ = rows;
-  one.shift_ = std::bit_width(static_cast<std::uint32_t>(std::max(rows, 1) - 1));
+  one.shift_ = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(std::max(rows, 1) - 1)));
   one.colours_ = {{0}};
   return one;
 }

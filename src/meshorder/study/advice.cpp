@@ -44,6 +44,7 @@ std::vector<KernelMilliseconds> measurements(const std::vector<Ordered>& orders,
     benches[i].emplace(orders[i].mesh, orders[i].graph);
   });
   std::vector<KernelBench*> pointers;
+  pointers.reserve(benches.size());
   for (std::optional<KernelBench>& bench : benches) pointers.push_back(&bench.value());
   const std::vector<OrderTimes> times =
       time_interleaved(pointers, {.budget_seconds = std::max(0.0, seconds - stopwatch.seconds()),
