@@ -114,7 +114,7 @@ void print_verdict(const Console& console, const Advice& advice) {
     for (const Candidate& candidate : advice.candidates) {
       const std::string of_model = factor_cell(advice.as_is.predicted, candidate.costs.predicted, k);
       const std::string of_clock = factor_cell(advice.as_is.measured, candidate.costs.measured, k);
-      row += fmt::format("{:>18}", predicted && measured ? of_clock + " (" + of_model + ")"
+      row += fmt::format("{:>18}", predicted && measured ? fmt::format("{} ({})", of_clock, of_model)
                                    : measured            ? of_clock
                                                          : of_model);
     }
