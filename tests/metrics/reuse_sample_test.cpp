@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -57,8 +58,8 @@ TEST(ReuseSample, EstimatesMissesAndJumps) {
 }
 
 TEST(ReuseSample, AStreamHasNoJumps) {
-  std::vector<Index> stream;
-  for (Index line = 0; line < kLines; ++line) stream.push_back(line);
+  std::vector<Index> stream(kLines);
+  std::iota(stream.begin(), stream.end(), Index{0});
   const Reuse estimate = sampled(stream, 3);
   EXPECT_NEAR(static_cast<double>(estimate.all.misses(768)), kLines, 0.05 * kLines);
   EXPECT_EQ(estimate.jumps.misses(768), 0);

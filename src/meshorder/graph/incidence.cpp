@@ -44,23 +44,23 @@ struct Rows {
   Offset end = 0;  ///< of what is used
 };
 
-/// Where the elements stand among all vertices of elements. `kSize` is the size of every element, which
+/// Where the elements stand among all vertices of elements. `Size` is the size of every element, which
 /// spares reading the offsets, or 0 where they differ.
-template <int kSize>
+template <int Size>
 struct Elements {
   const Incidence& incidence;
 
   [[nodiscard]] const Index* begin(Index e) const {
-    return incidence.vertices.data() + (kSize > 0 ? Offset{e} * kSize : incidence.offsets[e]);
+    return incidence.vertices.data() + (Size > 0 ? Offset{e} * Size : incidence.offsets[e]);
   }
   [[nodiscard]] Offset size(Index e) const {
-    return kSize > 0 ? kSize : incidence.offsets[e + 1] - incidence.offsets[e];
+    return Size > 0 ? Size : incidence.offsets[e + 1] - incidence.offsets[e];
   }
 };
 
 /// Appends the neighbours of v. `seen_by[u] == v` marks those that the row already has.
-template <int kSize>
-void append_row(Elements<kSize> elements, const Incidence& at_vertex, Index v, std::vector<Index>& seen_by,
+template <int Size>
+void append_row(Elements<Size> elements, const Incidence& at_vertex, Index v, std::vector<Index>& seen_by,
                 Rows& rows) {
   constexpr Offset kAhead = 12;  // elements lie anywhere in memory: ask for them early
   Offset most = 0;
@@ -89,8 +89,8 @@ void append_row(Elements<kSize> elements, const Incidence& at_vertex, Index v, s
 }
 
 /// All rows, kChunk in each part, and the degrees: `degrees[v + 1]` is that of v.
-template <int kSize>
-std::vector<Rows> find_rows(Elements<kSize> elements, std::vector<Offset>& degrees) {
+template <int Size>
+std::vector<Rows> find_rows(Elements<Size> elements, std::vector<Offset>& degrees) {
   const Incidence at_vertex = transposed(elements.incidence);
   const Index n = elements.incidence.vertex_count;
   std::vector<Rows> parts(chunk_count(n, kChunk));
