@@ -17,7 +17,7 @@ Incidence random_elements(Index vertices, Index count, Index most, unsigned seed
   Incidence result;
   result.vertex_count = vertices;
   for (Index e = 0; e < count; ++e) {
-    for (Index k = static_cast<Index>(random() % static_cast<unsigned>(most)); k >= 0; --k) {
+    for (auto k = static_cast<Index>(random() % static_cast<unsigned>(most)); k >= 0; --k) {
       result.vertices.push_back(static_cast<Index>(random() % static_cast<unsigned>(vertices)));
     }
     result.offsets.push_back(static_cast<Offset>(result.vertices.size()));

@@ -15,6 +15,7 @@ namespace {
 
 std::vector<Point> lattice_points(Index columns, Index n) {
   std::vector<Point> points;
+  points.reserve(n);
   for (Index v = 0; v < n; ++v) points.push_back({1.0 * (v % columns), 0.1 * v, 0.0});
   return points;
 }
