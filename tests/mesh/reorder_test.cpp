@@ -17,7 +17,7 @@ void expect_everything_moves(const Mesh& before) {
   const Permutation cells = test::shuffled_cells(before, 8);
   reorder(after, vertices, cells);
   check(after);
-  const auto temperature = [](const Mesh& mesh, Attached on) {
+  const auto temperature = [](const Mesh& mesh, Attached on) -> const std::vector<double>& {
     return std::get<std::vector<double>>(find_array(mesh, "temperature", on)->values);
   };
   for (Index v = 0; v < before.vertex_count(); ++v) {
