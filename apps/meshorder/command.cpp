@@ -3,6 +3,9 @@
 
 #include <tbb/global_control.h>
 
+#include <array>
+#include <cstddef>
+#include <new>
 #include <string>
 
 namespace meshorder::command {
@@ -36,10 +39,11 @@ void add_ordering_options(CLI::App& subcommand, OrderingOptions& options) {
 
 void with_threads(int threads, const std::function<void()>& work) {
   if (threads > 0) {
-    // never ended: when a limit ends, TBB starts a thread though nothing is left to do
-    static const auto* const limit = new tbb::global_control(tbb::global_control::max_allowed_parallelism,
-                                                             static_cast<std::size_t>(threads));
-    (void)limit;
+    // in a place of its own, so that it never ends: when a limit ends, TBB starts a thread though nothing is
+    // left to do
+    alignas(tbb::global_control) static std::array<std::byte, sizeof(tbb::global_control)> limit;
+    new (limit.data())
+        tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   }
   work();
 }
