@@ -124,7 +124,7 @@ TEST(MeshOrdering, IsTheSameTwice) {
 }
 
 TEST(MeshOrdering, EveryPairOfMethodsGivesASoundMeshThatTheInverseRestores) {
-  for (Mesh original : {test::mixed_mesh(), bar_with_boundary(), Mesh{}}) {
+  for (const Mesh& original : {test::mixed_mesh(), bar_with_boundary(), Mesh{}}) {
     const CsrGraph graph = vertex_graph(original);
     for (const VertexMethod& of_vertices : vertex_methods()) {
       for (const ElementMethod& of_elements : element_methods()) {
