@@ -31,7 +31,7 @@ struct InfoArguments : Common {
 constexpr Offset kMostPredicted = 2'000'000;
 
 /// --measure ends about then, counted from the command's start, for meshes of some 300 thousand vertices.
-constexpr double kMeasureWithin = 4.5;
+constexpr double kMeasureWithin = 3.8;
 /// More than one order would not be prepared for measuring by then.
 constexpr Offset kMostOfTwoOrders = 500'000;
 
