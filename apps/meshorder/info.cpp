@@ -27,9 +27,6 @@ struct InfoArguments : Common {
   bool measure = false;
 };
 
-/// Predicting takes a few seconds for so many simplices, and 13 bytes for each line that a kernel touches.
-constexpr Offset kMostPredicted = 2'000'000;
-
 /// --measure ends about then, counted from the command's start, for meshes of some 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
 /// More than one order would not be prepared for measuring by then.

@@ -31,10 +31,7 @@ CLI::Option* add_cache_option(CLI::App& subcommand, std::string& caches) {
       "48K,1M,32M");
 }
 
-bool is_quick_to_predict(const Mesh& mesh) {
-  constexpr Offset kMostSimplices = 2'000'000;
-  return cut_into_simplices(mesh).size() <= kMostSimplices;
-}
+bool is_quick_to_predict(const Mesh& mesh) { return cut_into_simplices(mesh).size() <= kMostPredicted; }
 
 nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches) {
   nlohmann::ordered_json result;

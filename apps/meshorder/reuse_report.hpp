@@ -14,7 +14,10 @@ namespace meshorder::command {
 /// --cache, for parse_caches.
 CLI::Option* add_cache_option(CLI::App& subcommand, std::string& caches);
 
-/// Whether predicting the mesh's kernels takes seconds rather than minutes.
+/// Predicting takes a few seconds for so many simplices, and 13 bytes for each line that a kernel touches.
+inline constexpr Offset kMostPredicted = 2'000'000;
+
+/// Whether the mesh has no more than that.
 bool is_quick_to_predict(const Mesh& mesh);
 
 /// {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …}, misses and jumps level by level
