@@ -3,12 +3,20 @@
 
 #include <meshorder/base/index.hpp>
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <vector>
 
 namespace meshorder {
+
+/// How many threads work at most: those of the machine, or the limit that is set (tbb::global_control).
+inline Index thread_count() {
+  const std::size_t limit = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::min(static_cast<Index>(limit), Index{tbb::this_task_arena::max_concurrency()});
+}
 
 /// How many chunks of `size` make up 0 … n−1, the last one perhaps shorter.
 constexpr Index chunk_count(Index n, Index size) { return static_cast<Index>((Offset{n} + size - 1) / size); }

@@ -47,6 +47,14 @@ struct RestShapes {
   /// Quantities in `geometry`.
   [[nodiscard]] int quantities() const noexcept { return dimension * (dimension + 1) / 2 + 1; }
   [[nodiscard]] Offset batches() const noexcept { return (count + kBatch - 1) / kBatch; }
+
+  /// Corner `a` of simplex s, and its volume.
+  [[nodiscard]] Index vertex(Offset s, Index a) const {
+    return vertices[(s / kBatch * (dimension + 1) + a) * kBatch + s % kBatch];
+  }
+  [[nodiscard]] double volume(Offset s) const {
+    return geometry[(s / kBatch * quantities() + quantities() - 1) * kBatch + s % kBatch];
+  }
 };
 
 /// The rest shapes of the simplices at the given points. O(simplices).

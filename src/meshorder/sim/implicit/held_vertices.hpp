@@ -1,0 +1,38 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/base/point.hpp>
+#include <meshorder/sim/kernels/block_csr.hpp>
+
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// The vertices whose motion in a step is given, and with what velocity they move.
+class HeldVertices {
+ public:
+  explicit HeldVertices(Index vertex_count) : held_(vertex_count, 0) {}
+
+  void clear();
+  /// Held twice, a vertex has the later velocity.
+  void hold(Index vertex, const Point& velocity);
+
+  [[nodiscard]] bool holds(Index vertex) const { return held_[vertex] != 0; }
+  [[nodiscard]] std::span<const Index> vertices() const noexcept { return vertices_; }
+
+  /// Gives the held vertices their velocities, in 3 doubles for each vertex. O(held).
+  void set(std::span<double> velocities) const;
+  /// Sets their entries to 0. O(held).
+  void set_zero(std::span<double> vector) const;
+  /// Takes their rows and columns out of a symmetric matrix: zero but for the diagonal, a multiple of the
+  /// identity. With zeros on the right-hand side they take no part. O(their blocks · log row length).
+  void remove_from(BlockCsr& matrix) const;
+
+ private:
+  std::vector<char> held_;
+  std::vector<Index> vertices_;
+  std::vector<Point> velocities_;  ///< of `vertices_`
+};
+
+}  // namespace meshorder
