@@ -1,14 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/parallel.hpp>
 #include <meshorder/sim/kernels/block_csr.hpp>
 
 namespace meshorder {
-
-Offset BlockCsr::find(Index row, Index column) const {
-  const auto begin = columns.begin() + offsets[row];
-  const auto end = columns.begin() + offsets[row + 1];
-  const auto found = std::lower_bound(begin, end, column);
-  return found != end && *found == column ? found - columns.begin() : -1;
-}
 
 BlockCsr zero_block_csr(const CsrGraph& graph) {
   BlockCsr matrix;
@@ -24,6 +18,20 @@ BlockCsr zero_block_csr(const CsrGraph& graph) {
   }
   matrix.values.assign(9 * matrix.columns.size(), 0.0);
   return matrix;
+}
+
+void round_to_single(const BlockCsr& matrix, BlockCsrOf<float>& result) {
+  constexpr Index kRows = 4096;
+  result.offsets = matrix.offsets;
+  result.columns = matrix.columns;
+  // without the spare blocks that the values may end with
+  result.values.resize(9 * matrix.columns.size());
+  for_each_chunk(matrix.size(), kRows, [&](Index, Index begin, Index end) {
+    const Offset last = 9 * matrix.offsets[end];
+    for (Offset i = 9 * matrix.offsets[begin]; i < last; ++i) {
+      result.values[i] = static_cast<float>(matrix.values[i]);
+    }
+  });
 }
 
 }  // namespace meshorder
