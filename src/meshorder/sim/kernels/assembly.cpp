@@ -29,7 +29,7 @@ constexpr int pair_number(int a, int b) {
 }
 
 template <int D, class Lanes>
-HWY_INLINE void compute_terms(const Stvk<D, Lanes>& stvk, const Lame& lame, Index lane,
+HWY_INLINE void compute_terms(const OldStvk<D, Lanes>& stvk, const Lame& lame, Index lane,
                               BatchTerms<D>& terms) {
   using Value = typename Lanes::Value;
   // shape gradients; g₀ is minus the sum of the others
@@ -163,7 +163,7 @@ HWY_INLINE void add_batch(const RestShapes& rest, Offset batch, const Lame& lame
   const Index* const vertices = rest.vertices.data() + batch * kBatch * (D + 1);
   BatchTerms<D> terms;
   for (Index lane = 0; lane < kBatch; lane += ManyLanes::kCount) {
-    Stvk<D, ManyLanes> stvk;
+    OldStvk<D, ManyLanes> stvk;
     stvk.load(geometry + lane, vertices + lane, positions);
     stvk.strain_and_stress(lame);
     compute_terms(stvk, lame, lane, terms);

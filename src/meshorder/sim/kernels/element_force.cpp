@@ -16,7 +16,7 @@ template <int D, class Lanes>
 HWY_INLINE void add_batch(const double* geometry, const Index* vertices, const Index* targets,
                           const Lame& lame, const double* positions, double* forces) {
   for (Index lane = 0; lane < kBatch; lane += Lanes::kCount) {
-    Stvk<D, Lanes> stvk;
+    OldStvk<D, Lanes> stvk;
     stvk.load(geometry + lane, vertices + lane, positions);
     stvk.strain_and_stress(lame);
     stvk.add_forces(targets + lane, forces);
@@ -61,7 +61,7 @@ template <int D>
 double energy_of_all(const RestShapes& rest, const Lame& lame, const double* positions) {
   double sum = 0.0;
   for (Offset s = 0; s < rest.count; ++s) {
-    Stvk<D, OneLane> stvk;
+    OldStvk<D, OneLane> stvk;
     stvk.load(rest.geometry.data() + s / kBatch * kBatch * rest.quantities() + s % kBatch,
               rest.vertices.data() + s / kBatch * kBatch * (D + 1) + s % kBatch, positions);
     stvk.strain_and_stress(lame);

@@ -2,21 +2,11 @@
 #pragma once
 
 #include <meshorder/sim/kernels/owned_batches.hpp>
+#include <meshorder/sim/material/material.hpp>
 
 #include <span>
 
 namespace meshorder {
-
-/// Lamé's parameters of an isotropic material, in units of stress.
-struct Lame {
-  double mu = 0.0;
-  double lambda = 0.0;
-
-  /// μ = E / 2(1 + ν), λ = E ν / ((1 + ν)(1 − 2ν)).
-  static Lame from_young(double young, double poisson) {
-    return {young / (2.0 * (1.0 + poisson)), young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))};
-  }
-};
 
 /// The elastic energy of simplices in space, by Saint Venant and Kirchhoff:
 /// E = Σ V (μ E:E + ½ λ tr(E)²) with E = ½(FᵀF − I) and F the 3×D deformation gradient. Tetrahedra are

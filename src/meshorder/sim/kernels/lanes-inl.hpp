@@ -34,6 +34,16 @@ struct OneLane {
   static HWY_INLINE double square_root(double a) { return std::sqrt(a); }
   /// where > 0 ? value : 0
   static HWY_INLINE double if_positive(double where, double value) { return where > 0.0 ? value : 0.0; }
+  /// where > 0 ? yes : no
+  static HWY_INLINE double choose(double where, double yes, double no) { return where > 0.0 ? yes : no; }
+  static HWY_INLINE double max(double a, double b) { return a > b ? a : b; }
+  static HWY_INLINE double abs(double a) { return std::abs(a); }
+  static HWY_INLINE double with_sign_of(double value, double sign) { return std::copysign(value, sign); }
+  static HWY_INLINE double log(double a) { return std::log(a); }
+  /// Whether every lane is; not when one is NaN.
+  static HWY_INLINE bool all_at_most(double a, double bound) { return a <= bound; }
+  /// Lane l to to[l · stride], the kCount rows side by side.
+  static HWY_INLINE void store_transposed(const double* rows, double* to, Offset /*stride*/) { *to = *rows; }
   /// p = the three coordinates of vertex v[0]
   static HWY_INLINE void gather(const double* positions, const Index* v, double (&p)[3]) {
     MESHORDER_UNROLL
@@ -61,6 +71,39 @@ struct ManyLanes {
   static HWY_INLINE Value square_root(Value a) { return hn::Sqrt(a); }
   static HWY_INLINE Value if_positive(Value where, Value value) {
     return hn::IfThenElseZero(hn::Gt(where, hn::Zero(Tag())), value);
+  }
+  static HWY_INLINE Value choose(Value where, Value yes, Value no) {
+    return hn::IfThenElse(hn::Gt(where, hn::Zero(Tag())), yes, no);
+  }
+  static HWY_INLINE Value max(Value a, Value b) { return hn::Max(a, b); }
+  static HWY_INLINE Value abs(Value a) { return hn::Abs(a); }
+  static HWY_INLINE Value with_sign_of(Value value, Value sign) { return hn::CopySign(value, sign); }
+  static HWY_INLINE Value log(Value a) {
+    alignas(64) double lanes[kCount];
+    store(a, lanes);
+    for (double& lane : lanes) lane = std::log(lane);
+    return load(lanes);
+  }
+  static HWY_INLINE bool all_at_most(Value a, double bound) {
+    return hn::AllTrue(Tag(), hn::Le(a, set(bound)));
+  }
+
+  static HWY_INLINE void store_transposed(const Value* rows, double* to, Offset stride) {
+    const Tag d;
+    if constexpr (kCount == 2) {
+      store(hn::InterleaveLower(d, rows[0], rows[1]), to);
+      store(hn::InterleaveUpper(d, rows[0], rows[1]), to + stride);
+    } else {
+      Value even[kCount / 2];
+      Value odd[kCount / 2];
+      MESHORDER_UNROLL
+      for (Index i = 0; i < kCount / 2; ++i) {
+        even[i] = hn::InterleaveLower(d, rows[2 * i], rows[2 * i + 1]);
+        odd[i] = hn::InterleaveUpper(d, rows[2 * i], rows[2 * i + 1]);
+      }
+      store_blocks_transposed(even, to, 2 * stride);
+      store_blocks_transposed(odd, to + stride, 2 * stride);
+    }
   }
 
   /// p = the coordinates of the vertices v[0] … v[kCount − 1], by loads and a transposition: gather
@@ -111,6 +154,24 @@ struct ManyLanes {
   }
 
  private:
+  /// The same with blocks of two doubles in place of doubles.
+  static HWY_INLINE void store_blocks_transposed(const Value* rows, double* to, Offset stride) {
+    const Tag d;
+    const Value even01 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(rows[1]), rows[0]);
+    const Value odd01 = hn::OddEvenBlocks(rows[1], hn::SwapAdjacentBlocks(rows[0]));
+    if constexpr (kCount == 4) {
+      store(even01, to);
+      store(odd01, to + stride);
+    } else {
+      const Value even23 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(rows[3]), rows[2]);
+      const Value odd23 = hn::OddEvenBlocks(rows[3], hn::SwapAdjacentBlocks(rows[2]));
+      store(hn::ConcatLowerLower(d, even23, even01), to);
+      store(hn::ConcatLowerLower(d, odd23, odd01), to + stride);
+      store(hn::ConcatUpperUpper(d, even23, even01), to + 2 * stride);
+      store(hn::ConcatUpperUpper(d, odd23, odd01), to + 3 * stride);
+    }
+  }
+
   template <class T>
   static HWY_INLINE T* at(T* vectors, Index v) {
     return vectors + Offset{kPaddedStride} * v;

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Included once for each instruction set, as lanes-inl.hpp is.
-#if defined(MESHORDER_STVK_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef MESHORDER_STVK_INL
-#undef MESHORDER_STVK_INL
+#if defined(MESHORDER_OLD_STVK_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MESHORDER_OLD_STVK_INL
+#undef MESHORDER_OLD_STVK_INL
 #else
-#define MESHORDER_STVK_INL
+#define MESHORDER_OLD_STVK_INL
 #endif
 
 #include <meshorder/sim/kernels/element_force.hpp>
@@ -16,7 +16,7 @@ namespace meshorder::HWY_NAMESPACE {
 /// The state of Lanes::kCount simplices of dimension D: all that forces and tangents are made of.
 /// Saint Venant–Kirchhoff: E = ½(FᵀF − I), S = 2μE + λ tr(E) I, P = F S.
 template <int D, class Lanes>
-struct Stvk {
+struct OldStvk {
   using Value = typename Lanes::Value;
   Value inverse[D][D];  ///< Dₘ⁻¹, upper triangle only
   Value volume;

@@ -1,0 +1,114 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
+#include <meshorder/base/parallel.hpp>
+#include <meshorder/sim/material/elasticity.hpp>
+#include <meshorder/sim/material/pass.hpp>
+
+#include <string>
+
+namespace meshorder {
+namespace {
+
+ElasticKernels kernels_of(MaterialModel model) {
+  switch (model) {
+    case MaterialModel::corotational:
+      return corotational_kernels();
+    case MaterialModel::stvk:
+      return stvk_kernels();
+    case MaterialModel::neo_hookean:
+      return neo_hookean_kernels();
+  }
+  throw InvalidArgument("elasticity: no such material model");
+}
+
+void check(const RestShapes& rest, const Elasticity& elasticity) {
+  if (elasticity.model != MaterialModel::stvk && rest.dimension != 3 && rest.count > 0) {
+    throw InvalidArgument("elasticity: simplices of dimension " + std::to_string(rest.dimension) +
+                          "; only Saint Venant–Kirchhoff is for others than tetrahedra");
+  }
+  const auto lanes = static_cast<std::size_t>(rest.batches()) * kBatch;
+  const std::size_t mus = elasticity.mu.size();
+  if (mus != elasticity.lambda.size() || (mus != 0 && mus != lanes)) {
+    throw InvalidArgument("elasticity: " + std::to_string(mus) + " values of mu and " +
+                          std::to_string(elasticity.lambda.size()) + " of lambda; none of each would do, or " +
+                          std::to_string(lanes) + ", whole batches");
+  }
+}
+
+void check(const RestShapes& rest, const Stiffness& stiffness, Offset room) {
+  const Offset corners = rest.dimension + 1;
+  if (static_cast<Offset>(stiffness.map.blocks.size()) != rest.count * corners * corners) {
+    throw InvalidArgument("elasticity: the assembly map belongs to other simplices");
+  }
+  if (static_cast<Offset>(stiffness.matrix.values.size()) < 9 * room) {
+    throw InvalidArgument("elasticity: the matrix must have room for " + std::to_string(room) +
+                          " blocks, spare ones included");
+  }
+}
+
+/// The pass over everything, its arguments checked.
+ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity,
+                         std::span<const double> positions, std::span<double> forces,
+                         const Stiffness* stiffness) {
+  check(rest, elasticity);
+  if (elasticity.tangent == Tangent::approximate && elasticity.model != MaterialModel::corotational &&
+      stiffness) {
+    throw InvalidArgument("elasticity: only the corotational material has an approximate tangent");
+  }
+  ElasticPass pass{rest, elasticity};
+  pass.positions = positions.data();
+  pass.forces = forces.empty() ? nullptr : forces.data();
+  if (stiffness) {
+    check(rest, *stiffness, stiffness->matrix.block_count());
+    pass.values = stiffness->matrix.values.data();
+    pass.blocks = stiffness->map.blocks.data();
+    pass.scale = stiffness->scale;
+  }
+  return pass;
+}
+
+bool nothing_to_do(const ElasticPass& pass) {
+  return pass.rest.count == 0 || (!pass.forces && !pass.values);
+}
+
+}  // namespace
+
+double elastic_energy(const RestShapes& rest, const Elasticity& elasticity,
+                      std::span<const double> positions) {
+  constexpr Index kBatchesOfAChunk = 512;
+  check(rest, elasticity);
+  const ElasticPass pass{rest, elasticity, positions.data()};
+  if (rest.count == 0) return 0.0;
+  const ElasticKernels kernels = kernels_of(elasticity.model);
+  return sum_over_chunks<double>(
+      static_cast<Index>(rest.batches()), kBatchesOfAChunk,
+      [&](Index begin, Index end) { return kernels.energy(pass, begin, end); });
+}
+
+void add_elasticity(const RestShapes& rest, const Elasticity& elasticity, std::span<const double> positions,
+                    std::span<double> forces, const Stiffness* stiffness) {
+  if (!forces.empty()) check_same_size(positions, forces, "add_elasticity");
+  const ElasticPass pass = checked_pass(rest, elasticity, positions, forces, stiffness);
+  if (!nothing_to_do(pass)) kernels_of(elasticity.model).add(pass);
+}
+
+void add_elasticity(const RestShapes& rest, const Elasticity& elasticity, std::span<const double> positions,
+                    std::span<double> forces, const Stiffness* stiffness, const OwnedBatches& share,
+                    const OwnedBlocks& boundary) {
+  if (!forces.empty()) check_room(forces, share, "add_elasticity");
+  ElasticPass pass = checked_pass(rest, elasticity, positions, forces, stiffness);
+  if (stiffness) check(rest, *stiffness, boundary.room);
+  pass.share = &share;
+  pass.boundary_blocks = boundary.blocks.data();
+  if (!nothing_to_do(pass)) kernels_of(elasticity.model).add(pass);
+}
+
+void add_elasticity_scalar(const RestShapes& rest, const Elasticity& elasticity,
+                           std::span<const double> positions, std::span<double> forces,
+                           const Stiffness* stiffness) {
+  if (!forces.empty()) check_same_size(positions, forces, "add_elasticity");
+  const ElasticPass pass = checked_pass(rest, elasticity, positions, forces, stiffness);
+  if (!nothing_to_do(pass)) kernels_of(elasticity.model).add_one_by_one(pass);
+}
+
+}  // namespace meshorder
