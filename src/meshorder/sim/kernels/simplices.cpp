@@ -48,8 +48,13 @@ using Matrix = std::array<std::array<double, 3>, 3>;
 
 double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Dₘ in an orthonormal frame of the edges (Gram–Schmidt): upper triangular, D×D. Its determinant is D! times
-/// the volume. `longest` is the length of the longest edge.
+Point cross(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// Dₘ in an orthonormal frame of the edges (Gram–Schmidt), right-handed in space: upper triangular, D×D. Its
+/// determinant is D! times the volume, for a tetrahedron with its sign. `longest` is the length of the
+/// longest edge.
 Matrix edges_in_their_frame(int dimension, std::array<Point, 3> edges, double& longest) {
   Matrix result{};
   longest = 0.0;
@@ -65,6 +70,7 @@ Matrix edges_in_their_frame(int dimension, std::array<Point, 3> edges, double& l
       for (int c = 0; c < 3; ++c) frame[a][c] = edges[a][c] / result[a][a];
     }
   }
+  if (dimension == 3 && dot(cross(frame[0], frame[1]), frame[2]) < 0.0) result[2][2] = -result[2][2];
   return result;
 }
 
@@ -128,8 +134,8 @@ RestShapes rest_shapes(const Simplices& simplices, std::span<const Point> points
     double volume = 1.0 / kFactorial[d];
     bool flat = longest <= 0.0;
     for (int a = 0; a < d; ++a) {
-      volume *= dm[a][a];
-      flat = flat || dm[a][a] <= kFlat * longest;
+      volume *= std::abs(dm[a][a]);
+      flat = flat || std::abs(dm[a][a]) <= kFlat * longest;
     }
     if (flat) continue;
     const Matrix inverse = inverse_of_upper_triangular(d, dm);
