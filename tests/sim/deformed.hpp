@@ -2,8 +2,8 @@
 #pragma once
 
 #include <meshorder/base/random.hpp>
-#include <meshorder/sim/kernels/element_force.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
+#include <meshorder/sim/material/material.hpp>
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -61,7 +61,8 @@ constexpr auto kExact = Tangent::exact;
 class ElasticLaw : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(OfAll, ElasticLaw,
                          testing::Values(Case{MaterialModel::corotational, kExact},
-                                         Case{MaterialModel::stvk, kExact}, Case{MaterialModel::stvk, kExact, 2},
+                                         Case{MaterialModel::stvk, kExact},
+                                         Case{MaterialModel::stvk, kExact, 2},
                                          Case{MaterialModel::stvk, kExact, 1},
                                          Case{MaterialModel::neo_hookean, kExact}),
                          case_name);

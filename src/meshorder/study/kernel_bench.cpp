@@ -4,6 +4,7 @@
 #include <meshorder/mesh/graphs.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
 #include <meshorder/sim/kernels/spmv.hpp>
+#include <meshorder/sim/material/elasticity.hpp>
 #include <meshorder/study/kernel_bench.hpp>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace meshorder {
 namespace {
 
 // the values do not matter to the time; these are soft rubber's
-const Lame kMaterial = Lame::from_young(1e6, 0.45);
+const Elasticity kMaterial{MaterialModel::stvk, Tangent::exact, Lame::from_young(1e6, 0.45), {}, {}};
 constexpr double kStiffness = 1e3;
 
 /// Waves of 2 % of the mesh's size along every axis: strains of up to 0.2, however fine the mesh.
@@ -103,6 +104,7 @@ void KernelBench::share_out(int threads) {
 }
 
 void KernelBench::run_shared(Kernel kernel) {
+  const Stiffness stiffness{map_, matrix_};
   for_each_part(index_size(shares_), [&](Index part) {
     const Share& share = shares_[part];
     const Index begin = share.elements.begin;
@@ -117,11 +119,11 @@ void KernelBench::run_shared(Kernel kernel) {
         return;
       case Kernel::element:
         clear(forces_, Offset{kPaddedStride} * begin, Offset{kPaddedStride} * end);
-        add_stvk_forces(rest_, kMaterial, positions_, forces_, share.elements);
+        add_elasticity(rest_, kMaterial, positions_, forces_, nullptr, share.elements, share.blocks);
         return;
       case Kernel::assembly:
         clear(matrix_.values, 9 * matrix_.offsets[begin], 9 * matrix_.offsets[end]);
-        add_stvk_stiffness(rest_, kMaterial, positions_, map_, share.elements, share.blocks, matrix_);
+        add_elasticity(rest_, kMaterial, positions_, {}, &stiffness, share.elements, share.blocks);
         return;
       case Kernel::springs:
         clear(forces_, Offset{kPaddedStride} * begin, Offset{kPaddedStride} * end);
@@ -140,17 +142,18 @@ double KernelBench::redundancy() const {
 
 void KernelBench::run(Kernel kernel) {
   if (!shares_.empty()) return run_shared(kernel);
+  const Stiffness stiffness{map_, matrix_};
   switch (kernel) {
     case Kernel::spmv:
       multiply(matrix_, x_, y_);
       return;
     case Kernel::element:
       std::fill(forces_.begin(), forces_.end(), 0.0);
-      add_stvk_forces(rest_, kMaterial, positions_, forces_);
+      add_elasticity(rest_, kMaterial, positions_, forces_, nullptr);
       return;
     case Kernel::assembly:
       matrix_.set_zero();
-      add_stvk_stiffness(rest_, kMaterial, positions_, map_, matrix_);
+      add_elasticity(rest_, kMaterial, positions_, {}, &stiffness);
       return;
     case Kernel::springs:
       std::fill(forces_.begin(), forces_.end(), 0.0);

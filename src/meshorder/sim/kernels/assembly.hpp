@@ -2,9 +2,7 @@
 #pragma once
 
 #include <meshorder/sim/kernels/block_csr.hpp>
-#include <meshorder/sim/kernels/element_force.hpp>
-
-#include <span>
+#include <meshorder/sim/kernels/owned_batches.hpp>
 
 namespace meshorder {
 
@@ -30,21 +28,5 @@ struct OwnedBlocks {
 /// before it. Throws InvalidArgument when they cannot be numbered. O(boundary simplices).
 OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const BlockCsr& matrix,
                          const OwnedBatches& share, Index part);
-
-/// matrix += K = ∂²E/∂x², the exact Hessian of stvk_energy (symmetric; indefinite under compression).
-/// `positions` has the layout of padded_positions. O(simplices).
-///
-/// With g_a the shape gradients at rest, p_a = F g_a and S the stress, the block of the corners a and b is
-/// K_ab = V ((g_a·S g_b) I + λ p_a p_bᵀ + μ p_b p_aᵀ + μ (g_a·g_b) F Fᵀ): the strain's variation in δx_b is
-/// that of δF = δx_b g_bᵀ. Its parts are computed for a batch of simplices at a time, its sums for the nine
-/// entries of a block at a time.
-void add_stvk_stiffness(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
-                        const AssemblyMap& map, BlockCsr& matrix);
-
-/// The rows of that sum that one share owns, for threads to share the work; over all shares the same bits.
-/// Throws InvalidArgument when the matrix has no room for the spare blocks.
-void add_stvk_stiffness(const RestShapes& rest, const Lame& lame, std::span<const double> positions,
-                        const AssemblyMap& map, const OwnedBatches& share, const OwnedBlocks& boundary,
-                        BlockCsr& matrix);
 
 }  // namespace meshorder

@@ -35,10 +35,10 @@ inline constexpr Index kBatch = 8;
 ///
 /// With X₀ … X_D the rest corners, Dₘ is the matrix of the columns X_a − X₀ in the simplex's own orthonormal
 /// frame, which Gram–Schmidt builds of them: upper triangular, and so is its inverse. An isotropic material
-/// does not see the frame, and a tetrahedron takes 56 bytes instead of 80. In space the frame is right-handed:
-/// of a tetrahedron whose corners turn the other way the last entry on the diagonal is negative, so that
-/// det F > 0 says for every tetrahedron that it is not turned inside out. A simplex that is flat to rounding
-/// gets the volume 0 and the inverse 0. Volumes are never negative.
+/// does not see the frame, and a tetrahedron takes 56 bytes instead of 80. In space the frame is
+/// right-handed: of a tetrahedron whose corners turn the other way the last entry on the diagonal is
+/// negative, so that det F > 0 says for every tetrahedron that it is not turned inside out. A simplex that is
+/// flat to rounding gets the volume 0 and the inverse 0. Volumes are never negative.
 struct RestShapes {
   int dimension = 0;
   Offset count = 0;               ///< simplices

@@ -27,11 +27,11 @@ double spring_energy(const Springs& springs, double stiffness, std::span<const d
 
 /// forces += −∂/∂x of that energy: k (‖d‖ − ℓ₀) d/‖d‖ on end a and its opposite on end b. A spring whose ends
 /// coincide has no direction and no force. Positions and forces have the layout of padded_positions. Throws
-/// InvalidArgument when the sizes differ. Spring after spring, in batches, as add_stvk_forces. O(springs).
+/// InvalidArgument when the sizes differ. Spring after spring, in batches, as add_elasticity. O(springs).
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces);
 
-/// The forces on the vertices of one share of `owned_batches` (of springs.ends), as add_stvk_forces has it.
+/// The forces on the vertices of one share of `owned_batches` (of springs.ends), as add_elasticity has them.
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces, const OwnedBatches& share);
 

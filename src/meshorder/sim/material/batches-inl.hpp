@@ -88,8 +88,8 @@ HWY_INLINE void add_batches(const ElasticPass& pass) {
     if constexpr (!std::is_same_v<Tangent, NoTangent>) {
       blocks = boundary < 0 ? pass.blocks + kBlocks * batch : pass.boundary_blocks + kBlocks * boundary;
     }
-    add_batch<D, Lanes, Law, Tangent>(
-        pass, batch, share ? share->targets_of(i, vertices, D + 1) : vertices, blocks);
+    add_batch<D, Lanes, Law, Tangent>(pass, batch, share ? share->targets_of(i, vertices, D + 1) : vertices,
+                                      blocks);
   }
 }
 

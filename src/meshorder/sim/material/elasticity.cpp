@@ -30,8 +30,9 @@ void check(const RestShapes& rest, const Elasticity& elasticity) {
   const std::size_t mus = elasticity.mu.size();
   if (mus != elasticity.lambda.size() || (mus != 0 && mus != lanes)) {
     throw InvalidArgument("elasticity: " + std::to_string(mus) + " values of mu and " +
-                          std::to_string(elasticity.lambda.size()) + " of lambda; none of each would do, or " +
-                          std::to_string(lanes) + ", whole batches");
+                          std::to_string(elasticity.lambda.size()) +
+                          " of lambda; none of each would do, or " + std::to_string(lanes) +
+                          ", whole batches");
   }
 }
 
@@ -67,9 +68,7 @@ ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity,
   return pass;
 }
 
-bool nothing_to_do(const ElasticPass& pass) {
-  return pass.rest.count == 0 || (!pass.forces && !pass.values);
-}
+bool nothing_to_do(const ElasticPass& pass) { return pass.rest.count == 0 || (!pass.forces && !pass.values); }
 
 }  // namespace
 
@@ -80,9 +79,8 @@ double elastic_energy(const RestShapes& rest, const Elasticity& elasticity,
   const ElasticPass pass{rest, elasticity, positions.data()};
   if (rest.count == 0) return 0.0;
   const ElasticKernels kernels = kernels_of(elasticity.model);
-  return sum_over_chunks<double>(
-      static_cast<Index>(rest.batches()), kBatchesOfAChunk,
-      [&](Index begin, Index end) { return kernels.energy(pass, begin, end); });
+  return sum_over_chunks<double>(static_cast<Index>(rest.batches()), kBatchesOfAChunk,
+                                 [&](Index begin, Index end) { return kernels.energy(pass, begin, end); });
 }
 
 void add_elasticity(const RestShapes& rest, const Elasticity& elasticity, std::span<const double> positions,

@@ -56,8 +56,7 @@ struct NeoHookean {
     const Value one = Lanes::set(1.0);
     const Value growth = determinant - one;
     const Value of_volume = growth * Lanes::mul_add(lambda, growth, Lanes::set(-1.5) * mu);
-    const Value of_length =
-        mu * (norm - Lanes::set(4.0) - Lanes::log(Lanes::set(0.25) * norm));
+    const Value of_length = mu * (norm - Lanes::set(4.0) - Lanes::log(Lanes::set(0.25) * norm));
     return Lanes::set(0.5) * (of_volume + of_length);
   }
 };

@@ -17,8 +17,7 @@ namespace meshorder::HWY_NAMESPACE {
 /// As unit quaternions q they maximise qᵀN q of a symmetric 4×4 matrix N that is linear in F (Davenport;
 /// Horn 1987), so that an eigenvector of its largest eigenvalue answers for every F.
 template <class Lanes>
-HWY_INLINE void closest_rotations(const typename Lanes::Value (&f)[3][3],
-                                  typename Lanes::Value (&r)[3][3]) {
+HWY_INLINE void closest_rotations(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&r)[3][3]) {
   using Value = typename Lanes::Value;
   const Value zero = Lanes::set(0.0);
   const Value one = Lanes::set(1.0);
