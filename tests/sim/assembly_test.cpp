@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(OfAll, ElasticShares,
                                          test::Case{MaterialModel::stvk, Tangent::exact, 2},
                                          test::Case{MaterialModel::stvk, Tangent::exact, 1},
                                          test::Case{MaterialModel::neo_hookean, Tangent::exact}),
-                         [](const auto& info) { return test::name_of(info.param); });
+                         test::case_name);
 
 TEST_P(ElasticShares, AddTheSameBitsHoweverManyThereAre) {
   const test::Patch patch = test::deformed_patch(GetParam().dimension, 101);

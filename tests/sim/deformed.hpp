@@ -3,6 +3,7 @@
 
 #include <meshorder/base/random.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
+#include <meshorder/sim/kernels/simplices.hpp>
 #include <meshorder/sim/material/material.hpp>
 
 #include <gtest/gtest.h>

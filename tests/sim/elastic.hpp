@@ -29,6 +29,8 @@ inline std::string name_of(const Case& law) {
 
 inline std::ostream& operator<<(std::ostream& out, const Case& law) { return out << name_of(law); }
 
+inline std::string case_name(const testing::TestParamInfo<Case>& info) { return name_of(info.param); }
+
 inline Elasticity elasticity_of(const Case& law, const Lame& lame = kSteel) {
   return {law.model, law.tangent, lame, {}, {}};
 }

@@ -52,8 +52,6 @@ Eigen::MatrixXd minus_jacobian(const test::Patch& patch, const Elasticity& elast
   return result;
 }
 
-std::string case_name(const testing::TestParamInfo<Case>& info) { return test::name_of(info.param); }
-
 constexpr auto kExact = Tangent::exact;
 
 // ---- every law ----
@@ -65,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(OfAll, ElasticLaw,
                                          Case{MaterialModel::stvk, kExact, 2},
                                          Case{MaterialModel::stvk, kExact, 1},
                                          Case{MaterialModel::neo_hookean, kExact}),
-                         case_name);
+                         test::case_name);
 
 TEST_P(ElasticLaw, HasForcesThatAreMinusTheGradientOfTheEnergy) {
   const test::Patch patch = test::deformed_patch(GetParam().dimension, 21);
