@@ -8,7 +8,7 @@
 #endif
 
 #include <meshorder/sim/material/deformation-inl.hpp>
-#include <meshorder/sim/material/rotation-inl.hpp>
+#include <meshorder/sim/material/projected-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
@@ -59,6 +59,22 @@ struct Corotational {
     }
     const Value stretch = trace - Lanes::set(3.0);
     return Lanes::mul_add(lame.mu, squares, Lanes::set(0.5) * lame.lambda * (stretch * stretch));
+  }
+
+  /// ψᵢ = 2μ σᵢ + c.
+  HWY_INLINE void principal(const Value (&sigma)[3], const LameLanes<Lanes>& lame,
+                            PrincipalHessian<Lanes>& hessian) const {
+    const Value two_mu = lame.mu + lame.mu;
+    MESHORDER_UNROLL
+    for (int k = 0; k < 3; ++k) {
+      const Value sum = Lanes::max(sigma[(k + 1) % 3] + sigma[(k + 2) % 3], Lanes::set(kLeastSum));
+      hessian.twist[k] = two_mu + (coefficient + coefficient) / sum;
+      hessian.flip[k] = two_mu;
+      MESHORDER_UNROLL
+      for (int j = k; j < 3; ++j) {
+        hessian.stretch[k][j] = j == k ? two_mu + lame.lambda : lame.lambda;
+      }
+    }
   }
 };
 

@@ -36,6 +36,16 @@ void check(const RestShapes& rest, const Elasticity& elasticity) {
   }
 }
 
+void check_tangent(const RestShapes& rest, const Elasticity& elasticity) {
+  if (elasticity.tangent == Tangent::approximate && elasticity.model != MaterialModel::corotational) {
+    throw InvalidArgument("elasticity: only the corotational law has an approximate tangent");
+  }
+  if (elasticity.tangent == Tangent::projected && rest.dimension != 3 && rest.count > 0) {
+    throw InvalidArgument("elasticity: only tetrahedra have a projected tangent, no simplices of dimension " +
+                          std::to_string(rest.dimension));
+  }
+}
+
 void check(const RestShapes& rest, const Stiffness& stiffness, Offset room) {
   const Offset corners = rest.dimension + 1;
   if (static_cast<Offset>(stiffness.map.blocks.size()) != rest.count * corners * corners) {
@@ -52,10 +62,7 @@ ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity,
                          std::span<const double> positions, std::span<double> forces,
                          const Stiffness* stiffness) {
   check(rest, elasticity);
-  if (elasticity.tangent == Tangent::approximate && elasticity.model != MaterialModel::corotational &&
-      stiffness) {
-    throw InvalidArgument("elasticity: only the corotational material has an approximate tangent");
-  }
+  if (stiffness) check_tangent(rest, elasticity);
   ElasticPass pass{rest, elasticity};
   pass.positions = positions.data();
   pass.forces = forces.empty() ? nullptr : forces.data();

@@ -14,8 +14,8 @@ namespace meshorder {
 /// has the layout of padded_positions, here and below. On all threads; the sum has the same bits for any
 /// number of them. Infinite or NaN where a state or position is. O(simplices).
 ///
-/// Throws InvalidArgument, here and below, for a law that is not for such simplices, an approximate tangent
-/// of another law than the corotational one, and for arrays of wrong sizes.
+/// Throws InvalidArgument, here and below, for a law or tangent that is not for such simplices, an
+/// approximate tangent of another law than the corotational one, and for arrays of wrong sizes.
 double elastic_energy(const RestShapes& rest, const Elasticity& elasticity,
                       std::span<const double> positions);
 

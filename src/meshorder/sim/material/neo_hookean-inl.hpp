@@ -8,6 +8,7 @@
 #endif
 
 #include <meshorder/sim/material/deformation-inl.hpp>
+#include <meshorder/sim/material/projected-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
@@ -58,6 +59,30 @@ struct NeoHookean {
     const Value of_volume = growth * Lanes::mul_add(lambda, growth, Lanes::set(-1.5) * mu);
     const Value of_length = mu * (norm - Lanes::set(4.0) - Lanes::log(Lanes::set(0.25) * norm));
     return Lanes::set(0.5) * (of_volume + of_length);
+  }
+
+  /// ψᵢ = μ' (1 − 1/n) σᵢ + c σⱼ σₖ.
+  HWY_INLINE void principal(const Value (&sigma)[3], const LameLanes<Lanes>& /*lame*/,
+                            PrincipalHessian<Lanes>& hessian) const {
+    const Value of_lengths = (mu + mu) / (norm * norm);
+    MESHORDER_UNROLL
+    for (int k = 0; k < 3; ++k) {
+      const Value& a = sigma[(k + 1) % 3];
+      const Value& b = sigma[(k + 2) % 3];
+      const Value turn = of_cofactors * sigma[k];
+      hessian.twist[k] = of_deformation + turn;
+      hessian.flip[k] = of_deformation - turn;
+      hessian.stretch[k][k] = Lanes::mul_add(lambda, (a * b) * (a * b),
+                                             Lanes::mul_add(of_lengths, sigma[k] * sigma[k], of_deformation));
+      MESHORDER_UNROLL
+      for (int j = k + 1; j < 3; ++j) {
+        // the cofactors of σ_k and σ_j share the third value
+        const Value& third = sigma[3 - k - j];
+        const Value both = sigma[k] * sigma[j];
+        hessian.stretch[k][j] = Lanes::mul_add(lambda * third * third, both, of_lengths * both);
+        hessian.stretch[k][j] = Lanes::mul_add(of_cofactors, third, hessian.stretch[k][j]);
+      }
+    }
   }
 };
 

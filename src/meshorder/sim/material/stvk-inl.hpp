@@ -8,6 +8,7 @@
 #endif
 
 #include <meshorder/sim/material/deformation-inl.hpp>
+#include <meshorder/sim/material/projected-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
@@ -73,6 +74,27 @@ struct Stvk {
     }
     const Value t = trace();
     return Lanes::mul_add(lame.mu, squares, Lanes::set(0.5) * lame.lambda * (t * t));
+  }
+
+  /// ψᵢ = σᵢ (μ (σᵢ² − 1) + p) with the pressure p = λ tr(E).
+  HWY_INLINE void principal(const Value (&sigma)[3], const LameLanes<Lanes>& lame,
+                            PrincipalHessian<Lanes>& hessian) const {
+    const Value one = Lanes::set(1.0);
+    const Value three = Lanes::set(3.0);
+    const Value pressure = lame.lambda * trace();
+    MESHORDER_UNROLL
+    for (int k = 0; k < 3; ++k) {
+      const Value& a = sigma[(k + 1) % 3];
+      const Value& b = sigma[(k + 2) % 3];
+      const Value squares = Lanes::mul_add(a, a, b * b) - one;
+      hessian.twist[k] = Lanes::mul_add(lame.mu, squares - a * b, pressure);
+      hessian.flip[k] = Lanes::mul_add(lame.mu, squares + a * b, pressure);
+      const Value square = sigma[k] * sigma[k];
+      hessian.stretch[k][k] =
+          Lanes::mul_add(lame.lambda, square, Lanes::mul_add(lame.mu, three * square - one, pressure));
+      MESHORDER_UNROLL
+      for (int j = k + 1; j < 3; ++j) hessian.stretch[k][j] = lame.lambda * sigma[k] * sigma[j];
+    }
   }
 };
 

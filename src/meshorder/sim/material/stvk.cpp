@@ -14,8 +14,14 @@ namespace {
 
 template <int D, class Lanes>
 HWY_INLINE void add_dimension(const ElasticPass& pass) {
-  if (!pass.values) return add_batches<D, Lanes, Stvk<D, Lanes>, NoTangent>(pass);
-  add_batches<D, Lanes, Stvk<D, Lanes>, StvkTangent<D, Lanes>>(pass);
+  using Law = Stvk<D, Lanes>;
+  if (!pass.values) return add_batches<D, Lanes, Law, NoTangent>(pass);
+  if constexpr (D == 3) {
+    if (pass.elasticity.tangent == Tangent::projected) {
+      return add_batches<3, Lanes, Law, ProjectedTangent<Lanes, Law>>(pass);
+    }
+  }
+  add_batches<D, Lanes, Law, StvkTangent<D, Lanes>>(pass);
 }
 
 template <class Lanes>
