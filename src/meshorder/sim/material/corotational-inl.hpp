@@ -8,6 +8,7 @@
 #endif
 
 #include <meshorder/sim/material/deformation-inl.hpp>
+#include <meshorder/sim/material/matrix-inl.hpp>
 #include <meshorder/sim/material/projected-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();

@@ -99,29 +99,6 @@ struct LameLanes {
   typename Lanes::Value mu, lambda;
 };
 
-/// cof F, the transpose of F⁻¹ det F.
-template <class Lanes>
-HWY_INLINE void cofactors(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&cof)[3][3]) {
-  MESHORDER_UNROLL
-  for (int i = 0; i < 3; ++i) {
-    MESHORDER_UNROLL
-    for (int j = 0; j < 3; ++j) {
-      cof[i][j] = f[(i + 1) % 3][(j + 1) % 3] * f[(i + 2) % 3][(j + 2) % 3] -
-                  f[(i + 1) % 3][(j + 2) % 3] * f[(i + 2) % 3][(j + 1) % 3];
-    }
-  }
-}
-
-/// A : B, the sum over all entries.
-template <class Lanes, int D>
-HWY_INLINE typename Lanes::Value contract(const typename Lanes::Value (&a)[3][D],
-                                          const typename Lanes::Value (&b)[3][D]) {
-  typename Lanes::Value sum = a[0][0] * b[0][0];
-  MESHORDER_UNROLL
-  for (int k = 1; k < 3 * D; ++k) sum = Lanes::mul_add(a[k / D][k % D], b[k / D][k % D], sum);
-  return sum;
-}
-
 }  // namespace meshorder::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

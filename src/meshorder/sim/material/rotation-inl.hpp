@@ -8,16 +8,16 @@
 #endif
 
 #include <meshorder/sim/material/eigen-inl.hpp>
+#include <meshorder/sim/material/matrix-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// The rotations closest to 3×3 matrices, which maximise R:F over det R = 1: see closest_rotation.
-///
-/// As unit quaternions q they maximise qᵀN q of a symmetric 4×4 matrix N that is linear in F (Davenport;
-/// Horn 1987), so that an eigenvector of its largest eigenvalue answers for every F.
+/// The rotations closest to any matrices. As unit quaternions q they maximise qᵀN q of a symmetric 4×4 matrix
+/// N that is linear in F (Davenport; Horn 1987), so that an eigenvector of its largest eigenvalue answers.
 template <class Lanes>
-HWY_INLINE void closest_rotations(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&r)[3][3]) {
+HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3],
+                                           typename Lanes::Value (&r)[3][3]) {
   using Value = typename Lanes::Value;
   const Value zero = Lanes::set(0.0);
   const Value one = Lanes::set(1.0);
@@ -75,6 +75,94 @@ HWY_INLINE void closest_rotations(const typename Lanes::Value (&f)[3][3], typena
     r[i][j] = two * (outer - q[0] * q[k + 1]) + not_finite;
     r[j][i] = two * Lanes::mul_add(q[0], q[k + 1], outer) + not_finite;
   }
+}
+
+/// The rotations closest to matrices that are far from having several, by a formula; false, and nothing
+/// usable, where one of them is not.
+///
+/// The largest eigenvalue of N is λ = tr S, the largest root of λ⁴ − 2aλ² − 8dλ + a² − 4b with a = ‖F‖²,
+/// b = ‖cof F‖² and d = det F. Newton's method falls to it from √3 ‖F‖ without passing it, since all roots
+/// are real. R = ∂λ/∂F then follows from the root's dependence on the coefficients:
+/// R = ((λ² + a) F + 2λ cof F − 2 F FᵀF) / (λ³ − aλ − 2d), whose denominator is 2 Π (σᵢ + σⱼ).
+template <class Lanes>
+HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3],
+                                     typename Lanes::Value (&r)[3][3]) {
+  using Value = typename Lanes::Value;
+  constexpr int kSteps = 8;
+  // an error of that size before a step is one of rounding after it
+  constexpr double kNear = 1e-9;
+  // rounding errors grow by up to the square of this ratio of λ³ to the denominator, 27/16 at rest
+  constexpr double kLargestRatio = 12.0;
+  // no fourth power underflows
+  constexpr double kSmallest = 1e-60;
+  Value cof[3][3];
+  cofactors<Lanes>(f, cof);
+  const Value a = contract<Lanes>(f, f);
+  const Value b = contract<Lanes>(cof, cof);
+  Value d = f[0][0] * cof[0][0];
+  d = Lanes::mul_add(f[0][1], cof[0][1], d);
+  d = Lanes::mul_add(f[0][2], cof[0][2], d);
+  const Value zero = Lanes::set(0.0);
+  const Value four = Lanes::set(4.0);
+  const Value constant = Lanes::mul_add(a, a, zero - four * b);
+  const Value eight_d = Lanes::set(8.0) * d;
+  Value root = Lanes::square_root(Lanes::set(3.0) * a);
+  for (int step = 0;; ++step) {
+    const Value square = root * root;
+    const Value value =
+        Lanes::mul_add(square - (a + a), square, Lanes::mul_add(zero - eight_d, root, constant));
+    const Value slope = Lanes::mul_add(four * root, square - a, zero - eight_d);
+    const Value change = value / slope;
+    root = root - change;
+    if (Lanes::all_at_most(Lanes::abs(change) - Lanes::set(kNear) * root, 0.0)) break;
+    if (step == kSteps) return false;
+  }
+  const Value square = root * root;
+  const Value denominator = Lanes::mul_add(root, square - a, zero - (d + d));
+  if (!Lanes::all_at_most(root * square - Lanes::set(kLargestRatio) * denominator, 0.0) ||
+      !Lanes::all_at_most(Lanes::set(kSmallest) - root, 0.0)) {
+    return false;
+  }
+  const Value inverse = Lanes::set(1.0) / denominator;
+  const Value of_f = inverse * (square + a);
+  const Value of_cofactors = inverse * (root + root);
+  const Value of_cubes = zero - (inverse + inverse);
+  Value ftf[3][3];
+  MESHORDER_UNROLL
+  for (int i = 0; i < 3; ++i) {
+    MESHORDER_UNROLL
+    for (int j = i; j < 3; ++j) {
+      Value sum = f[0][i] * f[0][j];
+      sum = Lanes::mul_add(f[1][i], f[1][j], sum);
+      ftf[i][j] = ftf[j][i] = of_cubes * Lanes::mul_add(f[2][i], f[2][j], sum);
+    }
+    ftf[i][i] = ftf[i][i] + of_f;
+  }
+  MESHORDER_UNROLL
+  for (int i = 0; i < 3; ++i) {
+    MESHORDER_UNROLL
+    for (int j = 0; j < 3; ++j) {
+      Value sum = of_cofactors * cof[i][j];
+      sum = Lanes::mul_add(f[i][0], ftf[0][j], sum);
+      sum = Lanes::mul_add(f[i][1], ftf[1][j], sum);
+      r[i][j] = Lanes::mul_add(f[i][2], ftf[2][j], sum);
+    }
+  }
+  return true;
+}
+
+/// The rotations closest to 3×3 matrices, which maximise R:F over det R = 1: see closest_rotation.
+template <class Lanes>
+HWY_INLINE void closest_rotations(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&r)[3][3]) {
+  if (rotations_by_formula<Lanes>(f, r)) return;
+  // copies, so that the rest of the kernel may keep its own in registers
+  typename Lanes::Value from[3][3];
+  typename Lanes::Value to[3][3];
+  MESHORDER_UNROLL
+  for (int k = 0; k < 9; ++k) from[k / 3][k % 3] = f[k / 3][k % 3];
+  rotations_by_quaternions<Lanes>(from, to);
+  MESHORDER_UNROLL
+  for (int k = 0; k < 9; ++k) r[k / 3][k % 3] = to[k / 3][k % 3];
 }
 
 }  // namespace meshorder::HWY_NAMESPACE
