@@ -12,7 +12,11 @@ TEST(ReadBandwidth, IsThatOfAMachine) {
   EXPECT_LT(gigabytes_per_second, 5000.0);
 }
 
-TEST(ReadBandwidth, TakesAnyBuffer) { EXPECT_GT(read_bandwidth(0, 1), 0.0); }
+TEST(ReadBandwidth, TakesAnyBufferAndNumberOfThreads) {
+  EXPECT_GT(read_bandwidth(0, 1), 0.0);
+  EXPECT_GT(read_bandwidth(8, 1, 3), 0.0);
+  EXPECT_GT(read_bandwidth(1000, 1, 0), 0.0);
+}
 
 }  // namespace
 }  // namespace meshorder

@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/parallel.hpp>
 #include <meshorder/base/stopwatch.hpp>
 #include <meshorder/sim/kernels/aligned.hpp>
 #include <meshorder/study/bandwidth.hpp>
@@ -8,17 +9,23 @@
 
 namespace meshorder {
 
-double read_bandwidth(std::size_t buffer_bytes, int passes) {
+double read_bandwidth(std::size_t buffer_bytes, int passes, int threads) {
   // integers, since the compiler may sum them in vectors
   const AlignedVector<std::uint64_t> buffer(std::max<std::size_t>(1, buffer_bytes / sizeof(std::uint64_t)),
                                             1);
-  std::uint64_t sum = 0;
+  const auto parts = static_cast<std::size_t>(std::max(1, threads));
   double best = 0.0;
   for (int pass = 0; pass < passes; ++pass) {
     const Stopwatch stopwatch;
-    for (const std::uint64_t value : buffer) sum += value;
-    // the sum is wanted, and wanted now: the clock must not be read before
-    asm volatile("" : "+r"(sum) : : "memory");
+    for_each_part(static_cast<Index>(parts), [&](Index part) {
+      const std::size_t end = buffer.size() * (static_cast<std::size_t>(part) + 1) / parts;
+      std::uint64_t sum = 0;
+      for (std::size_t i = buffer.size() * static_cast<std::size_t>(part) / parts; i < end; ++i) {
+        sum += buffer[i];
+      }
+      // the sum is wanted, and wanted now: the clock must not be read before
+      asm volatile("" : "+r"(sum) : : "memory");
+    });
     const double seconds = std::max(stopwatch.seconds(), 1e-9);
     best = std::max(best, static_cast<double>(buffer.size() * sizeof(std::uint64_t)) / seconds);
   }

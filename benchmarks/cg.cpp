@@ -1,0 +1,241 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// cg [--solve] [--rounds N] [--orders a,b,…] FILE…: conjugate gradients on the system of an implicit time
+// step of each mesh, (1 + h α) M + h² K at rest, in several orders: best ms of an iteration in interleaved
+// rounds, with the matrix in double and in float, on one and two threads, and how many per cent of the
+// measured bandwidth that is (over 100: caches hold something from pass to pass). "band" is the ideal order
+// (see ideal_band). With --solve: iterations and seconds to 1e-6 with each preconditioner.
+#include <meshorder/base/stopwatch.hpp>
+#include <meshorder/io/format.hpp>
+#include <meshorder/mesh/graphs.hpp>
+#include <meshorder/mesh/mesh_ordering.hpp>
+#include <meshorder/sim/kernels/assembly.hpp>
+#include <meshorder/sim/kernels/positions.hpp>
+#include <meshorder/sim/kernels/spmv.hpp>
+#include <meshorder/sim/linear/preconditioner.hpp>
+#include <meshorder/sim/linear/solve.hpp>
+#include <meshorder/study/band.hpp>
+#include <meshorder/study/bandwidth.hpp>
+
+#include <fmt/core.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace mo = meshorder;
+
+namespace {
+
+constexpr std::array kThreads{1, 2};
+constexpr int kIterations = 24;
+
+struct Settings {
+  bool solve = false;
+  int rounds = 9;
+  std::string orders = "scrambled,original,fiedler,spectral,hilbert,rcm,band";
+  std::vector<std::string> files;
+};
+
+/// What is solved in one order.
+struct System {
+  std::string order;
+  mo::BlockCsr matrix;
+  mo::BlockCsrOf<float> rounded;
+  std::vector<double> b, x;
+  std::vector<mo::Point> points;
+  std::unique_ptr<mo::Preconditioner> jacobi;
+};
+
+/// Scales the mesh so that its longest side is 10.
+void scale_to_ten(mo::Mesh& mesh) {
+  mo::Point low = mesh.points.front();
+  mo::Point high = low;
+  for (const mo::Point& point : mesh.points) {
+    for (int c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], point[c]);
+      high[c] = std::max(high[c], point[c]);
+    }
+  }
+  const double side = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  for (mo::Point& point : mesh.points) {
+    for (double& coordinate : point) coordinate *= 10.0 / side;
+  }
+}
+
+System make_system(const std::string& order, const mo::Mesh& mesh, const mo::CsrGraph& graph) {
+  constexpr double kStep = 0.01, kDamping = 1.0, kDensity = 1000.0, kForce = -50.0;
+  const mo::RestShapes rest = mo::rest_shapes(mo::cut_into_simplices(mesh), mesh.points);
+  System system;
+  system.order = order;
+  system.points = mesh.points;
+  system.matrix = mo::zero_block_csr(graph);
+  mo::add_stvk_stiffness(rest, mo::Lame::from_young(1e6, 0.45), mo::padded_positions(mesh.points),
+                         mo::assembly_map(rest, system.matrix), system.matrix);
+  for (double& value : system.matrix.values) value *= kStep * kStep;
+  for (mo::Offset s = 0; s < rest.count; ++s) {
+    const mo::Offset batch = s / mo::kBatch;
+    const double volume = rest.geometry[(batch * rest.quantities() + 6) * mo::kBatch + s % mo::kBatch];
+    for (int a = 0; a < 4; ++a) {
+      const mo::Index v = rest.vertices[(batch * 4 + a) * mo::kBatch + s % mo::kBatch];
+      const mo::Offset block = 9 * system.matrix.find(v, v);
+      for (int c = 0; c < 3; ++c) {
+        system.matrix.values[block + 4 * c] += (1.0 + kStep * kDamping) * kDensity * volume / 4.0;
+      }
+    }
+  }
+  mo::round_to_single(system.matrix, system.rounded);
+  system.b.assign(3 * mesh.points.size(), kStep * kForce);
+  system.x.assign(system.b.size(), 0.0);
+  system.jacobi = mo::make_preconditioner(mo::PreconditionerKind::jacobi, system.matrix, mesh.points);
+  system.jacobi->update(system.matrix);
+  return system;
+}
+
+std::vector<System> make_systems(const std::string& file, const std::string& orders) {
+  mo::Mesh original = mo::read_mesh(file);
+  scale_to_ten(original);
+  std::vector<System> systems;
+  std::istringstream names(orders);
+  for (std::string name; std::getline(names, name, ',');) {
+    mo::Mesh mesh = original;
+    if (name == "band") {
+      mo::Band band = mo::ideal_band(mesh, mo::vertex_graph(mesh));
+      scale_to_ten(band.mesh);
+      systems.push_back(make_system(name, band.mesh, band.graph));
+      continue;
+    }
+    mo::reorder(mesh, {.vertices = name, .elements = "lexmax", .ordering = {}});
+    systems.push_back(make_system(name, mesh, mo::vertex_graph(mesh)));
+  }
+  return systems;
+}
+
+template <class Value>
+double iteration_ms(System& system, const mo::BlockCsrOf<Value>& matrix) {
+  std::fill(system.x.begin(), system.x.end(), 0.0);
+  const mo::Stopwatch stopwatch;
+  const mo::SolveReport report = mo::conjugate_gradients(matrix, *system.jacobi, system.b, system.x,
+                                                         {.tolerance = 0.0, .max_iterations = kIterations});
+  // the residual at the start takes another product
+  return 1e3 * stopwatch.seconds() / (report.iterations + 1);
+}
+
+double product_ms(System& system) {
+  constexpr int kRepeats = 10;
+  std::vector<double> y(system.x.size());
+  mo::multiply(system.matrix, system.b, y);
+  const mo::Stopwatch stopwatch;
+  for (int i = 0; i < kRepeats; ++i) mo::multiply(system.matrix, system.b, y);
+  return 1e3 * stopwatch.seconds() / kRepeats;
+}
+
+/// The bytes that an iteration moves when nothing stays in caches.
+double iteration_bytes(const mo::BlockCsr& matrix, double value_bytes) {
+  // p, q; r, q, r, z, diagonal; x, p, z, x, p
+  constexpr double kVectors = 12;
+  return static_cast<double>(matrix.block_count()) * (9 * value_bytes + sizeof(mo::Index)) +
+         matrix.size() * (sizeof(mo::Offset) + kVectors * 3 * sizeof(double));
+}
+
+void print_iterations(std::vector<System>& systems, const Settings& settings) {
+  constexpr std::size_t kColumns = 1 + 2 * kThreads.size();
+  std::vector<std::array<double, kColumns>> best(systems.size());
+  for (auto& row : best) row.fill(std::numeric_limits<double>::infinity());
+  for (int round = 0; round < settings.rounds; ++round) {
+    for (std::size_t i = 0; i < systems.size(); ++i) {
+      best[i][0] = std::min(best[i][0], product_ms(systems[i]));
+      for (std::size_t t = 0; t < kThreads.size(); ++t) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, kThreads[t]);
+        best[i][1 + 2 * t] = std::min(best[i][1 + 2 * t], iteration_ms(systems[i], systems[i].matrix));
+        best[i][2 + 2 * t] = std::min(best[i][2 + 2 * t], iteration_ms(systems[i], systems[i].rounded));
+      }
+    }
+  }
+  std::array<double, kThreads.size()> bandwidth{};
+  for (std::size_t t = 0; t < kThreads.size(); ++t) {
+    bandwidth[t] = mo::read_bandwidth(std::size_t{512} << 20, 8, kThreads[t]);
+    fmt::print("{} thread{} read {:.1f} GB/s\n", kThreads[t], t == 0 ? "" : "s", bandwidth[t]);
+  }
+  fmt::print("{:<11}{:>9}", "order", "product");
+  for (const int threads : kThreads)
+    fmt::print("{:>9}{:>2}{:>7}{:>9}{:>2}{:>7}", "double", threads, "%", "float", threads, "%");
+  fmt::print("\n");
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    fmt::print("{:<11}{:>9.3f}", systems[i].order, best[i][0]);
+    for (std::size_t t = 0; t < kThreads.size(); ++t) {
+      for (const std::size_t single : {0U, 1U}) {
+        const double ms = best[i][1 + 2 * t + single];
+        const double bytes = iteration_bytes(systems[i].matrix, single != 0 ? 4 : 8);
+        fmt::print("{:>11.3f}{:>7.0f}", ms, 100e-6 * bytes / ms / bandwidth[t]);
+      }
+    }
+    fmt::print("\n");
+  }
+}
+
+void print_solves(std::vector<System>& systems) {
+  constexpr std::array kKinds{mo::PreconditionerKind::jacobi, mo::PreconditionerKind::block_jacobi,
+                              mo::PreconditionerKind::incomplete_cholesky};
+  fmt::print("{:<11}{:<21}{:>8}{:>9}{:>11}{:>10}{:>12}{:>12}\n", "order", "preconditioner", "threads",
+             "update", "iterations", "seconds", "float: its", "seconds");
+  for (System& system : systems) {
+    for (const mo::PreconditionerKind kind : kKinds) {
+      const auto preconditioner = mo::make_preconditioner(kind, system.matrix, system.points);
+      for (const int threads : kThreads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        mo::Stopwatch stopwatch;
+        preconditioner->update(system.matrix);
+        const double update = stopwatch.seconds();
+        fmt::print("{:<11}{:<21}{:>8}{:>9.4f}", system.order, mo::name(kind), threads, update);
+        const auto solve = [&](const auto& matrix) {
+          std::fill(system.x.begin(), system.x.end(), 0.0);
+          const mo::Stopwatch clock;
+          const mo::SolveReport report = mo::conjugate_gradients(matrix, *preconditioner, system.b, system.x);
+          fmt::print("{:>11}{:>10.4f}", report.iterations, clock.seconds());
+          if (report.status != mo::SolveStatus::converged) fmt::print(" {}", mo::name(report.status));
+        };
+        solve(system.matrix);
+        solve(system.rounded);
+        fmt::print("\n");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  Settings settings;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--solve") {
+      settings.solve = true;
+    } else if (argument == "--rounds" && i + 1 < argc) {
+      settings.rounds = std::atoi(argv[++i]);
+    } else if (argument == "--orders" && i + 1 < argc) {
+      settings.orders = argv[++i];
+    } else {
+      settings.files.push_back(argument);
+    }
+  }
+  for (const std::string& file : settings.files) {
+    std::vector<System> systems = make_systems(file, settings.orders);
+    fmt::print("{}: {} vertices, {:.1f} MB of matrix in double\n", file, systems.front().matrix.size(),
+               76e-6 * static_cast<double>(systems.front().matrix.block_count()));
+    if (settings.solve) {
+      print_solves(systems);
+    } else {
+      print_iterations(systems, settings);
+    }
+  }
+  return 0;
+} catch (const std::exception& error) {
+  fmt::print(stderr, "cg: {}\n", error.what());
+  return 2;
+}
