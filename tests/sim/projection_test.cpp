@@ -12,7 +12,7 @@ using test::Case;
 test::Patch unit_tetrahedron() {
   test::Patch patch;
   patch.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  patch.simplices = {3, {0, 1, 2, 3}};
+  patch.simplices = {3, {0, 1, 2, 3}, {}};
   patch.rest = rest_shapes(patch.simplices, patch.points);
   return patch;
 }

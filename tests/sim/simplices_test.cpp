@@ -106,6 +106,19 @@ TEST(CutIntoSimplices, TakesCornersOfTheHighestCellsInTheirOrder) {
   EXPECT_EQ(std::vector<Index>(simplices.vertices.begin() + 48, simplices.vertices.begin() + 52), quadratic);
 }
 
+TEST(CutIntoSimplices, TellsTheCellOfEachSimplex) {
+  const Mesh mesh = test::mixed_mesh();
+  const Simplices simplices = cut_into_simplices(mesh);
+  ASSERT_EQ(static_cast<Offset>(simplices.cells.size()), simplices.size());
+  EXPECT_TRUE(std::is_sorted(simplices.cells.begin(), simplices.cells.end()));
+  for (Offset s = 0; s < simplices.size(); ++s) {
+    const auto cell = mesh.cells[simplices.cells[s]];
+    for (int a = 0; a < 4; ++a) {
+      EXPECT_NE(std::find(cell.begin(), cell.end(), simplices.vertices[4 * s + a]), cell.end());
+    }
+  }
+}
+
 TEST(CutIntoSimplices, FindsNoneInAMeshOfPoints) {
   const Mesh points = test::cells_of_type(Shape::vertex, 1, 3);
   EXPECT_EQ(rest_shapes(cut_into_simplices(points), points.points).count, 0);
@@ -144,10 +157,22 @@ TEST(RestShapes, InverseMakesTheRestMetricTheIdentity) {
   }
 }
 
+TEST(RestShapes, TurnTheFrameOfATetrahedronTheRightWay) {
+  const std::vector<Point> points{{0, 0, 0}, {1, 0.2, 0}, {0.3, 1, 0}, {0.1, 0.2, 1}};
+  // the same corners in both orientations
+  const RestShapes rest = rest_shapes({3, {0, 1, 2, 3, 0, 2, 1, 3}, {}}, points);
+  for (Offset s = 0; s < 2; ++s) {
+    // the diagonal of the inverse is its determinant, 1 / (6 · volume with its sign)
+    const double diagonal = rest.geometry[s] * rest.geometry[3 * kBatch + s] * rest.geometry[5 * kBatch + s];
+    EXPECT_NEAR(diagonal * 6 * volume(rest, s), s == 0 ? 1.0 : -1.0, 1e-14);
+    EXPECT_GT(volume(rest, s), 0.1);
+  }
+}
+
 TEST(RestShapes, FlatSimplicesHaveNoVolumeAndNoNumberIsInfinite) {
   const std::vector<Point> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 0}, {0, 0, 1}};
   // flat, a vertex twice, all the same, sound
-  const Simplices simplices{3, {0, 1, 2, 3, 0, 1, 1, 4, 2, 2, 2, 2, 0, 1, 2, 4}};
+  const Simplices simplices{3, {0, 1, 2, 3, 0, 1, 1, 4, 2, 2, 2, 2, 0, 1, 2, 4}, {}};
   const RestShapes rest = rest_shapes(simplices, points);
   for (const double value : rest.geometry) EXPECT_TRUE(std::isfinite(value));
   for (Offset s = 0; s < 3; ++s) EXPECT_EQ(volume(rest, s), 0.0);

@@ -104,6 +104,7 @@ Simplices cut_into_simplices(const Mesh& mesh) {
       cut = pieces(shape, vertices);
     }
     for (const int corner : cut) result.vertices.push_back(mesh.cells[c][corner]);
+    result.cells.insert(result.cells.end(), cut.size() / (result.dimension + 1), c);
   }
   return result;
 }

@@ -13,6 +13,7 @@ namespace meshorder {
 struct Simplices {
   int dimension = 0;            ///< 0 for none at all
   std::vector<Index> vertices;  ///< those of simplex s are `vertices[(D + 1) s] …`
+  std::vector<Index> cells;     ///< the cell that each was cut out of
 
   [[nodiscard]] Offset size() const noexcept {
     return static_cast<Offset>(vertices.size()) / (dimension + 1);
