@@ -78,6 +78,55 @@ inline Eigen::MatrixXd dense_stiffness(const Patch& patch, const Elasticity& ela
   return dense(stiffness_of(patch, elasticity, positions));
 }
 
+/// The energy from its definition, by another library's singular values, in another frame of rest.
+inline double energy(const Patch& patch, const Elasticity& elasticity,
+                     const AlignedVector<double>& positions) {
+  const int d = patch.simplices.dimension;
+  const auto [mu, lambda] = elasticity.lame;
+  double sum = 0.0;
+  for (Offset s = 0; s < patch.simplices.size(); ++s) {
+    const Index* const corner = patch.simplices.vertices.data() + (d + 1) * s;
+    Eigen::MatrixXd rest(3, d);
+    Eigen::MatrixXd deformed(3, d);
+    for (int a = 0; a < d; ++a) {
+      for (int c = 0; c < 3; ++c) {
+        rest(c, a) = patch.points[corner[a + 1]][c] - patch.points[corner[0]][c];
+        deformed(c, a) =
+            positions[kPaddedStride * corner[a + 1] + c] - positions[kPaddedStride * corner[0] + c];
+      }
+    }
+    const Eigen::MatrixXd metric = rest.transpose() * rest;
+    const double volume = std::sqrt(metric.determinant()) / (d == 3 ? 6 : d);
+    Eigen::MatrixXd f =
+        deformed * Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(metric).operatorInverseSqrt();
+    Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(f).singularValues();
+    if (d == 3 && rest.determinant() * deformed.determinant() < 0.0) sigma[2] = -sigma[2];
+    const Eigen::VectorXd green = 0.5 * (sigma.array().square() - 1.0);
+    const double squares = sigma.squaredNorm();
+    double density = 0.0;
+    switch (elasticity.model) {
+      case MaterialModel::corotational:
+        density = mu * (sigma.array() - 1.0).square().sum() + 0.5 * lambda * std::pow(sigma.sum() - 3.0, 2);
+        break;
+      case MaterialModel::stvk:
+        density = mu * green.squaredNorm() + 0.5 * lambda * std::pow(green.sum(), 2);
+        break;
+      case MaterialModel::neo_hookean: {
+        const double m = 4.0 / 3.0 * mu;
+        const double l = lambda + 5.0 / 6.0 * mu;
+        const double alpha = 1.0 + 0.75 * m / l;
+        const auto psi = [&](double ic, double j) {
+          return 0.5 * m * (ic - 3.0) + 0.5 * l * std::pow(j - alpha, 2) - 0.5 * m * std::log(ic + 1.0);
+        };
+        density = psi(squares, sigma.prod()) - psi(3.0, 1.0);
+        break;
+      }
+    }
+    sum += volume * density;
+  }
+  return sum;
+}
+
 /// The rest points moved by a linear map.
 inline AlignedVector<double> mapped(const std::vector<Point>& points, const Eigen::Matrix3d& map) {
   std::vector<Point> result;

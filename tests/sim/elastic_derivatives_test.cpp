@@ -1,11 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/base/error.hpp>
-
 #include <gtest/gtest.h>
 #include <sim/elastic.hpp>
-
-#include <cmath>
-#include <limits>
 
 namespace meshorder {
 namespace {
@@ -54,10 +49,8 @@ Eigen::MatrixXd minus_jacobian(const test::Patch& patch, const Elasticity& elast
 
 constexpr auto kExact = Tangent::exact;
 
-// ---- every law ----
-
-class ElasticLaw : public testing::TestWithParam<Case> {};
-INSTANTIATE_TEST_SUITE_P(OfAll, ElasticLaw,
+class ElasticDerivatives : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(OfAll, ElasticDerivatives,
                          testing::Values(Case{MaterialModel::corotational, kExact},
                                          Case{MaterialModel::stvk, kExact},
                                          Case{MaterialModel::stvk, kExact, 2},
@@ -65,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(OfAll, ElasticLaw,
                                          Case{MaterialModel::neo_hookean, kExact}),
                          test::case_name);
 
-TEST_P(ElasticLaw, HasForcesThatAreMinusTheGradientOfTheEnergy) {
+TEST_P(ElasticDerivatives, OfTheEnergyAreMinusTheForces) {
   const test::Patch patch = test::deformed_patch(GetParam().dimension, 21);
   const Elasticity elasticity = elasticity_of(GetParam());
   test::expect_near(forces_of(patch, elasticity, patch.positions),
@@ -81,7 +74,7 @@ TEST_P(ElasticLaw, HasForcesThatAreMinusTheGradientOfTheEnergy) {
   }
 }
 
-TEST_P(ElasticLaw, HasAStiffnessThatIsMinusTheDerivativeOfTheForces) {
+TEST_P(ElasticDerivatives, OfTheForcesAreMinusTheStiffness) {
   const test::Patch patch = test::deformed_patch(GetParam().dimension, 19);
   const Elasticity elasticity = elasticity_of(GetParam());
   const auto expect_derivative = [&](const AlignedVector<double>& x) {
