@@ -5,6 +5,7 @@
 #include <meshorder/mesh/graphs.hpp>
 #include <meshorder/sim/kernels/assembly.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
+#include <meshorder/sim/material/elasticity.hpp>
 
 #include <Eigen/Dense>
 
@@ -17,14 +18,15 @@ namespace meshorder::test {
 inline BlockCsr elastic_system(const Mesh& mesh, double density) {
   const RestShapes rest = rest_shapes(cut_into_simplices(mesh), mesh.points);
   BlockCsr matrix = zero_block_csr(vertex_graph(mesh));
-  add_stvk_stiffness(rest, Lame::from_young(1.0, 0.4), padded_positions(mesh.points),
-                     assembly_map(rest, matrix), matrix);
+  Elasticity elasticity;
+  elasticity.lame = Lame::from_young(1.0, 0.4);
+  AlignedVector<double> forces = padded_zeros(mesh.vertex_count());
+  const AssemblyMap map = assembly_map(rest, matrix);
+  const Stiffness stiffness{map, matrix};
+  add_elasticity(rest, elasticity, padded_positions(mesh.points), forces, &stiffness);
   std::vector<double> masses(mesh.points.size(), 1e-3 * density);
   for (Offset s = 0; s < rest.count; ++s) {
-    const double volume = rest.geometry[(s / kBatch * rest.quantities() + 6) * kBatch + s % kBatch];
-    for (int a = 0; a < 4; ++a) {
-      masses[rest.vertices[(s / kBatch * 4 + a) * kBatch + s % kBatch]] += density * volume / 4;
-    }
+    for (int a = 0; a < 4; ++a) masses[rest.vertex(s, a)] += density * rest.volume(s) / 4;
   }
   for (Index v = 0; v < matrix.size(); ++v) {
     for (int c = 0; c < 3; ++c) matrix.values[9 * matrix.find(v, v) + 4 * c] += masses[v];
