@@ -2,9 +2,9 @@
 #include <meshorder/base/error.hpp>
 #include <meshorder/base/parallel.hpp>
 #include <meshorder/sim/linear/jacobi.hpp>
+#include <meshorder/sim/linear/symmetric_block.hpp>
 
-#include <array>
-#include <cmath>
+#include <algorithm>
 #include <string>
 
 namespace meshorder {
@@ -12,44 +12,6 @@ namespace {
 
 // as many as threads are worth
 constexpr Index kRows = 4096;
-
-double inverse_or_one(double entry) {
-  const double inverse = 1.0 / std::abs(entry);
-  return std::isfinite(entry) && std::isfinite(inverse) ? inverse : 1.0;
-}
-
-/// The block of a vertex on the diagonal.
-const double* diagonal_block(const BlockCsr& matrix, Index v) {
-  const Offset block = matrix.find(v, v);
-  if (block < 0) {
-    throw InvalidArgument("preconditioner: the matrix has no diagonal block for the vertex " +
-                          std::to_string(v));
-  }
-  return matrix.values.data() + 9 * block;
-}
-
-/// The upper triangle of the inverse of a symmetric block; of its diagonal where it is not positive definite.
-std::array<double, 6> inverse_of(const double* a) {
-  // the block divided by the square roots of its diagonal, so that small numbers are small for its size
-  const std::array<double, 3> scale{std::sqrt(inverse_or_one(a[0])), std::sqrt(inverse_or_one(a[4])),
-                                    std::sqrt(inverse_or_one(a[8]))};
-  const double b01 = a[1] * scale[0] * scale[1];
-  const double b02 = a[2] * scale[0] * scale[2];
-  const double b12 = a[5] * scale[1] * scale[2];
-  const double c00 = 1.0 - b12 * b12;
-  const double c11 = 1.0 - b02 * b02;
-  const double c22 = 1.0 - b01 * b01;
-  const double determinant = c00 - b01 * (b01 - b02 * b12) + b02 * (b01 * b12 - b02);
-  constexpr double kSingular = 1e-12;
-  const bool definite = a[0] > 0.0 && a[4] > 0.0 && a[8] > 0.0 && c22 > kSingular && determinant > kSingular;
-  if (!definite) return {scale[0] * scale[0], 0.0, 0.0, scale[1] * scale[1], 0.0, scale[2] * scale[2]};
-  return {scale[0] * scale[0] * c00 / determinant,
-          scale[0] * scale[1] * (b02 * b12 - b01) / determinant,
-          scale[0] * scale[2] * (b01 * b12 - b02) / determinant,
-          scale[1] * scale[1] * c11 / determinant,
-          scale[1] * scale[2] * (b01 * b02 - b12) / determinant,
-          scale[2] * scale[2] * c22 / determinant};
-}
 
 }  // namespace
 
@@ -74,7 +36,7 @@ void Jacobi::update(const BlockCsr& matrix) {
   inverses_.resize(3 * static_cast<std::size_t>(vertices()));
   for_each_chunk(vertices(), kRows, [&](Index, Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
-      const double* const block = diagonal_block(matrix, v);
+      const double* const block = matrix.values.data() + 9 * diagonal_block(matrix, v);
       for (int c = 0; c < 3; ++c) inverses_[Offset{3} * v + c] = inverse_or_one(block[4 * c]);
     }
   });
@@ -91,7 +53,8 @@ void BlockJacobi::update(const BlockCsr& matrix) {
   inverses_.resize(6 * static_cast<std::size_t>(vertices()));
   for_each_chunk(vertices(), kRows, [&](Index, Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
-      const std::array<double, 6> inverse = inverse_of(diagonal_block(matrix, v));
+      const double* const block = matrix.values.data() + 9 * diagonal_block(matrix, v);
+      const SymmetricBlock inverse = definite_inverse(upper_triangle(block));
       std::copy(inverse.begin(), inverse.end(), inverses_.begin() + Offset{6} * v);
     }
   });
@@ -99,13 +62,7 @@ void BlockJacobi::update(const BlockCsr& matrix) {
 
 void BlockJacobi::apply_rows(const double* r, double* z, Index begin, Index end) const {
   for (Index v = begin; v < end; ++v) {
-    const double* const m = inverses_.data() + Offset{6} * v;
-    const double* const from = r + Offset{3} * v;
-    double* const to = z + Offset{3} * v;
-    const double r0 = from[0], r1 = from[1], r2 = from[2];
-    to[0] = m[0] * r0 + m[1] * r1 + m[2] * r2;
-    to[1] = m[1] * r0 + m[3] * r1 + m[4] * r2;
-    to[2] = m[2] * r0 + m[4] * r1 + m[5] * r2;
+    multiply(inverses_.data() + Offset{6} * v, r + Offset{3} * v, z + Offset{3} * v);
   }
 }
 

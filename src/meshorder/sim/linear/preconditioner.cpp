@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/error.hpp>
+#include <meshorder/sim/linear/incomplete_cholesky.hpp>
 #include <meshorder/sim/linear/jacobi.hpp>
 #include <meshorder/sim/linear/preconditioner.hpp>
 
@@ -33,6 +34,7 @@ std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, con
     case PreconditionerKind::block_jacobi:
       return std::make_unique<BlockJacobi>(pattern.size());
     case PreconditionerKind::incomplete_cholesky:
+      return std::make_unique<IncompleteCholesky>(pattern);
     case PreconditionerKind::multigrid:
       break;
   }
