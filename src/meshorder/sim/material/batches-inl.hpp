@@ -31,11 +31,9 @@ HWY_INLINE const Index* vertices_of(const RestShapes& rest, Offset batch) {
 }
 
 template <class Lanes>
-HWY_INLINE LameLanes<Lanes> load_lame(const Elasticity& elasticity, Offset simplex) {
-  if (elasticity.mu.empty()) {
-    return {Lanes::set(elasticity.lame.mu), Lanes::set(elasticity.lame.lambda)};
-  }
-  return {Lanes::load(elasticity.mu.data() + simplex), Lanes::load(elasticity.lambda.data() + simplex)};
+HWY_INLINE LameLanes<Lanes> load_lame(const ElasticPass& pass, Offset batch, Index lane) {
+  const Offset place = pass.lame_stride * batch + lane;
+  return {Lanes::load(pass.mu + place), Lanes::load(pass.lambda + place)};
 }
 
 /// A batch of simplices, which adds its forces to `targets`: its vertices, or spare ones in place of them.
@@ -52,7 +50,7 @@ HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* ta
   for (Index lane = 0; lane < kBatch; lane += Lanes::kCount) {
     Deformation<D, Lanes> deformation;
     deformation.load(geometry + lane, vertices + lane, pass.positions);
-    const LameLanes<Lanes> lame = load_lame<Lanes>(pass.elasticity, batch * kBatch + lane);
+    const LameLanes<Lanes> lame = load_lame<Lanes>(pass, batch, lane);
     Law law;
     law.load(deformation, lame);
     if (!kStiffness || pass.forces) {
@@ -102,7 +100,7 @@ HWY_INLINE double energy_of_batches(const ElasticPass& pass, Index begin, Index 
       Deformation<D, Lanes> deformation;
       deformation.load(geometry_of<D>(pass.rest, batch) + lane, vertices_of<D>(pass.rest, batch) + lane,
                        pass.positions);
-      const LameLanes<Lanes> lame = load_lame<Lanes>(pass.elasticity, batch * kBatch + lane);
+      const LameLanes<Lanes> lame = load_lame<Lanes>(pass, batch, lane);
       Law law;
       law.load(deformation, lame);
       sum = Lanes::mul_add(deformation.volume, law.energy(deformation, lame), sum);

@@ -16,10 +16,10 @@ template <class Lanes>
 HWY_INLINE void add_any(const ElasticPass& pass) {
   using Law = Corotational<Lanes>;
   if (!pass.values) return add_batches<3, Lanes, Law, NoTangent>(pass);
-  if (pass.elasticity.tangent == Tangent::projected) {
+  if (pass.tangent == Tangent::projected) {
     return add_batches<3, Lanes, Law, ProjectedTangent<Lanes, Law>>(pass);
   }
-  if (pass.elasticity.tangent == Tangent::approximate) {
+  if (pass.tangent == Tangent::approximate) {
     return add_batches<3, Lanes, Law, TurnedTangent<Lanes>>(pass);
   }
   add_batches<3, Lanes, Law, CorotationalTangent<Lanes>>(pass);

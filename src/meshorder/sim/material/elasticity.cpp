@@ -4,6 +4,7 @@
 #include <meshorder/sim/material/elasticity.hpp>
 #include <meshorder/sim/material/pass.hpp>
 
+#include <array>
 #include <string>
 
 namespace meshorder {
@@ -20,6 +21,16 @@ ElasticKernels kernels_of(MaterialModel model) {
   }
   throw InvalidArgument("elasticity: no such material model");
 }
+
+/// A batch of equal parameters, where they are the same everywhere.
+struct UniformLame {
+  alignas(64) std::array<double, kBatch> mu, lambda;
+
+  explicit UniformLame(const Lame& lame) {
+    mu.fill(lame.mu);
+    lambda.fill(lame.lambda);
+  }
+};
 
 void check(const RestShapes& rest, const Elasticity& elasticity) {
   if (elasticity.model != MaterialModel::stvk && rest.dimension != 3 && rest.count > 0) {
@@ -57,14 +68,28 @@ void check(const RestShapes& rest, const Stiffness& stiffness, Offset room) {
   }
 }
 
+/// The pass over everything that only reads, its arguments checked.
+ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity, const UniformLame& uniform,
+                         std::span<const double> positions) {
+  check(rest, elasticity);
+  ElasticPass pass{rest, elasticity.tangent};
+  pass.positions = positions.data();
+  pass.mu = uniform.mu.data();
+  pass.lambda = uniform.lambda.data();
+  if (!elasticity.mu.empty()) {
+    pass.mu = elasticity.mu.data();
+    pass.lambda = elasticity.lambda.data();
+    pass.lame_stride = kBatch;
+  }
+  return pass;
+}
+
 /// The pass over everything, its arguments checked.
-ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity,
+ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity, const UniformLame& uniform,
                          std::span<const double> positions, std::span<double> forces,
                          const Stiffness* stiffness) {
-  check(rest, elasticity);
+  ElasticPass pass = checked_pass(rest, elasticity, uniform, positions);
   if (stiffness) check_tangent(rest, elasticity);
-  ElasticPass pass{rest, elasticity};
-  pass.positions = positions.data();
   pass.forces = forces.empty() ? nullptr : forces.data();
   if (stiffness) {
     check(rest, *stiffness, stiffness->matrix.block_count());
@@ -82,8 +107,8 @@ bool nothing_to_do(const ElasticPass& pass) { return pass.rest.count == 0 || (!p
 double elastic_energy(const RestShapes& rest, const Elasticity& elasticity,
                       std::span<const double> positions) {
   constexpr Index kBatchesOfAChunk = 512;
-  check(rest, elasticity);
-  const ElasticPass pass{rest, elasticity, positions.data()};
+  const UniformLame uniform(elasticity.lame);
+  const ElasticPass pass = checked_pass(rest, elasticity, uniform, positions);
   if (rest.count == 0) return 0.0;
   const ElasticKernels kernels = kernels_of(elasticity.model);
   return sum_over_chunks<double>(static_cast<Index>(rest.batches()), kBatchesOfAChunk,
@@ -93,7 +118,8 @@ double elastic_energy(const RestShapes& rest, const Elasticity& elasticity,
 void add_elasticity(const RestShapes& rest, const Elasticity& elasticity, std::span<const double> positions,
                     std::span<double> forces, const Stiffness* stiffness) {
   if (!forces.empty()) check_same_size(positions, forces, "add_elasticity");
-  const ElasticPass pass = checked_pass(rest, elasticity, positions, forces, stiffness);
+  const UniformLame uniform(elasticity.lame);
+  const ElasticPass pass = checked_pass(rest, elasticity, uniform, positions, forces, stiffness);
   if (!nothing_to_do(pass)) kernels_of(elasticity.model).add(pass);
 }
 
@@ -101,7 +127,8 @@ void add_elasticity(const RestShapes& rest, const Elasticity& elasticity, std::s
                     std::span<double> forces, const Stiffness* stiffness, const OwnedBatches& share,
                     const OwnedBlocks& boundary) {
   if (!forces.empty()) check_room(forces, share, "add_elasticity");
-  ElasticPass pass = checked_pass(rest, elasticity, positions, forces, stiffness);
+  const UniformLame uniform(elasticity.lame);
+  ElasticPass pass = checked_pass(rest, elasticity, uniform, positions, forces, stiffness);
   if (stiffness) check(rest, *stiffness, boundary.room);
   pass.share = &share;
   pass.boundary_blocks = boundary.blocks.data();
@@ -112,7 +139,8 @@ void add_elasticity_scalar(const RestShapes& rest, const Elasticity& elasticity,
                            std::span<const double> positions, std::span<double> forces,
                            const Stiffness* stiffness) {
   if (!forces.empty()) check_same_size(positions, forces, "add_elasticity");
-  const ElasticPass pass = checked_pass(rest, elasticity, positions, forces, stiffness);
+  const UniformLame uniform(elasticity.lame);
+  const ElasticPass pass = checked_pass(rest, elasticity, uniform, positions, forces, stiffness);
   if (!nothing_to_do(pass)) kernels_of(elasticity.model).add_one_by_one(pass);
 }
 

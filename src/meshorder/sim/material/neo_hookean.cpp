@@ -16,7 +16,7 @@ template <class Lanes>
 HWY_INLINE void add_any(const ElasticPass& pass) {
   using Law = NeoHookean<Lanes>;
   if (!pass.values) return add_batches<3, Lanes, Law, NoTangent>(pass);
-  if (pass.elasticity.tangent == Tangent::projected) {
+  if (pass.tangent == Tangent::projected) {
     return add_batches<3, Lanes, Law, ProjectedTangent<Lanes, Law>>(pass);
   }
   add_batches<3, Lanes, Law, NeoHookeanTangent<Lanes>>(pass);

@@ -9,7 +9,12 @@ namespace meshorder {
 /// What a pass over the simplices reads and adds to, checked: for elasticity.cpp and the laws' kernels alone.
 struct ElasticPass {
   const RestShapes& rest;
-  const Elasticity& elasticity;
+  Tangent tangent = Tangent::exact;
+  /// Lamé's parameters of batch b from mu[lame_stride · b] on: of each simplex, or one batch of equal ones
+  /// for all, which spares the kernels a question.
+  const double* mu = nullptr;
+  const double* lambda = nullptr;
+  Offset lame_stride = 0;
   const double* positions = nullptr;
   double* forces = nullptr;  ///< none where only the stiffness is asked for
   /// The matrix's; none where only forces are asked for.

@@ -17,7 +17,7 @@ HWY_INLINE void add_dimension(const ElasticPass& pass) {
   using Law = Stvk<D, Lanes>;
   if (!pass.values) return add_batches<D, Lanes, Law, NoTangent>(pass);
   if constexpr (D == 3) {
-    if (pass.elasticity.tangent == Tangent::projected) {
+    if (pass.tangent == Tangent::projected) {
       return add_batches<3, Lanes, Law, ProjectedTangent<Lanes, Law>>(pass);
     }
   }
