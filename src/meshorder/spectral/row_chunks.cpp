@@ -8,13 +8,12 @@ namespace meshorder {
 namespace {
 
 constexpr Index kChunks = 16;  // few enough for the bits of a word, many enough for the cores of a desktop
-constexpr Index kLeastRows = 8192;  // a chunk should outweigh the start of a thread's task
 constexpr Index kFewColours = 3;
 
 }  // namespace
 
-RowChunks::RowChunks(const Laplacian& laplacian) : rows_(laplacian.size()) {
-  const auto rows = static_cast<std::uint32_t>(std::max(kLeastRows, chunk_count(rows_, kChunks)));
+RowChunks::RowChunks(const Laplacian& laplacian, Index least_rows) : rows_(laplacian.size()) {
+  const auto rows = static_cast<std::uint32_t>(std::max(least_rows, chunk_count(rows_, kChunks)));
   shift_ = static_cast<int>(std::bit_width(rows - 1));
 
   // which chunks each chunk touches, as bits

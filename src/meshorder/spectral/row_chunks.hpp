@@ -13,11 +13,13 @@ namespace meshorder {
 /// numbered breadth first, chunks touch only the next ones, and two colours do.
 class RowChunks {
  public:
+  static constexpr Index kLeastRows = 8192;  ///< a chunk should outweigh the start of a thread's task
+
   RowChunks() = default;
 
-  /// Chunks the rows of a graph: up to 16 chunks of at least 8192 rows, whatever the number of threads; one
-  /// chunk of all rows where too many would touch one another to gain by threads. O(edges).
-  explicit RowChunks(const Laplacian& laplacian);
+  /// Chunks the rows of a graph: up to 16 chunks of at least `least_rows` rows, whatever the number of
+  /// threads; one chunk of all rows where too many would touch one another to gain by threads. O(edges).
+  explicit RowChunks(const Laplacian& laplacian, Index least_rows = kLeastRows);
 
   /// One chunk of all rows.
   static RowChunks whole(Index rows);

@@ -93,6 +93,11 @@ BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, Im
   if (options_.stiffness_damping > 0.0 && (options_.newton_iterations > 1 || moves)) {
     damping_ = system_.matrix();
   }
+  // what a preconditioner keeps of the first numbers that it sees must not depend on where a run is resumed
+  StepReport report;
+  collect_loads();
+  assemble(0, system_.elasticity().tangent, report);
+  preconditioner_->update(system_.matrix());
 }
 
 MotionState BackwardEuler::state() const {

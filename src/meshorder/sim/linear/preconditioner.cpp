@@ -2,6 +2,7 @@
 #include <meshorder/base/error.hpp>
 #include <meshorder/sim/linear/incomplete_cholesky.hpp>
 #include <meshorder/sim/linear/jacobi.hpp>
+#include <meshorder/sim/linear/multigrid.hpp>
 #include <meshorder/sim/linear/preconditioner.hpp>
 
 #include <string>
@@ -36,9 +37,9 @@ std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, con
     case PreconditionerKind::incomplete_cholesky:
       return std::make_unique<IncompleteCholesky>(pattern);
     case PreconditionerKind::multigrid:
-      break;
+      return make_multigrid(pattern, points);
   }
-  throw InvalidArgument("preconditioner: " + std::string(name(kind)) + " is not there yet");
+  throw InvalidArgument("preconditioner: none of the known ones");
 }
 
 }  // namespace meshorder
