@@ -12,6 +12,7 @@
 #include <meshorder/io/vtk/vtk_residue.hpp>
 #include <meshorder/io/vtk/vtu.hpp>
 #include <meshorder/io/vtk/vtu_compressor.hpp>
+#include <meshorder/io/vtk/xml_text.hpp>
 
 #include <fmt/format.h>
 
@@ -31,29 +32,6 @@ constexpr std::size_t kBlock = std::size_t{1} << 20;  // bytes that are swapped 
 
 using Mode = VtuEncoding::Mode;
 using Compressor = VtuEncoding::Compressor;
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 /// Bytes as base64, three by three, as they come.
 class Base64 {
@@ -198,7 +176,7 @@ class Writer {
             return r.on == on && kind == static_cast<VtkRole>(role) && there;
           });
       if (found != residue_.roles.end())
-        result += fmt::format(" {}=\"{}\"", kVtuRoles[role], escaped(found->array));
+        result += fmt::format(" {}=\"{}\"", kVtuRoles[role], xml_escaped(found->array));
     }
     return result;
   }
@@ -212,11 +190,11 @@ class Writer {
     if (facts != nullptr && facts->type == "vtkIdType" &&
         std::holds_alternative<std::vector<std::int64_t>>(array.values))
       result.tag += " IdType=\"1\"";
-    result.tag += fmt::format(" Name=\"{}\"", escaped(array.name));
+    result.tag += fmt::format(" Name=\"{}\"", xml_escaped(array.name));
     if (array.components != 1) result.tag += fmt::format(" NumberOfComponents=\"{}\"", array.components);
     for (std::size_t i = 0; i < array.component_names.size(); ++i) {
       if (!array.component_names[i].empty())
-        result.tag += fmt::format(" ComponentName{}=\"{}\"", i, escaped(array.component_names[i]));
+        result.tag += fmt::format(" ComponentName{}=\"{}\"", i, xml_escaped(array.component_names[i]));
     }
     if (!on) result.tag += fmt::format(" NumberOfTuples=\"{}\"", row_count(array));
     if (facts != nullptr) result.information = facts->xml_information;

@@ -1,0 +1,224 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/io/scanner.hpp>
+#include <meshorder/study/json_value.hpp>
+#include <meshorder/study/scenario.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace meshorder {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr NumberRange kPositive{.least = 0, .least_open = true};
+constexpr NumberRange kNotNegative{.least = 0};
+constexpr Index kMostSteps = 1'000'000;
+constexpr int kMostIterations = 1'000'000;
+constexpr std::array kMethods{std::pair(std::string_view("backward-euler"), 0)};
+
+/// "all", {"set": …}, {"label": …}, {"box": …} or {"nearest": …}.
+VertexChoice vertex_choice(const JsonValue& value) {
+  VertexChoice choice;
+  choice.where = value.path();
+  if (value.is_text()) {
+    if (value.text() != "all")
+      throw value.error("'" + value.text() + "' is unknown",
+                        R"(give "all", or {"set": NAME}, {"label": 3}, {"box": […]}, {"nearest": […]})");
+    return choice;
+  }
+  value.expect_keys({"set", "label", "array", "box", "nearest"});
+  int kinds = 0;
+  for (const std::string_view kind : {"set", "label", "box", "nearest"}) kinds += value.has(kind) ? 1 : 0;
+  if (kinds != 1) throw value.error("does not say which vertices", "give one of set, label, box, nearest");
+  if (value.has("array") && !value.has("label"))
+    throw value.error("has an array without a label", "give the label that its vertices or cells have");
+  if (value.has("set")) {
+    choice.by = VertexChoice::By::set;
+    choice.name = value["set"].text();
+  } else if (value.has("label")) {
+    choice.by = VertexChoice::By::label;
+    choice.label = value["label"].whole(std::numeric_limits<std::int64_t>::min(),
+                                        std::numeric_limits<std::int64_t>::max());
+    choice.name = value.has("array") ? value["array"].text() : std::string(kLabel);
+  } else if (value.has("box")) {
+    choice.by = VertexChoice::By::box;
+    const std::vector<JsonValue> corners = value["box"].items(2, 2);
+    choice.low = corners[0].vector();
+    choice.high = corners[1].vector();
+    for (int a = 0; a < 3; ++a) {
+      if (choice.low[a] > choice.high[a])
+        throw corners[1].error("lies below the first corner", "give the lower corner, then the upper one");
+    }
+  } else {
+    choice.by = VertexChoice::By::nearest;
+    choice.low = value["nearest"].vector();
+  }
+  return choice;
+}
+
+StepRange step_range(const JsonValue& owner) {
+  StepRange range;
+  if (const auto steps = owner.find("steps")) {
+    const std::vector<JsonValue> ends = steps->items(2, 2);
+    range.first = static_cast<Index>(ends[0].whole(1, kMaxIndex));
+    range.last = static_cast<Index>(ends[1].whole(range.first, kMaxIndex));
+  }
+  return range;
+}
+
+MaterialNumbers material_numbers(const JsonValue& value, MaterialNumbers numbers) {
+  if (const auto young = value.find("young")) numbers.young = young->number(kPositive);
+  if (const auto poisson = value.find("poisson"))
+    numbers.poisson = poisson->number({.least = -1, .most = 0.5, .least_open = true, .most_open = true});
+  if (const auto density = value.find("density")) numbers.density = density->number(kPositive);
+  return numbers;
+}
+
+void read_regions(const JsonValue& value, Scenario& scenario) {
+  value.expect_keys({"by", "groups"});
+  scenario.regions_by = value["by"].text();
+  for (const JsonValue& entry : value["groups"].items(1)) {
+    entry.expect_keys({"group", "young", "poisson", "density"});
+    const JsonValue group = entry["group"];
+    ScenarioRegion region;
+    if (group.is_text()) {
+      region.group = group.text();
+    } else {
+      region.group =
+          group.whole(std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max());
+    }
+    for (const ScenarioRegion& other : scenario.regions) {
+      if (other.group == region.group) throw group.error("has an entry already", "keep one of them");
+    }
+    region.material = material_numbers(entry, scenario.material);
+    scenario.regions.push_back(std::move(region));
+  }
+}
+
+void read_material(const JsonValue& value, Scenario& scenario) {
+  value.expect_keys({"model", "tangent", "young", "poisson", "density", "regions"});
+  scenario.model = value["model"].one_of(kMaterialModels);
+  if (const auto tangent = value.find("tangent")) {
+    scenario.tangent = tangent->one_of(kTangents);
+    if (scenario.tangent == Tangent::approximate && scenario.model != MaterialModel::corotational)
+      throw tangent->error("'approximate' is of the corotational model alone", "give exact or projected");
+  }
+  for (const std::string_view needed : {"young", "poisson", "density"}) (void)value[needed];
+  scenario.material = material_numbers(value, scenario.material);
+  if (const auto regions = value.find("regions")) read_regions(*regions, scenario);
+}
+
+void read_integrator(const JsonValue& value, ImplicitOptions& options) {
+  value.expect_keys({"method", "time_step", "mass", "rayleigh", "gravity", "newton"});
+  if (const auto method = value.find("method")) (void)method->one_of(kMethods);
+  options.time_step = value["time_step"].number(kPositive);
+  if (const auto mass = value.find("mass")) options.mass = mass->one_of(kMasses);
+  if (const auto rayleigh = value.find("rayleigh")) {
+    rayleigh->expect_keys({"alpha", "beta"});
+    if (const auto alpha = rayleigh->find("alpha")) options.mass_damping = alpha->number(kNotNegative);
+    if (const auto beta = rayleigh->find("beta")) options.stiffness_damping = beta->number(kNotNegative);
+  }
+  if (const auto gravity = value.find("gravity")) options.gravity = gravity->vector();
+  if (const auto newton = value.find("newton")) {
+    newton->expect_keys({"iterations", "tolerance"});
+    if (const auto iterations = newton->find("iterations"))
+      options.newton_iterations = static_cast<int>(iterations->whole(1, kMostIterations));
+    if (const auto tolerance = newton->find("tolerance"))
+      options.newton_tolerance = tolerance->number(kPositive);
+  }
+}
+
+void read_solver(const JsonValue& value, ImplicitOptions& options) {
+  value.expect_keys({"preconditioner", "tolerance", "max_iterations", "precision"});
+  if (const auto preconditioner = value.find("preconditioner"))
+    options.preconditioner = preconditioner->one_of(kPreconditioners);
+  if (const auto tolerance = value.find("tolerance"))
+    options.solve.tolerance = tolerance->number({.least = 0, .most = 1, .least_open = true});
+  if (const auto most = value.find("max_iterations"))
+    options.solve.max_iterations = static_cast<int>(most->whole(1, kMostIterations));
+  if (const auto precision = value.find("precision")) options.precision = precision->one_of(kPrecisions);
+}
+
+void read_order(const JsonValue& value, Scenario& scenario) {
+  value.expect_keys({"vertices", "elements"});
+  if (const auto vertices = value.find("vertices")) scenario.vertex_order = vertices->text();
+  if (const auto elements = value.find("elements")) scenario.element_order = elements->text();
+}
+
+void read_events(const JsonValue& value, Scenario& scenario) {
+  if (const auto forces = value.find("forces")) {
+    for (const JsonValue& force : forces->items()) {
+      force.expect_keys({"on", "newtons", "steps"});
+      scenario.forces.push_back({vertex_choice(force["on"]), step_range(force), force["newtons"].vector()});
+    }
+  }
+  if (const auto fixed = value.find("fixed")) {
+    for (const JsonValue& some : fixed->items()) {
+      some.expect_keys({"on", "steps"});
+      scenario.motions.push_back({vertex_choice(some["on"]), step_range(some), {}});
+    }
+  }
+  if (const auto prescribed = value.find("prescribed")) {
+    for (const JsonValue& motion : prescribed->items()) {
+      motion.expect_keys({"on", "velocity", "steps"});
+      scenario.motions.push_back(
+          {vertex_choice(motion["on"]), step_range(motion), motion["velocity"].vector()});
+    }
+  }
+}
+
+/// Texts that name what is in the file, as "material.young".
+std::vector<std::string> read_paths(const JsonValue& root, const JsonValue& list) {
+  std::vector<std::string> result;
+  for (const JsonValue& entry : list.items()) {
+    result.push_back(entry.text());
+    JsonValue at = root;
+    for (std::string_view rest = result.back(); !rest.empty();) {
+      const std::size_t end = std::min(rest.find('.'), rest.size());
+      const auto next = at.find(rest.substr(0, end));
+      if (!next) throw entry.error("'" + result.back() + "' is not in the file", "name a value of it");
+      at = *next;
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Scenario parse_scenario(std::string_view text, const std::string& file) {
+  const nlohmann::json json = parse_json(text, file);
+  const JsonValue root(json, file);
+  root.expect_keys({"$schema", "name", "title", "mesh", "scale", "order", "material", "integrator", "solver",
+                    "forces", "fixed", "prescribed", "steps", "paper", "notes"});
+  Scenario scenario;
+  scenario.file = file;
+  scenario.name = root["name"].text();
+  if (scenario.name.find_first_of("/\\") != std::string::npos)
+    throw root["name"].error("'" + scenario.name + "' holds a slash", "it becomes part of file names");
+  if (const auto title = root.find("title")) scenario.title = title->text();
+  scenario.mesh = root["mesh"].text();
+  if (!names_a_model(scenario.mesh)) scenario.mesh = (fs::path(file).parent_path() / scenario.mesh).string();
+  if (const auto scale = root.find("scale")) {
+    scale->expect_keys({"longest_side"});
+    scenario.longest_side = (*scale)["longest_side"].number(kPositive);
+  }
+  if (const auto order = root.find("order")) read_order(*order, scenario);
+  read_material(root["material"], scenario);
+  read_integrator(root["integrator"], scenario.integrator);
+  if (const auto solver = root.find("solver")) read_solver(*solver, scenario.integrator);
+  read_events(root, scenario);
+  scenario.steps = static_cast<Index>(root["steps"].whole(1, kMostSteps));
+  if (const auto paper = root.find("paper")) scenario.paper = read_paths(root, *paper);
+  if (const auto notes = root.find("notes")) {
+    for (const JsonValue& note : notes->items()) scenario.notes.push_back(note.text());
+  }
+  return scenario;
+}
+
+Scenario read_scenario(const std::filesystem::path& path) {
+  const Scanner file(path);
+  return parse_scenario(file.all(), path.string());
+}
+
+}  // namespace meshorder
