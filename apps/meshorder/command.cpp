@@ -10,6 +10,15 @@
 
 namespace meshorder::command {
 
+OrderNames order_named(const std::string& name) {
+  OrderNames order;
+  const auto slash = name.find('/');
+  order.vertices = name.substr(0, slash);
+  const bool plain = order.vertices == "original" || order.vertices == "scrambled";
+  order.elements = slash != std::string::npos ? name.substr(slash + 1) : plain ? order.vertices : "lexmax";
+  return order;
+}
+
 void add_common(CLI::App& subcommand, Common& common) {
   subcommand.add_flag("--json", common.json, "One JSON object on stdout, the log on stderr");
   subcommand.add_flag("--quiet,-q", common.quiet, "Neither log nor progress");

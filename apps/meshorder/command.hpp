@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 
 #include <functional>
+#include <stdexcept>
+#include <string>
 
 namespace meshorder::command {
 
@@ -16,6 +18,22 @@ struct Common {
   int threads = 0;  ///< 0: as many as the machine has
 };
 
+/// Ends the command with a sentence and an exit status of its own.
+struct Stopped : std::runtime_error {
+  Stopped(const std::string& sentence, int exit_status) : std::runtime_error(sentence), status(exit_status) {}
+  int status;
+};
+
+/// An order as users name it.
+struct OrderNames {
+  std::string vertices;
+  std::string elements;
+};
+
+/// VERTICES or VERTICES/ELEMENTS; elements follow lexmax where only vertices are named, and stay or are
+/// scrambled when vertices do or are.
+OrderNames order_named(const std::string& name);
+
 /// A subcommand adds itself to the application; its work runs after the arguments are understood.
 void add_order(CLI::App& app);
 void add_apply(CLI::App& app);
@@ -23,6 +41,7 @@ void add_info(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_models(CLI::App& app);
 void add_methods(CLI::App& app);
+void add_simulate(CLI::App& app);
 
 /// --json, --quiet and --threads.
 void add_common(CLI::App& subcommand, Common& common);

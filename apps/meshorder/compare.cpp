@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder::command {
@@ -39,14 +40,11 @@ std::vector<std::string> default_methods() {
   return names;
 }
 
-/// VERTICES or VERTICES/ELEMENTS; elements follow lexmax where only vertices are named, and stay or are
-/// scrambled when vertices do or are.
 ComparedOrder parsed(const std::string& name) {
   ComparedOrder order;
-  const auto slash = name.find('/');
-  order.vertices = name.substr(0, slash);
-  const bool plain = order.vertices == "original" || order.vertices == "scrambled";
-  order.elements = slash != std::string::npos ? name.substr(slash + 1) : plain ? order.vertices : "lexmax";
+  OrderNames names = order_named(name);
+  order.vertices = std::move(names.vertices);
+  order.elements = std::move(names.elements);
   return order;
 }
 

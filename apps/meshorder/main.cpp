@@ -28,7 +28,8 @@ int main(int argc, char** argv) {
       "everything in the file along.\n\n"
       "  meshorder order  dragon.veg -o ordered.veg   the sensible default, chosen for the mesh\n"
       "  meshorder info   dragon.veg                  counts, spans, is it in a good order?\n"
-      "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n",
+      "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
+      "  meshorder simulate falling --mesh dragon.veg an elastic body in motion, timed\n",
       "meshorder"};
   app.set_version_flag("--version", MESHORDER_VERSION);
   app.require_subcommand(1);
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
   meshorder::command::add_apply(app);
   meshorder::command::add_info(app);
   meshorder::command::add_compare(app);
+  meshorder::command::add_simulate(app);
   meshorder::command::add_models(app);
   meshorder::command::add_methods(app);
   try {
@@ -45,6 +47,8 @@ int main(int argc, char** argv) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
     return report((std::string(error.what()) + "; see meshorder --help").c_str(), kBadInput);
+  } catch (const meshorder::command::Stopped& stopped) {
+    return report(stopped.what(), stopped.status);
   } catch (const meshorder::Error& error) {
     return report(error.what(), kBadInput);
   } catch (const meshorder::InvalidArgument& error) {

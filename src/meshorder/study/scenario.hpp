@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <meshorder/base/error.hpp>
 #include <meshorder/base/index.hpp>
 #include <meshorder/base/point.hpp>
 #include <meshorder/sim/implicit/backward_euler.hpp>
@@ -117,6 +118,19 @@ constexpr std::string_view name_in(const std::array<std::pair<std::string_view, 
     if (known == meaning) return word;
   }
   return "";
+}
+
+/// The meaning of a name in one of these lists. Throws InvalidArgument that lists them for others; `what`
+/// is what it names.
+template <class Meaning, std::size_t N>
+Meaning meaning_in(const std::array<std::pair<std::string_view, Meaning>, N>& names, std::string_view given,
+                   std::string_view what) {
+  std::string known;
+  for (const auto& [word, meaning] : names) {
+    if (word == given) return meaning;
+    known += (known.empty() ? "" : ", ") + std::string(word);
+  }
+  throw InvalidArgument("unknown " + std::string(what) + " '" + std::string(given) + "'; known are " + known);
 }
 
 /// Whether a scenario's mesh, or what a user gives in its place, names a model rather than a file: it has no

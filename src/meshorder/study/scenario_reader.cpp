@@ -12,6 +12,7 @@ namespace fs = std::filesystem;
 
 constexpr NumberRange kPositive{.least = 0, .least_open = true};
 constexpr NumberRange kNotNegative{.least = 0};
+constexpr NumberRange kTolerance{.least = 0, .most = 1, .least_open = true, .most_open = true};
 constexpr Index kMostSteps = 1'000'000;
 constexpr int kMostIterations = 1'000'000;
 constexpr std::array kMethods{std::pair(std::string_view("backward-euler"), 0)};
@@ -124,7 +125,7 @@ void read_integrator(const JsonValue& value, ImplicitOptions& options) {
     if (const auto iterations = newton->find("iterations"))
       options.newton_iterations = static_cast<int>(iterations->whole(1, kMostIterations));
     if (const auto tolerance = newton->find("tolerance"))
-      options.newton_tolerance = tolerance->number(kPositive);
+      options.newton_tolerance = tolerance->number(kTolerance);
   }
 }
 
@@ -132,8 +133,7 @@ void read_solver(const JsonValue& value, ImplicitOptions& options) {
   value.expect_keys({"preconditioner", "tolerance", "max_iterations", "precision"});
   if (const auto preconditioner = value.find("preconditioner"))
     options.preconditioner = preconditioner->one_of(kPreconditioners);
-  if (const auto tolerance = value.find("tolerance"))
-    options.solve.tolerance = tolerance->number({.least = 0, .most = 1, .least_open = true});
+  if (const auto tolerance = value.find("tolerance")) options.solve.tolerance = tolerance->number(kTolerance);
   if (const auto most = value.find("max_iterations"))
     options.solve.max_iterations = static_cast<int>(most->whole(1, kMostIterations));
   if (const auto precision = value.find("precision")) options.precision = precision->one_of(kPrecisions);

@@ -1,0 +1,246 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "command.hpp"
+#include "console.hpp"
+#include "interruption.hpp"
+#include "progress.hpp"
+#include "simulate_report.hpp"
+#include <meshorder/base/error.hpp>
+#include <meshorder/base/stopwatch.hpp>
+#include <meshorder/io/output_file.hpp>
+#include <meshorder/models/catalogue.hpp>
+#include <meshorder/study/checkpoint.hpp>
+#include <meshorder/study/frames.hpp>
+#include <meshorder/study/simulation.hpp>
+
+#include <csignal>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace meshorder::command {
+namespace {
+
+struct SimulateArguments : Common {
+  bool list = false;
+  std::string scenario;
+  // what takes the place of the scenario's own
+  std::string mesh;
+  std::string order;
+  std::string vertices;
+  std::string elements;
+  std::string preconditioner;
+  std::string precision;
+  Index steps = 0;
+  OrderingOptions ordering;
+
+  std::string frames;
+  Index every = 1;
+  std::string checkpoint;
+  Index checkpoint_every = 10;
+  std::string resume;
+};
+
+void list_scenarios(const Console& console) {
+  auto scenarios = nlohmann::ordered_json::array();
+  for (const BuiltInScenario& built_in : built_in_scenarios()) {
+    const Scenario scenario = find_scenario(std::string(built_in.name));
+    console.print("  {:<14} {}", scenario.name, scenario.title);
+    scenarios.push_back({{"name", scenario.name}, {"title", scenario.title}, {"mesh", scenario.mesh}});
+  }
+  console.print_json({{"scenarios", scenarios}});
+}
+
+/// The scenario, with what the command line puts in the place of its own.
+Scenario scenario_of(const SimulateArguments& arguments) {
+  Scenario scenario = find_scenario(arguments.scenario);
+  if (!arguments.mesh.empty()) scenario.mesh = arguments.mesh;
+  if (!arguments.order.empty()) {
+    OrderNames order = order_named(arguments.order);
+    scenario.vertex_order = std::move(order.vertices);
+    scenario.element_order = std::move(order.elements);
+  }
+  if (!arguments.vertices.empty()) scenario.vertex_order = arguments.vertices;
+  if (!arguments.elements.empty()) scenario.element_order = arguments.elements;
+  if (arguments.steps > 0) scenario.steps = arguments.steps;
+  if (!arguments.preconditioner.empty()) {
+    scenario.integrator.preconditioner =
+        meaning_in(kPreconditioners, arguments.preconditioner, "preconditioner");
+  }
+  if (!arguments.precision.empty())
+    scenario.integrator.precision = meaning_in(kPrecisions, arguments.precision, "precision");
+  return scenario;
+}
+
+/// The path of the scenario's mesh; a model is made where it is not yet.
+std::string mesh_path(const Scenario& scenario, Progress& progress) {
+  if (!names_a_model(scenario.mesh)) return scenario.mesh;
+  MakeOptions options;
+  options.progress = [&](std::string_view step, double) {
+    progress.stage("model " + scenario.mesh + ": " + std::string(step), 0, 0.5);
+  };
+  return make_model(scenario.mesh, options).path.string();
+}
+
+/// Steps on to the scenario's end, writing frames and checkpoints as they are due.
+class Run {
+ public:
+  Run(const SimulateArguments& arguments, Simulation& simulation)
+      : arguments_(arguments), simulation_(simulation) {
+    if (!arguments.resume.empty()) {
+      Checkpoint checkpoint = read_checkpoint(arguments.resume, simulation.fingerprint);
+      simulation.body.set_state(checkpoint.state);
+      record_ = std::move(checkpoint.record);
+      resumed_from_ = checkpoint.state.step;
+      if (resumed_from_ > simulation.scenario.steps) {
+        throw Error(arguments.resume, fmt::format("is of step {} already", resumed_from_),
+                    fmt::format("ask for more than {} --steps", simulation.scenario.steps));
+      }
+    }
+    if (record_.balances.empty()) record_.balances.push_back(simulation.body.balance());
+    if (!arguments.checkpoint.empty()) (void)OutputFile(arguments.checkpoint);
+    if (arguments.frames.empty()) return;
+    frames_.emplace(simulation, arguments.frames, arguments.every);
+    if (arguments.resume.empty()) {
+      frames_->write(simulation.body.state());
+    } else {
+      frames_->resume_after(resumed_from_);
+    }
+  }
+
+  void to_the_end(const Console& console) {
+    std::optional<Interruption> interruption;
+    if (!arguments_.checkpoint.empty()) interruption.emplace();
+    Progress progress(!console.quiet());
+    const Index last = simulation_.scenario.steps;
+    const double share = 1.0 / std::max(1, last - resumed_from_);
+    for (Index step = resumed_from_ + 1; step <= last; ++step) {
+      const double from = share * (step - resumed_from_ - 1);
+      progress.stage(fmt::format("step {} of {}", step, last), from, from + share);
+      const StepReport report = simulation_.body.step();
+      add(report, simulation_.body.balance(), record_);
+      if (frames_ && frames_->is_due(step)) frames_->write(simulation_.body.state());
+      const bool interrupted = interruption && Interruption::signal() != 0;
+      if (interruption && (step == last || interrupted || step % arguments_.checkpoint_every == 0))
+        write_checkpoint({simulation_.fingerprint, simulation_.body.state(), record_}, arguments_.checkpoint);
+      if (interrupted && step < last) {
+        progress.finish();
+        throw Stopped(fmt::format("stopped after step {} of {}; --resume {} goes on from there", step, last,
+                                  arguments_.checkpoint),
+                      128 + Interruption::signal());
+      }
+    }
+  }
+
+  [[nodiscard]] const MotionRecord& record() const noexcept { return record_; }
+  [[nodiscard]] Index resumed_from() const noexcept { return resumed_from_; }
+  [[nodiscard]] const FrameWriter* frames() const noexcept { return frames_ ? &*frames_ : nullptr; }
+
+ private:
+  const SimulateArguments& arguments_;
+  Simulation& simulation_;
+  MotionRecord record_;
+  Index resumed_from_ = 0;
+  std::optional<FrameWriter> frames_;
+};
+
+void run(const SimulateArguments& arguments) {
+  const Console console(arguments);
+  if (arguments.list) return list_scenarios(console);
+  if (arguments.scenario.empty())
+    throw InvalidArgument("simulate needs the name of a scenario or a file; --list shows the names");
+  Scenario scenario = scenario_of(arguments);
+
+  Progress progress(!console.quiet());
+  const std::string path = mesh_path(scenario, progress);
+  progress.stage("reading " + path, 0.5, 0.7);
+  const Stopwatch reading;
+  Notes notes;
+  Mesh mesh = read_mesh(path, &notes);
+  const double read_seconds = reading.seconds();
+  progress.stage("setting up", 0.7, 1);
+  Simulation simulation = set_up(std::move(scenario), std::move(mesh), path, arguments.ordering);
+  Run steps(arguments, simulation);
+  progress.finish();
+
+  notes.insert(notes.end(), simulation.notes.begin(), simulation.notes.end());
+  if (steps.frames() != nullptr)
+    notes.insert(notes.end(), steps.frames()->notes().begin(), steps.frames()->notes().end());
+  console.log_notes(notes);
+  print_header(console, simulation, path);
+  if (steps.resumed_from() > 0)
+    console.print("{:<10} after step {}, from {}", "resumed", steps.resumed_from(), arguments.resume);
+  steps.to_the_end(console);
+
+  print_summary(console, simulation, steps.record());
+  if (steps.frames() != nullptr) console.print("{:<10} {}", "frames", steps.frames()->collection().string());
+  if (!arguments.checkpoint.empty()) console.print("{:<10} {}", "checkpoint", arguments.checkpoint);
+  const auto or_null = [](const std::string& text) {
+    return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
+  };
+  nlohmann::ordered_json result = to_json(simulation, steps.record());
+  result["mesh"] = path;
+  result["setup_seconds"]["read"] = read_seconds;
+  result["resumed_from"] = arguments.resume.empty() ? nlohmann::ordered_json(nullptr)
+                                                    : nlohmann::ordered_json(steps.resumed_from());
+  result["frames"] = or_null(steps.frames() ? steps.frames()->collection().string() : "");
+  result["checkpoint"] = or_null(arguments.checkpoint);
+  console.print_json(result);
+}
+
+void add_scenario_options(CLI::App& subcommand, SimulateArguments& arguments) {
+  subcommand.add_option("SCENARIO", arguments.scenario,
+                        "A name that --list shows, or a file (docs/simulate.md)");
+  subcommand.add_flag("--list", arguments.list, "Which scenarios have a name");
+  subcommand.add_option("--mesh", arguments.mesh,
+                        "A mesh file, or a name from `meshorder models`, in the place of the scenario's");
+  CLI::Option* const order =
+      subcommand.add_option("--order", arguments.order,
+                            "VERTICES or VERTICES/ELEMENTS; with VERTICES alone elements follow lexmax, and\n"
+                            "stay or are scrambled when vertices do or are");
+  subcommand.add_option("--vertices", arguments.vertices, "Vertex order, see `meshorder methods`")
+      ->excludes(order);
+  subcommand.add_option("--elements", arguments.elements, "Element order, see `meshorder methods`")
+      ->excludes(order);
+  subcommand.add_option("--steps", arguments.steps, "Steps in all")->check(CLI::Range(1, 1'000'000));
+  subcommand.add_option("--preconditioner", arguments.preconditioner,
+                        "jacobi, block-jacobi, incomplete-cholesky or multigrid");
+  subcommand.add_option("--precision", arguments.precision, "Of the matrix that CG reads: double or single");
+}
+
+void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
+  CLI::Option* const frames = subcommand.add_option(
+      "--vtk", arguments.frames, "Write the motion into this folder; ParaView opens SCENARIO.pvd in it");
+  subcommand.add_option("--every", arguments.every, "A frame after every so many steps")
+      ->check(CLI::PositiveNumber)
+      ->needs(frames)
+      ->capture_default_str();
+  CLI::Option* const checkpoint =
+      subcommand.add_option("--checkpoint", arguments.checkpoint,
+                            "Keep in this file what it takes to go on; Ctrl-C then ends in good order");
+  subcommand.add_option("--checkpoint-every", arguments.checkpoint_every, "Steps from one to the next")
+      ->check(CLI::PositiveNumber)
+      ->needs(checkpoint)
+      ->capture_default_str();
+  subcommand.add_option(
+      "--resume", arguments.resume,
+      "Go on from a checkpoint of the same scenario, mesh and order: the motion is the same\n"
+      "to the last bit");
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app) {
+  CLI::App* subcommand = app.add_subcommand(
+      "simulate",
+      "Move an elastic body as a scenario says, in the order that is asked for, and time it.\n"
+      "  meshorder simulate falling --order fiedler --vtk frames");
+  const auto arguments = std::make_shared<SimulateArguments>();
+  add_scenario_options(*subcommand, *arguments);
+  add_output_options(*subcommand, *arguments);
+  add_ordering_options(*subcommand, arguments->ordering);
+  add_common(*subcommand, *arguments);
+  subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+}
+
+}  // namespace meshorder::command
