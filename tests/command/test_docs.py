@@ -50,3 +50,14 @@ def test_dofs_in_cpp_are_those_that_are_compiled():
     test = (conftest.ROOT / "tests" / "io" / "dofs_test.cpp").read_text()
     compiled = re.search(r"// \[docs/dofs.md\n(.*?)^ *// docs/dofs.md\]", test, flags=re.MULTILINE | re.DOTALL).group(1)
     assert textwrap.dedent(compiled) == shown
+
+
+def test_simulations(command, tmp_path):
+    (tmp_path / "my.json").write_text(blocks("simulate.md", "json")[0])
+    for line in blocks("simulate.md", "sh")[1].splitlines():
+        program, *arguments = shlex.split(line)
+        assert program == "meshorder"
+        assert "a step" in command.ok(*arguments).stdout
+    for folder in ("original", "ordered"):
+        assert len(list((tmp_path / folder).glob("my-beam-*.vtu"))) == 51
+    assert (tmp_path / "my.state").exists()
