@@ -127,7 +127,7 @@ TEST(Scenario, ReadsEveryValue) {
   EXPECT_EQ(s.forces[1].newtons, (Point{0, 0, 1}));
   ASSERT_EQ(s.motions.size(), 4U);
   EXPECT_EQ(s.motions[0].on.label, -4);
-  EXPECT_EQ(s.motions[0].on.name, "label");
+  EXPECT_EQ(s.motions[0].on.name, "");
   EXPECT_EQ(s.motions[0].velocity, Point{});
   EXPECT_EQ(s.motions[1].on.name, "cells:part");
   EXPECT_EQ(s.motions[2].on.by, By::box);
@@ -292,6 +292,15 @@ TEST(VertexChoice, SetsLabelsBoxesAndNearestAreWhatBruteForceFinds) {
   mesh.data = {{"label", Attached::cells, 1, std::vector<std::int32_t>(mesh.cells.shapes.size(), 6), {}, {}}};
   std::get<std::vector<std::int32_t>>(mesh.data[0].values)[1] = 9;
   EXPECT_EQ(find(choice_of(By::label, "label", 9)), corners);
+  EXPECT_EQ(find(choice_of(By::label, "", 9)), corners);
+  // vertices' own labels count before those of cells
+  mesh.data.push_back(mesh.data[0]);
+  mesh.data[1].on = Attached::vertices;
+  mesh.data[1].values = std::vector<std::int32_t>(mesh.points.size(), 3);
+  std::get<std::vector<std::int32_t>>(mesh.data[1].values)[4] = 6;
+  EXPECT_EQ(find(choice_of(By::label, "", 6)), std::vector<Index>{4});
+  EXPECT_EQ(find(choice_of(By::label, "", 9)), corners);
+  EXPECT_EQ(find(choice_of(By::label, "cells:label", 9)), corners);
 
   const BoundingBox box = bounding_box(mesh.points, all_vertices(mesh));
   std::vector<Index> expected;
@@ -341,7 +350,7 @@ TEST(VertexChoice, ErrorsListWhatTheMeshHas) {
   EXPECT_NE(no_set.find("my.json: fixed[0].on: the mesh has no set 'tip'"), std::string::npos) << no_set;
   EXPECT_NE(no_set.find("fixed, part"), std::string::npos) << no_set;
   const std::string no_label = message_of(choice_of(By::label, "label", 12345));
-  EXPECT_NE(no_label.find("fixed[0].on: label has no 12345 on cells; there are"), std::string::npos)
+  EXPECT_NE(no_label.find("fixed[0].on: nothing has the label 12345; those of cells are"), std::string::npos)
       << no_label;
   const std::string no_array = message_of(choice_of(By::label, "colour", 1));
   EXPECT_NE(no_array.find("no array 'colour'"), std::string::npos) << no_array;

@@ -24,7 +24,8 @@ struct VertexChoice {
   enum class By : std::uint8_t {
     all,
     set,      ///< members of the set `name`, or the vertices of its cells
-    label,    ///< those with the value `label` in the array `name`, or the vertices of cells with it
+    label,    ///< those with the value `label` in the array `name`, or the vertices of cells with it; without
+              ///< a name those that have this label, or where there are none the vertices of cells with it
     box,      ///< those from `low` to `high`
     nearest,  ///< the one nearest to `low`
   };

@@ -40,7 +40,7 @@ VertexChoice vertex_choice(const JsonValue& value) {
     choice.by = VertexChoice::By::label;
     choice.label = value["label"].whole(std::numeric_limits<std::int64_t>::min(),
                                         std::numeric_limits<std::int64_t>::max());
-    choice.name = value.has("array") ? value["array"].text() : std::string(kLabel);
+    if (value.has("array")) choice.name = value["array"].text();
   } else if (value.has("box")) {
     choice.by = VertexChoice::By::box;
     const std::vector<JsonValue> corners = value["box"].items(2, 2);

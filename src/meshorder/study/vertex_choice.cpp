@@ -53,19 +53,8 @@ std::vector<Index> in_set(const Mesh& mesh, std::span<const Index> candidates, c
   return marks.among(candidates);
 }
 
-std::vector<Index> with_label(const Mesh& mesh, std::span<const Index> candidates,
-                              const VertexChoice& choice) {
-  const Grouping groups = grouping_by(mesh, choice.name);
-  const auto found = std::lower_bound(groups.values.begin(), groups.values.end(), choice.label);
-  if (found == groups.values.end() || *found != choice.label) {
-    constexpr std::size_t kShown = 8;
-    std::string known;
-    for (std::size_t i = 0; i < std::min(kShown, groups.values.size()); ++i)
-      known += fmt::format("{}{}", i == 0 ? "" : ", ", groups.values[i]);
-    throw InvalidArgument(fmt::format("{} has no {} on {}; there are {}{}", choice.name, choice.label,
-                                      name(groups.on), known, groups.values.size() > kShown ? ", …" : ""));
-  }
-  const auto group = static_cast<Index>(found - groups.values.begin());
+std::vector<Index> in_group(const Mesh& mesh, std::span<const Index> candidates, const Grouping& groups,
+                            Index group) {
   Marks marks(mesh);
   if (groups.on == Attached::vertices) {
     for (const Index v : candidates) {
@@ -77,6 +66,37 @@ std::vector<Index> with_label(const Mesh& mesh, std::span<const Index> candidate
     }
   }
   return marks.among(candidates);
+}
+
+/// The arrays in which a choice looks for its label: the one that it names, or else that of the vertices and
+/// then that of the cells.
+std::vector<std::string> arrays_of_labels(const Mesh& mesh, const VertexChoice& choice) {
+  std::vector<std::string> names;
+  for (const Attached on : {Attached::vertices, Attached::cells}) {
+    if (choice.name.empty() && find_array(mesh, kLabel, on) != nullptr)
+      names.push_back(fmt::format("{}:{}", name(on), kLabel));
+  }
+  if (names.empty()) names.push_back(choice.name.empty() ? std::string(kLabel) : choice.name);
+  return names;
+}
+
+std::vector<Index> with_label(const Mesh& mesh, std::span<const Index> candidates,
+                              const VertexChoice& choice) {
+  std::string known;
+  for (const std::string& array : arrays_of_labels(mesh, choice)) {
+    const Grouping groups = grouping_by(mesh, array);
+    const auto found = std::lower_bound(groups.values.begin(), groups.values.end(), choice.label);
+    if (found == groups.values.end() || *found != choice.label) {
+      constexpr std::size_t kShown = 8;
+      known += fmt::format("{}those of {} are ", known.empty() ? "" : "; ", name(groups.on));
+      for (std::size_t i = 0; i < std::min(kShown, groups.values.size()); ++i)
+        known += fmt::format("{}{}", i == 0 ? "" : ", ", groups.values[i]);
+      if (groups.values.size() > kShown) known += ", …";
+      continue;
+    }
+    return in_group(mesh, candidates, groups, static_cast<Index>(found - groups.values.begin()));
+  }
+  throw InvalidArgument(fmt::format("nothing has the label {}; {}", choice.label, known));
 }
 
 /// Where a point lies in a box, 0 … 1 along each axis.
