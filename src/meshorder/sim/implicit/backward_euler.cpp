@@ -77,7 +77,10 @@ struct BackwardEuler::Iterate {
 };
 
 BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, ImplicitOptions options)
-    : options_(std::move(options)), system_(points, body, options_.mass), held_(index_size(points)) {
+    : options_(std::move(options)),
+      tangent_(body.elasticity.tangent),
+      system_(points, body, options_.mass),
+      held_(index_size(points)) {
   const Index n = index_size(points);
   check(options_, n);
   preconditioner_ = make_preconditioner(options_.preconditioner, system_.matrix(), points);
@@ -145,7 +148,7 @@ StepReport BackwardEuler::step() {
     const bool last = k == options_.newton_iterations;
     if (last && !newton) break;
     move_to(iterate.velocities);
-    last ? system_.compute_forces(moved_) : assemble(k, system_.elasticity().tangent, report);
+    last ? system_.compute_forces(moved_) : assemble(k, tangent_, report);
     compute_gradient(iterate);
     const double residual = norm(iterate.gradient);
     if (k == 0) at_rest = residual;
@@ -302,8 +305,7 @@ void BackwardEuler::solve(Iterate& iterate, StepReport& report) {
                  [](double g) { return -g; });
   const std::vector<double> start = iterate.step;
   SolveReport solved = solve_once(iterate, report);
-  if (solved.status == SolveStatus::negative_curvature &&
-      system_.elasticity().tangent != Tangent::projected) {
+  if (solved.status == SolveStatus::negative_curvature && tangent_ != Tangent::projected) {
     report.warnings.push_back(fmt::format(
         "the matrix is not positive definite (iteration {} of CG, largest residual at vertex {}): "
         "the step was taken with the tangent's semi-definite part",

@@ -118,6 +118,7 @@ class BackwardEuler {
   bool search_line(Iterate& iterate, StepReport& report);
 
   ImplicitOptions options_;
+  Tangent tangent_;  ///< that asked for; the system has the one it was assembled with last
   ElasticSystem system_;
   std::unique_ptr<Preconditioner> preconditioner_;
   BlockCsr damping_;  ///< hβK of the step's start; empty but for several Newton iterations with β > 0
