@@ -96,6 +96,22 @@ def test_momentum_is_the_forces(command, tmp_path):
         assert result["momentum"][step] == pytest.approx(momentum, rel=1e-6, abs=1e-6)
 
 
+def test_regions_have_their_own_material(command, tmp_path):
+    meshes.write_tetgen(tmp_path)
+    points, cells = meshes.read_tetgen(tmp_path / "mesh.node")
+    volumes = [abs(numpy.linalg.det(points[cell[1:]] - points[cell[0]])) / 6 for cell in cells]
+    free = {"mesh": "mesh.node", "scale": None, "fixed": None, "forces": None, "steps": 1}
+    regions = {"by": "label", "groups": [{"group": 20, "density": 3000}]}
+    scenario = write_scenario(tmp_path, **free, material={**SMALL["material"], "regions": regions})
+    result = command.json("simulate", scenario)
+    mass = 1000 * volumes[0] + 3000 * volumes[1]
+    assert result["momentum"][1] == pytest.approx([0, -9.81 * 0.02 * mass / (1 + 0.02 * 0.5), 0], rel=1e-9, abs=1e-9)
+    regions["groups"][0]["group"] = 30
+    write_scenario(tmp_path, **free, material={**SMALL["material"], "regions": regions})
+    line = command.fails("simulate", scenario)
+    assert "small.json: material.regions" in line and "10, 20" in line
+
+
 def test_override_by_options(command, tmp_path):
     scenario = write_scenario(tmp_path)
     result = command.json("simulate", scenario, "--steps", "2", "--preconditioner", "block-jacobi", "--precision", "single",
@@ -199,6 +215,20 @@ def test_resumed_run_is_the_same_to_the_last_bit(command, tmp_path):
     assert contents(tmp_path / "whole") == contents(tmp_path / "parts")
     again = command.json("simulate", scenario, "--order", "scrambled", "--resume", "state", "--steps", "3")
     assert again["energy"] == whole["energy"][:4]
+
+
+def test_resumed_run_is_the_same_after_a_step_that_was_taken_otherwise(command, tmp_path):
+    """Crushed, the body has a step whose matrix is indefinite; that leaves nothing behind that a state lacks."""
+    crush = {"on": {"box": [[1, 0, 0], [1, 1, 1]]}, "newtons": [-3000, 0, 0], "steps": [1, 12]}
+    scenario = write_scenario(tmp_path, material={**SMALL["material"], "model": "stvk"}, forces=[crush], steps=20)
+    whole = command.json("simulate", scenario)
+    warning, = (w for w in whole["warnings"] if "not positive definite" in w["sentence"])
+    step = warning["first_step"] + 1
+    assert 1 < step < 20
+    command.ok("simulate", scenario, "--steps", step, "--checkpoint", "state")
+    parts = command.json("simulate", scenario, "--resume", "state")
+    for key in ("energy", "momentum", "cg_iterations", "warnings"):
+        assert parts[key] == whole[key]
 
 
 def test_other_checkpoints_are_refused(command, tmp_path):

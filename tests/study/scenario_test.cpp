@@ -100,10 +100,10 @@ TEST(Scenario, ReadsEveryValue) {
   EXPECT_EQ(s.tangent, Tangent::approximate);
   EXPECT_EQ(s.regions_by, "label");
   ASSERT_EQ(s.regions.size(), 2U);
-  EXPECT_EQ(std::get<std::int64_t>(s.regions[0].group), 3);
+  EXPECT_EQ(s.regions[0].region, "3");
   EXPECT_EQ(s.regions[0].material.young, 5);
   EXPECT_EQ(s.regions[0].material.density, 1);  // the material's own
-  EXPECT_EQ(std::get<std::string>(s.regions[1].group), "bone");
+  EXPECT_EQ(s.regions[1].region, "bone");
   EXPECT_EQ(s.regions[1].material.density, 7);
   EXPECT_EQ(s.integrator.mass, Mass::consistent);
   EXPECT_EQ(s.integrator.mass_damping, 0.25);

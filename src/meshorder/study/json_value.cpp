@@ -55,7 +55,8 @@ nlohmann::json parse_json(std::string_view text, const std::string& file) {
   } catch (const nlohmann::json::parse_error& error) {
     const std::string_view before = text.substr(0, std::min(error.byte, text.size()));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-    throw Error(Location{file, line, -1}, "no JSON: " + reason(error.what()), "docs/simulate.md has examples");
+    throw Error(Location{file, line, -1}, "no JSON: " + reason(error.what()),
+                "docs/simulate.md has examples");
   } catch (const nlohmann::json::exception& error) {
     throw Error(file, "no JSON: " + reason(error.what()), "docs/simulate.md has examples");
   }

@@ -6,6 +6,7 @@
 #include <meshorder/base/point.hpp>
 #include <meshorder/sim/implicit/backward_euler.hpp>
 #include <meshorder/sim/material/material.hpp>
+#include <meshorder/sim/material/regions.hpp>
 
 #include <array>
 #include <cstdint>
@@ -14,7 +15,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace meshorder {
@@ -54,19 +54,6 @@ struct ScenarioMotion {
   Point velocity{};  ///< m/s
 };
 
-/// Numbers of an isotropic material.
-struct MaterialNumbers {
-  double young = 1e6;       ///< Pa
-  double poisson = 0.45;    ///< −1 … 0.5, without the ends
-  double density = 1000.0;  ///< kg/m³
-};
-
-/// A group of cells with a material of its own.
-struct ScenarioRegion {
-  std::variant<std::int64_t, std::string> group;  ///< its value, or the name of its set
-  MaterialNumbers material;
-};
-
 /// What is simulated: a mesh, what it is made of, what happens to it and how that is computed. Nothing in it
 /// depends on the order of vertices or elements. docs/simulate.md describes its file.
 struct Scenario {
@@ -80,9 +67,9 @@ struct Scenario {
 
   MaterialModel model = MaterialModel::corotational;
   Tangent tangent = Tangent::exact;
-  MaterialNumbers material;
+  Material material;
   std::string regions_by;  ///< the array whose groups the regions are (see `grouping_by`); else empty
-  std::vector<ScenarioRegion> regions;
+  std::vector<RegionMaterial> regions;
 
   ImplicitOptions integrator;  ///< its forces and prescribed motions empty: they are these
   std::vector<ScenarioForce> forces;

@@ -67,7 +67,7 @@ StepRange step_range(const JsonValue& owner) {
   return range;
 }
 
-MaterialNumbers material_numbers(const JsonValue& value, MaterialNumbers numbers) {
+Material material_of(const JsonValue& value, Material numbers) {
   if (const auto young = value.find("young")) numbers.young = young->number(kPositive);
   if (const auto poisson = value.find("poisson"))
     numbers.poisson = poisson->number({.least = -1, .most = 0.5, .least_open = true, .most_open = true});
@@ -81,17 +81,14 @@ void read_regions(const JsonValue& value, Scenario& scenario) {
   for (const JsonValue& entry : value["groups"].items(1)) {
     entry.expect_keys({"group", "young", "poisson", "density"});
     const JsonValue group = entry["group"];
-    ScenarioRegion region;
-    if (group.is_text()) {
-      region.group = group.text();
-    } else {
-      region.group =
-          group.whole(std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max());
+    RegionMaterial region;
+    region.region = group.is_text() ? group.text()
+                                    : std::to_string(group.whole(std::numeric_limits<std::int64_t>::min(),
+                                                                 std::numeric_limits<std::int64_t>::max()));
+    for (const RegionMaterial& other : scenario.regions) {
+      if (other.region == region.region) throw group.error("has an entry already", "keep one of them");
     }
-    for (const ScenarioRegion& other : scenario.regions) {
-      if (other.group == region.group) throw group.error("has an entry already", "keep one of them");
-    }
-    region.material = material_numbers(entry, scenario.material);
+    region.material = material_of(entry, scenario.material);
     scenario.regions.push_back(std::move(region));
   }
 }
@@ -105,7 +102,7 @@ void read_material(const JsonValue& value, Scenario& scenario) {
       throw tangent->error("'approximate' is of the corotational model alone", "give exact or projected");
   }
   for (const std::string_view needed : {"young", "poisson", "density"}) (void)value[needed];
-  scenario.material = material_numbers(value, scenario.material);
+  scenario.material = material_of(value, scenario.material);
   if (const auto regions = value.find("regions")) read_regions(*regions, scenario);
 }
 

@@ -2,6 +2,7 @@
 #include <meshorder/base/error.hpp>
 #include <meshorder/base/stopwatch.hpp>
 #include <meshorder/mesh/graphs.hpp>
+#include <meshorder/mesh/grouping.hpp>
 #include <meshorder/mesh/reorder.hpp>
 #include <meshorder/study/simulation.hpp>
 #include <meshorder/study/vertex_choice.hpp>
@@ -120,13 +121,24 @@ void scale(Mesh& mesh, std::span<const Index> vertices, double length, const std
   }
 }
 
-Body body_of(const Scenario& scenario, Simplices simplices) {
+/// Throws Error that names the scenario's file for regions that the mesh has not.
+SimplexMaterials materials_of(const Scenario& scenario, const Mesh& mesh, const Simplices& simplices) {
+  if (scenario.regions.empty()) return uniform_material(scenario.material);
+  try {
+    return materials_by_region(simplices, grouping_by(mesh, scenario.regions_by), scenario.material,
+                               scenario.regions);
+  } catch (const InvalidArgument& error) {
+    throw Error(scenario.file, std::string("material.regions: ") + error.what(),
+                "name groups that the mesh has");
+  }
+}
+
+Body body_of(const Scenario& scenario, const Mesh& mesh, Simplices simplices) {
   Body body;
+  SimplexMaterials materials = materials_of(scenario, mesh, simplices);
+  body.densities = std::move(materials.densities);
+  body.elasticity = elasticity_of(std::move(materials), scenario.model, scenario.tangent);
   body.simplices = std::move(simplices);
-  body.elasticity.model = scenario.model;
-  body.elasticity.tangent = scenario.tangent;
-  body.elasticity.lame = Lame::from_young(scenario.material.young, scenario.material.poisson);
-  body.densities = {scenario.material.density};
   return body;
 }
 
@@ -180,7 +192,7 @@ Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const O
   simplices = cut_into_simplices(mesh);
   used = used_vertices(simplices, mesh.vertex_count());
   const Offset tetrahedra = simplices.size();
-  const Body body = body_of(scenario, std::move(simplices));
+  const Body body = body_of(scenario, mesh, std::move(simplices));
   const ImplicitOptions options = bound(scenario, mesh, used);
   fingerprint.parameters = checksum_of(options, body);
   BackwardEuler integrator(mesh.points, body, options);
