@@ -377,6 +377,22 @@ TEST(BackwardEuler, GoesOnFromAStateBitForBit) {
   EXPECT_EQ(second.state().velocities, whole.state().velocities);
 }
 
+TEST(BackwardEuler, AMatrixInSinglePrecisionMovesTheBodyTheSameWay) {
+  const auto [points, body] = box({4, 3, 2}, {4, 3, 2}, MaterialModel::stvk);
+  std::vector<Eigen::VectorXd> ends;
+  for (const MatrixPrecision precision : {MatrixPrecision::exact, MatrixPrecision::single}) {
+    ImplicitOptions options = tight();
+    options.gravity = {0, -9.81, 0};
+    options.precision = precision;
+    options.solve.tolerance = 1e-11;
+    BackwardEuler simulator(points, body, options);
+    simulator.set_state(disturbed(points, 0.05));
+    run(simulator, 5);
+    ends.push_back(flat(simulator.state().positions));
+  }
+  EXPECT_LT((ends[1] - ends[0]).norm(), 1e-9 * ends[0].norm());
+}
+
 TEST(BackwardEuler, ForcesActFromTheirStartToTheirEnd) {
   const auto [points, body] = box({1, 1, 1}, {1, 1, 1}, MaterialModel::stvk);
   ImplicitOptions options = tight();

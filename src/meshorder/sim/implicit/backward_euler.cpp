@@ -4,6 +4,7 @@
 #include <meshorder/sim/implicit/backward_euler.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
 #include <meshorder/sim/kernels/spmv.hpp>
+#include <meshorder/sim/linear/refinement.hpp>
 
 #include <fmt/format.h>
 
@@ -290,8 +291,15 @@ double BackwardEuler::potential(std::span<const double> velocities) {
 SolveReport BackwardEuler::solve_once(Iterate& iterate, StepReport& report) {
   const Stopwatch stopwatch;
   preconditioner_->update(system_.matrix());
-  const SolveReport solved = conjugate_gradients(system_.matrix(), *preconditioner_, iterate.right_side,
-                                                 iterate.step, options_.solve);
+  SolveReport solved;
+  if (options_.precision == MatrixPrecision::single) {
+    round_to_single(system_.matrix(), rounded_);
+    solved = refined_conjugate_gradients(system_.matrix(), rounded_, *preconditioner_, iterate.right_side,
+                                         iterate.step, options_.solve);
+  } else {
+    solved = conjugate_gradients(system_.matrix(), *preconditioner_, iterate.right_side, iterate.step,
+                                 options_.solve);
+  }
   report.cg_iterations += solved.iterations;
   report.residual = solved.residual;
   report.seconds.solve += stopwatch.seconds();
@@ -377,8 +385,8 @@ std::size_t BackwardEuler::bytes() const {
   const auto of = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
   // CG keeps three vectors, a step four more
   return system_.bytes() + preconditioner_->bytes() + of(damping_.values) + of(damping_.columns) +
-         of(damping_.offsets) + of(positions_) + of(moved_) + of(velocities_) + of(loads_) + of(scratch_) +
-         7 * of(velocities_);
+         of(rounded_.values) + of(rounded_.columns) + of(damping_.offsets) + of(positions_) + of(moved_) +
+         of(velocities_) + of(loads_) + of(scratch_) + 7 * of(velocities_);
 }
 
 }  // namespace meshorder

@@ -34,7 +34,7 @@ struct PrescribedMotion : Selection {
 
 enum class MatrixPrecision : std::uint8_t {
   exact,   ///< double
-  single,  ///< the matrix of CG in float, its vectors in double: less to read
+  single,  ///< CG reads the matrix in float, to the same residual (see refined_conjugate_gradients)
 };
 
 struct ImplicitOptions {
@@ -101,6 +101,7 @@ class BackwardEuler {
   StepReport step();
 
   [[nodiscard]] Balance balance() const;
+  [[nodiscard]] const ElasticSystem& system() const noexcept { return system_; }
   [[nodiscard]] const ImplicitOptions& options() const noexcept { return options_; }
 
   /// Memory held.
@@ -121,6 +122,7 @@ class BackwardEuler {
   Tangent tangent_;  ///< that asked for; the system has the one it was assembled with last
   ElasticSystem system_;
   std::unique_ptr<Preconditioner> preconditioner_;
+  BlockCsrOf<float> rounded_;  ///< the matrix in single precision, where CG reads that
   BlockCsr damping_;  ///< hβK of the step's start; empty but for several Newton iterations with β > 0
   HeldVertices held_;
   std::vector<Index> unused_;  ///< vertices of no tetrahedron

@@ -1,0 +1,191 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// implicit [--scenario NAME] [--steps N] [--orders a,b,…] [--preconditioners a,b,…] [--json FILE] MESH…: the
+// time steps of an implicit scenario on each mesh, on one and two threads. First every order with the
+// scenario's own solver, then every preconditioner in the last order. All stand ready and take their steps in
+// turn; what is printed are medians over the steps:
+//   set-up   of the body, s; memory in bytes a tetrahedron
+//   assembly of forces and matrix, ms
+//   CG       an iteration, ms, and the rate at which it reads its matrix in per cent of the measured
+//   bandwidth step     all of it, ms, and its speedup over the first order
+#include <meshorder/base/stopwatch.hpp>
+#include <meshorder/io/format.hpp>
+#include <meshorder/study/bandwidth.hpp>
+#include <meshorder/study/simulation.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace mo = meshorder;
+
+namespace {
+
+struct Settings {
+  std::string scenario = "falling";
+  int steps = 5;
+  std::string orders = "scrambled,original,fiedler,spectral,rcm,hilbert";
+  std::string preconditioners = "jacobi,block-jacobi,incomplete-cholesky,multigrid";
+  std::string json;
+  std::vector<std::string> files;
+};
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> parts;
+  std::istringstream stream(list);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+/// A simulation on a number of threads, and what its steps took.
+struct Runner {
+  std::string name;
+  int threads;
+  mo::Simulation simulation;
+  std::vector<double> assembly_ms = {}, solve_ms = {}, iteration_ms = {}, step_ms = {}, iterations = {};
+
+  void step() {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const mo::StepReport report = simulation.body.step();
+    assembly_ms.push_back(1e3 * report.seconds.assembly);
+    solve_ms.push_back(1e3 * report.seconds.solve);
+    iteration_ms.push_back(1e3 * report.seconds.solve / std::max(1, report.cg_iterations));
+    step_ms.push_back(1e3 * report.seconds.total);
+    iterations.push_back(report.cg_iterations);
+  }
+};
+
+Runner make_runner(const std::string& name, int threads, mo::Scenario scenario, const mo::Mesh& mesh,
+                   const std::string& file) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  return {name, threads, mo::set_up(std::move(scenario), mesh, file)};
+}
+
+double matrix_bytes(const Runner& runner) {
+  const double blocks = static_cast<double>(runner.simulation.body.matrix().block_count());
+  const double value = runner.simulation.scenario.integrator.precision == mo::MatrixPrecision::single ? 4 : 8;
+  return blocks * (9 * value + sizeof(mo::Index));
+}
+
+nlohmann::ordered_json run(std::vector<Runner>& runners, const std::vector<double>& bandwidths, int steps) {
+  for (int i = 0; i < steps; ++i) {
+    for (Runner& runner : runners) runner.step();
+  }
+  fmt::print("{:<22}{:>8}{:>8}{:>7}{:>10}{:>11}{:>9}{:>7}{:>9}{:>9}\n", "", "threads", "set-up", "bytes",
+             "assembly", "iterations", "CG", "%", "step", "speedup");
+  nlohmann::ordered_json results = nlohmann::ordered_json::array();
+  for (const Runner& runner : runners) {
+    const mo::Simulation& simulation = runner.simulation;
+    const double bytes =
+        static_cast<double>(simulation.body.bytes()) / static_cast<double>(simulation.tetrahedra);
+    const double rate = 1e-6 * matrix_bytes(runner) / median(runner.iteration_ms);
+    const auto reference = std::find_if(runners.begin(), runners.end(),
+                                        [&](const Runner& other) { return other.threads == runner.threads; });
+    fmt::print("{:<22}{:>8}{:>8.2f}{:>7.0f}{:>10.1f}{:>11.0f}{:>9.3f}{:>7.0f}{:>9.1f}{:>9.2f}\n", runner.name,
+               runner.threads, simulation.setup_seconds, bytes, median(runner.assembly_ms),
+               median(runner.iterations), median(runner.iteration_ms),
+               100 * rate / bandwidths[runner.threads - 1], median(runner.step_ms),
+               median(reference->step_ms) / median(runner.step_ms));
+    results.push_back({{"name", runner.name},
+                       {"threads", runner.threads},
+                       {"setup_seconds", simulation.setup_seconds},
+                       {"bytes_per_tetrahedron", bytes},
+                       {"blocks", simulation.body.matrix().block_count()},
+                       {"assembly_ms", median(runner.assembly_ms)},
+                       {"iterations", median(runner.iterations)},
+                       {"iteration_ms", median(runner.iteration_ms)},
+                       {"step_ms", median(runner.step_ms)}});
+  }
+  return results;
+}
+
+mo::Scenario in_order(mo::Scenario scenario, const std::string& order) {
+  scenario.vertex_order = order;
+  scenario.element_order = order == "original" || order == "scrambled" ? order : "lexmax";
+  return scenario;
+}
+
+nlohmann::ordered_json measure(const std::string& file, const Settings& settings,
+                               const std::vector<double>& bandwidths) {
+  const mo::Mesh mesh = mo::read_mesh(file);
+  const mo::Scenario scenario = mo::find_scenario(settings.scenario);
+  const std::vector<std::string> orders = split(settings.orders);
+  nlohmann::ordered_json result{
+      {"mesh", file}, {"scenario", scenario.name}, {"vertices", mesh.vertex_count()}};
+  fmt::print("\n{}, {}: {} vertices, {} cells\n", file, scenario.title, mesh.vertex_count(),
+             mesh.cell_count());
+  {
+    std::vector<Runner> runners;
+    for (const std::string& order : orders) {
+      for (int threads = 1; threads <= static_cast<int>(bandwidths.size()); ++threads) {
+        runners.push_back(make_runner(order, threads, in_order(scenario, order), mesh, file));
+      }
+    }
+    result["orders"] = run(runners, bandwidths, settings.steps);
+  }
+  std::vector<Runner> runners;
+  for (const std::string& preconditioner : split(settings.preconditioners)) {
+    for (const bool single : {false, true}) {
+      for (int threads = 1; threads <= static_cast<int>(bandwidths.size()); ++threads) {
+        mo::Scenario changed = in_order(scenario, orders.back());
+        changed.integrator.preconditioner =
+            mo::meaning_in(mo::kPreconditioners, preconditioner, "preconditioner");
+        if (single) changed.integrator.precision = mo::MatrixPrecision::single;
+        runners.push_back(
+            make_runner(preconditioner + (single ? ", float" : ""), threads, changed, mesh, file));
+      }
+    }
+  }
+  result["preconditioners"] = run(runners, bandwidths, settings.steps);
+  return result;
+}
+
+Settings parse(int argc, char** argv) {
+  Settings settings;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool has_value = i + 1 < argc;
+    if (argument == "--scenario" && has_value)
+      settings.scenario = argv[++i];
+    else if (argument == "--steps" && has_value)
+      settings.steps = std::max(1, std::atoi(argv[++i]));
+    else if (argument == "--orders" && has_value)
+      settings.orders = argv[++i];
+    else if (argument == "--preconditioners" && has_value)
+      settings.preconditioners = argv[++i];
+    else if (argument == "--json" && has_value)
+      settings.json = argv[++i];
+    else
+      settings.files.push_back(argument);
+  }
+  return settings;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Settings settings = parse(argc, argv);
+  std::vector<double> bandwidths;
+  for (int threads = 1; threads <= 2; ++threads) {
+    bandwidths.push_back(mo::read_bandwidth(std::size_t{512} << 20, 8, threads));
+    fmt::print("{} thread{} read{} {:.1f} GB/s\n", threads, threads == 1 ? "" : "s", threads == 1 ? "s" : "",
+               bandwidths.back());
+  }
+  nlohmann::ordered_json results{{"bandwidth", bandwidths}, {"meshes", nlohmann::ordered_json::array()}};
+  for (const std::string& file : settings.files)
+    results["meshes"].push_back(measure(file, settings, bandwidths));
+  if (!settings.json.empty()) std::ofstream(settings.json) << results.dump(1) << '\n';
+}
