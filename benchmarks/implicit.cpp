@@ -75,7 +75,7 @@ Runner make_runner(const std::string& name, int threads, mo::Scenario scenario, 
 }
 
 double matrix_bytes(const Runner& runner) {
-  const double blocks = static_cast<double>(runner.simulation.body.matrix().block_count());
+  const double blocks = static_cast<double>(runner.simulation.body.system().matrix().block_count());
   const double value = runner.simulation.scenario.integrator.precision == mo::MatrixPrecision::single ? 4 : 8;
   return blocks * (9 * value + sizeof(mo::Index));
 }
@@ -103,7 +103,7 @@ nlohmann::ordered_json run(std::vector<Runner>& runners, const std::vector<doubl
                        {"threads", runner.threads},
                        {"setup_seconds", simulation.setup_seconds},
                        {"bytes_per_tetrahedron", bytes},
-                       {"blocks", simulation.body.matrix().block_count()},
+                       {"blocks", simulation.body.system().matrix().block_count()},
                        {"assembly_ms", median(runner.assembly_ms)},
                        {"iterations", median(runner.iterations)},
                        {"iteration_ms", median(runner.iteration_ms)},

@@ -2,18 +2,16 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Draws frames of a simulation side by side, in one scale, coloured by strain.
 
-    docs/pictures/draw_frames.py OUT.png REST.vtu FRAME.vtu FRAME.vtu ...
+    docs/pictures/draw_frames.py OUT.png LARGEST REST.vtu FRAME.vtu FRAME.vtu ...
 
-The strain of a vertex is the mean of |length / rest length - 1| over its edges of the surface: dark where there is
-none, yellow from 0.3 on. Needs NumPy and meshio.
+The strain of a vertex is the mean of |length / rest length - 1| over its edges of the surface: violet where there is
+none, yellow from LARGEST on. Needs NumPy and meshio.
 """
 import sys
 
 import numpy
 
 from raster import boundary_faces, cropped, drawn, in_view, ramp, read_tetrahedra, write_png
-
-LARGEST = 0.3
 
 
 def strain(points, rest, faces):
@@ -27,13 +25,14 @@ def strain(points, rest, faces):
 
 
 def main():
-    if len(sys.argv) < 4:
+    if len(sys.argv) < 5:
         sys.exit(__doc__)
-    rest, cells, _ = read_tetrahedra(sys.argv[2])
+    largest = float(sys.argv[2])
+    rest, cells, _ = read_tetrahedra(sys.argv[3])
     faces = boundary_faces(cells)
-    frames = [read_tetrahedra(path)[0] for path in sys.argv[3:]]
+    frames = [read_tetrahedra(path)[0] for path in sys.argv[4:]]
     images = [
-        drawn(pixels, faces, strain(points, rest, faces), lambda value: 0.15 + 0.85 * ramp(value / LARGEST))
+        drawn(pixels, faces, strain(points, rest, faces), lambda value: 0.25 + 0.75 * ramp(value / largest))
         for pixels, points in zip(in_view(frames), frames)
     ]
     write_png(sys.argv[1], numpy.concatenate(cropped(images), axis=1))

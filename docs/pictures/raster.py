@@ -6,7 +6,7 @@ import zlib
 import meshio
 import numpy
 
-SIZE = 640       # pixels of a panel's side
+SIZE = 640        # pixels of a panel's side
 OVERSAMPLING = 2  # samples along each side of a pixel
 # colours that also differ in brightness, so that they read without colour vision and in print
 RAMP = numpy.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]]) / 255.0
