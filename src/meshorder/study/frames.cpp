@@ -47,6 +47,7 @@ FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index ev
       time_step_(simulation.scenario.integrator.time_step),
       collection_(folder_ / (name_ + ".pvd")),
       rest_(simulation.mesh.points),
+      followers_(followers(simulation.mesh, cut_into_simplices(simulation.mesh))),
       frame_(simulation.mesh) {
   if (every < 1) throw InvalidArgument("frames: one of every " + std::to_string(every) + " steps");
   std::error_code code;
@@ -74,7 +75,18 @@ void FrameWriter::resume_after(Index step) {
   }
 }
 
-void FrameWriter::write(const MotionState& state) {
+void FrameWriter::write(MotionState state) {
+  for (const Follower& follower : followers_) {
+    Point& position = state.positions[follower.vertex];
+    position = rest_[follower.vertex];
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Index corner = follower.corners[i];
+      for (std::size_t c = 0; c < 3; ++c) {
+        position[c] += follower.weights[i] * (state.positions[corner][c] - rest_[corner][c]);
+        state.velocities[follower.vertex][c] += follower.weights[i] * state.velocities[corner][c];
+      }
+    }
+  }
   auto& displacement = std::get<std::vector<float>>(frame_.data[kDisplacement].values);
   auto& velocity = std::get<std::vector<float>>(frame_.data[kVelocity].values);
   for (std::size_t v = 0; v < rest_.size(); ++v) {

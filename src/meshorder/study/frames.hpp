@@ -2,6 +2,7 @@
 #pragma once
 
 #include <meshorder/io/vtk/pvd.hpp>
+#include <meshorder/study/followers.hpp>
 #include <meshorder/study/simulation.hpp>
 
 #include <filesystem>
@@ -30,7 +31,7 @@ class FrameWriter {
 
   /// Writes a frame, and the collection anew. Throws Error when it cannot. Frames of one state are the same
   /// bytes. O(size of the mesh).
-  void write(const MotionState& state);
+  void write(MotionState state);
 
   [[nodiscard]] const std::filesystem::path& collection() const noexcept { return collection_; }
   /// What the files could not hold of the mesh.
@@ -46,6 +47,7 @@ class FrameWriter {
   double time_step_;
   std::filesystem::path collection_;
   std::vector<Point> rest_;
+  std::vector<Follower> followers_;
   Mesh frame_;
   std::vector<PvdEntry> entries_;
   Notes notes_;

@@ -24,7 +24,7 @@ std::string reason(std::string what) {
 /// Throws where an object has a key twice, of which the parser would keep the last.
 class UniqueKeys {
  public:
-  explicit UniqueKeys(const std::string& file) : file_(file) {}
+  explicit UniqueKeys(std::string file) : file_(std::move(file)) {}
 
   bool operator()(int /*depth*/, nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
     using Event = nlohmann::json::parse_event_t;

@@ -175,7 +175,7 @@ Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const O
   Simplices simplices = cut_into_simplices(mesh);
   std::vector<Index> used = used_vertices(simplices, mesh.vertex_count());
   if (const Index unused = mesh.vertex_count() - index_size(used); unused > 0)
-    notes.push_back(fmt::format("{} vertices are corners of no volume cell and stay where they are", unused));
+    notes.push_back(fmt::format("{} vertices are corners of no volume cell and take no part", unused));
   if (scenario.longest_side > 0) scale(mesh, used, scenario.longest_side, file);
   Fingerprint fingerprint;
   fingerprint.mesh = checksum_of(mesh.points, simplices);
