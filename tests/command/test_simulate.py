@@ -190,7 +190,7 @@ def test_frames_carry_what_is_attached(command, tmp_path):
     assert (frame.cell_data["label"][0].ravel() == numpy.array([10, 20])[cells]).all()
     assert frame.point_data["velocity"].shape == frame.point_data["displacement"].shape == (5, 3)
     text = frames(tmp_path / "out" / "deep", "falling")[-1][1].read_bytes()
-    assert b"vtkZLibDataCompressor" in text and b'AppendedData encoding="raw"' in text
+    assert b"vtkZLibDataCompressor" in text and b'AppendedData encoding="base64"' in text
 
 
 def test_frames_that_cannot_be_written_are_refused_before_the_work(command, tmp_path):
