@@ -108,7 +108,7 @@ TEST_P(AnyPreconditioner, IsTheSameOnEveryUpdateWithTheSameMatrix) {
 }
 
 TEST_P(AnyPreconditioner, GivesTheSameBitsOnAnyNumberOfThreads) {
-  const BlockCsr matrix = test::elastic_system(make_grid({.size = 28}), 1.0);
+  const BlockCsr matrix = test::elastic_system(make_grid({.size = 26}), 1.0);
   const std::vector<double> r = test::random_vector(matrix.size(), 2);
   const auto result = [&](int threads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
@@ -237,7 +237,7 @@ TEST(IncompleteCholesky, EnlargesTheDiagonalOfASolidAsMuchAsItMust) {
 TEST(IncompleteCholesky, TakesFewerIterationsThanBlocksAndTheseThanTheDiagonal) {
   // two chunks, in the grid's own order and in none
   for (const bool scrambled : {false, true}) {
-    Mesh mesh = make_grid({.size = 28});
+    Mesh mesh = make_grid({.size = 26});
     if (scrambled)
       reorder(mesh, test::shuffled(mesh.vertex_count(), 5), test::shuffled(mesh.cell_count(), 0));
     const BlockCsr matrix = test::elastic_system(mesh, 1.0);

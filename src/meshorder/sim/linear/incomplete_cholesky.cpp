@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
+#include <cstdint>
 #include <numbers>
 #include <string>
 
@@ -52,10 +54,12 @@ std::vector<bool> joining_vertices(const BlockCsr& pattern, const std::vector<In
 
 IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern) : offsets_{0} {
   const Index n = pattern.size();
-  // enough for a thread to work on, and no more than leave few vertices that join chunks
-  constexpr Index kRows = 12'000, kMostChunks = 16;
+  // enough for a thread to work on, not so many that most vertices join chunks, and a power of two, which any
+  // usual number of threads shares evenly
+  constexpr Index kRows = 8'000, kMostChunks = 16;
+  const auto count = static_cast<std::uint32_t>(std::clamp<Index>(n / kRows, 1, kMostChunks));
   const std::vector<Index> chunks =
-      balanced_ranges(pattern.offsets, std::clamp<Index>(n / kRows, 1, kMostChunks));
+      balanced_ranges(pattern.offsets, static_cast<Index>(std::bit_floor(count)));
   const std::vector<bool> joins = joining_vertices(pattern, chunks);
   for (Index chunk = 0; chunk + 1 < index_size(chunks); ++chunk) {
     bounds_.push_back(size());
