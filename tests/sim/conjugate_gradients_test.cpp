@@ -45,7 +45,8 @@ class Identity final : public Preconditioner {
 
 class ConjugateGradients : public testing::TestWithParam<PreconditionerKind> {};
 INSTANTIATE_TEST_SUITE_P(With, ConjugateGradients,
-                         testing::Values(PreconditionerKind::jacobi, PreconditionerKind::block_jacobi));
+                         testing::Values(PreconditionerKind::jacobi, PreconditionerKind::block_jacobi,
+                                         PreconditionerKind::incomplete_cholesky));
 
 TEST_P(ConjugateGradients, SolveAsADenseFactorisationDoes) {
   for (const Mesh& mesh : {make_grid({.size = 4}), make_ball({.size = 4}), test::tetrahedral_bar(7)}) {

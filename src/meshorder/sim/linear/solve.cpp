@@ -6,6 +6,7 @@
 #include <meshorder/sim/linear/solve.hpp>
 #include <meshorder/sim/linear/vector_passes.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -38,17 +39,6 @@ Index first_not_finite(std::span<const double> vector) {
   const auto found =
       std::find_if(vector.begin(), vector.end(), [](double entry) { return !std::isfinite(entry); });
   return found == vector.end() ? -1 : static_cast<Index>((found - vector.begin()) / 3);
-}
-
-template <class Value>
-Index first_not_finite_row(const BlockCsrOf<Value>& matrix) {
-  const auto end = matrix.values.begin() + 9 * matrix.block_count();
-  const auto found =
-      std::find_if(matrix.values.begin(), end, [](Value entry) { return !std::isfinite(entry); });
-  if (found == end) return -1;
-  const Offset block = (found - matrix.values.begin()) / 9;
-  return static_cast<Index>(std::upper_bound(matrix.offsets.begin(), matrix.offsets.end(), block) -
-                            matrix.offsets.begin() - 1);
 }
 
 Index largest_vertex(std::span<const double> vector) {
@@ -163,11 +153,11 @@ class ConjugateGradients {
     return {status, iterations_, residual(), converged ? Index{-1} : largest_vertex(v_.r)};
   }
 
-  /// Looks for the vertex where it began: in what was given, then in what was computed of it.
+  /// Looks for the vertex where it began: in what was given, then in what was computed of it, where a bad row
+  /// of the matrix shows first.
   [[nodiscard]] SolveReport not_finite() const {
     Index vertex = first_not_finite(b_);
     if (vertex < 0) vertex = first_not_finite(x_);
-    if (vertex < 0) vertex = first_not_finite_row(matrix_);
     for (const auto* vector : {&v_.p, &v_.q, &v_.r, &v_.z}) {
       if (vertex < 0) vertex = first_not_finite(*vector);
     }

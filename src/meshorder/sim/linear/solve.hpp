@@ -40,7 +40,8 @@ struct SolveReport {
 /// definite, x the start and the result; 3 doubles for each vertex. The preconditioner must have been updated
 /// with the matrix. However it ends, x is the last iterate before that: on negative curvature the one whose
 /// search direction had it. The same bits for any number of threads. O(blocks) an iteration; vectors of 4
-/// times the size of b. Throws InvalidArgument when sizes differ or an option is negative.
+/// times the size of b. Numbers whose squares are too small for a double count as 0. Throws InvalidArgument
+/// when sizes differ or an option is negative.
 SolveReport conjugate_gradients(const BlockCsr& matrix, const Preconditioner& preconditioner,
                                 std::span<const double> b, std::span<double> x,
                                 const SolveOptions& options = {});

@@ -48,12 +48,16 @@ struct TransposedProduct {
 };
 #endif
 
+// blocks from a request to its use, as in the product with a matrix
+constexpr Offset kAhead = 128;
+
 void lower(const BlockFactor& factor, const double* r, double* z, Index begin, Index end) {
   Offset k = factor.offsets[begin];
   for (Index i = begin; i < end; ++i) {
     const Offset place = Offset{3} * factor.vertices[i];
     RowSums sums;
     for (const Offset row_end = factor.offsets[i + 1]; k < row_end; ++k) {
+      __builtin_prefetch(factor.values + 9 * (k + kAhead));
       sums.add(factor.values + 9 * k, z + Offset{3} * factor.columns[k]);
     }
     sums.subtract_from(r + place, z + place);
@@ -64,6 +68,7 @@ void upper(const BlockFactor& factor, double* z, Index begin, Index end) {
   for (Index i = end; i-- > begin;) {
     const TransposedProduct product(z + Offset{3} * factor.vertices[i]);
     for (Offset k = factor.offsets[i]; k < factor.offsets[i + 1]; ++k) {
+      __builtin_prefetch(factor.values + 9 * (k - kAhead));
       product.subtract_from(z + Offset{3} * factor.columns[k], factor.values + 9 * k);
     }
   }
