@@ -80,8 +80,8 @@ TEST_P(ConjugateGradients, GiveTheSameBitsOnAnyNumberOfThreads) {
 }
 
 TEST(ConjugateGradients, EndAfterAsManyIterationsAsThereAreDifferentEigenvalues) {
-  std::vector<double> entries;
-  for (int i = 0; i < 300; ++i) entries.push_back(1.0 + i % 5);
+  std::vector<double> entries(300);
+  for (int i = 0; i < 300; ++i) entries[i] = 1.0 + i % 5;
   const BlockCsr matrix = diagonal_matrix(entries);
   const std::vector<double> b = test::random_vector(matrix.size(), 4);
   std::vector<double> x(b.size());

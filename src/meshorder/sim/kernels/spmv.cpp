@@ -18,8 +18,8 @@ namespace {
 // blocks from a request to its use: the processor by itself looks less far ahead
 constexpr Offset kAhead = 128;
 
-/// With `kGather` the entries of x are asked for early too: kAhead blocks must follow the last row.
-template <bool kGather, class Value>
+/// With `Gather` the entries of x are asked for early too: kAhead blocks must follow the last row.
+template <bool Gather, class Value>
 double product_rows(const BlockCsrOf<Value>& matrix, const double* x, double* y, Index begin, Index end) {
   const Value* const values = matrix.values.data();
   const Index* const columns = matrix.columns.data();
@@ -29,7 +29,7 @@ double product_rows(const BlockCsrOf<Value>& matrix, const double* x, double* y,
     RowSums sums;
     for (const Offset row_end = matrix.offsets[v + 1]; k < row_end; ++k) {
       __builtin_prefetch(values + 9 * (k + kAhead));
-      if (kGather) __builtin_prefetch(x + Offset{3} * columns[k + kAhead]);
+      if constexpr (Gather) __builtin_prefetch(x + Offset{3} * columns[k + kAhead]);
       sums.add(values + 9 * k, x + Offset{3} * columns[k]);
     }
     const double* const p = x + Offset{3} * v;

@@ -45,7 +45,8 @@ enum class PreconditionerKind : std::uint8_t {
 std::string_view name(PreconditionerKind kind);
 
 /// A preconditioner for matrices of this pattern, the vertices at rest at `points` (of which multigrid makes
-/// its rigid-body modes).
+/// its rigid-body modes). Throws InvalidArgument when these are not as many as the pattern has rows; it or
+/// `update` where a row lacks its diagonal.
 std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const BlockCsr& pattern,
                                                     std::span<const Point> points);
 
