@@ -36,13 +36,38 @@ HWY_INLINE LameLanes<Lanes> load_lame(const ElasticPass& pass, Offset batch, Ind
   return {Lanes::load(pass.mu + place), Lanes::load(pass.lambda + place)};
 }
 
+/// Where a batch of a pass goes in the matrix, and where the next one will.
+struct BatchBlocks {
+  const Index* blocks = nullptr;
+  const Index* next = nullptr;
+  Index count = 0;  ///< simplices of the batch
+  Index next_count = 0;
+};
+
+/// Those of number i of the pass's `batches`.
+template <int D>
+HWY_INLINE BatchBlocks blocks_of(const ElasticPass& pass, Offset i, Offset batches) {
+  constexpr Offset kBlocks = kBatch * (D + 1) * (D + 1);
+  BatchBlocks result;
+  for (Offset k = i; k < std::min(i + 2, batches); ++k) {
+    const Offset batch = pass.share ? pass.share->batches[k] : k;
+    const Offset boundary = pass.share ? pass.share->boundary[k] : -1;
+    (k == i ? result.blocks : result.next) =
+        boundary < 0 ? pass.blocks + kBlocks * batch : pass.boundary_blocks + kBlocks * boundary;
+    (k == i ? result.count : result.next_count) =
+        static_cast<Index>(std::min<Offset>(kBatch, pass.rest.count - batch * kBatch));
+  }
+  return result;
+}
+
 /// A batch of simplices, which adds its forces to `targets`: its vertices, or spare ones in place of them.
 ///
 /// A Law is made of a deformation and its parameters, and gives stress(P) and energy(). A Tangent is made of
 /// a deformation, its law, parameters and a weight, and gives block(a, b, K), weight · gₐ·∂P/∂F·g_b for the
 /// corners a ≤ b of 1 … D, counted from 0; where a = b, symmetric to the last bit.
 template <int D, class Lanes, class Law, class Tangent>
-HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* targets, const Index* blocks) {
+HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* targets,
+                          const BatchBlocks& blocks) {
   const double* const geometry = geometry_of<D>(pass.rest, batch);
   const Index* const vertices = vertices_of<D>(pass.rest, batch);
   constexpr bool kStiffness = !std::is_same_v<Tangent, NoTangent>;
@@ -65,9 +90,10 @@ HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* ta
     }
   }
   if constexpr (kStiffness) {
-    const auto lanes = static_cast<Index>(std::min<Offset>(kBatch, pass.rest.count - batch * kBatch));
-    for (Index lane = 0; lane < lanes; ++lane) {
-      element.add(lane, blocks + Offset{ElementBlocks<D>::kBlocks} * lane, pass.values);
+    constexpr Offset kBlocks = ElementBlocks<D>::kBlocks;
+    for (Index lane = 0; lane < blocks.count; ++lane) {
+      if (lane < blocks.next_count) ElementBlocks<D>::fetch(blocks.next + kBlocks * lane, pass.values);
+      element.add(lane, blocks.blocks + kBlocks * lane, pass.values);
     }
   }
 }
@@ -75,17 +101,13 @@ HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* ta
 /// All batches, or those of a share, whose boundary batches have targets and blocks of their own.
 template <int D, class Lanes, class Law, class Tangent>
 HWY_INLINE void add_batches(const ElasticPass& pass) {
-  [[maybe_unused]] constexpr Offset kBlocks = kBatch * (D + 1) * (D + 1);
   const OwnedBatches* const share = pass.share;
   const Offset count = share ? static_cast<Offset>(share->batches.size()) : pass.rest.batches();
   for (Offset i = 0; i < count; ++i) {
     const Offset batch = share ? share->batches[i] : i;
-    [[maybe_unused]] const Offset boundary = share ? share->boundary[i] : -1;
     const Index* const vertices = vertices_of<D>(pass.rest, batch);
-    const Index* blocks = nullptr;
-    if constexpr (!std::is_same_v<Tangent, NoTangent>) {
-      blocks = boundary < 0 ? pass.blocks + kBlocks * batch : pass.boundary_blocks + kBlocks * boundary;
-    }
+    BatchBlocks blocks;
+    if constexpr (!std::is_same_v<Tangent, NoTangent>) blocks = blocks_of<D>(pass, i, count);
     add_batch<D, Lanes, Law, Tangent>(pass, batch, share ? share->targets_of(i, vertices, D + 1) : vertices,
                                       blocks);
   }
