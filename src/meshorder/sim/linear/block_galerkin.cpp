@@ -214,7 +214,7 @@ void smooth_prolongation(const BlockView<kRigidModes>& matrix, std::span<const f
   using Square = Block<kRigidModes, kRigidModes>;
   using FloatSquare = FloatBlock<kRigidModes, kRigidModes>;
   constexpr int kEntries = Prolongation<kRigidModes>::kEntries;
-  smoothed.values.resize(kEntries * smoothed.columns.size());
+  smoothed.values.resize(kEntries * smoothed.columns.size() + Prolongation<kRigidModes>::kRoom);
   for_each_share(matrix.rows(), [&](Index begin, Index end) {
     std::vector<double> row;
     std::vector<Index> place(smoothed.columns_count);

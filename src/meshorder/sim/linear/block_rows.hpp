@@ -16,11 +16,12 @@ inline constexpr int kRigidModes = 6;
 template <class Number, int R, int C>
 struct BlockRows {
   static constexpr int kEntries = R * C;
+  static constexpr int kRoom = 2;  ///< numbers past the last block that vector loads may touch
 
   Index columns_count = 0;
   std::vector<Offset> offsets{0};  ///< rows + 1
   std::vector<Index> columns;      ///< of a row, rising
-  std::vector<Number> values;
+  std::vector<Number> values;      ///< and `kRoom` more
 
   [[nodiscard]] Index rows() const noexcept { return static_cast<Index>(offsets.size() - 1); }
   [[nodiscard]] const Number* block(Offset k) const { return values.data() + kEntries * k; }

@@ -124,39 +124,46 @@ struct Node {
   }
 };
 
-/// sum + B x of a block B, column by column, and x in memory
-template <int R>
-HWY_INLINE Node<R> add_product(const float* block, const float* x, Node<R> sum) {
-  MESHORDER_UNROLL
-  for (int c = 0; c < R; ++c) {
+/// Sums of products with blocks of R×C numbers, column by column. Each column has a sum of its own, since the
+/// additions of one would wait for each other.
+template <int R, int C>
+struct ProductSum {
+  Node<R> of_column[C];
+
+  static HWY_INLINE ProductSum zero() {
+    ProductSum result;
     MESHORDER_UNROLL
-    for (int q = 0; q < Node<R>::kQuads; ++q) {
-      sum.part[q] = Quad::mul_add(Quad::load(block + R * c + 4 * q), Quad::set(x[c]), sum.part[q]);
+    for (int c = 0; c < C; ++c) result.of_column[c] = Node<R>::zero();
+    return result;
+  }
+  /// += B x, x in memory
+  HWY_INLINE void add(const float* block, const float* x) {
+    MESHORDER_UNROLL
+    for (int c = 0; c < C; ++c) {
+      const Quad entry = Quad::set(x[c]);
+      MESHORDER_UNROLL
+      for (int q = 0; q < Node<R>::kQuads; ++q) {
+        Quad& sum = of_column[c].part[q];
+        sum = Quad::mul_add(Quad::load(block + R * c + 4 * q), entry, sum);
+      }
     }
   }
-  return sum;
-}
-
-/// sum − B x
-template <int R>
-HWY_INLINE Node<R> subtract_product(const float* block, const float* x, Node<R> sum) {
-  MESHORDER_UNROLL
-  for (int c = 0; c < R; ++c) {
-    MESHORDER_UNROLL
-    for (int q = 0; q < Node<R>::kQuads; ++q) {
-      sum.part[q] = Quad::subtract_product(Quad::load(block + R * c + 4 * q), Quad::set(x[c]), sum.part[q]);
+  HWY_INLINE Node<R> total() const {
+    if constexpr (C == 3) return (of_column[0] + of_column[1]) + of_column[2];
+    if constexpr (C == 6) {
+      return ((of_column[0] + of_column[1]) + (of_column[2] + of_column[3])) + (of_column[4] + of_column[5]);
     }
   }
-  return sum;
-}
+};
 
-/// y += Bᵀ x, y in memory; x has zeros behind it
-template <int R>
+/// y += Bᵀ x of a block B of R×C numbers, column by column, y in memory; x has zeros behind it
+template <int R, int C>
 HWY_INLINE void add_transposed_product(const float* block, const Node<R>& x, float* y) {
-  Quad products[4 * Node<R>::kQuads];
+  constexpr int kQuads = Node<C>::kQuads;
+  Quad products[4 * kQuads];
   MESHORDER_UNROLL
-  for (int c = 0; c < 4 * Node<R>::kQuads; ++c) {
-    if (c >= R) {
+  for (int c = 0; c < 4 * kQuads; ++c) {
+    if (c >= C) {
       products[c] = Quad::set(0);
       continue;
     }
@@ -167,7 +174,7 @@ HWY_INLINE void add_transposed_product(const float* block, const Node<R>& x, flo
     }
   }
   MESHORDER_UNROLL
-  for (int q = 0; q < Node<R>::kQuads; ++q) {
+  for (int q = 0; q < kQuads; ++q) {
     (Quad::load(y + 4 * q) + Quad::sums(products + 4 * q)).store(y + 4 * q);
   }
 }

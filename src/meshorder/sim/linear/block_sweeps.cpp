@@ -39,34 +39,37 @@ HWY_INLINE void give(const SweptRows& rows, Index i, const Node<R>& x) {
   for (Offset k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
     const Index j = rows.columns[k];
     float* const to = j < rows.begin ? rows.from_above : rows.from_below;
-    add_transposed_product<R>(rows.values + R * R * k, x, to + Offset{Node<R>::kStride} * j);
+    add_transposed_product<R, R>(rows.values + R * R * k, x, to + Offset{Node<R>::kStride} * j);
   }
 }
 
+/// x = D⁻¹ sum in row i
 template <int R>
 HWY_INLINE Node<R> solve_diagonal(const SweptRows& rows, Index i, const Node<R>& sum) {
   float entries[Node<R>::kStride];
   sum.store(entries);
-  const Node<R> x =
-      add_product<R>(rows.inverse_diagonal + Offset{R * R} * i, entries, Node<R>::zero()).clean();
+  auto product = ProductSum<R, R>::zero();
+  product.add(rows.inverse_diagonal + Offset{R * R} * i, entries);
+  const Node<R> x = product.total().clean();
   x.store(rows.x + Offset{Node<R>::kStride} * i);
   return x;
 }
 
+/// L x in row i
 template <int R>
-HWY_INLINE Node<R> less_left(const SweptRows& rows, Index i, Node<R> sum) {
+HWY_INLINE Node<R> left_product(const SweptRows& rows, Index i) {
+  auto product = ProductSum<R, R>::zero();
   for (Offset k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
-    sum = subtract_product<R>(rows.values + R * R * k, rows.x + Offset{Node<R>::kStride} * rows.columns[k],
-                              sum);
+    product.add(rows.values + R * R * k, rows.x + Offset{Node<R>::kStride} * rows.columns[k]);
   }
-  return sum;
+  return product.total();
 }
 
 template <int R>
 HWY_INLINE void forwards(const SweptRows& rows) {
   for (Index i = rows.begin; i < rows.end; ++i) {
     const Node<R> b = Node<R>::load(rows.b + Offset{Node<R>::kStride} * i);
-    give<R>(rows, i, solve_diagonal<R>(rows, i, less_left<R>(rows, i, b)));
+    give<R>(rows, i, solve_diagonal<R>(rows, i, b - left_product<R>(rows, i)));
   }
 }
 
@@ -74,23 +77,24 @@ template <int R>
 HWY_INLINE void backwards(const SweptRows& rows) {
   for (Index i = rows.end - 1; i >= rows.begin; --i) {
     const Offset place = Offset{Node<R>::kStride} * i;
+    const Node<R> left = left_product<R>(rows, i);
     const Node<R> given = Node<R>::load(rows.from_below + place) + Node<R>::load(rows.from_above + place);
     const Node<R> b = Node<R>::load(rows.b + place) - given;
-    give<R>(rows, i, solve_diagonal<R>(rows, i, less_left<R>(rows, i, b)));
+    give<R>(rows, i, solve_diagonal<R>(rows, i, b - left));
   }
 }
 
 template <int R>
 HWY_INLINE void residual_after_backwards(const SweptRows& rows) {
   for (Index i = rows.begin; i < rows.end; ++i) {
-    Node<R> sum = Node<R>::zero();
+    auto product = ProductSum<R, R>::zero();
     for (Offset k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
       const Offset place = Offset{Node<R>::kStride} * rows.columns[k];
       float change[Node<R>::kStride];
       (Node<R>::load(rows.b + place) - Node<R>::load(rows.from_below + place)).store(change);
-      sum = add_product<R>(rows.values + R * R * k, change, sum);
+      product.add(rows.values + R * R * k, change);
     }
-    sum.clean().store(rows.x + Offset{Node<R>::kStride} * i);
+    product.total().clean().store(rows.x + Offset{Node<R>::kStride} * i);
   }
 }
 
@@ -109,6 +113,9 @@ HWY_AFTER_NAMESPACE();
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -147,7 +154,10 @@ Eigen::Matrix<double, R, R> positive_inverse(const Eigen::Matrix<double, R, R>& 
   using Block = Eigen::Matrix<double, R, R>;
   constexpr double kLeast = 1e-9;  // of the largest eigenvalue
   const Eigen::LLT<Block> factor(block);
-  if (factor.info() == Eigen::Success && factor.rcond() > kLeast) return factor.solve(Block::Identity());
+  if (factor.info() == Eigen::Success) {
+    const auto pivots = factor.matrixLLT().diagonal();
+    if (std::pow(pivots.minCoeff() / pivots.maxCoeff(), 2) > kLeast) return factor.solve(Block::Identity());
+  }
   if (!block.allFinite()) return Block::Zero();
   const Eigen::SelfAdjointEigenSolver<Block> solver(block);
   Eigen::Matrix<double, R, 1> values = solver.eigenvalues().cwiseAbs();

@@ -100,11 +100,11 @@ class Multigrid final : public Preconditioner {
       CoarseMatrix* operator_of_level = &finest_.coarse;
       for (MultigridLevel<kRigidModes>& level : coarse_) {
         update_level(view(*operator_of_level), level);
-        operator_of_level->values = {};
+        operator_of_level->values = std::vector<double>();
         operator_of_level = &level.coarse;
       }
       if (!finest_.is_coarsest()) coarsest_inverse_ = dense_inverse(*operator_of_level);
-      operator_of_level->values = {};
+      operator_of_level->values = std::vector<double>();
     }
   }
 
@@ -153,7 +153,7 @@ class Multigrid final : public Preconditioner {
     for (Index i = 0; i < index_size(order_); ++i) ordered[i] = points_[order_[i]];
     std::vector<double> modes = rigid_modes(ordered);
     finest_ = make_level(finest, Coarsening::plain, modes);
-    points_ = {};
+    points_ = std::vector<Point>();
     is_made_ = true;
     if (finest_.is_coarsest()) return;
     update_level(finest, finest_);
@@ -168,13 +168,13 @@ class Multigrid final : public Preconditioner {
       // growing moves the levels
       last = coarse_.size() > 1 ? &coarse_[coarse_.size() - 2].coarse : &finest_.coarse;
       update_level(view(*last), level);
-      last->values = {};
+      last->values = std::vector<double>();
       if (level.is_coarsest()) return;
       last = &level.coarse;
     }
     coarse_vectors_.emplace_back(last->rows());
     coarsest_inverse_ = dense_inverse(*last);
-    last->values = {};
+    last->values = std::vector<double>();
   }
 
   [[nodiscard]] Vector& right_side(std::size_t level) const { return coarse_vectors_[level].b; }

@@ -143,57 +143,11 @@ void update_level(const BlockView<R>& matrix, MultigridLevel<R>& level) {
   galerkin_product<R>(matrix, level.prolongation, level.transposed, level.coarse);
 }
 
-template <int R>
-void restrict_residual(const MultigridLevel<R>& level, const AlignedVector<float>& residual,
-                       AlignedVector<float>& result) {
-  constexpr Index kColumns = 512;
-  const Prolongation<R>& p = level.prolongation;
-  const ColumnBlocks& transposed = level.transposed;
-  for_each_chunk(p.columns_count, kColumns, [&](Index, Index begin, Index end) {
-    for (Index a = begin; a < end; ++a) {
-      float sum[kRigidModes] = {};
-      for (Offset k = transposed.offsets[a]; k < transposed.offsets[a + 1]; ++k) {
-        const float* const block = p.block(transposed.blocks[k]);
-        const float* const r = residual.data() + Offset{kNodeStride<R>} * transposed.rows[k];
-        for (int i = 0; i < R; ++i) {
-          for (int m = 0; m < kRigidModes; ++m) sum[m] += block[kRigidModes * i + m] * r[i];
-        }
-      }
-      std::copy(std::begin(sum), std::end(sum), result.begin() + Offset{kNodeStride<kRigidModes>} * a);
-    }
-  });
-}
-
-template <int R>
-void add_prolonged(const MultigridLevel<R>& level, const AlignedVector<float>& correction,
-                   AlignedVector<float>& x) {
-  constexpr Index kRows = 4096;
-  const Prolongation<R>& p = level.prolongation;
-  for_each_chunk(p.rows(), kRows, [&](Index, Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) {
-      float* const to = x.data() + Offset{kNodeStride<R>} * i;
-      for (Offset k = p.offsets[i]; k < p.offsets[i + 1]; ++k) {
-        const float* const block = p.block(k);
-        const float* const c = correction.data() + Offset{kNodeStride<kRigidModes>} * p.columns[k];
-        for (int r = 0; r < R; ++r) {
-          float sum = 0;
-          for (int m = 0; m < kRigidModes; ++m) sum += block[kRigidModes * r + m] * c[m];
-          to[r] += sum;
-        }
-      }
-    }
-  });
-}
-
 template struct MultigridLevel<3>;
 template struct MultigridLevel<6>;
 template MultigridLevel<3> make_level(const BlockView<3>&, Coarsening, std::vector<double>&);
 template MultigridLevel<6> make_level(const BlockView<6>&, Coarsening, std::vector<double>&);
 template void update_level(const BlockView<3>&, MultigridLevel<3>&);
 template void update_level(const BlockView<6>&, MultigridLevel<6>&);
-template void restrict_residual(const MultigridLevel<3>&, const AlignedVector<float>&, AlignedVector<float>&);
-template void restrict_residual(const MultigridLevel<6>&, const AlignedVector<float>&, AlignedVector<float>&);
-template void add_prolonged(const MultigridLevel<3>&, const AlignedVector<float>&, AlignedVector<float>&);
-template void add_prolonged(const MultigridLevel<6>&, const AlignedVector<float>&, AlignedVector<float>&);
 
 }  // namespace meshorder

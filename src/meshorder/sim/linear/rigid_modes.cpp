@@ -79,6 +79,7 @@ template <int R>
 RigidProlongation<R> rigid_prolongation(const Aggregates& aggregates, Index fine_count,
                                         std::span<const double> modes) {
   constexpr int kBlock = R * kRigidModes;
+  constexpr int kRoom = Prolongation<R>::kRoom;
   RigidProlongation<R> result;
   Prolongation<R>& p = result.prolongation;
   p.columns_count = aggregates.count();
@@ -93,7 +94,7 @@ RigidProlongation<R> rigid_prolongation(const Aggregates& aggregates, Index fine
     if (a >= 0) p.columns.push_back(a);
     p.offsets.push_back(static_cast<Offset>(p.columns.size()));
   }
-  p.values.resize(kBlock * p.columns.size());
+  p.values.resize(kBlock * p.columns.size() + kRoom);
   result.coarse_modes.resize(std::size_t{kRigidModes} * kRigidModes * aggregates.count());
 
   constexpr Index kAggregates = 256;
