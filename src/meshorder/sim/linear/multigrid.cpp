@@ -8,18 +8,13 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
-#include <cstdlib>
+#include <functional>
 #include <numeric>
 #include <utility>
 #include <vector>
 
 namespace meshorder {
 namespace {
-
-int env(const char* name, int value) {
-  const char* s = std::getenv(name);
-  return s ? std::atoi(s) : value;
-}
 
 using Vector = AlignedVector<float>;
 
@@ -109,6 +104,10 @@ class Multigrid final : public Preconditioner {
   }
 
   void apply(std::span<const double> r, std::span<double> z) const override {
+    if (r.size() != 3 * order_.size() || z.size() != r.size() || !is_made_) {
+      throw InvalidArgument(
+          "multigrid: 3 doubles are needed for each row of the matrix, and an update before");
+    }
     constexpr Index kRows = 8192;
     LevelVectors<3>& here = finest_vectors_;
     for_each_chunk(index_size(order_), kRows, [&](Index, Index begin, Index end) {
@@ -160,10 +159,9 @@ class Multigrid final : public Preconditioner {
     identity_.resize(finest_.coarse.rows());
     std::iota(identity_.begin(), identity_.end(), 0);
     CoarseMatrix* last = &finest_.coarse;
-    const Coarsening c = env("MG_SA", 1) ? Coarsening::smoothed : Coarsening::plain;
     while (last->rows() > kDenseSize) {
       coarse_vectors_.emplace_back(last->rows());
-      coarse_.push_back(make_level(view(*last), c, modes));
+      coarse_.push_back(make_level(view(*last), Coarsening::smoothed, modes));
       MultigridLevel<kRigidModes>& level = coarse_.back();
       // growing moves the levels
       last = coarse_.size() > 1 ? &coarse_[coarse_.size() - 2].coarse : &finest_.coarse;
@@ -192,8 +190,7 @@ class Multigrid final : public Preconditioner {
     if (!now.is_coarsest()) {
       restrict_residual(now, here.residual, right_side(level + 1));
       cycle(level + 1);
-      static const int w = env("MG_W", 1);
-      if (w && level + 1 < coarse_.size()) cycle_again(level + 1);
+      if (level + 1 < coarse_.size()) cycle_again(level + 1);
       add_prolonged(now, correction(level + 1), here.x);
     }
     if (level > 0) here.before = here.x;

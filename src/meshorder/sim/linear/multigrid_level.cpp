@@ -7,16 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
 namespace meshorder {
 namespace {
-
-double env(const char* name, double value) {
-  const char* s = std::getenv(name);
-  return s ? std::atof(s) : value;
-}
 
 /// The graph of the blocks that are not zero, with their norms for weights.
 template <int R>
@@ -40,10 +34,12 @@ Laplacian graph_of_norms(const BlockView<R>& matrix) {
   return graph;
 }
 
-/// The aggregates, without those of a single node that has no neighbour at all.
-Aggregates aggregates_of(const Laplacian& graph) {
-  static const double kStrength = env("MG_ST", 0.25);  // of the strongest neighbour
-  const Aggregation all = aggregate(graph, RowChunks::whole(graph.size()), kStrength);
+/// The aggregates, larger ones where the prolongation is smoothed, without those of a single node that has no
+/// neighbour at all.
+Aggregates aggregates_of(const Laplacian& graph, Coarsening coarsening) {
+  // of the strongest neighbour
+  const double strength = coarsening == Coarsening::plain ? 0.25 : 0.04;
+  const Aggregation all = aggregate(graph, RowChunks::whole(graph.size()), strength);
   const auto has_neighbours = [&](Index i) { return graph.offsets[i] < graph.offsets[i + 1]; };
   std::vector<Index> sizes(all.count(), 0);
   Index members = 0;
@@ -113,7 +109,7 @@ MultigridLevel<R> make_level(const BlockView<R>& matrix, Coarsening coarsening, 
   MultigridLevel<R> level;
   level.sweeps = BlockSweeps<R>(matrix);
   level.sweeps.update(matrix);
-  const Aggregates aggregates = aggregates_of(graph_of_norms(matrix));
+  const Aggregates aggregates = aggregates_of(graph_of_norms(matrix), coarsening);
   if (aggregates.count() > kWorthwhile * matrix.rows()) return level;
   RigidProlongation<R> rigid = rigid_prolongation<R>(aggregates, matrix.rows(), modes);
   modes = std::move(rigid.coarse_modes);
