@@ -217,6 +217,15 @@ def test_resumed_run_is_the_same_to_the_last_bit(command, tmp_path):
     assert again["energy"] == whole["energy"][:4]
 
 
+@pytest.mark.parametrize("solver", [("block-jacobi", "double"), ("jacobi", "single")])
+def test_solvers_keep_nothing_that_a_checkpoint_lacks(command, tmp_path, solver):
+    run = ("simulate", write_scenario(tmp_path), "--preconditioner", solver[0], "--precision", solver[1])
+    whole = command.json(*run)
+    command.ok(*run, "--steps", "3", "--checkpoint", "state")
+    parts = command.json(*run, "--resume", "state")
+    assert parts["energy"] == whole["energy"] and parts["cg_iterations"] == whole["cg_iterations"]
+
+
 def test_resumed_run_is_the_same_after_a_step_that_was_taken_otherwise(command, tmp_path):
     """Crushed, the body has a step whose matrix is indefinite; that leaves nothing behind that a state lacks."""
     crush = {"on": {"box": [[1, 0, 0], [1, 1, 1]]}, "newtons": [-60000, 0, 0], "steps": [1, 12]}
