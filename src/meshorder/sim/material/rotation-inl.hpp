@@ -88,10 +88,10 @@ template <class Lanes>
 HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3],
                                      typename Lanes::Value (&r)[3][3]) {
   using Value = typename Lanes::Value;
-  constexpr int kSteps = 8;
+  constexpr int kSteps = 10;
   // an error of that size before a step is one of rounding after it
   constexpr double kNear = 1e-9;
-  // rounding errors grow by up to the square of this ratio of λ³ to the denominator, 27/16 at rest
+  // rounding errors grow by about the square of this ratio of λ³ to the denominator, 27/16 at rest
   constexpr double kLargestRatio = 12.0;
   // no fourth power underflows
   constexpr double kSmallest = 1e-60;
