@@ -221,6 +221,24 @@ TEST_P(ElasticLawOfSolids, IsLinearElasticityNearRest) {
   EXPECT_LT((actual - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.cwiseAbs().maxCoeff());
 }
 
+TEST(ApproximateTangent, IsLinearElasticityTurned) {
+  const test::Patch patch = test::deformed_patch(3, 21);
+  const Eigen::MatrixXd linear = linear_stiffness(patch);
+  const test::State state{"", {1.4, 0.8, 0.3}};
+  const Eigen::Matrix3d u = test::some_rotation(3);
+  const Eigen::Matrix3d turn = u * test::some_rotation(4).transpose();
+  const Eigen::MatrixXd actual =
+      test::dense_stiffness(patch, elasticity_of({MaterialModel::corotational, Tangent::approximate}),
+                            test::mapped(patch.points, test::gradient_of(state, 3)));
+  for (Eigen::Index a = 0; a < linear.rows(); a += 3) {
+    for (Eigen::Index b = 0; b < linear.cols(); b += 3) {
+      const Eigen::Matrix3d expected = turn * linear.block<3, 3>(a, b) * turn.transpose();
+      ASSERT_LT((actual.block<3, 3>(a, b) - expected).cwiseAbs().maxCoeff(),
+                1e-12 * linear.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
 TEST_P(ElasticLawOfSolids, PassesThePatchTest) {
   const Mesh grid = make_grid({.size = 4});
   const RestShapes rest = rest_shapes(cut_into_simplices(grid), grid.points);
