@@ -11,14 +11,17 @@ namespace meshorder {
 enum class MaterialModel : std::uint8_t {
   corotational,  ///< μ‖F − R‖² + ½λ tr²(RᵀF − I), R the rotation closest to F (Müller, Gross 2004)
   stvk,          ///< Saint Venant–Kirchhoff: μ E:E + ½λ tr(E)², E = ½(FᵀF − I)
-  neo_hookean,  ///< stable Neo-Hookean (Smith, De Goes, Kim 2018)
+  /// Stable Neo-Hookean (Smith, De Goes, Kim 2018) with its logarithm, which lets a collapsed element rise
+  /// again, and without its energy at rest: ½μ'(‖F‖² − 3) + ½λ'(det F − α)² − ½μ' log(‖F‖² + 1),
+  /// α = 1 + ¾ μ'/λ'. μ' = 4/3 μ and λ' = λ + 5/6 μ make it Hooke's law of Lamé's μ and λ at rest.
+  neo_hookean,
 };
 
 /// What stands for the Hessian.
 enum class Tangent : std::uint8_t {
   exact,        ///< the Hessian; indefinite under compression
   approximate,  ///< corotational alone: R held, so that it is semi-definite (Müller, Gross 2004)
-  projected,    ///< the Hessian's semi-definite part, simplex by simplex
+  projected,    ///< the semi-definite part of ∂²Ψ/∂F², simplex by simplex; tetrahedra only
 };
 
 /// Lamé's parameters of an isotropic material, in units of stress.

@@ -135,7 +135,7 @@ struct ProjectedTangent {
     Value vectors[3][3];
     symmetric_eigen<3, Lanes>(matrix, values, vectors);
     MESHORDER_UNROLL
-    for (int k = 0; k < 3; ++k) values[k] = weight * Lanes::max(values[k], Lanes::set(0.0));
+    for (Value& value : values) value = weight * Lanes::max(value, Lanes::set(0.0));
     MESHORDER_UNROLL
     for (int i = 0; i < 3; ++i) {
       MESHORDER_UNROLL
