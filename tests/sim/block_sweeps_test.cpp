@@ -88,7 +88,7 @@ Eigen::MatrixXd left_of(const Band<R>& band, const RowChunks& chunks) {
 template <int R>
 void expect_sweeps_of_a_dense_matrix() {
   const Band<R> band;
-  BlockSweeps<R> sweeps(band.view());
+  BlockSweeps<R> sweeps(band.view(), 128);
   sweeps.update(band.view());
   ASSERT_GE(sweeps.chunks().count(), 4);
   const Eigen::SparseMatrix<double> left = left_of(band, sweeps.chunks()).sparseView();

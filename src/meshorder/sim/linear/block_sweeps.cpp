@@ -146,9 +146,8 @@ bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
 }
 
 /// Chunks that two threads can share evenly, or one chunk where that is not to be had.
-RowChunks sweep_chunks(const Laplacian& graph) {
-  constexpr Index kLeastRows = 128;  // sweeps over fewer take less than the start of a thread's task
-  for (Index least = kLeastRows; least < graph.size(); least *= 2) {
+RowChunks sweep_chunks(const Laplacian& graph, Index least_rows) {
+  for (Index least = least_rows; least < graph.size(); least *= 2) {
     const RowChunks chunks(graph, least);
     if (chunks.count() > 1 && touch_only_the_next(graph, chunks)) return chunks;
   }
@@ -177,7 +176,7 @@ Eigen::Matrix<double, R, R> positive_inverse(const Eigen::Matrix<double, R, R>& 
 }  // namespace
 
 template <int R>
-BlockSweeps<R>::BlockSweeps(const BlockView<R>& pattern) {
+BlockSweeps<R>::BlockSweeps(const BlockView<R>& pattern, Index least_rows) {
   const Index n = pattern.rows();
   Laplacian graph;
   graph.offsets.reserve(Offset{n} + 1);
@@ -188,7 +187,7 @@ BlockSweeps<R>::BlockSweeps(const BlockView<R>& pattern) {
     graph.offsets.push_back(static_cast<Offset>(graph.neighbours.size()));
   }
   graph.diagonal.assign(n, 1.0);
-  chunks_ = sweep_chunks(graph);
+  chunks_ = sweep_chunks(graph, least_rows);
   std::vector<Index> colour_of(std::max(chunks_.count(), 1));
   for (Index colour = 0; colour < index_size(chunks_.colours()); ++colour) {
     for (const Index chunk : chunks_.colours()[colour]) colour_of[chunk] = colour;
@@ -245,8 +244,12 @@ void BlockSweeps<R>::update(const BlockView<R>& matrix) {
 template <int R>
 void BlockSweeps<R>::forwards(const AlignedVector<float>& b, AlignedVector<float>& x,
                               AlignedVector<float>& residual, Given& given) const {
-  std::fill(given.from_below.begin(), given.from_below.end(), 0.0F);
-  std::fill(given.from_above.begin(), given.from_above.end(), 0.0F);
+  chunks_.for_each([&](Index, Index begin, Index end) {
+    std::fill_n(given.from_below.begin() + Offset{kNodeStride<R>} * begin, kNodeStride<R> * (end - begin),
+                0.0F);
+    std::fill_n(given.from_above.begin() + Offset{kNodeStride<R>} * begin, kNodeStride<R> * (end - begin),
+                0.0F);
+  });
   chunks_.for_each_forwards([&](Index begin, Index end) {
     const SweptRows swept{
         offsets_.data(), columns_.data(), values_.data(),          inverse_diagonal_.data(), begin, end,
@@ -254,14 +257,23 @@ void BlockSweeps<R>::forwards(const AlignedVector<float>& b, AlignedVector<float
     if constexpr (R == 3) HWY_DYNAMIC_DISPATCH(forwards_3)(swept);
     if constexpr (R == 6) HWY_DYNAMIC_DISPATCH(forwards_6)(swept);
   });
-  std::transform(given.from_below.begin(), given.from_below.end(), given.from_above.begin(), residual.begin(),
-                 [](float below, float above) { return -(below + above); });
+  chunks_.for_each([&](Index, Index begin, Index end) {
+    const Offset first = Offset{kNodeStride<R>} * begin;
+    const Offset last = Offset{kNodeStride<R>} * end;
+    std::transform(given.from_below.begin() + first, given.from_below.begin() + last,
+                   given.from_above.begin() + first, residual.begin() + first,
+                   [](float below, float above) { return -(below + above); });
+  });
 }
 
 template <int R>
 void BlockSweeps<R>::backwards(const AlignedVector<float>& b, AlignedVector<float>& x, Given& given) const {
-  std::fill(given.from_below.begin(), given.from_below.end(), 0.0F);
-  std::fill(given.from_above.begin(), given.from_above.end(), 0.0F);
+  chunks_.for_each([&](Index, Index begin, Index end) {
+    std::fill_n(given.from_below.begin() + Offset{kNodeStride<R>} * begin, kNodeStride<R> * (end - begin),
+                0.0F);
+    std::fill_n(given.from_above.begin() + Offset{kNodeStride<R>} * begin, kNodeStride<R> * (end - begin),
+                0.0F);
+  });
   chunks_.for_each_backwards([&](Index begin, Index end) {
     const SweptRows swept{
         offsets_.data(), columns_.data(), values_.data(),          inverse_diagonal_.data(), begin, end,

@@ -58,16 +58,17 @@ Eigen::MatrixXf dense_inverse(const CoarseMatrix& matrix) {
 /// The vectors of a cycle on one level.
 template <int R>
 struct LevelVectors {
-  Vector b, x, residual, before;
+  Vector b, x, residual;
+  Vector before, first;  ///< of a second cycle
   typename BlockSweeps<R>::Given given;
 
   explicit LevelVectors(Index nodes) {
     const std::size_t size = std::size_t{kNodeStride<R>} * nodes;
-    for (Vector* vector : {&b, &x, &residual, &before, &given.from_below, &given.from_above}) {
+    for (Vector* vector : {&b, &x, &residual, &before, &first, &given.from_below, &given.from_above}) {
       vector->assign(size, 0.0F);
     }
   }
-  [[nodiscard]] std::size_t bytes() const { return 6 * sizeof(float) * b.capacity(); }
+  [[nodiscard]] std::size_t bytes() const { return 7 * sizeof(float) * b.capacity(); }
 };
 
 class Multigrid final : public Preconditioner {
@@ -202,9 +203,9 @@ class Multigrid final : public Preconditioner {
     LevelVectors<kRigidModes>& here = coarse_vectors_[level];
     coarse_[level].sweeps.residual_after_backwards(here.before, here.x, here.residual);
     std::swap(here.b, here.residual);
-    Vector first = here.x;
+    std::swap(here.x, here.first);
     cycle(level);
-    std::transform(first.begin(), first.end(), here.x.begin(), here.x.begin(), std::plus<>());
+    std::transform(here.first.begin(), here.first.end(), here.x.begin(), here.x.begin(), std::plus<>());
   }
 
   void solve_coarsest() const {

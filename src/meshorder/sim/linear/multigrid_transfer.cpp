@@ -18,6 +18,13 @@ HWY_INLINE void restrict_columns(const Prolongation<R>& p, const ColumnBlocks& t
                                  const float* residual, Index begin, Index end, float* result) {
   for (Index a = begin; a < end; ++a) {
     auto sum = ProductSum<kRigidModes, R>::zero();
+    // the members of an aggregate lie a little apart
+    if (a + 1 < end) {
+      for (Offset k = transposed.offsets[a + 1]; k < transposed.offsets[a + 2]; ++k) {
+        __builtin_prefetch(p.block(transposed.blocks[k]));
+        __builtin_prefetch(p.block(transposed.blocks[k]) + 16);
+      }
+    }
     for (Offset k = transposed.offsets[a]; k < transposed.offsets[a + 1]; ++k) {
       sum.add(p.block(transposed.blocks[k]), residual + Offset{Node<R>::kStride} * transposed.rows[k]);
     }
