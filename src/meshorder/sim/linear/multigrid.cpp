@@ -191,7 +191,8 @@ class Multigrid final : public Preconditioner {
     if (!now.is_coarsest()) {
       restrict_residual(now, here.residual, right_side(level + 1));
       cycle(level + 1);
-      if (level + 1 < coarse_.size()) cycle_again(level + 1);
+      // one cycle is enough where the exact level comes next
+      if (level + 2 < coarse_.size()) cycle_again(level + 1);
       add_prolonged(now, correction(level + 1), here.x);
     }
     if (level > 0) here.before = here.x;
