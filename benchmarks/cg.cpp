@@ -9,7 +9,7 @@
 #include <meshorder/io/format.hpp>
 #include <meshorder/mesh/graphs.hpp>
 #include <meshorder/mesh/mesh_ordering.hpp>
-#include <meshorder/sim/kernels/assembly.hpp>
+#include <meshorder/sim/implicit/elastic_system.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
 #include <meshorder/sim/kernels/spmv.hpp>
 #include <meshorder/sim/linear/preconditioner.hpp>
@@ -68,27 +68,19 @@ void scale_to_ten(mo::Mesh& mesh) {
   }
 }
 
-System make_system(const std::string& order, const mo::Mesh& mesh, const mo::CsrGraph& graph) {
+System make_system(const std::string& order, const mo::Mesh& mesh) {
   constexpr double kStep = 0.01, kDamping = 1.0, kDensity = 1000.0, kForce = -50.0;
-  const mo::RestShapes rest = mo::rest_shapes(mo::cut_into_simplices(mesh), mesh.points);
+  mo::Body body;
+  body.simplices = mo::cut_into_simplices(mesh);
+  body.elasticity.lame = mo::Lame::from_young(1e6, 0.45);
+  body.densities = {kDensity};
+  mo::ElasticSystem elastic(mesh.points, body, mo::Mass::lumped);
+  elastic.assemble(mo::padded_positions(mesh.points), mo::Tangent::exact, 1.0 + kStep * kDamping,
+                   kStep * kStep);
   System system;
   system.order = order;
   system.points = mesh.points;
-  system.matrix = mo::zero_block_csr(graph);
-  mo::add_stvk_stiffness(rest, mo::Lame::from_young(1e6, 0.45), mo::padded_positions(mesh.points),
-                         mo::assembly_map(rest, system.matrix), system.matrix);
-  for (double& value : system.matrix.values) value *= kStep * kStep;
-  for (mo::Offset s = 0; s < rest.count; ++s) {
-    const mo::Offset batch = s / mo::kBatch;
-    const double volume = rest.geometry[(batch * rest.quantities() + 6) * mo::kBatch + s % mo::kBatch];
-    for (int a = 0; a < 4; ++a) {
-      const mo::Index v = rest.vertices[(batch * 4 + a) * mo::kBatch + s % mo::kBatch];
-      const mo::Offset block = 9 * system.matrix.find(v, v);
-      for (int c = 0; c < 3; ++c) {
-        system.matrix.values[block + 4 * c] += (1.0 + kStep * kDamping) * kDensity * volume / 4.0;
-      }
-    }
-  }
+  system.matrix = std::move(elastic.matrix());
   mo::round_to_single(system.matrix, system.rounded);
   system.b.assign(3 * mesh.points.size(), kStep * kForce);
   system.x.assign(system.b.size(), 0.0);
@@ -107,11 +99,11 @@ std::vector<System> make_systems(const std::string& file, const std::string& ord
     if (name == "band") {
       mo::Band band = mo::ideal_band(mesh, mo::vertex_graph(mesh));
       scale_to_ten(band.mesh);
-      systems.push_back(make_system(name, band.mesh, band.graph));
+      systems.push_back(make_system(name, band.mesh));
       continue;
     }
     mo::reorder(mesh, {.vertices = name, .elements = "lexmax", .ordering = {}});
-    systems.push_back(make_system(name, mesh, mo::vertex_graph(mesh)));
+    systems.push_back(make_system(name, mesh));
   }
   return systems;
 }
@@ -181,7 +173,7 @@ void print_iterations(std::vector<System>& systems, const Settings& settings) {
 
 void print_solves(std::vector<System>& systems) {
   constexpr std::array kKinds{mo::PreconditionerKind::jacobi, mo::PreconditionerKind::block_jacobi,
-                              mo::PreconditionerKind::incomplete_cholesky};
+                              mo::PreconditionerKind::incomplete_cholesky, mo::PreconditionerKind::multigrid};
   fmt::print("{:<11}{:<21}{:>8}{:>9}{:>11}{:>10}{:>12}{:>12}\n", "order", "preconditioner", "threads",
              "update", "iterations", "seconds", "float: its", "seconds");
   for (System& system : systems) {

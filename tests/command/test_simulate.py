@@ -217,7 +217,8 @@ def test_resumed_run_is_the_same_to_the_last_bit(command, tmp_path):
     assert again["energy"] == whole["energy"][:4]
 
 
-@pytest.mark.parametrize("solver", [("block-jacobi", "double"), ("jacobi", "single")])
+@pytest.mark.parametrize("solver", [("block-jacobi", "double"), ("jacobi", "single"),
+                                    ("incomplete-cholesky", "double"), ("multigrid", "single")])
 def test_solvers_keep_nothing_that_a_checkpoint_lacks(command, tmp_path, solver):
     run = ("simulate", write_scenario(tmp_path), "--preconditioner", solver[0], "--precision", solver[1])
     whole = command.json(*run)
