@@ -19,9 +19,9 @@ struct SweptRows {
   const float* inverse_diagonal;
   Index begin;
   Index end;
-  const float* b;     ///< residual_after_backwards: the vector before
-  float* x;           ///< residual_after_backwards: the residual
-  float* from_below;  ///< residual_after_backwards: the vector after
+  const float* b;
+  float* x;
+  float* from_below;
   float* from_above;
 };
 
@@ -57,15 +57,15 @@ HWY_INLINE Node<R> solve_diagonal(const SweptRows& rows, Index i, const Node<R>&
   return x;
 }
 
-/// L x in row i. Asks for blocks `kAhead` bytes from those of the row, which processors do not do by
+/// L x in row i. Asks for blocks `Ahead` bytes from those of the row, which processors do not do by
 /// themselves where rows go down.
-template <int R, int kAhead>
+template <int R, int Ahead>
 HWY_INLINE Node<R> left_product(const SweptRows& rows, Index i) {
   auto product = ProductSum<R, R>::zero();
   for (Offset k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
     MESHORDER_UNROLL
     for (int line = 0; line < 4 * R * R; line += 64) {
-      __builtin_prefetch(reinterpret_cast<const char*>(rows.values + R * R * k) + kAhead + line);
+      __builtin_prefetch(reinterpret_cast<const char*>(rows.values + R * R * k) + Ahead + line);
     }
     product.add(rows.values + R * R * k, rows.x + Offset{Node<R>::kStride} * rows.columns[k]);
   }
@@ -92,16 +92,16 @@ HWY_INLINE void backwards(const SweptRows& rows) {
 }
 
 template <int R>
-HWY_INLINE void residual_after_backwards(const SweptRows& rows) {
+HWY_INLINE void residual_after_backwards(const SweptRows& rows, const float* before, float* residual) {
   for (Index i = rows.begin; i < rows.end; ++i) {
     auto product = ProductSum<R, R>::zero();
     for (Offset k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
       const Offset place = Offset{Node<R>::kStride} * rows.columns[k];
       float change[Node<R>::kStride];
-      (Node<R>::load(rows.b + place) - Node<R>::load(rows.from_below + place)).store(change);
+      (Node<R>::load(before + place) - Node<R>::load(rows.b + place)).store(change);
       product.add(rows.values + R * R * k, change);
     }
-    product.total().clean().store(rows.x + Offset{Node<R>::kStride} * i);
+    product.total().clean().store(residual + Offset{Node<R>::kStride} * i);
   }
 }
 
@@ -109,8 +109,12 @@ void forwards_3(const SweptRows& rows) { forwards<3>(rows); }
 void forwards_6(const SweptRows& rows) { forwards<6>(rows); }
 void backwards_3(const SweptRows& rows) { backwards<3>(rows); }
 void backwards_6(const SweptRows& rows) { backwards<6>(rows); }
-void residual_3(const SweptRows& rows) { residual_after_backwards<3>(rows); }
-void residual_6(const SweptRows& rows) { residual_after_backwards<6>(rows); }
+void residual_3(const SweptRows& rows, const float* before, float* residual) {
+  residual_after_backwards<3>(rows, before, residual);
+}
+void residual_6(const SweptRows& rows, const float* before, float* residual) {
+  residual_after_backwards<6>(rows, before, residual);
+}
 
 }  // namespace
 }  // namespace meshorder::HWY_NAMESPACE
@@ -148,7 +152,7 @@ bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
 /// Chunks that two threads can share evenly, or one chunk where that is not to be had.
 RowChunks sweep_chunks(const Laplacian& graph, Index least_rows) {
   for (Index least = least_rows; least < graph.size(); least *= 2) {
-    const RowChunks chunks(graph, least);
+    RowChunks chunks(graph, least);
     if (chunks.count() > 1 && touch_only_the_next(graph, chunks)) return chunks;
   }
   return RowChunks::whole(graph.size());
@@ -288,19 +292,11 @@ void BlockSweeps<R>::residual_after_backwards(const AlignedVector<float>& before
                                               const AlignedVector<float>& x,
                                               AlignedVector<float>& residual) const {
   chunks_.for_each([&](Index, Index begin, Index end) {
-    // the kernel only reads what stands in the place of `from_below`
-    const SweptRows swept{offsets_.data(),
-                          columns_.data(),
-                          values_.data(),
-                          inverse_diagonal_.data(),
-                          begin,
-                          end,
-                          before.data(),
-                          residual.data(),
-                          const_cast<float*>(x.data()),
-                          nullptr};
-    if constexpr (R == 3) HWY_DYNAMIC_DISPATCH(residual_3)(swept);
-    if constexpr (R == 6) HWY_DYNAMIC_DISPATCH(residual_6)(swept);
+    const SweptRows swept{
+        offsets_.data(), columns_.data(), values_.data(), inverse_diagonal_.data(), begin, end, x.data(),
+        nullptr,         nullptr,         nullptr};
+    if constexpr (R == 3) HWY_DYNAMIC_DISPATCH(residual_3)(swept, before.data(), residual.data());
+    if constexpr (R == 6) HWY_DYNAMIC_DISPATCH(residual_6)(swept, before.data(), residual.data());
   });
 }
 
