@@ -159,7 +159,10 @@ TEST(BlockGalerkin, EqualsTheDenseProductWithASmoothedProlongation) {
   const Prolongation<6> tentative = rigid_prolongation<6>(fours(41), 41, modes).prolongation;
   AlignedVector<float> inverse(36 * 41);
   for (Index i = 0; i < 41; ++i) {
-    for (int e = 0; e < 36; ++e) inverse[36 * i + e] = static_cast<float>(1 + e % 6 + e / 6 + i % 3);
+    for (int e = 0; e < 36; ++e) {
+      const int sum = e % 6 + e / 6 + i % 3;  // a symmetric block
+      inverse[36 * i + e] = static_cast<float>(1 + sum);
+    }
   }
   Prolongation<6> smoothed = smoothed_pattern(fine.view(), tentative);
   smooth_prolongation(fine.view(), inverse, 0.01, tentative, smoothed);

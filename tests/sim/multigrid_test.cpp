@@ -262,7 +262,8 @@ TEST(Multigrid, TakesAggregatesWithoutWidth) {
     std::vector<Point> points;
     const Index n = dimension == 1 ? side : side * side;
     for (Index v = 0; v < n; ++v) {
-      points.push_back({static_cast<double>(v % side), static_cast<double>(v / side), 0});
+      const Index column = v % side, row = v / side;
+      points.push_back({static_cast<double>(column), static_cast<double>(row), 0});
       if (v % side + 1 < side) edges.push_back({v, v + 1});
       if (v + side < n) edges.push_back({v, v + side});
     }
