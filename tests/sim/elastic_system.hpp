@@ -20,10 +20,9 @@ inline BlockCsr elastic_system(const Mesh& mesh, double density) {
   BlockCsr matrix = zero_block_csr(vertex_graph(mesh));
   Elasticity elasticity;
   elasticity.lame = Lame::from_young(1.0, 0.4);
-  AlignedVector<double> forces = padded_zeros(mesh.vertex_count());
   const AssemblyMap map = assembly_map(rest, matrix);
   const Stiffness stiffness{map, matrix};
-  add_elasticity(rest, elasticity, padded_positions(mesh.points), forces, &stiffness);
+  add_elasticity(rest, elasticity, padded_positions(mesh.points), {}, &stiffness);
   std::vector<double> masses(mesh.points.size(), 1e-3 * density);
   for (Offset s = 0; s < rest.count; ++s) {
     for (int a = 0; a < 4; ++a) masses[rest.vertex(s, a)] += density * rest.volume(s) / 4;

@@ -3,10 +3,10 @@
 #include <meshorder/mesh/graphs.hpp>
 #include <meshorder/models/procedural.hpp>
 #include <meshorder/ordering/permutation.hpp>
-#include <meshorder/sim/kernels/assembly.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
 #include <meshorder/sim/kernels/spmv.hpp>
 #include <meshorder/sim/linear/multigrid.hpp>
+#include <meshorder/sim/material/elasticity.hpp>
 #include <support/sample_graphs.hpp>
 
 #include <Eigen/Dense>
@@ -29,9 +29,11 @@ struct System {
 System elastic_system(const Mesh& mesh, double time_step, double mass) {
   System system{mesh.points, zero_block_csr(vertex_graph(mesh))};
   const RestShapes rest = rest_shapes(cut_into_simplices(mesh), mesh.points);
-  add_stvk_stiffness(rest, Lame::from_young(1e4, 0.4), padded_positions(mesh.points),
-                     assembly_map(rest, system.matrix), system.matrix);
-  for (double& value : system.matrix.values) value *= time_step * time_step;
+  Elasticity elasticity;
+  elasticity.lame = Lame::from_young(1e4, 0.4);
+  const AssemblyMap map = assembly_map(rest, system.matrix);
+  const Stiffness stiffness{map, system.matrix, time_step * time_step};
+  add_elasticity(rest, elasticity, padded_positions(mesh.points), {}, &stiffness);
   for (Index v = 0; v < system.matrix.size(); ++v) {
     double* const diagonal = system.matrix.values.data() + 9 * system.matrix.find(v, v);
     for (int c = 0; c < 3; ++c) diagonal[4 * c] += mass;

@@ -38,7 +38,7 @@ enum class PreconditionerKind : std::uint8_t {
   jacobi,               ///< the diagonal
   block_jacobi,         ///< the 3×3 blocks of the diagonal
   incomplete_cholesky,  ///< L Lᵀ in the pattern of A, by blocks
-  multigrid,            ///< a V-cycle of smoothed aggregation with rigid-body modes
+  multigrid,            ///< a cycle over aggregates with rigid-body modes (see make_multigrid)
 };
 
 /// "jacobi", "block-jacobi", "incomplete-cholesky", "multigrid".
