@@ -13,6 +13,8 @@ import numpy
 
 from raster import boundary_faces, cropped, drawn, in_view, ramp, read_tetrahedra, write_png
 
+SIZE = 360  # pixels of a frame's side
+
 
 def strain(points, rest, faces):
     """Of each vertex; 0 inside."""
@@ -32,8 +34,8 @@ def main():
     faces = boundary_faces(cells)
     frames = [read_tetrahedra(path)[0] for path in sys.argv[4:]]
     images = [
-        drawn(pixels, faces, strain(points, rest, faces), lambda value: 0.25 + 0.75 * ramp(value / largest))
-        for pixels, points in zip(in_view(frames), frames)
+        drawn(pixels, faces, strain(points, rest, faces), lambda value: 0.25 + 0.75 * ramp(value / largest), SIZE)
+        for pixels, points in zip(in_view(frames, SIZE), frames)
     ]
     write_png(sys.argv[1], numpy.concatenate(cropped(images), axis=1))
 

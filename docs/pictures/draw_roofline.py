@@ -15,7 +15,7 @@ from pathlib import Path
 
 COLOURS = {"scrambled": "#c44e52", "original": "#dd8452", "fiedler": "#4c72b0", "spectral": "#8172b3", "rcm": "#937860",
            "hilbert": "#55a868"}
-X, Y = (-1.5, 2), (-0.5, 2.5)  # decades of operations a byte and of 10⁹ operations a second
+X, Y = (-1, 1.5), (0, 2.5)  # decades of operations a byte and of 10⁹ operations a second
 WIDTH, HEIGHT, TOP = 400, 340, 44
 
 
@@ -27,7 +27,7 @@ def panel(mesh, bandwidths, peak, left):
         return TOP + HEIGHT * (Y[1] - math.log10(value)) / (Y[1] - Y[0])
 
     lines = [f'<text x="{left}" y="28" font-weight="bold">{Path(mesh["mesh"]).stem}, {mesh["vertices"]:,} vertices</text>']
-    for power in range(math.ceil(X[0]), X[1] + 1):
+    for power in range(math.ceil(X[0]), math.floor(X[1]) + 1):
         lines += [f'<path d="M{x(10**power):.1f} {TOP}v{HEIGHT}" stroke="#ddd"/>',
                   f'<text x="{x(10**power):.1f}" y="{TOP + HEIGHT + 18}" text-anchor="middle">{10**power:g}</text>']
     for power in range(math.ceil(Y[0]), math.floor(Y[1]) + 1):
@@ -37,8 +37,8 @@ def panel(mesh, bandwidths, peak, left):
         roof, start = threads * peak, 10**X[0]
         lines += [f'<path d="M{x(start):.1f} {y(start * bandwidth):.1f}L{x(roof / bandwidth):.1f} {y(roof):.1f}'
                   f'H{left + WIDTH}" fill="none" stroke="#444" stroke-width="{0.8 + 0.6 * threads}"/>',
-                  f'<text x="{left + WIDTH - 4}" y="{y(roof) - 5:.1f}" text-anchor="end" fill="#444">{threads} '
-                  f'thread{"s" if threads > 1 else ""}: {roof:.0f} Gflop/s, {bandwidth:.0f} GB/s</text>']
+                  f'<text x="{left + WIDTH - 4}" y="{y(roof) + 14:.1f}" text-anchor="end" font-size="10" '
+                  f'fill="#444">{roof:.0f} Gflop/s, {bandwidth:.0f} GB/s</text>']
     for run in mesh["orders"]:
         for kernel, shape in (("iteration", "circle"), ("assembly", "square")):
             measured = run[kernel]

@@ -6,7 +6,7 @@ import zlib
 import meshio
 import numpy
 
-SIZE = 640        # pixels of a panel's side
+SIZE = 640  # pixels of a panel's side
 OVERSAMPLING = 2  # samples along each side of a pixel
 # colours that also differ in brightness, so that they read without colour vision and in print
 RAMP = numpy.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]]) / 255.0
@@ -43,19 +43,19 @@ def read_tetrahedra(path):
     return mesh.points, next(block.data for block in mesh.cells if block.type == "tetra"), mesh.point_data
 
 
-def in_view(frames, about_y=0.5, about_x=0.25):
+def in_view(frames, size=SIZE, about_y=0.5, about_x=0.25):
     """Point sets turned towards the viewer and brought to pixels, all in one scale and place."""
     turned = [rotated(points, about_y, about_x) for points in frames]
     low = numpy.min([points.min(axis=0) for points in turned], axis=0)
     high = numpy.max([points.max(axis=0) for points in turned], axis=0)
-    side = SIZE * OVERSAMPLING
+    side = size * OVERSAMPLING
     scale = 0.92 * side / (high - low)[:2].max()
     return [(points - (low + high) / 2) * [scale, -scale, scale] + [side / 2, side / 2, 0] for points in turned]
 
 
-def drawn(pixels, faces, values, colour):
-    """A shaded surface as an image, SIZE × SIZE × 3 in [0, 1]; `colour` maps values of the points to colours."""
-    side = SIZE * OVERSAMPLING
+def drawn(pixels, faces, values, colour, size=SIZE):
+    """A shaded surface as an image, size × size × 3 in [0, 1]; `colour` maps values of the points to colours."""
+    side = size * OVERSAMPLING
     corners = pixels[faces]
     normal = numpy.cross(corners[:, 2] - corners[:, 0], corners[:, 1] - corners[:, 0])
     length = numpy.linalg.norm(normal, axis=1)
@@ -85,7 +85,7 @@ def drawn(pixels, faces, values, colour):
             nearer = hit[z[last[hit]] > depth[hit]]
             image[nearer] = paint[last[nearer]]
             depth[nearer] = z[last[nearer]]
-    return image.reshape(SIZE, OVERSAMPLING, SIZE, OVERSAMPLING, 3).mean(axis=(1, 3))
+    return image.reshape(size, OVERSAMPLING, size, OVERSAMPLING, 3).mean(axis=(1, 3))
 
 
 def write_png(path, image):
