@@ -245,6 +245,45 @@ TEST(BackwardEuler, EnergyNeverGrowsWithoutWork) {
   }
 }
 
+TEST(BackwardEuler, TheBalanceOfARigidMotionIsTheClosedForm) {
+  for (const Mass kind : {Mass::lumped, Mass::consistent}) {
+    const auto [points, body] = box({3, 2, 2}, {3, 2, 1}, MaterialModel::neo_hookean);
+    ImplicitOptions options;
+    options.mass = kind;
+    options.gravity = {1, -9, 2};
+    BackwardEuler simulator(points, body, options);
+    const Eigen::Vector3d velocity(0.3, -0.2, 0.5);
+    const Eigen::Vector3d spin(0.4, 0.1, -0.7);
+    MotionState state = simulator.state();
+    for (std::size_t v = 0; v < points.size(); ++v) {
+      Eigen::Map<Eigen::Vector3d>(state.velocities[v].data()) =
+          velocity + spin.cross(Eigen::Map<const Eigen::Vector3d>(points[v].data()));
+    }
+    simulator.set_state(state);
+
+    const RestShapes rest = rest_shapes(body.simplices, points);
+    const Eigen::MatrixXd mass = dense_mass(body, rest, index_size(points), kind);
+    const Eigen::VectorXd v = flat(state.velocities);
+    const Eigen::VectorXd p = mass * v;
+    const Balance balance = simulator.balance();
+    EXPECT_NEAR(balance.kinetic, 0.5 * v.dot(p), 1e-9 * v.dot(p));
+    EXPECT_NEAR(balance.elastic, 0.0, 1e-9);
+    // 6 m³ about the centre (1.5, 1, 0.5)
+    EXPECT_NEAR(balance.potential, -6 * test::kDensity * (1.5 * 1 - 1 * 9 + 0.5 * 2), 1e-6);
+    const Eigen::Vector3d centre(1.5, 1, 0.5);
+    const Eigen::Vector3d momentum = 6 * test::kDensity * (velocity + spin.cross(centre));
+    Eigen::Vector3d angular = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      angular += Eigen::Map<const Eigen::Vector3d>(points[i].data())
+                     .cross(p.segment<3>(static_cast<Eigen::Index>(3 * i)));
+    }
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(balance.momentum[c], momentum(c), 1e-8 * momentum.norm());
+      EXPECT_NEAR(balance.angular_momentum[c], angular(c), 1e-9 * angular.norm());
+    }
+  }
+}
+
 TEST(BackwardEuler, RestStaysRest) {
   for (const MaterialModel model : kModels) {
     const auto [points, body] = box({2, 2, 1}, {1, 1, 1}, model);
