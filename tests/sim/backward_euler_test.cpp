@@ -475,6 +475,7 @@ TEST(BackwardEuler, VerticesOfNoElementStay) {
   points.push_back({7, 7, 7});
   ImplicitOptions options = tight();
   options.gravity = {0, -9.81, 0};
+  options.forces.push_back({{{0, index_size(points) - 1}}, {0, -1, 0}});
   BackwardEuler simulator(points, body, options);
   run(simulator, 3);
   EXPECT_EQ(simulator.state().positions.back(), (Point{7, 7, 7}));

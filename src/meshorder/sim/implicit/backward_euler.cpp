@@ -78,10 +78,7 @@ struct BackwardEuler::Iterate {
 };
 
 BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, ImplicitOptions options)
-    : options_(std::move(options)),
-      tangent_(body.elasticity.tangent),
-      system_(points, body, options_.mass),
-      held_(index_size(points)) {
+    : options_(std::move(options)), tangent_(body.elasticity.tangent), system_(points, body, options_.mass) {
   const Index n = index_size(points);
   check(options_, n);
   preconditioner_ = make_preconditioner(options_.preconditioner, system_.matrix(), points);
@@ -174,12 +171,6 @@ StepReport BackwardEuler::step() {
     for (std::size_t i = 0; i < iterate.step.size(); ++i) iterate.velocities[i] += iterate.step[i];
   }
   move_to(iterate.velocities);
-  if (!is_finite(moved_)) {
-    throw Error(
-        fmt::format("step {}", steps_ + 1),
-        fmt::format("the motion of vertex {} is not finite any more", largest_vertex(iterate.velocities)),
-        "a smaller time step or the projected tangent may help");
-  }
   std::swap(positions_, moved_);
   std::swap(velocities_, iterate.velocities);
   ++steps_;

@@ -6,13 +6,11 @@
 namespace meshorder {
 
 void HeldVertices::clear() {
-  for (const Index v : vertices_) held_[v] = 0;
   vertices_.clear();
   velocities_.clear();
 }
 
 void HeldVertices::hold(Index vertex, const Point& velocity) {
-  held_[vertex] = 1;
   vertices_.push_back(vertex);
   velocities_.push_back(velocity);
 }

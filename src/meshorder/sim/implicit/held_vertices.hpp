@@ -12,14 +12,9 @@ namespace meshorder {
 /// The vertices whose motion in a step is given, and with what velocity they move.
 class HeldVertices {
  public:
-  explicit HeldVertices(Index vertex_count) : held_(vertex_count, 0) {}
-
   void clear();
   /// Held twice, a vertex has the later velocity.
   void hold(Index vertex, const Point& velocity);
-
-  [[nodiscard]] bool holds(Index vertex) const { return held_[vertex] != 0; }
-  [[nodiscard]] std::span<const Index> vertices() const noexcept { return vertices_; }
 
   /// Gives the held vertices their velocities, in 3 doubles for each vertex. O(held).
   void set(std::span<double> velocities) const;
@@ -30,7 +25,6 @@ class HeldVertices {
   void remove_from(BlockCsr& matrix) const;
 
  private:
-  std::vector<char> held_;
   std::vector<Index> vertices_;
   std::vector<Point> velocities_;  ///< of `vertices_`
 };
