@@ -11,10 +11,10 @@ namespace {
 constexpr CostModel kZen5{
     .machine = "2-core Zen 5, 48 KB L1, 1 MB L2, 32 MB L3",
     .kernels = {{
-        {.access = 0.3708, .miss = {0, 0.521, 0.3446, 0.5053}, .jump = {0, 0, 0.3733, 0}},          // spmv
-        {.access = 0.4891, .miss = {0, 0, 1.113, 0.1352}, .jump = {0.1021, 0.4926, 6.843, 1.942}},  // element
-        {.access = 0.5155, .miss = {0, 0, 0, 4.98}, .jump = {0.6814, 1.204, 8.858, 0}},          // assembly
-        {.access = 0.4668, .miss = {0, 0, 0.3494, 0}, .jump = {0.06445, 0.2593, 3.044, 19.22}},  // springs
+        {.access = 0.1618, .miss = {0.206, 0.2589, 0.07844, 0.4239}, .jump = {0, 0, 2.657, 0}},   // spmv
+        {.access = 0.5038, .miss = {0, 0.01054, 1.415, 0}, .jump = {0.06757, 0.8356, 7.661, 0}},  // element
+        {.access = 0.7606, .miss = {0, 0, 0, 1.038}, .jump = {1.024, 0.6349, 2.869, 0}},          // assembly
+        {.access = 0.4856, .miss = {0, 0, 0.5409, 0}, .jump = {0.03403, 0.298, 7.274, 6.446}},    // springs
     }}};
 
 }  // namespace
