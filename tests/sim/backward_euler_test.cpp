@@ -586,7 +586,7 @@ TEST(BackwardEuler, RefusesWhatMakesNoSense) {
   refuses(options, "beta");
   options = {};
   options.gravity = {0, kNan, 0};
-  refuses(options, "gravity");
+  refuses(options, "gravity is nan");
   options = {};
   options.forces.push_back({{{8}}, {}});
   refuses(options, "vertex");

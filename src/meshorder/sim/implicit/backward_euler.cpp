@@ -27,16 +27,6 @@ double dot(std::span<const double> a, std::span<const double> b) {
 
 double norm(std::span<const double> a) { return std::sqrt(dot(a, a)); }
 
-/// The vertex with the largest entry; one that is not finite counts as the largest.
-Index largest_vertex(std::span<const double> a) {
-  std::size_t place = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (!std::isfinite(a[i])) return static_cast<Index>(i / 3);
-    if (std::abs(a[i]) > std::abs(a[place])) place = i;
-  }
-  return static_cast<Index>(place / 3);
-}
-
 bool is_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
@@ -56,7 +46,7 @@ void check(const ImplicitOptions& options, Index vertex_count) {
         "1 or more");
   check(options.newton_tolerance > 0.0 && options.newton_tolerance < 1.0, "Newton's tolerance",
         options.newton_tolerance, "between 0 and 1");
-  check(is_finite(options.gravity), "gravity", largest_vertex(options.gravity), "finite");
+  for (const double c : options.gravity) check(std::isfinite(c), "gravity", c, "finite");
   const auto check_selection = [&](const Selection& selection, const Point& value) {
     for (const Index v : selection.vertices) {
       check(v >= 0 && v < vertex_count, "a vertex of a force or motion", v, "one of the mesh");
@@ -78,7 +68,7 @@ struct BackwardEuler::Iterate {
 };
 
 BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, ImplicitOptions options)
-    : options_(std::move(options)), tangent_(body.elasticity.tangent), system_(points, body, options_.mass) {
+    : options_(std::move(options)), system_(points, body, options_.mass) {
   const Index n = index_size(points);
   check(options_, n);
   preconditioner_ = make_preconditioner(options_.preconditioner, system_.matrix(), points);
@@ -146,7 +136,7 @@ StepReport BackwardEuler::step() {
     const bool last = k == options_.newton_iterations;
     if (last && !newton) break;
     move_to(iterate.velocities);
-    last ? system_.compute_forces(moved_) : assemble(k, tangent_, report);
+    last ? system_.compute_forces(moved_) : assemble(k, system_.elasticity().tangent, report);
     compute_gradient(iterate);
     const double residual = norm(iterate.gradient);
     if (k == 0) at_rest = residual;
@@ -304,7 +294,8 @@ void BackwardEuler::solve(Iterate& iterate, StepReport& report) {
                  [](double g) { return -g; });
   const std::vector<double> start = iterate.step;
   SolveReport solved = solve_once(iterate, report);
-  if (solved.status == SolveStatus::negative_curvature && tangent_ != Tangent::projected) {
+  if (solved.status == SolveStatus::negative_curvature &&
+      system_.elasticity().tangent != Tangent::projected) {
     report.warnings.push_back(fmt::format(
         "the matrix is not positive definite (iteration {} of CG, largest residual at vertex {}): "
         "the step was taken with the tangent's semi-definite part",

@@ -119,7 +119,6 @@ class BackwardEuler {
   bool search_line(Iterate& iterate, StepReport& report);
 
   ImplicitOptions options_;
-  Tangent tangent_;  ///< that asked for; the system has the one it was assembled with last
   ElasticSystem system_;
   std::unique_ptr<Preconditioner> preconditioner_;
   BlockCsrOf<float> rounded_;  ///< the matrix in single precision, where CG reads that

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -63,7 +64,8 @@ ElasticSystem::ElasticSystem(std::span<const Point> points, const Body& body, Ma
 
 void ElasticSystem::assemble(std::span<const double> positions, Tangent tangent, double mass_factor,
                              double stiffness_factor, const BlockCsr* added) {
-  elasticity_.tangent = tangent;
+  // for this once: the next assembly begins from the one that the body was given
+  const Tangent given = std::exchange(elasticity_.tangent, tangent);
   const Stiffness stiffness{map_, matrix_, stiffness_factor};
   for_each_part(index_size(shares_), [&](Index part) {
     const Share& share = shares_[part];
@@ -79,6 +81,7 @@ void ElasticSystem::assemble(std::span<const double> positions, Tangent tangent,
     }
     add_elasticity(rest_, elasticity_, positions, forces_, &stiffness, share.batches, share.blocks);
   });
+  elasticity_.tangent = given;
 }
 
 void ElasticSystem::compute_forces(std::span<const double> positions) {

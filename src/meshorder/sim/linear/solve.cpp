@@ -41,17 +41,6 @@ Index first_not_finite(std::span<const double> vector) {
   return found == vector.end() ? -1 : static_cast<Index>((found - vector.begin()) / 3);
 }
 
-Index largest_vertex(std::span<const double> vector) {
-  Index vertex = -1;
-  double largest = -1.0;
-  for (std::size_t i = 0; i < vector.size(); ++i) {
-    if (std::abs(vector[i]) <= largest) continue;
-    largest = std::abs(vector[i]);
-    vertex = static_cast<Index>(i / 3);
-  }
-  return vertex;
-}
-
 template <class Value>
 class ConjugateGradients {
  public:
@@ -194,6 +183,17 @@ SolveReport checked_solve(const BlockCsrOf<Value>& matrix, const Preconditioner&
 }
 
 }  // namespace
+
+Index largest_vertex(std::span<const double> vector) {
+  Index vertex = -1;
+  double largest = -1.0;
+  for (std::size_t i = 0; i < vector.size(); ++i) {
+    if (std::abs(vector[i]) <= largest) continue;
+    largest = std::abs(vector[i]);
+    vertex = static_cast<Index>(i / 3);
+  }
+  return vertex;
+}
 
 std::string_view name(SolveStatus status) {
   switch (status) {

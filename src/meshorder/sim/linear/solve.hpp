@@ -36,6 +36,9 @@ struct SolveReport {
   Index vertex = -1;
 };
 
+/// The vertex with the largest entry of a vector of 3 doubles for each vertex; −1 where it has none. O(n).
+Index largest_vertex(std::span<const double> vector);
+
 /// Solves A x = b by preconditioned conjugate gradients (Hestenes, Stiefel 1952), A symmetric and positive
 /// definite, x the start and the result; 3 doubles for each vertex. The preconditioner must have been updated
 /// with the matrix. However it ends, x is the last iterate before that: on negative curvature the one whose
