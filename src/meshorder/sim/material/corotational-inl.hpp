@@ -107,18 +107,10 @@ struct TurnedTangent {
   }
 
   HWY_INLINE void block(int a, int b, Value (&k)[9]) const {
-    MESHORDER_UNROLL
-    for (int i = 0; i < 3; ++i) {
-      MESHORDER_UNROLL
-      for (int j = 0; j < 3; ++j) {
-        if (a == b && j < i) {
-          k[3 * i + j] = k[3 * j + i];
-          continue;
-        }
-        const Value sum = Lanes::mul_add(lambda_p[a][i], p[b][j], mu_p[b][i] * p[a][j]);
-        k[3 * i + j] = i == j ? sum + material[a][b] : sum;
-      }
-    }
+    fill_block(a == b, k, [&](int i, int j) MESHORDER_INLINE_LAMBDA {
+      const Value sum = Lanes::mul_add(lambda_p[a][i], p[b][j], mu_p[b][i] * p[a][j]);
+      return i == j ? sum + material[a][b] : sum;
+    });
   }
 };
 
@@ -160,21 +152,13 @@ struct CorotationalTangent {
         turned[i][j] = turn[i][next] * p[b][last] - turn[i][last] * p[b][next];
       }
     }
-    MESHORDER_UNROLL
-    for (int i = 0; i < 3; ++i) {
+    fill_block(a == b, k, [&](int i, int j) MESHORDER_INLINE_LAMBDA {
       const int next = (i + 1) % 3;
       const int last = (i + 2) % 3;
-      MESHORDER_UNROLL
-      for (int j = 0; j < 3; ++j) {
-        if (a == b && j < i) {
-          k[3 * i + j] = k[3 * j + i];
-          continue;
-        }
-        const Value of_turn = p[a][last] * turned[next][j] - p[a][next] * turned[last][j];
-        const Value sum = Lanes::mul_add(lambda_p[a][i], p[b][j], of_turn);
-        k[3 * i + j] = i == j ? sum + material[a][b] : sum;
-      }
-    }
+      const Value of_turn = p[a][last] * turned[next][j] - p[a][next] * turned[last][j];
+      const Value sum = Lanes::mul_add(lambda_p[a][i], p[b][j], of_turn);
+      return i == j ? sum + material[a][b] : sum;
+    });
   }
 
  private:

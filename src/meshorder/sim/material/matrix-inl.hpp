@@ -9,6 +9,10 @@
 
 #include <meshorder/sim/kernels/lanes-inl.hpp>
 
+/// For a lambda in a kernel: compiled for the kernel's instruction set, and into it.
+#undef MESHORDER_INLINE_LAMBDA
+#define MESHORDER_INLINE_LAMBDA __attribute__((always_inline)) HWY_ATTR
+
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
@@ -22,6 +26,16 @@ HWY_INLINE void cofactors(const typename Lanes::Value (&f)[3][3], typename Lanes
       cof[i][j] = f[(i + 1) % 3][(j + 1) % 3] * f[(i + 2) % 3][(j + 2) % 3] -
                   f[(i + 1) % 3][(j + 2) % 3] * f[(i + 2) % 3][(j + 1) % 3];
     }
+  }
+}
+
+/// A 3×3 block by rows: k[3i + j] = entry(i, j). Of a symmetric one what is below the diagonal is copied.
+template <class Value, class Entry>
+HWY_INLINE void fill_block(bool symmetric, Value (&k)[9], Entry entry) {
+  MESHORDER_UNROLL
+  for (int i = 0; i < 3; ++i) {
+    MESHORDER_UNROLL
+    for (int j = 0; j < 3; ++j) k[3 * i + j] = symmetric && j < i ? k[3 * j + i] : entry(i, j);
   }
 }
 

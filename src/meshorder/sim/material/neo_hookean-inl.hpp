@@ -137,18 +137,10 @@ struct NeoHookeanTangent {
   }
 
   HWY_INLINE void block(int a, int b, Value (&k)[9]) const {
-    MESHORDER_UNROLL
-    for (int i = 0; i < 3; ++i) {
-      MESHORDER_UNROLL
-      for (int j = 0; j < 3; ++j) {
-        if (a == b && j < i) {
-          k[3 * i + j] = k[3 * j + i];
-          continue;
-        }
-        const Value sum = Lanes::mul_add(weighted_p[a][i], p[b][j], weighted_q[a][i] * q[b][j]);
-        k[3 * i + j] = i == j ? sum + material[a][b] : sum;
-      }
-    }
+    fill_block(a == b, k, [&](int i, int j) MESHORDER_INLINE_LAMBDA {
+      const Value sum = Lanes::mul_add(weighted_p[a][i], p[b][j], weighted_q[a][i] * q[b][j]);
+      return i == j ? sum + material[a][b] : sum;
+    });
     if (a == b) return;
     // −[w]× has w₂ in row 0, column 1, and so on around
     MESHORDER_UNROLL

@@ -8,6 +8,7 @@
 #endif
 
 #include <meshorder/sim/material/deformation-inl.hpp>
+#include <meshorder/sim/material/matrix-inl.hpp>
 #include <meshorder/sim/material/rotation-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
@@ -76,19 +77,11 @@ struct ProjectedTangent {
         turned[i][j] = Lanes::mul_add(u[i][2], principal[2][j], turned[i][j]);
       }
     }
-    MESHORDER_UNROLL
-    for (int i = 0; i < 3; ++i) {
-      MESHORDER_UNROLL
-      for (int j = 0; j < 3; ++j) {
-        if (a == b && j < i) {
-          k[3 * i + j] = k[3 * j + i];
-          continue;
-        }
-        Value sum = turned[i][0] * u[j][0];
-        sum = Lanes::mul_add(turned[i][1], u[j][1], sum);
-        k[3 * i + j] = Lanes::mul_add(turned[i][2], u[j][2], sum);
-      }
-    }
+    fill_block(a == b, k, [&](int i, int j) MESHORDER_INLINE_LAMBDA {
+      Value sum = turned[i][0] * u[j][0];
+      sum = Lanes::mul_add(turned[i][1], u[j][1], sum);
+      return Lanes::mul_add(turned[i][2], u[j][2], sum);
+    });
   }
 
  private:

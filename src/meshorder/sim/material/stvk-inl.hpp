@@ -8,6 +8,7 @@
 #endif
 
 #include <meshorder/sim/material/deformation-inl.hpp>
+#include <meshorder/sim/material/matrix-inl.hpp>
 #include <meshorder/sim/material/projected-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
@@ -155,19 +156,11 @@ struct StvkTangent {
 
   HWY_INLINE void block(int a, int b, Value (&k)[9]) const {
     constexpr int kSymmetric[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    MESHORDER_UNROLL
-    for (int i = 0; i < 3; ++i) {
-      MESHORDER_UNROLL
-      for (int j = 0; j < 3; ++j) {
-        if (a == b && j < i) {
-          k[3 * i + j] = k[3 * j + i];
-          continue;
-        }
-        Value sum = Lanes::mul_add(lambda_p[a][i], p[b][j], mu_p[b][i] * p[a][j]);
-        sum = Lanes::mul_add(material[a][b], mu_fft[kSymmetric[3 * i + j]], sum);
-        k[3 * i + j] = i == j ? sum + geometric[a][b] : sum;
-      }
-    }
+    fill_block(a == b, k, [&](int i, int j) MESHORDER_INLINE_LAMBDA {
+      Value sum = Lanes::mul_add(lambda_p[a][i], p[b][j], mu_p[b][i] * p[a][j]);
+      sum = Lanes::mul_add(material[a][b], mu_fft[kSymmetric[3 * i + j]], sum);
+      return i == j ? sum + geometric[a][b] : sum;
+    });
   }
 };
 
