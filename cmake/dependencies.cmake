@@ -19,3 +19,10 @@ find_path(LZ4_INCLUDE_DIR lz4.h REQUIRED)
 find_library(LZ4_LIBRARY lz4 REQUIRED)
 add_library(lz4::lz4 UNKNOWN IMPORTED)
 set_target_properties(lz4::lz4 PROPERTIES IMPORTED_LOCATION ${LZ4_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${LZ4_INCLUDE_DIR})
+
+# CHOLMOD: of its modules only those under the LGPL are called
+find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+add_library(cholmod::cholmod UNKNOWN IMPORTED)
+set_target_properties(cholmod::cholmod PROPERTIES IMPORTED_LOCATION ${CHOLMOD_LIBRARY}
+                                                  INTERFACE_INCLUDE_DIRECTORIES ${CHOLMOD_INCLUDE_DIR})

@@ -14,6 +14,7 @@ packages_to_run=(
   libfmt-dev           "text"
   libhwy-dev           "SIMD chosen at run time"
   libmetis-dev         "orders by nested dissection and by parts"
+  libsuitesparse-dev   "sparse Cholesky factors of the ADMM simulator"
   libspdlog-dev        "log"
   libtbb-dev           "threads"
   nlohmann-json3-dev   "JSON results"

@@ -1,0 +1,76 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/sim/kernels/owned_batches.hpp>
+#include <meshorder/sim/kernels/simplices.hpp>
+#include <meshorder/sim/linear/sparse_matrix.hpp>
+#include <meshorder/sim/material/material.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// What the elements of a body in ADMM projective dynamics are made of: an energy U of a linear function D x
+/// of the positions, and the weight w² of its step.
+enum class LocalModel : std::uint8_t {
+  springs,  ///< on every edge: D x = x_a − x_b, U = ½k(‖D x‖ − ℓ₀)², w² = k
+  strain,  ///< linear tetrahedral strain: D x = F, U = ½kV‖F − R‖², w² = kV (Narain, Overby, Brown 2016)
+  stvk,         ///< D x = F, U = VΨ(F) of MaterialModel::stvk, w² = V times the bulk modulus
+  neo_hookean,  ///< the same of MaterialModel::neo_hookean
+  log_neo_hookean,  ///< ½μ(‖F‖² − 3) − μ log J + ½λ log² J, infinite for J ≤ 0 (Bonet, Wood 1997)
+};
+
+struct LocalLaw {
+  LocalModel model = LocalModel::strain;
+  double stiffness = 0.0;  ///< k of all springs, N/m, or of the strain, Pa, where `stiffnesses` is empty
+  std::vector<double> stiffnesses;  ///< strain: k of each simplex
+  Lame lame;                        ///< hyperelastic models: of all simplices, where the two below are empty
+  std::vector<double> mu, lambda;   ///< of each simplex
+};
+
+/// What one pass of local steps leaves between its elements and the positions; sums over elements.
+struct LocalResidual {
+  double primal = 0.0;     ///< Σ w²‖D x − z‖²
+  double magnitude = 0.0;  ///< Σ w²‖z‖², to which that compares
+};
+
+/// The local steps of all elements, with their dual variables u. Elements are taken in the order of the
+/// simplices (springs by their edges, see springs_on_edges), and vertices as they are numbered. The same bits
+/// on every run and for any number of threads.
+template <class Real>
+class LocalSteps {
+ public:
+  /// The elements of `simplices` (tetrahedra) at rest at `points`, with duals 0. Throws InvalidArgument,
+  /// which names what is wrong, for simplices that are no tetrahedra and numbers that are out of range or not
+  /// finite. O(simplices · log degree).
+  LocalSteps(const LocalLaw& law, const Simplices& simplices, std::span<const Point> points);
+
+  /// Σ Dᵀw²D on the vertices: n × n, the same for x, y and z.
+  [[nodiscard]] SparseMatrix stiffness() const;
+
+  /// For every element q = D x + u, z = argmin U(z) + ½w²‖z − q‖², u = q − z; then right_hand_side[v] =
+  /// scale · Σ Dᵀw²(z − u) at each vertex v. Both vectors have kPaddedStride numbers for each vertex (see
+  /// padded_positions); the right-hand side has `room()` vertices, of which those behind the mesh's are
+  /// scratch.
+  LocalResidual pass(std::span<const Real> positions, Real scale, std::span<Real> right_hand_side);
+
+  /// Vertices that the right-hand side has room for, at least n.
+  [[nodiscard]] Index room() const noexcept;
+
+  void reset_duals();
+  /// The duals in an order that does not depend on the number of threads, for a checkpoint.
+  [[nodiscard]] std::vector<Real> duals() const;
+  /// Throws InvalidArgument unless there are as many as `duals` returns and all are finite.
+  void set_duals(std::span<const Real> duals);
+
+  /// Σ U(D x), infinite where a law is. O(elements).
+  [[nodiscard]] double energy(std::span<const Real> positions) const;
+
+  [[nodiscard]] Offset element_count() const noexcept;
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+}  // namespace meshorder
