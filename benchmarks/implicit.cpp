@@ -59,7 +59,7 @@ struct Runner {
 
   void step() {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const mo::StepReport report = simulation.body.step();
+    const mo::StepReport report = simulation.body->step();
     assembly_ms.push_back(1e3 * report.seconds.assembly);
     solve_ms.push_back(1e3 * report.seconds.solve);
     iteration_ms.push_back(1e3 * report.seconds.solve / std::max(1, report.cg_iterations));
@@ -74,6 +74,10 @@ Runner make_runner(const std::string& name, int threads, mo::Scenario scenario, 
   return {name, threads, mo::set_up(std::move(scenario), mesh, file)};
 }
 
+const mo::ElasticSystem& system_of(const Runner& runner) {
+  return dynamic_cast<const mo::BackwardEuler&>(*runner.simulation.body).system();
+}
+
 /// Operations of forces and matrix, of a tetrahedron: counted in the source of the corotational law, its
 /// rotation's formula with it; StVK takes about as many.
 constexpr double kAssemblyOperations = 700;
@@ -81,7 +85,7 @@ constexpr double kAssemblyOperations = 700;
 /// The bytes of forces and matrix when every array passes through the processor once: what is set and then
 /// added to is written, read and written again.
 double assembly_bytes(const Runner& runner) {
-  const mo::ElasticSystem& system = runner.simulation.body.system();
+  const mo::ElasticSystem& system = system_of(runner);
   const mo::RestShapes& rest = system.rest();
   const auto tetrahedra = static_cast<double>(rest.count);
   const double map = 16 * sizeof(mo::Index);
@@ -92,12 +96,12 @@ double assembly_bytes(const Runner& runner) {
 
 /// Operations of an iteration: 18 a block, and 12 for each entry of the vectors.
 double iteration_operations(const Runner& runner) {
-  const mo::BlockCsr& matrix = runner.simulation.body.system().matrix();
+  const mo::BlockCsr& matrix = system_of(runner).matrix();
   return 18 * static_cast<double>(matrix.block_count()) + 12 * 3.0 * matrix.size();
 }
 
 double matrix_bytes(const Runner& runner) {
-  const double blocks = static_cast<double>(runner.simulation.body.system().matrix().block_count());
+  const double blocks = static_cast<double>(system_of(runner).matrix().block_count());
   const double value = runner.simulation.scenario.integrator.precision == mo::MatrixPrecision::single ? 4 : 8;
   return blocks * (9 * value + sizeof(mo::Index));
 }
@@ -112,7 +116,7 @@ nlohmann::ordered_json run(std::vector<Runner>& runners, const std::vector<doubl
   for (const Runner& runner : runners) {
     const mo::Simulation& simulation = runner.simulation;
     const double bytes =
-        static_cast<double>(simulation.body.bytes()) / static_cast<double>(simulation.tetrahedra);
+        static_cast<double>(simulation.body->bytes()) / static_cast<double>(simulation.tetrahedra);
     const double rate = 1e-6 * matrix_bytes(runner) / median(runner.iteration_ms);
     const auto reference = std::find_if(runners.begin(), runners.end(),
                                         [&](const Runner& other) { return other.threads == runner.threads; });

@@ -89,7 +89,7 @@ class Run {
       : arguments_(arguments), simulation_(simulation) {
     if (!arguments.resume.empty()) {
       Checkpoint checkpoint = read_checkpoint(arguments.resume, simulation.fingerprint);
-      simulation.body.set_state(checkpoint.state);
+      simulation.body->set_state(checkpoint.state);
       record_ = std::move(checkpoint.record);
       resumed_from_ = checkpoint.state.step;
       if (resumed_from_ > simulation.scenario.steps) {
@@ -97,12 +97,12 @@ class Run {
                     fmt::format("ask for more than {} --steps", simulation.scenario.steps));
       }
     }
-    if (record_.balances.empty()) record_.balances.push_back(simulation.body.balance());
+    if (record_.balances.empty()) record_.balances.push_back(simulation.body->balance());
     if (!arguments.checkpoint.empty()) (void)OutputFile(arguments.checkpoint);
     if (arguments.frames.empty()) return;
     frames_.emplace(simulation, arguments.frames, arguments.every);
     if (arguments.resume.empty()) {
-      frames_->write(simulation.body.state());
+      frames_->write(simulation.body->state());
     } else {
       frames_->resume_after(resumed_from_);
     }
@@ -117,12 +117,12 @@ class Run {
     for (Index step = resumed_from_ + 1; step <= last; ++step) {
       const double from = share * (step - resumed_from_ - 1);
       progress.stage(fmt::format("step {} of {}", step, last), from, from + share);
-      const StepReport report = simulation_.body.step();
-      add(report, simulation_.body.balance(), record_);
-      if (frames_ && frames_->is_due(step)) frames_->write(simulation_.body.state());
+      const StepReport report = simulation_.body->step();
+      add(report, simulation_.body->balance(), record_);
+      if (frames_ && frames_->is_due(step)) frames_->write(simulation_.body->state());
       const bool interrupted = interruption && Interruption::signal() != 0;
       if (interruption && (step == last || interrupted || step % arguments_.checkpoint_every == 0))
-        write_checkpoint({simulation_.fingerprint, simulation_.body.state(), record_}, arguments_.checkpoint);
+        write_checkpoint({simulation_.fingerprint, simulation_.body->state(), record_}, arguments_.checkpoint);
       if (interrupted && step < last) {
         progress.finish();
         throw Stopped(fmt::format("stopped after step {} of {}; --resume {} goes on from there", step, last,

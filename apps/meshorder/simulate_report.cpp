@@ -108,7 +108,7 @@ void print_summary(const Console& console, const Simulation& simulation, const M
     console.print("{:<10} {} iterations, {:.1f} a step, {} to {}", "CG", with_commas(sum.cg_iterations),
                   sum.cg_iterations / steps, least->cg_iterations, most->cg_iterations);
   }
-  console.print("{:<10} {:.1f} MB", "memory", static_cast<double>(simulation.body.bytes()) * 1e-6);
+  console.print("{:<10} {:.1f} MB", "memory", static_cast<double>(simulation.body->bytes()) * 1e-6);
   const Balance& first = record.balances.front();
   const Balance& last = record.balances.back();
   console.print("{:<10} kinetic {:.5g} → {:.5g} J, elastic {:.5g} → {:.5g} J, of gravity {:.5g} → {:.5g} J",
@@ -177,7 +177,7 @@ nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord&
           {"momentum", momentum},
           {"angular_momentum", angular_momentum},
           {"warnings", warnings},
-          {"bytes", simulation.body.bytes()},
+          {"bytes", simulation.body->bytes()},
           {"paper", scenario.paper}};
 }
 

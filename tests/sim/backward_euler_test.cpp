@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "bodies.hpp"
+#include <meshorder/base/error.hpp>
 #include <meshorder/sim/implicit/backward_euler.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
 

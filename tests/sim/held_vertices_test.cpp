@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "elastic_system.hpp"
 #include <meshorder/models/procedural.hpp>
-#include <meshorder/sim/implicit/held_vertices.hpp>
+#include <meshorder/sim/motion/held_vertices.hpp>
 
 #include <gtest/gtest.h>
 

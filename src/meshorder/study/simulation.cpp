@@ -195,7 +195,7 @@ Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const O
   const Body body = body_of(scenario, mesh, std::move(simplices));
   const ImplicitOptions options = bound(scenario, mesh, used);
   fingerprint.parameters = checksum_of(options, body);
-  BackwardEuler integrator(mesh.points, body, options);
+  auto integrator = std::make_unique<BackwardEuler>(mesh.points, body, options);
   const double setup_seconds = setup_time.seconds();
   return {std::move(scenario), std::move(mesh),  std::move(order), tetrahedra,   std::move(integrator),
           fingerprint,         std::move(notes), order_seconds,    setup_seconds};

@@ -7,6 +7,7 @@
 #include <meshorder/study/scenario.hpp>
 
 #include <cstdint>
+#include <memory>
 
 namespace meshorder {
 
@@ -26,7 +27,7 @@ struct Simulation {
   Mesh mesh;         ///< at rest, scaled and in the order that is simulated
   Reordering order;  ///< how it came from the mesh's own order
   Offset tetrahedra = 0;
-  BackwardEuler body;
+  std::unique_ptr<Integrator> body;
   Fingerprint fingerprint;
   Notes notes;               ///< what deserves a word
   double order_seconds = 0;  ///< the vertex graph, both orders, moving the mesh

@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
 #include <meshorder/base/parallel.hpp>
 #include <meshorder/base/stopwatch.hpp>
 #include <meshorder/sim/implicit/backward_euler.hpp>
@@ -27,34 +28,16 @@ double dot(std::span<const double> a, std::span<const double> b) {
 
 double norm(std::span<const double> a) { return std::sqrt(dot(a, a)); }
 
-bool is_finite(std::span<const double> values) {
-  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
-}
-
-void check(bool good, const char* name, double value, const char* remedy) {
-  if (!good) throw InvalidArgument(fmt::format("{} is {}; it must be {}", name, value, remedy));
-}
-
 void check(const ImplicitOptions& options, Index vertex_count) {
-  check(options.time_step > 0.0 && std::isfinite(options.time_step), "the time step", options.time_step,
-        "positive");
-  check(options.mass_damping >= 0.0 && std::isfinite(options.mass_damping), "Rayleigh's alpha",
-        options.mass_damping, "0 or more");
-  check(options.stiffness_damping >= 0.0 && std::isfinite(options.stiffness_damping), "Rayleigh's beta",
-        options.stiffness_damping, "0 or more");
-  check(options.newton_iterations >= 1, "the number of Newton iterations", options.newton_iterations,
-        "1 or more");
-  check(options.newton_tolerance > 0.0 && options.newton_tolerance < 1.0, "Newton's tolerance",
-        options.newton_tolerance, "between 0 and 1");
-  for (const double c : options.gravity) check(std::isfinite(c), "gravity", c, "finite");
-  const auto check_selection = [&](const Selection& selection, const Point& value) {
-    for (const Index v : selection.vertices) {
-      check(v >= 0 && v < vertex_count, "a vertex of a force or motion", v, "one of the mesh");
-    }
-    for (const double c : value) check(std::isfinite(c), "a force or velocity", c, "finite");
-  };
-  for (const VertexForce& force : options.forces) check_selection(force, force.newtons);
-  for (const PrescribedMotion& motion : options.prescribed) check_selection(motion, motion.velocity);
+  check(static_cast<const MotionOptions&>(options), vertex_count);
+  require(options.mass_damping >= 0.0 && std::isfinite(options.mass_damping), "Rayleigh's alpha",
+          options.mass_damping, "0 or more");
+  require(options.stiffness_damping >= 0.0 && std::isfinite(options.stiffness_damping), "Rayleigh's beta",
+          options.stiffness_damping, "0 or more");
+  require(options.newton_iterations >= 1, "the number of Newton iterations", options.newton_iterations,
+          "1 or more");
+  require(options.newton_tolerance > 0.0 && options.newton_tolerance < 1.0, "Newton's tolerance",
+          options.newton_tolerance, "between 0 and 1");
 }
 
 }  // namespace
@@ -72,9 +55,6 @@ BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, Im
   const Index n = index_size(points);
   check(options_, n);
   preconditioner_ = make_preconditioner(options_.preconditioner, system_.matrix(), points);
-  for (Index v = 0; v < n; ++v) {
-    if (!(system_.mass().vertices[v] > 0.0)) unused_.push_back(v);
-  }
   positions_ = padded_positions(points);
   moved_ = positions_;
   velocities_.assign(Offset{3} * n, 0.0);
@@ -86,7 +66,7 @@ BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, Im
   }
   // what a preconditioner keeps of the first numbers that it sees must not depend on where a run is resumed
   StepReport report;
-  collect_loads();
+  collect_loads(options_, steps_, system_.mass().vertices, loads_, held_);
   assemble(0, system_.elasticity().tangent, report);
   preconditioner_->update(system_.matrix());
 }
@@ -105,27 +85,17 @@ MotionState BackwardEuler::state() const {
 }
 
 void BackwardEuler::set_state(const MotionState& state) {
-  const auto n = static_cast<std::size_t>(system_.vertex_count());
-  if (state.positions.size() != n || state.velocities.size() != n || state.step < 0) {
-    throw InvalidArgument("a state of " + std::to_string(state.positions.size()) +
-                          " vertices for a body of " + std::to_string(n));
-  }
-  for (std::size_t v = 0; v < n; ++v) {
-    if (!is_finite(state.positions[v]) || !is_finite(state.velocities[v])) {
-      throw InvalidArgument("the state of vertex " + std::to_string(v) + " is not finite");
-    }
-  }
+  check(state, system_.vertex_count());
   steps_ = state.step;
   positions_ = padded_positions(state.positions);
-  for (std::size_t v = 0; v < n; ++v) {
-    std::copy_n(state.velocities[v].begin(), 3, velocities_.begin() + static_cast<Offset>(3 * v));
-  }
+  for (Index v = 0; v < system_.vertex_count(); ++v)
+    std::copy_n(state.velocities[v].begin(), 3, velocities_.begin() + Offset{3} * v);
 }
 
 StepReport BackwardEuler::step() {
   const Stopwatch stopwatch;
   StepReport report;
-  collect_loads();
+  collect_loads(options_, steps_, system_.mass().vertices, loads_, held_);
   const bool newton = options_.newton_iterations > 1;
   Iterate iterate;
   iterate.velocities.assign(velocities_.size(), 0.0);
@@ -166,33 +136,6 @@ StepReport BackwardEuler::step() {
   ++steps_;
   report.seconds.total = stopwatch.seconds();
   return report;
-}
-
-/// f_ext and what is held in the step that begins now.
-void BackwardEuler::collect_loads() {
-  const double h = options_.time_step;
-  // bounds that are meant to be a multiple of h may be off by rounding
-  const auto acts = [&](const Selection& selection) {
-    const double now = h * steps_ + 1e-9 * h;
-    return selection.from <= now && now < selection.until;
-  };
-  for (Index v = 0; v < system_.vertex_count(); ++v) {
-    for (int c = 0; c < 3; ++c) {
-      loads_[Offset{3} * v + c] = system_.mass().vertices[v] * options_.gravity[c];
-    }
-  }
-  for (const VertexForce& force : options_.forces) {
-    if (!acts(force)) continue;
-    for (const Index v : force.vertices) {
-      for (int c = 0; c < 3; ++c) loads_[Offset{3} * v + c] += force.newtons[c];
-    }
-  }
-  held_.clear();
-  for (const Index v : unused_) held_.hold(v, Point{});
-  for (const PrescribedMotion& motion : options_.prescribed) {
-    if (!acts(motion)) continue;
-    for (const Index v : motion.vertices) held_.hold(v, motion.velocity);
-  }
 }
 
 /// moved = xₙ + h v
@@ -344,22 +287,10 @@ bool BackwardEuler::search_line(Iterate& iterate, StepReport& report) {
 }
 
 Balance BackwardEuler::balance() const {
-  Balance balance;
   std::vector<double> momenta(velocities_.size());
   multiply(system_.mass(), system_.matrix(), velocities_, momenta);
-  balance.kinetic = 0.5 * dot(velocities_, momenta);
+  Balance balance = balance_of(system_.mass().vertices, positions_, velocities_, momenta, options_.gravity);
   balance.elastic = elastic_energy(system_.rest(), system_.elasticity(), positions_);
-  for (Offset v = 0; v < system_.vertex_count(); ++v) {
-    const double* const x = positions_.data() + kPaddedStride * v;
-    const double* const p = momenta.data() + 3 * v;
-    for (int c = 0; c < 3; ++c) {
-      const int d = (c + 1) % 3;
-      const int e = (c + 2) % 3;
-      balance.potential -= system_.mass().vertices[v] * options_.gravity[c] * x[c];
-      balance.momentum[c] += p[c];
-      balance.angular_momentum[c] += x[d] * p[e] - x[e] * p[d];
-    }
-  }
   return balance;
 }
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <meshorder/base/point.hpp>
-#include <meshorder/sim/implicit/mass.hpp>
 #include <meshorder/sim/kernels/assembly.hpp>
 #include <meshorder/sim/material/elasticity.hpp>
+#include <meshorder/sim/motion/mass.hpp>
 
 #include <span>
 #include <vector>

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/parallel.hpp>
-#include <meshorder/sim/implicit/mass.hpp>
+#include <meshorder/sim/motion/mass.hpp>
 
 #include <algorithm>
 

@@ -20,6 +20,9 @@ class HeldVertices {
   void set(std::span<double> velocities) const;
   /// Sets their entries to 0. O(held).
   void set_zero(std::span<double> vector) const;
+  /// Those held, in the order in which they were given.
+  [[nodiscard]] std::span<const Index> vertices() const noexcept { return vertices_; }
+
   /// Takes their rows and columns out of a symmetric matrix: zero but for the diagonal, a multiple of the
   /// identity. With zeros on the right-hand side they take no part. O(their blocks · log row length).
   void remove_from(BlockCsr& matrix) const;

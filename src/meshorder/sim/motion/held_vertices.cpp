@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/sim/implicit/held_vertices.hpp>
+#include <meshorder/sim/motion/held_vertices.hpp>
 
 #include <algorithm>
 
