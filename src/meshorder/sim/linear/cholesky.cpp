@@ -1,51 +1,114 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/error.hpp>
+#include <meshorder/base/parallel.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
 #include <meshorder/sim/linear/cholesky.hpp>
+#include <meshorder/sim/linear/panel_factor.hpp>
 
-#include <Eigen/SparseCholesky>
-
-#include <numeric>
+#include <algorithm>
+#include <mutex>
 
 namespace meshorder {
+
+template <class Real>
+struct CholeskyFactor<Real>::Factor {
+  PanelFactor<Real> panels;
+  Offset entries = 0;
+
+  /// What a solve needs besides. Solves at the same time take one each.
+  struct Workspace {
+    AlignedVector<Real> x;      ///< of a solve
+    std::vector<Index> marked;  ///< by the last search that met each panel
+    Index mark = 0;
+  };
+  mutable std::mutex mutex;
+  mutable std::vector<std::unique_ptr<Workspace>> idle;
+};
+
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Offset>;
+/// Below so much cost a task's children are not worth other threads.
+constexpr double kLeastShared = 20'000;
 
-Matrix to_eigen(const SparseMatrix& matrix) {
-  Matrix result(matrix.size(), matrix.size());
-  std::vector<Eigen::Triplet<double, Offset>> entries;
-  for (Index row = 0; row < matrix.size(); ++row) {
-    for (Offset k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k)
-      entries.emplace_back(row, matrix.columns[k], matrix.values[k]);
-  }
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
+template <class Real>
+Real* at(Real* x, Index place) {
+  return x + Offset{kPaddedStride} * place;
 }
+
+/// One solve: the tree of tasks from the leaves to the root, and back.
+template <class Real>
+class Solve {
+ public:
+  /// All of it.
+  Solve(const PanelFactor<Real>& factor, std::span<const Real> b, std::span<Real> x, Real* work)
+      : factor_(factor), b_(b.data()), x_(x.data()), work_(work) {}
+
+  void run() {
+    const Index root = index_size(factor_.tasks) - 1;
+    forwards(root);
+    backwards(root);
+  }
+
+ private:
+  const PanelFactor<Real>& factor_;
+  const Real* b_;
+  Real* x_;
+  Real* work_;
+
+  template <class Work>
+  void for_children(const PanelTask& task, Work work) {
+    if (task.children.size() > 1 && thread_count() > 1) {
+      tbb::parallel_for(std::size_t{0}, task.children.size(), [&](std::size_t k) { work(task.children[k]); });
+    } else {
+      for (const Index child : task.children) work(child);
+    }
+  }
+
+  void forwards(Index number) {
+    const PanelTask& task = factor_.tasks[number];
+    for_children(task, [this](Index child) { forwards(child); });
+    for (Index j = task.first_column; j < task.end_column; ++j) {
+      std::copy_n(at(b_, factor_.vertex_of_column[j]), kPaddedStride, at(work_, j));
+    }
+    std::fill(at(work_, task.first_slot), at(work_, task.end_slot), Real{0});
+    for (const Index child : task.children) {
+      for (Index slot = factor_.tasks[child].first_slot; slot < factor_.tasks[child].end_slot; ++slot) {
+        const Real* const from = at(work_, slot);
+        Real* const to = at(work_, factor_.above_slots[slot - factor_.size()]);
+        for (Index c = 0; c < kPaddedStride; ++c) to[c] += from[c];
+      }
+    }
+    sweep_forwards(factor_.view(), {nullptr, task.first_panel, task.end_panel - task.first_panel}, work_);
+  }
+
+  void backwards(Index number) {
+    const PanelTask& task = factor_.tasks[number];
+    for (Index slot = task.first_slot; slot < task.end_slot; ++slot) {
+      std::copy_n(at(work_, factor_.above_slots[slot - factor_.size()]), kPaddedStride, at(work_, slot));
+    }
+    sweep_backwards(factor_.view(), {nullptr, task.first_panel, task.end_panel - task.first_panel}, work_);
+    for (Index j = task.first_column; j < task.end_column; ++j) {
+      std::copy_n(at(work_, j), kPaddedStride, at(x_, factor_.vertex_of_column[j]));
+    }
+    for_children(task, [this](Index child) { backwards(child); });
+  }
+};
 
 }  // namespace
 
 template <class Real>
-struct CholeskyFactor<Real>::Factor {
-  Index size = 0;
-  Eigen::SimplicialLLT<Matrix> llt;
-};
-
-template <class Real>
 CholeskyFactor<Real>::CholeskyFactor(const SparseMatrix& matrix) {
   const auto factor = std::make_shared<Factor>();
-  factor->size = matrix.size();
-  factor->llt.compute(to_eigen(matrix));
-  if (factor->llt.info() != Eigen::Success) throw InvalidArgument("the matrix is not positive definite");
+  const Ldl ldl = factor_ldl(matrix);
+  factor->panels = make_panel_factor<Real>(ldl);
+  factor->entries = ldl.offsets.back() + ldl.size();
   factor_ = factor;
 }
 
 template <class Real>
 void CholeskyFactor<Real>::solve(std::span<const Real> b, std::span<Real> x) const {
-  using Vectors = Eigen::Matrix<Real, Eigen::Dynamic, kPaddedStride, Eigen::RowMajor>;
-  const Eigen::Map<const Vectors> right(b.data(), size(), kPaddedStride);
-  const Eigen::MatrixXd solution = factor_->llt.solve(right.template cast<double>().eval());
-  Eigen::Map<Vectors>(x.data(), size(), kPaddedStride) = solution.cast<Real>();
+  AlignedVector<Real> work(std::size_t{kPaddedStride} * factor_->panels.places());
+  Solve<Real>(factor_->panels, b, x, work.data()).run();
 }
 
 template <class Real>
@@ -66,17 +129,17 @@ void CholeskyFactor<Real>::solve(const Reach& reach, std::span<const Real> b, st
 
 template <class Real>
 Index CholeskyFactor<Real>::size() const noexcept {
-  return factor_->size;
+  return factor_->panels.size();
 }
 
 template <class Real>
 Offset CholeskyFactor<Real>::entries() const noexcept {
-  return factor_->llt.matrixL().nestedExpression().nonZeros();
+  return factor_->entries;
 }
 
 template <class Real>
 std::size_t CholeskyFactor<Real>::bytes() const {
-  return static_cast<std::size_t>(entries()) * (sizeof(double) + sizeof(Offset));
+  return factor_->panels.bytes();
 }
 
 template class CholeskyFactor<double>;
