@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <meshorder/sim/admm/local_elements.hpp>
 #include <meshorder/sim/kernels/owned_batches.hpp>
 #include <meshorder/sim/kernels/simplices.hpp>
 #include <meshorder/sim/linear/sparse_matrix.hpp>
@@ -71,6 +72,21 @@ class LocalSteps {
   [[nodiscard]] Offset element_count() const noexcept;
   /// Memory held.
   [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  /// Where the duals of copy c of a batch begin: batches that several shares compute have one for each.
+  [[nodiscard]] Offset duals_of(Offset copy) const noexcept {
+    return copy * elements_.rows() * kLocalBatch<Real>;
+  }
+
+  LocalModel model_;
+  Index vertex_count_;
+  LocalElements<Real> elements_;
+  std::vector<OwnedBatches> shares_;
+  std::vector<Offset> first_copies_;  ///< of each share, whose copies follow one another
+  std::vector<Offset> copies_;        ///< of each batch: one of its copies
+  AlignedVector<Real> duals_;
+  std::vector<double> residuals_;  ///< of each copy: primal and magnitude
 };
 
 }  // namespace meshorder

@@ -23,43 +23,50 @@ namespace meshorder::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// One simplex at a time: the scalar reference.
-struct OneLane {
-  using Value = double;
+template <class Real>
+struct OneLaneOf {
+  using Number = Real;
+  using Value = Real;
   static constexpr Index kCount = 1;
 
-  static HWY_INLINE double set(double value) { return value; }
-  static HWY_INLINE double load(const double* from) { return *from; }
-  static HWY_INLINE void store(double value, double* to) { *to = value; }
-  static HWY_INLINE double mul_add(double a, double b, double c) { return a * b + c; }
-  static HWY_INLINE double square_root(double a) { return std::sqrt(a); }
+  static HWY_INLINE Value set(double value) { return static_cast<Real>(value); }
+  static HWY_INLINE Value load(const Real* from) { return *from; }
+  static HWY_INLINE void store(Value value, Real* to) { *to = value; }
+  static HWY_INLINE Value mul_add(Value a, Value b, Value c) { return a * b + c; }
+  static HWY_INLINE Value square_root(Value a) { return std::sqrt(a); }
   /// where > 0 ? value : 0
-  static HWY_INLINE double if_positive(double where, double value) { return where > 0.0 ? value : 0.0; }
+  static HWY_INLINE Value if_positive(Value where, Value value) { return where > 0 ? value : 0; }
   /// where > 0 ? yes : no
-  static HWY_INLINE double choose(double where, double yes, double no) { return where > 0.0 ? yes : no; }
-  static HWY_INLINE double max(double a, double b) { return a > b ? a : b; }
-  static HWY_INLINE double abs(double a) { return std::abs(a); }
-  static HWY_INLINE double with_sign_of(double value, double sign) { return std::copysign(value, sign); }
-  static HWY_INLINE double log(double a) { return std::log(a); }
+  static HWY_INLINE Value choose(Value where, Value yes, Value no) { return where > 0 ? yes : no; }
+  static HWY_INLINE Value max(Value a, Value b) { return a > b ? a : b; }
+  static HWY_INLINE Value abs(Value a) { return std::abs(a); }
+  static HWY_INLINE Value with_sign_of(Value value, Value sign) { return std::copysign(value, sign); }
+  static HWY_INLINE Value log(Value a) { return std::log(a); }
   /// Whether every lane is; not when one is NaN.
-  static HWY_INLINE bool all_at_most(double a, double bound) { return a <= bound; }
+  static HWY_INLINE bool all_at_most(Value a, double bound) { return a <= static_cast<Real>(bound); }
+  /// The sum of the lanes.
+  static HWY_INLINE Real sum(Value a) { return a; }
   /// Lane l to to[l · stride], the kCount rows side by side.
-  static HWY_INLINE void store_transposed(const double* rows, double* to, Offset /*stride*/) { *to = *rows; }
+  static HWY_INLINE void store_transposed(const Value* rows, Real* to, Offset /*stride*/) { *to = *rows; }
   /// p = the three coordinates of vertex v[0]
-  static HWY_INLINE void gather(const double* positions, const Index* v, double (&p)[3]) {
+  static HWY_INLINE void gather(const Real* positions, const Index* v, Value (&p)[3]) {
     MESHORDER_UNROLL
     for (int c = 0; c < 3; ++c) p[c] = positions[Offset{kPaddedStride} * v[0] + c];
   }
-  static HWY_INLINE void scatter_add(const double (&f)[3], const Index* v, double* forces) {
+  static HWY_INLINE void scatter_add(const Value (&f)[3], const Index* v, Real* forces) {
     MESHORDER_UNROLL
     for (int c = 0; c < 3; ++c) forces[Offset{kPaddedStride} * v[0] + c] += f[c];
   }
 };
+
+using OneLane = OneLaneOf<double>;
 
 #if HWY_TARGET == HWY_SCALAR
 using ManyLanes = OneLane;
 #else
 /// As many simplices at a time as a register holds, at most a batch.
 struct ManyLanes {
+  using Number = double;
   using Tag = hn::CappedTag<double, kBatch>;
   using Value = hn::Vec<Tag>;
   static constexpr Index kCount = static_cast<Index>(MaxLanes(Tag()));
@@ -87,6 +94,7 @@ struct ManyLanes {
   static HWY_INLINE bool all_at_most(Value a, double bound) {
     return hn::AllTrue(Tag(), hn::Le(a, set(bound)));
   }
+  static HWY_INLINE double sum(Value a) { return hn::GetLane(hn::SumOfLanes(Tag(), a)); }
 
   static HWY_INLINE void store_transposed(const Value* rows, double* to, Offset stride) {
     const Tag d;

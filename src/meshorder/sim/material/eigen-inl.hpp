@@ -9,6 +9,8 @@
 
 #include <meshorder/sim/kernels/lanes-inl.hpp>
 
+#include <type_traits>
+
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
@@ -18,13 +20,14 @@ template <int N, class Lanes>
 HWY_INLINE void rotate_plane(int p, int q, typename Lanes::Value (&a)[N][N],
                              typename Lanes::Value (&vectors)[N][N]) {
   using Value = typename Lanes::Value;
+  constexpr double kSmallest = std::is_same_v<typename Lanes::Number, float> ? 1e-37 : 1e-300;
   const Value one = Lanes::set(1.0);
   const Value twice = a[p][q] + a[p][q];
   const Value difference = a[q][q] - a[p][p];
   // the smaller root of t² + t (a_qq − a_pp) / a_pq − 1 = 0; 0 where there is nothing to do
   const Value root = Lanes::square_root(Lanes::mul_add(difference, difference, twice * twice));
   const Value t = Lanes::with_sign_of(one, difference) * twice /
-                  Lanes::max(Lanes::abs(difference) + root, Lanes::set(1e-300));
+                  Lanes::max(Lanes::abs(difference) + root, Lanes::set(kSmallest));
   const Value c = one / Lanes::square_root(Lanes::mul_add(t, t, one));
   const Value s = t * c;
   a[p][p] = a[p][p] - t * a[p][q];
@@ -54,7 +57,7 @@ HWY_INLINE void symmetric_eigen(typename Lanes::Value (&a)[N][N], typename Lanes
   using Value = typename Lanes::Value;
   // convergence is quadratic: three or four sweeps as a rule, and twice as many never seen
   constexpr int kSweeps = 10;
-  constexpr double kNegligible = 1e-34;
+  constexpr double kNegligible = std::is_same_v<typename Lanes::Number, float> ? 1e-16 : 1e-34;
   MESHORDER_UNROLL
   for (int i = 0; i < N; ++i) {
     MESHORDER_UNROLL

@@ -10,6 +10,8 @@
 #include <meshorder/sim/material/eigen-inl.hpp>
 #include <meshorder/sim/material/matrix-inl.hpp>
 
+#include <type_traits>
+
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
@@ -19,6 +21,7 @@ template <class Lanes>
 HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3],
                                            typename Lanes::Value (&r)[3][3]) {
   using Value = typename Lanes::Value;
+  constexpr double kSmallest = std::is_same_v<typename Lanes::Number, float> ? 1e-36 : 1e-290;
   const Value zero = Lanes::set(0.0);
   const Value one = Lanes::set(1.0);
   // at most 1 in size, so that no square overflows or vanishes: R does not see the scale
@@ -29,7 +32,7 @@ HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3
     largest = Lanes::max(largest, Lanes::abs(f[k / 3][k % 3]));
     not_finite = not_finite + zero * f[k / 3][k % 3];
   }
-  const Value scale = one / Lanes::max(largest, Lanes::set(1e-290));
+  const Value scale = one / Lanes::max(largest, Lanes::set(kSmallest));
   Value m[3][3];
   MESHORDER_UNROLL
   for (int k = 0; k < 9; ++k) m[k / 3][k % 3] = scale * f[k / 3][k % 3];
@@ -77,48 +80,64 @@ HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3
   }
 }
 
+/// What the formula below finds on its way.
+template <class Lanes>
+struct RotationTerms {
+  typename Lanes::Value cof[3][3];     ///< cof F
+  typename Lanes::Value squares;       ///< ‖F‖²
+  typename Lanes::Value determinant;   ///< det F
+  typename Lanes::Value trace;         ///< of RᵀF: the sum of the signed singular values
+};
+
 /// The rotations closest to matrices that are far from having several, by a formula; false, and nothing
 /// usable, where one of them is not.
 ///
 /// The largest eigenvalue of N is λ = tr S, the largest root of λ⁴ − 2aλ² − 8dλ + a² − 4b with a = ‖F‖²,
-/// b = ‖cof F‖² and d = det F. Newton's method falls to it from √3 ‖F‖ without passing it, since all roots
+/// b = ‖cof F‖² and d = det F. Halley's method falls to it from √3 ‖F‖ without passing it, since all roots
 /// are real. R = ∂λ/∂F then follows from the root's dependence on the coefficients:
 /// R = ((λ² + a) F + 2λ cof F − 2 F FᵀF) / (λ³ − aλ − 2d), whose denominator is 2 Π (σᵢ + σⱼ).
 template <class Lanes>
 HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3],
-                                     typename Lanes::Value (&r)[3][3]) {
+                                     typename Lanes::Value (&r)[3][3], RotationTerms<Lanes>& terms) {
   using Value = typename Lanes::Value;
+  constexpr bool kFloat = std::is_same_v<typename Lanes::Number, float>;
   constexpr int kSteps = 10;
   // an error of that size before a step is one of rounding after it
-  constexpr double kNear = 1e-9;
+  constexpr double kNear = kFloat ? 1e-3 : 1e-6;
   // rounding errors grow by about the square of this ratio of λ³ to the denominator, 27/16 at rest
-  constexpr double kLargestRatio = 12.0;
-  // no fourth power underflows
-  constexpr double kSmallest = 1e-60;
-  Value cof[3][3];
-  cofactors<Lanes>(f, cof);
+  constexpr double kLargestRatio = kFloat ? 6.0 : 12.0;
+  // no seventh power underflows
+  constexpr double kSmallest = kFloat ? 1e-4 : 1e-40;
+  const auto& cof = terms.cof;
+  cofactors<Lanes>(f, terms.cof);
   const Value a = contract<Lanes>(f, f);
   const Value b = contract<Lanes>(cof, cof);
   Value d = f[0][0] * cof[0][0];
   d = Lanes::mul_add(f[0][1], cof[0][1], d);
   d = Lanes::mul_add(f[0][2], cof[0][2], d);
   const Value zero = Lanes::set(0.0);
-  const Value four = Lanes::set(4.0);
-  const Value constant = Lanes::mul_add(a, a, zero - four * b);
-  const Value eight_d = Lanes::set(8.0) * d;
+  const Value two_a = a + a;
+  const Value two_d = d + d;
+  const Value constant = Lanes::mul_add(a, a, Lanes::set(-4.0) * b);
+  const Value minus_eight_d = Lanes::set(-4.0) * two_d;
   Value root = Lanes::square_root(Lanes::set(3.0) * a);
   for (int step = 0;; ++step) {
+    // the polynomial, a quarter of its first derivative and an eighth of its second
     const Value square = root * root;
-    const Value value =
-        Lanes::mul_add(square - (a + a), square, Lanes::mul_add(zero - eight_d, root, constant));
-    const Value slope = Lanes::mul_add(four * root, square - a, zero - eight_d);
-    const Value change = value / slope;
+    const Value value = Lanes::mul_add(square - two_a, square, Lanes::mul_add(minus_eight_d, root, constant));
+    const Value slope = Lanes::mul_add(root, square - a, zero - two_d);
+    const Value bend = Lanes::mul_add(Lanes::set(1.5), square, Lanes::set(-0.5) * a);
+    const Value change =
+        value * slope / (Lanes::set(4.0) * slope * slope - value * bend);
     root = root - change;
     if (Lanes::all_at_most(Lanes::abs(change) - Lanes::set(kNear) * root, 0.0)) break;
     if (step == kSteps) return false;
   }
+  terms.squares = a;
+  terms.determinant = d;
+  terms.trace = root;
   const Value square = root * root;
-  const Value denominator = Lanes::mul_add(root, square - a, zero - (d + d));
+  const Value denominator = Lanes::mul_add(root, square - a, zero - two_d);
   if (!Lanes::all_at_most(root * square - Lanes::set(kLargestRatio) * denominator, 0.0) ||
       !Lanes::all_at_most(Lanes::set(kSmallest) - root, 0.0)) {
     return false;
@@ -154,7 +173,8 @@ HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3],
 /// The rotations closest to 3×3 matrices, which maximise R:F over det R = 1: see closest_rotation.
 template <class Lanes>
 HWY_INLINE void closest_rotations(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&r)[3][3]) {
-  if (rotations_by_formula<Lanes>(f, r)) return;
+  RotationTerms<Lanes> terms;
+  if (rotations_by_formula<Lanes>(f, r, terms)) return;
   // copies, so that the rest of the kernel may keep its own in registers
   typename Lanes::Value from[3][3];
   typename Lanes::Value to[3][3];

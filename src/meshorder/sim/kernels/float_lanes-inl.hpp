@@ -1,0 +1,119 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// Included once for each instruction set, as lanes-inl.hpp is.
+#if defined(MESHORDER_FLOAT_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MESHORDER_FLOAT_LANES_INL
+#undef MESHORDER_FLOAT_LANES_INL
+#else
+#define MESHORDER_FLOAT_LANES_INL
+#endif
+
+#include <meshorder/sim/kernels/lanes-inl.hpp>
+
+#include <type_traits>
+
+HWY_BEFORE_NAMESPACE();
+namespace meshorder::HWY_NAMESPACE {
+
+#if HWY_TARGET == HWY_SCALAR
+using ManyFloatLanes = OneLaneOf<float>;
+#else
+/// As many simplices at a time as a register holds floats, at most two batches: see ManyLanes.
+struct ManyFloatLanes {
+  using Number = float;
+  using Tag = hn::CappedTag<float, 2 * kBatch>;
+  using Value = hn::Vec<Tag>;
+  static constexpr Index kCount = static_cast<Index>(MaxLanes(Tag()));
+
+  static HWY_INLINE Value set(double value) { return hn::Set(Tag(), static_cast<float>(value)); }
+  static HWY_INLINE Value load(const float* from) { return hn::Load(Tag(), from); }
+  static HWY_INLINE void store(Value value, float* to) { hn::Store(value, Tag(), to); }
+  static HWY_INLINE Value mul_add(Value a, Value b, Value c) { return hn::MulAdd(a, b, c); }
+  static HWY_INLINE Value square_root(Value a) { return hn::Sqrt(a); }
+  static HWY_INLINE Value if_positive(Value where, Value value) {
+    return hn::IfThenElseZero(hn::Gt(where, hn::Zero(Tag())), value);
+  }
+  static HWY_INLINE Value choose(Value where, Value yes, Value no) {
+    return hn::IfThenElse(hn::Gt(where, hn::Zero(Tag())), yes, no);
+  }
+  static HWY_INLINE Value max(Value a, Value b) { return hn::Max(a, b); }
+  static HWY_INLINE Value abs(Value a) { return hn::Abs(a); }
+  static HWY_INLINE Value with_sign_of(Value value, Value sign) { return hn::CopySign(value, sign); }
+  static HWY_INLINE Value log(Value a) {
+    alignas(64) float lanes[kCount];
+    store(a, lanes);
+    for (float& lane : lanes) lane = std::log(lane);
+    return load(lanes);
+  }
+  static HWY_INLINE bool all_at_most(Value a, double bound) {
+    return hn::AllTrue(Tag(), hn::Le(a, set(bound)));
+  }
+  static HWY_INLINE float sum(Value a) { return hn::GetLane(hn::SumOfLanes(Tag(), a)); }
+
+  static HWY_INLINE void gather(const float* positions, const Index* v, Value (&p)[3]) {
+    const Tag d;
+    const hn::Repartition<double, Tag> pairs;
+    // a vertex is a block of four floats: blocks of vertices k, k + 4, … are transposed side by side
+    const Value xy01 = hn::InterleaveLower(d, load_fourth(d, positions, v), load_fourth(d, positions, v + 1));
+    const Value zw01 = hn::InterleaveUpper(d, load_fourth(d, positions, v), load_fourth(d, positions, v + 1));
+    const Value xy23 =
+        hn::InterleaveLower(d, load_fourth(d, positions, v + 2), load_fourth(d, positions, v + 3));
+    const Value zw23 =
+        hn::InterleaveUpper(d, load_fourth(d, positions, v + 2), load_fourth(d, positions, v + 3));
+    p[0] = hn::BitCast(d, hn::InterleaveLower(pairs, hn::BitCast(pairs, xy01), hn::BitCast(pairs, xy23)));
+    p[1] = hn::BitCast(d, hn::InterleaveUpper(pairs, hn::BitCast(pairs, xy01), hn::BitCast(pairs, xy23)));
+    p[2] = hn::BitCast(d, hn::InterleaveLower(pairs, hn::BitCast(pairs, zw01), hn::BitCast(pairs, zw23)));
+  }
+
+  /// The way back. A vertex may occur several times among v[0] … v[kCount − 1].
+  static HWY_INLINE void scatter_add(const Value (&f)[3], const Index* v, float* forces) {
+    const Tag d;
+    const hn::Repartition<double, Tag> pairs;
+    const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(d, f[0], f[1]));
+    const auto xy23 = hn::BitCast(pairs, hn::InterleaveUpper(d, f[0], f[1]));
+    const auto zw01 = hn::BitCast(pairs, hn::InterleaveLower(d, f[2], hn::Zero(d)));
+    const auto zw23 = hn::BitCast(pairs, hn::InterleaveUpper(d, f[2], hn::Zero(d)));
+    add_fourth(d, hn::BitCast(d, hn::InterleaveLower(pairs, xy01, zw01)), v, forces);
+    add_fourth(d, hn::BitCast(d, hn::InterleaveUpper(pairs, xy01, zw01)), v + 1, forces);
+    add_fourth(d, hn::BitCast(d, hn::InterleaveLower(pairs, xy23, zw23)), v + 2, forces);
+    add_fourth(d, hn::BitCast(d, hn::InterleaveUpper(pairs, xy23, zw23)), v + 3, forces);
+  }
+
+ private:
+  template <class T>
+  static HWY_INLINE T* at(T* vectors, Index v) {
+    return vectors + Offset{kPaddedStride} * v;
+  }
+
+  /// The padded coordinates of v[0], v[4] … side by side.
+  template <class D>
+  static HWY_INLINE hn::Vec<D> load_fourth(D d, const float* positions, const Index* v) {
+    if constexpr (MaxLanes(D()) <= kPaddedStride) {
+      return hn::Load(d, at(positions, v[0]));
+    } else {
+      const hn::Half<D> half;
+      return hn::Combine(d, load_fourth(half, positions, v + MaxLanes(half)),
+                         load_fourth(half, positions, v));
+    }
+  }
+
+  template <class D>
+  static HWY_INLINE void add_fourth(D d, hn::Vec<D> vectors, const Index* v, float* forces) {
+    if constexpr (MaxLanes(D()) <= kPaddedStride) {
+      hn::Store(hn::Add(hn::Load(d, at(forces, v[0])), vectors), d, at(forces, v[0]));
+    } else {
+      const hn::Half<D> half;
+      add_fourth(half, hn::LowerHalf(half, vectors), v, forces);
+      add_fourth(half, hn::UpperHalf(half, vectors), v + MaxLanes(half), forces);
+    }
+  }
+};
+#endif
+
+/// The lanes for numbers of that type.
+template <class Real>
+using ManyLanesOf = std::conditional_t<std::is_same_v<Real, float>, ManyFloatLanes, ManyLanes>;
+
+}  // namespace meshorder::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
