@@ -33,6 +33,8 @@ class Builder {
       factor_.tasks.back().end_column = factor_.size();
       factor_.tasks.back().end_panel = index_size(factor_.panels);
     }
+    factor_.rows.resize(rows_);
+    factor_.values.resize(values_);
     for (Index task = 0; task < tasks.count(); ++task) {
       for (const Index s : tasks.supernodes[tasks.count() - 1 - task]) fill_panels(supernodes.top[s]);
       give_slots(factor_.tasks[task]);
@@ -47,9 +49,9 @@ class Builder {
   std::vector<Index> columns_;   ///< of L, by these numbers
   std::vector<Index> place_of_;  ///< of some columns
   PanelFactor<Real> factor_;
-  Index filled_ = 0;          ///< panels
-  Offset filled_rows_ = 0;    ///< of tasks that have their slots
-  std::vector<Index> above_;  ///< the column that each slot stands for
+  Offset rows_ = 0, values_ = 0;  ///< in all panels so far
+  Index filled_ = 0;              ///< panels
+  std::vector<Index> above_;      ///< the column that each slot stands for
 
   void begin_task(const SolveTasks& tasks, Index task) {
     PanelTask& added = factor_.tasks.emplace_back();
@@ -61,6 +63,7 @@ class Builder {
 
   void add_columns(const std::vector<Index>& columns) {
     const Index width = index_size(columns);
+    const Offset below = ldl_.offsets[columns.back() + 1] - ldl_.offsets[columns.back()];
     const Index panels = panel_count(width, Panel::kWidest);
     for (Index k = 0; k < panels; ++k) {
       Panel& panel = factor_.panels.emplace_back();
@@ -68,6 +71,11 @@ class Builder {
       const auto begin = static_cast<Index>(Offset{width} * k / panels);
       const auto end = static_cast<Index>(Offset{width} * (k + 1) / panels);
       panel.width = end - begin;
+      panel.row_count = width - end + static_cast<Index>(below);
+      panel.rows = rows_;
+      panel.values = values_;
+      rows_ += panel.row_count;
+      values_ += Offset{panel.width} * panel.row_count + panel.width * (panel.width + 1) / 2;
       for (Index i = begin; i < end; ++i) {
         const Index vertex = ldl_.new_to_old[columns[i]];
         number_[columns[i]] = factor_.size();
@@ -87,20 +95,18 @@ class Builder {
     const Index end = number_[top] + 1;
     for (; filled_ < index_size(factor_.panels) && factor_.panels[filled_].column < end; ++filled_) {
       Panel& panel = factor_.panels[filled_];
-      panel.rows = static_cast<Offset>(factor_.rows.size());
-      for (Index i = panel.column + panel.width; i < end; ++i) factor_.rows.push_back(i);
-      factor_.rows.insert(factor_.rows.end(), below.begin(), below.end());
-      panel.row_count = static_cast<Index>(static_cast<Offset>(factor_.rows.size()) - panel.rows);
+      Index row = panel.column + panel.width;
+      const auto rows = factor_.rows.begin() + panel.rows;
+      const auto own_end = std::generate_n(rows, end - row, [&row] { return row++; });
+      std::copy(below.begin(), below.end(), own_end);
       panel.parent = panel.row_count > 0 ? factor_.panel_of_column[factor_.rows[panel.rows]] : -1;
       fill_values(panel);
     }
   }
 
-  void fill_values(Panel& panel) {
+  void fill_values(const Panel& panel) {
     const Index width = panel.width;
     const Index triangle = width * (width - 1) / 2;
-    panel.values = static_cast<Offset>(factor_.values.size());
-    factor_.values.resize(factor_.values.size() + triangle + width + Offset{width} * panel.row_count);
     Real* const values = factor_.values.data() + panel.values;
     for (Index r = 0; r < panel.row_count; ++r) place_of_[factor_.rows[panel.rows + r]] = r;
     for (Index j = 0; j < width; ++j) {
@@ -120,18 +126,22 @@ class Builder {
   /// places in it.
   void give_slots(PanelTask& task) {
     const Index n = factor_.size();
-    const auto begin = factor_.rows.begin() + filled_rows_;
+    if (task.first_panel == task.end_panel) {
+      task.first_slot = task.end_slot = n + index_size(above_);
+      return;
+    }
+    const Panel& last = factor_.panels[task.end_panel - 1];
+    const auto begin = factor_.rows.begin() + factor_.panels[task.first_panel].rows;
+    const auto end = factor_.rows.begin() + last.rows + last.row_count;
     std::vector<Index> later;
-    std::copy_if(begin, factor_.rows.end(), std::back_inserter(later),
-                 [&](Index row) { return row >= task.end_column; });
+    std::copy_if(begin, end, std::back_inserter(later), [&](Index row) { return row >= task.end_column; });
     std::sort(later.begin(), later.end());
     later.erase(std::unique(later.begin(), later.end()), later.end());
     task.first_slot = n + index_size(above_);
     task.end_slot = task.first_slot + index_size(later);
     for (Index k = 0; k < index_size(later); ++k) place_of_[later[k]] = task.first_slot + k;
     const auto place = [&](Index row) { return row < task.end_column ? row : place_of_[row]; };
-    std::transform(begin, factor_.rows.end(), begin, place);
-    filled_rows_ = static_cast<Offset>(factor_.rows.size());
+    std::transform(begin, end, begin, place);
     above_.insert(above_.end(), later.begin(), later.end());
     factor_.above_slots.resize(above_.size());
     // all rows that a child gives to are columns of this task or among its own later rows

@@ -5,7 +5,7 @@
 #include <meshorder/sim/linear/panel_solve.hpp>
 
 #include <algorithm>
-#include <limits>
+#include <type_traits>
 
 namespace meshorder {
 namespace {
@@ -74,15 +74,30 @@ class Solve {
     const PanelTask& task = factor_.tasks[number];
     for_children(task, [this](Index child) { forwards(child); });
     if (reach_ == nullptr) {
-      for (Index j = task.first_column; j < task.end_column; ++j) {
-        std::copy_n(at(b_, factor_.vertex_of_column[j]), kPaddedStride, at(work_, j));
-      }
+      for_columns(task, b_, [this](Index column, Index vertex) {
+        std::copy_n(at(b_, vertex), kPaddedStride, at(work_, column));
+      });
     }
     std::fill(at(work_, task.first_slot), at(work_, task.end_slot), Real{0});
     for (const Index child : task.children) {
       if (takes_part(child)) take_from(factor_.tasks[child]);
     }
     sweep_forwards(factor_.view(), panels_of(task), work_);
+  }
+
+  /// Calls `copy` for all columns of a task and their vertices, whose numbers in `vector` are asked for
+  /// early.
+  template <class Vector, class Copy>
+  void for_columns(const PanelTask& task, Vector vector, Copy copy) const {
+    constexpr Index kAhead = 24;
+    const Index* const vertices = factor_.vertex_of_column.data();
+    const Index asked = std::max(task.first_column, task.end_column - kAhead);
+    for (Index j = task.first_column; j < asked; ++j) {
+      __builtin_prefetch(at(vector, vertices[j + kAhead]),
+                         std::is_const_v<std::remove_pointer_t<Vector>> ? 0 : 1);
+      copy(j, vertices[j]);
+    }
+    for (Index j = asked; j < task.end_column; ++j) copy(j, vertices[j]);
   }
 
   void take_from(const PanelTask& child) const {
@@ -100,9 +115,9 @@ class Solve {
     }
     sweep_backwards(factor_.view(), panels_of(task), work_);
     if (reach_ == nullptr) {
-      for (Index j = task.first_column; j < task.end_column; ++j) {
-        std::copy_n(at(work_, j), kPaddedStride, at(x_, factor_.vertex_of_column[j]));
-      }
+      for_columns(task, x_, [this](Index column, Index vertex) {
+        std::copy_n(at(work_, column), kPaddedStride, at(x_, vertex));
+      });
     }
     for_children(task, [this](Index child) { backwards(child); });
   }

@@ -60,6 +60,9 @@ struct Vertex {
   }
 };
 
+/// Processors look less far ahead by themselves, and hardly where addresses fall.
+constexpr int kBytesAhead = 4096;
+
 template <class Real>
 HWY_INLINE Real* at(Real* x, Index place) {
   return x + Offset{kPaddedStride} * place;
@@ -104,22 +107,23 @@ HWY_INLINE void panel_backwards(const Index* rows, Index row_count, const Real* 
     MESHORDER_UNROLL
     for (int k = 1; k < kSums; ++k) sums[k][j] = Vertex<Real>::zero();
   }
-  const Real* below = values + kTriangle + Width;
-  Index r = 0;
-  for (; r + kSums <= row_count; r += kSums) {
+  const Real* below = values + kTriangle + Width + Offset{Width} * row_count;
+  Index r = row_count;
+  while (r >= kSums) {
     MESHORDER_UNROLL
     for (int k = 0; k < kSums; ++k) {
-      const auto there = Vertex<Real>::load(at(x, rows[r + k]));
+      below -= Width;
+      __builtin_prefetch(reinterpret_cast<const char*>(below) - kBytesAhead);
+      const auto there = Vertex<Real>::load(at(x, rows[--r]));
       MESHORDER_UNROLL
-      for (int j = 0; j < Width; ++j) sums[k][j].subtract_product(below[Width * k + j], there);
+      for (int j = 0; j < Width; ++j) sums[k][j].subtract_product(below[j], there);
     }
-    below += Width * kSums;
   }
-  for (; r < row_count; ++r) {
-    const auto there = Vertex<Real>::load(at(x, rows[r]));
+  while (r > 0) {
+    below -= Width;
+    const auto there = Vertex<Real>::load(at(x, rows[--r]));
     MESHORDER_UNROLL
     for (int j = 0; j < Width; ++j) sums[0][j].subtract_product(below[j], there);
-    below += Width;
   }
   MESHORDER_UNROLL
   for (int j = 0; j < Width; ++j) {
