@@ -38,6 +38,11 @@ class ContactFinder {
  public:
   /// The body at rest at `points`. Throws InvalidArgument for simplices that are no tetrahedra.
   ContactFinder(const Simplices& simplices, std::span<const Point> points, ContactOptions options);
+  ~ContactFinder();
+  ContactFinder(ContactFinder&&) noexcept;
+  ContactFinder& operator=(ContactFinder&&) noexcept;
+  ContactFinder(const ContactFinder&) = delete;
+  ContactFinder& operator=(const ContactFinder&) = delete;
 
   /// The contacts of the surface's vertices at `positions`, which were at `from` when the step began (both
   /// kPaddedStride numbers for each vertex, see padded_positions), by rising first vertex and then obstacle,
@@ -49,6 +54,10 @@ class ContactFinder {
 
   /// Memory held.
   [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace meshorder

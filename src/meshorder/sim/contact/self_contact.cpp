@@ -1,0 +1,82 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/parallel.hpp>
+#include <meshorder/sim/contact/self_contact.hpp>
+#include <meshorder/sim/contact/vectors.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshorder {
+namespace {
+
+constexpr Index kPlacesAtOnce = 64;  // whose nearest surface points a thread finds together
+
+/// The contact of a vertex with a place of the surface. False where the deformed triangle has no area.
+bool make_contact(Index vertex, const std::array<Index, 3>& triangle, const std::array<double, 3>& weights,
+                  double friction, std::span<const double> positions, Contact& contact) {
+  const Point a = point_of(positions, triangle[0]);
+  const Point normal =
+      cross(minus(point_of(positions, triangle[1]), a), minus(point_of(positions, triangle[2]), a));
+  const double length = norm(normal);
+  if (!(length > 0.0) || !std::isfinite(length)) return false;
+  contact.vertices = {vertex, triangle[0], triangle[1], triangle[2]};
+  contact.weights = {1.0, -weights[0], -weights[1], -weights[2]};
+  contact.normal = scaled(1.0 / length, normal);
+  contact.offset = 0.0;
+  contact.friction = friction;
+  contact.with = -1;
+  return true;
+}
+
+}  // namespace
+
+SelfContact::SelfContact(const Simplices& simplices, std::span<const Point> points,
+                         const BodySurface& surface)
+    : rest_(points.begin(), points.end()),
+      surface_(surface.triangles, points),
+      search_(simplices, points, surface.vertices) {}
+
+Point SelfContact::place_at_rest(const VertexInside& inside) const {
+  const std::array<Index, 4> corners = search_.corners(inside.tetrahedron);
+  Point place{};
+  for (int k = 0; k < 4; ++k) place = plus_scaled(place, inside.weights[k], rest_[corners[k]]);
+  return place;
+}
+
+void SelfContact::find(std::span<const double> positions, double friction, std::vector<Contact>& contacts) {
+  search_.find(positions, inside_);
+  std::vector<RestSurface::Place> places(inside_.size());
+  for_each_chunk(index_size(inside_), kPlacesAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+      places[i] = surface_.nearest(place_at_rest(inside_[i]), inside_[i].vertex);
+  });
+  for (std::size_t i = 0; i < inside_.size();) {
+    const Index vertex = inside_[i].vertex;
+    std::size_t deepest = i;
+    for (; i < inside_.size() && inside_[i].vertex == vertex; ++i) {
+      if (places[i].distance > places[deepest].distance) deepest = i;
+    }
+    const RestSurface::Place& place = places[deepest];
+    if (place.triangle == RestSurface::kNone) continue;
+    Contact contact;
+    if (make_contact(vertex, surface_.triangle(place.triangle), place.weights, friction, positions, contact))
+      contacts.push_back(contact);
+  }
+}
+
+SelfContact::Depth SelfContact::depth(std::span<const double> positions) {
+  search_.find(positions, inside_);
+  Depth result;
+  for (std::size_t i = 0; i < inside_.size(); ++i) {
+    if (i == 0 || inside_[i].vertex != inside_[i - 1].vertex) ++result.vertices;
+    result.deepest = std::max(result.deepest, surface_.nearest(place_at_rest(inside_[i])).distance);
+  }
+  return result;
+}
+
+std::size_t SelfContact::bytes() const {
+  return rest_.capacity() * sizeof(Point) + surface_.bytes() + search_.bytes() +
+         inside_.capacity() * sizeof(VertexInside);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,331 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/sim/contact/tetrahedron_leaves.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "meshorder/sim/contact/tetrahedron_leaves.cpp"
+#include <hwy/foreach_target.h>
+// from here on once for each instruction set
+#include <meshorder/sim/kernels/lanes-inl.hpp>
+
+HWY_BEFORE_NAMESPACE();
+namespace meshorder::HWY_NAMESPACE {
+namespace {
+
+using Floats = hn::CappedTag<float, kLeaf>;
+using Integers = hn::RebindToSigned<Floats>;
+constexpr Index kFloats = static_cast<Index>(MaxLanes(Floats()));
+
+/// The mask as bits, the first lane lowest.
+template <class Mask>
+HWY_INLINE std::uint32_t bits_of(Mask mask) {
+  const Floats d;
+  alignas(8) std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  if constexpr (kFloats <= 8) return bytes[0];
+  return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8U;
+}
+
+/// The lesser of both in each lane, `a` where b is NaN.
+template <class Value>
+HWY_INLINE Value lesser(Value a, Value b) {
+  return ManyLanes::choose(a - b, b, a);
+}
+
+/// Takes in the box of two vectors of corners' coordinates.
+HWY_INLINE void corner_boxes(const Index* corners, const double* positions, Index lane,
+                             ManyLanes::Value (&lower)[3], ManyLanes::Value (&upper)[3]) {
+  for (int k = 0; k < 4; ++k) {
+    ManyLanes::Value p[3];
+    ManyLanes::gather(positions, corners + kLeaf * k + lane, p);
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c) {
+      lower[c] = lesser(lower[c], p[c]);
+      upper[c] = ManyLanes::choose(p[c] - upper[c], p[c], upper[c]);
+    }
+  }
+}
+
+void boxes_of_branch(TetrahedronLeaves& tetrahedra, Index branch, const double* positions) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  double branch_ends[6] = {infinity, infinity, infinity, -infinity, -infinity, -infinity};
+  float* const boxes = tetrahedra.leaf_boxes.data() + Offset{6} * kLeaf * branch;
+  const Index count = tetrahedra.leaves_of(branch);
+  for (Index l = 0; l < count; ++l) {
+    const Index* const corners = tetrahedra.corners.data() + Offset{4} * kLeaf * (kLeaf * branch + l);
+    ManyLanes::Value lower[3];
+    ManyLanes::Value upper[3];
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c) {
+      lower[c] = ManyLanes::set(infinity);
+      upper[c] = ManyLanes::set(-infinity);
+    }
+    for (Index lane = 0; lane < kLeaf; lane += ManyLanes::kCount)
+      corner_boxes(corners, positions, lane, lower, upper);
+    for (int c = 0; c < 3; ++c) {
+      alignas(64) double low[kBatch];
+      alignas(64) double high[kBatch];
+      ManyLanes::store(lower[c], low);
+      ManyLanes::store(upper[c], high);
+      for (Index i = 1; i < ManyLanes::kCount; ++i) {
+        low[0] = low[i] < low[0] ? low[i] : low[0];
+        high[0] = high[i] > high[0] ? high[i] : high[0];
+      }
+      boxes[kLeaf * c + l] = rounded_to_float(low[0]);
+      boxes[kLeaf * (3 + c) + l] = rounded_to_float(high[0]);
+      branch_ends[c] = low[0] < branch_ends[c] ? low[0] : branch_ends[c];
+      branch_ends[3 + c] = high[0] > branch_ends[3 + c] ? high[0] : branch_ends[3 + c];
+    }
+  }
+  float* const ends = tetrahedra.branch_boxes.data() + Offset{6} * kLeaf * (branch / kLeaf) + branch % kLeaf;
+  for (int c = 0; c < 3; ++c) {
+    ends[kLeaf * c] = rounded_to_float(branch_ends[c]);
+    ends[kLeaf * (3 + c)] = rounded_to_float(branch_ends[3 + c]);
+  }
+}
+
+/// normal = (b − a) × (c − a), which points to the side where these turn counterclockwise
+template <class Value>
+HWY_INLINE void plane_through(const Value (&a)[3], const Value (&b)[3], const Value (&c)[3],
+                              Value (&normal)[3]) {
+  Value u[3];
+  Value v[3];
+  MESHORDER_UNROLL
+  for (int i = 0; i < 3; ++i) {
+    u[i] = b[i] - a[i];
+    v[i] = c[i] - a[i];
+  }
+  MESHORDER_UNROLL
+  for (int i = 0; i < 3; ++i) normal[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+}
+
+void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* positions) {
+  // the other three corners of each face, so that they turn counterclockwise seen from inside
+  constexpr int kInward[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
+  // of the sum of three products with a rounded normal, relative to a rounded point
+  constexpr double kPlaneRounding = 16 * 0x1p-24;
+  using Value = ManyLanes::Value;
+  const Index* const corners = tetrahedra.corners.data() + Offset{4} * kLeaf * leaf;
+  const float* const box = tetrahedra.leaf_boxes.data() + Offset{6} * kLeaf * (leaf / kLeaf) + leaf % kLeaf;
+  std::array<double, 3>& center = tetrahedra.centers[leaf];
+  double radius = 0.0;  // the sum of half the sides: more than half the diagonal
+  for (int c = 0; c < 3; ++c) {
+    const double lower = box[kLeaf * c];
+    const double upper = box[kLeaf * (3 + c)];
+    center[c] = 0.5 * (lower + upper);
+    radius += 0.5 * (upper - lower);
+  }
+  float* const planes = tetrahedra.planes.data() + Offset{16} * kLeaf * leaf;
+  for (Index lane = 0; lane < kLeaf; lane += ManyLanes::kCount) {
+    Value p[4][3];
+    MESHORDER_UNROLL
+    for (int k = 0; k < 4; ++k) {
+      ManyLanes::gather(positions, corners + kLeaf * k + lane, p[k]);
+      MESHORDER_UNROLL
+      for (int c = 0; c < 3; ++c) p[k][c] = p[k][c] - ManyLanes::set(center[c]);
+    }
+    MESHORDER_UNROLL
+    for (int k = 0; k < 4; ++k) {
+      const Value(&a)[3] = p[kInward[k][0]];
+      Value normal[3];
+      plane_through(a, p[kInward[k][1]], p[kInward[k][2]], normal);
+      const Value size = ManyLanes::abs(normal[0]) + ManyLanes::abs(normal[1]) + ManyLanes::abs(normal[2]);
+      const Value through = normal[0] * a[0] + normal[1] * a[1] + normal[2] * a[2];
+      // of a length near 1, so that floats do not overflow; none where there is no plane
+      const Value scale = ManyLanes::set(1.0) / size;
+      alignas(64) double numbers[4][kBatch];
+      MESHORDER_UNROLL
+      for (int c = 0; c < 3; ++c) ManyLanes::store(normal[c] * scale, numbers[c]);
+      ManyLanes::store(ManyLanes::set(kPlaneRounding * radius) - through * scale, numbers[3]);
+      for (int q = 0; q < 4; ++q) {
+        float* const to = planes + kLeaf * (4 * k + q) + lane;
+        for (Index i = 0; i < ManyLanes::kCount; ++i) to[i] = static_cast<float>(numbers[q][i]);
+      }
+    }
+  }
+}
+
+/// The lanes of sixteen boxes that meet a box, as bits.
+HWY_INLINE std::uint32_t meeting(const float* boxes, const std::array<float, 3>& lower,
+                                 const std::array<float, 3>& upper) {
+  const Floats d;
+  std::uint32_t result = 0;
+  for (Index lane = 0; lane < kLeaf; lane += kFloats) {
+    const auto overlap = [&](int c) {
+      return hn::And(hn::Le(hn::Load(d, boxes + kLeaf * c + lane), hn::Set(d, upper[c])),
+                     hn::Le(hn::Set(d, lower[c]), hn::Load(d, boxes + kLeaf * (3 + c) + lane)));
+    };
+    const auto meets = hn::And(overlap(0), hn::And(overlap(1), overlap(2)));
+    result |= bits_of(meets) << static_cast<unsigned>(lane);
+  }
+  return result;
+}
+
+void branches_meeting(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
+                      std::vector<Index>& branches) {
+  branches.clear();
+  for (Index first = 0; first < tetrahedra.branches; first += kLeaf) {
+    std::uint32_t met =
+        meeting(tetrahedra.branch_boxes.data() + Offset{6} * first, cluster.lower, cluster.upper);
+    for (; met != 0; met &= met - 1) branches.push_back(first + std::countr_zero(met));
+  }
+}
+
+void leaves_meeting(const TetrahedronLeaves& tetrahedra, Index branch, const PointCluster& cluster,
+                    std::uint64_t points, std::vector<LeafTask>& tasks) {
+  const Floats d;
+  const float* const boxes = tetrahedra.leaf_boxes.data() + Offset{6} * kLeaf * branch;
+  std::uint32_t met = meeting(boxes, cluster.lower, cluster.upper);
+  for (; met != 0; met &= met - 1) {
+    const Index leaf = std::countr_zero(met);
+    std::uint64_t inside = 0;
+    for (Index lane = 0; lane < PointCluster::kMost; lane += kFloats) {
+      const auto between = [&](int c) {
+        const auto x = hn::Load(d, cluster.coordinates[c].data() + lane);
+        return hn::And(hn::Le(hn::Set(d, boxes[kLeaf * c + leaf]), x),
+                       hn::Le(x, hn::Set(d, boxes[kLeaf * (3 + c) + leaf])));
+      };
+      const auto in = hn::And(between(0), hn::And(between(1), between(2)));
+      inside |= std::uint64_t{bits_of(in)} << static_cast<unsigned>(lane);
+    }
+    inside &= points;
+    if (inside != 0) tasks.push_back({kLeaf * branch + leaf, inside});
+  }
+}
+
+/// The lanes of a leaf whose tetrahedra a point relative to its centre may be inside of, and is no corner of.
+HWY_INLINE std::uint32_t lanes_around(const float* planes, const Index* corners, const float (&x)[3],
+                                      Index vertex) {
+  const Floats d;
+  const Integers integers;
+  std::uint32_t result = 0;
+  for (Index lane = 0; lane < kLeaf; lane += kFloats) {
+    const auto within = [&](int k) {
+      const float* const plane = planes + kLeaf * 4 * k + lane;
+      auto height = hn::Load(d, plane + kLeaf * 3);
+      MESHORDER_UNROLL
+      for (int c = 0; c < 3; ++c)
+        height = hn::MulAdd(hn::Load(d, plane + kLeaf * c), hn::Set(d, x[c]), height);
+      return hn::Ge(height, hn::Zero(d));
+    };
+    const auto inside = hn::And(hn::And(within(0), within(1)), hn::And(within(2), within(3)));
+    if (hn::AllFalse(d, inside)) continue;
+    std::uint32_t lanes = bits_of(inside);
+    const auto number = hn::Set(integers, vertex);
+    MESHORDER_UNROLL
+    for (int k = 0; k < 4; ++k) {
+      const auto corner = hn::Load(integers, corners + kLeaf * k + lane);
+      lanes &= ~bits_of(hn::RebindMask(d, hn::Eq(corner, number)));
+    }
+    result |= lanes << static_cast<unsigned>(lane);
+  }
+  return result;
+}
+
+void hits_of_task(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
+                  const double* positions, std::vector<LeafHit>& hits) {
+  const float* const planes = tetrahedra.planes.data() + Offset{16} * kLeaf * task.leaf;
+  const Index* const corners = tetrahedra.corners.data() + Offset{4} * kLeaf * task.leaf;
+  const std::array<double, 3>& center = tetrahedra.centers[task.leaf];
+  for (std::uint64_t points = task.points; points != 0; points &= points - 1) {
+    const Index point = std::countr_zero(points);
+    const Index vertex = cluster.vertices[point];
+    float x[3];
+    for (int c = 0; c < 3; ++c)
+      x[c] = static_cast<float>(positions[Offset{kPaddedStride} * vertex + c] - center[c]);
+    const std::uint32_t lanes = lanes_around(planes, corners, x, vertex);
+    if (lanes != 0) hits.push_back({point, task.leaf, lanes});
+  }
+}
+
+}  // namespace
+}  // namespace meshorder::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace meshorder {
+namespace {
+
+HWY_EXPORT(boxes_of_branch);
+HWY_EXPORT(planes_of_leaf);
+HWY_EXPORT(branches_meeting);
+HWY_EXPORT(leaves_meeting);
+HWY_EXPORT(hits_of_task);
+
+}  // namespace
+
+TetrahedronLeaves::TetrahedronLeaves(std::span<const std::array<Index, 4>> tetrahedra,
+                                     std::span<const Index> tetrahedron_numbers)
+    : leaves((index_size(tetrahedra) + kLeaf - 1) / kLeaf), branches((leaves + kLeaf - 1) / kLeaf) {
+  corners.resize(Offset{4} * kLeaf * leaves);
+  numbers.assign(Offset{kLeaf} * leaves, -1);
+  centers.resize(leaves);
+  planes.resize(Offset{16} * kLeaf * leaves);
+  for (Offset i = 0; i < Offset{kLeaf} * leaves; ++i) {
+    const bool real = i < static_cast<Offset>(tetrahedra.size());
+    const std::array<Index, 4>& tetrahedron = real ? tetrahedra[i] : tetrahedra.back();
+    for (int k = 0; k < 4; ++k) corners[kLeaf * (4 * (i / kLeaf) + k) + i % kLeaf] = tetrahedron[k];
+    if (real) numbers[i] = tetrahedron_numbers[i];
+  }
+  // boxes that nothing meets, for those that fill up
+  const auto fill_up = [](AlignedVector<float>& boxes, Index groups) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    boxes.resize(Offset{6} * kLeaf * groups);
+    for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = i / kLeaf % 6 < 3 ? kInfinity : -kInfinity;
+  };
+  fill_up(leaf_boxes, branches);
+  fill_up(branch_boxes, (branches + kLeaf - 1) / kLeaf);
+}
+
+std::size_t TetrahedronLeaves::bytes() const {
+  return corners.capacity() * sizeof(Index) + numbers.capacity() * sizeof(Index) +
+         leaf_boxes.capacity() * sizeof(float) + branch_boxes.capacity() * sizeof(float) +
+         centers.capacity() * sizeof(centers[0]) + planes.capacity() * sizeof(float);
+}
+
+void update_boxes(TetrahedronLeaves& tetrahedra, Index branch, std::span<const double> positions) {
+  HWY_DYNAMIC_DISPATCH(boxes_of_branch)(tetrahedra, branch, positions.data());
+}
+
+void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const double> positions) {
+  HWY_DYNAMIC_DISPATCH(planes_of_leaf)(tetrahedra, leaf, positions.data());
+}
+
+void update_cluster(PointCluster& cluster, std::span<const double> positions) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (int c = 0; c < 3; ++c) {
+    cluster.lower[c] = infinity;
+    cluster.upper[c] = -infinity;
+    float* const to = cluster.coordinates[c].data();
+    std::fill_n(to, PointCluster::kMost, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < cluster.vertices.size(); ++i) {
+      const double x = positions[Offset{kPaddedStride} * cluster.vertices[i] + c];
+      if (std::isnan(x)) continue;
+      to[i] = rounded_to_float(x);
+      cluster.lower[c] = std::min(cluster.lower[c], to[i]);
+      cluster.upper[c] = std::max(cluster.upper[c], to[i]);
+    }
+  }
+}
+
+void branches_at(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
+                 std::vector<Index>& branches) {
+  HWY_DYNAMIC_DISPATCH(branches_meeting)(tetrahedra, cluster, branches);
+}
+
+void leaves_at(const TetrahedronLeaves& tetrahedra, Index branch, const PointCluster& cluster,
+               std::uint64_t points, std::vector<LeafTask>& tasks) {
+  HWY_DYNAMIC_DISPATCH(leaves_meeting)(tetrahedra, branch, cluster, points, tasks);
+}
+
+void hits_of(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
+             std::span<const double> positions, std::vector<LeafHit>& hits) {
+  HWY_DYNAMIC_DISPATCH(hits_of_task)(tetrahedra, cluster, task, positions.data(), hits);
+}
+
+}  // namespace meshorder
+#endif

@@ -1,0 +1,92 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/base/index.hpp>
+#include <meshorder/base/point.hpp>
+#include <meshorder/sim/kernels/aligned.hpp>
+#include <meshorder/sim/kernels/simplices.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// Tetrahedra and boxes are tested sixteen at a time, the floats of an AVX-512 register.
+inline constexpr Index kLeaf = 16;
+
+/// The nearest float; the largest where there is none.
+inline float rounded_to_float(double a) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(a, -kLargest, kLargest));
+}
+
+/// Points that are looked for together: at most 64 neighbours, for each a bit of a mask.
+struct PointCluster {
+  static constexpr Index kMost = 64;
+
+  std::span<const Index> vertices;
+  /// x, y, z of each, rounded; those behind the last are NaN, which is in no box.
+  alignas(64) std::array<std::array<float, kMost>, 3> coordinates;
+  std::array<float, 3> lower, upper;  ///< around them; an upper end below the lower one for none
+};
+
+/// Tetrahedra in leaves of sixteen that are neighbours at rest, and branches of sixteen leaves: what a search
+/// among them needs in motion. Ends of boxes and points are rounded alike, which keeps their order. Vertices
+/// and tetrahedra that are not finite are never met.
+struct TetrahedronLeaves {
+  Index leaves = 0;
+  Index branches = 0;
+  /// Corner k of lane l of leaf i at 16 · (4i + k) + l. Lanes behind the last repeat one.
+  AlignedVector<Index> corners;
+  AlignedVector<Index> numbers;  ///< of the tetrahedra, as the caller knows them; −1 behind the last
+  /// End e (the three lower ones, then the upper ones) of the box of leaf l of branch b at 16 · (6b + e) + l.
+  AlignedVector<float> leaf_boxes;
+  AlignedVector<float> branch_boxes;           ///< the same of branches
+  std::vector<std::array<double, 3>> centers;  ///< of leaves, that their planes are relative to
+  /// Of face k of lane l of leaf i the number q at 16 · (16i + 4k + q) + l: inward normal and offset, greater
+  /// by the rounding errors there.
+  AlignedVector<float> planes;
+
+  /// Of tetrahedra that are in the order of leaves. Boxes and planes are not yet set.
+  TetrahedronLeaves(std::span<const std::array<Index, 4>> tetrahedra,
+                    std::span<const Index> tetrahedron_numbers);
+
+  [[nodiscard]] Index leaves_of(Index branch) const { return std::min(kLeaf, leaves - kLeaf * branch); }
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+/// A leaf, and the points of a cluster that are in its box.
+struct LeafTask {
+  Index leaf = 0;
+  std::uint64_t points = 0;
+};
+
+/// A point of a cluster, and the tetrahedra of a leaf that it may be inside of.
+struct LeafHit {
+  Index point = 0;
+  Index leaf = 0;
+  std::uint32_t lanes = 0;
+};
+
+/// The boxes of the branch and its leaves at `positions`. O(tetrahedra of the branch).
+void update_boxes(TetrahedronLeaves& tetrahedra, Index branch, std::span<const double> positions);
+/// The planes of a leaf whose box is up to date.
+void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const double> positions);
+/// Reads the cluster's points, whose vertices are set.
+void update_cluster(PointCluster& cluster, std::span<const double> positions);
+/// The branches whose box meets the cluster's, rising.
+void branches_at(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
+                 std::vector<Index>& branches);
+/// Appends the branch's leaves in whose box points of the cluster are, of those in the mask.
+void leaves_at(const TetrahedronLeaves& tetrahedra, Index branch, const PointCluster& cluster,
+               std::uint64_t points, std::vector<LeafTask>& tasks);
+/// Appends the points of a task that no plane of some tetrahedron keeps out, which they are no corners of.
+void hits_of(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
+             std::span<const double> positions, std::vector<LeafHit>& hits);
+
+}  // namespace meshorder
