@@ -34,7 +34,7 @@ class Builder {
       factor_.tasks.back().end_panel = index_size(factor_.panels);
     }
     factor_.rows.resize(rows_);
-    factor_.values.resize(values_);
+    factor_.values.resize(values_ + 16 / sizeof(Real));
     for (Index task = 0; task < tasks.count(); ++task) {
       for (const Index s : tasks.supernodes[tasks.count() - 1 - task]) fill_panels(supernodes.top[s]);
       give_slots(factor_.tasks[task]);
@@ -115,11 +115,17 @@ class Builder {
       for (Offset k = ldl_.offsets[column]; k < ldl_.offsets[column + 1]; ++k) {
         const Index row = number_[ldl_.rows[k]];
         const Index i = row - panel.column;
-        const Offset place =
-            i < width ? i * (i - 1) / 2 + j : triangle + width + Offset{width} * place_of_[row] + j;
+        const Offset place = i < width ? i * (i - 1) / 2 + j : place_below(panel, place_of_[row], j);
         values[place] = static_cast<Real>(ldl_.values[k]);
       }
     }
+  }
+
+  /// Of column j in row r below the panel, see PanelView.
+  static Offset place_below(const Panel& panel, Index r, Index j) {
+    const Index group = r - r % Panel::kGroup;
+    const Index in_group = std::min(Panel::kGroup, panel.row_count - group);
+    return panel.width * (panel.width + 1) / 2 + Offset{panel.width} * group + in_group * j + (r - group);
   }
 
   /// Slots for rows of later tasks to the task whose panels were filled last, and to its children their

@@ -8,6 +8,7 @@ namespace meshorder {
 /// Some columns of L side by side, and the rows below them that any of them has.
 struct Panel {
   static constexpr Index kWidest = 8;
+  static constexpr Index kGroup = 4;  ///< rows
 
   Index column;     ///< the first
   Index width;      ///< columns
@@ -18,8 +19,9 @@ struct Panel {
 };
 
 /// Panels of a factor L D Lᵀ. The values of each are the entries left of the diagonal of its own columns, row
-/// by row; 1/D of its columns; `width` entries for each row below. Vectors have kPaddedStride numbers for
-/// each column and row.
+/// by row; 1/D of its columns; those of the rows below in groups of kGroup rows and one of the rest, each
+/// column by column. Behind the last must follow 16 bytes. Vectors have kPaddedStride numbers for each column
+/// and row.
 template <class Real>
 struct PanelView {
   const Panel* panels;

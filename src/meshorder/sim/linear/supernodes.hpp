@@ -11,8 +11,8 @@ namespace meshorder {
 /// side by side with the rows that any of them has.
 struct PanelCosts {
   Index widest = 8;     ///< columns of a panel at most
-  double panel = 20.0;  ///< to begin with one
-  double row = 1.5;     ///< to read a row's number and to load and store it
+  double panel = 30.0;  ///< to begin with one
+  double row = 2.0;     ///< to read a row's number and to load and store it
 };
 
 /// The columns of L in groups whose patterns are so nearly alike that they are stored as one (relaxed
