@@ -9,10 +9,22 @@
 
 #include <meshorder/sim/material/matrix-inl.hpp>
 
+#include <hwy/contrib/math/math-inl.h>
+
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
+
+/// log a to a few units in the last place; NaN unless a > 0.
+template <class Lanes>
+HWY_INLINE typename Lanes::Value logarithm(typename Lanes::Value a) {
+  if constexpr (Lanes::kCount == 1)
+    return std::log(a);
+  else
+    return Lanes::choose(a, hn::Log(typename Lanes::Tag(), a),
+                         Lanes::set(std::numeric_limits<double>::quiet_NaN()));
+}
 
 /// The stress of an isotropic law plus F, all over the bulk modulus, as A F + b cof F + γ R with R the
 /// rotation closest to F: see proximal-inl.hpp. A, b and γ are functions of p = (σ₁ + σ₂ + σ₃,
@@ -24,6 +36,16 @@ struct StressFactors {
   typename Lanes::Value of_b;         ///< ∂b/∂p₃, or ∂b/∂p₁ of a law with a shift
   typename Lanes::Value of_shift[3];  ///< ∂γ/∂p
 };
+
+/// The step of Hooke's law, which all laws share near rest: Z = s S + c I takes S − I without its mean by
+/// 1 + 2m, and the mean by 4.
+template <class Lanes>
+HWY_INLINE void hookean_step(typename Lanes::Value m, typename Lanes::Value trace, typename Lanes::Value& s,
+                             typename Lanes::Value& c) {
+  const typename Lanes::Value one = Lanes::set(1.0);
+  s = one / (m + m + one);
+  c = Lanes::mul_add(trace, Lanes::set(1.0 / 12.0) - Lanes::set(1.0 / 3.0) * s, Lanes::set(0.75));
+}
 
 // A law's energy, gradient and Hessian are those per volume over the bulk modulus κ, functions of the signed
 // singular values σ. m = μ/κ, l = λ/κ = 1 − ⅔m.
@@ -118,7 +140,7 @@ struct NeoHookeanSteps {
     MESHORDER_UNROLL
     for (int k = 0; k < 3; ++k) norm = Lanes::mul_add(sigma[k], sigma[k], norm);
     const Value of_volume = growth * Lanes::mul_add(lambda, growth, Lanes::set(-2.0) * m);
-    const Value of_length = mu * (norm - Lanes::set(4.0) - Lanes::log(Lanes::set(0.25) * norm));
+    const Value of_length = mu * (norm - Lanes::set(4.0) - logarithm<Lanes>(Lanes::set(0.25) * norm));
     return Lanes::set(0.5) * (of_volume + of_length);
   }
 
@@ -163,7 +185,7 @@ struct LogNeoHookeanSteps {
     const Value one = Lanes::set(1.0);
     const Value inverse = one / p[2];
     result.a = one + m;
-    result.b = Lanes::mul_add(l, log_near_one(p[2]), Lanes::set(0.0) - m) * inverse;
+    result.b = Lanes::mul_add(l, logarithm<Lanes>(p[2]), Lanes::set(0.0) - m) * inverse;
     result.of_b = Lanes::mul_add(l, inverse, Lanes::set(0.0) - result.b) * inverse;
   }
 
@@ -176,14 +198,15 @@ struct LogNeoHookeanSteps {
       squares = Lanes::mul_add(sigma[k], sigma[k], squares);
       positive = Lanes::choose(sigma[k], positive, minus_one);
     }
-    const Value log = Lanes::log(Lanes::choose(positive, sigma[0] * sigma[1] * sigma[2], Lanes::set(1.0)));
+    const Value log =
+        logarithm<Lanes>(Lanes::choose(positive, sigma[0] * sigma[1] * sigma[2], Lanes::set(1.0)));
     const Value sum = Lanes::mul_add(Lanes::set(0.5) * m, squares,
                                      log * Lanes::mul_add(Lanes::set(0.5) * l, log, Lanes::set(0.0) - m));
     return Lanes::choose(positive, sum, Lanes::set(std::numeric_limits<typename Lanes::Number>::infinity()));
   }
 
   HWY_INLINE void derivatives(const Value (&sigma)[3], Value (&gradient)[3], Value (&hessian)[3][3]) const {
-    const Value c = Lanes::mul_add(l, Lanes::log(sigma[0] * sigma[1] * sigma[2]), Lanes::set(0.0) - m);
+    const Value c = Lanes::mul_add(l, logarithm<Lanes>(sigma[0] * sigma[1] * sigma[2]), Lanes::set(0.0) - m);
     Value inverse[3];
     MESHORDER_UNROLL
     for (int k = 0; k < 3; ++k) inverse[k] = Lanes::set(1.0) / sigma[k];
@@ -194,20 +217,6 @@ struct LogNeoHookeanSteps {
       for (int j = k + 1; j < 3; ++j) hessian[k][j] = l * inverse[k] * inverse[j];
       hessian[k][k] = Lanes::mul_add((l - c) * inverse[k], inverse[k], m);
     }
-  }
-
- private:
-  /// log p for p of 0.6 to 1.67 by the series of the inverse hyperbolic tangent; NaN for others.
-  static HWY_INLINE Value log_near_one(Value p) {
-    const Value one = Lanes::set(1.0);
-    const Value s = (p - one) / (p + one);
-    const Value square = s * s;
-    constexpr int kTerms = 13;
-    Value sum = Lanes::set(2.0 / (2 * kTerms - 1));
-    MESHORDER_UNROLL
-    for (int k = kTerms - 1; k > 0; --k) sum = Lanes::mul_add(sum, square, Lanes::set(2.0 / (2 * k - 1)));
-    const Value is_near = Lanes::set(0.0625) - square;
-    return Lanes::choose(is_near, s * sum, Lanes::set(std::numeric_limits<double>::quiet_NaN()));
   }
 };
 

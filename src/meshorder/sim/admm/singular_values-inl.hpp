@@ -7,6 +7,7 @@
 #define MESHORDER_SINGULAR_VALUES_INL
 #endif
 
+#include <meshorder/sim/admm/hyperelastic_laws-inl.hpp>
 #include <meshorder/sim/material/rotation-inl.hpp>
 
 #include <limits>
@@ -55,8 +56,9 @@ HWY_INLINE typename Lanes::Value objective(const Law& law, const typename Lanes:
   return Lanes::mul_add(Lanes::set(0.5), squares, law.energy(z));
 }
 
-/// A local minimum of the objective downhill from σ, or from positive values where the law needs them:
-/// Newton's method with backtracking until no lane moves. Finite for finite σ.
+/// A local minimum of the objective, downhill from σ, or positive values where the law needs them, or from
+/// the step of Hooke's law where that is lower: Newton's method with backtracking until no lane moves. Finite
+/// for finite σ.
 template <class Lanes, class Law>
 HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[3],
                            typename Lanes::Value (&z)[3]) {
@@ -71,9 +73,20 @@ HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[
   constexpr double kLeastStart = 0.2;
   const Value zero = Lanes::set(0.0);
   const Value one = Lanes::set(1.0);
+  Value s;
+  Value c;
+  hookean_step<Lanes>(law.m, sigma[0] + sigma[1] + sigma[2], s, c);
+  Value other[3];
   MESHORDER_UNROLL
-  for (int k = 0; k < 3; ++k) z[k] = Law::kBarrier ? Lanes::max(sigma[k], Lanes::set(kLeastStart)) : sigma[k];
+  for (int k = 0; k < 3; ++k) {
+    z[k] = Law::kBarrier ? Lanes::max(sigma[k], Lanes::set(kLeastStart)) : sigma[k];
+    other[k] = Lanes::mul_add(s, sigma[k], c);
+  }
   Value here = objective<Lanes>(law, sigma, z);
+  const Value of_other = objective<Lanes>(law, sigma, other);
+  MESHORDER_UNROLL
+  for (int k = 0; k < 3; ++k) z[k] = Lanes::choose(here - of_other, other[k], z[k]);
+  here = Lanes::min(here, of_other);
   for (int step = 0; step < kSteps; ++step) {
     Value gradient[3];
     Value hessian[3][3];

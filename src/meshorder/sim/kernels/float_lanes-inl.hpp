@@ -36,6 +36,7 @@ struct ManyFloatLanes {
     return hn::IfThenElse(hn::Gt(where, hn::Zero(Tag())), yes, no);
   }
   static HWY_INLINE Value max(Value a, Value b) { return hn::Max(a, b); }
+  static HWY_INLINE Value min(Value a, Value b) { return hn::Min(a, b); }
   static HWY_INLINE Value abs(Value a) { return hn::Abs(a); }
   static HWY_INLINE Value with_sign_of(Value value, Value sign) { return hn::CopySign(value, sign); }
   static HWY_INLINE Value log(Value a) {

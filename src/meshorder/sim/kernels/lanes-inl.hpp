@@ -39,6 +39,7 @@ struct OneLaneOf {
   /// where > 0 ? yes : no
   static HWY_INLINE Value choose(Value where, Value yes, Value no) { return where > 0 ? yes : no; }
   static HWY_INLINE Value max(Value a, Value b) { return a > b ? a : b; }
+  static HWY_INLINE Value min(Value a, Value b) { return a < b ? a : b; }
   static HWY_INLINE Value abs(Value a) { return std::abs(a); }
   static HWY_INLINE Value with_sign_of(Value value, Value sign) { return std::copysign(value, sign); }
   static HWY_INLINE Value log(Value a) { return std::log(a); }
@@ -83,6 +84,7 @@ struct ManyLanes {
     return hn::IfThenElse(hn::Gt(where, hn::Zero(Tag())), yes, no);
   }
   static HWY_INLINE Value max(Value a, Value b) { return hn::Max(a, b); }
+  static HWY_INLINE Value min(Value a, Value b) { return hn::Min(a, b); }
   static HWY_INLINE Value abs(Value a) { return hn::Abs(a); }
   static HWY_INLINE Value with_sign_of(Value value, Value sign) { return hn::CopySign(value, sign); }
   static HWY_INLINE Value log(Value a) {
