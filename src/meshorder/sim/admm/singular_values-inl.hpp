@@ -56,6 +56,31 @@ HWY_INLINE typename Lanes::Value objective(const Law& law, const typename Lanes:
   return Lanes::mul_add(Lanes::set(0.5), squares, law.energy(z));
 }
 
+/// Puts each pair of z in the order of σ and gives it the sign of σ's sum: that leaves the energy as it is,
+/// brings z closer to σ, and so leads from minima among the singular values to those among all matrices.
+/// Whether any lane changed.
+template <class Lanes>
+HWY_INLINE bool match_order(const typename Lanes::Value (&sigma)[3], typename Lanes::Value (&z)[3]) {
+  using Value = typename Lanes::Value;
+  const Value zero = Lanes::set(0.0);
+  Value changed = zero;
+  MESHORDER_UNROLL
+  for (int k = 0; k < 3; ++k) {
+    const int i = k;
+    const int j = (k + 1) % 3;
+    const Value turned = zero - (sigma[i] - sigma[j]) * (z[i] - z[j]);
+    const Value low = z[i];
+    z[i] = Lanes::choose(turned, z[j], z[i]);
+    z[j] = Lanes::choose(turned, low, z[j]);
+    const Value flipped = zero - (sigma[i] + sigma[j]) * (z[i] + z[j]);
+    const Value old = z[i];
+    z[i] = Lanes::choose(flipped, zero - z[j], z[i]);
+    z[j] = Lanes::choose(flipped, zero - old, z[j]);
+    changed = Lanes::max(changed, Lanes::max(turned, flipped));
+  }
+  return !Lanes::all_at_most(changed, 0.0);
+}
+
 /// A local minimum of the objective, downhill from σ, or positive values where the law needs them, or from
 /// the step of Hooke's law where that is lower: Newton's method with backtracking until no lane moves. Finite
 /// for finite σ.
@@ -88,6 +113,7 @@ HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[
   for (int k = 0; k < 3; ++k) z[k] = Lanes::choose(here - of_other, other[k], z[k]);
   here = Lanes::min(here, of_other);
   for (int step = 0; step < kSteps; ++step) {
+    if (match_order<Lanes>(sigma, z)) here = objective<Lanes>(law, sigma, z);
     Value gradient[3];
     Value hessian[3][3];
     law.derivatives(z, gradient, hessian);
