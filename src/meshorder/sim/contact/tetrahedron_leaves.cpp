@@ -197,48 +197,61 @@ void leaves_meeting(const TetrahedronLeaves& tetrahedra, Index branch, const Poi
   }
 }
 
-/// The lanes of a leaf whose tetrahedra a point relative to its centre may be inside of, and is no corner of.
-HWY_INLINE std::uint32_t lanes_around(const float* planes, const Index* corners, const float (&x)[3],
-                                      Index vertex) {
+using FloatVector = hn::Vec<Floats>;
+using IntegerVector = hn::Vec<Integers>;
+
+/// The lanes, from `lane` on, of a leaf whose tetrahedra each point may be inside of and is no corner of,
+/// into its bits of `lanes`. The planes stay in registers.
+HWY_INLINE void lanes_around(const float* planes, const Index* corners, Index lane,
+                             std::span<const Index> vertices, const float (&x)[3][PointCluster::kMost],
+                             std::uint32_t* lanes) {
   const Floats d;
   const Integers integers;
-  std::uint32_t result = 0;
-  for (Index lane = 0; lane < kLeaf; lane += kFloats) {
-    const auto within = [&](int k) {
-      const float* const plane = planes + kLeaf * 4 * k + lane;
-      auto height = hn::Load(d, plane + kLeaf * 3);
-      MESHORDER_UNROLL
-      for (int c = 0; c < 3; ++c)
-        height = hn::MulAdd(hn::Load(d, plane + kLeaf * c), hn::Set(d, x[c]), height);
-      return hn::Ge(height, hn::Zero(d));
-    };
-    const auto inside = hn::And(hn::And(within(0), within(1)), hn::And(within(2), within(3)));
-    if (hn::AllFalse(d, inside)) continue;
-    std::uint32_t lanes = bits_of(inside);
-    const auto number = hn::Set(integers, vertex);
+  FloatVector plane[4][4];
+  IntegerVector corner[4];
+  MESHORDER_UNROLL
+  for (int k = 0; k < 4; ++k) {
     MESHORDER_UNROLL
-    for (int k = 0; k < 4; ++k) {
-      const auto corner = hn::Load(integers, corners + kLeaf * k + lane);
-      lanes &= ~bits_of(hn::RebindMask(d, hn::Eq(corner, number)));
-    }
-    result |= lanes << static_cast<unsigned>(lane);
+    for (int q = 0; q < 4; ++q) plane[k][q] = hn::Load(d, planes + kLeaf * (4 * k + q) + lane);
+    corner[k] = hn::Load(integers, corners + kLeaf * k + lane);
   }
-  return result;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const FloatVector p[3] = {hn::Set(d, x[0][i]), hn::Set(d, x[1][i]), hn::Set(d, x[2][i])};
+    const IntegerVector vertex = hn::Set(integers, vertices[i]);
+    const auto height = [&](int k) {
+      return hn::MulAdd(plane[k][0], p[0],
+                        hn::MulAdd(plane[k][1], p[1], hn::MulAdd(plane[k][2], p[2], plane[k][3])));
+    };
+    const auto least = hn::Min(hn::Min(height(0), height(1)), hn::Min(height(2), height(3)));
+    const auto is_corner = hn::Or(hn::Or(hn::Eq(corner[0], vertex), hn::Eq(corner[1], vertex)),
+                                  hn::Or(hn::Eq(corner[2], vertex), hn::Eq(corner[3], vertex)));
+    const auto inside = hn::And(hn::Ge(least, hn::Zero(d)), hn::Not(hn::RebindMask(d, is_corner)));
+    lanes[i] |= bits_of(inside) << static_cast<unsigned>(lane);
+  }
 }
 
 void hits_of_task(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
                   const double* positions, std::vector<LeafHit>& hits) {
-  const float* const planes = tetrahedra.planes.data() + Offset{16} * kLeaf * task.leaf;
-  const Index* const corners = tetrahedra.corners.data() + Offset{4} * kLeaf * task.leaf;
   const std::array<double, 3>& center = tetrahedra.centers[task.leaf];
-  for (std::uint64_t points = task.points; points != 0; points &= points - 1) {
-    const Index point = std::countr_zero(points);
-    const Index vertex = cluster.vertices[point];
-    float x[3];
-    for (int c = 0; c < 3; ++c)
-      x[c] = static_cast<float>(positions[Offset{kPaddedStride} * vertex + c] - center[c]);
-    const std::uint32_t lanes = lanes_around(planes, corners, x, vertex);
-    if (lanes != 0) hits.push_back({point, task.leaf, lanes});
+  float x[3][PointCluster::kMost];
+  Index vertices[PointCluster::kMost];
+  Index points[PointCluster::kMost];
+  std::uint32_t lanes[PointCluster::kMost];
+  Index count = 0;
+  for (std::uint64_t left = task.points; left != 0; left &= left - 1) {
+    points[count] = std::countr_zero(left);
+    vertices[count] = cluster.vertices[points[count]];
+    const double* const position = positions + Offset{kPaddedStride} * vertices[count];
+    for (int c = 0; c < 3; ++c) x[c][count] = static_cast<float>(position[c] - center[c]);
+    lanes[count++] = 0;
+  }
+  for (Index lane = 0; lane < kLeaf; lane += kFloats) {
+    lanes_around(tetrahedra.planes.data() + Offset{16} * kLeaf * task.leaf,
+                 tetrahedra.corners.data() + Offset{4} * kLeaf * task.leaf, lane,
+                 std::span(vertices, static_cast<std::size_t>(count)), x, lanes);
+  }
+  for (Index i = 0; i < count; ++i) {
+    if (lanes[i] != 0) hits.push_back({points[i], task.leaf, lanes[i]});
   }
 }
 
