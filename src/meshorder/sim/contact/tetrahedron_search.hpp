@@ -35,7 +35,7 @@ class TetrahedronSearch {
   /// All of them at `positions` (kPaddedStride numbers for each vertex), by vertex and then tetrahedron.
   void find(std::span<const double> positions, std::vector<VertexInside>& inside);
 
-  /// The corners of a tetrahedron, of positive volume at rest.
+  /// The corners of a tetrahedron that is not flat at rest, of positive volume there.
   [[nodiscard]] std::array<Index, 4> corners(Index tetrahedron) const;
   /// Memory held.
   [[nodiscard]] std::size_t bytes() const;
