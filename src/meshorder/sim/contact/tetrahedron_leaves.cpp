@@ -108,6 +108,7 @@ void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* pos
   constexpr int kInward[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
   // of the sum of three products with a rounded normal, relative to a rounded point
   constexpr double kPlaneRounding = 16 * 0x1p-24;
+  constexpr double kTooLarge = 1e30;
   using Value = ManyLanes::Value;
   const Index* const corners = tetrahedra.corners.data() + Offset{4} * kLeaf * leaf;
   const float* const box = tetrahedra.leaf_boxes.data() + Offset{6} * kLeaf * (leaf / kLeaf) + leaf % kLeaf;
@@ -120,6 +121,12 @@ void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* pos
     radius += 0.5 * (upper - lower);
   }
   float* const planes = tetrahedra.planes.data() + Offset{16} * kLeaf * leaf;
+  if (!(radius < kTooLarge)) {
+    // floats cannot tell: planes that keep nothing out
+    center = {};
+    for (Index i = 0; i < 16 * kLeaf; ++i) planes[i] = i / kLeaf % 4 < 3 ? 0.0F : 1.0F;
+    return;
+  }
   for (Index lane = 0; lane < kLeaf; lane += ManyLanes::kCount) {
     Value p[4][3];
     MESHORDER_UNROLL
@@ -242,7 +249,7 @@ void hits_of_task(const TetrahedronLeaves& tetrahedra, const PointCluster& clust
     points[count] = std::countr_zero(left);
     vertices[count] = cluster.vertices[points[count]];
     const double* const position = positions + Offset{kPaddedStride} * vertices[count];
-    for (int c = 0; c < 3; ++c) x[c][count] = static_cast<float>(position[c] - center[c]);
+    for (int c = 0; c < 3; ++c) x[c][count] = rounded_to_float(position[c] - center[c]);
     lanes[count++] = 0;
   }
   for (Index lane = 0; lane < kLeaf; lane += kFloats) {
