@@ -23,6 +23,12 @@ class HeldVertices {
   /// Those held, in the order in which they were given.
   [[nodiscard]] std::span<const Index> vertices() const noexcept { return vertices_; }
 
+  /// Calls `work(vertex, velocity)` for them in that order.
+  template <class Work>
+  void for_each(Work work) const {
+    for (std::size_t i = 0; i < vertices_.size(); ++i) work(vertices_[i], velocities_[i]);
+  }
+
   /// Takes their rows and columns out of a symmetric matrix: zero but for the diagonal, a multiple of the
   /// identity. With zeros on the right-hand side they take no part. O(their blocks · log row length).
   void remove_from(BlockCsr& matrix) const;

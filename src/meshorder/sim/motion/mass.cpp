@@ -5,25 +5,37 @@
 #include <algorithm>
 
 namespace meshorder {
-
 namespace {
 
 constexpr Index kRows = 4096;  // of a chunk that a thread takes
 
+double mass_of(Offset simplex, const RestShapes& rest, std::span<const double> densities) {
+  return (densities.size() == 1 ? densities.front() : densities[simplex]) * rest.volume(simplex);
+}
+
 }  // namespace
+
+std::vector<double> lumped_masses(const RestShapes& rest, std::span<const double> densities,
+                                  Index vertex_count) {
+  const Index corners = rest.dimension + 1;
+  std::vector<double> masses(vertex_count, 0.0);
+  for (Offset s = 0; s < rest.count; ++s) {
+    const double share = mass_of(s, rest, densities) / corners;
+    for (Index a = 0; a < corners; ++a) masses[rest.vertex(s, a)] += share;
+  }
+  return masses;
+}
 
 MassMatrix mass_matrix(Mass kind, const RestShapes& rest, std::span<const double> densities,
                        const AssemblyMap& map, const BlockCsr& pattern) {
   const Index corners = rest.dimension + 1;
   MassMatrix mass;
-  mass.vertices.assign(pattern.size(), 0.0);
-  if (kind == Mass::consistent) mass.blocks.assign(pattern.block_count(), 0.0);
+  mass.vertices = lumped_masses(rest, densities, pattern.size());
+  if (kind == Mass::lumped) return mass;
+  mass.blocks.assign(pattern.block_count(), 0.0);
   for (Offset s = 0; s < rest.count; ++s) {
-    const double density = densities.size() == 1 ? densities.front() : densities[s];
-    const double whole = density * rest.volume(s);
+    const double whole = mass_of(s, rest, densities);
     for (Index a = 0; a < corners; ++a) {
-      mass.vertices[rest.vertex(s, a)] += whole / corners;
-      if (kind == Mass::lumped) continue;
       for (Index b = 0; b < corners; ++b) {
         // ∫ φ_a φ_b = V (1 + δ_ab) / (D + 1)(D + 2)
         const double share = whole * (a == b ? 2 : 1) / (corners * (corners + 1));

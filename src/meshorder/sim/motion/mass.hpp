@@ -14,6 +14,11 @@ enum class Mass : std::uint8_t {
   consistent,  ///< ∫ρ φ_a φ_b: a matrix with the pattern of the stiffness
 };
 
+/// The lumped masses of `vertex_count` vertices, kg. `densities` in kg/m³ are one, or one for each simplex.
+/// O(simplices).
+std::vector<double> lumped_masses(const RestShapes& rest, std::span<const double> densities,
+                                  Index vertex_count);
+
 /// The mass matrix of simplices: m I in each block that has a number m.
 struct MassMatrix {
   std::vector<double> vertices;  ///< the mass of each vertex, kg: the sum of its row

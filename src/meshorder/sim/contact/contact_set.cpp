@@ -1,0 +1,81 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/sim/contact/contact_set.hpp>
+#include <meshorder/sim/kernels/positions.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// The order of ContactFinder: by the vertex, then the obstacle, the body itself last.
+std::pair<Index, std::int32_t> key(const Contact& contact) {
+  return {contact.vertices[0], contact.with < 0 ? std::numeric_limits<std::int32_t>::max() : contact.with};
+}
+
+bool comes_before(const Contact& a, const Contact& b) { return key(a) < key(b); }
+
+/// Turns a contact with the body itself as its triangle has turned. False where that is flat.
+bool follow_triangle(std::span<const double> positions, Contact& contact) {
+  Point a{};
+  Point b{};
+  const double* const origin = positions.data() + Offset{kPaddedStride} * contact.vertices[1];
+  for (int c = 0; c < 3; ++c) {
+    a[c] = positions[Offset{kPaddedStride} * contact.vertices[2] + c] - origin[c];
+    b[c] = positions[Offset{kPaddedStride} * contact.vertices[3] + c] - origin[c];
+  }
+  const Point normal{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  const double length = std::hypot(normal[0], normal[1], normal[2]);
+  if (!(length > 0.0)) return false;
+  for (int c = 0; c < 3; ++c) contact.normal[c] = normal[c] / length;
+  return true;
+}
+
+}  // namespace
+
+double violation(const Contact& contact, std::span<const double> positions) {
+  double sum = contact.offset;
+  for (std::size_t i = 0; i < contact.vertices.size() && contact.vertices[i] != Contact::kAbsent; ++i) {
+    const double* const x = positions.data() + Offset{kPaddedStride} * contact.vertices[i];
+    sum -=
+        contact.weights[i] * (contact.normal[0] * x[0] + contact.normal[1] * x[1] + contact.normal[2] * x[2]);
+  }
+  return sum;
+}
+
+void ContactSet::begin(std::span<const double> from) {
+  from_ = from;
+  contacts_.clear();
+}
+
+bool ContactSet::update(std::span<const double> positions, std::span<const double> forces, double tolerance) {
+  std::swap(earlier_, contacts_);
+  finder_.find(positions, from_, found_);
+  const bool is_new = std::any_of(found_.begin(), found_.end(), [&](const Contact& contact) {
+    return violation(contact, positions) > tolerance &&
+           !std::binary_search(earlier_.begin(), earlier_.end(), contact, comes_before);
+  });
+  // those of the body with itself that push, where none was found for their vertex
+  std::vector<Contact> kept;
+  for (std::size_t i = 0; i < std::min(earlier_.size(), forces.size()); ++i) {
+    if (!earlier_[i].is_with_itself() || !(forces[i] > 0.0) ||
+        std::binary_search(found_.begin(), found_.end(), earlier_[i], comes_before)) {
+      continue;
+    }
+    Contact contact = earlier_[i];
+    if (follow_triangle(positions, contact)) kept.push_back(contact);
+  }
+  contacts_.clear();
+  std::merge(found_.begin(), found_.end(), kept.begin(), kept.end(), std::back_inserter(contacts_),
+             comes_before);
+  return is_new;
+}
+
+std::size_t ContactSet::bytes() const {
+  return finder_.bytes() + (contacts_.capacity() + found_.capacity() + earlier_.capacity()) * sizeof(Contact);
+}
+
+}  // namespace meshorder
