@@ -102,7 +102,7 @@ double iteration_operations(const Runner& runner) {
 
 double matrix_bytes(const Runner& runner) {
   const double blocks = static_cast<double>(system_of(runner).matrix().block_count());
-  const double value = runner.simulation.scenario.integrator.precision == mo::MatrixPrecision::single ? 4 : 8;
+  const double value = runner.simulation.scenario.implicit().precision == mo::MatrixPrecision::single ? 4 : 8;
   return blocks * (9 * value + sizeof(mo::Index));
 }
 
@@ -172,9 +172,9 @@ nlohmann::ordered_json measure(const std::string& file, const Settings& settings
     for (const bool single : {false, true}) {
       for (int threads = 1; threads <= static_cast<int>(bandwidths.size()); ++threads) {
         mo::Scenario changed = in_order(scenario, orders.back());
-        changed.integrator.preconditioner =
+        changed.implicit().preconditioner =
             mo::meaning_in(mo::kPreconditioners, preconditioner, "preconditioner");
-        if (single) changed.integrator.precision = mo::MatrixPrecision::single;
+        if (single) changed.implicit().precision = mo::MatrixPrecision::single;
         runners.push_back(
             make_runner(preconditioner + (single ? ", float" : ""), threads, changed, mesh, file));
       }

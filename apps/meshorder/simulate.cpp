@@ -10,6 +10,7 @@
 #include <meshorder/models/catalogue.hpp>
 #include <meshorder/study/checkpoint.hpp>
 #include <meshorder/study/frames.hpp>
+#include <meshorder/study/shape.hpp>
 #include <meshorder/study/simulation.hpp>
 
 #include <csignal>
@@ -64,11 +65,16 @@ Scenario scenario_of(const SimulateArguments& arguments) {
   if (!arguments.elements.empty()) scenario.element_order = arguments.elements;
   if (arguments.steps > 0) scenario.steps = arguments.steps;
   if (!arguments.preconditioner.empty()) {
-    scenario.integrator.preconditioner =
+    if (!scenario.is_implicit())
+      throw InvalidArgument("--preconditioner is of the implicit method, and " + scenario.name +
+                            " has none: ADMM factors its matrix once");
+    scenario.implicit().preconditioner =
         meaning_in(kPreconditioners, arguments.preconditioner, "preconditioner");
   }
-  if (!arguments.precision.empty())
-    scenario.integrator.precision = meaning_in(kPrecisions, arguments.precision, "precision");
+  if (!arguments.precision.empty()) {
+    const MatrixPrecision precision = meaning_in(kPrecisions, arguments.precision, "precision");
+    std::visit([&](auto& options) { options.precision = precision; }, scenario.integrator);
+  }
   return scenario;
 }
 
@@ -117,12 +123,15 @@ class Run {
     for (Index step = resumed_from_ + 1; step <= last; ++step) {
       const double from = share * (step - resumed_from_ - 1);
       progress.stage(fmt::format("step {} of {}", step, last), from, from + share);
-      const StepReport report = simulation_.body->step();
-      add(report, simulation_.body->balance(), record_);
-      if (frames_ && frames_->is_due(step)) frames_->write(simulation_.body->state());
+      StepReport report = simulation_.body->step();
+      const MotionState state = simulation_.body->state();
+      add(std::move(report),
+          distance_from_shape(simulation_.mesh.points, state.positions, simulation_.vertices),
+          simulation_.body->balance(), record_);
+      if (frames_ && frames_->is_due(step)) frames_->write(state);
       const bool interrupted = interruption && Interruption::signal() != 0;
       if (interruption && (step == last || interrupted || step % arguments_.checkpoint_every == 0))
-        write_checkpoint({simulation_.fingerprint, simulation_.body->state(), record_}, arguments_.checkpoint);
+        write_checkpoint({simulation_.fingerprint, state, record_}, arguments_.checkpoint);
       if (interrupted && step < last) {
         progress.finish();
         throw Stopped(fmt::format("stopped after step {} of {}; --resume {} goes on from there", step, last,
@@ -205,7 +214,8 @@ void add_scenario_options(CLI::App& subcommand, SimulateArguments& arguments) {
   subcommand.add_option("--steps", arguments.steps, "Steps in all")->check(CLI::Range(1, 1'000'000));
   subcommand.add_option("--preconditioner", arguments.preconditioner,
                         "jacobi, block-jacobi, incomplete-cholesky or multigrid");
-  subcommand.add_option("--precision", arguments.precision, "Of the matrix that CG reads: double or single");
+  subcommand.add_option("--precision", arguments.precision,
+                        "double or single: of the matrix that CG reads, of all that ADMM iterates");
 }
 
 void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {

@@ -3,9 +3,10 @@
 
 #include "report.hpp"
 #include <meshorder/base/parallel.hpp>
-#include <meshorder/mesh/graphs.hpp>
+#include <meshorder/study/vertex_choice.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -13,17 +14,54 @@ namespace meshorder::command {
 namespace {
 
 /// Sums over the steps.
-StepRecord sums(const MotionRecord& record) {
-  StepRecord sum;
-  for (const StepRecord& step : record.steps) {
-    sum.newton_iterations += step.newton_iterations;
-    sum.cg_iterations += step.cg_iterations;
-    sum.seconds += step.seconds;
-    sum.assembly += step.assembly;
-    sum.solve += step.solve;
+StepReport sums(const MotionRecord& record) {
+  StepReport sum;
+  for (const auto& [report, shape_distance] : record.steps) {
+    sum.newton_iterations += report.newton_iterations;
+    sum.cg_iterations += report.cg_iterations;
+    sum.admm_iterations += report.admm_iterations;
+    sum.contact_iterations += report.contact_iterations;
+    sum.seconds.total += report.seconds.total;
+    sum.seconds.assembly += report.seconds.assembly;
+    sum.seconds.solve += report.seconds.solve;
+    sum.seconds.local += report.seconds.local;
+    sum.seconds.global += report.seconds.global;
+    sum.seconds.collision += report.seconds.collision;
   }
   return sum;
 }
+
+/// What steps took beyond their parts.
+double other(const StepReport::Seconds& seconds) {
+  return seconds.total - seconds.assembly - seconds.solve - seconds.local - seconds.global -
+         seconds.collision;
+}
+
+/// The least and largest of a number of the steps, of which there is one.
+template <class Number>
+std::pair<Number, Number> range(const MotionRecord& record, Number StepReport::*number) {
+  Number least = record.steps.front().report.*number;
+  Number most = least;
+  for (const StepRecord& step : record.steps) {
+    least = std::min(least, step.report.*number);
+    most = std::max(most, step.report.*number);
+  }
+  return {least, most};
+}
+
+/// A number of every step.
+template <class Number>
+nlohmann::ordered_json each(const MotionRecord& record, Number StepReport::*number) {
+  auto list = nlohmann::ordered_json::array();
+  for (const StepRecord& step : record.steps) list.push_back(step.report.*number);
+  return list;
+}
+
+bool touches(const ProjectiveScenario& options) {
+  return !options.obstacles.empty() || options.contact.with_itself;
+}
+
+bool has_stiffness(LocalModel model) { return model == LocalModel::springs || model == LocalModel::strain; }
 
 double length(const Point& vector) { return std::hypot(vector[0], vector[1], vector[2]); }
 
@@ -47,12 +85,22 @@ nlohmann::ordered_json to_json(const Balance& balance) {
 }
 
 nlohmann::ordered_json material_json(const Scenario& scenario) {
-  return {{"model", name_in(kMaterialModels, scenario.model)},
-          {"tangent", name_in(kTangents, scenario.tangent)},
-          {"young", scenario.material.young},
-          {"poisson", scenario.material.poisson},
-          {"density", scenario.material.density},
-          {"regions", scenario.regions.size()}};
+  nlohmann::ordered_json json;
+  if (scenario.is_implicit()) {
+    json["model"] = name_in(kMaterialModels, scenario.model);
+    json["tangent"] = name_in(kTangents, scenario.tangent);
+  } else {
+    json["model"] = name_in(kLocalModels, scenario.projective().model);
+  }
+  if (!scenario.is_implicit() && has_stiffness(scenario.projective().model)) {
+    json["stiffness"] = scenario.material.young;
+  } else {
+    json["young"] = scenario.material.young;
+    json["poisson"] = scenario.material.poisson;
+  }
+  json["density"] = scenario.material.density;
+  json["regions"] = scenario.regions.size();
+  return json;
 }
 
 nlohmann::ordered_json integrator_json(const ImplicitOptions& options) {
@@ -66,6 +114,15 @@ nlohmann::ordered_json integrator_json(const ImplicitOptions& options) {
           {"newton_tolerance", options.newton_tolerance}};
 }
 
+nlohmann::ordered_json integrator_json(const ProjectiveScenario& options) {
+  return {{"method", "admm"},
+          {"time_step", options.time_step},
+          {"gravity", options.gravity},
+          {"iterations", options.iterations},
+          {"tolerance", options.tolerance},
+          {"duals", options.keep_duals ? "kept" : "reset"}};
+}
+
 nlohmann::ordered_json solver_json(const ImplicitOptions& options) {
   return {{"preconditioner", name_in(kPreconditioners, options.preconditioner)},
           {"tolerance", options.solve.tolerance},
@@ -73,40 +130,131 @@ nlohmann::ordered_json solver_json(const ImplicitOptions& options) {
           {"precision", name_in(kPrecisions, options.precision)}};
 }
 
+nlohmann::ordered_json solver_json(const ProjectiveScenario& options) {
+  nlohmann::ordered_json json{{"precision", name_in(kPrecisions, options.precision)}};
+  if (touches(options)) {
+    json["contact"] = {{"method", name_in(kContactSolvers, options.contact_solver.kind)},
+                       {"tolerance", options.contact_solver.tolerance},
+                       {"max_iterations", options.contact_solver.max_iterations},
+                       {"obstacles", options.obstacles.size()},
+                       {"with_itself", options.contact.with_itself}};
+  }
+  return json;
+}
+
+std::string material_in_words(const Scenario& scenario) {
+  const Material& material = scenario.material;
+  std::string words;
+  if (scenario.is_implicit()) {
+    words = fmt::format("{} ({} tangent), E {:g} Pa, nu {:g}", name_in(kMaterialModels, scenario.model),
+                        name_in(kTangents, scenario.tangent), material.young, material.poisson);
+  } else if (const LocalModel model = scenario.projective().model; has_stiffness(model)) {
+    words = fmt::format("{}, k {:g} {}", name_in(kLocalModels, model), material.young,
+                        model == LocalModel::springs ? "N/m" : "Pa");
+  } else {
+    words =
+        fmt::format("{}, E {:g} Pa, nu {:g}", name_in(kLocalModels, model), material.young, material.poisson);
+  }
+  words += fmt::format(", rho {:g} kg/m³", material.density);
+  if (!scenario.regions.empty()) words += fmt::format(", {} regions", scenario.regions.size());
+  return words;
+}
+
+std::string method_in_words(const ImplicitOptions& options) {
+  return fmt::format("backward Euler, CG with {} to {:g}{}",
+                     name_in(kPreconditioners, options.preconditioner), options.solve.tolerance,
+                     options.precision == MatrixPrecision::single ? " in single" : "");
+}
+
+std::string method_in_words(const ProjectiveScenario& options) {
+  return fmt::format("ADMM, {}{} iterations, duals {}{}", options.tolerance > 0 ? "at most " : "",
+                     options.iterations, options.keep_duals ? "kept" : "reset",
+                     options.precision == MatrixPrecision::single ? ", in single" : "");
+}
+
+std::string contact_in_words(const ProjectiveScenario& options) {
+  std::string words;
+  for (const ScenarioObstacle& obstacle : options.obstacles) {
+    constexpr std::array kNames{"half-space", "sphere", "bowl", "surface"};
+    words += fmt::format("{}{}", words.empty() ? "" : ", ", kNames[static_cast<std::size_t>(obstacle.kind)]);
+    if (obstacle.friction > 0) words += fmt::format(" (friction {:g})", obstacle.friction);
+  }
+  if (options.contact.with_itself) words += words.empty() ? "with itself" : ", and with itself";
+  return words + fmt::format(", by {}", name_in(kContactSolvers, options.contact_solver.kind));
+}
+
+void print_steps(const Console& console, const Scenario& scenario, const MotionRecord& record) {
+  const auto steps = static_cast<double>(record.steps.size());
+  const StepReport sum = sums(record);
+  const StepReport::Seconds& seconds = sum.seconds;
+  const auto a_step = [&](double total) { return duration(total / steps); };
+  if (scenario.is_implicit()) {
+    console.print("\n{:<10} {}: {} a step, of which assembly {}, CG {}, other {}", "time",
+                  duration(seconds.total), a_step(seconds.total), a_step(seconds.assembly),
+                  a_step(seconds.solve), a_step(other(seconds)));
+    const auto [least, most] = range(record, &StepReport::cg_iterations);
+    console.print("{:<10} {} iterations, {:.1f} a step, {} to {}", "CG", with_commas(sum.cg_iterations),
+                  sum.cg_iterations / steps, least, most);
+    return;
+  }
+  console.print("\n{:<10} {}: {} a step, of which local {}, global {}, collision {}, other {}", "time",
+                duration(seconds.total), a_step(seconds.total), a_step(seconds.local), a_step(seconds.global),
+                a_step(seconds.collision), a_step(other(seconds)));
+  const auto [least, most] = range(record, &StepReport::admm_iterations);
+  console.print("{:<10} {} iterations, {} to {} a step, {} each", "ADMM", with_commas(sum.admm_iterations),
+                least, most, duration(seconds.total / std::max(1, sum.admm_iterations)));
+  if (!touches(scenario.projective())) return;
+  console.print("{:<10} at most {} vertices, {} iterations in all; deepest in an obstacle {:.2g} m",
+                "contact", with_commas(range(record, &StepReport::contacts).second),
+                with_commas(sum.contact_iterations), range(record, &StepReport::penetration).second);
+  if (scenario.projective().contact.with_itself)
+    console.print("{:<10} at most {} vertices inside the body after a step, {} after the last", "itself",
+                  range(record, &StepReport::vertices_in_itself).second,
+                  record.steps.back().report.vertices_in_itself);
+}
+
+/// From when on the body is as it was at rest, to 1 % of its height.
+void print_shape(const Console& console, const Simulation& simulation, const MotionRecord& record) {
+  const BoundingBox box = bounding_box(simulation.mesh.points, simulation.vertices);
+  const double near = 0.01 * (box.high[1] - box.low[1]);
+  const auto last_far = std::find_if(record.steps.rbegin(), record.steps.rend(),
+                                     [&](const StepRecord& step) { return step.shape_distance > near; });
+  const double distance = record.steps.back().shape_distance;
+  if (last_far == record.steps.rbegin()) {
+    console.print("{:<10} {:.4g} m from the one at rest", "shape", distance);
+  } else {
+    console.print("{:<10} {:.4g} m from the one at rest, within 1 % of the height from step {} on", "shape",
+                  distance, record.steps.rend() - last_far + 1);
+  }
+}
+
 }  // namespace
 
 void print_header(const Console& console, const Simulation& simulation, const std::string& mesh) {
   const Scenario& scenario = simulation.scenario;
-  const ImplicitOptions& options = scenario.integrator;
   console.print("{}{}{}", scenario.name, scenario.title.empty() ? "" : ": ", scenario.title);
+  const std::string size = scenario.longest_side > 0
+                               ? fmt::format(", scaled to {:g} m", scenario.longest_side)
+                           : scenario.height > 0 ? fmt::format(", {:g} m high", scenario.height)
+                                                 : "";
   console.print("{:<10} {}: {} vertices, {} tetrahedra{}", "mesh", mesh,
-                with_commas(simulation.mesh.vertex_count()), with_commas(simulation.tetrahedra),
-                scenario.longest_side > 0 ? fmt::format(", scaled to {:g} m", scenario.longest_side) : "");
+                with_commas(simulation.mesh.vertex_count()), with_commas(simulation.tetrahedra), size);
   console.print("{:<10} vertices {}, elements {}", "order", method_in_words(simulation.order.vertex_method),
                 method_in_words(simulation.order.element_method));
-  console.print("{:<10} {} ({} tangent), E {:g} Pa, nu {:g}, rho {:g} kg/m³{}", "material",
-                name_in(kMaterialModels, scenario.model), name_in(kTangents, scenario.tangent),
-                scenario.material.young, scenario.material.poisson, scenario.material.density,
-                scenario.regions.empty() ? "" : fmt::format(", {} regions", scenario.regions.size()));
-  console.print("{:<10} {} of {:g} s by backward Euler, CG with {} to {:g}{}, {} thread{}", "steps",
-                scenario.steps, options.time_step, name_in(kPreconditioners, options.preconditioner),
-                options.solve.tolerance, options.precision == MatrixPrecision::single ? " in single" : "",
+  console.print("{:<10} {}", "material", material_in_words(scenario));
+  console.print("{:<10} {} of {:g} s by {}, {} thread{}", "steps", scenario.steps,
+                scenario.motion().time_step,
+                std::visit([](const auto& options) { return method_in_words(options); }, scenario.integrator),
                 thread_count(), thread_count() == 1 ? "" : "s");
+  if (!scenario.is_implicit() && touches(scenario.projective()))
+    console.print("{:<10} {}", "contact", contact_in_words(scenario.projective()));
   std::fflush(stdout);
 }
 
 void print_summary(const Console& console, const Simulation& simulation, const MotionRecord& record) {
-  const auto steps = static_cast<double>(record.steps.size());
   if (!record.steps.empty()) {
-    const StepRecord sum = sums(record);
-    const auto [least, most] =
-        std::minmax_element(record.steps.begin(), record.steps.end(),
-                            [](const auto& a, const auto& b) { return a.cg_iterations < b.cg_iterations; });
-    console.print("\n{:<10} {}: {} a step, of which assembly {}, CG {}, other {}", "time",
-                  duration(sum.seconds), duration(sum.seconds / steps), duration(sum.assembly / steps),
-                  duration(sum.solve / steps), duration((sum.seconds - sum.assembly - sum.solve) / steps));
-    console.print("{:<10} {} iterations, {:.1f} a step, {} to {}", "CG", with_commas(sum.cg_iterations),
-                  sum.cg_iterations / steps, least->cg_iterations, most->cg_iterations);
+    print_steps(console, simulation.scenario, record);
+    print_shape(console, simulation, record);
   }
   console.print("{:<10} {:.1f} MB", "memory", static_cast<double>(simulation.body->bytes()) * 1e-6);
   const Balance& first = record.balances.front();
@@ -125,20 +273,12 @@ void print_summary(const Console& console, const Simulation& simulation, const M
 
 nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord& record) {
   const Scenario& scenario = simulation.scenario;
-  const StepRecord sum = sums(record);
+  const StepReport::Seconds sum = sums(record).seconds;
   const auto half = [](const MethodChoice& method, double seconds) {
     nlohmann::ordered_json json = to_json(method);
     json["seconds"] = seconds;
     return json;
   };
-  auto cg_iterations = nlohmann::ordered_json::array();
-  auto newton_iterations = nlohmann::ordered_json::array();
-  auto step_seconds = nlohmann::ordered_json::array();
-  for (const StepRecord& step : record.steps) {
-    cg_iterations.push_back(step.cg_iterations);
-    newton_iterations.push_back(step.newton_iterations);
-    step_seconds.push_back(step.seconds);
-  }
   auto energy = nlohmann::ordered_json::array();
   auto momentum = nlohmann::ordered_json::array();
   auto angular_momentum = nlohmann::ordered_json::array();
@@ -152,33 +292,61 @@ nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord&
     warnings.push_back(
         {{"sentence", warning.first}, {"first_step", warning.first_step}, {"count", warning.count}});
   }
-  return {{"scenario", scenario.name},
-          {"vertices", simulation.mesh.vertex_count()},
-          {"elements", element_count(simulation.mesh)},
-          {"tetrahedra", simulation.tetrahedra},
-          {"steps", record.steps.size()},
-          {"threads", thread_count()},
-          {"order",
-           {{"vertices", half(simulation.order.vertex_method, simulation.order.vertex_seconds)},
-            {"elements", half(simulation.order.element_method, simulation.order.element_seconds)}}},
-          {"material", material_json(scenario)},
-          {"integrator", integrator_json(scenario.integrator)},
-          {"solver", solver_json(scenario.integrator)},
-          {"seconds",
-           {{"total", sum.seconds},
-            {"assembly", sum.assembly},
-            {"solve", sum.solve},
-            {"other", sum.seconds - sum.assembly - sum.solve}}},
-          {"setup_seconds", {{"order", simulation.order_seconds}, {"body", simulation.setup_seconds}}},
-          {"step_seconds", step_seconds},
-          {"cg_iterations", cg_iterations},
-          {"newton_iterations", newton_iterations},
-          {"energy", energy},
-          {"momentum", momentum},
-          {"angular_momentum", angular_momentum},
-          {"warnings", warnings},
-          {"bytes", simulation.body->bytes()},
-          {"paper", scenario.paper}};
+  nlohmann::ordered_json json{
+      {"scenario", scenario.name},
+      {"vertices", simulation.mesh.vertex_count()},
+      {"elements", element_count(simulation.mesh)},
+      {"tetrahedra", simulation.tetrahedra},
+      {"steps", record.steps.size()},
+      {"threads", thread_count()},
+      {"order",
+       {{"vertices", half(simulation.order.vertex_method, simulation.order.vertex_seconds)},
+        {"elements", half(simulation.order.element_method, simulation.order.element_seconds)}}},
+      {"material", material_json(scenario)}};
+  std::visit(
+      [&](const auto& options) {
+        json["integrator"] = integrator_json(options);
+        json["solver"] = solver_json(options);
+      },
+      scenario.integrator);
+  auto& seconds = json["seconds"] = {{"total", sum.total}};
+  if (scenario.is_implicit()) {
+    seconds["assembly"] = sum.assembly;
+    seconds["solve"] = sum.solve;
+  } else {
+    seconds["local"] = sum.local;
+    seconds["global"] = sum.global;
+    seconds["collision"] = sum.collision;
+  }
+  seconds["other"] = other(sum);
+  json["setup_seconds"] = {{"order", simulation.order_seconds}, {"body", simulation.setup_seconds}};
+  auto step_seconds = nlohmann::ordered_json::array();
+  auto shape_distance = nlohmann::ordered_json::array();
+  for (const StepRecord& step : record.steps) {
+    step_seconds.push_back(step.report.seconds.total);
+    shape_distance.push_back(step.shape_distance);
+  }
+  json["step_seconds"] = step_seconds;
+  if (scenario.is_implicit()) {
+    json["cg_iterations"] = each(record, &StepReport::cg_iterations);
+    json["newton_iterations"] = each(record, &StepReport::newton_iterations);
+  } else {
+    json["admm_iterations"] = each(record, &StepReport::admm_iterations);
+    if (touches(scenario.projective())) {
+      json["contact_iterations"] = each(record, &StepReport::contact_iterations);
+      json["contacts"] = each(record, &StepReport::contacts);
+      json["penetration"] = each(record, &StepReport::penetration);
+      json["vertices_in_itself"] = each(record, &StepReport::vertices_in_itself);
+    }
+  }
+  json["energy"] = energy;
+  json["momentum"] = momentum;
+  json["angular_momentum"] = angular_momentum;
+  json["shape_distance"] = shape_distance;
+  json["warnings"] = warnings;
+  json["bytes"] = simulation.body->bytes();
+  json["paper"] = scenario.paper;
+  return json;
 }
 
 }  // namespace meshorder::command

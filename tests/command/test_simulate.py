@@ -29,8 +29,22 @@ SMALL = {
 }
 
 
-def write_scenario(folder, **changes):
-    scenario = {**SMALL, **changes}
+# a soft cube that falls on a floor by one corner
+FALLING = {
+    "name": "small",
+    "mesh": "grid-4",
+    "scale": {"height": 0.1},
+    "place": {"bottom": [0, 0.02, 0]},
+    "material": {"model": "neo-hookean", "young": 5e4, "poisson": 0.3, "density": 1000},
+    "integrator": {"method": "admm", "time_step": 0.005, "gravity": [0, -9.81, 0], "iterations": 12, "duals": "reset"},
+    "contact": {"obstacles": [{"half_space": {"point": [0, 0, 0], "normal": [0.3, 1, 0.1]}}], "with_itself": True, "tolerance": 1e-8},
+    "start": [{"on": "all", "velocity": [0, -0.5, 0]}],
+    "steps": 12,
+}
+
+
+def write_scenario(folder, base=SMALL, **changes):
+    scenario = {**base, **changes}
     (folder / "small.json").write_text(json.dumps({key: value for key, value in scenario.items() if value is not None}))
     return "small.json"
 
@@ -51,7 +65,7 @@ def contents(folder):
 def test_lists_scenarios_by_name(command):
     listed = {s["name"]: s for s in command.json("simulate", "--list")["scenarios"]}
     assert set(listed) == {path.stem for path in SCENARIOS.glob("*.json")} - {"scenario.schema"}
-    assert all(s["title"] and s["mesh"] == "dragon" for s in listed.values())
+    assert all(s["title"] and s["mesh"] in ("dragon", "armadillo", "bunny") for s in listed.values())
     assert "constrained" in command.ok("simulate", "--list").stdout
 
 
@@ -76,6 +90,62 @@ def test_json_keys(command, tmp_path):
     assert result["material"]["model"] == "corotational" and result["integrator"]["alpha"] == 0.5
     assert result["warnings"] == [] and result["bytes"] > 0
     assert result["resumed_from"] is None and result["frames"] is None and result["checkpoint"] is None
+
+
+def test_json_keys_of_admm(command, tmp_path):
+    result = command.json("simulate", write_scenario(tmp_path, FALLING), "--threads", "1")
+    assert set(result["seconds"]) == {"total", "local", "global", "collision", "other"}
+    assert sum(result["seconds"].values()) == pytest.approx(2 * result["seconds"]["total"])
+    assert result["admm_iterations"] == [12] * 12
+    for key in ("contacts", "penetration", "contact_iterations", "vertices_in_itself", "shape_distance", "step_seconds"):
+        assert len(result[key]) == 12
+    assert result["contacts"][0] == 0 and max(result["contacts"]) > 0
+    assert max(result["penetration"]) <= 1e-3 * 0.1 and max(result["vertices_in_itself"]) == 0
+    assert result["integrator"] == {"method": "admm", "time_step": 0.005, "gravity": [0, -9.81, 0], "iterations": 12,
+                                    "tolerance": 0, "duals": "reset"}
+    assert result["solver"]["precision"] == "double" and result["solver"]["contact"]["method"] == "uzawa"
+    assert result["material"]["model"] == "neo-hookean" and result["material"]["young"] == 5e4
+    assert not {"cg_iterations", "newton_iterations"} & set(result)
+    energies = [energy["total"] for energy in result["energy"]]
+    assert all(later <= earlier + 1e-9 for earlier, later in zip(energies, energies[1:]))
+
+
+def test_scenarios_start_where_and_as_fast_as_they_say(command, tmp_path):
+    start = [{"on": "all", "velocity": [1, 0, 0]}, {"on": {"box": [[0.5, 0, 0], [1, 1, 1]]}, "velocity": [-1, 0, 0], "at": [1, 0, 0.5]}]
+    scenario = write_scenario(tmp_path, FALLING, start=start, place={"bottom": [1, 2, 3]}, scale={"height": 2}, steps=1)
+    command.ok("simulate", scenario, "--vtk", "out")
+    first = meshio.read(frames(tmp_path / "out")[0][1])
+    rest = first.points - first.point_data["displacement"]
+    assert rest.min(axis=0) == pytest.approx([0, 2, 2]) and rest.max(axis=0) == pytest.approx([2, 4, 4])
+    there = rest[:, 0] > 0.99
+    assert first.points[there] == pytest.approx(numpy.tile([2, 2, 3], (there.sum(), 1)), abs=1e-6)
+    assert first.points[~there] == pytest.approx(rest[~there], abs=1e-6)
+    assert (first.point_data["velocity"][:, 0] == numpy.where(there, -1, 1)).all()
+
+
+def test_obstacles_may_be_files(command, tmp_path):
+    """A closed box as the floor: the cube comes to lie on it."""
+    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 0) for z in (-1, 1)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    lines = ["OFF", "8 6 0", *(" ".join(map(str, p)) for p in corners), *("4 " + " ".join(map(str, f)) for f in faces)]
+    (tmp_path / "floor.off").write_text("\n".join(lines) + "\n")
+    scenario = write_scenario(tmp_path, FALLING, contact={"obstacles": [{"surface": "floor.off", "friction": 0.3}]}, steps=40)
+    result = command.json("simulate", scenario)
+    assert result["contacts"][-1] >= 20 and max(result["penetration"]) <= 1e-4
+    lines[-1] = "4 1 3 7 5"
+    (tmp_path / "floor.off").write_text("\n".join(lines) + "\n")
+    assert "floor.off" in command.fails("simulate", scenario)
+    write_scenario(tmp_path, FALLING, contact={"obstacles": [{"surface": "absent.off"}]})
+    assert "absent.off" in command.fails("simulate", scenario)
+
+
+def test_text_of_admm_says_what_and_how_long(command, tmp_path):
+    text = command.ok("simulate", write_scenario(tmp_path, FALLING)).stdout
+    for words in ("0.1 m high", "12 iterations, duals reset", "half-space, and with itself, by uzawa", "local", "collision",
+                  "deepest in an obstacle", "vertices inside the body", "shape"):
+        assert words in text, words
+    text = command.ok("simulate", "unsquash", "--mesh", "grid-3", "--steps", "60").stdout
+    assert re.search(r"within 1 % of the height from step \d+ on", text)
 
 
 def test_text_says_what_and_how_long(command, tmp_path):
@@ -125,10 +195,10 @@ def test_override_by_options(command, tmp_path):
 
 def test_built_in_scenarios_run_on_any_mesh_from_any_folder(command, tmp_path):
     meshes.write_tetgen(tmp_path)
-    for name in ("falling", "constrained"):
+    for name in ("falling", "constrained", "stretch", "unsquash", "bowl", "bounce"):
         result = command.json("simulate", name, "--mesh", "mesh.node", "--steps", "3")
         assert result["scenario"] == name and result["vertices"] == 5 and result["steps"] == 3
-        assert "forces" in result["paper"]
+        assert "mesh" in result["paper"]
 
 
 # ---- what an order must not change
@@ -146,6 +216,18 @@ def moved_back(path, vertices):
     tetrahedra = numpy.empty_like(cells)
     tetrahedra[frame.cell_data_dict["original_cell"]["tetra"].ravel()] = places[cells]
     return result, tetrahedra
+
+
+def test_two_orders_give_the_same_motion_in_contact(command, tmp_path, model):
+    scenario = write_scenario(tmp_path, FALLING)
+    ends = []
+    for order in ("original", "scrambled"):
+        result = command.json("simulate", scenario, "--order", order, "--vtk", order, "--every", "12")
+        assert max(result["contacts"]) >= 1
+        ends.append(moved_back(frames(tmp_path / order)[-1][1], 125)[0])
+    for name in ("points", "displacement", "velocity"):
+        assert ends[0][name] == pytest.approx(ends[1][name], abs=2e-5)
+    assert numpy.ptp(ends[0]["velocity"][:, 1]) > 0.01
 
 
 def test_two_orders_give_the_same_motion(command, tmp_path, model):
@@ -171,8 +253,9 @@ def test_two_orders_give_the_same_motion(command, tmp_path, model):
     assert (first.point_data["original_vertex"].ravel() != numpy.arange(len(points))).any()
 
 
-def test_threads_change_no_bit(command, tmp_path):
-    scenario = write_scenario(tmp_path, mesh="grid-8")
+@pytest.mark.parametrize("base", [SMALL, FALLING], ids=["implicit", "admm"])
+def test_threads_change_no_bit(command, tmp_path, base):
+    scenario = write_scenario(tmp_path, base, mesh="grid-8")
     one, two = (command.json("simulate", scenario, "--threads", n, "--vtk", f"frames{n}") for n in ("1", "2"))
     assert one["energy"] == two["energy"]
     assert contents(tmp_path / "frames1") == contents(tmp_path / "frames2")
@@ -215,6 +298,19 @@ def test_resumed_run_is_the_same_to_the_last_bit(command, tmp_path):
     assert contents(tmp_path / "whole") == contents(tmp_path / "parts")
     again = command.json("simulate", scenario, "--order", "scrambled", "--resume", "state", "--steps", "3")
     assert again["energy"] == whole["energy"][:4]
+
+
+@pytest.mark.parametrize("change", [{}, {"integrator": {**FALLING["integrator"], "duals": "kept"}},
+                                    {"solver": {"precision": "single"}}], ids=["reset", "kept", "single"])
+def test_resumed_run_of_admm_is_the_same_to_the_last_bit(command, tmp_path, change):
+    scenario = write_scenario(tmp_path, FALLING, **change)
+    whole = command.json("simulate", scenario)
+    command.ok("simulate", scenario, "--steps", "5", "--checkpoint", "state")
+    parts = command.json("simulate", scenario, "--resume", "state", "--threads", "1")
+    for key in ("energy", "momentum", "contacts", "penetration", "shape_distance", "contact_iterations"):
+        assert parts[key] == whole[key]
+    write_scenario(tmp_path, FALLING, **{**change, "contact": {"with_itself": True}})
+    assert "another scenario" in command.fails("simulate", scenario, "--resume", "state")
 
 
 @pytest.mark.parametrize("solver", [("block-jacobi", "double"), ("jacobi", "single"),
@@ -302,7 +398,8 @@ def test_interrupted_run_leaves_a_checkpoint(command, tmp_path):
 # ---- errors
 
 def test_errors_name_the_file_and_the_place(command, tmp_path):
-    assert "falling, constrained" in command.fails("simulate", "fallen")
+    assert "falling, constrained, stretch, unsquash, bowl, bounce" in command.fails("simulate", "fallen")
+    assert "factors its matrix" in command.fails("simulate", "bounce", "--preconditioner", "jacobi")
     assert "--list" in command.fails("simulate")
     assert "known are jacobi" in command.fails("simulate", "falling", "--preconditioner", "ilu")
     assert "double, single" in command.fails("simulate", "falling", "--precision", "half")
@@ -342,11 +439,13 @@ def faults(value, schema, root):
     """What a JSON Schema refuses of a value: the keywords that scenario.schema.json uses."""
     if "$ref" in schema:
         return faults(value, root["$defs"][schema["$ref"].removeprefix("#/$defs/")], root)
-    if "anyOf" in schema:
-        return [] if any(not faults(value, option, root) for option in schema["anyOf"]) else [f"{value}: none of anyOf"]
     found = []
+    if "anyOf" in schema and all(faults(value, option, root) for option in schema["anyOf"]):
+        found.append(f"{value}: none of anyOf")
+    if "type" not in schema and "enum" not in schema and "required" not in schema:
+        return found
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    kinds = {"object": isinstance(value, dict), "array": isinstance(value, list), "string": isinstance(value, str),
+    kinds = {"boolean": isinstance(value, bool), "object": isinstance(value, dict), "array": isinstance(value, list), "string": isinstance(value, str),
              "number": number, "integer": number and value == int(value)}
     if "type" in schema and not kinds[schema["type"]]:
         return [f"{value} is no {schema['type']}"]
@@ -355,7 +454,8 @@ def faults(value, schema, root):
     if isinstance(value, dict):
         properties = schema.get("properties", {})
         found += [f"{key} is missing" for key in schema.get("required", []) if key not in value]
-        for key, member in value.items():
+        found += ["too many"] * (len(value) > schema.get("maxProperties", 1e9))
+        for key, member in value.items() if "properties" in schema else ():
             found += faults(member, properties[key], root) if key in properties else [f"{key} is unknown"]
     if isinstance(value, list):
         found += [f"{value}: too few or many"] * (not schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", 1e9))
@@ -376,7 +476,7 @@ def test_schema_takes_what_the_command_takes(command, tmp_path):
     for path in SCENARIOS.glob("*.json"):
         if path.name != "scenario.schema.json":
             assert faults(json.loads(path.read_text()), schema, schema) == []
-    assert faults(SMALL, schema, schema) == []
+    assert faults(SMALL, schema, schema) == [] and faults(FALLING, schema, schema) == []
     wrong = [{"steps": 0}, {"steps": 1.5}, {"steps": None}, {"speed": 1}, {"name": ""}, {"name": "a/b"}, {"scale": {}},
              {"scale": {"longest_side": 0}}, {"order": {"cells": "rcm"}}, {"material": {**SMALL["material"], "poisson": 0.5}},
              {"material": {**SMALL["material"], "model": "rubber"}}, {"material": {"model": "stvk"}},
@@ -389,4 +489,15 @@ def test_schema_takes_what_the_command_takes(command, tmp_path):
         scenario = {key: value for key, value in {**SMALL, **change}.items() if value is not None}
         assert faults(scenario, schema, schema) != [], change
         write_scenario(tmp_path, **change)
+        command.fails("simulate", "small.json")
+    sphere = {"center": [0, 0, 0], "radius": 1}
+    for change in [{"scale": {"height": 1, "longest_side": 1}}, {"place": {}}, {"start": [{"on": "all"}]}, {"start": [{"at": [0, 0, 0]}]},
+                   {"contact": {"obstacles": [{}]}}, {"contact": {"obstacles": [{"sphere": {"radius": 1}}]}},
+                   {"contact": {"obstacles": [{"sphere": {**sphere, "radius": 0}}]}}, {"contact": {"with_itself": 1}},
+                   {"contact": {"obstacles": [{"sphere": sphere, "friction": -1}]}}, {"contact": {"over_relaxation": 2}},
+                   {"contact": {"solver": "lemke"}}, {"integrator": {"method": "admm", "time_step": 1, "iterations": 0}},
+                   {"integrator": {"method": "admm", "time_step": 1, "duals": "lost"}}, {"material": {"model": "springs", "density": 1}}]:
+        scenario = {**FALLING, **change}
+        assert faults(scenario, schema, schema) != [], change
+        write_scenario(tmp_path, FALLING, **change)
         command.fails("simulate", "small.json")

@@ -61,14 +61,14 @@ TEST(Scenario, HasTheDocumentedDefaults) {
   EXPECT_EQ(s.material.young, 1e5);
   EXPECT_EQ(s.material.poisson, 0.3);
   EXPECT_EQ(s.material.density, 900);
-  EXPECT_EQ(s.integrator.time_step, 0.02);
-  EXPECT_EQ(s.integrator.mass, Mass::lumped);
-  EXPECT_EQ(s.integrator.mass_damping, 0);
-  EXPECT_EQ(s.integrator.newton_iterations, 1);
-  EXPECT_EQ(s.integrator.preconditioner, PreconditionerKind::jacobi);
-  EXPECT_EQ(s.integrator.precision, MatrixPrecision::exact);
-  EXPECT_EQ(s.integrator.solve.tolerance, 1e-6);
-  EXPECT_EQ(s.integrator.solve.max_iterations, 10'000);
+  EXPECT_EQ(s.implicit().time_step, 0.02);
+  EXPECT_EQ(s.implicit().mass, Mass::lumped);
+  EXPECT_EQ(s.implicit().mass_damping, 0);
+  EXPECT_EQ(s.implicit().newton_iterations, 1);
+  EXPECT_EQ(s.implicit().preconditioner, PreconditionerKind::jacobi);
+  EXPECT_EQ(s.implicit().precision, MatrixPrecision::exact);
+  EXPECT_EQ(s.implicit().solve.tolerance, 1e-6);
+  EXPECT_EQ(s.implicit().solve.max_iterations, 10'000);
   EXPECT_TRUE(s.forces.empty());
   EXPECT_TRUE(s.motions.empty());
 }
@@ -105,16 +105,16 @@ TEST(Scenario, ReadsEveryValue) {
   EXPECT_EQ(s.regions[0].material.density, 1);  // the material's own
   EXPECT_EQ(s.regions[1].region, "bone");
   EXPECT_EQ(s.regions[1].material.density, 7);
-  EXPECT_EQ(s.integrator.mass, Mass::consistent);
-  EXPECT_EQ(s.integrator.mass_damping, 0.25);
-  EXPECT_EQ(s.integrator.stiffness_damping, 0.125);
-  EXPECT_EQ(s.integrator.gravity, (Point{1, -2, 3}));
-  EXPECT_EQ(s.integrator.newton_iterations, 4);
-  EXPECT_EQ(s.integrator.newton_tolerance, 1e-3);
-  EXPECT_EQ(s.integrator.preconditioner, PreconditionerKind::multigrid);
-  EXPECT_EQ(s.integrator.solve.tolerance, 1e-9);
-  EXPECT_EQ(s.integrator.solve.max_iterations, 12);
-  EXPECT_EQ(s.integrator.precision, MatrixPrecision::single);
+  EXPECT_EQ(s.implicit().mass, Mass::consistent);
+  EXPECT_EQ(s.implicit().mass_damping, 0.25);
+  EXPECT_EQ(s.implicit().stiffness_damping, 0.125);
+  EXPECT_EQ(s.implicit().gravity, (Point{1, -2, 3}));
+  EXPECT_EQ(s.implicit().newton_iterations, 4);
+  EXPECT_EQ(s.implicit().newton_tolerance, 1e-3);
+  EXPECT_EQ(s.implicit().preconditioner, PreconditionerKind::multigrid);
+  EXPECT_EQ(s.implicit().solve.tolerance, 1e-9);
+  EXPECT_EQ(s.implicit().solve.max_iterations, 12);
+  EXPECT_EQ(s.implicit().precision, MatrixPrecision::single);
   ASSERT_EQ(s.forces.size(), 2U);
   EXPECT_EQ(s.forces[0].on.by, By::all);
   EXPECT_EQ(s.forces[0].steps.first, 1);
@@ -138,14 +138,128 @@ TEST(Scenario, ReadsEveryValue) {
   EXPECT_EQ(s.paper, (std::vector<std::string>{"steps", "material.model"}));
 }
 
+/// One of ADMM, in which `from` is replaced.
+std::string projective(const std::string& from = "", const std::string& to = "") {
+  std::string text = R"({
+    "name": "soft", "mesh": "grid-2", "scale": {"height": 0.5}, "place": {"bottom": [1, 2, 3]},
+    "material": {"model": "strain", "stiffness": 300, "density": 900,
+                 "regions": {"by": "label", "groups": [{"group": 3, "stiffness": 5}]}},
+    "integrator": {"method": "admm", "time_step": 0.02, "gravity": [0, -1, 0], "iterations": 7,
+                   "tolerance": 1e-3, "duals": "reset"},
+    "solver": {"precision": "single"},
+    "contact": {"obstacles": [{"half_space": {"point": [0, 1, 0], "normal": [0, 2, 0]}, "friction": 0.5},
+                              {"sphere": {"center": [1, 2, 3], "radius": 4}},
+                              {"bowl": {"center": [3, 2, 1], "axis": [0, 0, 1], "radius": 2, "thickness": 0.1, "opening": 60}},
+                              {"surface": "floor.stl"}],
+                "with_itself": true, "friction": 0.25, "solver": "gauss-seidel", "tolerance": 1e-5,
+                "max_iterations": 50, "over_relaxation": 1.5},
+    "start": [{"on": "all", "velocity": [1, 0, 0]}, {"on": {"nearest": [0, 0, 0]}, "at": [0.5, 0, 1]}],
+    "steps": 7
+  })";
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(Scenario, ReadsEveryValueOfAdmm) {
+  const Scenario s = parse_scenario(projective(), "folder/my.json");
+  ASSERT_FALSE(s.is_implicit());
+  EXPECT_EQ(s.height, 0.5);
+  EXPECT_EQ(s.bottom, (Point{1, 2, 3}));
+  const ProjectiveScenario& options = s.projective();
+  EXPECT_EQ(options.model, LocalModel::strain);
+  EXPECT_EQ(s.material.young, 300);
+  EXPECT_EQ(s.material.poisson, 0);
+  EXPECT_EQ(s.regions.at(0).material.young, 5);
+  EXPECT_EQ(s.motion().time_step, 0.02);
+  EXPECT_EQ(s.motion().gravity, (Point{0, -1, 0}));
+  EXPECT_EQ(options.iterations, 7);
+  EXPECT_EQ(options.tolerance, 1e-3);
+  EXPECT_FALSE(options.keep_duals);
+  EXPECT_EQ(options.precision, MatrixPrecision::single);
+  ASSERT_EQ(options.obstacles.size(), 4U);
+  EXPECT_EQ(options.obstacles[0].kind, ScenarioObstacle::Kind::half_space);
+  EXPECT_EQ(options.obstacles[0].place, (Point{0, 1, 0}));
+  EXPECT_EQ(options.obstacles[0].direction, (Point{0, 2, 0}));
+  EXPECT_EQ(options.obstacles[0].friction, 0.5);
+  EXPECT_EQ(options.obstacles[1].kind, ScenarioObstacle::Kind::sphere);
+  EXPECT_EQ(options.obstacles[1].radius, 4);
+  EXPECT_EQ(options.obstacles[1].friction, 0);
+  EXPECT_EQ(options.obstacles[2].kind, ScenarioObstacle::Kind::bowl);
+  EXPECT_EQ(options.obstacles[2].place, (Point{3, 2, 1}));
+  EXPECT_EQ(options.obstacles[2].thickness, 0.1);
+  EXPECT_EQ(options.obstacles[2].opening, 60);
+  EXPECT_EQ(options.obstacles[3].kind, ScenarioObstacle::Kind::surface);
+  EXPECT_EQ(options.obstacles[3].file, "folder/floor.stl");
+  EXPECT_TRUE(options.contact.with_itself);
+  EXPECT_EQ(options.contact.friction_with_itself, 0.25);
+  EXPECT_EQ(options.contact_solver.kind, ContactSolverKind::gauss_seidel);
+  EXPECT_EQ(options.contact_solver.tolerance, 1e-5);
+  EXPECT_EQ(options.contact_solver.max_iterations, 50);
+  EXPECT_EQ(options.contact_solver.over_relaxation, 1.5);
+  ASSERT_EQ(s.start.size(), 2U);
+  EXPECT_EQ(s.start[0].velocity, (Point{1, 0, 0}));
+  EXPECT_FALSE(s.start[0].at);
+  EXPECT_EQ(s.start[1].on.by, By::nearest);
+  EXPECT_EQ(s.start[1].at, (Point{0.5, 0, 1}));
+  EXPECT_FALSE(s.start[1].velocity);
+}
+
+TEST(Scenario, ErrorsOfAdmmNameThePlace) {
+  struct Broken {
+    const char *from, *to, *expected;
+  };
+  for (const Broken& broken : {
+           Broken{R"("strain")", R"("corotational")",
+                  "material.model: 'corotational' is unknown; known are springs"},
+           Broken{R"("strain")", R"("springs")", "material: the key 'regions' is unknown"},
+           Broken{R"("strain")", R"("stvk")", "material: the key 'stiffness' is unknown"},
+           Broken{R"("stiffness": 300, )", "", "material: 'stiffness' is missing"},
+           Broken{R"("group": 3, "stiffness")", R"("group": 3, "young")", "groups[0]: the key 'young'"},
+           Broken{R"("admm")", R"("pbd")", "integrator.method: 'pbd'"},
+           Broken{R"("iterations": 7)", R"("iterations": 0)", "integrator.iterations: is the number 0"},
+           Broken{R"("tolerance": 1e-3)", R"("tolerance": 1)", "integrator.tolerance: is 1"},
+           Broken{R"("reset")", R"("lost")", "integrator.duals: 'lost'"},
+           Broken{R"("single")", R"("half")", "solver.precision: 'half'"},
+           Broken{R"("normal": [0, 2, 0])", R"("normal": [0, 0, 0])",
+                  "obstacles[0].half_space.normal: has no direction"},
+           Broken{R"("friction": 0.5)", R"("friction": -0.5)", "contact.obstacles[0].friction: is -0.5"},
+           Broken{R"("surface": "floor.stl")", R"("friction": 1)",
+                  "contact.obstacles[3]: does not say which"},
+           Broken{R"("thickness": 0.1)", R"("thickness": 5)", "obstacles[2].bowl.thickness: is 5"},
+           Broken{R"("opening": 60)", R"("opening": 180)", "obstacles[2].bowl.opening: is 180"},
+           Broken{R"("with_itself": true)", R"("with_itself": 1)",
+                  "contact.with_itself: is the number 1; true or"},
+           Broken{R"("gauss-seidel")", R"("lemke")", "contact.solver: 'lemke'"},
+           Broken{R"("over_relaxation": 1.5)", R"("over_relaxation": 2)", "contact.over_relaxation: is 2"},
+           Broken{R"("height": 0.5)", R"("height": 0.5, "longest_side": 1)", "scale: does not say to what"},
+           Broken{R"(, "at": [0.5, 0, 1])", "", "start[1]: says nothing"},
+       }) {
+    const std::string message = error_of(projective(broken.from, broken.to));
+    EXPECT_NE(message.find(broken.expected), std::string::npos) << message << "\n  lacks " << broken.expected;
+  }
+  EXPECT_NE(error_of(with(R"("contact": {})")).find("contact: is unknown to backward-euler"),
+            std::string::npos);
+}
+
 TEST(Scenario, BuiltInOnesAreThePapers) {
-  ASSERT_EQ(built_in_scenarios().size(), 2U);
+  ASSERT_EQ(built_in_scenarios().size(), 6U);
+  for (const BuiltInScenario& built_in : built_in_scenarios()) {
+    const Scenario scenario = find_scenario(std::string(built_in.name));
+    EXPECT_EQ(scenario.name, built_in.name);
+    EXPECT_EQ(scenario.steps, 240);
+    EXPECT_EQ(scenario.is_implicit(), scenario.mesh == "dragon" && scenario.name != "stretch");
+  }
+  EXPECT_EQ(find_scenario("stretch").projective().iterations, 20);
+  EXPECT_EQ(find_scenario("unsquash").projective().iterations, 100);
+  EXPECT_EQ(find_scenario("bowl").height, 0.07);
+  EXPECT_EQ(find_scenario("bounce").mesh, "bunny");
   const Scenario falling = find_scenario("falling");
   EXPECT_EQ(falling.name, "falling");
   EXPECT_EQ(falling.mesh, "dragon");
   EXPECT_EQ(falling.steps, 240);
   EXPECT_EQ(falling.model, MaterialModel::corotational);
-  EXPECT_EQ(falling.integrator.gravity, Point{});
+  EXPECT_EQ(falling.implicit().gravity, Point{});
   ASSERT_EQ(falling.forces.size(), 1U);
   EXPECT_EQ(falling.forces[0].newtons, (Point{-50, -50, -50}));
   EXPECT_EQ(falling.forces[0].on.by, By::all);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kMagic = "meshorder state\n";
 constexpr std::uint32_t kOrderMark = 0x01020304;
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kLengthAt = kMagic.size() + 2 * sizeof(std::uint32_t);
 constexpr std::size_t kHeader = kLengthAt + sizeof(std::uint64_t);
 
@@ -88,12 +88,31 @@ Balance read_balance(Scanner& file) {
   return balance;
 }
 
+/// All numbers of a step, in the order in which they are written.
+template <class Step, class Work>
+void visit_numbers(Step& step, Work work) {
+  auto& report = step.report;
+  work(report.newton_iterations);
+  work(report.cg_iterations);
+  work(report.admm_iterations);
+  work(report.contact_iterations);
+  work(report.contacts);
+  work(report.vertices_in_itself);
+  work(report.newton_residual);
+  work(report.residual);
+  work(report.penetration);
+  auto& seconds = report.seconds;
+  for (auto* const part : {&seconds.total, &seconds.assembly, &seconds.solve, &seconds.local, &seconds.global,
+                           &seconds.collision})
+    work(*part);
+  work(step.shape_distance);
+}
+constexpr std::int64_t kLeastStepBytes = 6 * 4 + 10 * 8;
+
 void pack(const MotionRecord& record, Packer& out) {
   out.count(record.steps.size());
   for (const StepRecord& step : record.steps) {
-    out.number(step.newton_iterations);
-    out.number(step.cg_iterations);
-    for (const double value : {step.residual, step.seconds, step.assembly, step.solve}) out.number(value);
+    visit_numbers(step, [&](const auto& number) { out.number(number); });
   }
   out.count(record.balances.size());
   for (const Balance& balance : record.balances) pack(balance, out);
@@ -107,12 +126,11 @@ void pack(const MotionRecord& record, Packer& out) {
 
 MotionRecord read_record(Scanner& file) {
   MotionRecord record;
-  record.steps.resize(read_count(file, "the number of steps", 40));
+  record.steps.resize(read_count(file, "the number of steps", kLeastStepBytes));
   for (StepRecord& step : record.steps) {
-    step.newton_iterations = file.binary<Index>("Newton iterations");
-    step.cg_iterations = file.binary<Index>("CG iterations");
-    for (double* const value : {&step.residual, &step.seconds, &step.assembly, &step.solve})
-      *value = file.binary<double>("a number of a step");
+    visit_numbers(step, [&](auto& number) {
+      number = file.binary<std::remove_reference_t<decltype(number)>>("a number of a step");
+    });
   }
   record.balances.resize(read_count(file, "the number of energies", 72));
   for (Balance& balance : record.balances) balance = read_balance(file);
@@ -133,6 +151,8 @@ MotionState read_state(Scanner& file) {
   state.velocities.resize(state.positions.size());
   for (Point& point : state.positions) point = read_point(file);
   for (Point& velocity : state.velocities) velocity = read_point(file);
+  state.memory.resize(read_count(file, "the numbers kept", 8));
+  for (double& number : state.memory) number = file.binary<double>("a number kept");
   return state;
 }
 
@@ -183,6 +203,8 @@ void write_checkpoint(const Checkpoint& checkpoint, const std::filesystem::path&
   out.count(state.positions.size());
   for (const Point& point : state.positions) out.point(point);
   for (const Point& velocity : state.velocities) out.point(velocity);
+  out.count(state.memory.size());
+  for (const double number : state.memory) out.number(number);
   pack(checkpoint.record, out);
   OutputFile file(path);
   file.write(out.finish());

@@ -3,6 +3,8 @@
 #include <meshorder/io/output_file.hpp>
 #include <meshorder/io/vtk/vtk_residue.hpp>
 #include <meshorder/study/frames.hpp>
+#include <meshorder/study/obstacles.hpp>
+#include <meshorder/study/vertex_choice.hpp>
 
 #include <fmt/format.h>
 
@@ -46,7 +48,7 @@ FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index ev
     : folder_(std::move(folder)),
       name_(simulation.scenario.name),
       every_(every),
-      time_step_(simulation.scenario.integrator.time_step),
+      time_step_(simulation.scenario.motion().time_step),
       collection_(folder_ / (name_ + ".pvd")),
       rest_(simulation.mesh.points),
       followers_(followers(simulation.mesh, cut_into_simplices(simulation.mesh))),
@@ -64,6 +66,14 @@ FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index ev
   frame_.vertex_ids.clear();  // they would run along the order
   frame_.cell_ids.clear();
   frame_.residue = residue_of(simulation.mesh);
+  write_obstacles(simulation);
+}
+
+void FrameWriter::write_obstacles(const Simulation& simulation) const {
+  if (simulation.scenario.is_implicit() || simulation.scenario.projective().obstacles.empty()) return;
+  const double extent = 2.0 * bounding_box(rest_, simulation.vertices).longest_side();
+  write_mesh(surfaces_of(simulation.scenario.projective().obstacles, extent),
+             folder_ / (name_ + "-obstacles.vtu"));
 }
 
 std::string FrameWriter::file_name(Index step) const { return fmt::format("{}-{:06}.vtu", name_, step); }

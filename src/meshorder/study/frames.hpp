@@ -16,7 +16,7 @@ namespace meshorder {
 /// A frame has the moved mesh with all that is attached to it, and on its vertices `displacement` (m, from
 /// the mesh at rest) and `velocity` (m/s) in single precision, as points are. `original_vertex` and
 /// `original_cell` number the vertices and cells as the mesh's file did, from 0, so that frames of two orders
-/// can be laid over each other.
+/// can be laid over each other. What the body may meet stands in NAME-obstacles.vtu.
 class FrameWriter {
  public:
   /// A frame after every `every`-th step, and one of the start. Makes the folder. Throws Error when it cannot
@@ -38,6 +38,7 @@ class FrameWriter {
   [[nodiscard]] const Notes& notes() const noexcept { return notes_; }
 
  private:
+  void write_obstacles(const Simulation& simulation) const;
   [[nodiscard]] std::string file_name(Index step) const;
   void list(Index step);
 

@@ -136,6 +136,11 @@ std::int64_t JsonValue::whole(std::int64_t least, std::int64_t most) const {
   return result;
 }
 
+bool JsonValue::truth() const {
+  if (!value_->is_boolean()) throw error("is " + kind(), "true or false is needed");
+  return value_->get<bool>();
+}
+
 Point JsonValue::vector() const {
   const std::vector<JsonValue> numbers = items(3, 3);
   return {numbers[0].number(), numbers[1].number(), numbers[2].number()};

@@ -66,6 +66,8 @@ class JsonValue {
   [[nodiscard]] std::string text() const;
   [[nodiscard]] double number(const NumberRange& range = {}) const;
   [[nodiscard]] std::int64_t whole(std::int64_t least, std::int64_t most) const;
+  /// true or false.
+  [[nodiscard]] bool truth() const;
   /// Three numbers.
   [[nodiscard]] Point vector() const;
   /// What a text stands for, of (text, meaning) pairs.

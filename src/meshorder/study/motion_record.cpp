@@ -2,7 +2,9 @@
 #include <meshorder/study/motion_record.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -18,11 +20,11 @@ std::string without_numbers(std::string_view sentence) {
 
 }  // namespace
 
-void add(const StepReport& report, const Balance& balance, MotionRecord& record) {
-  record.steps.push_back({report.newton_iterations, report.cg_iterations, report.residual,
-                          report.seconds.total, report.seconds.assembly, report.seconds.solve});
+void add(StepReport report, double shape_distance, const Balance& balance, MotionRecord& record) {
+  const std::vector<std::string> warnings = std::exchange(report.warnings, {});
+  record.steps.push_back({std::move(report), shape_distance});
   record.balances.push_back(balance);
-  for (const std::string& warning : report.warnings) {
+  for (const std::string& warning : warnings) {
     const auto known = std::find_if(
         record.warnings.begin(), record.warnings.end(),
         [&](const WarningRecord& w) { return without_numbers(w.first) == without_numbers(warning); });

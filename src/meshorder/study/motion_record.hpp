@@ -2,19 +2,17 @@
 #pragma once
 
 #include <meshorder/base/index.hpp>
-#include <meshorder/sim/implicit/backward_euler.hpp>
+#include <meshorder/sim/motion/integrator.hpp>
 
 #include <string>
 #include <vector>
 
 namespace meshorder {
 
-/// What a step took.
+/// What a step took, and where it left the body. Its warnings are in MotionRecord::warnings.
 struct StepRecord {
-  Index newton_iterations = 0;
-  Index cg_iterations = 0;
-  double residual = 0;                          ///< of the last linear solve
-  double seconds = 0, assembly = 0, solve = 0;  ///< the step, and parts of it
+  StepReport report;
+  double shape_distance = 0;  ///< see distance_from_shape, m
 };
 
 /// A warning that steps gave, however its numbers differed.
@@ -31,7 +29,7 @@ struct MotionRecord {
   std::vector<WarningRecord> warnings;
 };
 
-/// Adds a step and the balance after it.
-void add(const StepReport& report, const Balance& balance, MotionRecord& record);
+/// Adds a step and what is true after it.
+void add(StepReport report, double shape_distance, const Balance& balance, MotionRecord& record);
 
 }  // namespace meshorder

@@ -4,6 +4,7 @@
 #include <meshorder/base/error.hpp>
 #include <meshorder/base/index.hpp>
 #include <meshorder/base/point.hpp>
+#include <meshorder/sim/admm/projective_dynamics.hpp>
 #include <meshorder/sim/implicit/backward_euler.hpp>
 #include <meshorder/sim/material/material.hpp>
 #include <meshorder/sim/material/regions.hpp>
@@ -11,10 +12,12 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace meshorder {
@@ -54,30 +57,76 @@ struct ScenarioMotion {
   Point velocity{};  ///< m/s
 };
 
+/// Where vertices are when the motion starts, and how fast; what is not given stays.
+struct ScenarioStart {
+  VertexChoice on;
+  std::optional<Point> velocity;  ///< m/s
+  std::optional<Point> at;        ///< all at one place, relative to the bounding box
+};
+
+/// What the body must stay outside of, in metres where the body is.
+struct ScenarioObstacle {
+  enum class Kind : std::uint8_t { half_space, sphere, bowl, surface };
+  Kind kind = Kind::half_space;
+  Point place{};           ///< a point of the plane; the centre
+  Point direction{};       ///< the plane's normal; the bowl's axis
+  double radius = 0.0;     ///< of the sphere, of the bowl's middle
+  double thickness = 0.0;  ///< of the bowl
+  double opening = 0.0;    ///< the bowl's, half of it, degrees
+  std::string file;        ///< of a closed surface
+  double friction = 0.0;   ///< Coulomb's coefficient
+};
+
+/// ADMM projective dynamics, its options without obstacles, which are bound to the mesh.
+struct ProjectiveScenario : ProjectiveOptions {
+  LocalModel model = LocalModel::strain;
+  MatrixPrecision precision = MatrixPrecision::exact;
+  std::vector<ScenarioObstacle> obstacles;
+};
+
 /// What is simulated: a mesh, what it is made of, what happens to it and how that is computed. Nothing in it
 /// depends on the order of vertices or elements. docs/simulate.md describes its file.
 struct Scenario {
   std::string file;  ///< where it comes from
   std::string name;
   std::string title;
-  std::string mesh;         ///< a model's name, or the path of a file
-  double longest_side = 0;  ///< of the bounding box that the mesh is scaled to, m; 0: as it is
+  std::string mesh;             ///< a model's name, or the path of a file
+  double longest_side = 0;      ///< of the bounding box that the mesh is scaled to, m; 0: as it is
+  double height = 0;            ///< or the box's side along y
+  std::optional<Point> bottom;  ///< where the middle of the box's bottom is put, m
   std::string vertex_order = "original";
   std::string element_order = "original";
 
-  MaterialModel model = MaterialModel::corotational;
+  MaterialModel model = MaterialModel::corotational;  ///< of the implicit method, as the tangent
   Tangent tangent = Tangent::exact;
+  /// Springs and strain have their stiffness (N/m, Pa) in the place of Young's modulus.
   Material material;
   std::string regions_by;  ///< the array whose groups the regions are (see `grouping_by`); else empty
   std::vector<RegionMaterial> regions;
 
-  ImplicitOptions integrator;  ///< its forces and prescribed motions empty: they are these
+  /// Forces and prescribed motions in it are empty: they are these.
+  std::variant<ImplicitOptions, ProjectiveScenario> integrator;
+  std::vector<ScenarioStart> start;  ///< of two for one vertex the later counts
   std::vector<ScenarioForce> forces;
   std::vector<ScenarioMotion> motions;  ///< fixed vertices have the velocity 0
   Index steps = 240;
 
   std::vector<std::string> paper;  ///< paths in the file of what is the paper's
   std::vector<std::string> notes;
+
+  [[nodiscard]] bool is_implicit() const noexcept {
+    return std::holds_alternative<ImplicitOptions>(integrator);
+  }
+  [[nodiscard]] const ImplicitOptions& implicit() const { return std::get<ImplicitOptions>(integrator); }
+  [[nodiscard]] ImplicitOptions& implicit() { return std::get<ImplicitOptions>(integrator); }
+  [[nodiscard]] const ProjectiveScenario& projective() const {
+    return std::get<ProjectiveScenario>(integrator);
+  }
+  [[nodiscard]] ProjectiveScenario& projective() { return std::get<ProjectiveScenario>(integrator); }
+  [[nodiscard]] const MotionOptions& motion() const {
+    return std::visit([](const MotionOptions& options) -> const MotionOptions& { return options; },
+                      integrator);
+  }
 };
 
 // Names in files and on the command line, and what they mean.
@@ -92,6 +141,15 @@ inline constexpr std::array kMaterialModels{
     std::pair(std::string_view("corotational"), MaterialModel::corotational),
     std::pair(std::string_view("stvk"), MaterialModel::stvk),
     std::pair(std::string_view("neo-hookean"), MaterialModel::neo_hookean)};
+inline constexpr std::array kLocalModels{
+    std::pair(std::string_view("springs"), LocalModel::springs),
+    std::pair(std::string_view("strain"), LocalModel::strain),
+    std::pair(std::string_view("stvk"), LocalModel::stvk),
+    std::pair(std::string_view("neo-hookean"), LocalModel::neo_hookean),
+    std::pair(std::string_view("log-neo-hookean"), LocalModel::log_neo_hookean)};
+inline constexpr std::array kContactSolvers{
+    std::pair(std::string_view("uzawa"), ContactSolverKind::uzawa),
+    std::pair(std::string_view("gauss-seidel"), ContactSolverKind::gauss_seidel)};
 inline constexpr std::array kTangents{std::pair(std::string_view("exact"), Tangent::exact),
                                       std::pair(std::string_view("approximate"), Tangent::approximate),
                                       std::pair(std::string_view("projected"), Tangent::projected)};

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/io/scanner.hpp>
-#include <meshorder/study/json_value.hpp>
+#include <meshorder/study/integrator_reader.hpp>
 #include <meshorder/study/scenario.hpp>
 
 #include <algorithm>
@@ -10,12 +10,7 @@ namespace meshorder {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr NumberRange kPositive{.least = 0, .least_open = true};
-constexpr NumberRange kNotNegative{.least = 0};
-constexpr NumberRange kTolerance{.least = 0, .most = 1, .least_open = true, .most_open = true};
 constexpr Index kMostSteps = 1'000'000;
-constexpr int kMostIterations = 1'000'000;
-constexpr std::array kMethods{std::pair(std::string_view("backward-euler"), 0)};
 
 /// "all", {"set": …}, {"label": …}, {"box": …} or {"nearest": …}.
 VertexChoice vertex_choice(const JsonValue& value) {
@@ -67,82 +62,35 @@ StepRange step_range(const JsonValue& owner) {
   return range;
 }
 
-Material material_of(const JsonValue& value, Material numbers) {
-  if (const auto young = value.find("young")) numbers.young = young->number(kPositive);
-  if (const auto poisson = value.find("poisson"))
-    numbers.poisson = poisson->number({.least = -1, .most = 0.5, .least_open = true, .most_open = true});
-  if (const auto density = value.find("density")) numbers.density = density->number(kPositive);
-  return numbers;
-}
-
-void read_regions(const JsonValue& value, Scenario& scenario) {
-  value.expect_keys({"by", "groups"});
-  scenario.regions_by = value["by"].text();
-  for (const JsonValue& entry : value["groups"].items(1)) {
-    entry.expect_keys({"group", "young", "poisson", "density"});
-    const JsonValue group = entry["group"];
-    RegionMaterial region;
-    region.region = group.is_text() ? group.text()
-                                    : std::to_string(group.whole(std::numeric_limits<std::int64_t>::min(),
-                                                                 std::numeric_limits<std::int64_t>::max()));
-    for (const RegionMaterial& other : scenario.regions) {
-      if (other.region == region.region) throw group.error("has an entry already", "keep one of them");
-    }
-    region.material = material_of(entry, scenario.material);
-    scenario.regions.push_back(std::move(region));
-  }
-}
-
-void read_material(const JsonValue& value, Scenario& scenario) {
-  value.expect_keys({"model", "tangent", "young", "poisson", "density", "regions"});
-  scenario.model = value["model"].one_of(kMaterialModels);
-  if (const auto tangent = value.find("tangent")) {
-    scenario.tangent = tangent->one_of(kTangents);
-    if (scenario.tangent == Tangent::approximate && scenario.model != MaterialModel::corotational)
-      throw tangent->error("'approximate' is of the corotational model alone", "give exact or projected");
-  }
-  for (const std::string_view needed : {"young", "poisson", "density"}) (void)value[needed];
-  scenario.material = material_of(value, scenario.material);
-  if (const auto regions = value.find("regions")) read_regions(*regions, scenario);
-}
-
-void read_integrator(const JsonValue& value, ImplicitOptions& options) {
-  value.expect_keys({"method", "time_step", "mass", "rayleigh", "gravity", "newton"});
-  if (const auto method = value.find("method")) (void)method->one_of(kMethods);
-  options.time_step = value["time_step"].number(kPositive);
-  if (const auto mass = value.find("mass")) options.mass = mass->one_of(kMasses);
-  if (const auto rayleigh = value.find("rayleigh")) {
-    rayleigh->expect_keys({"alpha", "beta"});
-    if (const auto alpha = rayleigh->find("alpha")) options.mass_damping = alpha->number(kNotNegative);
-    if (const auto beta = rayleigh->find("beta")) options.stiffness_damping = beta->number(kNotNegative);
-  }
-  if (const auto gravity = value.find("gravity")) options.gravity = gravity->vector();
-  if (const auto newton = value.find("newton")) {
-    newton->expect_keys({"iterations", "tolerance"});
-    if (const auto iterations = newton->find("iterations"))
-      options.newton_iterations = static_cast<int>(iterations->whole(1, kMostIterations));
-    if (const auto tolerance = newton->find("tolerance"))
-      options.newton_tolerance = tolerance->number(kTolerance);
-  }
-}
-
-void read_solver(const JsonValue& value, ImplicitOptions& options) {
-  value.expect_keys({"preconditioner", "tolerance", "max_iterations", "precision"});
-  if (const auto preconditioner = value.find("preconditioner"))
-    options.preconditioner = preconditioner->one_of(kPreconditioners);
-  if (const auto tolerance = value.find("tolerance")) options.solve.tolerance = tolerance->number(kTolerance);
-  if (const auto most = value.find("max_iterations"))
-    options.solve.max_iterations = static_cast<int>(most->whole(1, kMostIterations));
-  if (const auto precision = value.find("precision")) options.precision = precision->one_of(kPrecisions);
-}
-
 void read_order(const JsonValue& value, Scenario& scenario) {
   value.expect_keys({"vertices", "elements"});
   if (const auto vertices = value.find("vertices")) scenario.vertex_order = vertices->text();
   if (const auto elements = value.find("elements")) scenario.element_order = elements->text();
 }
 
+void read_scale(const JsonValue& value, Scenario& scenario) {
+  value.expect_keys({"longest_side", "height"});
+  if (value.has("longest_side") == value.has("height"))
+    throw value.error("does not say to what", "give longest_side or height");
+  if (const auto height = value.find("height")) {
+    scenario.height = height->number(kPositive);
+  } else {
+    scenario.longest_side = value["longest_side"].number(kPositive);
+  }
+}
+
 void read_events(const JsonValue& value, Scenario& scenario) {
+  if (const auto start = value.find("start")) {
+    for (const JsonValue& some : start->items()) {
+      some.expect_keys({"on", "velocity", "at"});
+      ScenarioStart& read = scenario.start.emplace_back();
+      read.on = vertex_choice(some["on"]);
+      if (const auto velocity = some.find("velocity")) read.velocity = velocity->vector();
+      if (const auto at = some.find("at")) read.at = at->vector();
+      if (!read.velocity && !read.at)
+        throw some.error("says nothing of its vertices", "give a velocity or at");
+    }
+  }
   if (const auto forces = value.find("forces")) {
     for (const JsonValue& force : forces->items()) {
       force.expect_keys({"on", "newtons", "steps"});
@@ -186,8 +134,9 @@ std::vector<std::string> read_paths(const JsonValue& root, const JsonValue& list
 Scenario parse_scenario(std::string_view text, const std::string& file) {
   const nlohmann::json json = parse_json(text, file);
   const JsonValue root(json, file);
-  root.expect_keys({"$schema", "name", "title", "mesh", "scale", "order", "material", "integrator", "solver",
-                    "forces", "fixed", "prescribed", "steps", "paper", "notes"});
+  root.expect_keys({"$schema", "name", "title", "mesh", "scale", "place", "order", "material", "integrator",
+                    "solver", "contact", "start", "forces", "fixed", "prescribed", "steps", "paper",
+                    "notes"});
   Scenario scenario;
   scenario.file = file;
   scenario.name = root["name"].text();
@@ -196,14 +145,13 @@ Scenario parse_scenario(std::string_view text, const std::string& file) {
   if (const auto title = root.find("title")) scenario.title = title->text();
   scenario.mesh = root["mesh"].text();
   if (!names_a_model(scenario.mesh)) scenario.mesh = (fs::path(file).parent_path() / scenario.mesh).string();
-  if (const auto scale = root.find("scale")) {
-    scale->expect_keys({"longest_side"});
-    scenario.longest_side = (*scale)["longest_side"].number(kPositive);
+  if (const auto scale = root.find("scale")) read_scale(*scale, scenario);
+  if (const auto place = root.find("place")) {
+    place->expect_keys({"bottom"});
+    scenario.bottom = (*place)["bottom"].vector();
   }
   if (const auto order = root.find("order")) read_order(*order, scenario);
-  read_material(root["material"], scenario);
-  read_integrator(root["integrator"], scenario.integrator);
-  if (const auto solver = root.find("solver")) read_solver(*solver, scenario.integrator);
+  read_integrator(root, scenario);
   read_events(root, scenario);
   scenario.steps = static_cast<Index>(root["steps"].whole(1, kMostSteps));
   if (const auto paper = root.find("paper")) scenario.paper = read_paths(root, *paper);

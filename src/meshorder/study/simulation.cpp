@@ -4,95 +4,17 @@
 #include <meshorder/mesh/graphs.hpp>
 #include <meshorder/mesh/grouping.hpp>
 #include <meshorder/mesh/reorder.hpp>
+#include <meshorder/study/obstacles.hpp>
 #include <meshorder/study/simulation.hpp>
 #include <meshorder/study/vertex_choice.hpp>
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
-#include <type_traits>
 #include <utility>
 
 namespace meshorder {
 namespace {
-
-/// FNV-1a (Fowler, Noll, Vo) over 64-bit words.
-class Checksum {
- public:
-  template <class Number>
-  void add(Number number) {
-    static_assert(std::is_arithmetic_v<Number> || std::is_enum_v<Number>);
-    if constexpr (std::is_floating_point_v<Number>) {
-      mix(std::bit_cast<std::uint64_t>(static_cast<double>(number)));
-    } else {
-      mix(static_cast<std::uint64_t>(number));
-    }
-  }
-  void add(const Point& point) {
-    for (const double x : point) add(x);
-  }
-  template <class Range>
-  void add_all(const Range& range) {
-    add(range.size());
-    for (const auto& entry : range) add(entry);
-  }
-  [[nodiscard]] std::uint64_t value() const noexcept { return value_; }
-
- private:
-  void mix(std::uint64_t word) { value_ = (value_ ^ word) * 0x100000001B3U ^ (value_ >> 32U); }
-
-  std::uint64_t value_ = 0xCBF29CE484222325U;
-};
-
-std::uint64_t checksum_of(const std::vector<Point>& points, const Simplices& simplices) {
-  Checksum sum;
-  sum.add_all(points);
-  sum.add_all(simplices.vertices);
-  return sum.value();
-}
-
-std::uint64_t checksum_of(const Reordering& order) {
-  Checksum sum;
-  sum.add_all(order.vertices.old_to_new());
-  sum.add_all(order.cells.old_to_new());
-  return sum.value();
-}
-
-std::uint64_t checksum_of(const ImplicitOptions& options, const Body& body) {
-  Checksum sum;
-  for (const double number : {options.time_step, options.mass_damping, options.stiffness_damping,
-                              options.newton_tolerance, options.solve.tolerance})
-    sum.add(number);
-  for (const int number : {options.newton_iterations, options.solve.max_iterations}) sum.add(number);
-  sum.add(options.mass);
-  sum.add(options.preconditioner);
-  sum.add(options.precision);
-  sum.add(options.gravity);
-  const auto add_selection = [&](const Selection& selection) {
-    sum.add_all(selection.vertices);
-    sum.add(selection.from);
-    sum.add(selection.until);
-  };
-  for (const VertexForce& force : options.forces) {
-    add_selection(force);
-    sum.add(force.newtons);
-  }
-  sum.add(options.forces.size());
-  for (const PrescribedMotion& motion : options.prescribed) {
-    add_selection(motion);
-    sum.add(motion.velocity);
-  }
-  sum.add(body.elasticity.model);
-  sum.add(body.elasticity.tangent);
-  sum.add(body.elasticity.lame.mu);
-  sum.add(body.elasticity.lame.lambda);
-  sum.add_all(body.elasticity.mu);
-  sum.add_all(body.elasticity.lambda);
-  sum.add_all(body.densities);
-  return sum.value();
-}
 
 /// The vertices that simplices use, rising.
 std::vector<Index> used_vertices(const Simplices& simplices, Index vertex_count) {
@@ -111,13 +33,23 @@ void set_times(const StepRange& steps, double time_step, Selection& selection) {
   if (steps.last < kMaxIndex) selection.until = (steps.last - 0.5) * time_step;
 }
 
-/// Scales the mesh so that the longest side of the box around `vertices` becomes `length`.
-void scale(Mesh& mesh, std::span<const Index> vertices, double length, const std::string& file) {
-  const double factor = length / bounding_box(mesh.points, vertices).longest_side();
-  if (!std::isfinite(factor) || !(factor > 0.0))
-    throw Error(file, "its volume cells have no extent", "give a mesh with a volume");
+/// Scales and moves the mesh so that the box around `vertices` is as the scenario says.
+void place(Mesh& mesh, std::span<const Index> vertices, const Scenario& scenario, const std::string& file) {
+  BoundingBox box = bounding_box(mesh.points, vertices);
+  if (scenario.longest_side > 0 || scenario.height > 0) {
+    const double factor = scenario.longest_side > 0 ? scenario.longest_side / box.longest_side()
+                                                    : scenario.height / (box.high[1] - box.low[1]);
+    if (!std::isfinite(factor) || !(factor > 0.0))
+      throw Error(file, "its volume cells have no extent", "give a mesh with a volume");
+    for (Point& point : mesh.points) {
+      for (double& x : point) x *= factor;
+    }
+    box = bounding_box(mesh.points, vertices);
+  }
+  if (!scenario.bottom) return;
+  const Point bottom{0.5 * (box.low[0] + box.high[0]), box.low[1], 0.5 * (box.low[2] + box.high[2])};
   for (Point& point : mesh.points) {
-    for (double& x : point) x *= factor;
+    for (int c = 0; c < 3; ++c) point[c] += (*scenario.bottom)[c] - bottom[c];
   }
 }
 
@@ -133,17 +65,9 @@ SimplexMaterials materials_of(const Scenario& scenario, const Mesh& mesh, const 
   }
 }
 
-Body body_of(const Scenario& scenario, const Mesh& mesh, Simplices simplices) {
-  Body body;
-  SimplexMaterials materials = materials_of(scenario, mesh, simplices);
-  body.densities = std::move(materials.densities);
-  body.elasticity = elasticity_of(std::move(materials), scenario.model, scenario.tangent);
-  body.simplices = std::move(simplices);
-  return body;
-}
-
-ImplicitOptions bound(const Scenario& scenario, const Mesh& mesh, std::span<const Index> candidates) {
-  ImplicitOptions options = scenario.integrator;
+/// The scenario's motion with its forces and prescribed motions on the vertices that they mean.
+void bind_loads(const Scenario& scenario, const Mesh& mesh, std::span<const Index> candidates,
+                MotionOptions& options) {
   for (const ScenarioForce& force : scenario.forces) {
     VertexForce& bound_force = options.forces.emplace_back();
     bound_force.vertices = choose_vertices(mesh, candidates, force.on, scenario.file);
@@ -156,7 +80,79 @@ ImplicitOptions bound(const Scenario& scenario, const Mesh& mesh, std::span<cons
     bound_motion.velocity = motion.velocity;
     set_times(motion.steps, options.time_step, bound_motion);
   }
-  return options;
+}
+
+/// Where the vertices are when the motion starts.
+MotionState start_of(const Scenario& scenario, const Mesh& mesh, std::span<const Index> candidates) {
+  MotionState state;
+  state.positions = mesh.points;
+  state.velocities.resize(mesh.points.size());
+  const BoundingBox box = bounding_box(mesh.points, candidates);
+  for (const ScenarioStart& start : scenario.start) {
+    for (const Index v : choose_vertices(mesh, candidates, start.on, scenario.file)) {
+      if (start.velocity) state.velocities[v] = *start.velocity;
+      for (int c = 0; c < 3 && start.at; ++c)
+        state.positions[v][c] = box.low[c] + (*start.at)[c] * (box.high[c] - box.low[c]);
+    }
+  }
+  return state;
+}
+
+/// Springs and strain were given their stiffness as Young's modulus, with ν = 0: it is 2μ.
+LocalLaw local_law_of(const SimplexMaterials& materials, LocalModel model, Offset simplices) {
+  LocalLaw law;
+  law.model = model;
+  const auto first = [&](const AlignedVector<double>& padded) {
+    return std::vector<double>(padded.begin(), padded.begin() + (padded.empty() ? 0 : simplices));
+  };
+  if (model == LocalModel::springs || model == LocalModel::strain) {
+    law.stiffness = 2.0 * materials.lame.mu;
+    law.stiffnesses = first(materials.mu);
+    for (double& stiffness : law.stiffnesses) stiffness *= 2.0;
+  } else {
+    law.lame = materials.lame;
+    law.mu = first(materials.mu);
+    law.lambda = first(materials.lambda);
+  }
+  return law;
+}
+
+/// Vertices this near to an obstacle are watched, as a share of the longest side of the body's box.
+constexpr double kReach = 0.02;
+
+void set_up_implicit(Simplices simplices, const MotionState& start, Simulation& simulation) {
+  const Scenario& scenario = simulation.scenario;
+  Body body;
+  SimplexMaterials materials = materials_of(scenario, simulation.mesh, simplices);
+  body.densities = std::move(materials.densities);
+  body.elasticity = elasticity_of(std::move(materials), scenario.model, scenario.tangent);
+  body.simplices = std::move(simplices);
+  ImplicitOptions options = scenario.implicit();
+  bind_loads(scenario, simulation.mesh, simulation.vertices, options);
+  simulation.fingerprint.parameters = checksum_of(options, body, start);
+  simulation.body = std::make_unique<BackwardEuler>(simulation.mesh.points, body, std::move(options));
+}
+
+void set_up_projective(Simplices simplices, const MotionState& start, Simulation& simulation) {
+  const Scenario& scenario = simulation.scenario;
+  const ProjectiveScenario& method = scenario.projective();
+  ProjectiveBody body;
+  SimplexMaterials materials = materials_of(scenario, simulation.mesh, simplices);
+  body.densities = std::move(materials.densities);
+  body.law = local_law_of(materials, method.model, simplices.size());
+  body.simplices = std::move(simplices);
+  ProjectiveOptions options = method;
+  bind_loads(scenario, simulation.mesh, simulation.vertices, options);
+  for (const ScenarioObstacle& obstacle : method.obstacles)
+    options.contact.obstacles.push_back({obstacle_of(obstacle), obstacle.friction});
+  options.contact.reach = kReach * bounding_box(simulation.mesh.points, simulation.vertices).longest_side();
+  simulation.fingerprint.parameters = checksum_of(options, method, body, start);
+  const std::vector<Point>& points = simulation.mesh.points;
+  if (method.precision == MatrixPrecision::single) {
+    simulation.body = std::make_unique<ProjectiveDynamics<float>>(points, body, std::move(options));
+  } else {
+    simulation.body = std::make_unique<ProjectiveDynamics<double>>(points, body, std::move(options));
+  }
 }
 
 }  // namespace
@@ -173,32 +169,37 @@ Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const O
   require_volume_cells(mesh, file);
   Notes notes;
   Simplices simplices = cut_into_simplices(mesh);
-  std::vector<Index> used = used_vertices(simplices, mesh.vertex_count());
+  const std::vector<Index> used = used_vertices(simplices, mesh.vertex_count());
   if (const Index unused = mesh.vertex_count() - index_size(used); unused > 0)
     notes.push_back(fmt::format("{} vertices are corners of no volume cell and take no part", unused));
-  if (scenario.longest_side > 0) scale(mesh, used, scenario.longest_side, file);
-  Fingerprint fingerprint;
-  fingerprint.mesh = checksum_of(mesh.points, simplices);
+  place(mesh, used, scenario, file);
+  Simulation result;
+  result.fingerprint.mesh = checksum_of(mesh.points, simplices);
 
   const Stopwatch ordering_time;
   mesh.cell_blocks.clear();  // they are a file's layout, and would keep cells from their places
-  Reordering order = compute_reordering(mesh, vertex_graph(mesh),
-                                        {scenario.vertex_order, scenario.element_order, ordering, {}});
-  reorder(mesh, order.vertices, order.cells);
-  const double order_seconds = ordering_time.seconds();
-  fingerprint.order = checksum_of(order);
+  result.order = compute_reordering(mesh, vertex_graph(mesh),
+                                    {scenario.vertex_order, scenario.element_order, ordering, {}});
+  reorder(mesh, result.order.vertices, result.order.cells);
+  result.order_seconds = ordering_time.seconds();
+  result.fingerprint.order = checksum_of(result.order);
 
   const Stopwatch setup_time;
   simplices = cut_into_simplices(mesh);
-  used = used_vertices(simplices, mesh.vertex_count());
-  const Offset tetrahedra = simplices.size();
-  const Body body = body_of(scenario, mesh, std::move(simplices));
-  const ImplicitOptions options = bound(scenario, mesh, used);
-  fingerprint.parameters = checksum_of(options, body);
-  auto integrator = std::make_unique<BackwardEuler>(mesh.points, body, options);
-  const double setup_seconds = setup_time.seconds();
-  return {std::move(scenario), std::move(mesh),  std::move(order), tetrahedra,   std::move(integrator),
-          fingerprint,         std::move(notes), order_seconds,    setup_seconds};
+  result.tetrahedra = simplices.size();
+  result.vertices = used_vertices(simplices, mesh.vertex_count());
+  result.scenario = std::move(scenario);
+  result.mesh = std::move(mesh);
+  result.notes = std::move(notes);
+  const MotionState start = start_of(result.scenario, result.mesh, result.vertices);
+  if (result.scenario.is_implicit()) {
+    set_up_implicit(std::move(simplices), start, result);
+  } else {
+    set_up_projective(std::move(simplices), start, result);
+  }
+  if (!result.scenario.start.empty()) result.body->set_state(start);
+  result.setup_seconds = setup_time.seconds();
+  return result;
 }
 
 }  // namespace meshorder

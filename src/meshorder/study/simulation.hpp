@@ -3,23 +3,14 @@
 
 #include <meshorder/io/format.hpp>
 #include <meshorder/mesh/mesh_ordering.hpp>
-#include <meshorder/sim/implicit/backward_euler.hpp>
+#include <meshorder/sim/motion/integrator.hpp>
+#include <meshorder/study/fingerprint.hpp>
 #include <meshorder/study/scenario.hpp>
 
-#include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace meshorder {
-
-/// Tells whether two simulations are the same: checksums of the mesh, of its order and of all numbers that
-/// the motion depends on. Not of how many steps are done.
-struct Fingerprint {
-  std::uint64_t mesh = 0;
-  std::uint64_t order = 0;
-  std::uint64_t parameters = 0;
-
-  bool operator==(const Fingerprint&) const = default;
-};
 
 /// A scenario with its mesh, ready to be stepped.
 struct Simulation {
@@ -28,6 +19,7 @@ struct Simulation {
   Reordering order;  ///< how it came from the mesh's own order
   Offset tetrahedra = 0;
   std::unique_ptr<Integrator> body;
+  std::vector<Index> vertices;  ///< those of volume cells, rising
   Fingerprint fingerprint;
   Notes notes;               ///< what deserves a word
   double order_seconds = 0;  ///< the vertex graph, both orders, moving the mesh
@@ -37,10 +29,10 @@ struct Simulation {
 /// Throws Error unless the mesh has cells of volume; `file` is named.
 void require_volume_cells(const Mesh& mesh, const std::string& file);
 
-/// Scales a mesh as the scenario says, puts it in the order that it names, finds the vertices that it means
-/// and makes the body of the mesh's volume cells, which are cut into tetrahedra. `file` is the mesh's, for
-/// errors. Throws Error, which names the file and the place in it, for what the mesh has not; InvalidArgument
-/// for unknown orders. O(size of the mesh), and the order's cost.
+/// Scales and places a mesh as the scenario says, puts it in the order that it names, finds the vertices that
+/// it means and makes the body of the mesh's volume cells, which are cut into tetrahedra. `file` is the
+/// mesh's, for errors. Throws Error, which names the file and the place in it, for what the mesh has not;
+/// InvalidArgument for unknown orders. O(size of the mesh), and the order's cost.
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file,
                   const OrderingOptions& ordering = {});
 
