@@ -31,6 +31,13 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
+/// The nearest place in a disc.
+void shorten(Pair& force, double radius) {
+  const double length = std::hypot(force[0], force[1]);
+  if (length <= radius) return;
+  for (double& c : force) c *= radius / length;
+}
+
 bool on_rim(const Pair& force, double radius) { return dot(force, force) >= kOnRim * radius * radius; }
 
 /// Calls `normal(row)` for the rows of normal forces and `disc(row, radius)` for the first of each disc.
@@ -62,7 +69,7 @@ class Minimiser {
     save_best();
     int since_best = 0;
     for (;;) {
-      report_.residual = projected_gradient(bounds_, x_, g_);
+      report_.residual = projected_gradient(bounds_, options_.scale, x_, g_);
       if (!(report_.residual > options_.tolerance) || spent()) break;
       const bool careful = since_best >= kPatience;
       if (careful) restore_best();
@@ -76,7 +83,7 @@ class Minimiser {
     }
     if (report_.residual > options_.tolerance && energy_ > best_energy_) {
       restore_best();
-      report_.residual = projected_gradient(bounds_, x_, g_);
+      report_.residual = projected_gradient(bounds_, options_.scale, x_, g_);
     }
     return report_;
   }
@@ -254,14 +261,15 @@ void project(const ForceBounds& bounds, std::span<double> forces) {
   for_each_force(
       bounds, [&](Index row) { forces[row] = std::max(forces[row], 0.0); },
       [&](Index row, double radius) {
-        const double length = std::hypot(forces[row], forces[row + 1]);
-        if (length <= radius) return;
-        for (const Index i : {row, row + 1}) forces[i] *= radius / length;
+        Pair force = pair_at(forces, row);
+        shorten(force, radius);
+        forces[row] = force[0];
+        forces[row + 1] = force[1];
       });
 }
 
-double projected_gradient(const ForceBounds& bounds, std::span<const double> forces,
-                          std::span<const double> gradient) {
+double projected_gradient(const ForceBounds& bounds, std::span<const double> scale,
+                          std::span<const double> forces, std::span<const double> gradient) {
   double square = 0.0;
   for_each_force(
       bounds,
@@ -270,13 +278,12 @@ double projected_gradient(const ForceBounds& bounds, std::span<const double> for
         square += part * part;
       },
       [&](Index row, double radius) {
-        if (radius == 0.0) return;
         const Pair force = pair_at(forces, row);
-        Pair part = pair_at(gradient, row);
-        const double out = dot(force, part);
-        for (std::size_t c = 0; c < 2 && out > 0.0 && on_rim(force, radius); ++c)
-          part[c] -= out / dot(force, force) * force[c];
-        square += dot(part, part);
+        Pair aim = pair_at(gradient, row);
+        for (std::size_t c = 0; c < 2; ++c) aim[c] = force[c] + aim[c] / scale[row];
+        shorten(aim, radius);
+        for (std::size_t c = 0; c < 2; ++c) aim[c] = scale[row] * (aim[c] - force[c]);
+        square += dot(aim, aim);
       });
   return std::sqrt(square);
 }

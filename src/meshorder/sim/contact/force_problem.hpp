@@ -61,8 +61,10 @@ ForceSolveReport minimise_forces(ForceOperator& matrix, const ForceBounds& bound
 /// The nearest forces within the bounds.
 void project(const ForceBounds& bounds, std::span<double> forces);
 
-/// The norm of the part of g − S λ along which λ can move within the bounds.
-double projected_gradient(const ForceBounds& bounds, std::span<const double> forces,
-                          std::span<const double> gradient);
+/// How far forces are from the least energy, in units of S λ; 0 there alone. A normal force counts the part
+/// of its gradient g − S λ along which it can move; one in a disc counts scale · ‖λ − P(λ + gradient /
+/// scale)‖ with P the projection, which does not jump where forces leave the rim.
+double projected_gradient(const ForceBounds& bounds, std::span<const double> scale,
+                          std::span<const double> forces, std::span<const double> gradient);
 
 }  // namespace meshorder

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace meshorder {
 namespace {
@@ -71,13 +72,14 @@ class GaussSeidel final : public ContactSolver<Real> {
   void sweep_until_calm(std::span<const Contact> contacts, std::span<const Real> b, std::span<Real> x,
                         ContactSolveReport& report) {
     const bool has_updates = nodes_.has_updates();
+    const double rounding = rounding_of(x);
     double after_update = 0.0;
     int since_update = 0;
     double scale = 0.0;
     while (report.iterations < options_.max_iterations && !report.converged) {
       double change = sweep(contacts, b, x);
       if (report.iterations++ == 0) largest_change_ = std::max(largest_change_, change);
-      scale = largest_change_;
+      scale = std::max(largest_change_, rounding / options_.tolerance);
       if (since_update++ == 0) after_update = change;
       bool calm = change <= options_.tolerance * scale;
       if (has_updates &&
@@ -94,6 +96,18 @@ class GaussSeidel final : public ContactSolver<Real> {
       report.converged = false;
       report.residual = std::max(report.residual, left / scale);
     }
+  }
+
+  /// A change of all of x by a rounding, in the norm of the energy.
+  [[nodiscard]] double rounding_of(std::span<const Real> x) const {
+    double square = 0.0;
+    for (Index v = 0; v < rows_.size(); ++v) {
+      for (Index c = 0; c < 3; ++c) {
+        const auto coordinate = static_cast<double>(x[Offset{kPaddedStride} * v + c]);
+        square += rows_.diagonal(v) * coordinate * coordinate;
+      }
+    }
+    return static_cast<double>(std::numeric_limits<Real>::epsilon()) * std::sqrt(square);
   }
 
   /// Returns the norm of the change, in that of the energy.

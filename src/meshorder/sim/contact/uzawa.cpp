@@ -210,17 +210,13 @@ class Uzawa final : public ContactSolver<Real> {
     }
   }
 
-  /// Sets the bounds of tangential forces to what normal forces allow; returns the norm of the change.
-  double set_radii(std::span<const Contact> contacts) {
-    double square = 0.0;
+  /// Sets the bounds of tangential forces to what normal forces allow, and the forces within them.
+  void set_radii(std::span<const Contact> contacts) {
     for (Index k = 0; k < index_size(rows().rubbing); ++k) {
       const Index contact = rows().rubbing[k];
-      const double radius = contacts[contact].friction * forces_[contact];
-      square += (radius - bounds_.radii[k]) * (radius - bounds_.radii[k]);
-      bounds_.radii[k] = radius;
+      bounds_.radii[k] = contacts[contact].friction * forces_[contact];
     }
     project(bounds_, forces_);
-    return std::sqrt(square);
   }
 
   void find_forces(std::span<const Contact> contacts, ContactSolveReport& report) {
@@ -237,26 +233,23 @@ class Uzawa final : public ContactSolver<Real> {
     options.tolerance = options_.tolerance * depth_norm;
     options.scale = operator_.scale();
     options.softness = kSoftness * options_.tolerance;
-    const bool friction = !rows().rubbing.empty();
-    set_radii(contacts);
     for (int round = 0; round < kMaxRounds; ++round) {
-      options.max_multiplications = options_.max_iterations - report.iterations;
+      set_radii(contacts);
       report.iterations += take_gradient();
+      report.converged = projected_gradient(bounds_, options.scale, forces_, gradient_) <= options.tolerance;
+      options.max_multiplications = options_.max_iterations - report.iterations;
+      if (report.converged || options.max_multiplications <= 0) break;
       const ForceSolveReport solved = minimise_forces(operator_, bounds_, options, forces_, gradient_);
       report.iterations += solved.multiplications;
-      report.converged = solved.residual <= options.tolerance;
-      if (!friction) break;
-      const double change = set_radii(contacts);
-      double norm = 0.0;
-      for (const double radius : bounds_.radii) norm += radius * radius;
-      if (change <= options_.tolerance * std::sqrt(norm)) break;
-      report.converged = false;
-      if (report.iterations >= options_.max_iterations) break;
+      // without friction bounds stay as they are
+      report.converged = rows().rubbing.empty() && solved.residual <= options.tolerance;
+      if (rows().rubbing.empty()) break;
     }
+    if (!report.converged) set_radii(contacts);
     // the softness is no excuse: where contacts contradict each other it is all that ends the solve
     for (std::size_t i = 0; i < forces_.size(); ++i)
       gradient_[i] += options.softness * options.scale[i] * forces_[i];
-    report.residual = projected_gradient(bounds_, forces_, gradient_) / depth_norm;
+    report.residual = projected_gradient(bounds_, options.scale, forces_, gradient_) / depth_norm;
     report.converged = report.converged && report.residual <= 2 * options_.tolerance;
   }
 

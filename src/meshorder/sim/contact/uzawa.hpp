@@ -20,7 +20,7 @@ namespace meshorder {
 /// force, contradicting ones end between each other, with `converged` false and the rest in `violation`.
 ///
 /// With friction the bounds of tangential forces are those of the last round's normal forces (Tresca's fixed
-/// point; Haslinger 1983), until rounds change them by no more than `tolerance`, at most kMaxRounds of them.
+/// point; Haslinger 1983), until forces are within `tolerance` with the bounds that they make themselves.
 template <class Real>
 std::unique_ptr<ContactSolver<Real>> make_uzawa(const SparseMatrix& matrix,
                                                 const CholeskyFactor<Real>& factor,
