@@ -40,32 +40,44 @@ struct UnitTetrahedra {
   }
 };
 
-/// 2z − q of one local step from duals 0, by the kernels: what a tetrahedron of unit shape adds to its
-/// corners.
+/// w² per volume.
+inline double weight_of(const LocalLaw& law) {
+  return law.model == LocalModel::strain ? law.stiffness : law.lame.lambda + 2.0 / 3.0 * law.lame.mu;
+}
+
+/// The kernels' local steps of any matrices q: what tetrahedra of unit shape add to their corners.
 template <class Real>
-std::vector<Eigen::Matrix3d> reflections(LocalLaw law, const std::vector<Eigen::Matrix3d>& q) {
-  const UnitTetrahedra body(q.size());
-  law.stiffness = 6.0;  // w² = 1 for strain
-  LocalSteps<Real> steps(law, body.simplices, body.points);
-  AlignedVector<Real> sums(kPaddedStride * static_cast<std::size_t>(steps.room()));
-  double weight = 1.0;
-  if (law.model != LocalModel::strain) weight = (law.lame.lambda + 2.0 / 3.0 * law.lame.mu) / 6.0;
-  steps.pass(UnitTetrahedra::positions<Real>(q), Real{1}, sums);
-  std::vector<Eigen::Matrix3d> result(q.size());
-  for (std::size_t s = 0; s < q.size(); ++s) {
-    for (int a = 0; a < 3; ++a) {
-      for (int c = 0; c < 3; ++c) {
-        result[s](c, a) = static_cast<double>(sums[16 * s + 4 * a + 4 + c]) / weight;
+class UnitSteps {
+ public:
+  UnitSteps(const LocalLaw& law, std::size_t count)
+      : body_(count), steps_(law, body_.simplices, body_.points), weight_(weight_of(law) / 6.0) {}
+
+  /// 2z − q, from duals 0, of as many as there are tetrahedra.
+  std::vector<Eigen::Matrix3d> reflections(const std::vector<Eigen::Matrix3d>& q) {
+    AlignedVector<Real> sums(kPaddedStride * static_cast<std::size_t>(steps_.room()));
+    steps_.reset_duals();
+    steps_.pass(UnitTetrahedra::positions<Real>(q), Real{1}, sums);
+    std::vector<Eigen::Matrix3d> result(q.size());
+    for (std::size_t s = 0; s < q.size(); ++s) {
+      for (int a = 0; a < 3; ++a) {
+        for (int c = 0; c < 3; ++c) {
+          result[s](c, a) = static_cast<double>(sums[16 * s + 4 * a + 4 + c]) / weight_;
+        }
       }
     }
+    return result;
   }
-  return result;
-}
+
+ private:
+  UnitTetrahedra body_;
+  LocalSteps<Real> steps_;
+  double weight_;
+};
 
 /// z of one local step.
 template <class Real>
 std::vector<Eigen::Matrix3d> local_steps(const LocalLaw& law, const std::vector<Eigen::Matrix3d>& q) {
-  std::vector<Eigen::Matrix3d> result = reflections<Real>(law, q);
+  std::vector<Eigen::Matrix3d> result = UnitSteps<Real>(law, q.size()).reflections(q);
   for (std::size_t s = 0; s < q.size(); ++s) result[s] = 0.5 * (result[s] + q[s]);
   return result;
 }
@@ -81,7 +93,7 @@ inline LocalLaw law_of(LocalModel model, double poisson = 0.3) {
 
 /// The signed singular values, falling in size.
 inline Eigen::Vector3d singular_values(const Eigen::Matrix3d& f) {
-  Eigen::Vector3d sigma = Eigen::JacobiSVD<Eigen::Matrix3d>(f).singularValues();
+  Eigen::Vector3d sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(f).singularValues();
   if (f.determinant() < 0.0) sigma[2] = -sigma[2];
   return sigma;
 }
@@ -114,11 +126,6 @@ inline double density(const LocalLaw& law, const Eigen::Vector3d& sigma) {
       return 0.5 * mu * (norm - 3.0) - mu * std::log(j) + 0.5 * lambda * std::log(j) * std::log(j);
   }
   return 0.0;
-}
-
-/// w² per volume.
-inline double weight_of(const LocalLaw& law) {
-  return law.model == LocalModel::strain ? law.stiffness : law.lame.lambda + 2.0 / 3.0 * law.lame.mu;
 }
 
 /// What a local step minimises, over w².

@@ -141,9 +141,12 @@ void LocalSteps<Real>::set_duals(std::span<const Real> duals) {
     for (const Index batch : shares_[part].batches) {
       Real* const first = duals_.data() + duals_of(copy++);
       for (Index lane = 0; lane < kLocalBatch<Real>; ++lane) {
-        // those that fill the last batch go with the last element
-        const Offset s = std::min(Offset{batch} * kLocalBatch<Real> + lane, last);
-        for (Index k = 0; k < rows; ++k) first[k * kLocalBatch<Real> + lane] = duals[s * rows + k];
+        const Offset s = Offset{batch} * kLocalBatch<Real> + lane;
+        // of those that fill the last batch, springs have no length and tetrahedra are copies of the last one
+        const Offset from = elements_.corners == 4 ? std::min(s, last) : s;
+        for (Index k = 0; k < rows; ++k) {
+          first[k * kLocalBatch<Real> + lane] = from <= last ? duals[from * rows + k] : Real{0};
+        }
       }
     }
   });
