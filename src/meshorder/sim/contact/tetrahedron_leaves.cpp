@@ -36,7 +36,24 @@ HWY_INLINE Value lesser(Value a, Value b) {
   return ManyLanes::choose(a - b, b, a);
 }
 
-/// Takes in the box of two vectors of corners' coordinates.
+template <class Value>
+HWY_INLINE Value greater(Value a, Value b) {
+  return ManyLanes::choose(b - a, b, a);
+}
+
+/// The least of all lanes, or the greatest.
+HWY_INLINE double least_lane(ManyLanes::Value value) {
+  alignas(64) double lanes[kBatch];
+  ManyLanes::store(value, lanes);
+  return *std::min_element(lanes, lanes + ManyLanes::kCount);
+}
+HWY_INLINE double greatest_lane(ManyLanes::Value value) {
+  alignas(64) double lanes[kBatch];
+  ManyLanes::store(value, lanes);
+  return *std::max_element(lanes, lanes + ManyLanes::kCount);
+}
+
+/// Takes in the box of some lanes' corners.
 HWY_INLINE void corner_boxes(const Index* corners, const double* positions, Index lane,
                              ManyLanes::Value (&lower)[3], ManyLanes::Value (&upper)[3]) {
   for (int k = 0; k < 4; ++k) {
@@ -45,14 +62,13 @@ HWY_INLINE void corner_boxes(const Index* corners, const double* positions, Inde
     MESHORDER_UNROLL
     for (int c = 0; c < 3; ++c) {
       lower[c] = lesser(lower[c], p[c]);
-      upper[c] = ManyLanes::choose(p[c] - upper[c], p[c], upper[c]);
+      upper[c] = greater(upper[c], p[c]);
     }
   }
 }
 
 void boxes_of_branch(TetrahedronLeaves& tetrahedra, Index branch, const double* positions) {
   const double infinity = std::numeric_limits<double>::infinity();
-  double branch_ends[6] = {infinity, infinity, infinity, -infinity, -infinity, -infinity};
   float* const boxes = tetrahedra.leaf_boxes.data() + Offset{6} * kLeaf * branch;
   const Index count = tetrahedra.leaves_of(branch);
   for (Index l = 0; l < count; ++l) {
@@ -67,24 +83,37 @@ void boxes_of_branch(TetrahedronLeaves& tetrahedra, Index branch, const double* 
     for (Index lane = 0; lane < kLeaf; lane += ManyLanes::kCount)
       corner_boxes(corners, positions, lane, lower, upper);
     for (int c = 0; c < 3; ++c) {
-      alignas(64) double low[kBatch];
-      alignas(64) double high[kBatch];
-      ManyLanes::store(lower[c], low);
-      ManyLanes::store(upper[c], high);
-      for (Index i = 1; i < ManyLanes::kCount; ++i) {
-        low[0] = low[i] < low[0] ? low[i] : low[0];
-        high[0] = high[i] > high[0] ? high[i] : high[0];
-      }
-      boxes[kLeaf * c + l] = rounded_to_float(low[0]);
-      boxes[kLeaf * (3 + c) + l] = rounded_to_float(high[0]);
-      branch_ends[c] = low[0] < branch_ends[c] ? low[0] : branch_ends[c];
-      branch_ends[3 + c] = high[0] > branch_ends[3 + c] ? high[0] : branch_ends[3 + c];
+      boxes[kLeaf * c + l] = rounded_to_float(least_lane(lower[c]));
+      boxes[kLeaf * (3 + c) + l] = rounded_to_float(greatest_lane(upper[c]));
     }
   }
-  float* const ends = tetrahedra.branch_boxes.data() + Offset{6} * kLeaf * (branch / kLeaf) + branch % kLeaf;
+}
+
+void read_points(PointCluster& cluster, const double* positions) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  alignas(64) double coordinates[3][PointCluster::kMost];
+  ManyLanes::Value lower[3];
+  ManyLanes::Value upper[3];
+  MESHORDER_UNROLL
   for (int c = 0; c < 3; ++c) {
-    ends[kLeaf * c] = rounded_to_float(branch_ends[c]);
-    ends[kLeaf * (3 + c)] = rounded_to_float(branch_ends[3 + c]);
+    lower[c] = ManyLanes::set(infinity);
+    upper[c] = ManyLanes::set(-infinity);
+  }
+  for (Index i = 0; i < PointCluster::kMost; i += ManyLanes::kCount) {
+    ManyLanes::Value p[3];
+    ManyLanes::gather(positions, cluster.vertices.data() + i, p);
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c) {
+      lower[c] = lesser(lower[c], p[c]);
+      upper[c] = greater(upper[c], p[c]);
+      ManyLanes::store(p[c], coordinates[c] + i);
+    }
+  }
+  for (int c = 0; c < 3; ++c) {
+    for (Index i = 0; i < PointCluster::kMost; ++i)
+      cluster.coordinates[c][i] = rounded_to_float(coordinates[c][i]);
+    cluster.lower[c] = rounded_to_float(least_lane(lower[c]));
+    cluster.upper[c] = rounded_to_float(greatest_lane(upper[c]));
   }
 }
 
@@ -107,7 +136,7 @@ void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* pos
   // the other three corners of each face, so that they turn counterclockwise seen from inside
   constexpr int kInward[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
   // of the sum of three products with a rounded normal, relative to a rounded point
-  constexpr double kPlaneRounding = 16 * 0x1p-24;
+  constexpr double kPlaneRounding = 32 * 0x1p-24;
   constexpr double kTooLarge = 1e30;
   using Value = ManyLanes::Value;
   const Index* const corners = tetrahedra.corners.data() + Offset{4} * kLeaf * leaf;
@@ -118,7 +147,7 @@ void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* pos
     const double lower = box[kLeaf * c];
     const double upper = box[kLeaf * (3 + c)];
     center[c] = 0.5 * (lower + upper);
-    radius += 0.5 * (upper - lower);
+    radius += 0.5 * (upper - lower) + std::abs(center[c]) * 0x1p-23;  // the ends are rounded
   }
   float* const planes = tetrahedra.planes.data() + Offset{16} * kLeaf * leaf;
   if (!(radius < kTooLarge)) {
@@ -142,7 +171,7 @@ void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* pos
       plane_through(a, p[kInward[k][1]], p[kInward[k][2]], normal);
       const Value size = ManyLanes::abs(normal[0]) + ManyLanes::abs(normal[1]) + ManyLanes::abs(normal[2]);
       const Value through = normal[0] * a[0] + normal[1] * a[1] + normal[2] * a[2];
-      // of a length near 1, so that floats do not overflow; none where there is no plane
+      // of length 1; NaN where there is no plane
       const Value scale = ManyLanes::set(1.0) / size;
       alignas(64) double numbers[4][kBatch];
       MESHORDER_UNROLL
@@ -207,58 +236,94 @@ void leaves_meeting(const TetrahedronLeaves& tetrahedra, Index branch, const Poi
 using FloatVector = hn::Vec<Floats>;
 using IntegerVector = hn::Vec<Integers>;
 
-/// The lanes, from `lane` on, of a leaf whose tetrahedra each point may be inside of and is no corner of,
-/// into its bits of `lanes`. The planes stay in registers.
-HWY_INLINE void lanes_around(const float* planes, const Index* corners, Index lane,
-                             std::span<const Index> vertices, const float (&x)[3][PointCluster::kMost],
-                             std::uint32_t* lanes) {
-  const Floats d;
-  const Integers integers;
-  FloatVector plane[4][4];
-  IntegerVector corner[4];
-  MESHORDER_UNROLL
-  for (int k = 0; k < 4; ++k) {
+/// The planes and corners of a register's tetrahedra of a leaf.
+struct LeafLanes {
+  FloatVector planes[4][4];
+  IntegerVector corners[4];
+
+  HWY_INLINE LeafLanes(const TetrahedronLeaves& tetrahedra, Index leaf, Index lane) {
+    const float* const plane = tetrahedra.planes.data() + Offset{16} * kLeaf * leaf + lane;
+    const Index* const corner = tetrahedra.corners.data() + Offset{4} * kLeaf * leaf + lane;
     MESHORDER_UNROLL
-    for (int q = 0; q < 4; ++q) plane[k][q] = hn::Load(d, planes + kLeaf * (4 * k + q) + lane);
-    corner[k] = hn::Load(integers, corners + kLeaf * k + lane);
+    for (int k = 0; k < 4; ++k) {
+      MESHORDER_UNROLL
+      for (int q = 0; q < 4; ++q) planes[k][q] = hn::Load(Floats(), plane + kLeaf * (4 * k + q));
+      corners[k] = hn::Load(Integers(), corner + kLeaf * k);
+    }
   }
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const FloatVector p[3] = {hn::Set(d, x[0][i]), hn::Set(d, x[1][i]), hn::Set(d, x[2][i])};
-    const IntegerVector vertex = hn::Set(integers, vertices[i]);
-    const auto height = [&](int k) {
-      return hn::MulAdd(plane[k][0], p[0],
-                        hn::MulAdd(plane[k][1], p[1], hn::MulAdd(plane[k][2], p[2], plane[k][3])));
+
+  /// The least height over the four planes.
+  HWY_INLINE FloatVector height(float x, float y, float z) const {
+    const Floats d;
+    const FloatVector p[3] = {hn::Set(d, x), hn::Set(d, y), hn::Set(d, z)};
+    const auto over = [&](int k) {
+      return hn::MulAdd(planes[k][0], p[0],
+                        hn::MulAdd(planes[k][1], p[1], hn::MulAdd(planes[k][2], p[2], planes[k][3])));
     };
-    const auto least = hn::Min(hn::Min(height(0), height(1)), hn::Min(height(2), height(3)));
-    const auto is_corner = hn::Or(hn::Or(hn::Eq(corner[0], vertex), hn::Eq(corner[1], vertex)),
-                                  hn::Or(hn::Eq(corner[2], vertex), hn::Eq(corner[3], vertex)));
-    const auto inside = hn::And(hn::Ge(least, hn::Zero(d)), hn::Not(hn::RebindMask(d, is_corner)));
-    lanes[i] |= bits_of(inside) << static_cast<unsigned>(lane);
+    return hn::Min(hn::Min(over(0), over(1)), hn::Min(over(2), over(3)));
   }
-}
+
+  HWY_INLINE auto has_corner(Index vertex) const {
+    const IntegerVector v = hn::Set(Integers(), vertex);
+    return hn::RebindMask(Floats(), hn::Or(hn::Or(hn::Eq(corners[0], v), hn::Eq(corners[1], v)),
+                                           hn::Or(hn::Eq(corners[2], v), hn::Eq(corners[3], v))));
+  }
+};
+
+/// The points of a task, relative to the leaf's centre.
+struct TaskPoints {
+  Index count = 0;
+  Index points[PointCluster::kMost];
+  Index vertices[PointCluster::kMost];
+  float at[3][PointCluster::kMost];
+
+  HWY_INLINE TaskPoints(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
+                        const LeafTask& task, const double* positions) {
+    const std::array<double, 3>& center = tetrahedra.centers[task.leaf];
+    for (std::uint64_t left = task.points; left != 0; left &= left - 1) {
+      points[count] = std::countr_zero(left);
+      vertices[count] = cluster.vertices[points[count]];
+      const double* const position = positions + Offset{kPaddedStride} * vertices[count];
+      for (int c = 0; c < 3; ++c) at[c][count] = rounded_to_float(position[c] - center[c]);
+      ++count;
+    }
+  }
+};
 
 void hits_of_task(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
                   const double* positions, std::vector<LeafHit>& hits) {
-  const std::array<double, 3>& center = tetrahedra.centers[task.leaf];
-  float x[3][PointCluster::kMost];
-  Index vertices[PointCluster::kMost];
-  Index points[PointCluster::kMost];
-  std::uint32_t lanes[PointCluster::kMost];
-  Index count = 0;
-  for (std::uint64_t left = task.points; left != 0; left &= left - 1) {
-    points[count] = std::countr_zero(left);
-    vertices[count] = cluster.vertices[points[count]];
-    const double* const position = positions + Offset{kPaddedStride} * vertices[count];
-    for (int c = 0; c < 3; ++c) x[c][count] = rounded_to_float(position[c] - center[c]);
-    lanes[count++] = 0;
-  }
+  const Floats d;
+  const TaskPoints task_points(tetrahedra, cluster, task, positions);
+  std::uint32_t lanes[PointCluster::kMost] = {};
   for (Index lane = 0; lane < kLeaf; lane += kFloats) {
-    lanes_around(tetrahedra.planes.data() + Offset{16} * kLeaf * task.leaf,
-                 tetrahedra.corners.data() + Offset{4} * kLeaf * task.leaf, lane,
-                 std::span(vertices, static_cast<std::size_t>(count)), x, lanes);
+    const LeafLanes leaf(tetrahedra, task.leaf, lane);
+    for (Index i = 0; i < task_points.count; ++i) {
+      const FloatVector height =
+          leaf.height(task_points.at[0][i], task_points.at[1][i], task_points.at[2][i]);
+      const auto inside =
+          hn::And(hn::Ge(height, hn::Zero(d)), hn::Not(leaf.has_corner(task_points.vertices[i])));
+      lanes[i] |= bits_of(inside) << static_cast<unsigned>(lane);
+    }
   }
-  for (Index i = 0; i < count; ++i) {
-    if (lanes[i] != 0) hits.push_back({points[i], task.leaf, lanes[i]});
+  for (Index i = 0; i < task_points.count; ++i) {
+    if (lanes[i] != 0) hits.push_back({task_points.points[i], task.leaf, lanes[i]});
+  }
+}
+
+void clearances_of_task(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
+                        const LeafTask& task, const double* positions, float* clearances) {
+  const Floats d;
+  const TaskPoints task_points(tetrahedra, cluster, task, positions);
+  for (Index lane = 0; lane < kLeaf; lane += kFloats) {
+    const LeafLanes leaf(tetrahedra, task.leaf, lane);
+    for (Index i = 0; i < task_points.count; ++i) {
+      const FloatVector height =
+          leaf.height(task_points.at[0][i], task_points.at[1][i], task_points.at[2][i]);
+      const FloatVector none = hn::Set(d, std::numeric_limits<float>::lowest());
+      const FloatVector others = hn::IfThenElse(leaf.has_corner(task_points.vertices[i]), none, height);
+      float& clearance = clearances[task_points.points[i]];
+      clearance = std::min(clearance, -hn::GetLane(hn::MaxOfLanes(d, others)));
+    }
   }
 }
 
@@ -275,6 +340,8 @@ HWY_EXPORT(planes_of_leaf);
 HWY_EXPORT(branches_meeting);
 HWY_EXPORT(leaves_meeting);
 HWY_EXPORT(hits_of_task);
+HWY_EXPORT(clearances_of_task);
+HWY_EXPORT(read_points);
 
 }  // namespace
 
@@ -315,21 +382,17 @@ void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const do
   HWY_DYNAMIC_DISPATCH(planes_of_leaf)(tetrahedra, leaf, positions.data());
 }
 
-void update_cluster(PointCluster& cluster, std::span<const double> positions) {
-  const float infinity = std::numeric_limits<float>::infinity();
-  for (int c = 0; c < 3; ++c) {
-    cluster.lower[c] = infinity;
-    cluster.upper[c] = -infinity;
-    float* const to = cluster.coordinates[c].data();
-    std::fill_n(to, PointCluster::kMost, std::numeric_limits<float>::quiet_NaN());
-    for (std::size_t i = 0; i < cluster.vertices.size(); ++i) {
-      const double x = positions[Offset{kPaddedStride} * cluster.vertices[i] + c];
-      if (std::isnan(x)) continue;
-      to[i] = rounded_to_float(x);
-      cluster.lower[c] = std::min(cluster.lower[c], to[i]);
-      cluster.upper[c] = std::max(cluster.upper[c], to[i]);
-    }
-  }
+PointCluster::PointCluster(std::span<const Index> some) : points(~std::uint64_t{0} >> (kMost - some.size())) {
+  std::fill(std::copy(some.begin(), some.end(), vertices.begin()), vertices.end(), some.back());
+}
+
+void update_points(PointCluster& cluster, std::span<const double> positions) {
+  HWY_DYNAMIC_DISPATCH(read_points)(cluster, positions.data());
+}
+
+void lower_clearances(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
+                      std::span<const double> positions, std::span<float> clearances) {
+  HWY_DYNAMIC_DISPATCH(clearances_of_task)(tetrahedra, cluster, task, positions.data(), clearances.data());
 }
 
 void branches_at(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,

@@ -28,10 +28,13 @@ inline float rounded_to_float(double a) {
 struct PointCluster {
   static constexpr Index kMost = 64;
 
-  std::span<const Index> vertices;
-  /// x, y, z of each, rounded; those behind the last are NaN, which is in no box.
-  alignas(64) std::array<std::array<float, kMost>, 3> coordinates;
-  std::array<float, 3> lower, upper;  ///< around them; an upper end below the lower one for none
+  std::uint64_t points = 0;             ///< the bits of all that there are
+  std::array<Index, kMost> vertices{};  ///< behind the last one it again
+  alignas(64) std::array<std::array<float, kMost>, 3> coordinates{};
+  std::array<float, 3> lower{}, upper{};  ///< around them; an upper end below the lower one for none
+
+  /// `vertices` are 1 … kMost.
+  explicit PointCluster(std::span<const Index> vertices);
 };
 
 /// Tetrahedra in leaves of sixteen that are neighbours at rest, and branches of sixteen leaves: what a search
@@ -60,7 +63,7 @@ struct TetrahedronLeaves {
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// A leaf, and the points of a cluster that are in its box.
+/// A leaf, and points of a cluster that are to be tested against it.
 struct LeafTask {
   Index leaf = 0;
   std::uint64_t points = 0;
@@ -73,18 +76,22 @@ struct LeafHit {
   std::uint32_t lanes = 0;
 };
 
-/// The boxes of the branch and its leaves at `positions`. O(tetrahedra of the branch).
+/// The boxes of the branch's leaves at `positions`. O(tetrahedra of the branch).
 void update_boxes(TetrahedronLeaves& tetrahedra, Index branch, std::span<const double> positions);
 /// The planes of a leaf whose box is up to date.
 void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const double> positions);
-/// Reads the cluster's points, whose vertices are set.
-void update_cluster(PointCluster& cluster, std::span<const double> positions);
+/// Reads where the cluster's points are.
+void update_points(PointCluster& cluster, std::span<const double> positions);
 /// The branches whose box meets the cluster's, rising.
 void branches_at(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
                  std::vector<Index>& branches);
 /// Appends the branch's leaves in whose box points of the cluster are, of those in the mask.
 void leaves_at(const TetrahedronLeaves& tetrahedra, Index branch, const PointCluster& cluster,
                std::uint64_t points, std::vector<LeafTask>& tasks);
+/// Of the task's points, lowers `clearances` (one for each of the cluster) to the distance that each is
+/// beyond some plane of every tetrahedron that it is no corner of; negative where it is inside one.
+void lower_clearances(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
+                      std::span<const double> positions, std::span<float> clearances);
 /// Appends the points of a task that no plane of some tetrahedron keeps out, which they are no corners of.
 void hits_of(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
              std::span<const double> positions, std::vector<LeafHit>& hits);

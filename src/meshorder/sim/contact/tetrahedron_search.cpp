@@ -1,5 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/parallel.hpp>
+#include <meshorder/sim/contact/branch_motions.hpp>
+#include <meshorder/sim/contact/clearances.hpp>
 #include <meshorder/sim/contact/halving.hpp>
 #include <meshorder/sim/contact/inside_tetrahedron.hpp>
 #include <meshorder/sim/contact/tetrahedron_leaves.hpp>
@@ -10,6 +12,7 @@
 #include <atomic>
 #include <bit>
 #include <numeric>
+#include <optional>
 
 namespace meshorder {
 namespace {
@@ -62,47 +65,106 @@ SortedTetrahedra sorted_tetrahedra(const Simplices& simplices, std::span<const P
   return result;
 }
 
+std::vector<PointCluster> clusters_of(std::span<const Index> vertices, std::span<const Point> points) {
+  std::vector<Index> sorted(vertices.begin(), vertices.end());
+  sort_into_runs(sorted, PointCluster::kMost, points);
+  std::vector<PointCluster> clusters;
+  for (std::size_t first = 0; first < sorted.size(); first += PointCluster::kMost) {
+    const std::size_t count = std::min(sorted.size() - first, std::size_t{PointCluster::kMost});
+    clusters.emplace_back(std::span(sorted).subspan(first, count));
+  }
+  return clusters;
+}
+
+/// Calls `work(i)` for 0 … n−1, on all threads.
+template <class Work>
+void for_each_number(Index n, Index at_once, Work work) {
+  for_each_chunk(n, at_once, [&](Index /*chunk*/, Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) work(i);
+  });
+}
+
 }  // namespace
 
 struct TetrahedronSearch::State {
-  State(const SortedTetrahedra& sorted, std::span<const Point> points, std::span<const Index> sought)
-      : tetrahedra(sorted.corners, sorted.numbers), vertices(sought.begin(), sought.end()) {
-    sort_into_runs(vertices, PointCluster::kMost, points);
-    const Index count = (index_size(vertices) + PointCluster::kMost - 1) / PointCluster::kMost;
-    searches.resize(count);
-    for (Index c = 0; c < count; ++c) {
-      const Index first = PointCluster::kMost * c;
-      searches[c].cluster.vertices =
-          std::span(vertices).subspan(first, std::min(PointCluster::kMost, index_size(vertices) - first));
-    }
-    places.assign(
-        sorted.numbers.empty() ? 0 : *std::max_element(sorted.numbers.begin(), sorted.numbers.end()) + 1, -1);
+  State(const SortedTetrahedra& sorted, const Simplices& simplices, std::span<const Point> points,
+        std::span<const Index> vertices)
+      : tetrahedra(sorted.corners, sorted.numbers),
+        clusters(clusters_of(vertices, points)),
+        motions(tetrahedra, points),
+        clearances(tetrahedra, motions, clusters, points),
+        searches(clusters.size()),
+        places(simplices.size(), -1),
+        wanted_branches(tetrahedra.branches),
+        wanted_leaves(tetrahedra.leaves) {
     for (std::size_t i = 0; i < sorted.numbers.size(); ++i) places[sorted.numbers[i]] = static_cast<Index>(i);
-    wanted = std::vector<std::atomic<bool>>(tetrahedra.leaves);
   }
 
-  /// What is looked for together, and what was found.
+  /// A branch, and the points of a cluster that may be in its tetrahedra.
+  struct BranchTask {
+    Index branch = 0;
+    std::uint64_t points = 0;
+  };
+  /// What is to be done for a cluster, and what it found.
   struct Search {
-    PointCluster cluster;
     std::vector<Index> branches;
-    std::vector<LeafTask> tasks;
+    std::vector<BranchTask> branch_tasks;
+    std::vector<LeafTask> leaf_tasks;
     std::vector<LeafHit> hits;
     std::vector<VertexInside> inside;
   };
 
   TetrahedronLeaves tetrahedra;
-  std::vector<Index> vertices;  ///< in clusters
-  std::vector<Search> searches;
-  std::vector<Index> places;  ///< of the tetrahedra by their numbers; −1 for those that are flat
-  std::vector<std::atomic<bool>> wanted;  ///< leaves in whose box there are points
+  std::vector<PointCluster> clusters;
+  BranchMotions motions;
+  Clearances clearances;
+  std::vector<Search> searches;  ///< one for each cluster
+  std::vector<Index> places;     ///< of the tetrahedra by their numbers; −1 for those that are flat
+  std::vector<std::atomic<bool>> wanted_branches;
+  std::vector<std::atomic<bool>> wanted_leaves;
 
-  void collect_tasks(Search& search, std::span<const double> positions) {
-    update_cluster(search.cluster, positions);
-    branches_at(tetrahedra, search.cluster, search.branches);
-    search.tasks.clear();
-    for (const Index branch : search.branches)
-      leaves_at(tetrahedra, branch, search.cluster, ~std::uint64_t{0}, search.tasks);
-    for (const LeafTask& task : search.tasks) wanted[task.leaf].store(true, std::memory_order_relaxed);
+  void find_branches(Index c, std::span<const double> positions) {
+    Search& search = searches[c];
+    PointCluster& cluster = clusters[c];
+    update_points(cluster, positions);
+    clearances.update(c, cluster, motions, positions);
+    branches_at(tetrahedra, cluster, search.branches);
+    search.branch_tasks.clear();
+    for (const Index branch : search.branches) {
+      const std::uint64_t points = clearances.in_doubt(c, branch, cluster, motions);
+      if (points == 0) continue;
+      search.branch_tasks.push_back({branch, points});
+      wanted_branches[branch].store(true, std::memory_order_relaxed);
+    }
+  }
+
+  void find_leaves(Index c) {
+    Search& search = searches[c];
+    search.leaf_tasks.clear();
+    for (const BranchTask& task : search.branch_tasks)
+      leaves_at(tetrahedra, task.branch, clusters[c], task.points, search.leaf_tasks);
+    for (const LeafTask& task : search.leaf_tasks)
+      wanted_leaves[task.leaf].store(true, std::memory_order_relaxed);
+  }
+
+  void test_points(Index c, std::span<const double> positions) {
+    Search& search = searches[c];
+    search.hits.clear();
+    search.inside.clear();
+    for (const LeafTask& task : search.leaf_tasks)
+      hits_of(tetrahedra, clusters[c], task, positions, search.hits);
+    for (const LeafHit& hit : search.hits) {
+      const Index vertex = clusters[c].vertices[hit.point];
+      for (std::uint32_t lanes = hit.lanes; lanes != 0; lanes &= lanes - 1) {
+        const Index place = kLeaf * hit.leaf + std::countr_zero(lanes);
+        if (tetrahedra.numbers[place] < 0) continue;
+        const std::array<Index, 4> corners = corners_at(place);
+        std::array<Point, 4> at{};
+        for (int k = 0; k < 4; ++k) at[k] = point_of(positions, corners[k]);
+        if (const auto weights = weights_inside(point_of(positions, vertex), at))
+          search.inside.push_back({vertex, tetrahedra.numbers[place], *weights});
+      }
+    }
   }
 
   [[nodiscard]] std::array<Index, 4> corners_at(Index place) const {
@@ -110,30 +172,11 @@ struct TetrahedronSearch::State {
         tetrahedra.corners.data() + Offset{4} * kLeaf * (place / kLeaf) + place % kLeaf;
     return {first[0], first[kLeaf], first[2 * kLeaf], first[3 * kLeaf]};
   }
-
-  void work_off(Search& search, std::span<const double> positions) const {
-    search.hits.clear();
-    search.inside.clear();
-    for (const LeafTask& task : search.tasks)
-      hits_of(tetrahedra, search.cluster, task, positions, search.hits);
-    for (const LeafHit& hit : search.hits) {
-      const Index vertex = search.cluster.vertices[hit.point];
-      for (std::uint32_t lanes = hit.lanes; lanes != 0; lanes &= lanes - 1) {
-        const Index place = kLeaf * hit.leaf + std::countr_zero(lanes);
-        if (tetrahedra.numbers[place] < 0) continue;
-        std::array<Point, 4> at{};
-        const std::array<Index, 4> corners = corners_at(place);
-        for (int k = 0; k < 4; ++k) at[k] = point_of(positions, corners[k]);
-        if (const auto weights = weights_inside(point_of(positions, vertex), at))
-          search.inside.push_back({vertex, tetrahedra.numbers[place], *weights});
-      }
-    }
-  }
 };
 
 TetrahedronSearch::TetrahedronSearch(const Simplices& simplices, std::span<const Point> points,
                                      std::span<const Index> vertices)
-    : state_(std::make_unique<State>(sorted_tetrahedra(simplices, points), points, vertices)) {}
+    : state_(std::make_unique<State>(sorted_tetrahedra(simplices, points), simplices, points, vertices)) {}
 TetrahedronSearch::~TetrahedronSearch() = default;
 TetrahedronSearch::TetrahedronSearch(TetrahedronSearch&&) noexcept = default;
 TetrahedronSearch& TetrahedronSearch::operator=(TetrahedronSearch&&) noexcept = default;
@@ -141,22 +184,21 @@ TetrahedronSearch& TetrahedronSearch::operator=(TetrahedronSearch&&) noexcept = 
 void TetrahedronSearch::find(std::span<const double> positions, std::vector<VertexInside>& inside) {
   State& state = *state_;
   TetrahedronLeaves& tetrahedra = state.tetrahedra;
-  const Index searches = index_size(state.searches);
-  for_each_chunk(tetrahedra.branches, kBranchesAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
-    for (Index branch = begin; branch < end; ++branch) update_boxes(tetrahedra, branch, positions);
+  const Index clusters = index_size(state.clusters);
+  for_each_number(tetrahedra.branches, kBranchesAtOnce,
+                  [&](Index branch) { state.motions.update(branch, positions, tetrahedra); });
+  for_each_number(clusters, kBranchesAtOnce, [&](Index c) { state.find_branches(c, positions); });
+  for_each_number(tetrahedra.branches, kBranchesAtOnce, [&](Index branch) {
+    if (state.wanted_branches[branch].exchange(false, std::memory_order_relaxed))
+      update_boxes(tetrahedra, branch, positions);
   });
-  for_each_chunk(searches, kBranchesAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
-    for (Index s = begin; s < end; ++s) state.collect_tasks(state.searches[s], positions);
+  for_each_number(clusters, kBranchesAtOnce, [&](Index c) { state.find_leaves(c); });
+  for_each_number(tetrahedra.leaves, kLeavesAtOnce, [&](Index leaf) {
+    if (state.wanted_leaves[leaf].exchange(false, std::memory_order_relaxed))
+      update_planes(tetrahedra, leaf, positions);
   });
-  for_each_chunk(tetrahedra.leaves, kLeavesAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
-    for (Index leaf = begin; leaf < end; ++leaf) {
-      if (state.wanted[leaf].exchange(false, std::memory_order_relaxed))
-        update_planes(tetrahedra, leaf, positions);
-    }
-  });
-  for_each_chunk(searches, kBranchesAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
-    for (Index s = begin; s < end; ++s) state.work_off(state.searches[s], positions);
-  });
+  for_each_number(clusters, kBranchesAtOnce, [&](Index c) { state.test_points(c, positions); });
+
   inside.clear();
   for (const State::Search& search : state.searches)
     inside.insert(inside.end(), search.inside.begin(), search.inside.end());
@@ -170,12 +212,15 @@ std::array<Index, 4> TetrahedronSearch::corners(Index tetrahedron) const {
 }
 
 std::size_t TetrahedronSearch::bytes() const {
-  std::size_t sum =
-      state_->tetrahedra.bytes() + (state_->vertices.capacity() + state_->places.capacity()) * sizeof(Index) +
-      state_->wanted.size() * sizeof(state_->wanted[0]) + state_->searches.capacity() * sizeof(State::Search);
+  std::size_t sum = state_->tetrahedra.bytes() + state_->motions.bytes() + state_->clearances.bytes() +
+                    state_->places.capacity() * sizeof(Index) +
+                    state_->clusters.capacity() * sizeof(PointCluster) +
+                    state_->searches.capacity() * sizeof(State::Search);
   for (const State::Search& search : state_->searches) {
-    sum += search.branches.capacity() * sizeof(Index) + search.tasks.capacity() * sizeof(LeafTask) +
-           search.hits.capacity() * sizeof(LeafHit) + search.inside.capacity() * sizeof(VertexInside);
+    sum += search.branches.capacity() * sizeof(Index) +
+           search.branch_tasks.capacity() * sizeof(State::BranchTask) +
+           search.leaf_tasks.capacity() * sizeof(LeafTask) + search.hits.capacity() * sizeof(LeafHit) +
+           search.inside.capacity() * sizeof(VertexInside);
   }
   return sum;
 }
