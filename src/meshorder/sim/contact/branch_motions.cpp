@@ -105,35 +105,12 @@ void fit_motion(std::span<const Corner> corners, const Shape& shape, const doubl
     for (int k = 0; k < 3; ++k) apart = apart.plus(-static_cast<double>(corner.at[k]), columns[k]);
     worst.raise_to(apart.magnitude());
   }
-  translation.store(motion.translation.data());
+  translation.store(motion.constant.data());
   lower.store(lower_end);
   upper.store(upper_end);
   alignas(64) double apart[kPaddedStride];
   worst.store(apart);
   motion.deviation = std::sqrt(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]);
-}
-
-void deviations_of_points(const Motion& motion, const PointCluster& cluster, const double* rest,
-                          const double* positions, float* result) {
-  using Value = ManyLanes::Value;
-  alignas(64) double squares[PointCluster::kMost];
-  for (Index i = 0; i < PointCluster::kMost; i += ManyLanes::kCount) {
-    Value x[3];
-    ManyLanes::gather(positions, cluster.vertices.data() + i, x);
-    Value square = ManyLanes::set(0.0);
-    MESHORDER_UNROLL
-    for (int c = 0; c < 3; ++c) {
-      Value apart = x[c] - ManyLanes::set(motion.translation[c]);
-      MESHORDER_UNROLL
-      for (int k = 0; k < 3; ++k)
-        apart = apart -
-                ManyLanes::set(motion.columns[k][c]) * ManyLanes::load(rest + PointCluster::kMost * k + i);
-      square = ManyLanes::mul_add(apart, apart, square);
-    }
-    ManyLanes::store(ManyLanes::square_root(square), squares + i);
-  }
-  constexpr double kUp = 1.0 + 0x1p-22;
-  for (Index i = 0; i < PointCluster::kMost; ++i) result[i] = rounded_to_float(kUp * squares[i]);
 }
 
 }  // namespace
@@ -149,7 +126,6 @@ namespace meshorder {
 namespace {
 
 HWY_EXPORT(fit_motion);
-HWY_EXPORT(deviations_of_points);
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
@@ -222,41 +198,25 @@ void BranchMotions::update(Index branch, std::span<const double> positions, Tetr
   alignas(64) std::array<double, kPaddedStride> upper{};
   HWY_DYNAMIC_DISPATCH(fit_motion)
   (corners, shapes_[branch], positions.data(), motion, lower.data(), upper.data());
-  motion.inverse_norm = norm_bound(inverse(linear_part(motion)));
+  const Matrix columns = linear_part(motion);
+  motion.inverse_norm = norm_bound(inverse(columns));
+  // up to here the constant is where the centre goes
+  constexpr double kRoundedCorners = 1e-6;  // to floats
+  constexpr double kRoundedPositions = 1e-13;
+  const Shape& shape = shapes_[branch];
+  motion.deviation += kRoundedCorners * frobenius(columns) * shape.radius;
+  for (int c = 0; c < 3; ++c) {
+    motion.deviation += kRoundedPositions * std::abs(motion.constant[c]);
+    for (int k = 0; k < 3; ++k) {
+      motion.constant[c] -= columns[k][c] * shape.center[k];
+      motion.deviation += kRoundedPositions * std::abs(columns[k][c] * shape.center[k]);
+    }
+  }
   float* const box = tetrahedra.branch_boxes.data() + Offset{6} * kLeaf * (branch / kLeaf) + branch % kLeaf;
   for (int c = 0; c < 3; ++c) {
     box[kLeaf * c] = rounded_to_float(lower[c]);
     box[kLeaf * (3 + c)] = rounded_to_float(upper[c]);
   }
-}
-
-double BranchMotions::apart(Index frame, Index branch) const {
-  constexpr double kRoundedCorners = 1e-6;  // floats, well rounded up
-  constexpr double kRoundedPositions = 1e-13;
-  const Motion& here = motions_[frame];
-  const Motion& there = motions_[branch];
-  const double radius = shapes_[branch].radius;
-  const Point way = minus(shapes_[branch].center, shapes_[frame].center);
-  Point between{};
-  double size = 0.0;
-  for (int c = 0; c < 3; ++c) {
-    between[c] = there.translation[c] - here.translation[c];
-    size += std::abs(there.translation[c]) + std::abs(here.translation[c]);
-    for (int k = 0; k < 3; ++k) between[c] -= here.columns[k][c] * way[k];
-  }
-  Matrix difference = linear_part(there);
-  const double stretch = frobenius(difference);
-  for (int k = 0; k < 3; ++k) {
-    for (int c = 0; c < 3; ++c) difference[k][c] -= here.columns[k][c];
-  }
-  return there.deviation + norm(between) + radius * (frobenius(difference) + kRoundedCorners * stretch) +
-         kRoundedPositions * size;
-}
-
-void BranchMotions::deviations(Index frame, const PointCluster& cluster, std::span<const double> rest,
-                               std::span<const double> positions, std::span<float> result) const {
-  HWY_DYNAMIC_DISPATCH(deviations_of_points)
-  (motions_[frame], cluster, rest.data(), positions.data(), result.data());
 }
 
 std::size_t BranchMotions::bytes() const {

@@ -13,11 +13,11 @@ namespace meshorder {
 /// what was inside and outside what was outside. What is left of the motion bounds what can have changed.
 class BranchMotions {
  public:
-  /// x = translation + columns · (X − center), for a corner X of the branch at rest, to within the deviation.
+  /// x = constant + columns · X for a corner at X at rest, to within the deviation.
   struct Motion {
     alignas(64) std::array<std::array<double, 4>, 3> columns{};  ///< the fourth of each is 0
-    std::array<double, 4> translation{};
-    double deviation = 0.0;
+    std::array<double, 4> constant{};
+    double deviation = 0.0;     ///< with what rounding may add to it
     double inverse_norm = 0.0;  ///< at least the norm of the inverse matrix; not finite where there is none
   };
 
@@ -27,17 +27,6 @@ class BranchMotions {
   void update(Index branch, std::span<const double> positions, TetrahedronLeaves& tetrahedra);
 
   [[nodiscard]] const Motion& motion(Index branch) const { return motions_[branch]; }
-  [[nodiscard]] const Point& center(Index branch) const { return shapes_[branch].center; }
-
-  /// How far corners of `branch` at most are from where the motion of `frame` would take them; NaN where that
-  /// is not known. O(1).
-  [[nodiscard]] double apart(Index frame, Index branch) const;
-
-  /// How far the points of a cluster are from there, rounded up: one for each of PointCluster::kMost. `rest`
-  /// has their x, y, z at rest relative to the frame's centre, kMost of each.
-  void deviations(Index frame, const PointCluster& cluster, std::span<const double> rest,
-                  std::span<const double> positions, std::span<float> result) const;
-
   /// Memory held.
   [[nodiscard]] std::size_t bytes() const;
 

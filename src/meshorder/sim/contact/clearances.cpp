@@ -11,20 +11,36 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-/// The points whose clearance is not more than (deviation + apart) · factor.
-std::uint64_t points_in_doubt(const float* clearances, const float* deviations, float apart, float factor) {
-  const hn::CappedTag<float, kLeaf> d;
-  constexpr Index kFloats = static_cast<Index>(MaxLanes(hn::CappedTag<float, kLeaf>()));
-  std::uint64_t result = 0;
-  for (Index i = 0; i < PointCluster::kMost; i += kFloats) {
-    const auto moved = hn::Mul(hn::Add(hn::Load(d, deviations + i), hn::Set(d, apart)), hn::Set(d, factor));
-    const auto known = hn::Gt(hn::Load(d, clearances + i), moved);  // not where one is NaN
+using Doubles = hn::CappedTag<double, kBatch>;
+constexpr Index kDoubles = static_cast<Index>(MaxLanes(Doubles()));
+
+/// The points whose clearance is not more than what they and the branch's corners are apart from its affine
+/// motion, taken back to rest.
+std::uint64_t points_in_doubt(const PointCluster& cluster, const double* rest, const float* clearances,
+                              const BranchMotions::Motion& motion) {
+  const Doubles d;
+  const hn::Rebind<float, Doubles> floats;
+  std::uint64_t known = 0;
+  for (Index i = 0; i < PointCluster::kMost; i += kDoubles) {
+    auto square = hn::Zero(d);
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c) {
+      auto apart = hn::Sub(hn::Load(d, cluster.positions[c].data() + i), hn::Set(d, motion.constant[c]));
+      MESHORDER_UNROLL
+      for (int k = 0; k < 3; ++k)
+        apart = hn::NegMulAdd(hn::Set(d, motion.columns[k][c]),
+                              hn::Load(d, rest + PointCluster::kMost * k + i), apart);
+      square = hn::MulAdd(apart, apart, square);
+    }
+    const auto moved =
+        hn::Mul(hn::Set(d, motion.inverse_norm), hn::Add(hn::Sqrt(square), hn::Set(d, motion.deviation)));
+    // not where one is NaN
+    const auto less = hn::Lt(moved, hn::PromoteTo(d, hn::Load(floats, clearances + i)));
     alignas(8) std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, known, bytes);
-    for (Index byte = 0; 8 * byte < kFloats; ++byte)
-      result |= std::uint64_t{bytes[byte]} << static_cast<unsigned>(i + 8 * byte);
+    hn::StoreMaskBits(d, less, bytes);
+    known |= std::uint64_t{bytes[0]} << static_cast<unsigned>(i);
   }
-  return ~result;
+  return ~known;
 }
 
 }  // namespace
@@ -38,7 +54,6 @@ HWY_AFTER_NAMESPACE();
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <map>
 
 namespace meshorder {
 namespace {
@@ -56,30 +71,6 @@ double mean_side(const TetrahedronLeaves& tetrahedra) {
     for (int c = 0; c < 3; ++c) sum += double{box[kLeaf * (3 + c)]} - double{box[kLeaf * c]};
   }
   return sum / (3.0 * std::max(tetrahedra.branches, Index{1}));
-}
-
-/// Of each cluster the branch that has most corners among its points.
-std::vector<Index> frames_of(std::span<const PointCluster> clusters, const TetrahedronLeaves& tetrahedra,
-                             Index vertex_count) {
-  std::vector<Index> cluster_of(vertex_count, -1);
-  for (Index c = 0; c < index_size(clusters); ++c) {
-    for (const Index v : clusters[c].vertices) cluster_of[v] = c;
-  }
-  std::vector<Index> frames(clusters.size(), 0);
-  std::vector<Index> most(clusters.size(), 0);
-  for (Index branch = 0; branch < tetrahedra.branches; ++branch) {
-    std::map<Index, Index> corners;
-    const Offset first = Offset{4} * kLeaf * kLeaf * branch;
-    for (Offset i = first; i < first + Offset{4} * kLeaf * tetrahedra.leaves_of(branch); ++i) {
-      if (const Index c = cluster_of[tetrahedra.corners[i]]; c >= 0) ++corners[c];
-    }
-    for (const auto& [c, count] : corners) {
-      if (count <= most[c]) continue;
-      most[c] = count;
-      frames[c] = branch;
-    }
-  }
-  return frames;
 }
 
 /// The largest coordinate, of which floats round off a part.
@@ -120,16 +111,11 @@ Clearances::Clearances(TetrahedronLeaves& tetrahedra, BranchMotions& motions,
   // further away nothing is known; nearly all that boxes meet in motion is nearer
   const auto margin = static_cast<float>(0.125 * mean_side(tetrahedra));
   const float known_margin = margin - static_cast<float>(largest_coordinate(rest) * 0x1p-21);
-  const std::vector<Index> frames = frames_of(clusters, tetrahedra, index_size(rest));
   for_each_chunk(index_size(clusters), kClustersAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
     for (Index c = begin; c < end; ++c) {
       Cluster& known = clusters_[c];
-      known.frame = frames[c];
       update_points(clusters[c], positions);
-      for (Index i = 0; i < PointCluster::kMost && tetrahedra.branches > 0; ++i) {
-        const Point relative = minus(rest[clusters[c].vertices[i]], motions.center(known.frame));
-        for (int axis = 0; axis < 3; ++axis) known.rest[PointCluster::kMost * axis + i] = relative[axis];
-      }
+      known.rest = clusters[c].positions;
       const PointCluster around = grown(clusters[c], margin);
       branches_at(tetrahedra, around, known.branches);
       known.clearances.assign(static_cast<std::size_t>(PointCluster::kMost) * known.branches.size(),
@@ -146,25 +132,15 @@ Clearances::Clearances(TetrahedronLeaves& tetrahedra, BranchMotions& motions,
   });
 }
 
-void Clearances::update(Index c, const PointCluster& cluster, const BranchMotions& motions,
-                        std::span<const double> positions) {
-  Cluster& known = clusters_[c];
-  motions.deviations(known.frame, cluster, known.rest, positions, known.deviations);
-}
-
 std::uint64_t Clearances::in_doubt(Index c, Index branch, const PointCluster& cluster,
                                    const BranchMotions& motions) const {
   const Cluster& known = clusters_[c];
   const auto place = std::lower_bound(known.branches.begin(), known.branches.end(), branch);
   if (place == known.branches.end() || *place != branch) return cluster.points;
-  constexpr double kUp = 1.0 + 0x1p-20;  // more than floats' rounding errors
-  const double apart = kUp * motions.apart(known.frame, branch);
-  const double factor = kUp * motions.motion(known.frame).inverse_norm;
   const float* const clearances =
       known.clearances.data() + PointCluster::kMost * (place - known.branches.begin());
-  return cluster.points & HWY_DYNAMIC_DISPATCH(points_in_doubt)(clearances, known.deviations.data(),
-                                                                rounded_to_float(apart),
-                                                                rounded_to_float(factor));
+  return cluster.points & HWY_DYNAMIC_DISPATCH(points_in_doubt)(cluster, known.rest[0].data(), clearances,
+                                                                motions.motion(branch));
 }
 
 std::size_t Clearances::bytes() const {

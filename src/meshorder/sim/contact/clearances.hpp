@@ -14,18 +14,14 @@ namespace meshorder {
 /// still outside.
 ///
 /// A vertex with a clearance c from a tetrahedron has a plane between them, at a distance c from the vertex.
-/// An affine map keeps it there. Where the vertex and the corners are apart from the same affine map of their
-/// places at rest by distances whose sum is less than c divided by the norm of the inverse map, the vertex is
-/// outside.
+/// An affine map keeps it between them. So where the vertex and the corners are apart from one affine map of
+/// their places at rest by distances whose sum is less than c divided by the norm of the inverse map, the
+/// vertex is outside.
 class Clearances {
  public:
   /// Of clusters at rest from the branches near by.
   Clearances(TetrahedronLeaves& tetrahedra, BranchMotions& motions, std::span<PointCluster> clusters,
              std::span<const Point> rest);
-
-  /// Reads how far the points of cluster c are from an affine map.
-  void update(Index c, const PointCluster& cluster, const BranchMotions& motions,
-              std::span<const double> positions);
 
   /// The points of cluster c that may be inside tetrahedra of the branch: all, where nothing is known.
   [[nodiscard]] std::uint64_t in_doubt(Index c, Index branch, const PointCluster& cluster,
@@ -36,12 +32,9 @@ class Clearances {
 
  private:
   struct Cluster {
-    Index frame = 0;                  ///< the branch whose motion the points are compared with
-    std::vector<Index> branches;      ///< near by, rising
-    AlignedVector<float> clearances;  ///< kMost for each of these
-    alignas(
-        64) std::array<double, 3 * PointCluster::kMost> rest{};  ///< as BranchMotions::deviations wants it
-    alignas(64) std::array<float, PointCluster::kMost> deviations{};
+    std::vector<Index> branches;                                                ///< near by, rising
+    AlignedVector<float> clearances;                                            ///< kMost for each of these
+    alignas(64) std::array<std::array<double, PointCluster::kMost>, 3> rest{};  ///< x, y, z of each point
   };
 
   std::vector<Cluster> clusters_;

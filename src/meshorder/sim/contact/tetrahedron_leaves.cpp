@@ -91,7 +91,6 @@ void boxes_of_branch(TetrahedronLeaves& tetrahedra, Index branch, const double* 
 
 void read_points(PointCluster& cluster, const double* positions) {
   const double infinity = std::numeric_limits<double>::infinity();
-  alignas(64) double coordinates[3][PointCluster::kMost];
   ManyLanes::Value lower[3];
   ManyLanes::Value upper[3];
   MESHORDER_UNROLL
@@ -106,12 +105,12 @@ void read_points(PointCluster& cluster, const double* positions) {
     for (int c = 0; c < 3; ++c) {
       lower[c] = lesser(lower[c], p[c]);
       upper[c] = greater(upper[c], p[c]);
-      ManyLanes::store(p[c], coordinates[c] + i);
+      ManyLanes::store(p[c], cluster.positions[c].data() + i);
     }
   }
   for (int c = 0; c < 3; ++c) {
     for (Index i = 0; i < PointCluster::kMost; ++i)
-      cluster.coordinates[c][i] = rounded_to_float(coordinates[c][i]);
+      cluster.coordinates[c][i] = rounded_to_float(cluster.positions[c][i]);
     cluster.lower[c] = rounded_to_float(least_lane(lower[c]));
     cluster.upper[c] = rounded_to_float(greatest_lane(upper[c]));
   }

@@ -28,9 +28,10 @@ inline float rounded_to_float(double a) {
 struct PointCluster {
   static constexpr Index kMost = 64;
 
-  std::uint64_t points = 0;             ///< the bits of all that there are
-  std::array<Index, kMost> vertices{};  ///< behind the last one it again
-  alignas(64) std::array<std::array<float, kMost>, 3> coordinates{};
+  std::uint64_t points = 0;                                           ///< the bits of all that there are
+  std::array<Index, kMost> vertices{};                                ///< behind the last one it again
+  alignas(64) std::array<std::array<double, kMost>, 3> positions{};   ///< x, y, z of each
+  alignas(64) std::array<std::array<float, kMost>, 3> coordinates{};  ///< the same, rounded
   std::array<float, 3> lower{}, upper{};  ///< around them; an upper end below the lower one for none
 
   /// `vertices` are 1 … kMost.

@@ -127,7 +127,6 @@ struct TetrahedronSearch::State {
     Search& search = searches[c];
     PointCluster& cluster = clusters[c];
     update_points(cluster, positions);
-    clearances.update(c, cluster, motions, positions);
     branches_at(tetrahedra, cluster, search.branches);
     search.branch_tasks.clear();
     for (const Index branch : search.branches) {
