@@ -167,7 +167,7 @@ BranchMotions::BranchMotions(const TetrahedronLeaves& tetrahedra, std::span<cons
     : shapes_(tetrahedra.branches), motions_(tetrahedra.branches) {
   std::vector<Index> vertices;
   for (Index branch = 0; branch < tetrahedra.branches; ++branch) {
-    const auto first = tetrahedra.corners.begin() + Offset{4} * kLeaf * kLeaf * branch;
+    const auto first = tetrahedra.corners.begin() + Offset{4} * kLeaf * kBranch * branch;
     vertices.assign(first, first + Offset{4} * kLeaf * tetrahedra.leaves_of(branch));
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());

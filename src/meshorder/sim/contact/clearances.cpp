@@ -66,8 +66,7 @@ constexpr Index kClustersAtOnce = 8;
 double mean_side(const TetrahedronLeaves& tetrahedra) {
   double sum = 0.0;
   for (Index branch = 0; branch < tetrahedra.branches; ++branch) {
-    const float* const box =
-        tetrahedra.branch_boxes.data() + Offset{6} * kLeaf * (branch / kLeaf) + branch % kLeaf;
+    const float* const box = tetrahedra.branch_box(branch);
     for (int c = 0; c < 3; ++c) sum += double{box[kLeaf * (3 + c)]} - double{box[kLeaf * c]};
   }
   return sum / (3.0 * std::max(tetrahedra.branches, Index{1}));
@@ -81,7 +80,7 @@ double largest_coordinate(std::span<const Point> points) {
 }
 
 bool meets_box(const PointCluster& cluster, const TetrahedronLeaves& tetrahedra, Index leaf) {
-  const float* const box = tetrahedra.leaf_boxes.data() + Offset{6} * kLeaf * (leaf / kLeaf) + leaf % kLeaf;
+  const float* const box = tetrahedra.leaf_box(leaf);
   bool meets = true;
   for (int c = 0; c < 3; ++c)
     meets = meets && box[kLeaf * c] <= cluster.upper[c] && cluster.lower[c] <= box[kLeaf * (3 + c)];
@@ -121,7 +120,7 @@ Clearances::Clearances(TetrahedronLeaves& tetrahedra, BranchMotions& motions,
       known.clearances.assign(static_cast<std::size_t>(PointCluster::kMost) * known.branches.size(),
                               known_margin);
       for (std::size_t b = 0; b < known.branches.size(); ++b) {
-        const Index first = kLeaf * known.branches[b];
+        const Index first = kBranch * known.branches[b];
         const std::span clearances(known.clearances.data() + PointCluster::kMost * b, PointCluster::kMost);
         for (Index leaf = first; leaf < first + tetrahedra.leaves_of(known.branches[b]); ++leaf) {
           if (meets_box(around, tetrahedra, leaf))

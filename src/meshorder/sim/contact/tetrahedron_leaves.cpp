@@ -72,7 +72,7 @@ void boxes_of_branch(TetrahedronLeaves& tetrahedra, Index branch, const double* 
   float* const boxes = tetrahedra.leaf_boxes.data() + Offset{6} * kLeaf * branch;
   const Index count = tetrahedra.leaves_of(branch);
   for (Index l = 0; l < count; ++l) {
-    const Index* const corners = tetrahedra.corners.data() + Offset{4} * kLeaf * (kLeaf * branch + l);
+    const Index* const corners = tetrahedra.corners.data() + Offset{4} * kLeaf * (kBranch * branch + l);
     ManyLanes::Value lower[3];
     ManyLanes::Value upper[3];
     MESHORDER_UNROLL
@@ -139,7 +139,7 @@ void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* pos
   constexpr double kTooLarge = 1e30;
   using Value = ManyLanes::Value;
   const Index* const corners = tetrahedra.corners.data() + Offset{4} * kLeaf * leaf;
-  const float* const box = tetrahedra.leaf_boxes.data() + Offset{6} * kLeaf * (leaf / kLeaf) + leaf % kLeaf;
+  const float* const box = tetrahedra.leaf_box(leaf);
   std::array<double, 3>& center = tetrahedra.centers[leaf];
   double radius = 0.0;  // the sum of half the sides: more than half the diagonal
   for (int c = 0; c < 3; ++c) {
@@ -228,7 +228,7 @@ void leaves_meeting(const TetrahedronLeaves& tetrahedra, Index branch, const Poi
       inside |= std::uint64_t{bits_of(in)} << static_cast<unsigned>(lane);
     }
     inside &= points;
-    if (inside != 0) tasks.push_back({kLeaf * branch + leaf, inside});
+    if (inside != 0) tasks.push_back({kBranch * branch + leaf, inside});
   }
 }
 
@@ -346,7 +346,7 @@ HWY_EXPORT(read_points);
 
 TetrahedronLeaves::TetrahedronLeaves(std::span<const std::array<Index, 4>> tetrahedra,
                                      std::span<const Index> tetrahedron_numbers)
-    : leaves((index_size(tetrahedra) + kLeaf - 1) / kLeaf), branches((leaves + kLeaf - 1) / kLeaf) {
+    : leaves((index_size(tetrahedra) + kLeaf - 1) / kLeaf), branches((leaves + kBranch - 1) / kBranch) {
   corners.resize(Offset{4} * kLeaf * leaves);
   numbers.assign(Offset{kLeaf} * leaves, -1);
   centers.resize(leaves);

@@ -17,6 +17,9 @@ namespace meshorder {
 
 /// Tetrahedra and boxes are tested sixteen at a time, the floats of an AVX-512 register.
 inline constexpr Index kLeaf = 16;
+/// Leaves in a branch, at most kLeaf: the fewer, the better is its motion an affine one, and the more
+/// branches there are to look at.
+inline constexpr Index kBranch = 8;
 
 /// The nearest float; the largest where there is none.
 inline float rounded_to_float(double a) {
@@ -59,7 +62,14 @@ struct TetrahedronLeaves {
   TetrahedronLeaves(std::span<const std::array<Index, 4>> tetrahedra,
                     std::span<const Index> tetrahedron_numbers);
 
-  [[nodiscard]] Index leaves_of(Index branch) const { return std::min(kLeaf, leaves - kLeaf * branch); }
+  [[nodiscard]] Index leaves_of(Index branch) const { return std::min(kBranch, leaves - kBranch * branch); }
+  /// The ends of a leaf's box, each kLeaf behind the one before; and of a branch's.
+  [[nodiscard]] const float* leaf_box(Index leaf) const {
+    return leaf_boxes.data() + Offset{6} * kLeaf * (leaf / kBranch) + leaf % kBranch;
+  }
+  [[nodiscard]] const float* branch_box(Index branch) const {
+    return branch_boxes.data() + Offset{6} * kLeaf * (branch / kLeaf) + branch % kLeaf;
+  }
   /// Memory held.
   [[nodiscard]] std::size_t bytes() const;
 };

@@ -52,9 +52,9 @@ SortedTetrahedra sorted_tetrahedra(const Simplices& simplices, std::span<const P
   }
   std::vector<Index> order(corners.size());
   std::iota(order.begin(), order.end(), Index{0});
-  sort_into_runs(order, kLeaf * kLeaf, centers);
-  for (std::size_t first = 0; first < order.size(); first += kLeaf * kLeaf) {
-    const std::size_t count = std::min(order.size() - first, std::size_t{kLeaf * kLeaf});
+  sort_into_runs(order, kLeaf * kBranch, centers);
+  for (std::size_t first = 0; first < order.size(); first += kLeaf * kBranch) {
+    const std::size_t count = std::min(order.size() - first, std::size_t{kLeaf * kBranch});
     sort_into_runs(std::span(order).subspan(first, count), kLeaf, centers);
   }
   SortedTetrahedra result;
