@@ -15,11 +15,6 @@ constexpr double kPoisson[] = {0.0, 0.3, 0.45, 0.49};
 
 class LocalMinimum : public testing::TestWithParam<LocalModel> {};
 
-std::string name_of(LocalModel model) {
-  const char* const names[] = {"Springs", "Strain", "Stvk", "NeoHookean", "LogNeoHookean"};
-  return names[static_cast<int>(model)];
-}
-
 /// The identity and up to `amplitude` in each entry.
 std::vector<Eigen::Matrix3d> around_rest(std::size_t count, double amplitude, std::uint64_t seed) {
   Random random(seed);
@@ -203,7 +198,7 @@ TEST_P(LocalMinimum, IsTheSameWithEveryInstructionSet) {
 INSTANTIATE_TEST_SUITE_P(Laws, LocalMinimum,
                          testing::Values(LocalModel::strain, LocalModel::stvk, LocalModel::neo_hookean,
                                          LocalModel::log_neo_hookean),
-                         [](const auto& law) { return name_of(law.param); });
+                         [](const auto& law) { return test::name_of(law.param); });
 
 }  // namespace
 }  // namespace meshorder

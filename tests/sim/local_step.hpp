@@ -1,13 +1,16 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <meshorder/base/random.hpp>
 #include <meshorder/sim/admm/local_steps.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
 
 #include <Eigen/Dense>
+#include <sim/deformed.hpp>
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace meshorder::test {
@@ -80,6 +83,35 @@ std::vector<Eigen::Matrix3d> local_steps(const LocalLaw& law, const std::vector<
   std::vector<Eigen::Matrix3d> result = UnitSteps<Real>(law, q.size()).reflections(q);
   for (std::size_t s = 0; s < q.size(); ++s) result[s] = 0.5 * (result[s] + q[s]);
   return result;
+}
+
+inline std::string name_of(LocalModel model) {
+  const char* const names[] = {"Springs", "Strain", "Stvk", "NeoHookean", "LogNeoHookean"};
+  return names[static_cast<int>(model)];
+}
+
+/// Tetrahedra of which neighbours share three vertices.
+inline Patch tetrahedra(Index count) { return deformed_patch(3, count); }
+
+template <class Real = double>
+LocalSteps<Real> steps_of(const LocalLaw& law, const Patch& patch) {
+  return LocalSteps<Real>(law, patch.simplices, patch.points);
+}
+
+template <class Real = double>
+AlignedVector<Real> sums_for(const LocalSteps<Real>& steps) {
+  // what the pass does not set must not survive
+  return AlignedVector<Real>(kPaddedStride * static_cast<std::size_t>(steps.room()), Real{17});
+}
+
+/// The rest positions with noise that differs from pass to pass.
+inline AlignedVector<double> shaken(const Patch& patch, int pass, double amplitude = 0.2) {
+  Random random(100 + static_cast<std::uint64_t>(pass));
+  AlignedVector<double> x = padded_positions(patch.points);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (i % kPaddedStride != 3) x[i] += amplitude * (random.unit() - 0.5);
+  }
+  return x;
 }
 
 /// A law of Young's modulus 1.

@@ -1,8 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/error.hpp>
 #include <meshorder/base/random.hpp>
-#include <meshorder/sim/kernels/springs.hpp>
-#include <meshorder/sim/material/elasticity.hpp>
 
 #include <gtest/gtest.h>
 #include <sim/elastic.hpp>
@@ -20,34 +18,6 @@ namespace meshorder {
 namespace {
 
 constexpr double kScale = 0.3;
-
-std::string name_of(LocalModel model) {
-  const char* const names[] = {"Springs", "Strain", "Stvk", "NeoHookean", "LogNeoHookean"};
-  return names[static_cast<int>(model)];
-}
-
-test::Patch patch_of(Index count) { return test::deformed_patch(3, count); }
-
-template <class Real = double>
-LocalSteps<Real> steps_of(const LocalLaw& law, const test::Patch& patch) {
-  return LocalSteps<Real>(law, patch.simplices, patch.points);
-}
-
-template <class Real = double>
-AlignedVector<Real> sums_for(const LocalSteps<Real>& steps) {
-  // what the pass does not set must not survive
-  return AlignedVector<Real>(kPaddedStride * static_cast<std::size_t>(steps.room()), Real{17});
-}
-
-/// Positions that differ from pass to pass.
-AlignedVector<double> positions_of(const test::Patch& patch, int pass, double amplitude = 0.2) {
-  Random random(100 + static_cast<std::uint64_t>(pass));
-  AlignedVector<double> x = padded_positions(patch.points);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (i % kPaddedStride != 3) x[i] += amplitude * (random.unit() - 0.5);
-  }
-  return x;
-}
 
 /// D of one element on all coordinates of the vertices, its weight w², and its shape.
 struct DenseElement {
@@ -129,18 +99,18 @@ TEST_P(LocalPasses, AreThoseOfDenseMatrices) {
   const LocalLaw law = test::law_of(GetParam());
   for (const Index count : {1, 7, 8, 9, 40}) {
     SCOPED_TRACE(count);
-    const test::Patch patch = patch_of(count);
+    const test::Patch patch = test::tetrahedra(count);
     const auto n = index_size(patch.points);
     const std::vector<DenseElement> elements = dense_elements(law, patch);
-    auto steps = steps_of(law, patch);
+    auto steps = test::steps_of(law, patch);
     ASSERT_EQ(steps.element_count(), static_cast<Offset>(elements.size()));
     std::vector<Eigen::VectorXd> duals;
     for (const DenseElement& element : elements) {
       duals.emplace_back(Eigen::VectorXd::Zero(element.d.rows()));
     }
     for (int pass = 0; pass < 4; ++pass) {
-      const AlignedVector<double> x = positions_of(patch, pass);
-      AlignedVector<double> sums = sums_for(steps);
+      const AlignedVector<double> x = test::shaken(patch, pass);
+      AlignedVector<double> sums = test::sums_for(steps);
       const LocalResidual residual = steps.pass(x, kScale, sums);
 
       Eigen::VectorXd expected = Eigen::VectorXd::Zero(3 * n);
@@ -176,13 +146,13 @@ TEST_P(LocalPasses, AreThoseOfDenseMatrices) {
 
 TEST_P(LocalPasses, HaveTheStiffnessOfDenseMatrices) {
   const LocalLaw law = test::law_of(GetParam());
-  const test::Patch patch = patch_of(20);
+  const test::Patch patch = test::tetrahedra(20);
   const auto n = index_size(patch.points);
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   for (const DenseElement& element : dense_elements(law, patch)) {
     expected += element.weight * element.d.transpose() * element.d;
   }
-  const SparseMatrix matrix = steps_of(law, patch).stiffness();
+  const SparseMatrix matrix = test::steps_of(law, patch).stiffness();
   ASSERT_EQ(matrix.size(), n);
   Eigen::MatrixXd actual = Eigen::MatrixXd::Zero(n, n);
   for (Index row = 0; row < n; ++row) {
@@ -213,12 +183,12 @@ struct Outcome {
 
 template <class Real = double>
 Outcome outcome(const LocalLaw& law, const test::Patch& patch, double amplitude) {
-  LocalSteps<Real> steps = steps_of<Real>(law, patch);
+  LocalSteps<Real> steps = test::steps_of<Real>(law, patch);
   Outcome result;
   for (int pass = 0; pass < 3; ++pass) {
-    const AlignedVector<double> x = positions_of(patch, pass, amplitude);
+    const AlignedVector<double> x = test::shaken(patch, pass, amplitude);
     const AlignedVector<Real> positions(x.begin(), x.end());
-    AlignedVector<Real> sums = sums_for(steps);
+    AlignedVector<Real> sums = test::sums_for(steps);
     const LocalResidual residual = steps.pass(positions, static_cast<Real>(kScale), sums);
     result.residuals.insert(result.residuals.end(), {residual.primal, residual.magnitude});
     result.sums.insert(result.sums.end(), sums.begin(),
@@ -232,7 +202,7 @@ Outcome outcome(const LocalLaw& law, const test::Patch& patch, double amplitude)
 TEST_P(LocalPasses, AreTheSameForAnyNumberOfThreads) {
   const LocalLaw law = test::law_of(GetParam());
   for (const double amplitude : {0.2, 3.0}) {
-    const test::Patch patch = patch_of(500);
+    const test::Patch patch = test::tetrahedra(500);
     Outcome expected[2];
     for (const std::size_t threads : {1, 2, 3, 5}) {
       SCOPED_TRACE(threads);
@@ -249,16 +219,16 @@ TEST_P(LocalPasses, AreTheSameForAnyNumberOfThreads) {
 
 TEST_P(LocalPasses, GoOnFromTheirDuals) {
   const LocalLaw law = test::law_of(GetParam());
-  const test::Patch patch = patch_of(101);
-  auto steps = steps_of(law, patch);
-  AlignedVector<double> sums = sums_for(steps);
-  steps.pass(positions_of(patch, 0), kScale, sums);
+  const test::Patch patch = test::tetrahedra(101);
+  auto steps = test::steps_of(law, patch);
+  AlignedVector<double> sums = test::sums_for(steps);
+  steps.pass(test::shaken(patch, 0), kScale, sums);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 3);
-  auto restored = steps_of(law, patch);
-  AlignedVector<double> restored_sums = sums_for(restored);
+  auto restored = test::steps_of(law, patch);
+  AlignedVector<double> restored_sums = test::sums_for(restored);
   restored.set_duals(steps.duals());
-  steps.pass(positions_of(patch, 1), kScale, sums);
-  restored.pass(positions_of(patch, 1), kScale, restored_sums);
+  steps.pass(test::shaken(patch, 1), kScale, sums);
+  restored.pass(test::shaken(patch, 1), kScale, restored_sums);
   const auto end = kPaddedStride * static_cast<std::ptrdiff_t>(patch.points.size());
   EXPECT_TRUE(std::equal(sums.begin(), sums.begin() + end, restored_sums.begin()));
   EXPECT_EQ(steps.duals(), restored.duals());
@@ -269,7 +239,7 @@ TEST_P(LocalPasses, GoOnFromTheirDuals) {
 
 TEST_P(LocalPasses, AreTheSameToRoundingInAnyOrder) {
   const LocalLaw law = test::law_of(GetParam());
-  const test::Patch patch = patch_of(60);
+  const test::Patch patch = test::tetrahedra(60);
   const auto n = patch.points.size();
   test::Patch other;
   std::vector<Index> old_to_new(n);
@@ -282,16 +252,16 @@ TEST_P(LocalPasses, AreTheSameToRoundingInAnyOrder) {
       other.simplices.vertices.push_back(old_to_new[patch.simplices.vertices[4 * ((7 * s + 3) % 60) + a]]);
     }
   }
-  const AlignedVector<double> x = positions_of(patch, 0);
+  const AlignedVector<double> x = test::shaken(patch, 0);
   AlignedVector<double> moved(x.size());
   for (std::size_t v = 0; v < n; ++v) {
     std::copy_n(x.begin() + kPaddedStride * static_cast<std::ptrdiff_t>(v), kPaddedStride,
                 moved.begin() + Offset{kPaddedStride} * old_to_new[v]);
   }
-  auto steps = steps_of(law, patch);
-  auto steps_of_other = steps_of(law, other);
-  AlignedVector<double> sums = sums_for(steps);
-  AlignedVector<double> sums_of_other = sums_for(steps_of_other);
+  auto steps = test::steps_of(law, patch);
+  auto steps_of_other = test::steps_of(law, other);
+  AlignedVector<double> sums = test::sums_for(steps);
+  AlignedVector<double> sums_of_other = test::sums_for(steps_of_other);
   const LocalResidual residual = steps.pass(x, kScale, sums);
   const LocalResidual residual_of_other = steps_of_other.pass(moved, kScale, sums_of_other);
   EXPECT_NEAR(residual.primal, residual_of_other.primal, 1e-11 * residual.magnitude);
@@ -306,7 +276,7 @@ TEST_P(LocalPasses, AreTheSameToRoundingInAnyOrder) {
 
 TEST_P(LocalPasses, OfFloatsAreThoseOfDoubles) {
   const LocalLaw law = test::law_of(GetParam());
-  const test::Patch patch = patch_of(200);
+  const test::Patch patch = test::tetrahedra(200);
   const Outcome expected = outcome<double>(law, patch, 0.1);
   const Outcome actual = outcome<float>(law, patch, 0.1);
   test::expect_near(actual.sums, expected.sums, 2e-5);
@@ -320,7 +290,7 @@ TEST_P(LocalPasses, OfFloatsAreThoseOfDoubles) {
 
 TEST_P(LocalPasses, AreTheSameWithEveryInstructionSet) {
   const LocalLaw law = test::law_of(GetParam());
-  const test::Patch patch = patch_of(37);
+  const test::Patch patch = test::tetrahedra(37);
   const Outcome expected = outcome(law, patch, 0.3);
   const Outcome expected_floats = outcome<float>(law, patch, 0.3);
   test::for_each_target([&](const char* target) {
@@ -332,9 +302,9 @@ TEST_P(LocalPasses, AreTheSameWithEveryInstructionSet) {
 
 TEST_P(LocalPasses, LeaveABodyAtRest) {
   const LocalLaw law = test::law_of(GetParam());
-  const test::Patch patch = patch_of(30);
-  auto steps = steps_of(law, patch);
-  AlignedVector<double> sums = sums_for(steps);
+  const test::Patch patch = test::tetrahedra(30);
+  auto steps = test::steps_of(law, patch);
+  AlignedVector<double> sums = test::sums_for(steps);
   const AlignedVector<double> x = padded_positions(patch.points);
   const LocalResidual residual = steps.pass(x, 1.0, sums);
   EXPECT_LT(residual.primal, 1e-24 * residual.magnitude);
@@ -357,14 +327,14 @@ TEST_P(LocalPasses, LeaveABodyAtRest) {
 TEST_P(LocalPasses, UnfoldWhatIsSquashedToAPoint) {
   const LocalLaw law = test::law_of(GetParam());
   if (law.model != LocalModel::springs && law.model != LocalModel::strain) return;
-  const test::Patch patch = patch_of(25);
-  auto steps = steps_of(law, patch);
+  const test::Patch patch = test::tetrahedra(25);
+  auto steps = test::steps_of(law, patch);
   AlignedVector<double> at_point(kPaddedStride * patch.points.size(), 0.0);
   for (std::size_t i = 0; i < at_point.size(); i += kPaddedStride) at_point[i] = 0.25;
-  AlignedVector<double> at_rest_sums = sums_for(steps);
+  AlignedVector<double> at_rest_sums = test::sums_for(steps);
   steps.pass(padded_positions(patch.points), 1.0, at_rest_sums);
   steps.reset_duals();
-  AlignedVector<double> sums = sums_for(steps);
+  AlignedVector<double> sums = test::sums_for(steps);
   const LocalResidual residual = steps.pass(at_point, 1.0, sums);
   EXPECT_GT(residual.primal, 0.0);
   // z − u is what it is at rest: the identity, and the springs' rest edges
@@ -376,19 +346,19 @@ TEST_P(LocalPasses, UnfoldWhatIsSquashedToAPoint) {
 TEST_P(LocalPasses, DoWithoutFlatTetrahedra) {
   const LocalLaw law = test::law_of(GetParam());
   if (law.model == LocalModel::springs) return;
-  const test::Patch patch = patch_of(20);
+  const test::Patch patch = test::tetrahedra(20);
   test::Patch with_flat = patch;
   std::vector<Index>& vertices = with_flat.simplices.vertices;
   vertices.insert(vertices.begin(), {3, 3, 4, 5});
   vertices.insert(vertices.begin() + 40, {7, 8, 9, 7});
   vertices.insert(vertices.end(), {1, 2, 2, 3});
-  auto steps = steps_of(law, patch);
-  auto steps_with_flat = steps_of(law, with_flat);
+  auto steps = test::steps_of(law, patch);
+  auto steps_with_flat = test::steps_of(law, with_flat);
   EXPECT_EQ(steps_with_flat.element_count(), 23);
   for (int pass = 0; pass < 3; ++pass) {
-    const AlignedVector<double> x = positions_of(patch, pass);
-    AlignedVector<double> sums = sums_for(steps);
-    AlignedVector<double> sums_with_flat = sums_for(steps_with_flat);
+    const AlignedVector<double> x = test::shaken(patch, pass);
+    AlignedVector<double> sums = test::sums_for(steps);
+    AlignedVector<double> sums_with_flat = test::sums_for(steps_with_flat);
     const LocalResidual residual = steps.pass(x, 1.0, sums);
     const LocalResidual residual_with_flat = steps_with_flat.pass(x, 1.0, sums_with_flat);
     EXPECT_NEAR(residual.magnitude, residual_with_flat.magnitude, 1e-12 * residual.magnitude);
@@ -401,9 +371,9 @@ TEST_P(LocalPasses, DoWithoutFlatTetrahedra) {
 
 TEST_P(LocalPasses, HaveTheEnergyOfTheirDefinition) {
   const LocalLaw law = test::law_of(GetParam());
-  const test::Patch patch = patch_of(50);
+  const test::Patch patch = test::tetrahedra(50);
   for (const double amplitude : {1e-3, 0.05, 3.0}) {
-    const AlignedVector<double> x = positions_of(patch, 3, amplitude);
+    const AlignedVector<double> x = test::shaken(patch, 3, amplitude);
     double expected = 0.0;
     for (const DenseElement& element : dense_elements(law, patch)) {
       const Eigen::VectorXd q = element.d * unpadded(x, index_size(patch.points));
@@ -414,7 +384,7 @@ TEST_P(LocalPasses, HaveTheEnergyOfTheirDefinition) {
         expected += element.weight / test::weight_of(law) * test::density(law, test::singular_values(f));
       }
     }
-    const double actual = steps_of(law, patch).energy(x);
+    const double actual = test::steps_of(law, patch).energy(x);
     if (std::isinf(expected)) {
       EXPECT_EQ(actual, expected);
       EXPECT_EQ(law.model, LocalModel::log_neo_hookean);
@@ -422,144 +392,17 @@ TEST_P(LocalPasses, HaveTheEnergyOfTheirDefinition) {
     }
     EXPECT_NEAR(actual, expected, 1e-9 * expected);
     const AlignedVector<float> x_of_floats(x.begin(), x.end());
-    EXPECT_NEAR(steps_of<float>(law, patch).energy(x_of_floats), expected, 2e-2 * expected + 1e-6);
+    EXPECT_NEAR(test::steps_of<float>(law, patch).energy(x_of_floats), expected, 2e-2 * expected + 1e-6);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, LocalPasses,
                          testing::Values(LocalModel::springs, LocalModel::strain, LocalModel::stvk,
                                          LocalModel::neo_hookean, LocalModel::log_neo_hookean),
-                         [](const auto& law) { return name_of(law.param); });
-
-TEST(LocalEnergy, IsThatOfTheImplicitSimulator) {
-  const test::Patch patch = patch_of(40);
-  for (const double amplitude : {0.01, 0.3, 3.0}) {
-    const AlignedVector<double> x = positions_of(patch, 1, amplitude);
-    for (const auto& [local, model] : std::vector<std::pair<LocalModel, MaterialModel>>{
-             {LocalModel::stvk, MaterialModel::stvk},
-             {LocalModel::neo_hookean, MaterialModel::neo_hookean}}) {
-      LocalLaw law = test::law_of(local);
-      Elasticity elasticity;
-      elasticity.model = model;
-      elasticity.lame = law.lame;
-      const double expected = elastic_energy(patch.rest, elasticity, x);
-      EXPECT_NEAR(steps_of(law, patch).energy(x), expected, 1e-11 * expected);
-      // given one by one
-      law.mu.assign(40, law.lame.mu);
-      law.lambda.assign(40, law.lame.lambda);
-      EXPECT_NEAR(steps_of(law, patch).energy(x), expected, 1e-11 * expected);
-    }
-  }
-}
-
-TEST(LocalSprings, AreThoseOnTheEdgesOfTheMesh) {
-  const test::Patch patch = patch_of(40);
-  const LocalLaw law = test::law_of(LocalModel::springs);
-  const auto steps = steps_of(law, patch);
-  Incidence incidence;
-  incidence.vertex_count = index_size(patch.points);
-  incidence.vertices = patch.simplices.vertices;
-  incidence.offsets.resize(41);
-  for (Offset s = 0; s <= 40; ++s) incidence.offsets[s] = 4 * s;
-  const Springs springs = springs_on_edges(vertex_graph(incidence), patch.points);
-  EXPECT_EQ(steps.element_count(), springs.count);
-  const AlignedVector<double> x = positions_of(patch, 1);
-  const double expected = spring_energy(springs, law.stiffness, x);
-  EXPECT_NEAR(steps.energy(x), expected, 1e-13 * expected);
-}
-
-TEST(LocalSprings, TakeAnyLength) {
-  // a single tetrahedron: the first spring joins vertices 0 and 1
-  const test::UnitTetrahedra body(1);
-  for (const double length : {1e-320, 1e-200, 1e-30, 1.0, 1e30, 1e200, 1e300}) {
-    LocalSteps<double> steps(test::law_of(LocalModel::springs), body.simplices, body.points);
-    AlignedVector<double> x(16, 0.0);
-    x[5] = -length;  // vertex 1 below vertex 0
-    AlignedVector<double> sums = sums_for(steps);
-    steps.pass(x, 1.0, sums);
-    const std::vector<double> duals = steps.duals();
-    // u = ½(q − ℓ₀ q/‖q‖)
-    EXPECT_EQ(duals[0], 0.0);
-    EXPECT_NEAR(duals[1], 0.5 * (length - 1.0), 1e-15 * std::max(1.0, length));
-    EXPECT_EQ(duals[2], 0.0);
-  }
-}
-
-TEST(LocalLaws, MayDifferFromTetrahedronToTetrahedron) {
-  const test::Patch patch = patch_of(21);
-  for (const LocalModel model : {LocalModel::strain, LocalModel::stvk, LocalModel::neo_hookean}) {
-    LocalLaw soft = test::law_of(model, 0.2);
-    LocalLaw hard = test::law_of(model, 0.4);
-    hard.stiffness = 40.0;
-    hard.lame.mu *= 10;
-    hard.lame.lambda *= 10;
-    LocalLaw both = soft;
-    AlignedVector<double> expected(kPaddedStride * patch.points.size(), 0.0);
-    const AlignedVector<double> x = positions_of(patch, 0);
-    for (Offset s = 0; s < 21; ++s) {
-      const LocalLaw& law = s % 3 == 0 ? hard : soft;
-      both.stiffnesses.push_back(law.stiffness);
-      both.mu.push_back(law.lame.mu);
-      both.lambda.push_back(law.lame.lambda);
-      test::Patch alone = patch;
-      alone.simplices.vertices.assign(patch.simplices.vertices.begin() + 4 * s,
-                                      patch.simplices.vertices.begin() + 4 * s + 4);
-      auto steps = steps_of(law, alone);
-      AlignedVector<double> sums = sums_for(steps);
-      steps.pass(x, 1.0, sums);
-      for (std::size_t i = 0; i < expected.size(); ++i) expected[i] += sums[i];
-    }
-    auto steps = steps_of(both, patch);
-    AlignedVector<double> sums = sums_for(steps);
-    steps.pass(x, 1.0, sums);
-    test::expect_near({sums.data(), expected.size()}, expected, 1e-12);
-  }
-}
-
-TEST(LocalLaws, OutOfRangeAreRefused) {
-  const test::Patch patch = patch_of(3);
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const auto refused = [&](const LocalLaw& law) {
-    EXPECT_THROW(LocalSteps<double>(law, patch.simplices, patch.points), InvalidArgument);
-    EXPECT_THROW(LocalSteps<float>(law, patch.simplices, patch.points), InvalidArgument);
-  };
-  for (const double bad : {0.0, -1.0, kNaN, kInfinity}) {
-    for (const LocalModel model : {LocalModel::springs, LocalModel::strain}) {
-      LocalLaw law = test::law_of(model);
-      law.stiffness = bad;
-      refused(law);
-      law.stiffness = 1.0;
-      law.stiffnesses = {1.0, 1.0, bad};
-      refused(law);
-    }
-    for (const LocalModel model : {LocalModel::stvk, LocalModel::neo_hookean, LocalModel::log_neo_hookean}) {
-      LocalLaw law = test::law_of(model);
-      law.lame.mu = bad;
-      refused(law);
-      law = test::law_of(model);
-      law.mu = {1.0, bad, 1.0};
-      law.lambda = {1.0, 1.0, 1.0};
-      refused(law);
-    }
-  }
-  for (const double bad : {-1.0, kNaN, kInfinity, -kInfinity}) {
-    LocalLaw law = test::law_of(LocalModel::neo_hookean);
-    law.lame.lambda = bad;
-    refused(law);
-  }
-  LocalLaw law = test::law_of(LocalModel::neo_hookean);
-  law.mu = {1.0, 1.0, 1.0};
-  refused(law);
-  law.lambda = {1.0, 1.0};
-  refused(law);
-  law = test::law_of(LocalModel::strain);
-  law.stiffnesses = {1.0};
-  refused(law);
-}
+                         [](const auto& law) { return test::name_of(law.param); });
 
 TEST(LocalSteps, RefuseOtherBodiesAndArrays) {
-  const test::Patch patch = patch_of(3);
+  const test::Patch patch = test::tetrahedra(3);
   const LocalLaw law = test::law_of(LocalModel::strain);
   const auto refused = [&](const Simplices& simplices, const std::vector<Point>& points) {
     EXPECT_THROW(LocalSteps<double>(law, simplices, points), InvalidArgument);
@@ -572,8 +415,8 @@ TEST(LocalSteps, RefuseOtherBodiesAndArrays) {
   points[2][1] = std::numeric_limits<double>::quiet_NaN();
   refused(patch.simplices, points);
 
-  auto steps = steps_of(law, patch);
-  AlignedVector<double> sums = sums_for(steps);
+  auto steps = test::steps_of(law, patch);
+  AlignedVector<double> sums = test::sums_for(steps);
   AlignedVector<double> x = padded_positions(patch.points);
   sums.pop_back();
   EXPECT_THROW(steps.pass(x, 1.0, sums), InvalidArgument);

@@ -3,6 +3,7 @@
 
 #include <meshorder/sim/admm/local_elements.hpp>
 
+#include <cstdint>
 #include <span>
 
 namespace meshorder {
