@@ -34,7 +34,7 @@ FALLING = {
     "name": "small",
     "mesh": "grid-4",
     "scale": {"height": 0.1},
-    "place": {"bottom": [0, 0.02, 0]},
+    "place": {"bottom": [0, 0.05, 0]},
     "material": {"model": "neo-hookean", "young": 5e4, "poisson": 0.3, "density": 1000},
     "integrator": {"method": "admm", "time_step": 0.005, "gravity": [0, -9.81, 0], "iterations": 12, "duals": "reset"},
     "contact": {"obstacles": [{"half_space": {"point": [0, 0, 0], "normal": [0.3, 1, 0.1]}}], "with_itself": True, "tolerance": 1e-8},

@@ -11,6 +11,10 @@
 namespace meshorder {
 namespace {
 
+/// Of its depth in the body itself, what a vertex that was inside when the step began must get out of in the
+/// step. All of it would throw vertices out with any speed, and the body would gain energy.
+constexpr double kWayOut = 0.5;
+
 /// The order of ContactFinder: by the vertex, then the obstacle, the body itself last.
 std::pair<Index, std::int32_t> key(const Contact& contact) {
   return {contact.vertices[0], contact.with < 0 ? std::numeric_limits<std::int32_t>::max() : contact.with};
@@ -54,6 +58,10 @@ void ContactSet::begin(std::span<const double> from) {
 bool ContactSet::update(std::span<const double> positions, std::span<const double> forces, double tolerance) {
   std::swap(earlier_, contacts_);
   finder_.find(positions, from_, found_);
+  for (Contact& contact : found_) {
+    if (!contact.is_with_itself()) continue;
+    contact.offset = -(1.0 - kWayOut) * std::max(violation(contact, from_), 0.0);
+  }
   const bool is_new = std::any_of(found_.begin(), found_.end(), [&](const Contact& contact) {
     return violation(contact, positions) > tolerance &&
            !std::binary_search(earlier_.begin(), earlier_.end(), contact, comes_before);
