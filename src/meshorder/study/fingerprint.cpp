@@ -110,6 +110,7 @@ std::uint64_t checksum_of(const ProjectiveOptions& options, const ProjectiveScen
   sum.add(options.iterations);
   sum.add(options.tolerance);
   sum.add(options.keep_duals);
+  sum.add(options.acceleration);
   for (const ScenarioObstacle& obstacle : scenario.obstacles) add_obstacle(obstacle, sum);
   sum.add(options.contact.with_itself);
   sum.add(options.contact.friction_with_itself);

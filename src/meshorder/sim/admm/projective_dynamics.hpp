@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <meshorder/sim/admm/accelerated_iteration.hpp>
 #include <meshorder/sim/admm/global_system.hpp>
 #include <meshorder/sim/admm/local_steps.hpp>
 #include <meshorder/sim/contact/contact_set.hpp>
@@ -19,6 +20,7 @@ struct ProjectiveOptions : MotionOptions {
   int iterations = 20;     ///< of a step; at most, with a tolerance
   double tolerance = 0.0;  ///< 0, or ends a step when both residuals (see ProjectiveDynamics) are below it
   bool keep_duals = true;  ///< from step to step; or each step starts with zero ones
+  int acceleration = 0;    ///< earlier iterates that Anderson acceleration mixes, 0 … 10; 0 with contacts
   ContactOptions contact;
   ContactSolverOptions contact_solver;
 };
@@ -64,8 +66,9 @@ class ProjectiveDynamics final : public Integrator {
   void complete_right_side();
   bool has_converged(const LocalResidual& local, StepReport& report);
   void solve(bool last, StepReport& report);
+  void accelerate();
   void solve_with_contacts(bool last, StepReport& report);
-  std::span<const double> iterate();
+  std::span<const double> in_double();
   void drop_held_contacts();
   void spread_forces();
   void finish(StepReport& report);
@@ -76,6 +79,7 @@ class ProjectiveDynamics final : public Integrator {
   GlobalSystem<Real> system_;
   std::optional<ContactSet> contacts_;  ///< where there is something to touch
   std::unique_ptr<ContactSolver<Real>> contact_solver_;
+  std::optional<AcceleratedIteration<Real>> acceleration_;
   HeldVertices held_;
 
   Index steps_ = 0;
