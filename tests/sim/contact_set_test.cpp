@@ -43,8 +43,8 @@ TEST(ContactSet, AVertexThatEntersMustStayOutside) {
   ASSERT_EQ(set.contacts().size(), 1U);
   const Contact contact = set.contacts()[0];
   EXPECT_EQ(contact.vertices[0], 4);
-  EXPECT_EQ(contact.offset, 0.0);
-  EXPECT_NEAR(violation(contact, inside), 0.1 / std::sqrt(3.0), 1e-12);
+  EXPECT_DOUBLE_EQ(contact.offset, 1e-7);  // a little beside the surface
+  EXPECT_NEAR(violation(contact, inside), 0.1 / std::sqrt(3.0) + 1e-7, 1e-12);
   EXPECT_LT(violation(contact, from), 0.0);
 }
 
@@ -55,7 +55,13 @@ TEST(ContactSet, AVertexThatWasInsideComesHalfOfTheWay) {
   set.begin(from);
   (void)set.update(body.with_vertex_at(0.28), {}, 1e-6);
   ASSERT_EQ(set.contacts().size(), 1U);
-  EXPECT_NEAR(violation(set.contacts()[0], from), 0.05 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(violation(set.contacts()[0], from), 0.05 / std::sqrt(3.0) + 1e-6, 1e-12);
+  // and all of it where that is not much
+  const AlignedVector<double> almost = body.with_vertex_at(1.0 / 3 - 1e-7);
+  set.begin(almost);
+  (void)set.update(body.with_vertex_at(0.28), {}, 1e-6);
+  ASSERT_EQ(set.contacts().size(), 1U);
+  EXPECT_DOUBLE_EQ(set.contacts()[0].offset, 1e-7);
 }
 
 TEST(ContactSet, KeepsAContactOfTheBodyForAsLongAsItPushes) {

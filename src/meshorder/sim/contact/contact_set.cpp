@@ -14,6 +14,15 @@ namespace {
 /// Of its depth in the body itself, what a vertex that was inside when the step began must get out of in the
 /// step. All of it would throw vertices out with any speed, and the body would gain energy.
 constexpr double kWayOut = 0.5;
+/// Of the tolerance, how far beside the body's own surface vertices are held, so that they are not inside by
+/// rounding.
+constexpr double kClearance = 0.1;
+
+/// The gap to the body itself that a vertex must have at the end of a step which it begins with `gap`: halves
+/// of depths would never end.
+double required_gap(double gap, double tolerance) {
+  return std::min(kClearance * tolerance, (gap < 0.0 ? (1.0 - kWayOut) * gap : gap) + tolerance);
+}
 
 /// The order of ContactFinder: by the vertex, then the obstacle, the body itself last.
 std::pair<Index, std::int32_t> key(const Contact& contact) {
@@ -60,11 +69,10 @@ bool ContactSet::update(std::span<const double> positions, std::span<const doubl
   finder_.find(positions, from_, found_);
   for (Contact& contact : found_) {
     if (!contact.is_with_itself()) continue;
-    contact.offset = -(1.0 - kWayOut) * std::max(violation(contact, from_), 0.0);
+    contact.offset = required_gap(-violation(contact, from_), tolerance);
   }
-  const bool is_new = std::any_of(found_.begin(), found_.end(), [&](const Contact& contact) {
-    return violation(contact, positions) > tolerance &&
-           !std::binary_search(earlier_.begin(), earlier_.end(), contact, comes_before);
+  const bool violates = std::any_of(found_.begin(), found_.end(), [&](const Contact& contact) {
+    return violation(contact, positions) > tolerance;
   });
   // those of the body with itself that push, where none was found for their vertex
   std::vector<Contact> kept;
@@ -79,7 +87,7 @@ bool ContactSet::update(std::span<const double> positions, std::span<const doubl
   contacts_.clear();
   std::merge(found_.begin(), found_.end(), kept.begin(), kept.end(), std::back_inserter(contacts_),
              comes_before);
-  return is_new;
+  return violates;
 }
 
 std::size_t ContactSet::bytes() const {

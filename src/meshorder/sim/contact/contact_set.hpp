@@ -20,7 +20,7 @@ class ContactSet {
 
   /// Finds the contacts at these positions, in ContactFinder's order. `forces` are those of the contacts so
   /// far, none where nothing was solved since `begin`. Returns whether a vertex has one that was without, and
-  /// is beyond it by more than `tolerance`, m.
+  /// is beyond it by more than `tolerance`, m. Vertices are held a tenth of that beside the body itself.
   bool update(std::span<const double> positions, std::span<const double> forces, double tolerance);
 
   [[nodiscard]] std::span<const Contact> contacts() const noexcept { return contacts_; }
