@@ -65,6 +65,12 @@ BoxTree::BoxTree(std::span<const Box> boxes) : things_(boxes.size()) {
   }
 }
 
+std::vector<Index> BoxTree::renumber() {
+  std::vector<Index> order = things_;
+  std::iota(things_.begin(), things_.end(), Index{0});
+  return order;
+}
+
 std::size_t BoxTree::bytes() const {
   return nodes_.capacity() * sizeof(Node) + things_.capacity() * sizeof(Index);
 }

@@ -49,26 +49,35 @@ class BoxTree {
   /// One box for each thing. O(n log n).
   explicit BoxTree(std::span<const Box> boxes);
 
+  /// Numbers the things in the order of the tree from now on, in which neighbours stand side by side, and
+  /// returns which they were.
+  std::vector<Index> renumber();
+
   /// Calls `visit(thing)` for the things that may be nearest to x: those whose box is nearer than the square
-  /// root of the bound, which starts infinite and is what the last visit returned. Nearer boxes come first
-  /// as a rule.
+  /// root of the bound, which is what the last visit returned. Nearer boxes come first as a rule.
   template <class Visit>
-  void visit_nearest(const Point& x, Visit visit) const {
-    std::array<Index, kDeepest> open{};
+  void visit_nearest(const Point& x, Visit visit, double bound = Box::kInfinity) const {
+    struct Open {
+      Index node;
+      double distance;
+    };
+    std::array<Open, kDeepest> open{};
     int depth = 0;
-    double bound = std::numeric_limits<double>::infinity();
-    if (!nodes_.empty()) open[depth++] = 0;
+    const auto distance = [&](Index node) { return nodes_[node].box.squared_distance(x); };
+    if (!nodes_.empty()) open[depth++] = {0, distance(0)};
     while (depth > 0) {
-      const Node& node = nodes_[open[--depth]];
-      if (!(node.box.squared_distance(x) <= kAboveRounding * bound)) continue;
+      const Open next = open[--depth];
+      if (!(next.distance <= kAboveRounding * bound)) continue;
+      const Node& node = nodes_[next.node];
       if (node.count > 0) {
         for (Index i = node.first; i < node.first + node.count; ++i) bound = visit(things_[i]);
         continue;
       }
-      const bool second_nearer =
-          nodes_[node.first + 1].box.squared_distance(x) < nodes_[node.first].box.squared_distance(x);
-      open[depth++] = node.first + (second_nearer ? 0 : 1);
-      open[depth++] = node.first + (second_nearer ? 1 : 0);
+      Open nearer{node.first, distance(node.first)};
+      Open further{node.first + 1, distance(node.first + 1)};
+      if (further.distance < nearer.distance) std::swap(nearer, further);
+      open[depth++] = further;
+      open[depth++] = nearer;
     }
   }
 

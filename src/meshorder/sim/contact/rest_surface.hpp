@@ -5,6 +5,7 @@
 #include <meshorder/sim/contact/box_tree.hpp>
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -26,17 +27,24 @@ class RestSurface {
   /// The point of the surface nearest to x, among triangles without the corner `left_out`. Of triangles that
   /// are equally near (to 1e-9), which meet there, it is the one that faces x most, and then the first; so
   /// the numbering of triangles decides only between mirror images. The triangle is kNone where there is
-  /// none.
-  [[nodiscard]] Place nearest(const Point& x, Index left_out = kNone) const;
+  /// none. A `within` that is at least its distance saves time.
+  [[nodiscard]] Place nearest(const Point& x, Index left_out = kNone,
+                              double within = std::numeric_limits<double>::infinity()) const;
 
   [[nodiscard]] const std::array<Index, 3>& triangle(Index t) const { return triangles_[t]; }
   /// Memory held.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  struct Triangle {
+    std::array<Point, 3> points{};
+    std::array<Index, 3> corners{};
+    Index number = 0;
+  };
+
   std::vector<std::array<Index, 3>> triangles_;
-  std::vector<Point> points_;
   BoxTree tree_;
+  std::vector<Triangle> in_tree_;  ///< in the order of the tree
 };
 
 }  // namespace meshorder

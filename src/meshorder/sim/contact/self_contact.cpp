@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace meshorder {
 namespace {
@@ -33,22 +34,30 @@ bool make_contact(Index vertex, const std::array<Index, 3>& triangle, const std:
 SelfContact::SelfContact(const Simplices& simplices, std::span<const Point> points,
                          const BodySurface& surface)
     : rest_(points.begin(), points.end()),
+      on_surface_(points.size(), false),
       surface_(surface.triangles, points),
-      search_(simplices, points, surface.vertices) {}
+      search_(simplices, points, surface.vertices) {
+  for (const Index v : surface.vertices) on_surface_[v] = true;
+}
 
-Point SelfContact::place_at_rest(const VertexInside& inside) const {
+RestSurface::Place SelfContact::way_out(const VertexInside& inside, Index left_out) const {
+  constexpr double kAboveRounding = 1.0 + 1e-6;
   const std::array<Index, 4> corners = search_.corners(inside.tetrahedron);
   Point place{};
   for (int k = 0; k < 4; ++k) place = plus_scaled(place, inside.weights[k], rest_[corners[k]]);
-  return place;
+  // no further than any corner on the surface, at which some triangle is without the vertex
+  double within = std::numeric_limits<double>::infinity();
+  for (const Index corner : corners) {
+    if (on_surface_[corner]) within = std::min(within, kAboveRounding * norm(minus(place, rest_[corner])));
+  }
+  return surface_.nearest(place, left_out, within);
 }
 
 void SelfContact::find(std::span<const double> positions, double friction, std::vector<Contact>& contacts) {
   search_.find(positions, inside_);
   std::vector<RestSurface::Place> places(inside_.size());
   for_each_chunk(index_size(inside_), kPlacesAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
-    for (Index i = begin; i < end; ++i)
-      places[i] = surface_.nearest(place_at_rest(inside_[i]), inside_[i].vertex);
+    for (Index i = begin; i < end; ++i) places[i] = way_out(inside_[i], inside_[i].vertex);
   });
   for (std::size_t i = 0; i < inside_.size();) {
     const Index vertex = inside_[i].vertex;
@@ -69,13 +78,13 @@ SelfContact::Depth SelfContact::depth(std::span<const double> positions) {
   Depth result;
   for (std::size_t i = 0; i < inside_.size(); ++i) {
     if (i == 0 || inside_[i].vertex != inside_[i - 1].vertex) ++result.vertices;
-    result.deepest = std::max(result.deepest, surface_.nearest(place_at_rest(inside_[i])).distance);
+    result.deepest = std::max(result.deepest, way_out(inside_[i], RestSurface::kNone).distance);
   }
   return result;
 }
 
 std::size_t SelfContact::bytes() const {
-  return rest_.capacity() * sizeof(Point) + surface_.bytes() + search_.bytes() +
+  return rest_.capacity() * sizeof(Point) + on_surface_.capacity() / 8 + surface_.bytes() + search_.bytes() +
          inside_.capacity() * sizeof(VertexInside);
 }
 

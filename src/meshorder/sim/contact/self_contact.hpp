@@ -36,9 +36,11 @@ class SelfContact {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  [[nodiscard]] Point place_at_rest(const VertexInside& inside) const;
+  /// The way out of the rest shape, by all triangles or those without the corner `left_out`.
+  [[nodiscard]] RestSurface::Place way_out(const VertexInside& inside, Index left_out) const;
 
   std::vector<Point> rest_;
+  std::vector<bool> on_surface_;
   RestSurface surface_;
   TetrahedronSearch search_;
   std::vector<VertexInside> inside_;
