@@ -22,6 +22,11 @@ struct SurfacePoint {
 /// threads at a time.
 class Obstacle {
  public:
+  Obstacle() = default;
+  Obstacle(const Obstacle&) = delete;
+  Obstacle(Obstacle&&) = delete;
+  Obstacle& operator=(const Obstacle&) = delete;
+  Obstacle& operator=(Obstacle&&) = delete;
   virtual ~Obstacle() = default;
 
   /// The nearest point of the surface, if it is within `reach` of `x` or x is inside. A vertex that was at
