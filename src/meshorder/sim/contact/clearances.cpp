@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "meshorder/sim/contact/clearances.cpp"
 #include <hwy/foreach_target.h>
 // from here on once for each instruction set
+#include <meshorder/sim/contact/lane_bits-inl.hpp>
 #include <meshorder/sim/kernels/lanes-inl.hpp>
 
 HWY_BEFORE_NAMESPACE();
@@ -36,9 +37,7 @@ std::uint64_t points_in_doubt(const PointCluster& cluster, const double* rest, c
         hn::Mul(hn::Set(d, motion.inverse_norm), hn::Add(hn::Sqrt(square), hn::Set(d, motion.deviation)));
     // not where one is NaN
     const auto less = hn::Lt(moved, hn::PromoteTo(d, hn::Load(floats, clearances + i)));
-    alignas(8) std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, less, bytes);
-    known |= std::uint64_t{bytes[0]} << static_cast<unsigned>(i);
+    known |= std::uint64_t{bits_of(d, less)} << static_cast<unsigned>(i);
   }
   return ~known;
 }
@@ -49,6 +48,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include <meshorder/base/parallel.hpp>
+#include <meshorder/sim/contact/leaf_planes.hpp>
 #include <meshorder/sim/contact/vectors.hpp>
 
 #include <algorithm>

@@ -37,11 +37,11 @@ struct PointCluster {
   alignas(64) std::array<std::array<float, kMost>, 3> coordinates{};  ///< the same, rounded
   std::array<float, 3> lower{}, upper{};  ///< around them; an upper end below the lower one for none
 
-  /// `vertices` are 1 … kMost.
-  explicit PointCluster(std::span<const Index> vertices);
+  /// Of 1 … kMost vertices.
+  explicit PointCluster(std::span<const Index> some);
 };
 
-/// Tetrahedra in leaves of sixteen that are neighbours at rest, and branches of sixteen leaves: what a search
+/// Tetrahedra in leaves of sixteen that are neighbours at rest, and branches of kBranch leaves: what a search
 /// among them needs in motion. Ends of boxes and points are rounded alike, which keeps their order. Vertices
 /// and tetrahedra that are not finite are never met.
 struct TetrahedronLeaves {
@@ -54,8 +54,8 @@ struct TetrahedronLeaves {
   AlignedVector<float> leaf_boxes;
   AlignedVector<float> branch_boxes;           ///< the same of branches
   std::vector<std::array<double, 3>> centers;  ///< of leaves, that their planes are relative to
-  /// Of face k of lane l of leaf i the number q at 16 · (16i + 4k + q) + l: inward normal and offset, greater
-  /// by the rounding errors there.
+  /// What leaf_planes.hpp computes: of face k of lane l of leaf i the number q at 16 · (16i + 4k + q) + l:
+  /// inward normal and offset, greater by the rounding errors there.
   AlignedVector<float> planes;
 
   /// Of tetrahedra that are in the order of leaves. Boxes and planes are not yet set.
@@ -80,17 +80,8 @@ struct LeafTask {
   std::uint64_t points = 0;
 };
 
-/// A point of a cluster, and the tetrahedra of a leaf that it may be inside of.
-struct LeafHit {
-  Index point = 0;
-  Index leaf = 0;
-  std::uint32_t lanes = 0;
-};
-
 /// The boxes of the branch's leaves at `positions`. O(tetrahedra of the branch).
 void update_boxes(TetrahedronLeaves& tetrahedra, Index branch, std::span<const double> positions);
-/// The planes of a leaf whose box is up to date.
-void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const double> positions);
 /// Reads where the cluster's points are.
 void update_points(PointCluster& cluster, std::span<const double> positions);
 /// The branches whose box meets the cluster's, rising.
@@ -99,12 +90,5 @@ void branches_at(const TetrahedronLeaves& tetrahedra, const PointCluster& cluste
 /// Appends the branch's leaves in whose box points of the cluster are, of those in the mask.
 void leaves_at(const TetrahedronLeaves& tetrahedra, Index branch, const PointCluster& cluster,
                std::uint64_t points, std::vector<LeafTask>& tasks);
-/// Of the task's points, lowers `clearances` (one for each of the cluster) to the distance that each is
-/// beyond some plane of every tetrahedron that it is no corner of; negative where it is inside one.
-void lower_clearances(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
-                      std::span<const double> positions, std::span<float> clearances);
-/// Appends the points of a task that no plane of some tetrahedron keeps out, which they are no corners of.
-void hits_of(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
-             std::span<const double> positions, std::vector<LeafHit>& hits);
 
 }  // namespace meshorder

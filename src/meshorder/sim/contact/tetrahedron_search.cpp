@@ -4,6 +4,7 @@
 #include <meshorder/sim/contact/clearances.hpp>
 #include <meshorder/sim/contact/halving.hpp>
 #include <meshorder/sim/contact/inside_tetrahedron.hpp>
+#include <meshorder/sim/contact/leaf_planes.hpp>
 #include <meshorder/sim/contact/tetrahedron_leaves.hpp>
 #include <meshorder/sim/contact/tetrahedron_search.hpp>
 #include <meshorder/sim/contact/vectors.hpp>
