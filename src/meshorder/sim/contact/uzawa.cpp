@@ -7,13 +7,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace meshorder {
 namespace {
 
 // of the tolerance: what contacts give way does not count beside it
 constexpr double kSoftness = 0.01;
-constexpr int kMaxRounds = 30;
+// rounds of bounds of tangential forces that bring them no nearer to each other, before the last one
+constexpr int kMostFailures = 3;
+// the last round has this part of the multiplications; rounds before it take half of what there is
+constexpr int kPartOfLast = 8;
 
 /// S of the contacts of one call.
 template <class Real>
@@ -233,19 +237,26 @@ class Uzawa final : public ContactSolver<Real> {
     options.tolerance = options_.tolerance * depth_norm;
     options.scale = operator_.scale();
     options.softness = kSoftness * options_.tolerance;
-    for (int round = 0; round < kMaxRounds; ++round) {
+    const bool friction = !rows().rubbing.empty();
+    double best = std::numeric_limits<double>::infinity();
+    int failures = 0;
+    for (bool last = !friction;;) {
       set_radii(contacts);
       report.iterations += take_gradient();
-      report.converged = projected_gradient(bounds_, options.scale, forces_, gradient_) <= options.tolerance;
-      options.max_multiplications = options_.max_iterations - report.iterations;
-      if (report.converged || options.max_multiplications <= 0) break;
+      const double residual = projected_gradient(bounds_, options.scale, forces_, gradient_);
+      report.converged = residual <= options.tolerance;
+      const int left = options_.max_iterations - report.iterations;
+      if (report.converged || left <= 0) break;
+      // bounds and forces may drive each other up without end: then bounds stay as they are
+      if (residual >= best) ++failures;
+      best = std::min(best, residual);
+      last = last || failures >= kMostFailures || left <= options_.max_iterations / kPartOfLast;
+      options.max_multiplications = last ? left : left / 2;
       const ForceSolveReport solved = minimise_forces(operator_, bounds_, options, forces_, gradient_);
       report.iterations += solved.multiplications;
-      // without friction bounds stay as they are
-      report.converged = rows().rubbing.empty() && solved.residual <= options.tolerance;
-      if (rows().rubbing.empty()) break;
+      report.converged = !friction && solved.residual <= options.tolerance;
+      if (last) break;
     }
-    if (!report.converged) set_radii(contacts);
     // the softness is no excuse: where contacts contradict each other it is all that ends the solve
     for (std::size_t i = 0; i < forces_.size(); ++i)
       gradient_[i] += options.softness * options.scale[i] * forces_[i];

@@ -21,6 +21,8 @@ namespace meshorder {
 ///
 /// With friction the bounds of tangential forces are those of the last round's normal forces (Tresca's fixed
 /// point; Haslinger 1983), until forces are within `tolerance` with the bounds that they make themselves.
+/// Where rounds do not get there (a body may jam), the last bounds stay for good: tangential forces may then
+/// be beyond their cones, and `converged` is false.
 template <class Real>
 std::unique_ptr<ContactSolver<Real>> make_uzawa(const SparseMatrix& matrix,
                                                 const CholeskyFactor<Real>& factor,
