@@ -51,10 +51,10 @@ Eigen::Vector3d best_values(const LocalLaw& law, const Eigen::Vector3d& sigma) {
     bool better = true;
     while (better) {
       better = false;
-      const Eigen::Vector3d here = best;
       for (int k = 0; k < 27; ++k) {
-        const Eigen::Vector3d direction(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-        better = take(here + step * direction) || better;
+        const int along[3] = {k % 3, k / 3 % 3, k / 9};
+        const Eigen::Vector3d direction(along[0] - 1, along[1] - 1, along[2] - 1);
+        better = take(best + step * direction) || better;
       }
     }
   }
@@ -147,7 +147,7 @@ TEST_P(LocalMinimum, IsFiniteForAnythingFinite) {
       Eigen::Matrix3d f =
           test::gradient_of({"", {random.unit(), i % 3 * random.unit(), (i % 5 - 2) * random.unit()}}, i);
       if (i % 7 == 0) f.col(1).setZero();
-      q.push_back(scale * f);
+      q.emplace_back(scale * f);
     }
   }
   for (const Eigen::Matrix3d& z : test::local_steps<double>(law, q)) EXPECT_TRUE(z.allFinite()) << z;
@@ -171,7 +171,8 @@ TEST_P(LocalMinimum, TurnsWithTheBody) {
   for (const double amplitude : {0.2, 0.6}) {
     const auto q = around_rest(200, amplitude, 9);
     std::vector<Eigen::Matrix3d> turned;
-    for (const Eigen::Matrix3d& f : q) turned.push_back(left * f * right);
+    turned.reserve(q.size());
+    for (const Eigen::Matrix3d& f : q) turned.emplace_back(left * f * right);
     const auto z = test::local_steps<double>(law, q);
     const auto z_turned = test::local_steps<double>(law, turned);
     for (std::size_t i = 0; i < q.size(); ++i) {

@@ -105,6 +105,7 @@ TEST_P(LocalPasses, AreThoseOfDenseMatrices) {
     auto steps = test::steps_of(law, patch);
     ASSERT_EQ(steps.element_count(), static_cast<Offset>(elements.size()));
     std::vector<Eigen::VectorXd> duals;
+    duals.reserve(elements.size());
     for (const DenseElement& element : elements) {
       duals.emplace_back(Eigen::VectorXd::Zero(element.d.rows()));
     }

@@ -47,6 +47,15 @@ HWY_INLINE void hookean_step(typename Lanes::Value m, typename Lanes::Value trac
   c = Lanes::mul_add(trace, Lanes::set(1.0 / 12.0) - Lanes::set(1.0 / 3.0) * s, Lanes::set(0.75));
 }
 
+/// sum + Σ σᵢ².
+template <class Lanes>
+HWY_INLINE typename Lanes::Value plus_squares(typename Lanes::Value sum,
+                                              const typename Lanes::Value (&sigma)[3]) {
+  MESHORDER_UNROLL
+  for (const auto& value : sigma) sum = Lanes::mul_add(value, value, sum);
+  return sum;
+}
+
 // A law's energy, gradient and Hessian are those per volume over the bulk modulus κ, functions of the signed
 // singular values σ. m = μ/κ, l = λ/κ = 1 − ⅔m.
 
@@ -82,8 +91,8 @@ struct StvkSteps {
     Value sum = Lanes::set(0.0);
     Value squares = Lanes::set(0.0);
     MESHORDER_UNROLL
-    for (int k = 0; k < 3; ++k) {
-      const Value green = Lanes::mul_add(sigma[k], sigma[k], Lanes::set(-1.0));
+    for (const Value& value : sigma) {
+      const Value green = Lanes::mul_add(value, value, Lanes::set(-1.0));
       sum = sum + green;
       squares = Lanes::mul_add(green, green, squares);
     }
@@ -91,9 +100,7 @@ struct StvkSteps {
   }
 
   HWY_INLINE void derivatives(const Value (&sigma)[3], Value (&gradient)[3], Value (&hessian)[3][3]) const {
-    Value sum = Lanes::set(-3.0);
-    MESHORDER_UNROLL
-    for (int k = 0; k < 3; ++k) sum = Lanes::mul_add(sigma[k], sigma[k], sum);
+    const Value sum = plus_squares<Lanes>(Lanes::set(-3.0), sigma);
     const Value common = Lanes::set(0.5) * l * sum - m;
     MESHORDER_UNROLL
     for (int k = 0; k < 3; ++k) {
@@ -136,9 +143,7 @@ struct NeoHookeanSteps {
   HWY_INLINE Value energy(const Value (&sigma)[3]) const {
     const Value one = Lanes::set(1.0);
     const Value growth = sigma[0] * sigma[1] * sigma[2] - one;
-    Value norm = one;
-    MESHORDER_UNROLL
-    for (int k = 0; k < 3; ++k) norm = Lanes::mul_add(sigma[k], sigma[k], norm);
+    const Value norm = plus_squares<Lanes>(one, sigma);
     const Value of_volume = growth * Lanes::mul_add(lambda, growth, Lanes::set(-2.0) * m);
     const Value of_length = mu * (norm - Lanes::set(4.0) - logarithm<Lanes>(Lanes::set(0.25) * norm));
     return Lanes::set(0.5) * (of_volume + of_length);
@@ -146,9 +151,7 @@ struct NeoHookeanSteps {
 
   HWY_INLINE void derivatives(const Value (&sigma)[3], Value (&gradient)[3], Value (&hessian)[3][3]) const {
     const Value one = Lanes::set(1.0);
-    Value norm = one;
-    MESHORDER_UNROLL
-    for (int k = 0; k < 3; ++k) norm = Lanes::mul_add(sigma[k], sigma[k], norm);
+    const Value norm = plus_squares<Lanes>(one, sigma);
     const Value inverse = one / norm;
     const Value a = mu - mu * inverse;
     const Value of_lengths = (mu + mu) * inverse * inverse;
@@ -191,13 +194,10 @@ struct LogNeoHookeanSteps {
 
   HWY_INLINE Value energy(const Value (&sigma)[3]) const {
     const Value minus_one = Lanes::set(-1.0);
-    Value squares = Lanes::set(-3.0);
+    const Value squares = plus_squares<Lanes>(Lanes::set(-3.0), sigma);
     Value positive = Lanes::set(1.0);
     MESHORDER_UNROLL
-    for (int k = 0; k < 3; ++k) {
-      squares = Lanes::mul_add(sigma[k], sigma[k], squares);
-      positive = Lanes::choose(sigma[k], positive, minus_one);
-    }
+    for (const Value& value : sigma) positive = Lanes::choose(value, positive, minus_one);
     const Value log =
         logarithm<Lanes>(Lanes::choose(positive, sigma[0] * sigma[1] * sigma[2], Lanes::set(1.0)));
     const Value sum = Lanes::mul_add(Lanes::set(0.5) * m, squares,

@@ -33,7 +33,7 @@ HWY_NOINLINE void find_directions(const typename Lanes::Value (&q)[3],
   }
   const Value length = Lanes::square_root(squared_length<Lanes>(direction));
   MESHORDER_UNROLL
-  for (int c = 0; c < 3; ++c) direction[c] = direction[c] / length;
+  for (Value& coordinate : direction) coordinate = coordinate / length;
 }
 
 /// z = ½(q + ℓ₀ q/‖q‖), so that 2z − q = ℓ₀ q/‖q‖.

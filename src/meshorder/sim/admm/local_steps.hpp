@@ -19,8 +19,8 @@ namespace meshorder {
 /// Springs and strain have their one minimum in closed form, halfway to the rest length or the closest
 /// rotation; where q = 0, along the rest edge and to the identity, so that a body rises from a point. Of the
 /// hyperelastic models it is the minimum near rest as far as the objective is convex, to about 1e-13 (of
-/// floats 1e-6), and a local one elsewhere; singular values beyond 1e4 are taken for 1e4. Nothing is NaN for
-/// finite q.
+/// floats 2e-6; of stvk 1e-5 at Poisson's ratio 0.3 and 1e-4 at 0), and a local one elsewhere; singular
+/// values beyond 1e4 are taken for 1e4. Nothing is NaN for finite q.
 enum class LocalModel : std::uint8_t {
   springs,  ///< on every edge: D x = x_a − x_b, U = ½k(‖D x‖ − ℓ₀)², w² = k
   strain,  ///< linear tetrahedral strain: D x = F, U = ½kV‖F − R‖², w² = kV (Narain, Overby, Brown 2016)

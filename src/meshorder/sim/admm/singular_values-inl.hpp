@@ -137,22 +137,22 @@ HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[
     const Value slack = Lanes::set(kRounding) * (one + Lanes::abs(here));
     Value length = one;
     Value next[3];
-    Value there = here;
+    Value after = here;
     for (int halving = 0;; ++halving) {
       MESHORDER_UNROLL
       for (int k = 0; k < 3; ++k) next[k] = Lanes::mul_add(length, direction[k], z[k]);
-      there = objective<Lanes>(law, sigma, next);
-      // not positive where `there` is NaN
-      const Value below = Lanes::mul_add(Lanes::set(kArmijo) * length, slope, here + slack) - there;
-      const Value accepted = Lanes::choose(below, one, zero);
-      if (halving == kHalvings || Lanes::all_at_most(one - accepted, 0.0)) {
+      after = objective<Lanes>(law, sigma, next);
+      // not positive where the objective is NaN
+      const Value below = Lanes::mul_add(Lanes::set(kArmijo) * length, slope, here + slack) - after;
+      const Value taken = Lanes::choose(below, one, zero);
+      if (halving == kHalvings || Lanes::all_at_most(one - taken, 0.0)) {
         MESHORDER_UNROLL
-        for (int k = 0; k < 3; ++k) z[k] = Lanes::choose(accepted, next[k], z[k]);
-        here = Lanes::choose(accepted, there, here);
-        longest = Lanes::if_positive(accepted, longest);
+        for (int k = 0; k < 3; ++k) z[k] = Lanes::choose(taken, next[k], z[k]);
+        here = Lanes::choose(taken, after, here);
+        longest = Lanes::if_positive(taken, longest);
         break;
       }
-      length = Lanes::choose(accepted, length, Lanes::set(0.5) * length);
+      length = Lanes::choose(taken, length, Lanes::set(0.5) * length);
     }
     // a lane of NaN does not move
     const Value moves = longest - Lanes::set(kNear) * (one + largest);
@@ -196,9 +196,9 @@ HWY_NOINLINE void step_by_singular_values(const Law& law, const typename Lanes::
   symmetric_eigen<3, Lanes>(s, sigma, v);
   const Value bound = Lanes::set(kLargestStretch);
   MESHORDER_UNROLL
-  for (int k = 0; k < 3; ++k) {
-    sigma[k] = largest * sigma[k];
-    sigma[k] = Lanes::choose(Lanes::abs(sigma[k]) - bound, Lanes::with_sign_of(bound, sigma[k]), sigma[k]);
+  for (Value& value : sigma) {
+    value = largest * value;
+    value = Lanes::choose(Lanes::abs(value) - bound, Lanes::with_sign_of(bound, value), value);
   }
   Value values[3];
   minimise<Lanes>(law, sigma, values);
