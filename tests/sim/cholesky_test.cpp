@@ -299,6 +299,24 @@ TEST(CholeskyFactor, RefusesMatricesThatAreNotPositiveDefinite) {
   EXPECT_THAT(refusal(indefinite), HasSubstr("not positive definite: row "));
 }
 
+TEST(CholeskyFactor, RefusesForTheSameRowOnAnyNumberOfThreads) {
+  SparseMatrix matrix = large_matrix();
+  // far from each other, so that different threads meet them
+  for (const Index row : {5, matrix.size() / 2, matrix.size() - 5}) {
+    for (Offset k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k) {
+      if (matrix.columns[k] == row) matrix.values[k] = -1;
+    }
+  }
+  std::string first;
+  for (const std::size_t threads : {1, 2, 3, 5}) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    const std::string message = refusal(matrix);
+    if (threads == 1) first = message;
+    EXPECT_THAT(message, testing::HasSubstr("not positive definite: row "));
+    EXPECT_EQ(message, first) << threads << " threads";
+  }
+}
+
 TEST(CholeskyFactor, RefusesSingularMatricesWhateverRoundingLeaves) {
   for (const CsrGraph& graph :
        {test::path(2), test::path(1000), test::cycle(77), test::complete(40), test::star(500),
