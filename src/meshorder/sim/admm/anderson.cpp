@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace meshorder {
@@ -37,12 +38,13 @@ double dot(const Real* a, const Real* b, Index count) {
 }
 
 /// Least ‖residual − Σ γᵢ stepᵢ‖ by the scalar products of the steps with each other and with the residual.
-/// Steps are compared at length 1; γ = 0 along what is left undetermined. Empty where something is not
-/// finite.
-Eigen::VectorXd least_squares(const Eigen::MatrixXd& gram, const Eigen::VectorXd& with_residual) {
+/// Steps are compared at length 1; γ = 0 for those that are not longer than `rounding`, and along what is
+/// left undetermined. Empty where something is not finite.
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& gram, const Eigen::VectorXd& with_residual,
+                              double rounding) {
   if (!gram.allFinite() || !with_residual.allFinite()) return {};
-  const Eigen::VectorXd scale =
-      gram.diagonal().unaryExpr([](double square) { return square > 0 ? 1 / std::sqrt(square) : 0.0; });
+  const Eigen::VectorXd scale = gram.diagonal().unaryExpr(
+      [rounding](double square) { return square > rounding * rounding ? 1 / std::sqrt(square) : 0.0; });
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
   const double least = kLeastEigenvalue * eigen.eigenvalues().maxCoeff();
   const Eigen::VectorXd inverse = eigen.eigenvalues().unaryExpr(
@@ -58,11 +60,13 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& gram, const Eigen::VectorXd
 template <class Real>
 struct AndersonMixer<Real>::Products {
   double residual = 0.0;                              ///< ‖residual‖²
+  double mapped = 0.0;                                ///< ‖g(x)‖²
   std::array<double, kWidestWindow> with_newest{};    ///< of each step of the residual with the newest one
   std::array<double, kWidestWindow> with_residual{};  ///< and with the residual
 
   Products& operator+=(const Products& other) {
     residual += other.residual;
+    mapped += other.mapped;
     for (std::size_t i = 0; i < with_newest.size(); ++i) {
       with_newest[i] += other.with_newest[i];
       with_residual[i] += other.with_residual[i];
@@ -123,6 +127,7 @@ typename AndersonMixer<Real>::Products AndersonMixer<Real>::add_iterate(const Re
   }
   Products products;
   products.residual = dot(residual, residual, count);
+  products.mapped = dot(mapped, mapped, count);
   for (int k = 0; k < depth_; ++k) {
     const Real* const step = residual_steps_[k].data() + first;
     products.with_newest[k] = dot(step, residual_step, count);
@@ -157,9 +162,11 @@ void AndersonMixer<Real>::mix(std::span<const std::span<const Real>> x,
     gram_[newest_ * kWidestWindow + k] = gram_[k * kWidestWindow + newest_] = products.with_newest[k];
   }
   using Gram = Eigen::Matrix<double, kWidestWindow, kWidestWindow>;
+  constexpr double kRounding = 16 * static_cast<double>(std::numeric_limits<Real>::epsilon());
   const Eigen::VectorXd weights =
       least_squares(Eigen::Map<const Gram>(gram_.data()).topLeftCorner(depth_, depth_),
-                    Eigen::Map<const Eigen::VectorXd>(products.with_residual.data(), depth_));
+                    Eigen::Map<const Eigen::VectorXd>(products.with_residual.data(), depth_),
+                    kRounding * std::sqrt(products.mapped));
   if (weights.size() == 0 || !weights.allFinite() || !std::isfinite(residual_)) {
     reset();
     return;
