@@ -5,13 +5,16 @@
     docs/pictures/draw_frames.py OUT.png LARGEST REST.vtu FRAME.vtu FRAME.vtu ...
 
 The strain of a vertex is the mean of |length / rest length - 1| over its edges of the surface: violet where there is
-none, yellow from LARGEST on. Needs NumPy and meshio.
+none, yellow from LARGEST on. NAME-obstacles.vtu beside NAME-000000.vtu is drawn in grey, and what is hollow cut open.
+Needs NumPy and meshio.
 """
+import pathlib
 import sys
 
+import meshio
 import numpy
 
-from raster import boundary_faces, cropped, drawn, in_view, ramp, read_tetrahedra, write_png
+from raster import boundary_faces, cropped, drawn, in_view, ramp, read_tetrahedra, rotated, write_png
 
 SIZE = 360  # pixels of a frame's side
 
@@ -26,17 +29,41 @@ def strain(points, rest, faces):
     return total / numpy.maximum(count, 1)
 
 
+def colour(value, largest):
+    """Of strains, and grey for the obstacles' -1."""
+    return numpy.where(value[:, None] < 0, 0.8, 0.25 + 0.75 * ramp(value / largest))
+
+
+def read_obstacles(rest_path):
+    """Points and triangles of the obstacles, of those that are not flat the half that is farther away."""
+    path = pathlib.Path(rest_path)
+    path = path.with_name(path.name.rsplit("-", 1)[0] + "-obstacles.vtu")
+    if not path.exists():
+        return numpy.empty((0, 3)), numpy.empty((0, 3), int)
+    mesh = meshio.read(path)
+    faces, number = mesh.cells_dict["triangle"], mesh.cell_data["obstacle"][0].ravel()
+    depth = rotated(mesh.points, 0.5, 0)[:, 2][faces].mean(axis=1)
+    kept = []
+    for one in range(number.max() + 1):
+        own = faces[number == one]
+        corners = mesh.points[numpy.unique(own)]
+        flat = numpy.linalg.svd(corners - corners.mean(axis=0), compute_uv=False)[2] < 1e-6
+        kept.append(own if flat else own[depth[number == one] < depth[number == one].mean()])
+    return mesh.points, numpy.concatenate(kept)
+
+
 def main():
     if len(sys.argv) < 5:
         sys.exit(__doc__)
     largest = float(sys.argv[2])
     rest, cells, _ = read_tetrahedra(sys.argv[3])
-    faces = boundary_faces(cells)
+    obstacles, triangles = read_obstacles(sys.argv[3])
+    faces = numpy.concatenate([triangles, boundary_faces(cells) + len(obstacles)])
     frames = [read_tetrahedra(path)[0] for path in sys.argv[4:]]
-    images = [
-        drawn(pixels, faces, strain(points, rest, faces), lambda value: 0.25 + 0.75 * ramp(value / largest), SIZE)
-        for pixels, points in zip(in_view(frames, SIZE), frames)
-    ]
+    images = []
+    for pixels, points in zip(in_view([numpy.concatenate([obstacles, points]) for points in frames], SIZE), frames):
+        values = numpy.concatenate([numpy.full(len(obstacles), -1), strain(points, rest, boundary_faces(cells))])
+        images.append(drawn(pixels, faces, values, lambda value: colour(value, largest), SIZE))
     write_png(sys.argv[1], numpy.concatenate(cropped(images), axis=1))
 
 

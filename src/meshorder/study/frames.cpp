@@ -71,7 +71,7 @@ FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index ev
 
 void FrameWriter::write_obstacles(const Simulation& simulation) const {
   if (simulation.scenario.is_implicit() || simulation.scenario.projective().obstacles.empty()) return;
-  const double extent = 2.0 * bounding_box(rest_, simulation.vertices).longest_side();
+  const double extent = bounding_box(rest_, simulation.vertices).longest_side();
   write_mesh(surfaces_of(simulation.scenario.projective().obstacles, extent),
              folder_ / (name_ + "-obstacles.vtu"));
 }

@@ -141,7 +141,7 @@ void set_up_projective(Simplices simplices, const MotionState& start, Simulation
   body.densities = std::move(materials.densities);
   body.law = local_law_of(materials, method.model, simplices.size());
   body.simplices = std::move(simplices);
-  ProjectiveOptions options = method;
+  ProjectiveOptions options = static_cast<const ProjectiveOptions&>(method);
   bind_loads(scenario, simulation.mesh, simulation.vertices, options);
   for (const ScenarioObstacle& obstacle : method.obstacles)
     options.contact.obstacles.push_back({obstacle_of(obstacle), obstacle.friction});

@@ -56,14 +56,13 @@ ProjectiveDynamics<Real>::ProjectiveDynamics(std::span<const Point> points, cons
     : options_(checked(options, index_size(points))),
       masses_(lumped_masses(rest_shapes(body.simplices, points), body.densities, index_size(points))),
       local_(body.law, body.simplices, points),
-      system_(local_.stiffness(), masses_, options_.time_step * options_.time_step) {
-  const Index n = index_size(points);
-  positions_ = padded_positions(points);
-  velocities_.assign(Offset{3} * n, 0.0);
-  loads_ = velocities_;
-  x_.assign(Offset{kPaddedStride} * n, Real{0});
-  inertia_ = x_;
-  right_side_.assign(Offset{kPaddedStride} * local_.room(), Real{0});
+      system_(local_.stiffness(), masses_, options_.time_step * options_.time_step),
+      positions_(padded_positions(points)),
+      velocities_(3 * points.size()),
+      loads_(velocities_.size()),
+      x_(positions_.size()),
+      inertia_(positions_.size()),
+      right_side_(Offset{kPaddedStride} * local_.room()) {
   if (options_.tolerance > 0.0) last_right_side_ = x_;
   collect_loads(options_, steps_, masses_, loads_, held_);
   system_.hold(held_);

@@ -56,7 +56,9 @@ class Integrator {
  public:
   Integrator() = default;
   Integrator(const Integrator&) = delete;
+  Integrator(Integrator&&) = delete;
   Integrator& operator=(const Integrator&) = delete;
+  Integrator& operator=(Integrator&&) = delete;
   virtual ~Integrator() = default;
 
   [[nodiscard]] virtual MotionState state() const = 0;
