@@ -30,6 +30,7 @@ using Motion = std::function<Point(const Point&)>;
 
 AlignedVector<double> moved(const std::vector<Point>& points, const Motion& motion) {
   std::vector<Point> result;
+  result.reserve(points.size());
   for (const Point& p : points) result.push_back(motion(p));
   return padded_positions(result);
 }

@@ -4,6 +4,7 @@
 #include <meshorder/sim/contact/body_surface.hpp>
 #include <meshorder/sim/contact/box_tree.hpp>
 #include <meshorder/sim/contact/contact_finder.hpp>
+#include <meshorder/sim/contact/halving.hpp>
 #include <meshorder/sim/contact/self_contact.hpp>
 #include <meshorder/sim/contact/vectors.hpp>
 
@@ -14,17 +15,43 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kVerticesAtOnce = 256;
+/// Neighbours that are looked at together, so that one distance tells that all of them are out of reach.
+constexpr Index kInCluster = 64;
+
+Contact contact_with(Index vertex, const SurfacePoint& place, double friction, std::int32_t obstacle) {
+  Contact contact;
+  contact.vertices[0] = vertex;
+  contact.weights[0] = 1.0;
+  contact.normal = place.normal;
+  contact.offset = dot(place.normal, place.at);
+  contact.friction = friction;
+  contact.with = obstacle;
+  return contact;
+}
+
+/// By vertex, then obstacle, the body itself last.
+bool comes_before(const Contact& a, const Contact& b) {
+  if (a.vertices[0] != b.vertices[0]) return a.vertices[0] < b.vertices[0];
+  return !a.is_with_itself() && (b.is_with_itself() || a.with < b.with);
+}
+
+/// Whether nothing of an obstacle is within reach of the box around some vertices and where they were, so
+/// that none is near it nor went through it: distances change by no more than the way.
+bool out_of_reach(const Obstacle& obstacle, const Box& box, double reach) {
+  constexpr double kAboveRounding = 1.0 + 1e-9;
+  const Point center = scaled(0.5, plus_scaled(box.lower, 1.0, box.upper));
+  const double radius = 0.5 * norm(minus(box.upper, box.lower));
+  return obstacle.distance(center) > kAboveRounding * (radius + reach);
+}
 
 }  // namespace
 
 struct ContactFinder::State {
   ContactOptions options;
   Index vertex_count = 0;
-  std::vector<Index> surface;  ///< vertices of the surface, rising
+  std::vector<Index> surface;  ///< its vertices, in clusters
   std::optional<SelfContact> itself;
-  std::vector<std::vector<Contact>> by_chunk;
-  std::vector<Contact> with_itself;
+  std::vector<std::vector<Contact>> by_cluster;
 
   void check(std::span<const double> positions, const char* function) const {
     if (positions.size() != static_cast<std::size_t>(kPaddedStride) * static_cast<std::size_t>(vertex_count))
@@ -44,24 +71,12 @@ ContactFinder::ContactFinder(const Simplices& simplices, std::span<const Point> 
   state_->options = std::move(options);
   state_->vertex_count = index_size(points);
   state_->surface = std::move(surface.vertices);
-  state_->by_chunk.resize(chunk_count(index_size(state_->surface), kVerticesAtOnce));
+  sort_into_runs(state_->surface, kInCluster, points);
+  state_->by_cluster.resize(chunk_count(index_size(state_->surface), kInCluster));
 }
 ContactFinder::~ContactFinder() = default;
 ContactFinder::ContactFinder(ContactFinder&&) noexcept = default;
 ContactFinder& ContactFinder::operator=(ContactFinder&&) noexcept = default;
-
-namespace {
-
-/// Whether nothing of an obstacle is within reach of the ball around these vertices and their ways: distances
-/// change by no more than the way.
-bool out_of_reach(const Obstacle& obstacle, const Box& ways, double reach) {
-  const Point center = scaled(0.5, plus_scaled(ways.lower, 1.0, ways.upper));
-  const double radius = 0.5 * norm(minus(ways.upper, ways.lower));
-  constexpr double kAboveRounding = 1.0 + 1e-9;
-  return obstacle.distance(center) > kAboveRounding * (radius + reach);
-}
-
-}  // namespace
 
 void ContactFinder::find(std::span<const double> positions, std::span<const double> from,
                          std::vector<Contact>& contacts) {
@@ -69,60 +84,45 @@ void ContactFinder::find(std::span<const double> positions, std::span<const doub
   state.check(positions, "ContactFinder::find");
   state.check(from, "ContactFinder::find");
   contacts.clear();
-  state.with_itself.clear();
-  if (state.itself) state.itself->find(positions, state.options.friction_with_itself, state.with_itself);
-
+  if (state.itself) state.itself->find(positions, state.options.friction_with_itself, contacts);
   const Index obstacles = index_size(state.options.obstacles);
-  for_each_chunk(index_size(state.surface), kVerticesAtOnce, [&](Index chunk, Index begin, Index end) {
-    std::vector<Contact>& found = state.by_chunk[chunk];
+  for_each_chunk(index_size(state.surface), kInCluster, [&](Index cluster, Index begin, Index end) {
+    std::vector<Contact>& found = state.by_cluster[cluster];
     found.clear();
-    Box ways;
+    Box box;
     for (Index i = begin; i < end; ++i) {
-      ways.include(point_of(positions, state.surface[i]));
-      ways.include(point_of(from, state.surface[i]));
+      box.include(point_of(positions, state.surface[i]));
+      box.include(point_of(from, state.surface[i]));
     }
     for (Index o = 0; o < obstacles; ++o) {
       const auto& [obstacle, friction] = state.options.obstacles[o];
-      if (out_of_reach(*obstacle, ways, state.options.reach)) continue;
+      if (out_of_reach(*obstacle, box, state.options.reach)) continue;
       for (Index i = begin; i < end; ++i) {
         const Index v = state.surface[i];
-        const auto place = obstacle->nearest(point_of(positions, v), point_of(from, v), state.options.reach);
-        if (!place) continue;
-        Contact contact;
-        contact.vertices[0] = v;
-        contact.weights[0] = 1.0;
-        contact.normal = place->normal;
-        contact.offset = dot(place->normal, place->at);
-        contact.friction = friction;
-        contact.with = o;
-        found.push_back(contact);
+        if (const auto place =
+                obstacle->nearest(point_of(positions, v), point_of(from, v), state.options.reach))
+          found.push_back(contact_with(v, *place, friction, o));
       }
     }
-    const auto by_vertex = [](const Contact& a, const Contact& b) { return a.vertices[0] < b.vertices[0]; };
-    std::stable_sort(found.begin(), found.end(), by_vertex);
   });
-  // those with the body itself come behind those of the same vertex with obstacles
-  auto itself = state.with_itself.begin();
-  for (const std::vector<Contact>& found : state.by_chunk) {
-    for (const Contact& contact : found) {
-      while (itself != state.with_itself.end() && itself->vertices[0] < contact.vertices[0])
-        contacts.push_back(*itself++);
-      contacts.push_back(contact);
-    }
-  }
-  contacts.insert(contacts.end(), itself, state.with_itself.end());
+  for (const std::vector<Contact>& found : state.by_cluster)
+    contacts.insert(contacts.end(), found.begin(), found.end());
+  std::sort(contacts.begin(), contacts.end(), comes_before);
 }
 
 Penetration ContactFinder::penetration(std::span<const double> positions) {
   State& state = *state_;
   state.check(positions, "ContactFinder::penetration");
-  std::vector<double> deepest(state.by_chunk.size(), 0.0);
-  for_each_chunk(index_size(state.surface), kVerticesAtOnce, [&](Index chunk, Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) {
-      const Point x = point_of(positions, state.surface[i]);
-      if (!is_finite(x)) continue;
-      for (const ContactOptions::With& with : state.options.obstacles)
-        deepest[chunk] = std::max(deepest[chunk], -with.obstacle->distance(x));
+  std::vector<double> deepest(state.by_cluster.size(), 0.0);
+  for_each_chunk(index_size(state.surface), kInCluster, [&](Index cluster, Index begin, Index end) {
+    Box box;
+    for (Index i = begin; i < end; ++i) box.include(point_of(positions, state.surface[i]));
+    for (const ContactOptions::With& with : state.options.obstacles) {
+      if (out_of_reach(*with.obstacle, box, 0.0)) continue;
+      for (Index i = begin; i < end; ++i) {
+        const Point x = point_of(positions, state.surface[i]);
+        if (is_finite(x)) deepest[cluster] = std::max(deepest[cluster], -with.obstacle->distance(x));
+      }
     }
   });
   Penetration result;
@@ -138,7 +138,7 @@ Penetration ContactFinder::penetration(std::span<const double> positions) {
 std::size_t ContactFinder::bytes() const {
   std::size_t sum = state_->surface.capacity() * sizeof(Index);
   if (state_->itself) sum += state_->itself->bytes();
-  for (const std::vector<Contact>& chunk : state_->by_chunk) sum += chunk.capacity() * sizeof(Contact);
+  for (const std::vector<Contact>& found : state_->by_cluster) sum += found.capacity() * sizeof(Contact);
   return sum;
 }
 
