@@ -208,6 +208,15 @@ TEST(ClosedSurface, LeadsBackWhatWentThroughIt) {
   EXPECT_NEAR(near->distance, 0.0001, 1e-12);
 }
 
+TEST(ClosedSurface, TakesRoundingForNoPassage) {
+  const test::Surface unit = test::cube();
+  const auto box = closed_surface(unit.points, unit.triangles);
+  // over the edge at x = 1, which it cuts by 3e-10
+  const Point from{0.5, 1 + 2e-9, 0.5};
+  EXPECT_FALSE(box->nearest({2.0, 1 - 5e-9, 0.5}, from, 0.0));
+  EXPECT_TRUE(box->nearest({2.0, 1 - 5e-6, 0.5}, from, 0.0)) << "by 1e-6";
+}
+
 /// What an attempt to build the surface is refused with.
 std::string refusal(const test::Surface& surface) {
   try {
