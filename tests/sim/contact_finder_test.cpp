@@ -250,6 +250,22 @@ TEST(ContactFinder, FindsWhatEveryObstacleSaysOfEveryVertex) {
   }
 }
 
+TEST(ContactFinder, FindsWhatHasGoneFarThroughAPlate) {
+  const SoftBody body = two_cubes();
+  test::Surface plate = test::cube();
+  for (Point& p : plate.points) p = {20 * p[0] - 10, 0.01 * p[1] - 0.1, 20 * p[2] - 10};
+  ContactOptions options;
+  options.obstacles.push_back({closed_surface(plate.points, plate.triangles), 0.0});
+  ContactFinder finder(body.simplices, body.points, options);
+  const AlignedVector<double> from = padded_positions(body.points);
+  AlignedVector<double> positions = from;
+  for (std::size_t v = 0; v < body.points.size(); ++v) positions[4 * v + 1] -= 5.0;
+  std::vector<Contact> contacts;
+  finder.find(positions, from, contacts);
+  EXPECT_EQ(contacts.size(), 2 * (125 - 27));
+  for (const Contact& contact : contacts) EXPECT_EQ(contact.normal, (Point{0, 1, 0}));
+}
+
 TEST(ContactFinder, FindsTheSameWithAnyNumberOfThreadsAndWhateverWasAskedBefore) {
   const SoftBody body = two_cubes();
   ContactFinder finder(body.simplices, body.points, many_obstacles());

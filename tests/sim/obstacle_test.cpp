@@ -185,6 +185,19 @@ TEST(ClosedSurface, AgreesWithAllTrianglesAndTheWindingNumber) {
   EXPECT_LT(inside, 6000);
 }
 
+TEST(ClosedSurface, KnowsTheSideAtSpikesAndInNotches) {
+  test::Surface spiky = test::surface_of(make_ball({.size = 3}));
+  Random random(8);
+  for (Point& p : spiky.points) p = scaled(0.15 + 0.85 * random.unit(), p);  // still seen from the middle
+  const auto star = closed_surface(spiky.points, spiky.triangles);
+  for (int i = 0; i < 10000; ++i) {
+    const auto& t = spiky.triangles[random.below(spiky.triangles.size())];
+    const Point x = plus_scaled(spiky.points[t[0]], 0.1 * random.unit(), test::random_direction(random));
+    const bool within = test::winding_number(spiky, x) > 0.5;
+    ASSERT_NEAR(star->distance(x), (within ? -1 : 1) * test::distance_to_surface(spiky, x), 1e-12) << i;
+  }
+}
+
 TEST(ClosedSurface, LeadsBackWhatWentThroughIt) {
   test::Surface plate = test::cube();
   for (Point& p : plate.points) p[1] *= 0.01;
