@@ -9,8 +9,9 @@
 #include <meshorder/sim/contact/vectors.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <initializer_list>
 #include <optional>
+#include <string>
 
 namespace meshorder {
 namespace {
@@ -44,6 +45,23 @@ bool out_of_reach(const Obstacle& obstacle, const Box& box, double reach) {
   return obstacle.distance(center) > kAboveRounding * (radius + reach);
 }
 
+/// Calls `visit(cluster)` for clusters begin … end − 1 that are not out of reach of the obstacle, of which
+/// neighbours are passed over together.
+template <class Visit>
+void visit_within_reach(const Obstacle& obstacle, double reach, std::span<const Box> boxes, Index begin,
+                        Index end, Visit visit) {
+  Box box;
+  for (const Box& part : boxes.subspan(begin, end - begin)) {
+    box.include(part.lower);
+    box.include(part.upper);
+  }
+  if (begin == end || out_of_reach(obstacle, box, reach)) return;
+  if (end == begin + 1) return visit(begin);
+  const Index middle = begin + (end - begin) / 2;
+  visit_within_reach(obstacle, reach, boxes, begin, middle, visit);
+  visit_within_reach(obstacle, reach, boxes, middle, end, visit);
+}
+
 }  // namespace
 
 struct ContactFinder::State {
@@ -51,7 +69,29 @@ struct ContactFinder::State {
   Index vertex_count = 0;
   std::vector<Index> surface;  ///< its vertices, in clusters
   std::optional<SelfContact> itself;
-  std::vector<std::vector<Contact>> by_cluster;
+  /// What is looked at together.
+  struct Cluster {
+    std::vector<Index> near;  ///< obstacles
+    std::vector<Contact> found;
+    double deepest = 0.0;
+  };
+  std::vector<Cluster> clusters;
+  std::vector<Box> boxes;  ///< around clusters
+
+  /// Finds the obstacles near each cluster, whose vertices are in these places.
+  void find_near(std::initializer_list<std::span<const double>> places, double reach) {
+    for_each_chunk(index_size(surface), kInCluster, [&](Index c, Index begin, Index end) {
+      clusters[c].near.clear();
+      boxes[c] = {};
+      for (const std::span<const double> place : places) {
+        for (Index i = begin; i < end; ++i) boxes[c].include(point_of(place, surface[i]));
+      }
+    });
+    for (Index o = 0; o < index_size(options.obstacles); ++o) {
+      visit_within_reach(*options.obstacles[o].obstacle, reach, boxes, 0, index_size(clusters),
+                         [&](Index c) { clusters[c].near.push_back(o); });
+    }
+  }
 
   void check(std::span<const double> positions, const char* function) const {
     if (positions.size() != static_cast<std::size_t>(kPaddedStride) * static_cast<std::size_t>(vertex_count))
@@ -72,7 +112,8 @@ ContactFinder::ContactFinder(const Simplices& simplices, std::span<const Point> 
   state_->vertex_count = index_size(points);
   state_->surface = std::move(surface.vertices);
   sort_into_runs(state_->surface, kInCluster, points);
-  state_->by_cluster.resize(chunk_count(index_size(state_->surface), kInCluster));
+  state_->clusters.resize(chunk_count(index_size(state_->surface), kInCluster));
+  state_->boxes.resize(state_->clusters.size());
 }
 ContactFinder::~ContactFinder() = default;
 ContactFinder::ContactFinder(ContactFinder&&) noexcept = default;
@@ -85,48 +126,43 @@ void ContactFinder::find(std::span<const double> positions, std::span<const doub
   state.check(from, "ContactFinder::find");
   contacts.clear();
   if (state.itself) state.itself->find(positions, state.options.friction_with_itself, contacts);
-  const Index obstacles = index_size(state.options.obstacles);
-  for_each_chunk(index_size(state.surface), kInCluster, [&](Index cluster, Index begin, Index end) {
-    std::vector<Contact>& found = state.by_cluster[cluster];
-    found.clear();
-    Box box;
-    for (Index i = begin; i < end; ++i) {
-      box.include(point_of(positions, state.surface[i]));
-      box.include(point_of(from, state.surface[i]));
-    }
-    for (Index o = 0; o < obstacles; ++o) {
+  state.find_near({positions, from}, state.options.reach);
+  for_each_chunk(index_size(state.surface), kInCluster, [&](Index c, Index begin, Index end) {
+    State::Cluster& cluster = state.clusters[c];
+    cluster.found.clear();
+    for (const Index o : cluster.near) {
       const auto& [obstacle, friction] = state.options.obstacles[o];
-      if (out_of_reach(*obstacle, box, state.options.reach)) continue;
       for (Index i = begin; i < end; ++i) {
         const Index v = state.surface[i];
         if (const auto place =
                 obstacle->nearest(point_of(positions, v), point_of(from, v), state.options.reach))
-          found.push_back(contact_with(v, *place, friction, o));
+          cluster.found.push_back(contact_with(v, *place, friction, o));
       }
     }
   });
-  for (const std::vector<Contact>& found : state.by_cluster)
-    contacts.insert(contacts.end(), found.begin(), found.end());
+  for (const State::Cluster& cluster : state.clusters)
+    contacts.insert(contacts.end(), cluster.found.begin(), cluster.found.end());
   std::sort(contacts.begin(), contacts.end(), comes_before);
 }
 
 Penetration ContactFinder::penetration(std::span<const double> positions) {
   State& state = *state_;
   state.check(positions, "ContactFinder::penetration");
-  std::vector<double> deepest(state.by_cluster.size(), 0.0);
-  for_each_chunk(index_size(state.surface), kInCluster, [&](Index cluster, Index begin, Index end) {
-    Box box;
-    for (Index i = begin; i < end; ++i) box.include(point_of(positions, state.surface[i]));
-    for (const ContactOptions::With& with : state.options.obstacles) {
-      if (out_of_reach(*with.obstacle, box, 0.0)) continue;
+  state.find_near({positions}, 0.0);
+  for_each_chunk(index_size(state.surface), kInCluster, [&](Index c, Index begin, Index end) {
+    State::Cluster& cluster = state.clusters[c];
+    cluster.deepest = 0.0;
+    for (const Index o : cluster.near) {
       for (Index i = begin; i < end; ++i) {
         const Point x = point_of(positions, state.surface[i]);
-        if (is_finite(x)) deepest[cluster] = std::max(deepest[cluster], -with.obstacle->distance(x));
+        if (is_finite(x))
+          cluster.deepest = std::max(cluster.deepest, -state.options.obstacles[o].obstacle->distance(x));
       }
     }
   });
   Penetration result;
-  for (const double depth : deepest) result.into_obstacles = std::max(result.into_obstacles, depth);
+  for (const State::Cluster& cluster : state.clusters)
+    result.into_obstacles = std::max(result.into_obstacles, cluster.deepest);
   if (state.itself) {
     const SelfContact::Depth depth = state.itself->depth(positions);
     result.into_itself = depth.deepest;
@@ -136,9 +172,11 @@ Penetration ContactFinder::penetration(std::span<const double> positions) {
 }
 
 std::size_t ContactFinder::bytes() const {
-  std::size_t sum = state_->surface.capacity() * sizeof(Index);
+  std::size_t sum = state_->surface.capacity() * sizeof(Index) + state_->boxes.capacity() * sizeof(Box) +
+                    state_->clusters.capacity() * sizeof(State::Cluster);
   if (state_->itself) sum += state_->itself->bytes();
-  for (const std::vector<Contact>& found : state_->by_cluster) sum += found.capacity() * sizeof(Contact);
+  for (const State::Cluster& cluster : state_->clusters)
+    sum += cluster.near.capacity() * sizeof(Index) + cluster.found.capacity() * sizeof(Contact);
   return sum;
 }
 
