@@ -123,6 +123,43 @@ TEST(TetrahedronSearch, FindsWhatAllPairsFind) {
   EXPECT_GT(found, 5000);
 }
 
+TEST(TetrahedronSearch, FindsWhatMovesByLittleIntoWhatWasNear) {
+  const Mesh grid = make_grid({.size = 6});
+  SoftBody body(grid);
+  const Index n = index_size(body.points);
+  const Simplices one = body.simplices;
+  for (const Point& p : grid.points) body.points.push_back(plus_scaled(p, 1.01, {0, 1, 0}));
+  for (const Index v : one.vertices) body.simplices.vertices.push_back(v + n);
+  body.surface = body_surface(body.simplices, body.points).vertices;
+  TetrahedronSearch search(body.simplices, body.points, body.surface);
+  std::vector<VertexInside> inside;
+  std::size_t found = 0;
+  for (const double shift : {0.0, 0.009, 0.012, 0.02, 0.04}) {
+    std::vector<Point> points = body.points;
+    for (Index v = n; v < 2 * n; ++v) points[v] = plus_scaled(points[v], -shift, {0.3, 1, 0.2});
+    const AlignedVector<double> positions = padded_positions(points);
+    search.find(positions, inside);
+    expect_same(inside, by_all_pairs(body, search, positions));
+    EXPECT_EQ(inside.empty(), shift < 0.01);
+    found += inside.size();
+  }
+  EXPECT_GT(found, 150);
+}
+
+TEST(TetrahedronSearch, FindsWhatSmallMotionsPutInNeighbours) {
+  const SoftBody grid(make_grid({.size = 9}));
+  TetrahedronSearch search(grid.simplices, grid.points, grid.surface);
+  std::vector<VertexInside> inside;
+  std::size_t found = 0;
+  for (const double amplitude : {0.02, 0.04, 0.06, 0.08}) {
+    const AlignedVector<double> positions = moved(grid.points, shaken(amplitude, 5));
+    search.find(positions, inside);
+    expect_same(inside, by_all_pairs(grid, search, positions));
+    found += inside.size();
+  }
+  EXPECT_GT(found, 20);
+}
+
 TEST(TetrahedronSearch, FindsNothingInABodyAtRestHoweverItIsTurned) {
   const SoftBody torus(make_torus({.size = 4}));
   TetrahedronSearch search(torus.simplices, torus.points, torus.surface);

@@ -34,8 +34,7 @@ struct Padded {
   }
   static HWY_INLINE Padded set(double value) {
     Padded result;
-    MESHORDER_UNROLL
-    for (Index i = 0; i < kParts; ++i) result.parts[i] = hn::Set(Part(), value);
+    for (hn::Vec<Part>& part : result.parts) part = hn::Set(Part(), value);
     return result;
   }
   HWY_INLINE void store(double* to) const {
