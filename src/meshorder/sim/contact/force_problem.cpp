@@ -73,15 +73,16 @@ class Minimiser {
       if (!(report_.residual > options_.tolerance) || spent()) break;
       const bool careful = since_best >= kPatience;
       if (careful) restore_best();
-      find_face();
+      find_face(careful);
       solve_on_face();
+      if (careful) follow_gradient_to_bounds();
       if (!take_step(careful)) break;
       ++since_best;
-      if (energy_ >= best_energy_) continue;
+      if (energy_ >= 0.0) continue;
       since_best = 0;
       save_best();
     }
-    if (report_.residual > options_.tolerance && energy_ > best_energy_) {
+    if (report_.residual > options_.tolerance && energy_ > 0.0) {
       restore_best();
       report_.residual = projected_gradient(bounds_, options_.scale, x_, g_);
     }
@@ -96,13 +97,13 @@ class Minimiser {
   void save_best() {
     best_.assign(x_.begin(), x_.end());
     best_gradient_.assign(g_.begin(), g_.end());
-    best_energy_ = energy_;
+    energy_ = 0.0;
   }
 
   void restore_best() {
     std::copy(best_.begin(), best_.end(), x_.begin());
     std::copy(best_gradient_.begin(), best_gradient_.end(), g_.begin());
-    energy_ = best_energy_;
+    energy_ = 0.0;
   }
 
   /// Whether forces at 0 that want to push have more to gain than the others.
@@ -120,12 +121,18 @@ class Minimiser {
     return wanting > pushing;
   }
 
-  void find_face() {
+  /// Whether the gradient alone would lead a normal force that pushes to its bound.
+  [[nodiscard]] bool leaves(Index row) const {
+    return x_[row] > 0.0 && x_[row] + g_[row] / options_.scale[row] <= 0.0;
+  }
+
+  void find_face(bool careful) {
     const bool take_new = new_ones_gain_most();
     for_each_force(
         bounds_,
         [&](Index row) {
-          freedom_[row] = x_[row] > 0.0 || (take_new && g_[row] > 0.0) ? Freedom::all : Freedom::none;
+          const bool stays = x_[row] > 0.0 && !(careful && leaves(row));
+          freedom_[row] = stays || (take_new && g_[row] > 0.0) ? Freedom::all : Freedom::none;
         },
         [&](Index row, double radius) {
           const Pair force = pair_at(x_, row);
@@ -201,12 +208,19 @@ class Minimiser {
     }
   }
 
+  /// What is about to leave would cut a careful step short again and again: it goes by itself.
+  void follow_gradient_to_bounds() {
+    for (Index row = 0; row < bounds_.normals; ++row) {
+      if (leaves(row)) step_[row] = g_[row] / options_.scale[row];
+    }
+  }
+
   /// Goes the step and back within the bounds; a careful one is halved until it lowers the energy.
   bool take_step(bool careful) {
     for (double way = 1.0; way >= kLeastWay; way *= 0.5) {
       for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] = x_[i] + way * step_[i];
       project(bounds_, trial_);
-      bool inside = way == 1.0;
+      bool inside = way == 1.0 && !careful;
       for (std::size_t i = 0; i < trial_.size(); ++i) {
         const double moved = trial_[i] - x_[i];
         inside = inside && trial_[i] == x_[i] + step_[i];
@@ -243,9 +257,8 @@ class Minimiser {
   std::vector<double> stiffening_;           ///< by the rim's curvature
   std::vector<double> step_, step_product_;  ///< S step
   std::vector<double> trial_, r_, z_, direction_, product_;
-  double energy_ = 0.0;  ///< less that of the start
+  double energy_ = 0.0;  ///< less that of the best: sums of all falls would round the last ones away
   std::vector<double> best_, best_gradient_;
-  double best_energy_ = 0.0;
   ForceSolveReport report_;
 };
 
