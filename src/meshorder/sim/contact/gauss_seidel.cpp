@@ -8,14 +8,15 @@
 #include <meshorder/sim/linear/coloured_rows.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace meshorder {
 namespace {
 
-// rows that a thread relaxes at a time: some microseconds
-constexpr Index kChunkRows = 512;
+// a colour of fewer rows takes less than the start of threads' tasks
+constexpr Index kLeastRows = 512;
 // sweeps have calmed down where their change is this part of the first one's
 constexpr double kCalm = 0.5;
 constexpr int kMostSweepsBetweenUpdates = 10;
@@ -61,6 +62,8 @@ class GaussSeidel final : public ContactSolver<Real> {
   [[nodiscard]] std::size_t bytes() const override { return rows_.bytes() + remembered_.bytes(); }
 
  private:
+  static constexpr Index kParts = ColouredRows<Real>::kParts;
+
   /// Nodes by their places, and apart those that are tied to others.
   void sort_nodes() {
     places_.clear();
@@ -113,12 +116,18 @@ class GaussSeidel final : public ContactSolver<Real> {
   /// Returns the norm of the change, in that of the energy.
   double sweep(std::span<const Contact> contacts, std::span<const Real> b, std::span<Real> x) {
     double square = 0.0;
-    const std::span<const Index> colours = rows_.colours();
-    for (std::size_t colour = 0; colour + 1 < colours.size(); ++colour) {
-      const Index first = colours[colour];
-      square += sum_over_chunks<double>(colours[colour + 1] - first, kChunkRows, [&](Index begin, Index end) {
-        return sweep_rows(contacts, first + begin, first + end, b, x);
-      });
+    for (Index colour = 0; colour + 1 < index_size(rows_.colours()); ++colour) {
+      const std::span<const Index> parts = rows_.parts(colour);
+      std::array<double, kParts> squares{};
+      const auto work = [&](Index part) {
+        squares[static_cast<std::size_t>(part)] = sweep_rows(contacts, parts[part], parts[part + 1], b, x);
+      };
+      if (parts[kParts] - parts[0] < kLeastRows) {
+        for (Index part = 0; part < kParts; ++part) work(part);
+      } else {
+        for_each_part(kParts, work);
+      }
+      for (const double part : squares) square += part;
     }
     for (const auto& [place, node] : places_) {
       if (nodes_.is_tied(node)) square += relax_node(contacts, node, b, x);

@@ -134,6 +134,14 @@ ColouredRows<Real>::ColouredRows(const SparseMatrix& matrix)
     offsets_.push_back(static_cast<Offset>(columns_.size()));
   }
   colours_.push_back(size());
+  for (std::size_t colour = 0; colour + 1 < colours_.size(); ++colour) {
+    const auto first = vertices_.begin() + colours_[colour];
+    const auto last = vertices_.begin() + colours_[colour + 1];
+    for (Index part = 0; part <= kParts; ++part) {
+      const auto vertex = static_cast<Index>(Offset{size()} * part / kParts);
+      parts_.push_back(static_cast<Index>(std::lower_bound(first, last, vertex) - vertices_.begin()));
+    }
+  }
 }
 
 template <class Real>
@@ -166,7 +174,7 @@ Point ColouredRows<Real>::residual(Index vertex, std::span<const Real> b, std::s
 
 template <class Real>
 std::size_t ColouredRows<Real>::bytes() const {
-  return (vertices_.size() + places_.size() + columns_.size()) * sizeof(Index) +
+  return (vertices_.size() + places_.size() + columns_.size() + parts_.size()) * sizeof(Index) +
          offsets_.size() * sizeof(Offset) + (values_.size() + diagonal_.size()) * sizeof(Real);
 }
 

@@ -22,6 +22,13 @@ class ColouredRows {
   [[nodiscard]] Index size() const noexcept { return index_size(vertices_); }
   /// The places at which colours begin, and n.
   [[nodiscard]] std::span<const Index> colours() const noexcept { return colours_; }
+
+  static constexpr Index kParts = 16;  ///< enough for the cores of a desktop
+  /// The kParts + 1 places that bound the parts of a colour: as many vertices each, the same in all colours,
+  /// so that a thread that keeps its part meets the same positions in every colour.
+  [[nodiscard]] std::span<const Index> parts(Index colour) const {
+    return {parts_.data() + Offset{kParts + 1} * colour, kParts + 1};
+  }
   /// The place of a vertex among the rows.
   [[nodiscard]] Index place_of(Index vertex) const { return places_[vertex]; }
   [[nodiscard]] double diagonal(Index vertex) const {
@@ -40,6 +47,7 @@ class ColouredRows {
 
  private:
   std::vector<Index> colours_;
+  std::vector<Index> parts_;     ///< of each colour
   std::vector<Index> vertices_;  ///< of each place
   std::vector<Index> places_;
   std::vector<Offset> offsets_{0};
