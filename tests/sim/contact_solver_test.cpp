@@ -340,6 +340,15 @@ TEST_P(ContactSolvers, RefuseContactsThatAreNone) {
   refused([](Contact& contact) { contact.friction = -0.1; });
 }
 
+TEST_P(ContactSolvers, RefuseVectorsOfAnotherSize) {
+  const ContactProblem problem = test::contact_problem(make_grid({.size = 2}), 5.0);
+  Solved<double> run(problem, {.kind = GetParam()});
+  AlignedVector<double> wrong(problem.b.size() - 4);
+  EXPECT_THROW(run.solver->solve({}, wrong, problem.rest, run.x), InvalidArgument);
+  EXPECT_THROW(run.solver->solve({}, problem.b, wrong, run.x), InvalidArgument);
+  EXPECT_THROW(run.solver->solve({}, problem.b, problem.rest, wrong), InvalidArgument);
+}
+
 TEST(ContactSolver, RefusesOptionsThatAreOutOfRange) {
   const ContactProblem problem = test::contact_problem(make_grid({.size = 2}), 5.0);
   for (const ContactSolverOptions& options :

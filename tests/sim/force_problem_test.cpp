@@ -21,6 +21,7 @@ Eigen::Map<const Vector> as_eigen(std::span<const double> vector) {
 class DenseOperator final : public ForceOperator {
  public:
   explicit DenseOperator(Eigen::MatrixXd matrix) : matrix_(std::move(matrix)) {}
+  void set(const Eigen::MatrixXd& matrix) { matrix_ = matrix; }
 
   void multiply(std::span<const double> forces, std::span<double> result) override {
     Eigen::Map<Vector>(result.data(), matrix_.rows()) = matrix_ * as_eigen(forces);
@@ -187,7 +188,7 @@ TEST(MinimiseForces, NeedsNoMultiplicationsWhereItBegins) {
 TEST(MinimiseForces, EndsWithoutALeastEnergy) {
   // two contacts that contradict each other: S is singular and g outside of its range
   Problem problem(2, 0, 2, 1.0, 1);
-  problem.matrix = DenseOperator((Eigen::MatrixXd(2, 2) << 1, -1, -1, 1).finished());
+  problem.matrix.set((Eigen::MatrixXd(2, 2) << 1, -1, -1, 1).finished());
   problem.g = Eigen::Vector2d(0.3, 0.3);
   problem.scale = {1.0, 1.0};
   const Found found = minimise(problem, 1e-9, 1000);

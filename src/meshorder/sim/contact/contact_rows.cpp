@@ -74,6 +74,14 @@ void check_contacts(std::span<const Contact> contacts, Index n) {
   for (std::size_t k = 0; k < contacts.size(); ++k) check_contact(contacts[k], k, n);
 }
 
+void check_vectors(Index n, std::size_t b, std::size_t from, std::size_t x) {
+  const std::size_t size = kPaddedStride * static_cast<std::size_t>(n);
+  if (b != size || from != size || x != size) {
+    throw InvalidArgument("ContactSolver: b, from and x must hold 4 numbers for each of " +
+                          std::to_string(n) + " vertices");
+  }
+}
+
 ContactRows contact_rows(std::span<const Contact> contacts) {
   ContactRows rows;
   for (std::size_t k = 0; k < contacts.size(); ++k) {

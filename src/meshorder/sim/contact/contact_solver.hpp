@@ -15,9 +15,9 @@ enum class ContactSolverKind : std::uint8_t { uzawa, gauss_seidel };
 
 struct ContactSolverOptions {
   ContactSolverKind kind = ContactSolverKind::uzawa;
-  double tolerance = 1e-4;       ///< relative, of the residual; see docs of either solver
-  int max_iterations = 200;      ///< of one call
-  double over_relaxation = 1.0;  ///< of Gauss–Seidel, 0 … 2
+  double tolerance = 1e-4;       ///< > 0, relative, of the residual; see make_uzawa and make_gauss_seidel
+  int max_iterations = 200;      ///< of one call: multiplications by A⁻¹ at contacts, or sweeps
+  double over_relaxation = 1.0;  ///< of Gauss–Seidel, between 0 and 2
 };
 
 struct ContactSolveReport {
@@ -34,14 +34,22 @@ struct ContactSolveReport {
 template <class Real>
 class ContactSolver {
  public:
-  /// `matrix` and its `factor` must outlive it.
+  /// `matrix` and its `factor` must outlive it. Throws InvalidArgument for options that are out of range and
+  /// for a factor of another size.
   static std::unique_ptr<ContactSolver> make(const SparseMatrix& matrix, const CholeskyFactor<Real>& factor,
                                              const ContactSolverOptions& options);
+  ContactSolver() = default;
+  ContactSolver(const ContactSolver&) = delete;
+  ContactSolver(ContactSolver&&) = delete;
+  ContactSolver& operator=(const ContactSolver&) = delete;
+  ContactSolver& operator=(ContactSolver&&) = delete;
   virtual ~ContactSolver() = default;
 
   /// x, which holds a first guess, becomes the solution; without contacts A⁻¹b exactly. Vectors have
   /// kPaddedStride numbers for each vertex. Forces of the last call serve as a first guess for contacts with
-  /// the same vertex and obstacle, until `forget`.
+  /// the same vertex and obstacle, until `forget`. Throws InvalidArgument for contacts of vertices that do
+  /// not exist and numbers that are out of range. Whatever the contacts are, it ends and says in the report
+  /// what is left.
   virtual ContactSolveReport solve(std::span<const Contact> contacts, std::span<const Real> b,
                                    std::span<const double> from, std::span<Real> x) = 0;
 

@@ -20,6 +20,11 @@ struct ForceBounds {
 /// How forces move contacts: a symmetric positive semidefinite matrix S.
 class ForceOperator {
  public:
+  ForceOperator() = default;
+  ForceOperator(const ForceOperator&) = delete;
+  ForceOperator(ForceOperator&&) = delete;
+  ForceOperator& operator=(const ForceOperator&) = delete;
+  ForceOperator& operator=(ForceOperator&&) = delete;
   virtual ~ForceOperator() = default;
 
   /// result = S forces

@@ -30,6 +30,7 @@ class GaussSeidel final : public ContactSolver<Real> {
 
   ContactSolveReport solve(std::span<const Contact> contacts, std::span<const Real> b,
                            std::span<const double> from, std::span<Real> x) override {
+    check_vectors(rows_.size(), b.size(), from.size(), x.size());
     ContactSolveReport report;
     normal_forces_.assign(contacts.size(), 0.0);
     if (contacts.empty()) {

@@ -157,6 +157,7 @@ class Uzawa final : public ContactSolver<Real> {
 
   ContactSolveReport solve(std::span<const Contact> contacts, std::span<const Real> b,
                            std::span<const double> from, std::span<Real> x) override {
+    check_vectors(factor_.size(), b.size(), from.size(), x.size());
     ContactSolveReport report;
     report.converged = true;
     factor_.solve(b, x);

@@ -37,7 +37,8 @@ class ColouredRows {
 
   /// x_v ← x_v + relaxation (b − A x)_v / a_vv for the rows at places begin … end − 1, which must be of one
   /// colour; returns the sum of a_vv times the squares of the changes.
-  double relax(Index begin, Index end, Real relaxation, std::span<const Real> b, std::span<Real> x) const;
+  [[nodiscard]] double relax(Index begin, Index end, Real relaxation, std::span<const Real> b,
+                             std::span<Real> x) const;
 
   /// (b − A x)_v
   [[nodiscard]] Point residual(Index vertex, std::span<const Real> b, std::span<const Real> x) const;
