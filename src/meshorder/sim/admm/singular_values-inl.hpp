@@ -194,11 +194,11 @@ HWY_NOINLINE void step_by_singular_values(const Law& law, const typename Lanes::
   Value sigma[3];
   Value v[3][3];
   symmetric_eigen<3, Lanes>(s, sigma, v);
-  const Value bound = Lanes::set(kLargestStretch);
+  const Value most = Lanes::set(kLargestStretch);
   MESHORDER_UNROLL
   for (Value& value : sigma) {
     value = largest * value;
-    value = Lanes::choose(Lanes::abs(value) - bound, Lanes::with_sign_of(bound, value), value);
+    value = Lanes::choose(Lanes::abs(value) - most, Lanes::with_sign_of(most, value), value);
   }
   Value values[3];
   minimise<Lanes>(law, sigma, values);
