@@ -153,6 +153,18 @@ TEST_P(LocalMinimum, IsFiniteForAnythingFinite) {
   for (const Eigen::Matrix3d& z : test::local_steps<double>(law, q)) EXPECT_TRUE(z.allFinite()) << z;
 }
 
+TEST_P(LocalMinimum, TakesStretchesBeyondTenThousandForThat) {
+  if (GetParam() == LocalModel::strain) return;
+  const LocalLaw law = test::law_of(GetParam(), 0.3);
+  const std::vector<Eigen::Matrix3d> q{test::gradient_of({"", {1e7, 1.2, 0.8}}),
+                                       test::gradient_of({"", {1e4, 1.2, 0.8}})};
+  const Eigen::Vector3d expected = test::singular_values(test::local_steps<double>(law, q)[1]);
+  // 2z − q keeps less of z beside a larger q
+  EXPECT_LT((test::singular_values(test::local_steps<double>(law, q)[0]) - expected).cwiseAbs().maxCoeff(),
+            1e-6);
+  EXPECT_LT(expected[0], 1e4);
+}
+
 TEST_P(LocalMinimum, IsNaNForWhatIsNotFinite) {
   const LocalLaw law = test::law_of(GetParam(), 0.45);
   for (const double bad :

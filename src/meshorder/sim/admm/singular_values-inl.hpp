@@ -196,9 +196,9 @@ HWY_NOINLINE void step_by_singular_values(const Law& law, const typename Lanes::
   symmetric_eigen<3, Lanes>(s, sigma, v);
   const Value most = Lanes::set(kLargestStretch);
   MESHORDER_UNROLL
-  for (Value& value : sigma) {
-    value = largest * value;
-    value = Lanes::choose(Lanes::abs(value) - most, Lanes::with_sign_of(most, value), value);
+  for (Value& stretch : sigma) {
+    stretch = largest * stretch;
+    stretch = Lanes::choose(Lanes::abs(stretch) - most, Lanes::with_sign_of(most, stretch), stretch);
   }
   Value values[3];
   minimise<Lanes>(law, sigma, values);
