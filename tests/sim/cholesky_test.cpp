@@ -50,7 +50,7 @@ double residual(const SparseMatrix& matrix, const std::vector<Real>& b, const st
   double largest = 0;
   for (Index v = 0; v < matrix.size(); ++v) {
     for (Index c = 0; c < kPaddedStride; ++c) {
-      double sum = static_cast<double>(b[kPaddedStride * v + c]);
+      auto sum = static_cast<double>(b[kPaddedStride * v + c]);
       for (Offset k = matrix.offsets[v]; k < matrix.offsets[v + 1]; ++k) {
         sum -= matrix.values[k] * static_cast<double>(x[kPaddedStride * matrix.columns[k] + c]);
       }
