@@ -2,10 +2,10 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Draws frames of a simulation side by side, in one scale, coloured by strain.
 
-    docs/pictures/draw_frames.py OUT.png LARGEST REST.vtu FRAME.vtu FRAME.vtu ...
+    docs/pictures/draw_frames.py OUT.png LARGEST FIRST.vtu FRAME.vtu FRAME.vtu ...
 
 The strain of a vertex is the mean of |length / rest length - 1| over its edges of the surface: violet where there is
-none, yellow from LARGEST on. NAME-obstacles.vtu beside NAME-000000.vtu is drawn in grey, and what is hollow cut open.
+none, yellow from LARGEST on. NAME-obstacles.vtu beside FIRST.vtu is drawn in grey, and what is hollow cut open.
 Needs NumPy and meshio.
 """
 import pathlib
@@ -56,7 +56,8 @@ def main():
     if len(sys.argv) < 5:
         sys.exit(__doc__)
     largest = float(sys.argv[2])
-    rest, cells, _ = read_tetrahedra(sys.argv[3])
+    start, cells, data = read_tetrahedra(sys.argv[3])
+    rest = start - data["displacement"]
     obstacles, triangles = read_obstacles(sys.argv[3])
     faces = numpy.concatenate([triangles, boundary_faces(cells) + len(obstacles)])
     frames = [read_tetrahedra(path)[0] for path in sys.argv[4:]]
