@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/models/procedural.hpp>
 #include <meshorder/sim/contact/contact_solver.hpp>
+#include <meshorder/sim/contact/remembered_forces.hpp>
 #include <support/sample_graphs.hpp>
 
 #include <gtest/gtest.h>
@@ -107,6 +108,29 @@ TEST(Uzawa, StaysWhereItIsWhenABodyJams) {
   EXPECT_FALSE(report.converged);
   EXPECT_LE(report.violation, 0.2);
   for (const double c : x) EXPECT_LT(std::abs(c), 2.0);
+}
+
+TEST(RememberedForces, AreThoseOfTheSameVertexAndObstacle) {
+  const auto contact = [](Index vertex, std::int32_t with) {
+    Contact result;
+    result.vertices[0] = vertex;
+    result.with = with;
+    return result;
+  };
+  RememberedForces remembered;
+  EXPECT_EQ(remembered.of(contact(3, 0)).normal, 0.0);
+  remembered.remember(std::vector{contact(7, 1), contact(3, 2), contact(3, -1)},
+                      std::vector<ContactForce>{{1.0, {4, 5, 6}}, {2.0, {}}, {3.0, {}}});
+  EXPECT_EQ(remembered.of(contact(7, 1)).normal, 1.0);
+  EXPECT_EQ(remembered.of(contact(7, 1)).along, (Point{4, 5, 6}));
+  EXPECT_EQ(remembered.of(contact(3, 2)).normal, 2.0);
+  EXPECT_EQ(remembered.of(contact(3, -1)).normal, 3.0);
+  EXPECT_EQ(remembered.of(contact(3, 3)).normal, 0.0);
+  EXPECT_EQ(remembered.of(contact(3, 0)).normal, 0.0);
+  EXPECT_EQ(remembered.of(contact(7, 0)).normal, 0.0);
+  EXPECT_EQ(remembered.of(contact(5, 1)).normal, 0.0);
+  remembered.forget();
+  EXPECT_EQ(remembered.of(contact(7, 1)).normal, 0.0);
 }
 
 }  // namespace
