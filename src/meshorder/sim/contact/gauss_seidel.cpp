@@ -93,7 +93,7 @@ class GaussSeidel final : public ContactSolver<Real> {
         since_update = 0;
       }
       report.residual = scale > 0.0 ? change / scale : 0.0;
-      report.converged = calm && (!has_updates || since_update == 0);
+      report.converged = calm;
     }
     const double left = nodes_.depth_left(contacts, std::span<const Real>(x));
     if (!(left <= options_.tolerance * scale)) {
