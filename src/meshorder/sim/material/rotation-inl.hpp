@@ -83,10 +83,10 @@ HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3
 /// What the formula below finds on its way.
 template <class Lanes>
 struct RotationTerms {
-  typename Lanes::Value cof[3][3];     ///< cof F
-  typename Lanes::Value squares;       ///< ‖F‖²
-  typename Lanes::Value determinant;   ///< det F
-  typename Lanes::Value trace;         ///< of RᵀF: the sum of the signed singular values
+  typename Lanes::Value cof[3][3];    ///< cof F
+  typename Lanes::Value squares;      ///< ‖F‖²
+  typename Lanes::Value determinant;  ///< det F
+  typename Lanes::Value trace;        ///< of RᵀF: the sum of the signed singular values
 };
 
 /// The rotations closest to matrices that are far from having several, by a formula; false, and nothing
@@ -97,8 +97,8 @@ struct RotationTerms {
 /// are real. R = ∂λ/∂F then follows from the root's dependence on the coefficients:
 /// R = ((λ² + a) F + 2λ cof F − 2 F FᵀF) / (λ³ − aλ − 2d), whose denominator is 2 Π (σᵢ + σⱼ).
 template <class Lanes>
-HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3],
-                                     typename Lanes::Value (&r)[3][3], RotationTerms<Lanes>& terms) {
+HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&r)[3][3],
+                                     RotationTerms<Lanes>& terms) {
   using Value = typename Lanes::Value;
   constexpr bool kFloat = std::is_same_v<typename Lanes::Number, float>;
   constexpr int kSteps = 10;
@@ -127,8 +127,7 @@ HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3],
     const Value value = Lanes::mul_add(square - two_a, square, Lanes::mul_add(minus_eight_d, root, constant));
     const Value slope = Lanes::mul_add(root, square - a, zero - two_d);
     const Value bend = Lanes::mul_add(Lanes::set(1.5), square, Lanes::set(-0.5) * a);
-    const Value change =
-        value * slope / (Lanes::set(4.0) * slope * slope - value * bend);
+    const Value change = value * slope / (Lanes::set(4.0) * slope * slope - value * bend);
     root = root - change;
     if (Lanes::all_at_most(Lanes::abs(change) - Lanes::set(kNear) * root, 0.0)) break;
     if (step == kSteps) return false;
