@@ -9,6 +9,7 @@
 //   step       all of it, ms, and its speedup over the first order
 // Scenarios with obstacles are measured twice: in free flight, and after the body was put right above the
 // obstacle with the speed of its fall.
+#include "rotation_time.hpp"
 #include <meshorder/io/format.hpp>
 #include <meshorder/models/catalogue.hpp>
 #include <meshorder/study/bandwidth.hpp>
@@ -223,7 +224,14 @@ int main(int argc, char** argv) {
     fmt::print("{} thread{} read{} {:.1f} GB/s\n", threads, threads == 1 ? "" : "s", threads == 1 ? "s" : "",
                bandwidths.back());
   }
-  nlohmann::ordered_json results{{"bandwidth", bandwidths}, {"scenarios", nlohmann::ordered_json::array()}};
+  auto rotations = nlohmann::ordered_json::array();
+  for (const auto& [instructions, double_ns, float_ns] : rotation_times()) {
+    fmt::print("closest rotation, {:<8} {:>6.1f} ns, float {:>6.1f} ns\n", instructions, double_ns, float_ns);
+    rotations.push_back({{"instructions", instructions}, {"double_ns", double_ns}, {"float_ns", float_ns}});
+  }
+  nlohmann::ordered_json results{{"bandwidth", bandwidths},
+                                 {"closest_rotation", rotations},
+                                 {"scenarios", nlohmann::ordered_json::array()}};
   for (const std::string& name : split(settings.scenarios))
     results["scenarios"].push_back(measure(name, settings, bandwidths));
   if (!settings.json.empty()) std::ofstream(settings.json) << results.dump(1) << '\n';
