@@ -9,10 +9,10 @@
 //   step       all of it, ms, and its speedup over the first order
 // Scenarios with obstacles are measured twice: in free flight, and after the body was put right above the
 // obstacle with the speed of its fall.
+#include "measuring.hpp"
 #include "rotation_time.hpp"
 #include <meshorder/io/format.hpp>
 #include <meshorder/models/catalogue.hpp>
-#include <meshorder/study/bandwidth.hpp>
 #include <meshorder/study/simulation.hpp>
 
 #include <fmt/format.h>
@@ -23,7 +23,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,19 +37,6 @@ struct Settings {
   std::string orders = "scrambled,original,fiedler,spectral,hilbert";
   std::string json;
 };
-
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> parts;
-  std::istringstream stream(list);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-  return parts;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Bytes that the two halves of an iteration move when every array passes through the processor once.
 struct IterationBytes {
@@ -92,12 +78,6 @@ struct Runner {
     inner.push_back(static_cast<double>(report.contact_iterations) / report.admm_iterations);
   }
 };
-
-mo::Scenario in_order(mo::Scenario scenario, const std::string& order) {
-  scenario.vertex_order = order;
-  scenario.element_order = order == "original" || order == "scrambled" ? order : "lexmax";
-  return scenario;
-}
 
 Runner make_runner(const std::string& name, int threads, mo::Scenario scenario, const mo::Mesh& mesh,
                    const std::string& file) {
@@ -218,12 +198,7 @@ Settings parse(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   const Settings settings = parse(argc, argv);
-  std::vector<double> bandwidths;
-  for (int threads = 1; threads <= 2; ++threads) {
-    bandwidths.push_back(mo::read_bandwidth(std::size_t{512} << 20, 8, threads));
-    fmt::print("{} thread{} read{} {:.1f} GB/s\n", threads, threads == 1 ? "" : "s", threads == 1 ? "s" : "",
-               bandwidths.back());
-  }
+  const std::vector<double> bandwidths = measure_bandwidths();
   auto rotations = nlohmann::ordered_json::array();
   for (const auto& [instructions, double_ns, float_ns] : rotation_times()) {
     fmt::print("closest rotation, {:<8} {:>6.1f} ns, float {:>6.1f} ns\n", instructions, double_ns, float_ns);

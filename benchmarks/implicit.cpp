@@ -8,9 +8,9 @@
 //   assembly of forces and matrix, ms
 //   CG       an iteration, ms, and the rate at which it reads its matrix in per cent of the measured
 //   bandwidth step     all of it, ms, and its speedup over the first order
+#include "measuring.hpp"
 #include "peak_flops.hpp"
 #include <meshorder/io/format.hpp>
-#include <meshorder/study/bandwidth.hpp>
 #include <meshorder/study/simulation.hpp>
 
 #include <fmt/format.h>
@@ -20,7 +20,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -36,19 +35,6 @@ struct Settings {
   std::string json;
   std::vector<std::string> files;
 };
-
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> parts;
-  std::istringstream stream(list);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-  return parts;
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
 
 /// A simulation on a number of threads, and what its steps took.
 struct Runner {
@@ -143,12 +129,6 @@ nlohmann::ordered_json run(std::vector<Runner>& runners, const std::vector<doubl
   return results;
 }
 
-mo::Scenario in_order(mo::Scenario scenario, const std::string& order) {
-  scenario.vertex_order = order;
-  scenario.element_order = order == "original" || order == "scrambled" ? order : "lexmax";
-  return scenario;
-}
-
 nlohmann::ordered_json measure(const std::string& file, const Settings& settings,
                                const std::vector<double>& bandwidths) {
   const mo::Mesh mesh = mo::read_mesh(file);
@@ -209,12 +189,7 @@ Settings parse(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   const Settings settings = parse(argc, argv);
-  std::vector<double> bandwidths;
-  for (int threads = 1; threads <= 2; ++threads) {
-    bandwidths.push_back(mo::read_bandwidth(std::size_t{512} << 20, 8, threads));
-    fmt::print("{} thread{} read{} {:.1f} GB/s\n", threads, threads == 1 ? "" : "s", threads == 1 ? "s" : "",
-               bandwidths.back());
-  }
+  const std::vector<double> bandwidths = measure_bandwidths();
   const double peak = peak_gflops();
   fmt::print("1 thread computes {:.1f} Gflop/s\n", peak);
   nlohmann::ordered_json results{

@@ -33,7 +33,7 @@ struct LocalPass {
   double* residuals = nullptr;  ///< primal and magnitude
 };
 
-// The kernels, each law's in a file of its own.
+// The kernels of each law.
 void pass_springs(const LocalPass<double>& pass);
 void pass_springs(const LocalPass<float>& pass);
 void pass_strain(const LocalPass<double>& pass);

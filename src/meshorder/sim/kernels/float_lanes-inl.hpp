@@ -18,38 +18,7 @@ namespace meshorder::HWY_NAMESPACE {
 using ManyFloatLanes = OneLaneOf<float>;
 #else
 /// As many simplices at a time as a register holds floats, at most two batches: see ManyLanes.
-struct ManyFloatLanes {
-  using Number = float;
-  using Tag = hn::CappedTag<float, 2 * kBatch>;
-  using Value = hn::Vec<Tag>;
-  static constexpr Index kCount = static_cast<Index>(MaxLanes(Tag()));
-
-  static HWY_INLINE Value set(double value) { return hn::Set(Tag(), static_cast<float>(value)); }
-  static HWY_INLINE Value load(const float* from) { return hn::Load(Tag(), from); }
-  static HWY_INLINE void store(Value value, float* to) { hn::Store(value, Tag(), to); }
-  static HWY_INLINE Value mul_add(Value a, Value b, Value c) { return hn::MulAdd(a, b, c); }
-  static HWY_INLINE Value square_root(Value a) { return hn::Sqrt(a); }
-  static HWY_INLINE Value if_positive(Value where, Value value) {
-    return hn::IfThenElseZero(hn::Gt(where, hn::Zero(Tag())), value);
-  }
-  static HWY_INLINE Value choose(Value where, Value yes, Value no) {
-    return hn::IfThenElse(hn::Gt(where, hn::Zero(Tag())), yes, no);
-  }
-  static HWY_INLINE Value max(Value a, Value b) { return hn::Max(a, b); }
-  static HWY_INLINE Value min(Value a, Value b) { return hn::Min(a, b); }
-  static HWY_INLINE Value abs(Value a) { return hn::Abs(a); }
-  static HWY_INLINE Value with_sign_of(Value value, Value sign) { return hn::CopySign(value, sign); }
-  static HWY_INLINE Value log(Value a) {
-    alignas(64) float lanes[kCount];
-    store(a, lanes);
-    for (float& lane : lanes) lane = std::log(lane);
-    return load(lanes);
-  }
-  static HWY_INLINE bool all_at_most(Value a, double bound) {
-    return hn::AllTrue(Tag(), hn::Le(a, set(bound)));
-  }
-  static HWY_INLINE float sum(Value a) { return hn::GetLane(hn::SumOfLanes(Tag(), a)); }
-
+struct ManyFloatLanes : LaneArithmetic<float, 2 * kBatch> {
   static HWY_INLINE void gather(const float* positions, const Index* v, Value (&p)[3]) {
     const Tag d;
     const hn::Repartition<double, Tag> pairs;

@@ -65,16 +65,17 @@ using OneLane = OneLaneOf<double>;
 #if HWY_TARGET == HWY_SCALAR
 using ManyLanes = OneLane;
 #else
-/// As many simplices at a time as a register holds, at most a batch.
-struct ManyLanes {
-  using Number = double;
-  using Tag = hn::CappedTag<double, kBatch>;
+/// The arithmetic of as many numbers as a register holds, at most kMost.
+template <class Number_, Index kMost>
+struct LaneArithmetic {
+  using Number = Number_;
+  using Tag = hn::CappedTag<Number, kMost>;
   using Value = hn::Vec<Tag>;
   static constexpr Index kCount = static_cast<Index>(MaxLanes(Tag()));
 
-  static HWY_INLINE Value set(double value) { return hn::Set(Tag(), value); }
-  static HWY_INLINE Value load(const double* from) { return hn::Load(Tag(), from); }
-  static HWY_INLINE void store(Value value, double* to) { hn::Store(value, Tag(), to); }
+  static HWY_INLINE Value set(double value) { return hn::Set(Tag(), static_cast<Number>(value)); }
+  static HWY_INLINE Value load(const Number* from) { return hn::Load(Tag(), from); }
+  static HWY_INLINE void store(Value value, Number* to) { hn::Store(value, Tag(), to); }
   static HWY_INLINE Value mul_add(Value a, Value b, Value c) { return hn::MulAdd(a, b, c); }
   static HWY_INLINE Value square_root(Value a) { return hn::Sqrt(a); }
   static HWY_INLINE Value if_positive(Value where, Value value) {
@@ -88,16 +89,19 @@ struct ManyLanes {
   static HWY_INLINE Value abs(Value a) { return hn::Abs(a); }
   static HWY_INLINE Value with_sign_of(Value value, Value sign) { return hn::CopySign(value, sign); }
   static HWY_INLINE Value log(Value a) {
-    alignas(64) double lanes[kCount];
+    alignas(64) Number lanes[kCount];
     store(a, lanes);
-    for (double& lane : lanes) lane = std::log(lane);
+    for (Number& lane : lanes) lane = std::log(lane);
     return load(lanes);
   }
   static HWY_INLINE bool all_at_most(Value a, double bound) {
     return hn::AllTrue(Tag(), hn::Le(a, set(bound)));
   }
-  static HWY_INLINE double sum(Value a) { return hn::GetLane(hn::SumOfLanes(Tag(), a)); }
+  static HWY_INLINE Number sum(Value a) { return hn::GetLane(hn::SumOfLanes(Tag(), a)); }
+};
 
+/// As many simplices at a time as a register holds, at most a batch.
+struct ManyLanes : LaneArithmetic<double, kBatch> {
   static HWY_INLINE void store_transposed(const Value* rows, double* to, Offset stride) {
     const Tag d;
     if constexpr (kCount == 2) {
