@@ -51,14 +51,15 @@ struct BackwardEuler::Iterate {
 };
 
 BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, ImplicitOptions options)
-    : options_(std::move(options)), system_(points, body, options_.mass) {
-  const Index n = index_size(points);
-  check(options_, n);
+    : options_(std::move(options)),
+      system_(points, body, options_.mass),
+      positions_(padded_positions(points)),
+      velocities_(3 * points.size()),
+      loads_(velocities_.size()),
+      moved_(positions_),
+      scratch_(velocities_.size()) {
+  check(options_, index_size(points));
   preconditioner_ = make_preconditioner(options_.preconditioner, system_.matrix(), points);
-  positions_ = padded_positions(points);
-  moved_ = positions_;
-  velocities_.assign(Offset{3} * n, 0.0);
-  loads_ = scratch_ = velocities_;
   const bool moves = std::any_of(options_.prescribed.begin(), options_.prescribed.end(),
                                  [](const PrescribedMotion& p) { return p.velocity != Point{}; });
   if (options_.stiffness_damping > 0.0 && (options_.newton_iterations > 1 || moves)) {
