@@ -65,11 +65,11 @@ using OneLane = OneLaneOf<double>;
 #if HWY_TARGET == HWY_SCALAR
 using ManyLanes = OneLane;
 #else
-/// The arithmetic of as many numbers as a register holds, at most kMost.
-template <class Number_, Index kMost>
+/// The arithmetic of as many numbers as a register holds, at most so many.
+template <class Real, Index Most>
 struct LaneArithmetic {
-  using Number = Number_;
-  using Tag = hn::CappedTag<Number, kMost>;
+  using Number = Real;
+  using Tag = hn::CappedTag<Number, Most>;
   using Value = hn::Vec<Tag>;
   static constexpr Index kCount = static_cast<Index>(MaxLanes(Tag()));
 
