@@ -17,7 +17,7 @@ struct ContactSolverOptions {
   ContactSolverKind kind = ContactSolverKind::uzawa;
   double tolerance = 1e-3;       ///< > 0, relative, of the residual; see make_uzawa and make_gauss_seidel
   int max_iterations = 200;      ///< of one call: multiplications by A⁻¹ at contacts, or sweeps
-  double over_relaxation = 1.0;  ///< of Gauss–Seidel, between 0 and 2
+  double over_relaxation = 1.9;  ///< of Gauss–Seidel, between 0 and 2
 };
 
 struct ContactSolveReport {
