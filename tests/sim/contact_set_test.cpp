@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/sim/contact/contact_rows.hpp>
 #include <meshorder/sim/contact/contact_set.hpp>
 #include <meshorder/sim/kernels/positions.hpp>
 
@@ -44,8 +45,8 @@ TEST(ContactSet, AVertexThatEntersMustStayOutside) {
   const Contact contact = set.contacts()[0];
   EXPECT_EQ(contact.vertices[0], 4);
   EXPECT_DOUBLE_EQ(contact.offset, 1e-7);  // a little beside the surface
-  EXPECT_NEAR(violation(contact, inside), 0.1 / std::sqrt(3.0) + 1e-7, 1e-12);
-  EXPECT_LT(violation(contact, from), 0.0);
+  EXPECT_NEAR(depth<double>(contact, inside), 0.1 / std::sqrt(3.0) + 1e-7, 1e-12);
+  EXPECT_LT(depth<double>(contact, from), 0.0);
 }
 
 TEST(ContactSet, AVertexThatWasInsideComesHalfOfTheWay) {
@@ -55,7 +56,7 @@ TEST(ContactSet, AVertexThatWasInsideComesHalfOfTheWay) {
   set.begin(from);
   (void)set.update(body.with_vertex_at(0.28), {}, 1e-6);
   ASSERT_EQ(set.contacts().size(), 1U);
-  EXPECT_NEAR(violation(set.contacts()[0], from), 0.05 / std::sqrt(3.0) + 1e-6, 1e-12);
+  EXPECT_NEAR(depth<double>(set.contacts()[0], from), 0.05 / std::sqrt(3.0) + 1e-6, 1e-12);
   // and all of it where that is not much
   const AlignedVector<double> almost = body.with_vertex_at(1.0 / 3 - 1e-7);
   set.begin(almost);
@@ -102,8 +103,8 @@ TEST(ContactSet, ListsThoseWithObstaclesAndTheBodyByVertex) {
   EXPECT_TRUE(set.update(positions, {}, 1e-6));
   EXPECT_EQ(set.contacts().front().vertices[0], 2);
   EXPECT_EQ(set.contacts().back().vertices[0], 6);
-  EXPECT_NEAR(violation(set.contacts().front(), positions), 0.05, 1e-12);
-  EXPECT_NEAR(violation(set.contacts().back(), positions), -0.05, 1e-12);
+  EXPECT_NEAR(depth<double>(set.contacts().front(), positions), 0.05, 1e-12);
+  EXPECT_NEAR(depth<double>(set.contacts().back(), positions), -0.05, 1e-12);
 }
 
 }  // namespace

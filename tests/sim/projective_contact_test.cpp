@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "projective_bodies.hpp"
+#include <meshorder/sim/contact/contact_rows.hpp>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -189,7 +190,7 @@ TEST(ProjectiveContact, TheEndsOfARingMeetAndDoNotPass) {
       std::vector<char> is_inside(points.size(), 0);
       for (const Contact& contact : inside) {
         // corners touch without being apart: 1 % of the ring's thickness
-        if (violation(contact, positions) > 1e-3) is_inside[contact.vertices[0]] = 1;
+        if (depth<double>(contact, positions) > 1e-3) is_inside[contact.vertices[0]] = 1;
       }
       for (std::size_t v = 0; v < points.size(); ++v) {
         standing[v] = is_inside[v] != 0 ? standing[v] + 1 : 0;

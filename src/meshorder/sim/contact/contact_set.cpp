@@ -1,11 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/sim/contact/contact_rows.hpp>
 #include <meshorder/sim/contact/contact_set.hpp>
-#include <meshorder/sim/kernels/positions.hpp>
+#include <meshorder/sim/contact/vectors.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace meshorder {
@@ -33,31 +34,13 @@ bool comes_before(const Contact& a, const Contact& b) { return key(a) < key(b); 
 
 /// Turns a contact with the body itself as its triangle has turned. False where that is flat.
 bool follow_triangle(std::span<const double> positions, Contact& contact) {
-  Point a{};
-  Point b{};
-  const double* const origin = positions.data() + Offset{kPaddedStride} * contact.vertices[1];
-  for (int c = 0; c < 3; ++c) {
-    a[c] = positions[Offset{kPaddedStride} * contact.vertices[2] + c] - origin[c];
-    b[c] = positions[Offset{kPaddedStride} * contact.vertices[3] + c] - origin[c];
-  }
-  const Point normal{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  const double length = std::hypot(normal[0], normal[1], normal[2]);
-  if (!(length > 0.0)) return false;
-  for (int c = 0; c < 3; ++c) contact.normal[c] = normal[c] / length;
-  return true;
+  const std::optional<Point> normal =
+      triangle_normal(positions, contact.vertices[1], contact.vertices[2], contact.vertices[3]);
+  if (normal) contact.normal = *normal;
+  return normal.has_value();
 }
 
 }  // namespace
-
-double violation(const Contact& contact, std::span<const double> positions) {
-  double sum = contact.offset;
-  for (std::size_t i = 0; i < contact.vertices.size() && contact.vertices[i] != Contact::kAbsent; ++i) {
-    const double* const x = positions.data() + Offset{kPaddedStride} * contact.vertices[i];
-    sum -=
-        contact.weights[i] * (contact.normal[0] * x[0] + contact.normal[1] * x[1] + contact.normal[2] * x[2]);
-  }
-  return sum;
-}
 
 void ContactSet::begin(std::span<const double> from) {
   from_ = from;
@@ -69,10 +52,10 @@ bool ContactSet::update(std::span<const double> positions, std::span<const doubl
   finder_.find(positions, from_, found_);
   for (Contact& contact : found_) {
     if (!contact.is_with_itself()) continue;
-    contact.offset = required_gap(-violation(contact, from_), tolerance);
+    contact.offset = required_gap(-depth(contact, from_), tolerance);
   }
   const bool violates = std::any_of(found_.begin(), found_.end(), [&](const Contact& contact) {
-    return violation(contact, positions) > tolerance;
+    return depth(contact, positions) > tolerance;
   });
   // those of the body with itself that push, where none was found for their vertex
   std::vector<Contact> kept;

@@ -36,8 +36,4 @@ class ContactSet {
   std::vector<Contact> earlier_;
 };
 
-/// By how far the positions (padded, see padded_positions) are within what the contact keeps free, m;
-/// negative where there is a gap.
-double violation(const Contact& contact, std::span<const double> positions);
-
 }  // namespace meshorder

@@ -4,8 +4,8 @@
 #include <meshorder/sim/contact/vectors.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <optional>
 
 namespace meshorder {
 namespace {
@@ -15,14 +15,11 @@ constexpr Index kPlacesAtOnce = 64;  // whose nearest surface points a thread fi
 /// The contact of a vertex with a place of the surface. False where the deformed triangle has no area.
 bool make_contact(Index vertex, const std::array<Index, 3>& triangle, const std::array<double, 3>& weights,
                   double friction, std::span<const double> positions, Contact& contact) {
-  const Point a = point_of(positions, triangle[0]);
-  const Point normal =
-      cross(minus(point_of(positions, triangle[1]), a), minus(point_of(positions, triangle[2]), a));
-  const double length = norm(normal);
-  if (!(length > 0.0) || !std::isfinite(length)) return false;
+  const std::optional<Point> normal = triangle_normal(positions, triangle[0], triangle[1], triangle[2]);
+  if (!normal) return false;
   contact.vertices = {vertex, triangle[0], triangle[1], triangle[2]};
   contact.weights = {1.0, -weights[0], -weights[1], -weights[2]};
-  contact.normal = scaled(1.0 / length, normal);
+  contact.normal = *normal;
   contact.offset = 0.0;
   contact.friction = friction;
   contact.with = -1;

@@ -6,6 +6,7 @@
 #include <meshorder/sim/kernels/positions.hpp>
 
 #include <cmath>
+#include <optional>
 #include <span>
 
 namespace meshorder {
@@ -29,6 +30,15 @@ inline bool is_finite(const Point& a) {
 inline Point point_of(std::span<const double> positions, Index v) {
   const double* const x = positions.data() + Offset{kPaddedStride} * v;
   return {x[0], x[1], x[2]};
+}
+
+/// The direction that a triangle of moved vertices faces, of length 1; none where it has no area.
+inline std::optional<Point> triangle_normal(std::span<const double> positions, Index a, Index b, Index c) {
+  const Point origin = point_of(positions, a);
+  const Point normal = cross(minus(point_of(positions, b), origin), minus(point_of(positions, c), origin));
+  const double length = norm(normal);
+  if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
+  return scaled(1.0 / length, normal);
 }
 
 }  // namespace meshorder

@@ -47,35 +47,6 @@ struct ManyFloatLanes : LaneArithmetic<float, 2 * kBatch> {
     add_fourth(d, hn::BitCast(d, hn::InterleaveLower(pairs, xy23, zw23)), v + 2, forces);
     add_fourth(d, hn::BitCast(d, hn::InterleaveUpper(pairs, xy23, zw23)), v + 3, forces);
   }
-
- private:
-  template <class T>
-  static HWY_INLINE T* at(T* vectors, Index v) {
-    return vectors + Offset{kPaddedStride} * v;
-  }
-
-  /// The padded coordinates of v[0], v[4] … side by side.
-  template <class D>
-  static HWY_INLINE hn::Vec<D> load_fourth(D d, const float* positions, const Index* v) {
-    if constexpr (MaxLanes(D()) <= kPaddedStride) {
-      return hn::Load(d, at(positions, v[0]));
-    } else {
-      const hn::Half<D> half;
-      return hn::Combine(d, load_fourth(half, positions, v + MaxLanes(half)),
-                         load_fourth(half, positions, v));
-    }
-  }
-
-  template <class D>
-  static HWY_INLINE void add_fourth(D d, hn::Vec<D> vectors, const Index* v, float* forces) {
-    if constexpr (MaxLanes(D()) <= kPaddedStride) {
-      hn::Store(hn::Add(hn::Load(d, at(forces, v[0])), vectors), d, at(forces, v[0]));
-    } else {
-      const hn::Half<D> half;
-      add_fourth(half, hn::LowerHalf(half, vectors), v, forces);
-      add_fourth(half, hn::UpperHalf(half, vectors), v + MaxLanes(half), forces);
-    }
-  }
 };
 #endif
 

@@ -98,6 +98,40 @@ struct LaneArithmetic {
     return hn::AllTrue(Tag(), hn::Le(a, set(bound)));
   }
   static HWY_INLINE Number sum(Value a) { return hn::GetLane(hn::SumOfLanes(Tag(), a)); }
+
+ protected:
+  template <class T>
+  static HWY_INLINE T* at(T* vectors, Index v) {
+    return vectors + Offset{kPaddedStride} * v;
+  }
+
+  template <class D>
+  static HWY_INLINE void add_to(D d, hn::Vec<D> value, Real* place) {
+    hn::Store(hn::Add(hn::Load(d, place), value), d, place);
+  }
+
+  /// The padded coordinates of v[0], v[4] … side by side.
+  template <class D>
+  static HWY_INLINE hn::Vec<D> load_fourth(D d, const Real* positions, const Index* v) {
+    if constexpr (MaxLanes(D()) <= kPaddedStride) {
+      return hn::Load(d, at(positions, v[0]));
+    } else {
+      const hn::Half<D> half;
+      return hn::Combine(d, load_fourth(half, positions, v + MaxLanes(half)),
+                         load_fourth(half, positions, v));
+    }
+  }
+
+  template <class D>
+  static HWY_INLINE void add_fourth(D d, hn::Vec<D> vectors, const Index* v, Real* forces) {
+    if constexpr (MaxLanes(D()) <= kPaddedStride) {
+      add_to(d, vectors, at(forces, v[0]));
+    } else {
+      const hn::Half<D> half;
+      add_fourth(half, hn::LowerHalf(half, vectors), v, forces);
+      add_fourth(half, hn::UpperHalf(half, vectors), v + MaxLanes(half), forces);
+    }
+  }
 };
 
 /// As many simplices at a time as a register holds, at most a batch.
@@ -183,39 +217,6 @@ struct ManyLanes : LaneArithmetic<double, kBatch> {
       store(hn::ConcatLowerLower(d, odd23, odd01), to + stride);
       store(hn::ConcatUpperUpper(d, even23, even01), to + 2 * stride);
       store(hn::ConcatUpperUpper(d, odd23, odd01), to + 3 * stride);
-    }
-  }
-
-  template <class T>
-  static HWY_INLINE T* at(T* vectors, Index v) {
-    return vectors + Offset{kPaddedStride} * v;
-  }
-
-  template <class D>
-  static HWY_INLINE void add_to(D d, hn::Vec<D> value, double* place) {
-    hn::Store(hn::Add(hn::Load(d, place), value), d, place);
-  }
-
-  /// The padded coordinates of v[0], v[4] … side by side.
-  template <class D>
-  static HWY_INLINE hn::Vec<D> load_fourth(D d, const double* positions, const Index* v) {
-    if constexpr (MaxLanes(D()) <= kPaddedStride) {
-      return hn::Load(d, at(positions, v[0]));
-    } else {
-      const hn::Half<D> half;
-      return hn::Combine(d, load_fourth(half, positions, v + MaxLanes(half)),
-                         load_fourth(half, positions, v));
-    }
-  }
-
-  template <class D>
-  static HWY_INLINE void add_fourth(D d, hn::Vec<D> vectors, const Index* v, double* forces) {
-    if constexpr (MaxLanes(D()) <= kPaddedStride) {
-      add_to(d, vectors, at(forces, v[0]));
-    } else {
-      const hn::Half<D> half;
-      add_fourth(half, hn::LowerHalf(half, vectors), v, forces);
-      add_fourth(half, hn::UpperHalf(half, vectors), v + MaxLanes(half), forces);
     }
   }
 };
