@@ -17,15 +17,9 @@ constexpr std::size_t kPreamble = 10;                 // magic, versions and the
 
 template <class T>
 void write_array(std::span<const T> values, const std::filesystem::path& path) {
-  std::string header =
-      fmt::format("{{'descr': '<i{}', 'fortran_order': False, 'shape': ({},), }}", sizeof(T), values.size());
-  header.append(kAlignment - (kPreamble + header.size() + 1) % kAlignment, ' ');
-  header += '\n';
   OutputFile file(path);
-  file.write(kMagic);
-  file.binary<std::uint8_t>(0);
-  file.binary<std::uint16_t>(static_cast<std::uint16_t>(header.size()), std::endian::little);
-  file.write(header);
+  file.write(
+      npy_header(fmt::format("<i{}", sizeof(T)), std::array{static_cast<std::int64_t>(values.size())}));
   for (const T value : values) file.binary(value, std::endian::little);
   file.commit();
 }
@@ -53,8 +47,18 @@ void write_npy(std::span<const std::int64_t> values, const std::filesystem::path
   write_array(values, path);
 }
 
-std::vector<std::int64_t> read_npy(const std::filesystem::path& path) {
-  Scanner file(path);
+std::string npy_header(std::string_view type, std::span<const std::int64_t> shape) {
+  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}{}), }}", type,
+                                   fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
+  header.append(kAlignment - (kPreamble + header.size() + 1) % kAlignment, ' ');
+  header += '\n';
+  const auto length = static_cast<std::uint16_t>(header.size());
+  std::string preamble(kMagic);
+  for (const int byte : {0, length & 0xff, length >> 8}) preamble += static_cast<char>(byte);
+  return preamble + header;
+}
+
+NpyHeader read_npy_header(Scanner& file) {
   if (file.binary_block(6, "the magic") != kMagic.substr(0, 6)) {
     file.fail_at_byte("is not a NumPy array", "give a file that numpy.save or meshorder wrote");
   }
@@ -63,21 +67,39 @@ std::vector<std::int64_t> read_npy(const std::filesystem::path& path) {
   const std::int64_t length =
       major == 1 ? std::int64_t{file.binary<std::uint16_t>("the length", std::endian::little)}
                  : std::int64_t{file.binary<std::uint32_t>("the length", std::endian::little)};
-  const std::string header(file.binary_block(length, "the header"));
-  const std::string_view type = header_value(file, header, "descr");
-  std::string_view shape = header_value(file, header, "shape");
+  const std::string text(file.binary_block(length, "the header"));
+  NpyHeader header;
+  std::string_view type = header_value(file, text, "descr");
+  while (!type.empty() && (type.front() == '\'' || type.front() == '"')) type.remove_prefix(1);
+  header.type = type.substr(0, type.find_first_of("'\""));
+  header.columns_first = header_value(file, text, "fortran_order").starts_with("True");
+  std::string_view shape = header_value(file, text, "shape");
   if (shape.starts_with('(')) shape.remove_prefix(1);
-  if (shape.ends_with(',')) shape.remove_suffix(1);
-  if (shape.find(',') != std::string_view::npos) {
-    file.fail_at_byte("has more than one dimension", "a map is a list of numbers");
+  while (!shape.empty()) {
+    const auto comma = std::min(shape.find(','), shape.size());
+    header.shape.push_back(
+        parse_integer<std::int64_t>(file, shape.substr(0, comma), "the number of entries"));
+    shape.remove_prefix(std::min(comma + 1, shape.size()));
+    shape.remove_prefix(std::min(shape.find_first_not_of(' '), shape.size()));
   }
-  const auto size = parse_integer<std::int64_t>(file, shape, "the number of entries");
-  if (type.size() != 5 || (type[1] != '<' && type[1] != '>') || (type[2] != 'i' && type[2] != 'u') ||
-      (type[3] != '4' && type[3] != '8')) {
-    file.fail_at_byte("holds " + std::string(type), "32- or 64-bit integers are needed");
+  return header;
+}
+
+std::vector<std::int64_t> read_npy(const std::filesystem::path& path) {
+  Scanner file(path);
+  const NpyHeader header = read_npy_header(file);
+  if (header.shape.size() != 1) {
+    file.fail_at_byte("has " + std::string(header.shape.empty() ? "no dimension" : "more than one dimension"),
+                      "a map is a list of numbers");
   }
-  const std::endian order = type[1] == '<' ? std::endian::little : std::endian::big;
-  const std::int64_t width = type[3] - '0';
+  const std::string& type = header.type;
+  if (type.size() != 3 || (type[0] != '<' && type[0] != '>') || (type[1] != 'i' && type[1] != 'u') ||
+      (type[2] != '4' && type[2] != '8')) {
+    file.fail_at_byte("holds '" + type + "'", "32- or 64-bit integers are needed");
+  }
+  const std::int64_t size = header.shape[0];
+  const std::endian order = type[0] == '<' ? std::endian::little : std::endian::big;
+  const std::int64_t width = type[2] - '0';
   if (size < 0 || size > file.bytes_left() / width) {
     file.fail_at_byte("promises " + std::to_string(size) + " entries, but only " +
                           std::to_string(file.bytes_left()) + " bytes follow",

@@ -44,6 +44,7 @@ class OutputFile {
     write({raw.data(), raw.size()});
   }
 
+  [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
   /// Where the bytes go until the commit; for libraries that write by path (call `close` before they do).
   [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
 
