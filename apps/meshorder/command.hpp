@@ -42,6 +42,8 @@ void add_compare(CLI::App& app);
 void add_models(CLI::App& app);
 void add_methods(CLI::App& app);
 void add_simulate(CLI::App& app);
+void add_reproduce(CLI::App& app);
+void add_serve_steps(CLI::App& app);
 
 /// --json, --quiet and --threads.
 void add_common(CLI::App& subcommand, Common& common);

@@ -29,7 +29,8 @@ int main(int argc, char** argv) {
       "  meshorder order  dragon.veg -o ordered.veg   the sensible default, chosen for the mesh\n"
       "  meshorder info   dragon.veg                  counts, spans, is it in a good order?\n"
       "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
-      "  meshorder simulate falling --mesh dragon.veg an elastic body in motion, timed\n",
+      "  meshorder simulate falling --mesh dragon.veg an elastic body in motion, timed\n"
+      "  meshorder reproduce -o results               the paper's study on this machine, as a page\n",
       "meshorder"};
   app.set_version_flag("--version", MESHORDER_VERSION);
   app.require_subcommand(1);
@@ -38,8 +39,10 @@ int main(int argc, char** argv) {
   meshorder::command::add_info(app);
   meshorder::command::add_compare(app);
   meshorder::command::add_simulate(app);
+  meshorder::command::add_reproduce(app);
   meshorder::command::add_models(app);
   meshorder::command::add_methods(app);
+  meshorder::command::add_serve_steps(app);
   try {
     app.parse(argc, argv);
     return 0;

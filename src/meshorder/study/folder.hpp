@@ -16,6 +16,7 @@ class StudyFolder {
 
   [[nodiscard]] const std::filesystem::path& root() const noexcept { return root_; }
   [[nodiscard]] std::filesystem::path results() const { return root_ / "results.json"; }
+  [[nodiscard]] std::filesystem::path data() const { return root_ / "data"; }
   [[nodiscard]] std::filesystem::path page() const { return root_ / "report.html"; }
   [[nodiscard]] std::filesystem::path tables(std::string_view extension) const {
     return root_ / ("tables" + std::string(extension));
@@ -25,30 +26,23 @@ class StudyFolder {
   }
   /// A mesh in its own order, with points and cells alone.
   [[nodiscard]] std::filesystem::path mesh(std::string_view mesh) const {
-    return root_ / "data" / (std::string(mesh) + ".vtu");
-  }
-  [[nodiscard]] std::filesystem::path mesh_record(std::string_view mesh) const {
-    return root_ / "data" / (std::string(mesh) + ".json");
+    return data() / (std::string(mesh) + ".vtu");
   }
   /// The place of each vertex or cell in an order: old_to_new, as NumPy's array.
   [[nodiscard]] std::filesystem::path vertex_order(std::string_view mesh, std::string_view ordering) const {
-    return root_ / "data" / (std::string(mesh) + "-" + std::string(ordering) + ".vertices.npy");
+    return data() / (std::string(mesh) + "-" + std::string(ordering) + ".vertices.npy");
   }
   [[nodiscard]] std::filesystem::path cell_order(std::string_view mesh, std::string_view ordering) const {
-    return root_ / "data" / (std::string(mesh) + "-" + std::string(ordering) + ".cells.npy");
-  }
-  /// The finished runs of a scenario.
-  [[nodiscard]] std::filesystem::path runs(std::string_view scenario) const {
-    return root_ / "data" / (std::string(scenario) + "-runs.json");
+    return data() / (std::string(mesh) + "-" + std::string(ordering) + ".cells.npy");
   }
   /// Frames of a scenario, vertices numbered as in the mesh's own order: a NumPy array of single precision,
   /// frames × vertices × 3.
   [[nodiscard]] std::filesystem::path motion(std::string_view scenario) const {
-    return root_ / "data" / (std::string(scenario) + "-motion.npy");
+    return data() / (std::string(scenario) + "-motion.npy");
   }
   /// What the body meets there, as a surface; there is none without obstacles.
   [[nodiscard]] std::filesystem::path obstacles(std::string_view scenario) const {
-    return root_ / "data" / (std::string(scenario) + "-obstacles.vtu");
+    return data() / (std::string(scenario) + "-obstacles.vtu");
   }
 
  private:

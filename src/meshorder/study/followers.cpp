@@ -55,4 +55,18 @@ std::vector<Follower> followers(const Mesh& mesh, const Simplices& simplices) {
   return result;
 }
 
+void carry(const std::vector<Follower>& followers, std::span<const Point> rest, MotionState& state) {
+  for (const Follower& follower : followers) {
+    Point& position = state.positions[follower.vertex];
+    position = rest[follower.vertex];
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Index corner = follower.corners[i];
+      for (std::size_t c = 0; c < 3; ++c) {
+        position[c] += follower.weights[i] * (state.positions[corner][c] - rest[corner][c]);
+        state.velocities[follower.vertex][c] += follower.weights[i] * state.velocities[corner][c];
+      }
+    }
+  }
+}
+
 }  // namespace meshorder

@@ -3,8 +3,10 @@
 
 #include <meshorder/mesh/mesh.hpp>
 #include <meshorder/sim/kernels/simplices.hpp>
+#include <meshorder/sim/motion/integrator.hpp>
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace meshorder {
@@ -22,5 +24,9 @@ struct Follower {
 /// tetrahedra. Vertices of no volume cell, and of flat ones alone, are left out. O(tetrahedra · nodes of a
 /// cell).
 std::vector<Follower> followers(const Mesh& mesh, const Simplices& simplices);
+
+/// Takes the followers of a body, whose vertices rest at `rest`, to where its corners are, and gives them
+/// their velocity. O(followers).
+void carry(const std::vector<Follower>& followers, std::span<const Point> rest, MotionState& state);
 
 }  // namespace meshorder

@@ -88,17 +88,7 @@ void FrameWriter::resume_after(Index step) {
 }
 
 void FrameWriter::write(MotionState state) {
-  for (const Follower& follower : followers_) {
-    Point& position = state.positions[follower.vertex];
-    position = rest_[follower.vertex];
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Index corner = follower.corners[i];
-      for (std::size_t c = 0; c < 3; ++c) {
-        position[c] += follower.weights[i] * (state.positions[corner][c] - rest_[corner][c]);
-        state.velocities[follower.vertex][c] += follower.weights[i] * state.velocities[corner][c];
-      }
-    }
-  }
+  carry(followers_, rest_, state);
   auto& displacement = std::get<std::vector<float>>(frame_.data[kDisplacement].values);
   auto& velocity = std::get<std::vector<float>>(frame_.data[kVelocity].values);
   for (std::size_t v = 0; v < rest_.size(); ++v) {

@@ -20,20 +20,23 @@ std::string without_numbers(std::string_view sentence) {
 
 }  // namespace
 
+bool add_warning(const std::string& warning, Index step, std::vector<WarningRecord>& warnings) {
+  const auto known = std::find_if(warnings.begin(), warnings.end(), [&](const WarningRecord& w) {
+    return without_numbers(w.first) == without_numbers(warning);
+  });
+  if (known != warnings.end()) {
+    ++known->count;
+    return false;
+  }
+  warnings.push_back({warning, step, 1});
+  return true;
+}
+
 void add(StepReport report, double shape_distance, const Balance& balance, MotionRecord& record) {
   const std::vector<std::string> warnings = std::exchange(report.warnings, {});
   record.steps.push_back({std::move(report), shape_distance});
   record.balances.push_back(balance);
-  for (const std::string& warning : warnings) {
-    const auto known = std::find_if(
-        record.warnings.begin(), record.warnings.end(),
-        [&](const WarningRecord& w) { return without_numbers(w.first) == without_numbers(warning); });
-    if (known != record.warnings.end()) {
-      ++known->count;
-    } else {
-      record.warnings.push_back({warning, index_size(record.steps), 1});
-    }
-  }
+  for (const std::string& warning : warnings) add_warning(warning, index_size(record.steps), record.warnings);
 }
 
 }  // namespace meshorder

@@ -29,6 +29,10 @@ struct MotionRecord {
   std::vector<WarningRecord> warnings;
 };
 
+/// Adds a warning of a step, unless one was there that differs in numbers alone, which then counts once more.
+/// Returns whether it is new.
+bool add_warning(const std::string& warning, Index step, std::vector<WarningRecord>& warnings);
+
 /// Adds a step and what is true after it.
 void add(StepReport report, double shape_distance, const Balance& balance, MotionRecord& record);
 

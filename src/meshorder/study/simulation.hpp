@@ -36,4 +36,8 @@ void require_volume_cells(const Mesh& mesh, const std::string& file);
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file,
                   const OrderingOptions& ordering = {});
 
+/// The same in an order that is there already; those that the scenario names do not count. Throws
+/// InvalidArgument when the order is of another mesh.
+Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, Reordering order);
+
 }  // namespace meshorder

@@ -1,0 +1,105 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "command.hpp"
+#include "console.hpp"
+#include "interruption.hpp"
+#include "progress.hpp"
+#include <meshorder/base/error.hpp>
+#include <meshorder/study/scenario.hpp>
+#include <meshorder/study/study_run.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace meshorder::command {
+namespace {
+
+/// What a scenario may take with --quick, in all orders.
+constexpr double kQuickSeconds = 20;
+
+struct ReproduceArguments : Common {
+  std::string folder = "results";
+  bool quick = false;
+  bool full = false;
+  StudyPlan plan;
+  std::vector<std::string> orders;
+  Index steps = 0;
+  bool no_pin = false;
+};
+
+StudyPlan plan_of(const ReproduceArguments& arguments) {
+  StudyPlan plan = arguments.plan;
+  if (plan.scenarios.empty()) {
+    for (const BuiltInScenario& scenario : built_in_scenarios()) plan.scenarios.emplace_back(scenario.name);
+  }
+  for (const std::string& order : arguments.orders) {
+    if (order != "paper") plan.orderings.push_back(study_ordering(order));
+  }
+  plan.threads = arguments.threads;
+  plan.pin = !arguments.no_pin;
+  if (arguments.steps > 0) plan.steps = arguments.steps;
+  if (!arguments.quick) return plan;
+  plan.runs = 1;
+  if (!plan.steps) plan.scenario_seconds = kQuickSeconds;
+  return plan;
+}
+
+void run(const ReproduceArguments& arguments) {
+  const Console console(arguments);
+  const StudyPlan plan = plan_of(arguments);
+  const StudyFolder folder(arguments.folder);
+  Progress progress(!console.quiet());
+  const Interruption interruption;
+  StudyObserver observer;
+  observer.stage = [&](const std::string& what, double from, double to) { progress.stage(what, from, to); };
+  observer.note = [&](const std::string& sentence) { console.log("{}", sentence); };
+  observer.stop = [] { return Interruption::signal() != 0; };
+  const bool finished = run_study(plan, folder, std::filesystem::read_symlink("/proc/self/exe"), observer);
+  progress.finish();
+  if (!finished)
+    throw Stopped(
+        fmt::format("stopped; what is finished stands in {}, and the same command goes on from there",
+                    arguments.folder),
+        128 + Interruption::signal());
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& app) {
+  CLI::App* subcommand = app.add_subcommand(
+      "reproduce",
+      "The paper's study on this machine: six scenarios, five orders, tables and a page to look at.\n"
+      "  meshorder reproduce --quick -o results      a few steps of each, in some minutes\n"
+      "  meshorder reproduce -o results              240 steps, three runs: hours; Ctrl-C, and go on later");
+  const auto arguments = std::make_shared<ReproduceArguments>();
+  arguments->threads = 1;
+  StudyPlan& plan = arguments->plan;
+  subcommand->add_option("-o,--output", arguments->folder, "Folder for the results; a study in it is resumed")
+      ->capture_default_str();
+  CLI::Option* const quick = subcommand->add_flag("--quick", arguments->quick, "One run of a few steps");
+  subcommand->add_flag("--full", arguments->full, "All steps, three runs; the default")->excludes(quick);
+  subcommand->add_option("--scenario", plan.scenarios,
+                         "A name or a file, see simulate; may be repeated; default: all");
+  subcommand->add_option("--mesh", plan.mesh,
+                         "A mesh in the place of the scenarios' own: a model's name or a file");
+  subcommand->add_option("--size", plan.size, "paper, 300k or 2m: how large the meshes are")
+      ->capture_default_str();
+  subcommand
+      ->add_option("--orders", arguments->orders,
+                   "Orders beside the paper's five: VERTICES/ELEMENTS, separated by commas")
+      ->delimiter(',');
+  subcommand->add_option("--runs", plan.runs, "Runs of each scenario in each order")
+      ->check(CLI::Range(1, 1000))
+      ->excludes(quick)
+      ->capture_default_str();
+  subcommand->add_option("--steps", arguments->steps, "Steps, in the place of the scenarios' own")
+      ->check(CLI::Range(1, 1'000'000));
+  subcommand->add_flag("--no-pin", arguments->no_pin,
+                       "Leave threads to the system, do not bind them to processors");
+  add_ordering_options(*subcommand, plan.ordering);
+  add_common(*subcommand, *arguments);
+  subcommand->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace meshorder::command

@@ -1,0 +1,20 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "command.hpp"
+#include <meshorder/study/stepper.hpp>
+
+#include <iostream>
+#include <memory>
+
+namespace meshorder::command {
+
+void add_serve_steps(CLI::App& app) {
+  CLI::App* subcommand =
+      app.add_subcommand("serve-steps", "Simulate what a study asks for on standard input");
+  subcommand->group("");  // for meshorder itself: left out of the help
+  const auto arguments = std::make_shared<Common>();
+  add_common(*subcommand, *arguments);
+  subcommand->callback(
+      [arguments] { with_threads(arguments->threads, [] { serve_steps(std::cin, std::cout); }); });
+}
+
+}  // namespace meshorder::command
