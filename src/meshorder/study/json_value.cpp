@@ -41,7 +41,7 @@ class UniqueKeys {
   std::vector<std::set<std::string>> keys_;
 };
 
-std::string joined(std::initializer_list<std::string_view> words) {
+std::string joined(std::span<const std::string_view> words) {
   std::string result;
   for (const std::string_view word : words) result += (result.empty() ? "" : ", ") + std::string(word);
   return result;
@@ -49,16 +49,16 @@ std::string joined(std::initializer_list<std::string_view> words) {
 
 }  // namespace
 
-nlohmann::json parse_json(std::string_view text, const std::string& file) {
+nlohmann::json parse_json(std::string_view text, const std::string& file, std::string_view guide) {
+  const std::string remedy = std::string(guide) + " has examples";
   try {
     return nlohmann::json::parse(text, UniqueKeys(file));
   } catch (const nlohmann::json::parse_error& error) {
     const std::string_view before = text.substr(0, std::min(error.byte, text.size()));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-    throw Error(Location{file, line, -1}, "no JSON: " + reason(error.what()),
-                "docs/simulate.md has examples");
+    throw Error(Location{file, line, -1}, "no JSON: " + reason(error.what()), remedy);
   } catch (const nlohmann::json::exception& error) {
-    throw Error(file, "no JSON: " + reason(error.what()), "docs/simulate.md has examples");
+    throw Error(file, "no JSON: " + reason(error.what()), remedy);
   }
 }
 
@@ -70,7 +70,17 @@ std::string JsonValue::kind() const {
   return value_->is_array() ? fmt::format("a list of {}", value_->size()) : "an object";
 }
 
+JsonValue JsonValue::at(const nlohmann::json& value, std::string path) const {
+  JsonValue result(value, file_, guide_);
+  result.path_ = std::move(path);
+  return result;
+}
+
 void JsonValue::expect_keys(std::initializer_list<std::string_view> known) const {
+  expect_keys(std::span<const std::string_view>(known.begin(), known.size()));
+}
+
+void JsonValue::expect_keys(std::span<const std::string_view> known) const {
   if (!value_->is_object()) throw error("is " + kind(), "an object {…} of " + joined(known) + " is needed");
   for (const auto& [key, value] : value_->items()) {
     if (std::find(known.begin(), known.end(), key) == known.end())
@@ -80,14 +90,14 @@ void JsonValue::expect_keys(std::initializer_list<std::string_view> known) const
 
 JsonValue JsonValue::operator[](std::string_view key) const {
   std::optional<JsonValue> found = find(key);
-  if (!found) throw error("'" + std::string(key) + "' is missing", "give it; see docs/simulate.md");
+  if (!found) throw error("'" + std::string(key) + "' is missing", "give it; see " + std::string(guide_));
   return *std::move(found);
 }
 
 std::optional<JsonValue> JsonValue::find(std::string_view key) const {
   const auto found = value_->find(key);
   if (found == value_->end()) return std::nullopt;
-  return JsonValue(*found, file_, (path_.empty() ? "" : path_ + ".") + std::string(key));
+  return at(*found, (path_.empty() ? "" : path_ + ".") + std::string(key));
 }
 
 std::vector<JsonValue> JsonValue::items(std::size_t least, std::size_t most) const {
@@ -97,14 +107,17 @@ std::vector<JsonValue> JsonValue::items(std::size_t least, std::size_t most) con
     throw error(fmt::format("has {} entries", value_->size()), "give " + wanted);
   }
   std::vector<JsonValue> result;
-  for (const auto& item : *value_)
-    result.push_back(JsonValue(item, file_, fmt::format("{}[{}]", path_, result.size())));
+  for (const auto& item : *value_) result.push_back(at(item, fmt::format("{}[{}]", path_, result.size())));
   return result;
 }
 
-std::string JsonValue::text() const {
+std::string JsonValue::any_text() const {
   if (!value_->is_string()) throw error("is " + kind(), "a text in quotes is needed");
-  auto result = value_->get<std::string>();
+  return value_->get<std::string>();
+}
+
+std::string JsonValue::text() const {
+  std::string result = any_text();
   if (result.empty()) throw error("is an empty text", "give one");
   return result;
 }

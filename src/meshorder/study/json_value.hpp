@@ -13,6 +13,7 @@
 #include <initializer_list>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,9 +21,13 @@
 
 namespace meshorder {
 
+/// Where errors about scenarios point.
+inline constexpr std::string_view kScenarioGuide = "docs/simulate.md";
+
 /// The JSON text of a file. Throws Error with the line of what is no JSON, of a key that an object has twice
-/// and of a number that no double holds.
-nlohmann::json parse_json(std::string_view text, const std::string& file);
+/// and of a number that no double holds. `guide` is the documentation that errors point at.
+nlohmann::json parse_json(std::string_view text, const std::string& file,
+                          std::string_view guide = kScenarioGuide);
 
 /// Numbers that are allowed; the ends are, too, unless they are `open`.
 struct NumberRange {
@@ -33,10 +38,11 @@ struct NumberRange {
 };
 
 /// A value in a JSON file that knows its place there: every Error names the file and the path, as in
-/// `FILE: forces[0].newtons: what; remedy`. The value must outlive it.
+/// `FILE: forces[0].newtons: what; remedy`. The value, and the text of `guide`, must outlive it.
 class JsonValue {
  public:
-  JsonValue(const nlohmann::json& value, std::string file) : value_(&value), file_(std::move(file)) {}
+  JsonValue(const nlohmann::json& value, std::string file, std::string_view guide = kScenarioGuide)
+      : value_(&value), file_(std::move(file)), guide_(guide) {}
 
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
   /// "forces[0].newtons"; "the file" for the outermost value.
@@ -48,6 +54,7 @@ class JsonValue {
   // ---- objects
   /// Throws unless it is an object of no other keys than these.
   void expect_keys(std::initializer_list<std::string_view> known) const;
+  void expect_keys(std::span<const std::string_view> known) const;
   [[nodiscard]] bool has(std::string_view key) const { return value_->contains(key); }
   /// A value that must be there.
   [[nodiscard]] JsonValue operator[](std::string_view key) const;
@@ -60,10 +67,13 @@ class JsonValue {
       std::size_t least = 0, std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
   // ---- plain values
+  [[nodiscard]] bool is_null() const noexcept { return value_->is_null(); }
   [[nodiscard]] bool is_text() const noexcept { return value_->is_string(); }
   [[nodiscard]] bool is_whole() const noexcept { return value_->is_number_integer(); }
   /// A text that is not empty.
   [[nodiscard]] std::string text() const;
+  /// A text that may be empty.
+  [[nodiscard]] std::string any_text() const;
   [[nodiscard]] double number(const NumberRange& range = {}) const;
   [[nodiscard]] std::int64_t whole(std::int64_t least, std::int64_t most) const;
   /// true or false.
@@ -83,12 +93,13 @@ class JsonValue {
   }
 
  private:
-  JsonValue(const nlohmann::json& value, std::string file, std::string path)
-      : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
+  /// What stands at `path` in this one's file.
+  [[nodiscard]] JsonValue at(const nlohmann::json& value, std::string path) const;
   [[nodiscard]] std::string kind() const;
 
   const nlohmann::json* value_;
   std::string file_;
+  std::string_view guide_;
   std::string path_;
 };
 

@@ -20,6 +20,8 @@ struct StudyOrdering {
   std::string title;     ///< as the paper's tables head it
   std::string vertices;  ///< methods, see `meshorder methods`
   std::string elements;
+
+  bool operator==(const StudyOrdering&) const = default;
 };
 
 /// What a study was measured on, and with.
@@ -35,6 +37,8 @@ struct MachineRecord {
   std::string compiler;           ///< "GNU 12.2.0"
   std::string flags;              ///< its options
   std::string simd;               ///< what the kernels chose at run time: "AVX3"
+
+  bool operator==(const MachineRecord&) const = default;
 };
 
 /// One kernel on a mesh in one order.
@@ -45,6 +49,8 @@ struct KernelRecord {
   /// By cache hierarchy, as MeshRecord::hierarchies lists them, and level: simulated, when the run is
   /// repeated.
   std::vector<std::vector<Offset>> misses;
+
+  bool operator==(const KernelRecord&) const = default;
 };
 
 /// A mesh in one of a study's orders.
@@ -57,11 +63,15 @@ struct OrderOfMesh {
   std::vector<Offset>
       span_histogram;  ///< entry k: edges of spans from k·w to (k + 1)·w − 1, w = MeshRecord::span_bin
   std::array<KernelRecord, kKernels.size()> kernels;
+
+  bool operator==(const OrderOfMesh&) const = default;
 };
 
 struct NamedCaches {
   std::string name;  ///< "this machine", "the paper's Xeon E5-1620 v4"
   Caches caches;
+
+  bool operator==(const NamedCaches&) const = default;
 };
 
 /// What is known of a mesh in the study's orders without simulating anything.
@@ -75,6 +85,8 @@ struct MeshRecord {
   std::vector<NamedCaches> hierarchies;
   std::vector<OrderOfMesh> orders;  ///< as StudyResults::orderings; of those that were computed
   std::string verdict;              ///< what reordering it is worth, in a sentence; may be empty
+
+  bool operator==(const MeshRecord&) const = default;
 };
 
 /// One run of a scenario in one order. Set-up is not counted in `step_seconds`.
@@ -88,6 +100,8 @@ struct RunRecord {
   double setup_seconds = 0;
   Offset bytes = 0;  ///< memory that the body held
   std::vector<std::string> warnings;
+
+  bool operator==(const RunRecord&) const = default;
 };
 
 /// Seconds of a scenario's steps in one order: of the sums of its runs.
@@ -95,6 +109,8 @@ struct TimeSummary {
   double mean = 0;
   double deviation = 0;    ///< standard deviation of the runs' sums (n − 1); 0 for one run
   double undisturbed = 0;  ///< every step at its fastest of the runs, added up
+
+  bool operator==(const TimeSummary&) const = default;
 };
 
 /// An order compared with the reference, from turns that were measured side by side.
@@ -105,12 +121,16 @@ struct Speedup {
   bool beyond_noise = false;             ///< the interval does not hold 0
   double undisturbed_percent = 0;        ///< of the undisturbed times
   std::optional<Index> break_even_step;  ///< the first at whose end the order's own cost is paid; none: never
+
+  bool operator==(const Speedup&) const = default;
 };
 
 /// How far apart the same vertices are in this order and in the study's first, at the times of the frames.
 struct MotionDifference {
   std::vector<double> by_frame;  ///< largest distance, as a share of the body's longest side
   double largest = 0;
+
+  bool operator==(const MotionDifference&) const = default;
 };
 
 struct OrderOfScenario {
@@ -119,6 +139,8 @@ struct OrderOfScenario {
   TimeSummary time;
   Speedup speedup;  ///< all 0 for the reference
   MotionDifference motion;
+
+  bool operator==(const OrderOfScenario&) const = default;
 };
 
 struct ScenarioRecord {
@@ -135,6 +157,8 @@ struct ScenarioRecord {
   std::vector<int> processors;     ///< that the threads were bound to; empty: not bound
   std::vector<Index> frame_steps;  ///< steps after which a frame was kept; the first is 0
   std::vector<OrderOfScenario> orders;
+
+  bool operator==(const ScenarioRecord&) const = default;
 };
 
 /// All that a study found; results.json is this (docs/results.schema.json).
@@ -148,6 +172,8 @@ struct StudyResults {
   MachineRecord machine;
   std::vector<MeshRecord> meshes;
   std::vector<ScenarioRecord> scenarios;
+
+  bool operator==(const StudyResults&) const = default;
 };
 
 }  // namespace meshorder

@@ -40,6 +40,8 @@ struct StepReport {
     double total = 0.0;
     double assembly = 0.0, solve = 0.0;                 // implicit
     double local = 0.0, global = 0.0, collision = 0.0;  // ADMM
+
+    bool operator==(const Seconds&) const = default;
   } seconds;
 };
 
