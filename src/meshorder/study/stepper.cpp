@@ -79,7 +79,7 @@ class Stepping {
     for (Index i = 0; i < turn.steps; ++i) {
       const Stopwatch stopwatch;
       const StepReport report = simulation_.body->step();
-      times.step_seconds.push_back(1e-7 * std::round(1e7 * stopwatch.seconds()));
+      times.step_seconds.push_back(std::round(1e7 * stopwatch.seconds()) / 1e7);
       ++step_;
       add(report, times);
       for (const std::string& warning : report.warnings) {

@@ -31,7 +31,7 @@ struct StepperReady {
   double setup_seconds = 0;
   double step_seconds = 0;       ///< of the first step, which is then taken back
   Offset bytes = 0;              ///< that the body holds
-  std::string fingerprint;       ///< of mesh and parameters, whatever the order
+  std::string fingerprint;       ///< of the mesh, and of the parameters in this order
   bool fixed_addresses = false;  ///< the system puts arrays where it puts them in every such process
 };
 

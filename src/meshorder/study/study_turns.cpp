@@ -89,7 +89,7 @@ std::optional<std::vector<RunRecord>> run_round(const Round& round, const std::s
     for (const std::size_t order : group) {
       steppers[order] = std::make_unique<Stepper>(round.program, round.threads, round.tasks[order]);
       const StepperReady& ready = steppers[order]->ready();
-      if (!fingerprint.empty() && ready.fingerprint != fingerprint)
+      if (order == 0 && ready.fingerprint != fingerprint)
         throw Error(round.tasks[order].scenario, "is not what the study in this folder began with",
                     "give a new folder, or the scenario and mesh as they were");
       runs[order].began = timestamp_now();

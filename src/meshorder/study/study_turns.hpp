@@ -36,8 +36,7 @@ struct Round {
 };
 
 /// Runs it; `after_turn` is told the share of the steps that are done and says whether to go on. None when it
-/// does not. Throws Error when a process does, or when the body is not the one of `fingerprint`, unless that
-/// is empty.
+/// does not. Throws Error when a process does, or when the first order's body is not that of `fingerprint`.
 std::optional<std::vector<RunRecord>> run_round(const Round& round, const std::string& fingerprint,
                                                 const std::function<bool(double share)>& after_turn);
 
