@@ -1,12 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/stopwatch.hpp>
 #include <meshorder/study/kernel_timing.hpp>
-
-#include <unistd.h>
+#include <meshorder/study/memory.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <utility>
 
 namespace meshorder {
@@ -16,15 +14,6 @@ namespace {
 using Samples = std::array<std::vector<double>, kKernels.size()>;
 
 std::vector<double>& of(Samples& samples, Kernel kernel) { return samples[static_cast<std::size_t>(kernel)]; }
-
-/// The physical memory, or what the control group leaves of it.
-std::size_t memory_of_this_machine() {
-  const auto physical =
-      static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  std::size_t limit = 0;
-  std::ifstream control_group("/sys/fs/cgroup/memory.max");
-  return control_group >> limit ? std::min(limit, physical) : physical;
-}
 
 double seconds_per_run(KernelBench& bench, Kernel kernel, int repeats) {
   const Stopwatch stopwatch;
