@@ -250,10 +250,24 @@ class Study {
       results_.scenarios.push_back(record_of(subject));
       record = &results_.scenarios.back();
       compare_motions(subject, *record);
+      sort_scenarios();
+      record = find(subject.scenario.name);
     }
     for (std::size_t i = 0; i < runs.size(); ++i) record->orders[i].runs.push_back(runs[i]);
     summarise(results_);
     save();
+  }
+
+  /// In the paper's order, whichever was run first; others behind.
+  void sort_scenarios() {
+    const auto place = [](const ScenarioRecord& record) {
+      const auto known = built_in_scenarios();
+      return std::find_if(known.begin(), known.end(),
+                          [&](const BuiltInScenario& b) { return b.name == record.name; }) -
+             known.begin();
+    };
+    std::stable_sort(results_.scenarios.begin(), results_.scenarios.end(),
+                     [&](const ScenarioRecord& a, const ScenarioRecord& b) { return place(a) < place(b); });
   }
 
   [[nodiscard]] ScenarioRecord record_of(const Subject& subject) const {
