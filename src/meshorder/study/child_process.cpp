@@ -44,6 +44,7 @@ ChildProcess::ChildProcess(std::filesystem::path program, const std::vector<std:
   std::vector<std::string> copies{program_.string()};
   copies.insert(copies.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
+  argv.reserve(copies.size() + 1);
   for (std::string& argument : copies) argv.push_back(argument.data());
   argv.push_back(nullptr);
   const pid_t parent = ::getpid();

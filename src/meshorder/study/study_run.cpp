@@ -58,7 +58,7 @@ class Study {
   bool run() {
     for (const std::string& argument : plan_.scenarios) choose(argument);
     for (std::size_t i = 0; i < subjects_.size(); ++i) {
-      const double n = static_cast<double>(subjects_.size());
+      const auto n = static_cast<double>(subjects_.size());
       prepare(subjects_[i], kMeshShare * static_cast<double>(i) / n,
               kMeshShare * static_cast<double>(i + 1) / n);
       if (observer_.stop()) return false;

@@ -56,6 +56,7 @@ std::vector<std::vector<std::size_t>> groups_of(const Round& round) {
   std::rotate(all.begin(), all.begin() + round.number % index_size(all), all.end());
   if (round.plan.interleaved) return {all};
   std::vector<std::vector<std::size_t>> groups;
+  groups.reserve(all.size());
   for (const std::size_t order : all) groups.push_back({order});
   return groups;
 }

@@ -1,0 +1,68 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
+#include <meshorder/study/child_process.hpp>
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <string>
+
+namespace meshorder {
+namespace {
+
+TEST(ChildProcess, AnswersLineByLine) {
+  ChildProcess cat("/bin/cat", {});
+  cat.send("first");
+  EXPECT_EQ(cat.receive(), "first");
+  const std::string long_line(1 << 18, 'x');
+  cat.send(long_line.substr(0, 1 << 15));
+  cat.send("");
+  EXPECT_EQ(cat.receive().size(), std::size_t{1} << 15);
+  EXPECT_EQ(cat.receive(), "");
+}
+
+TEST(ChildProcess, TellsHowItEnded) {
+  const auto complaint = [](const std::string& script) {
+    ChildProcess shell("/bin/sh", {"-c", script});
+    try {
+      return shell.receive();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(complaint("exit 3"), "/bin/sh: a process of it ended with status 3; is there enough memory?");
+  EXPECT_EQ(complaint("kill -9 $$"),
+            "/bin/sh: a process of it was ended by a signal: Killed; is there enough memory?");
+  EXPECT_EQ(complaint("echo done; exit 1"), "done");
+}
+
+TEST(ChildProcess, RefusesAProgramThatIsNotThere) {
+  ChildProcess none("/no/such/program", {});
+  EXPECT_THROW(none.receive(), Error);
+}
+
+TEST(ChildProcess, IsNotReachedByCtrlC) {
+  ChildProcess shell("/bin/sh", {"-c", "kill -INT $$; echo alive"});
+  EXPECT_EQ(shell.receive(), "alive");
+}
+
+TEST(ChildProcess, EndsWithItsOwner) {
+  std::string id;
+  {
+    ChildProcess shell("/bin/sh", {"-c", "echo $$; exec sleep 1000"});
+    id = shell.receive();
+  }
+  EXPECT_NE(::kill(std::stoi(id), 0), 0);
+}
+
+TEST(ChildProcess, HasItsMemoryAtTheSameAddressesWhereAskedFor) {
+  const auto stack_of = [](bool fixed) {
+    ChildProcess shell("/bin/sh", {"-c", "grep stack /proc/self/maps"}, fixed);
+    return shell.receive();
+  };
+  if (stack_of(true) != stack_of(true)) GTEST_SKIP() << "the system does not allow it";
+  EXPECT_NE(stack_of(false), stack_of(false));
+}
+
+}  // namespace
+}  // namespace meshorder
