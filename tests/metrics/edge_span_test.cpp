@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
 #include <meshorder/metrics/edge_span.hpp>
 #include <support/sample_graphs.hpp>
 #include <support/sample_meshes.hpp>
@@ -115,6 +116,28 @@ TEST(SpanHistogram, PutsPowersOfTwoIntoTheirOwnBin) {
   const std::vector<Edge> edges{{0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 7}, {0, 8}};
   EXPECT_EQ(span_histogram_log2(graph_from_edges(9, edges), Permutation::identity(9)),
             (std::vector<Offset>{1, 2, 2, 1}));
+}
+
+TEST(SpanHistogram, HasBinsOfTheWidthAskedFor) {
+  const CsrGraph graph = test::random_connected(150, 400, 6);
+  const Permutation order = test::shuffled(150, 7);
+  const std::vector<Index> spans = all_spans(graph, order);
+  for (const Index width : {1, 50, 1000}) {
+    const std::vector<Offset> bins = span_histogram(graph, order, width);
+    EXPECT_EQ(std::accumulate(bins.begin(), bins.end(), Offset{0}), graph.edge_count());
+    EXPECT_GT(bins.back(), 0);
+    for (Index k = 0; k < index_size(bins); ++k) {
+      const auto in_bin = std::count_if(spans.begin(), spans.end(), [&](Index span) {
+        return span >= k * width && span <= (k + 1) * width - 1;
+      });
+      EXPECT_EQ(bins[k], in_bin) << "bin " << k;
+    }
+  }
+}
+
+TEST(SpanHistogram, NeedsBinsOfSomeWidth) {
+  EXPECT_THROW(span_histogram(test::path(4), Permutation::identity(4), 0), InvalidArgument);
+  EXPECT_TRUE(span_histogram(CsrGraph{}, Permutation::identity(0), 50).empty());
 }
 
 }  // namespace

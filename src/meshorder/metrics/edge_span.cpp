@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/base/error.hpp>
 #include <meshorder/metrics/edge_span.hpp>
 
 #include <algorithm>
@@ -18,6 +19,18 @@ void for_each_span(const CsrGraph& graph, const Permutation& order, Visit visit)
       if (u < v) visit(std::abs(order.old_to_new()[u] - order.old_to_new()[v]));
     }
   }
+}
+
+/// How many edges fall into each bin, to the last one that has any.
+template <class BinOf>
+std::vector<Offset> histogram(const CsrGraph& graph, const Permutation& order, BinOf bin_of) {
+  std::vector<Offset> bins;
+  for_each_span(graph, order, [&](Index span) {
+    const auto bin = static_cast<std::size_t>(bin_of(span));
+    if (bins.size() <= bin) bins.resize(bin + 1, 0);
+    ++bins[bin];
+  });
+  return bins;
 }
 
 }  // namespace
@@ -54,13 +67,13 @@ Offset profile(const CsrGraph& graph, const Permutation& order) {
 }
 
 std::vector<Offset> span_histogram_log2(const CsrGraph& graph, const Permutation& order) {
-  std::vector<Offset> bins;
-  for_each_span(graph, order, [&](Index span) {
-    const auto bin = static_cast<std::size_t>(std::bit_width(static_cast<std::uint32_t>(span)) - 1);
-    if (bins.size() <= bin) bins.resize(bin + 1, 0);
-    ++bins[bin];
-  });
-  return bins;
+  return histogram(graph, order,
+                   [](Index span) { return std::bit_width(static_cast<std::uint32_t>(span)) - 1; });
+}
+
+std::vector<Offset> span_histogram(const CsrGraph& graph, const Permutation& order, Index width) {
+  if (width < 1) throw InvalidArgument("span histogram: bins without width");
+  return histogram(graph, order, [width](Index span) { return span / width; });
 }
 
 }  // namespace meshorder

@@ -28,4 +28,8 @@ Offset profile(const CsrGraph& graph, const Permutation& order);
 /// The number of edges whose span is in [2^k, 2^(k+1)), for k from 0 to that of the largest. O(n + edges).
 std::vector<Offset> span_histogram_log2(const CsrGraph& graph, const Permutation& order);
 
+/// The number of edges whose span is in [k·width, (k + 1)·width), for k from 0 to that of the largest (the
+/// paper's Figure 10 has a width of 50). Throws InvalidArgument unless `width` ≥ 1. O(n + edges).
+std::vector<Offset> span_histogram(const CsrGraph& graph, const Permutation& order, Index width);
+
 }  // namespace meshorder
