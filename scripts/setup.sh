@@ -36,6 +36,7 @@ packages_to_test=(
   python3-numpy        "independent answers for the end-to-end tests"
   python3-scipy        "independent answers for the end-to-end tests"
   python3-meshio       "an independent reader of mesh files"
+  python3-jsonschema   "checks JSON against its schemas"
   clang-format         "checks the layout of the sources"
   clang-tidy           "looks for mistakes in the sources"
 )

@@ -14,6 +14,7 @@ import pytest
 
 import conftest
 import meshes
+import schemas
 
 SCENARIOS = conftest.ROOT / "scenarios"
 SMALL = {
@@ -435,48 +436,12 @@ def test_mesh_of_a_scenario_file_is_found_from_its_folder(command, tmp_path):
 
 # ---- the schema
 
-def faults(value, schema, root):
-    """What a JSON Schema refuses of a value: the keywords that scenario.schema.json uses."""
-    if "$ref" in schema:
-        return faults(value, root["$defs"][schema["$ref"].removeprefix("#/$defs/")], root)
-    found = []
-    if "anyOf" in schema and all(faults(value, option, root) for option in schema["anyOf"]):
-        found.append(f"{value}: none of anyOf")
-    if "type" not in schema and "enum" not in schema and "required" not in schema:
-        return found
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    kinds = {"boolean": isinstance(value, bool), "object": isinstance(value, dict), "array": isinstance(value, list), "string": isinstance(value, str),
-             "number": number, "integer": number and value == int(value)}
-    if "type" in schema and not kinds[schema["type"]]:
-        return [f"{value} is no {schema['type']}"]
-    if "enum" in schema and value not in schema["enum"]:
-        found.append(f"{value} is none of {schema['enum']}")
-    if isinstance(value, dict):
-        properties = schema.get("properties", {})
-        found += [f"{key} is missing" for key in schema.get("required", []) if key not in value]
-        found += ["too many"] * (len(value) > schema.get("maxProperties", 1e9))
-        for key, member in value.items() if "properties" in schema else ():
-            found += faults(member, properties[key], root) if key in properties else [f"{key} is unknown"]
-    if isinstance(value, list):
-        found += [f"{value}: too few or many"] * (not schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", 1e9))
-        for item in value:
-            found += faults(item, schema.get("items", {}), root)
-    if isinstance(value, str):
-        found += [f"'{value}'"] * (len(value) < schema.get("minLength", 0) or not re.search(schema.get("pattern", ""), value))
-    if number:
-        inside = schema.get("minimum", value) <= value <= schema.get("maximum", value)
-        above = "exclusiveMinimum" not in schema or value > schema["exclusiveMinimum"]
-        below = "exclusiveMaximum" not in schema or value < schema["exclusiveMaximum"]
-        found += [f"{value} is out of range"] * (not (inside and above and below))
-    return found
-
-
 def test_schema_takes_what_the_command_takes(command, tmp_path):
-    schema = json.loads((SCENARIOS / "scenario.schema.json").read_text())
+    schema = schemas.read_schema(SCENARIOS / "scenario.schema.json")
     for path in SCENARIOS.glob("*.json"):
         if path.name != "scenario.schema.json":
-            assert faults(json.loads(path.read_text()), schema, schema) == []
-    assert faults(SMALL, schema, schema) == [] and faults(FALLING, schema, schema) == []
+            assert schemas.faults(json.loads(path.read_text()), schema) == []
+    assert schemas.faults(SMALL, schema) == [] and schemas.faults(FALLING, schema) == []
     wrong = [{"steps": 0}, {"steps": 1.5}, {"steps": None}, {"speed": 1}, {"name": ""}, {"name": "a/b"}, {"scale": {}},
              {"scale": {"longest_side": 0}}, {"order": {"cells": "rcm"}}, {"material": {**SMALL["material"], "poisson": 0.5}},
              {"material": {**SMALL["material"], "model": "rubber"}}, {"material": {"model": "stvk"}},
@@ -487,7 +452,7 @@ def test_schema_takes_what_the_command_takes(command, tmp_path):
              {"forces": [{"on": "all"}]}, {"prescribed": [{"on": "all", "velocity": 1}]}, {"notes": [""]}]
     for change in wrong:
         scenario = {key: value for key, value in {**SMALL, **change}.items() if value is not None}
-        assert faults(scenario, schema, schema) != [], change
+        assert schemas.faults(scenario, schema) != [], change
         write_scenario(tmp_path, **change)
         command.fails("simulate", "small.json")
     sphere = {"center": [0, 0, 0], "radius": 1}
@@ -498,6 +463,6 @@ def test_schema_takes_what_the_command_takes(command, tmp_path):
                    {"contact": {"solver": "lemke"}}, {"integrator": {"method": "admm", "time_step": 1, "iterations": 0}},
                    {"integrator": {"method": "admm", "time_step": 1, "duals": "lost"}}, {"material": {"model": "springs", "density": 1}}]:
         scenario = {**FALLING, **change}
-        assert faults(scenario, schema, schema) != [], change
+        assert schemas.faults(scenario, schema) != [], change
         write_scenario(tmp_path, FALLING, **change)
         command.fails("simulate", "small.json")

@@ -217,5 +217,35 @@ TEST(ResultsJson, RefusesToWriteWhatIsNoNumber) {
   EXPECT_THROW(to_json(results), InvalidArgument);
 }
 
+/// Follows a reference within a schema.
+const Json& resolved(const Json& schema, const Json& root) {
+  if (!schema.contains("$ref")) return schema;
+  return root[Json::json_pointer(schema["$ref"].get<std::string>().substr(1))];
+}
+
+std::vector<std::string> keys_of(const Json& object) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.push_back(key);
+  return keys;
+}
+
+void expect_described(const Json& value, const Json& reference, const Json& root, const std::string& path) {
+  const Json& schema = resolved(reference, root);
+  if (value.is_object()) {
+    EXPECT_EQ(keys_of(schema["properties"]), keys_of(value)) << path;
+    for (const auto& [key, member] : value.items())
+      expect_described(member, schema["properties"][key], root, path + "." + key);
+  } else if (value.is_array()) {
+    for (const Json& item : value) expect_described(item, schema["items"], root, path + "[]");
+  } else {
+    EXPECT_TRUE(schema.contains("type") || schema.contains("const")) << path;
+  }
+}
+
+TEST(ResultsJson, HasTheKeysOfItsSchema) {
+  const Json schema = Json::parse(test::content_of(MESHORDER_DOCS "/results.schema.json"));
+  expect_described(to_json(sample()), schema, schema, "results");
+}
+
 }  // namespace
 }  // namespace meshorder

@@ -105,8 +105,9 @@ class Reader {
   static void read(const JsonValue& value, std::vector<Value>& values, bool free) {
     for (const JsonValue& item : value.items()) read(item, values.emplace_back(), free);
   }
-  static void read(const JsonValue& value, std::optional<Index>& number, bool free) {
-    if (!value.is_null()) read(value, number.emplace(), free);
+  /// Of a step, which are counted from 1.
+  static void read(const JsonValue& value, std::optional<Index>& step, bool /*free*/) {
+    if (!value.is_null()) step = static_cast<Index>(value.whole(1, kMaxIndex));
   }
   static void read(const JsonValue& value, std::array<KernelRecord, kKernels.size()>& kernels, bool free) {
     std::vector<std::string_view> names;
