@@ -25,14 +25,23 @@ struct Table {
   std::vector<std::vector<TableCell>> rows;  ///< the first cell heads the row
 };
 
-/// The paper's tables with its figures beside ours, and those that go with them:
-/// table-1 edge spans, table-2 seconds, table-3 seconds saved, table-4 speedups in per cent with intervals
-/// and break-even steps, then simulated misses, phases of a step, predicted against measured kernels, motions
-/// compared, the machine. Those for which the results hold nothing are left out.
+/// The paper's tables with its figures beside ours, and those that go with them. Their ids:
+/// - table-1: edge spans, by mesh and order
+/// - table-2: seconds, by scenario and order, as the following
+/// - table-3: seconds saved over the reference
+/// - table-4: speedups in per cent with their intervals
+/// - break-even: what an order costs and the step at which that is paid
+/// - phases: seconds of the parts of a step
+/// - motions: how far the motion in an order is from that in the first
+/// - misses-1, misses-2, …: simulated misses, one table for each cache hierarchy
+/// - kernels: predicted and measured speedups of the kernels, by mesh, kernel and order
+/// - machine, protocol: what it was measured on, and how
+/// In this order; those for which the results hold nothing are left out. A cell's value is the number in the
+/// results, or what follows from numbers there; its text is rounded.
 std::vector<Table> tables_of(const StudyResults& results);
 
-/// What the results say, in a few sentences for the top of the page and of tables.md: where the order pays and
-/// how much, where the noise swallows it, where it loses, how that compares with the paper. Made from the
+/// What the results say, in a few sentences for the top of the page and of tables.md: where the order pays
+/// and how much, where the noise swallows it, where it loses, how that compares with the paper. Made from the
 /// numbers alone.
 std::vector<std::string> findings_of(const StudyResults& results);
 
