@@ -2,6 +2,7 @@
 #pragma once
 
 #include "command.hpp"
+#include <meshorder/base/quantities.hpp>
 #include <meshorder/io/format.hpp>
 
 #include <fmt/format.h>
@@ -47,11 +48,5 @@ class Console {
   bool json_;
   bool quiet_;
 };
-
-/// 46316 as "46,316".
-std::string with_commas(long long number);
-
-/// 0.0123 s as "12.3 ms", 75 s as "1 min 15 s".
-std::string duration(double seconds);
 
 }  // namespace meshorder::command
