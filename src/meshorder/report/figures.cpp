@@ -1,9 +1,21 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/report/figure_groups.hpp>
 #include <meshorder/report/figures.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
 
 namespace meshorder {
 
-bool can_draw_figures() { return false; }
-std::vector<Figure> figures_of(const StudyResults& /*results*/) { return {}; }
+std::vector<Figure> figures_of(const StudyResults& results) {
+  std::vector<Figure> figures;
+  for (const auto& group :
+       {speedup_figures, span_figures, cache_figures, phase_figures, prediction_figures}) {
+    std::ranges::move(group(results), std::back_inserter(figures));
+  }
+  return figures;
+}
 
 }  // namespace meshorder

@@ -1,0 +1,78 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/report/figure_groups.hpp>
+#include <meshorder/report/figure_style.hpp>
+#include <meshorder/report/gnuplot.hpp>
+#include <meshorder/report/lookup.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// Points of the log–log histogram, "span edges". Single bins at first; from the tenth on, where bins crowd
+/// on the logarithmic axis, the mean of the bins of each tenth of a decade. Bins without edges have no
+/// logarithm.
+std::vector<std::string> histogram_points(const std::vector<Offset>& histogram, Index width) {
+  std::vector<std::string> points;
+  for (std::size_t begin = 0; begin < histogram.size();) {
+    const std::size_t end = std::min(
+        histogram.size(), std::max(begin + 1, static_cast<std::size_t>(static_cast<double>(begin) * 1.26)));
+    const auto bins = static_cast<double>(end - begin);
+    const Offset edges = std::accumulate(histogram.begin() + static_cast<std::ptrdiff_t>(begin),
+                                         histogram.begin() + static_cast<std::ptrdiff_t>(end), Offset{0});
+    if (edges > 0) {
+      const double middle = (static_cast<double>(begin + end) * width - 1) / 2;
+      points.push_back(fmt::format("{} {}", std::max(middle, 0.5), static_cast<double>(edges) / bins));
+    }
+    begin = end;
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<Figure> span_figures(const StudyResults& results) {
+  std::vector<Figure> figures;
+  for (const MeshRecord& mesh : results.meshes) {
+    std::string data;
+    std::vector<std::string> plots;
+    for (std::size_t o = 0; o < results.orderings.size(); ++o) {
+      const StudyOrdering& ordering = results.orderings[o];
+      const OrderOfMesh* const order = find_order(mesh, ordering.name);
+      if (order == nullptr) continue;
+      const auto points = histogram_points(order->span_histogram, mesh.span_bin);
+      if (points.empty()) continue;
+      const OrderStyle style = style_of(results, ordering.name);
+      data += data_block(fmt::format("order{}", o), points);
+      plots.push_back(
+          fmt::format("$order{} using 1:2 with linespoints linecolor '{}' linewidth 1.3 dashtype {} "
+                      "pointtype {} pointsize 0.55 title {}",
+                      o, style.colour, style.dashes, style.filled, gnuplot_quoted(ordering.title)));
+    }
+    if (plots.empty()) continue;
+    Figure figure{
+        "spans-" + slug(mesh.name),
+        "spans",
+        "Edge spans of " + mesh.name,
+        fmt::format("How many edges have which span, in bins of {} as in the paper's Figure 10, both "
+                    "axes logarithmic; from the tenth bin on, means of neighbouring bins. The "
+                    "steeper a curve falls, the nearer in memory are neighbours in the mesh.",
+                    mesh.span_bin),
+        {}};
+    figure.svg = draw({figure.name, figure.title, figure.caption, 520, 360,
+                       plain_axes() + data +
+                           fmt::format("set logscale xy\nset xlabel 'Edge span, vertices'\n"
+                                       "set ylabel {}\nset format xy '%.0f'\nplot {}",
+                                       gnuplot_quoted(fmt::format("Edges in a bin of {}", mesh.span_bin)),
+                                       fmt::join(plots, ", \\\n  "))});
+    figures.push_back(std::move(figure));
+  }
+  return figures;
+}
+
+}  // namespace meshorder
