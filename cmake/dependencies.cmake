@@ -7,6 +7,7 @@ find_package(nlohmann_json REQUIRED)          # --json
 find_package(hwy REQUIRED)                    # SIMD chosen at run time
 find_package(ZLIB REQUIRED)                   # compressed arrays of .vtu
 find_package(LibLZMA REQUIRED)
+find_package(meshoptimizer REQUIRED)          # fewer triangles for what is only looked at
 find_path(CLI11_INCLUDE_DIR CLI/CLI.hpp REQUIRED)
 
 # METIS and LZ4 ship without a CMake file

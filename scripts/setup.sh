@@ -13,6 +13,8 @@ packages_to_run=(
   libeigen3-dev        "dense linear algebra"
   libfmt-dev           "text"
   libhwy-dev           "SIMD chosen at run time"
+  libjs-three          "meshes in 3-D on the report page"
+  libmeshoptimizer-dev "simplifies the surfaces that it shows"
   libmetis-dev         "orders by nested dissection and by parts"
   libsuitesparse-dev   "sparse Cholesky factors of the ADMM simulator"
   libspdlog-dev        "log"
