@@ -6,6 +6,7 @@
 // VTK's own writer (9.1) is not used: it writes names with & or < as they are, which is no XML, crashes over
 // pedigree ids that are texts, and does not notice that a disk is full when it closes a file.
 #include <meshorder/io/all_formats.hpp>
+#include <meshorder/io/base64.hpp>
 #include <meshorder/io/output_file.hpp>
 #include <meshorder/io/vtk/vtk_cells.hpp>
 #include <meshorder/io/vtk/vtk_numbers.hpp>
@@ -32,46 +33,6 @@ constexpr std::size_t kBlock = std::size_t{1} << 20;  // bytes that are swapped 
 
 using Mode = VtuEncoding::Mode;
 using Compressor = VtuEncoding::Compressor;
-
-/// Bytes as base64, three by three, as they come.
-class Base64 {
- public:
-  explicit Base64(OutputFile& out) : out_(out) {}
-
-  void put(std::span<const char> bytes) {
-    std::string text;
-    text.reserve(bytes.size() / 3 * 4 + 4);
-    for (const char byte : bytes) {
-      packed_ = (packed_ << 8U) | static_cast<unsigned char>(byte);
-      if (++held_ == 3) flush(text);
-    }
-    out_.write(text);
-  }
-
-  void finish() {
-    if (held_ == 0) return;
-    const unsigned missing = 3 - held_;
-    packed_ <<= 8U * missing;
-    std::string text;
-    flush(text);
-    text.replace(4 - missing, missing, missing, '=');
-    out_.write(text);
-  }
-
- private:
-  void flush(std::string& text) {
-    constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (const unsigned shift : {18U, 12U, 6U, 0U}) text += kAlphabet[(packed_ >> shift) & 63U];
-    packed_ = 0;
-    held_ = 0;
-  }
-
-  OutputFile& out_;
-  std::uint32_t packed_ = 0;
-  unsigned held_ = 0;
-};
-
-std::uint64_t base64_length(std::uint64_t bytes) { return (bytes + 2) / 3 * 4; }
 
 using Numbers =
     std::variant<std::span<const double>, std::span<const float>, std::span<const std::int8_t>,
@@ -332,9 +293,9 @@ class Writer {
       produce([&](std::span<const char> bytes) { out_.write({bytes.data(), bytes.size()}); });
       return;
     }
-    Base64 base64(out_);
-    produce([&](std::span<const char> bytes) { base64.put(bytes); });
-    base64.finish();
+    Base64Encoder base64;
+    produce([&](std::span<const char> bytes) { out_.write(base64.put(bytes)); });
+    out_.write(base64.finish());
   }
 
   /// Numbers as text, six in a line.

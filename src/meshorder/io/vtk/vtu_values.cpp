@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Arrays of .vtu files: text, base64 and raw bytes, plain or in compressed blocks.
+#include <meshorder/io/base64.hpp>
 #include <meshorder/io/vtk/vtk_numbers.hpp>
 #include <meshorder/io/vtk/vtu_compressor.hpp>
 #include <meshorder/io/vtk/vtu_document.hpp>
@@ -25,13 +26,10 @@ constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::array<std::uint8_t, 256> kBase64 = [] {
   std::array<std::uint8_t, 256> values{};
   values.fill(64);
-  constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  for (std::size_t i = 0; i < kAlphabet.size(); ++i)
-    values[static_cast<unsigned char>(kAlphabet[i])] = static_cast<std::uint8_t>(i);
+  for (std::size_t i = 0; i < kBase64Alphabet.size(); ++i)
+    values[static_cast<unsigned char>(kBase64Alphabet[i])] = static_cast<std::uint8_t>(i);
   return values;
 }();
-
-std::uint64_t base64_length(std::uint64_t bytes) { return (bytes + 2) / 3 * 4; }
 
 }  // namespace
 

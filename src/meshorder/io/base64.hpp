@@ -1,0 +1,35 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace meshorder {
+
+inline constexpr std::string_view kBase64Alphabet =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+/// Characters that so many bytes take, padded.
+constexpr std::uint64_t base64_length(std::uint64_t bytes) { return (bytes + 2) / 3 * 4; }
+
+/// Bytes as base64 (RFC 4648), as they come.
+class Base64Encoder {
+ public:
+  /// The characters that are complete with these bytes.
+  [[nodiscard]] std::string put(std::span<const char> bytes);
+  /// Those of the one or two bytes left, padded.
+  [[nodiscard]] std::string finish();
+
+ private:
+  void flush(std::string& text);
+
+  std::uint32_t packed_ = 0;
+  unsigned held_ = 0;
+};
+
+/// All at once.
+std::string to_base64(std::span<const char> bytes);
+
+}  // namespace meshorder
