@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshorder {
@@ -42,11 +43,15 @@ struct Page {
   std::vector<Figure> figures;
   std::vector<PageMesh> meshes;
   std::vector<PageMotion> motions;
+  std::vector<std::string> findings;  ///< sentences for the top
 };
 
 /// One HTML file that needs nothing else: no network, no other file. Its data are quantised to 16 bits a
 /// coordinate and compressed.
 std::string to_html(const Page& page);
+
+/// The same in another frame than viewer/page.html. Throws InvalidArgument for an unknown placeholder.
+std::string fill_page(std::string_view frame, const Page& page);
 
 /// Writes it whole or not at all. Throws Error when the file cannot be written.
 void write_page(const Page& page, const std::filesystem::path& path);
