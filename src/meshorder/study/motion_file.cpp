@@ -55,11 +55,16 @@ Motion read_motion(const std::filesystem::path& path) {
   if (header.type != "<f4" || header.columns_first || shape.size() != 3 || shape[2] != 3) {
     file.fail_at_byte("is no motion", "frames × vertices × 3 numbers of type <f4 in C order are one");
   }
+  const std::int64_t frames = shape[0];
+  const std::int64_t vertices = shape[1];
   constexpr std::int64_t kBytes = 3 * sizeof(float);
-  Motion motion;
-  motion.vertices = file.checked_count(shape[1], "vertices", shape[0] > 0 ? kBytes : 0);
-  const Index frames =
-      file.checked_count(shape[0], "frames", std::max<std::int64_t>(1, kBytes * motion.vertices));
+  if (frames < 0 || vertices < 0 || vertices > kMaxIndex || (vertices == 0 && frames > 0) ||
+      (frames > 0 && vertices > file.bytes_left() / kBytes / frames)) {
+    file.fail_at_byte(fmt::format("promises {} frames of {} vertices, but {} bytes follow", frames, vertices,
+                                  file.bytes_left()),
+                      "it may be cut short");
+  }
+  Motion motion{static_cast<Index>(vertices), {}};
   motion.frames.resize(frames);
   for (auto& frame : motion.frames) {
     frame.resize(motion.vertices);

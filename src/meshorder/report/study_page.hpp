@@ -1,0 +1,31 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/io/format.hpp>
+#include <meshorder/report/page_parts.hpp>
+#include <meshorder/study/folder.hpp>
+
+#include <functional>
+#include <string_view>
+
+namespace meshorder {
+
+/// Is told what is done, and which fraction of the work is over by then.
+using ReportProgress = std::function<void(std::string_view what, double fraction)>;
+
+/// Fills a page's tables, findings and figures from its results. Without gnuplot there are no figures, which
+/// is noted.
+void fill_from_results(Page& page, Notes& notes);
+
+/// The page of a study: its results with what its folder holds of meshes, orders, motions and obstacles. What
+/// is not there is left out of the page, with a note. Throws Error, with its name, for a file that is broken
+/// or does not belong to the others.
+Page page_of(const StudyFolder& folder, const StudyResults& results, Notes& notes,
+             const ReportProgress& progress = {}, const PageDetail& detail = {});
+
+/// Makes of a study's results.json and data what stands beside them: tables.md, tables.csv, the figures and
+/// report.html, all of them whole or none. Returns what deserves a word. Throws Error for results that cannot
+/// be read, for broken data, and when something cannot be written.
+Notes write_report(const StudyFolder& folder, const ReportProgress& progress = {});
+
+}  // namespace meshorder
