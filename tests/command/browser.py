@@ -1,0 +1,111 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Debian's Chromium without a window, and what a test asks of it."""
+import base64
+import io
+import json
+import shutil
+
+import numpy
+import pytest
+
+FLAGS = ["--headless=new", "--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+         "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+         "--disable-sync", "--disable-default-apps", "--hide-scrollbars", "--force-device-scale-factor=1"]
+
+
+def open_chromium(profile):
+    """A fresh Chromium with its profile in the given folder; skips the test where there is none."""
+    if not shutil.which("chromium") or not shutil.which("chromedriver"):
+        pytest.skip("needs chromium and chromedriver")
+    webdriver = pytest.importorskip("selenium.webdriver")
+    from selenium.webdriver.chrome.service import Service
+    options = webdriver.ChromeOptions()
+    options.binary_location = shutil.which("chromium")
+    for flag in [*FLAGS, f"--user-data-dir={profile}"]:
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+
+
+class Browser:
+    """A page in Chromium."""
+
+    def __init__(self, driver):
+        self.driver = driver
+
+    def resize(self, width, height, phone=False):
+        """The page's own width and height, which a window's frame does not touch."""
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+            "width": width, "height": height, "deviceScaleFactor": 2 if phone else 1, "mobile": phone})
+
+    def dark(self, on):
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
+            "features": [{"name": "prefers-color-scheme", "value": "dark" if on else "light"}]})
+
+    def media(self, name):
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": name})
+
+    def open(self, path, tab=""):
+        """The page, from the start, when all its data are there."""
+        self.driver.get("about:blank")
+        self.driver.get(path.resolve().as_uri() + (f"#{tab}" if tab else ""))
+
+    def run(self, script, *arguments):
+        return self.driver.execute_script(script, *arguments)
+
+    def wait(self, condition, *arguments, seconds=30):
+        """Waits until a JavaScript expression is true, and returns it."""
+        done = self.driver.execute_async_script("""
+            const done = arguments[arguments.length - 1];
+            const until = performance.now() + arguments[1] * 1000;
+            const look = () => {
+              const found = Function("parameters", `return ${arguments[0]}`)(arguments[2]);
+              if (found || performance.now() > until) done(found); else setTimeout(look, 40);
+            };
+            look();""", condition, seconds, arguments)
+        assert done, f"never came true: {condition}"
+        return done
+
+    def tab(self, name):
+        """Shows a part by a click on its tab, and waits for what moves in it."""
+        self.run("document.getElementById('tab-' + arguments[0]).click()", name)
+        if name in ("meshes", "motion", "spans"):
+            self.wait("[...document.querySelectorAll('#' + parameters[0] + ' canvas')].some((one) => one.width !== 300)", name)
+            self.settle()
+
+    def settle(self):
+        """Waits for two pictures of the browser's, so that what was asked for is drawn."""
+        self.driver.execute_async_script(
+            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 0)));")
+
+    def pixels(self, canvas):
+        """A canvas's picture as height × width × 4 numbers."""
+        self.settle()
+        width, height, text = self.run("""
+            const canvas = typeof arguments[0] === "string" ? document.querySelector(arguments[0]) : arguments[0];
+            const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+            let text = "";
+            for (let i = 0; i < data.length; i += 8192) text += String.fromCharCode(...data.subarray(i, i + 8192));
+            return [canvas.width, canvas.height, btoa(text)];""", canvas)
+        return numpy.frombuffer(base64.b64decode(text), dtype=numpy.uint8).reshape(height, width, 4)
+
+    def picture(self, path, whole=False):
+        """A PNG of what is in sight, or of the whole page."""
+        self.settle()
+        shot = self.driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "png", "captureBeyondViewport": whole})
+        path.write_bytes(base64.b64decode(shot["data"]))
+
+    def pdf(self):
+        printed = self.driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})
+        return base64.b64decode(printed["data"])
+
+    def complaints(self):
+        """What the console said since the last time."""
+        return [entry["message"] for entry in self.driver.get_log("browser")]
+
+    def requests(self):
+        """Addresses that the page asked for since the last time, the page's own data: ones left out."""
+        messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
+        asked = [message["params"]["request"]["url"] for message in messages
+                 if message["method"] == "Network.requestWillBeSent"]
+        return [url for url in asked if not url.startswith(("data:", "about:"))]

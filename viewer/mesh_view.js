@@ -1,0 +1,107 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"use strict";
+// The meshes in 3-D, one picture for each vertex order, all turned together.
+
+class MeshView {
+  constructor(root, manifest, results) {
+    this.root = root;
+    this.manifest = manifest;
+    this.results = results;
+    this.redraw = coalesced(() => this.draw());
+    this.orbit = new Orbit(this.redraw);
+    this.pictures = [];
+    this.share = 1;
+    this.build();
+  }
+
+  build() {
+    this.stage = theStage();
+    if (!this.stage) {
+      this.root.replaceChildren(make("p", { className: "without" },
+        "This browser has no WebGL, which the meshes in 3-D need. The tables and figures do without."));
+      return;
+    }
+    this.material = bandMaterial();
+    this.grid = make("div", { className: "orders" });
+    const meshes = this.manifest.meshes.map(({ name }) => [name, name]);
+    const styles = [["bands", "Bands"], ["contours", "Contour lines"]];
+    this.slider = makeSlider("Vertices up to rank", { min: 0, max: 1000, step: 1, value: 1000 }, (thousandths) => {
+      this.share = thousandths / 1000;
+      this.redraw();
+      return this.mesh ? `${grouped(this.share * this.mesh.vertices)} of ${grouped(this.mesh.vertices)}` : "";
+    });
+    this.sweepButton = make("button", { type: "button" }, "Sweep");
+    this.sweepButton.addEventListener("click", () => this.sweep());
+    this.root.replaceChildren(
+      make("div", { className: "controls" },
+        makeChoices("Mesh", meshes, (name) => this.choose(name)),
+        makeChoices("Drawn as", styles, (style) => {
+          this.material.uniforms.contours.value = style === "contours";
+          this.legend.hidden = style === "contours";
+          this.redraw();
+        })),
+      make("div", { className: "controls" }, this.slider.element, this.sweepButton),
+      this.legend = makeLegend(),
+      this.grid,
+      make("p", { className: "hint" }, "Drag to turn, pinch or click and scroll to zoom, double-click to reset. " +
+        "With keys: arrows, + and −, Home."));
+    new ResizeObserver(this.redraw).observe(this.grid);
+    this.ready = this.choose(meshes[0][0]);
+  }
+
+  /** Shows the mesh of that name. */
+  async choose(name) {
+    const mesh = this.manifest.meshes.find((one) => one.name === name);
+    const places = await loadPlaces(mesh.positions);
+    const surface = surfaceGeometry(places, await loadNumbers(mesh.triangles));
+    const groups = await loadByOrder(this.manifest.orderings, mesh.ranks);
+    for (const picture of this.pictures) picture.geometry.dispose();
+    this.mesh = mesh;
+    this.view = ballAround(places);
+    this.pictures = groups.map((group) => this.picture(group, surface));
+    this.grid.replaceChildren(...this.pictures.map(({ figure }) => figure));
+    this.slider.tell();
+  }
+
+  picture(group, surface) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setIndex(surface.index);
+    for (const name of ["position", "normal"]) geometry.setAttribute(name, surface.getAttribute(name));
+    const shares = Float32Array.from(group.numbers, (rank) => (rank + 0.5) / this.mesh.vertices);
+    geometry.setAttribute("share", new THREE.BufferAttribute(shares, 1));
+    const scene = new THREE.Scene();
+    scene.add(new THREE.Mesh(geometry, this.material));
+    const canvas = make("canvas", { role: "img" });
+    canvas.setAttribute("aria-label", `${this.mesh.name}, coloured by its vertices' order: ${group.titles.join(", ")}`);
+    this.orbit.attach(canvas);
+    return { geometry, scene, canvas,
+             figure: orderFigure(canvas, group, spanWords(this.results, this.mesh.name, group.names[0])) };
+  }
+
+  draw() {
+    this.material.uniforms.limit.value = this.share;
+    for (const { canvas, scene } of this.pictures) this.stage.draw(canvas, scene, this.orbit, this.view);
+  }
+
+  /** Lets the colour run through the order, from the first vertex to the last. */
+  sweep() {
+    if (this.sweeping) {
+      this.sweeping = false;
+      return;
+    }
+    this.sweeping = true;
+    this.sweepButton.textContent = "Stop";
+    const input = this.slider.input;
+    const from = Number(input.value) >= 1000 ? 0 : Number(input.value);
+    const began = performance.now();
+    const tick = (now) => {
+      const value = Math.min(from + (now - began) / 6, 1000);
+      input.value = value;
+      this.slider.tell();
+      if (this.sweeping && value < 1000) requestAnimationFrame(tick);
+      else this.sweeping = false;
+      if (!this.sweeping) this.sweepButton.textContent = "Sweep";
+    };
+    requestAnimationFrame(tick);
+  }
+}
