@@ -39,6 +39,10 @@ packages_to_test=(
   python3-scipy        "independent answers for the end-to-end tests"
   python3-meshio       "an independent reader of mesh files"
   python3-jsonschema   "checks JSON against its schemas"
+  chromium             "the report page, as its reader sees it"
+  chromium-driver      "the report page, as its reader sees it"
+  python3-selenium     "the report page, as its reader sees it"
+  fonts-dejavu-core    "letters for the browser"
   clang-format         "checks the layout of the sources"
   clang-tidy           "looks for mistakes in the sources"
 )

@@ -51,34 +51,21 @@ class MeshView {
 
   /** Shows the mesh of that name. */
   async choose(name) {
-    const mesh = this.manifest.meshes.find((one) => one.name === name);
-    const places = await loadPlaces(mesh.positions);
-    const surface = surfaceGeometry(places, await loadNumbers(mesh.triangles));
-    const groups = await loadByOrder(this.manifest.orderings, mesh.ranks);
+    this.wanted = name;
+    const ordered = await loadOrderedMesh(this.manifest, name);
+    if (this.wanted !== name) return;  // another was chosen meanwhile
     for (const picture of this.pictures) picture.geometry.dispose();
-    this.mesh = mesh;
-    this.view = ballAround(places);
-    this.pictures = groups.map((group) => this.picture(group, surface));
+    this.mesh = ordered.mesh;
+    this.view = ordered.view;
+    this.pictures = ordered.groups.map((group) =>
+      orderPicture(ordered, group, this.material, spanWords(this.results, name, group.names[0])));
+    for (const { canvas } of this.pictures) this.orbit.attach(canvas);
     this.grid.replaceChildren(...this.pictures.map(({ figure }) => figure));
     this.slider.tell();
   }
 
-  picture(group, surface) {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setIndex(surface.index);
-    for (const name of ["position", "normal"]) geometry.setAttribute(name, surface.getAttribute(name));
-    const shares = Float32Array.from(group.numbers, (rank) => (rank + 0.5) / this.mesh.vertices);
-    geometry.setAttribute("share", new THREE.BufferAttribute(shares, 1));
-    const scene = new THREE.Scene();
-    scene.add(new THREE.Mesh(geometry, this.material));
-    const canvas = make("canvas", { role: "img" });
-    canvas.setAttribute("aria-label", `${this.mesh.name}, coloured by its vertices' order: ${group.titles.join(", ")}`);
-    this.orbit.attach(canvas);
-    return { geometry, scene, canvas,
-             figure: orderFigure(canvas, group, spanWords(this.results, this.mesh.name, group.names[0])) };
-  }
-
   draw() {
+    if (!this.stage) return;
     this.material.uniforms.limit.value = this.share;
     for (const { canvas, scene } of this.pictures) this.stage.draw(canvas, scene, this.orbit, this.view);
   }

@@ -23,17 +23,35 @@ async function loadByOrder(orderings, arrays) {
   return groups;
 }
 
-/** The mean edge span of an order, in words; empty where the results do not say. */
-function spanWords(results, mesh, ordering) {
-  const record = ((results && results.meshes) || []).find((one) => one.name === mesh);
-  const order = record && (record.orders || []).find((one) => one.ordering === ordering);
-  const mean = order && order.span && order.span.mean;
-  return typeof mean === "number" ? `mean span ${grouped(mean)}` : "";
-}
-
 /** A picture with the names of its orders below. */
 function orderFigure(canvas, group, words) {
   const caption = make("figcaption", {}, make("strong", {}, group.titles.join(", ")));
   if (words) caption.append(make("span", {}, words));
   return make("figure", { className: "order" }, canvas, caption);
+}
+
+/** Promises a mesh's surface and its orders: {mesh, surface, groups, view}. */
+async function loadOrderedMesh(manifest, name) {
+  const mesh = manifest.meshes.find((one) => one.name === name);
+  const places = await loadPlaces(mesh.positions);
+  return {
+    mesh,
+    surface: surfaceGeometry(places, await loadNumbers(mesh.triangles)),
+    groups: await loadByOrder(manifest.orderings, mesh.ranks),
+    view: ballAround(places),
+  };
+}
+
+/** A surface coloured by one of its orders, ready to be drawn: {geometry, scene, canvas, figure}. */
+function orderPicture({ mesh, surface }, group, material, words) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setIndex(surface.index);
+  for (const name of ["position", "normal"]) geometry.setAttribute(name, surface.getAttribute(name));
+  const shares = Float32Array.from(group.numbers, (rank) => (rank + 0.5) / mesh.vertices);
+  geometry.setAttribute("share", new THREE.BufferAttribute(shares, 1));
+  const scene = new THREE.Scene();
+  scene.add(new THREE.Mesh(geometry, material));
+  const canvas = make("canvas", { role: "img" });
+  canvas.setAttribute("aria-label", `${mesh.name}, coloured by its vertices' order: ${group.titles.join(", ")}`);
+  return { geometry, scene, canvas, figure: orderFigure(canvas, group, words) };
 }

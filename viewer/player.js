@@ -3,6 +3,7 @@
 // Plays the motions of the scenarios.
 
 const posterShare = 0.4;  // what is shown before anyone plays
+const stills = 6;
 
 class Player {
   constructor(root, manifest) {
@@ -35,15 +36,16 @@ class Player {
       return this.words();
     });
     this.slider.input.addEventListener("pointerdown", () => this.pause());
-    const speeds = [[40, "40"], [10, "10"], [20, "20"], [80, "80"]].sort((a, b) => a[0] - b[0]);
-    const speed = make("select", {}, ...speeds.map(([value, title]) =>
-      make("option", { value, selected: value === this.stepsPerSecond }, title)));
+    const speed = make("select", {}, ...[10, 20, 40, 80, 160].map((value) =>
+      make("option", { value, selected: value === this.stepsPerSecond }, String(value))));
+    this.strip = make("div", { className: "strip-of-frames" });
     speed.addEventListener("change", () => { this.stepsPerSecond = Number(speed.value); });
     this.root.replaceChildren(
       make("div", { className: "controls" }, makeChoices("Scenario", motions, (name) => this.choose(name))),
       make("figure", { className: "order" }, this.canvas, make("figcaption", {}, this.title, this.details)),
       make("div", { className: "controls" }, this.button, this.slider.element,
         make("label", { className: "control" }, make("span", {}, "Steps a second"), speed)),
+      this.strip,
       make("p", { className: "hint" }, "Drag to turn, pinch or click and scroll to zoom, double-click to reset. " +
         "With keys: arrows, + and −, Home; the space bar plays and pauses."));
     this.canvas.addEventListener("keydown", (event) => {
@@ -73,6 +75,27 @@ class Player {
     this.canvas.setAttribute("aria-label", `${chosen.title} (${chosen.mesh})`);
     this.slider.input.max = motion.lastStep;
     this.slider.input.value = Math.round(posterShare * motion.lastStep);
+    this.slider.tell();
+    this.drawStills();
+  }
+
+  /** Some frames side by side, each a way to its step. */
+  drawStills() {
+    this.strip.replaceChildren();
+    for (let i = 0; i < stills; ++i) {
+      const step = Math.round((i * this.motion.lastStep) / (stills - 1));
+      const canvas = make("canvas", {});
+      const button = make("button", { type: "button" }, canvas, `step ${step}`);
+      button.addEventListener("click", () => this.go(step));
+      this.strip.append(button);
+      this.motion.set(step);
+      this.stage.draw(canvas, this.motion.scene, new Orbit(() => {}), this.motion.view, 160);
+    }
+  }
+
+  go(step) {
+    this.pause();
+    this.slider.input.value = step;
     this.slider.tell();
   }
 

@@ -25,11 +25,12 @@ class Stage {
     this.camera = new THREE.PerspectiveCamera(fieldOfView, 1, 0.1, 10);
   }
 
-  /** Draws a scene on a canvas, seen so that a ball of `view` (center, radius) fills it. */
-  draw(canvas, scene, orbit, view) {
+  /** Draws a scene on a canvas, seen so that a ball of `view` (center, radius) fills it. A canvas out of sight has
+   *  no size: it becomes a square of `side`. */
+  draw(canvas, scene, orbit, view, side = 400) {
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
-    const width = Math.round((canvas.clientWidth || 480) * ratio);
-    const height = Math.round((canvas.clientHeight || 400) * ratio);
+    const width = Math.round((canvas.clientWidth || side) * ratio);
+    const height = Math.round((canvas.clientHeight || side) * ratio);
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     if (this.canvas.width !== width || this.canvas.height !== height) this.renderer.setSize(width, height, false);
 

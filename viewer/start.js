@@ -13,14 +13,15 @@ function showView(name, makeView) {
 function startViews() {
   const results = embeddedJson("results");
   const manifest = embeddedJson("manifest") || {};
-  if (results) startProtocol(results);
+  if (results) document.getElementById("byline").textContent = bylineWords(results);
   startSaving();
+  const at = (id) => document.getElementById(id);
   const parts = [
-    ["meshes", (manifest.meshes || []).length, () => new MeshView(document.getElementById("mesh-view"), manifest, results)],
-    ["spans", (manifest.meshes || []).length,
-     () => new PatternView(document.getElementById("pattern-view"), manifest, results)],
-    ["motion", (manifest.motions || []).length, () => new Player(document.getElementById("motion-view"), manifest)],
-  ].filter(([id, count]) => count && document.getElementById(id));
+    ["findings", "hero", () => new Hero(at("hero"), manifest, results)],
+    ["meshes", "mesh-view", () => new MeshView(at("mesh-view"), manifest, results)],
+    ["spans", "pattern-view", () => new PatternView(at("pattern-view"), manifest, results)],
+    ["motion", "motion-view", () => new Player(at("motion-view"), manifest)],
+  ].filter(([id, root]) => (manifest[id === "motion" ? "motions" : "meshes"] || []).length && at(root));
   for (const [id, , makeView] of parts) whenShown(id, () => showView(id, makeView));
 
   // what was never looked at is to be on paper, too

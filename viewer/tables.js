@@ -1,8 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 "use strict";
-// Tables that are sorted by a click on a heading: up, down, and back to how they came.
+// Tables that are sorted by a click on a heading: up, down, and back to how they came. Long ones can be filtered.
 
 const sortStates = ["none", "ascending", "descending"];
+const longTable = 16;  // rows from which on a table can be filtered
 
 /** What a cell is sorted by: its number, or its words. */
 function cellKey(cell) {
@@ -51,27 +52,34 @@ function makeSortable(table) {
   });
 }
 
-/** Numbers stand right, below their heading; a caption stays within sight while its table is scrolled. */
-function arrangeTable(table) {
+/** A caption stays within sight while its table is scrolled. */
+function holdCaption(table) {
+  if (!table.caption) return;
+  const words = make("div", { className: "caption" });
+  words.append(...table.caption.childNodes);
+  table.caption.append(words);
+}
+
+/** A field above a long table that leaves the rows with all of its words. */
+function makeFilter(table) {
   const rows = table.tBodies[0] ? [...table.tBodies[0].rows] : [];
-  const heads = table.tHead ? table.tHead.rows[table.tHead.rows.length - 1].cells : [];
-  for (let column = 1; column < heads.length; ++column) {
-    const cells = rows.map((row) => row.cells[column]).filter((cell) => cell);
-    if (!cells.some((cell) => cell.dataset.value !== undefined)) continue;
-    for (const cell of [heads[column], ...cells]) cell.classList.add("number");
-  }
-  if (table.caption) {
-    const words = document.createElement("div");
-    words.className = "caption";
-    words.append(...table.caption.childNodes);
-    table.caption.append(words);
-  }
+  if (rows.length < longTable) return;
+  const words = rows.map((row) => row.textContent.toLowerCase());
+  const input = make("input", { type: "search", placeholder: "dragon fiedler", autocomplete: "off" });
+  const count = make("output", {});
+  input.addEventListener("input", () => {
+    const wanted = input.value.toLowerCase().split(/\s+/);
+    rows.forEach((row, i) => { row.hidden = !wanted.every((word) => words[i].includes(word)); });
+    count.textContent = input.value.trim() ? `${rows.filter((row) => !row.hidden).length} of ${rows.length}` : "";
+  });
+  table.caption.append(make("label", { className: "control filter" }, make("span", {}, "Rows with"), input, count));
 }
 
 function startTables() {
   for (const table of document.querySelectorAll("main table")) {
-    arrangeTable(table);
+    holdCaption(table);
     makeSortable(table);
+    makeFilter(table);
   }
   for (const box of document.querySelectorAll(".scroll")) {
     if (box.firstElementChild) box.tabIndex = 0;  // so that keys can scroll it

@@ -16,7 +16,7 @@ function holdsSomething(panel) {
   return [...panel.querySelectorAll("table, figure, .view, .findings > *")].some(visible);
 }
 
-function showTab(tabs, shown, focus) {
+function showTab(tabs, shown) {
   for (const tab of tabs) {
     const current = tab === shown;
     const panel = document.getElementById(tab.hash.slice(1));
@@ -24,7 +24,6 @@ function showTab(tabs, shown, focus) {
     tab.tabIndex = current ? 0 : -1;
     panel.classList.toggle("current", current);
   }
-  if (focus) shown.focus({ preventScroll: true });
   const list = shown.parentElement;
   list.scrollTo({ left: shown.offsetLeft - (list.clientWidth - shown.offsetWidth) / 2 });
   const listener = shownListeners.get(shown.hash.slice(1));
@@ -57,7 +56,7 @@ function startTabs() {
   const named = () => tabs.find((tab) => tab.hash === location.hash) || tabs[0];
   const go = (tab) => {
     history.replaceState(null, "", tab.hash);
-    showTab(tabs, tab, true);
+    showTab(tabs, tab);
     if (list.getBoundingClientRect().top <= 0) list.nextElementSibling.scrollIntoView();
   };
   list.addEventListener("click", (event) => {
@@ -77,7 +76,8 @@ function startTabs() {
     if (at < 0 || next === undefined) return;
     event.preventDefault();
     go(tabs[next]);
+    tabs[next].focus({ preventScroll: true });
   });
-  window.addEventListener("hashchange", () => showTab(tabs, named(), false));
-  showTab(tabs, named(), false);
+  window.addEventListener("hashchange", () => showTab(tabs, named()));
+  showTab(tabs, named());
 }

@@ -65,7 +65,9 @@ def torus(around=96, across=40):
 
 def tetgen_surface(path):
     """Places and outer triangles of a .node/.ele pair."""
-    rows = lambda file, columns: numpy.loadtxt(file, skiprows=1, usecols=range(columns), comments="#")
+    def rows(file, columns):
+        return numpy.loadtxt(file, skiprows=1, usecols=range(columns), comments="#")
+
     nodes = rows(path, 4)
     cells = rows(str(path).replace(".node", ".ele"), 5).astype(int)[:, 1:] - int(nodes[0, 0])
     faces = numpy.concatenate([cells[:, [1, 2, 3]], cells[:, [0, 3, 2]], cells[:, [0, 1, 3]], cells[:, [0, 2, 1]]])
@@ -138,9 +140,11 @@ def table(name, title, caption, columns, rows):
         if isinstance(value, str):
             return f"<{tag}>{html.escape(value)}</{tag[:2]}>"
         number, words, *weak = value
-        return f'<{tag} data-value="{number}"{" class=weak" if weak else ""}>{html.escape(words)}</{tag[:2]}>'
+        return f'<{tag} class="number{" weak" if weak else ""}" data-value="{number}">{html.escape(words)}</{tag[:2]}>'
 
-    head = "".join(f'<th scope="col">{html.escape(column)}</th>' for column in columns)
+    numbers = [any(not isinstance(row[i], str) for row in rows) for i in range(len(columns))]
+    head = "".join(f'<th scope="col"{" class=number" if number else ""}>{html.escape(column)}</th>'
+                   for column, number in zip(columns, numbers))
     body = "".join("<tr>" + cell(row[0], 'th scope="row"') + "".join(cell(value, "td") for value in row[1:]) + "</tr>"
                    for row in rows)
     return (f'<table id="{name}"><caption><strong>{html.escape(title)}</strong> {html.escape(caption)}</caption>'
@@ -207,9 +211,11 @@ def sample_parts(models=()):
                          "in italics what the noise swallows.", ["Scenario", "Paper, Fiedler", *titles[:3], "Break-even step"], speedups),
         "machine": table("machine", "This machine", "What was measured on.", ["What", "Value"],
                          [["Processor", "Sample processor"], ["Cores", (2, "2")]])}
-    for name in ("misses", "phases", "kernels", "motions"):
-        tables[name] = table(name, f"Sample: {name}", "Made up.", ["Scenario", "A", "B"],
-                             [[n, (i, str(i)), (-i, str(-i))] for i, n in enumerate(PAPER)])
+    for name in ("break-even", "misses-1", "misses-2", "phases", "kernels", "motions"):
+        rows = [[f"{scenario}, {title}", (value := int(rng.integers(1000)), str(value)), (-value, str(-value))]
+                for scenario in PAPER for title in titles + titles[:2 * (name == "kernels")]]
+        tables[name] = table(name, f"Sample: {name}", "Made up.", ["Scenario and order", "A", "B"], rows)
+    tables["protocol"] = table("protocol", "How it was measured", "Made up.", ["What", "Is"], [["Runs", (3, "3")], ["Turns", "of 4 steps"]])
     parts = {
         "title": "Sample of a report", "has": "meshes scenarios motions",
         "findings": "<p>These numbers are made up: this page shows what a report looks like.</p><p>The second finding.</p>",

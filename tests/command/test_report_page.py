@@ -1,0 +1,350 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""The report page in a browser, as its reader meets it.
+
+MESHORDER_PAGE names a page to test instead of the one made here; MESHORDER_PICTURES a folder that gets pictures of it.
+"""
+import json
+import os
+import pathlib
+import re
+
+import numpy
+import pytest
+
+import browser
+import sample_page
+
+DESKTOP = (1280, 900)
+PHONE = (390, 844)
+# what each part must show
+PARTS = {
+    "findings": [".findings p", "#hero canvas", "figure img", "#table-4"],
+    "times": ["#table-2", "#table-3"],
+    "meshes": ["#mesh-view canvas", "#mesh-view .legend"],
+    "spans": ["#table-1", "figure img", "#pattern-view canvas"],
+    "caches": ["figure img", "#misses-1"],
+    "motion": ["canvas.film", "#motion-view input[type=range]", "#motions"],
+    "by-phase": ["figure img", "#phases"],
+    "prediction": ["figure img", "#kernels"],
+    "measured-on": ["#machine", "#protocol"],
+}
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    if os.environ.get("MESHORDER_PAGE"):
+        return pathlib.Path(os.environ["MESHORDER_PAGE"])
+    if not sample_page.THREE.exists():
+        pytest.skip("needs libjs-three")
+    made = tmp_path_factory.mktemp("report") / "report.html"
+    sample_page.write_sample(made)
+    return made
+
+
+@pytest.fixture(scope="module")
+def chromium(tmp_path_factory):
+    driver = browser.open_chromium(tmp_path_factory.mktemp("profile"))
+    yield browser.Browser(driver)
+    driver.quit()
+
+
+@pytest.fixture
+def page(chromium, path):
+    """The page, newly opened at a desktop's width."""
+    chromium.resize(*DESKTOP)
+    chromium.complaints()
+    chromium.requests()
+    chromium.open(path)
+    yield chromium
+    complaints = chromium.complaints()
+    assert not complaints, complaints
+
+
+def shown(page, selector):
+    """Whether something is there to be seen."""
+    return page.run("return [...document.querySelectorAll(arguments[0])].some((one) => one.getClientRects().length > 0)",
+                    selector)
+
+
+def column(page, table, number):
+    """What a column of a table holds, from the top: numbers where it has them."""
+    cells = page.run("""return [...document.querySelector(arguments[0]).tBodies[0].rows].map(
+        (row) => row.cells[arguments[1]].dataset.value ?? row.cells[arguments[1]].textContent)""", table, number)
+    return [float(cell) if re.fullmatch(r"-?[0-9.e+-]+", cell) else cell for cell in cells]
+
+
+def drag(page, selector, x, y):
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    canvas = page.driver.find_element(By.CSS_SELECTOR, selector)
+    page.run("arguments[0].scrollIntoView({block: 'center'})", canvas)
+    ActionChains(page.driver).drag_and_drop_by_offset(canvas, x, y).perform()
+
+
+def is_blank(pixels):
+    return len(numpy.unique(pixels.reshape(-1, 4), axis=0)) < 20
+
+
+def test_it_opens_from_disk_alone(page, path):
+    for part in PARTS:
+        page.tab(part)
+    assert page.requests() == [path.resolve().as_uri()]
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_a_tab_shows_what_it_says(page, part):
+    page.tab(part)
+    for selector in PARTS[part]:
+        assert shown(page, f"#{part} {selector}"), selector
+    others = [other for other in PARTS if other != part and shown(page, f"#{other}")]
+    assert not others
+    assert page.run("return [...document.querySelectorAll('[aria-selected=true]')].map((one) => one.id)") == [f"tab-{part}"]
+    assert page.run("return location.hash") == f"#{part}"
+
+
+def test_the_address_names_the_tab(page, path):
+    page.open(path, "spans")
+    assert shown(page, "#spans") and not shown(page, "#findings")
+    page.run("location.hash = '#times'")
+    page.wait("document.getElementById('times').getClientRects().length > 0")
+
+
+def test_arrow_keys_go_from_tab_to_tab(page):
+    from selenium.webdriver.common.keys import Keys
+    page.run("document.getElementById('tab-findings').focus()")
+    page.driver.switch_to.active_element.send_keys(Keys.ARROW_RIGHT)
+    assert shown(page, "#times") and page.run("return document.activeElement.id") == "tab-times"
+    page.driver.switch_to.active_element.send_keys(Keys.END)
+    assert shown(page, "#measured-on")
+    page.driver.switch_to.active_element.send_keys(Keys.ARROW_RIGHT)
+    assert shown(page, "#findings")
+
+
+def test_a_heading_sorts_its_table_and_gives_the_rows_back(page):
+    page.tab("times")
+    before = column(page, "#table-2", 0)
+    numbers = column(page, "#table-2", 1)
+    heading = "document.querySelectorAll('#table-2 thead th')[1]"
+    for state, wanted in (("ascending", sorted(numbers)), ("descending", sorted(numbers, reverse=True)), ("none", numbers)):
+        page.run(f"{heading}.querySelector('button').click()")
+        assert column(page, "#table-2", 1) == wanted
+        assert page.run(f"return {heading}.getAttribute('aria-sort')") == state
+    assert column(page, "#table-2", 0) == before
+
+
+def test_sorting_is_by_number_and_leaves_what_is_missing_last(page):
+    page.run("""
+        const table = make("table", {id: "made"}, make("thead", {}, make("tr", {}, make("th", {}, "a"), make("th", {}, "b"))),
+                           make("tbody"));
+        for (const [name, value] of [["p", 10], ["q", ""], ["r", 9], ["s", -2], ["t", 9]]) {
+          const cell = make("td", {}, String(value));
+          if (value !== "") cell.dataset.value = value;
+          table.tBodies[0].append(make("tr", {}, make("th", {}, name), cell));
+        }
+        document.querySelector("main").append(table);
+        makeSortable(table);""")
+    button = "document.querySelectorAll('#made thead button')[1].click()"
+    page.run(button)
+    assert column(page, "#made", 0) == ["s", "r", "t", "p", "q"]
+    page.run(button)
+    assert column(page, "#made", 0) == ["p", "r", "t", "s", "q"]
+
+
+def test_a_long_table_is_filtered_by_words(page):
+    page.tab("prediction")
+    rows = column(page, "#kernels", 0)
+    word = re.split(r"[^A-Za-z]+", rows[-1])[0]
+    page.run("""const input = document.querySelector('#kernels input[type=search]');
+        input.value = arguments[0].toUpperCase(); input.dispatchEvent(new Event('input'));""", word)
+    left = page.run("return [...document.querySelectorAll('#kernels tbody tr')].filter((row) => row.getClientRects().length)"
+                    ".map((row) => row.cells[0].textContent)")
+    assert left == [row for row in rows if word in row] and 0 < len(left) < len(rows)
+
+
+def test_tables_hold_what_the_results_say(page):
+    results = json.loads(page.run("return document.getElementById('results').textContent"))
+    cells = page.run("""const found = {};
+        for (const table of document.querySelectorAll("table[id]"))
+          found[table.id] = [...table.querySelectorAll("[data-value]")].map((cell) => Number(cell.dataset.value));
+        return found;""")
+    for mesh in results["meshes"]:
+        for order in mesh["orders"]:
+            assert order["span"]["mean"] in cells["table-1"]
+    for scenario in results["scenarios"]:
+        for order in scenario.get("orders", []):
+            assert order["time"]["mean"] in cells["table-2"]
+
+
+def test_the_results_can_be_saved(page):
+    saved = page.driver.execute_async_script("""
+        const done = arguments[0];
+        URL.createObjectURL = (blob) => { blob.text().then(done); return "#"; };
+        document.getElementById("save-results").click();""")
+    assert json.loads(saved) == json.loads(page.run("return document.getElementById('results').textContent"))
+
+
+def test_meshes_are_drawn_and_turn_together(page):
+    page.tab("meshes")
+    canvases = [f"#mesh-view figure:nth-of-type({i + 1}) canvas"
+                for i in range(page.run("return document.querySelectorAll('#mesh-view canvas').length"))]
+    assert len(canvases) >= 2
+    before = [page.pixels(canvas) for canvas in canvases]
+    assert not any(is_blank(picture) for picture in before)
+    assert (before[0] != before[1]).any(), "orders look the same"
+    drag(page, canvases[0], 80, 10)
+    turned = [page.pixels(canvas) for canvas in canvases]
+    for a, b in zip(before, turned):
+        assert (a != b).any(axis=2).mean() > 0.05
+
+
+def test_keys_turn_a_mesh_and_home_turns_it_back(page):
+    from selenium.webdriver.common.keys import Keys
+    page.tab("meshes")
+    canvas = "#mesh-view canvas"
+    before = page.pixels(canvas)
+    page.run("document.querySelector(arguments[0]).focus()", canvas)
+    page.driver.switch_to.active_element.send_keys(Keys.ARROW_LEFT, Keys.ARROW_LEFT)
+    assert (page.pixels(canvas) != before).any(axis=2).mean() > 0.02
+    page.driver.switch_to.active_element.send_keys(Keys.HOME)
+    assert (page.pixels(canvas) == before).all()
+
+
+def test_the_slider_uncovers_the_order(page):
+    """With half of the vertices, about half of what is drawn loses its colour."""
+    page.tab("meshes")
+
+    def coloured():
+        pixels = page.pixels("#mesh-view canvas").astype(int)
+        drawn = pixels[..., 3] > 250
+        return (drawn & (numpy.ptp(pixels[..., :3], axis=2) > 12)).sum() / drawn.sum()
+
+    assert coloured() > 0.8
+    page.run("""const input = document.querySelector('#mesh-view input[type=range]');
+        input.value = 500; input.dispatchEvent(new Event('input'));""")
+    assert 0.15 < coloured() < 0.75
+    words = page.run("return document.querySelector('#mesh-view output').textContent").replace(",", "")
+    half, whole = map(int, words.split(" of "))
+    assert abs(2 * half - whole) <= 1
+
+
+def test_contour_lines_have_no_colour(page):
+    page.tab("meshes")
+    page.run("document.querySelector('#mesh-view input[value=contours]').click()")
+    pixels = page.pixels("#mesh-view canvas").astype(int)
+    assert numpy.ptp(pixels[..., :3], axis=2).max() <= 2 and not is_blank(pixels)
+
+
+def test_patterns_are_drawn(page):
+    page.tab("spans")
+    shares = []
+    for canvas in page.run("return [...document.querySelectorAll('#pattern-view canvas')]"):
+        pixels = page.pixels(canvas)
+        side = len(pixels)
+        inked = pixels[..., 0] < 250
+        assert side >= 32 and inked[numpy.arange(side), numpy.arange(side)].all(), "the diagonal is empty"
+        shares.append(inked.mean())
+    assert min(shares) < 0.5 * max(shares), "no order is better than another"
+
+
+def test_the_player_plays_and_stops(page):
+    page.tab("motion")
+    step = lambda: int(page.run("return document.querySelector('#motion-view output').textContent").split(" of ")[0])
+    button = "document.querySelector('#motion-view .play')"
+    before, first = step(), page.pixels("canvas.film")
+    assert not is_blank(first)
+    page.run(f"{button}.click()")
+    page.wait("document.querySelector('#motion-view output').textContent.split(' ')[0] !== parameters[0]", str(before))
+    page.wait("(window.seen = (window.seen || new Set())).add(document.querySelector('#motion-view output').textContent).size > 4")
+    page.run(f"{button}.click()")
+    assert (page.pixels("canvas.film") != first).any()
+    held = step()
+    page.settle()
+    assert step() == held and page.run(f"return {button}.textContent") == "Play"
+
+
+def test_every_motion_can_be_seen_and_turned(page):
+    page.tab("motion")
+    names = page.run("return [...document.querySelectorAll('#motion-view [type=radio]')].map((one) => one.value)")
+    for name in names:
+        title = page.run("return document.querySelector('#motion-view figcaption').textContent")
+        page.run("document.querySelector(`#motion-view [value='${arguments[0]}']`).click()", name)
+        page.wait("views.motion.wanted.scenario === parameters[0] && views.motion.motion.motion === views.motion.wanted", name)
+        assert not is_blank(page.pixels("canvas.film")), (name, title)
+        assert not is_blank(page.pixels("#motion-view .strip-of-frames button:nth-child(4) canvas")), name
+    before = page.pixels("canvas.film")
+    drag(page, "canvas.film", 120, 0)
+    assert (page.pixels("canvas.film") != before).any(axis=2).mean() > 0.01
+
+
+def test_a_still_leads_to_its_step(page):
+    page.tab("motion")
+    page.run("document.querySelectorAll('#motion-view .strip-of-frames button')[3].click()")
+    words = page.run("return document.querySelectorAll('#motion-view .strip-of-frames button')[3].textContent")
+    assert page.run("return document.querySelector('#motion-view output').textContent").split(" of ")[0] == words.split()[1]
+
+
+@pytest.mark.parametrize("width", [360, 390, 768])
+def test_a_narrow_screen_needs_no_scrolling_sideways(page, path, width):
+    page.resize(width, 800, phone=width < 768)
+    page.open(path)
+    for part in PARTS:
+        page.tab(part)
+        wide = page.run("return document.documentElement.scrollWidth")
+        assert wide <= width, part
+
+
+def test_on_paper_everything_stands_one_after_another(page):
+    page.wait("views.motion && views.meshes && views.spans")  # what waits for idle time is there
+    page.driver.execute_async_script("const done = arguments[0]; Promise.all(Object.values(views).map((v) => v.ready)).then(done)")
+    printed = page.pdf()
+    assert len(re.findall(rb"/Type\s*/Page\b", printed)) >= 4
+    page.media("print")
+    assert all(shown(page, f"#{part} {selector}") for part, selectors in PARTS.items() for selector in selectors
+               if "input" not in selector)
+    assert not shown(page, ".tabs") and not shown(page, "button.play")
+    for canvas in ("#mesh-view canvas", "canvas.film", "#pattern-view canvas"):
+        assert not is_blank(page.pixels(canvas)), canvas
+    page.media("screen")
+
+
+def test_without_scripts_everything_stands_one_after_another(chromium, path):
+    chromium.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
+    try:
+        chromium.driver.get(path.resolve().as_uri())
+        found = chromium.driver.execute_cdp_cmd("Runtime.evaluate", {"returnByValue": True, "expression":
+            "[...document.querySelectorAll('main > section')].filter((one) => one.getClientRects().length).map((one) => one.id)"})
+        assert found["result"]["value"] == list(PARTS)
+    finally:
+        chromium.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
+
+
+def test_without_webgl_it_says_so(page, path):
+    hidden = page.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": """
+        const real = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+          return /webgl/.test(kind) ? null : real.call(this, kind, ...more);
+        };"""})
+    try:
+        page.open(path)
+        page.run("document.getElementById('tab-meshes').click()")
+        page.wait("/no WebGL/.test(document.getElementById('mesh-view').innerText)")
+        page.run("document.getElementById('tab-motion').click()")
+        page.wait("/no WebGL/.test(document.getElementById('motion-view').innerText)")
+        page.tab("spans")
+        assert shown(page, "#pattern-view canvas")
+    finally:
+        page.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", hidden)
+
+
+def test_pictures(page, path, tmp_path):
+    """The README's pictures, when MESHORDER_PICTURES says where they go."""
+    folder = pathlib.Path(os.environ.get("MESHORDER_PICTURES") or tmp_path)
+    for name, (width, height), phone in (("desktop", DESKTOP, False), ("phone", PHONE, True)):
+        page.resize(width, height, phone)
+        page.open(path)
+        for part in ("findings", "meshes", "motion"):
+            page.tab(part)
+            page.run("scrollTo(0, 0)")
+            picture = folder / f"report-{part}-{name}.png"
+            page.picture(picture)
+            assert picture.stat().st_size > 10_000

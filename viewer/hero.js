@@ -1,0 +1,35 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"use strict";
+// Beside the findings: the first mesh in its worst and its best order.
+
+class Hero {
+  constructor(root, manifest, results) {
+    this.redraw = coalesced(() => this.draw());
+    this.orbit = new Orbit(this.redraw);
+    this.pictures = [];
+    this.stage = theStage();
+    this.ready = this.stage ? this.build(root, manifest, results) : Promise.resolve(root.remove());
+  }
+
+  async build(root, manifest, results) {
+    const ordered = await loadOrderedMesh(manifest, manifest.meshes[0].name);
+    const name = ordered.mesh.name;
+    const groups = ordered.groups.map((group, i) => ({ group, span: meanSpan(results, name, group.names[0]) ?? -i }));
+    groups.sort((a, b) => b.span - a.span);
+    const shown = groups.length > 1 ? [groups[0], groups[groups.length - 1]] : groups;
+    const material = bandMaterial();
+    this.view = ordered.view;
+    this.pictures = shown.map(({ group }) =>
+      orderPicture(ordered, group, material, spanWords(results, name, group.names[0])));
+    for (const { canvas } of this.pictures) this.orbit.attach(canvas);
+    const grid = make("div", { className: "pair" }, ...this.pictures.map(({ figure }) => figure));
+    root.replaceChildren(grid,
+      make("p", { className: "hint" }, `${name}, its vertices coloured from first to last in memory. `,
+        make("a", { href: "#meshes" }, "All meshes and orders")));
+    new ResizeObserver(this.redraw).observe(grid);
+  }
+
+  draw() {
+    for (const { canvas, scene } of this.pictures) this.stage.draw(canvas, scene, this.orbit, this.view);
+  }
+}

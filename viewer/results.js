@@ -1,0 +1,40 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"use strict";
+// What the page takes from results.json itself, beyond its tables.
+
+/** One line below the title: what was measured where and when. */
+function bylineWords(results) {
+  const machine = results.machine || {};
+  const threads = results.threads && `${results.threads} thread${results.threads === 1 ? "" : "s"}`;
+  const parts = [machine.processor, threads, results.began && results.began.slice(0, 10),
+                 machine.program && `meshorder ${machine.program}`];
+  return parts.filter((part) => part).join(" · ");
+}
+
+/** The mean edge span of a mesh in an order; null where the results do not say. */
+function meanSpan(results, mesh, ordering) {
+  const record = ((results && results.meshes) || []).find((one) => one.name === mesh);
+  const order = record && (record.orders || []).find((one) => one.ordering === ordering);
+  const mean = order && order.span && order.span.mean;
+  return typeof mean === "number" ? mean : null;
+}
+
+function spanWords(results, mesh, ordering) {
+  const mean = meanSpan(results, mesh, ordering);
+  return mean === null ? "" : `mean span ${grouped(mean)}`;
+}
+
+/** Lets the reader keep the results that the page was made from. */
+function startSaving() {
+  const button = document.getElementById("save-results");
+  const source = document.getElementById("results");
+  if (!source) {
+    button.hidden = true;
+    return;
+  }
+  button.addEventListener("click", () => {
+    const address = URL.createObjectURL(new Blob([source.textContent], { type: "application/json" }));
+    make("a", { href: address, download: "results.json" }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 1000);
+  });
+}
