@@ -9,6 +9,7 @@ packages_to_run=(
   build-essential      "C++ compiler"
   cmake                "configures the build"
   ninja-build          "runs the build"
+  gnuplot-nox          "the figures of a study"
   libcli11-dev         "command line"
   libeigen3-dev        "dense linear algebra"
   libfmt-dev           "text"
