@@ -39,7 +39,7 @@ std::string processor_name(std::istream& cpuinfo, const std::string& architectur
     if (colon != std::string::npos)
       first_values.emplace(trimmed(line.substr(0, colon)), trimmed(line.substr(colon + 1)));
   }
-  if (const std::string name = first_values["model name"]; !name.empty()) return name;
+  if (!first_values["model name"].empty()) return first_values["model name"];
   std::string result = architecture + " processor";
   const std::string maker = first_values["CPU implementer"];
   const std::string part = first_values["CPU part"];

@@ -43,12 +43,19 @@ KernelBench bench_of(const Mesh& mesh, const CsrGraph& graph, const Reordering& 
   return {ordered, renumbered(graph, order.vertices.old_to_new())};
 }
 
+Mesh points_and_cells(const Mesh& mesh) {
+  Mesh result;
+  result.points = mesh.points;
+  result.cells = mesh.cells;
+  return result;
+}
+
 class MeshStudy {
  public:
-  MeshStudy(const Mesh& mesh, const MeshStudyOptions& options) : options_(options) {
-    mesh_.points = mesh.points;
-    mesh_.cells = mesh.cells;
-    graph_seconds_ = best_seconds([] {}, [&] { graph_ = vertex_graph(mesh_); });
+  MeshStudy(const Mesh& mesh, const MeshStudyOptions& options)
+      : options_(options),
+        mesh_(points_and_cells(mesh)),
+        graph_seconds_(best_seconds([] {}, [&] { graph_ = vertex_graph(mesh_); })) {
     MeshRecord& record = result_.record;
     record.vertices = mesh_.vertex_count();
     record.tetrahedra = cut_into_simplices(mesh_).size();
@@ -113,9 +120,9 @@ class MeshStudy {
   }
 
   MeshStudyOptions options_;
-  Mesh mesh_;  ///< points and cells alone
+  Mesh mesh_;
   CsrGraph graph_;
-  double graph_seconds_ = 0;
+  double graph_seconds_;
   OrderedMesh result_;
 };
 

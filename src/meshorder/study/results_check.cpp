@@ -27,7 +27,7 @@ std::set<std::string> names_of(const std::vector<Record>& records, std::string R
 
 /// Throws unless the text at `value` is one of the names.
 void expect_one_of(const std::set<std::string>& names, const JsonValue& value, std::string_view list) {
-  if (names.count(value.text()) == 0)
+  if (!names.contains(value.text()))
     throw value.error("'" + value.text() + "' is none of the " + std::string(list),
                       "name one that is listed there");
 }

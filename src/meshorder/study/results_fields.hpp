@@ -17,6 +17,11 @@ struct Field {
   Value Record::*member;
   bool free = false;
 };
+// clang 14 deduces no aggregates by itself
+template <class Record, class Value>
+Field(std::string_view, Value Record::*) -> Field<Record, Value>;
+template <class Record, class Value>
+Field(std::string_view, Value Record::*, bool) -> Field<Record, Value>;
 
 /// What a record's object has, in its order, for reading and writing alike.
 template <class Record>

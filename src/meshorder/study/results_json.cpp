@@ -111,6 +111,7 @@ class Reader {
   }
   static void read(const JsonValue& value, std::array<KernelRecord, kKernels.size()>& kernels, bool free) {
     std::vector<std::string_view> names;
+    names.reserve(kKernels.size());
     for (const Kernel kernel : kKernels) names.push_back(name(kernel));
     value.expect_keys(names);
     for (const Kernel kernel : kKernels)

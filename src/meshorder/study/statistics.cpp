@@ -66,6 +66,7 @@ double half_width_of_runs(const std::vector<std::vector<double>>& saved_by_run) 
   double of_turns = 0;
   for (const std::vector<double>& saved : transposed(saved_by_run)) of_turns += variance(saved);
   std::vector<double> sums;
+  sums.reserve(saved_by_run.size());
   for (const std::vector<double>& saved : saved_by_run) sums.push_back(sum(saved));
   const double of_sums = variance(sums);
   const Index more_runs = index_size(saved_by_run) - 1;
