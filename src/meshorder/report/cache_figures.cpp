@@ -79,10 +79,10 @@ std::string panel(const StudyResults& results, const MeshRecord& mesh, std::size
   if (plots.empty()) return {};
   return data +
          fmt::format(
-             "set title {}\nset label 1 {} at graph 0.97, 0.88 right textcolor '#222222'\n"
+             "set title {}\nset label 1 {} at graph 0.97, 0.9 right textcolor '#222222'\n"
              "set yrange [0:{}]\nset format y '{}'\nset xrange [0.5:{}]\nset xtics scale 0 ({})\nplot {}\n",
              kernel == 0 ? gnuplot_quoted(caches.name) : "''", gnuplot_quoted(title_of(kKernels[kernel])),
-             std::max(1.1 * most_misses(mesh, kernel), 1e-3), hierarchy == 0 ? "%g %%" : "",
+             std::max(1.3 * most_misses(mesh, kernel), 1e-3), hierarchy == 0 ? "%g %%" : "",
              static_cast<double>(caches.caches.level_bytes.size()) + 0.5, level_tics(caches.caches),
              fmt::join(plots, ", \\\n  "));
 }

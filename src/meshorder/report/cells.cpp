@@ -3,6 +3,7 @@
 #include <meshorder/report/cells.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -24,8 +25,9 @@ std::string with_digits_of(double number, double whole, int digits) {
   const double size = std::abs(whole);
   if (number == 0) return "0";
   if (size > 0 && size < 1e-4) return with_minus(fmt::format("{:.3g}", number));
-  // 9.9996 has as many digits before the point as 10
-  const int before = size > 0 ? static_cast<int>(std::floor(std::log10(size * (1 + 5e-6)))) + 1 : 1;
+  // 9.9996 has as many digits before the point as 10, which it is rounded to
+  const double rounded_up = size / (1 - 0.5 * std::pow(10, -digits));
+  const int before = size > 0 ? static_cast<int>(std::floor(std::log10(rounded_up))) + 1 : 1;
   if (before >= digits) return with_minus(with_commas(std::llround(number)));
   return with_minus(fmt::format("{:.{}f}", number, digits - before));
 }
@@ -56,6 +58,11 @@ std::string bytes_in_words(double bytes) {
     ++unit;
   }
   return fmt::format("{:.3g} {}", bytes, kUnits[unit]);
+}
+
+std::string in_words(const std::vector<std::string>& names) {
+  if (names.size() < 2) return names.empty() ? "" : names.front();
+  return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
 }
 
 TableCell text_cell(std::string text) { return {std::move(text), std::nullopt, false}; }

@@ -4,6 +4,7 @@
 #include <meshorder/report/tables.hpp>
 
 #include <string>
+#include <vector>
 
 namespace meshorder {
 
@@ -21,6 +22,9 @@ std::string metric(double number);
 
 /// 49152 as "48 KB".
 std::string bytes_in_words(double bytes);
+
+/// "falling", "falling and bowl", "falling, bowl and bounce"
+std::string in_words(const std::vector<std::string>& names);
 
 TableCell text_cell(std::string text);
 TableCell number_cell(double number, int digits = 4);

@@ -119,9 +119,8 @@ Table seconds_table(const StudyResults& results) {
         kPaperSteps, differences(results), kNotTold);
   }
   for_each_order(results, false, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
-    table.rows.push_back(
-        {head_of(results, scenario, order), number_cell(order.time.mean),
-         order.runs.size() > 1 ? part_cell(order.time.deviation, order.time.mean) : unknown_cell()});
+    table.rows.push_back({head_of(results, scenario, order), number_cell(order.time.mean),
+                          order.runs.size() > 1 ? number_cell(order.time.deviation, 2) : unknown_cell()});
     if (paper) table.rows.back().push_back(derived_cell(paper_seconds(scenario.name, order.ordering)));
   });
   return table;

@@ -106,15 +106,16 @@ std::vector<Figure> speedup_figures(const StudyResults& results) {
                   reference, has_paper ? " Hollow marks of the same shape: the paper's figures." : ""),
       {}};
   const int height = 90 + static_cast<int>(scenarios.size()) * (16 + 13 * static_cast<int>(orders.size()));
-  figure.svg =
-      draw({figure.name, figure.title, figure.caption, 520, height,
-            plain_axes() + data +
-                fmt::format("set grid xtics noytics\n{}set yrange [{}:0]\nset ytics scale 0 ({})\n"
-                            "set arrow from 0, graph 0 to 0, graph 1 nohead linecolor '#555555'\n"
-                            "set xlabel {}\nset offsets graph 0.04, graph 0.04, 0, 0\nplot {}",
-                            separators, -static_cast<double>(scenarios.size()), fmt::join(tics, ", "),
-                            gnuplot_quoted(fmt::format("Saved of the time of “{}”, %", reference)),
-                            fmt::join(plots, ", \\\n  "))});
+  figure.svg = draw(
+      {figure.name, figure.title, figure.caption, 520, height,
+       plain_axes() + data +
+           fmt::format(
+               "set grid xtics noytics\nset errorbars small\n{}set yrange [{}:0]\nset ytics scale 0 ({})\n"
+               "set arrow from 0, graph 0 to 0, graph 1 nohead linecolor '#555555'\n"
+               "set xlabel {}\nset offsets graph 0.04, graph 0.04, 0, 0\nplot {}",
+               separators, -static_cast<double>(scenarios.size()), fmt::join(tics, ", "),
+               gnuplot_quoted(fmt::format("Saved of the time of “{}”, %", reference)),
+               fmt::join(plots, ", \\\n  "))});
   return {std::move(figure)};
 }
 
