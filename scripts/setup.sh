@@ -28,6 +28,7 @@ packages_to_run=(
   libgmp-dev           "exact numbers for CGAL"
   libmpfr-dev          "exact numbers for CGAL"
   tetgen               "fills the surfaces with tetrahedra"
+  gnuplot-nox          "draws the figures of a study"
 )
 packages_to_test=(
   "${packages_to_run[@]}"

@@ -115,7 +115,7 @@ std::string place(const Panel& panel, double width, double height) {
 
 Figure cache_figure(const StudyResults& results, const MeshRecord& mesh) {
   Figure figure{
-      "misses-" + slug(mesh.name),
+      figure_name("misses", results, mesh),
       "caches",
       "Simulated cache misses on " + mesh.name,
       "Cache lines fetched from beyond each level, in per cent of a kernel's accesses to lines, when it "

@@ -28,6 +28,21 @@ const OrderStyle* paper_style(std::string_view ordering) {
   return found == kPaperStyles.end() ? nullptr : &found->second;
 }
 
+/// `text` in lower-case letters, digits and '-', never two of these in a row.
+std::string slug(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const bool upper = c >= 'A' && c <= 'Z';
+    const bool kept = upper || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (kept) {
+      result += upper ? static_cast<char>(c - 'A' + 'a') : c;
+    } else if (!result.ends_with('-')) {
+      result += '-';
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 OrderStyle style_of(const StudyResults& results, std::string_view ordering) {
@@ -53,14 +68,14 @@ std::string data_block(std::string_view name, const std::vector<std::string>& li
   return fmt::format("${} << EOD\n{}\nEOD\n", name, fmt::join(lines, "\n"));
 }
 
-std::string slug(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    const bool upper = c >= 'A' && c <= 'Z';
-    const bool kept = upper || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
-    result += !kept ? '-' : upper ? static_cast<char>(c - 'A' + 'a') : c;
+std::string figure_name(std::string_view kind, const StudyResults& results, const MeshRecord& mesh) {
+  const std::string own = slug(mesh.name);
+  int same = 1;
+  for (const MeshRecord& each : results.meshes) {
+    if (&each == &mesh) break;
+    if (slug(each.name) == own) ++same;
   }
-  return result.empty() ? "-" : result;
+  return same == 1 ? fmt::format("{}-{}", kind, own) : fmt::format("{}-{}--{}", kind, own, same);
 }
 
 }  // namespace meshorder

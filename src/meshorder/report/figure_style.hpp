@@ -29,7 +29,8 @@ std::string plain_axes();
 /// A block of inline data "$NAME << EOD …".
 std::string data_block(std::string_view name, const std::vector<std::string>& lines);
 
-/// `text` as the name of a file and of a part of one: of lower-case letters, digits and '-'.
-std::string slug(std::string_view text);
+/// "spans-dragon": a figure's name for one of the study's meshes, of lower-case letters, digits and '-', and
+/// another one for each mesh.
+std::string figure_name(std::string_view kind, const StudyResults& results, const MeshRecord& mesh);
 
 }  // namespace meshorder

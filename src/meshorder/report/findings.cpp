@@ -48,6 +48,7 @@ std::string range_of(std::vector<Compared> list) {
 
 std::string scenarios_in_words(std::size_t some, std::size_t all) {
   if (all == 1) return "in the one scenario";
+  if (all == 2 && some == 2) return "in both scenarios";
   return some == all ? fmt::format("in all {} scenarios", all)
                      : fmt::format("in {} of {} scenarios", some, all);
 }

@@ -77,7 +77,7 @@ std::vector<Figure> span_figures(const StudyResults& results) {
     }
     if (plots.empty()) continue;
     Figure figure{
-        "spans-" + slug(mesh.name),
+        figure_name("spans", results, mesh),
         "spans",
         "Edge spans of " + mesh.name,
         fmt::format("How many edges have which span, in bins of {} as in the paper's Figure 10, both "
