@@ -10,6 +10,8 @@
 #include <vtkXMLUtilities.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -57,14 +59,16 @@ class Svg {
     return std::find(texts_.begin(), texts_.end(), text) != texts_.end();
   }
   [[nodiscard]] const std::multiset<std::string>& ids() const { return ids_; }
-  /// The centres of marks of that point type and colour.
-  [[nodiscard]] std::vector<Point> marks(int type, const std::string& colour) const {
+  /// The centres of marks of that point type and colour, 0xrrggbb.
+  [[nodiscard]] std::vector<Point> marks(int type, int colour) const {
     std::vector<Point> centres;
     for (vtkXMLDataElement* const use : uses_) {
       const std::string mark = use->GetAttribute("xlink:href");
-      if (!mark.ends_with("gpPt" + std::to_string(type - 1)) || use->GetAttribute("color") == nullptr)
-        continue;
-      if (use->GetAttribute("color") != colour) continue;
+      const char* const painted = use->GetAttribute("color");
+      if (!mark.ends_with("gpPt" + std::to_string(type - 1)) || painted == nullptr) continue;
+      std::array<int, 3> rgb{};
+      EXPECT_EQ(std::sscanf(painted, "rgb(%d,%d,%d)", rgb.data(), &rgb[1], &rgb[2]), 3) << painted;
+      if (65536 * rgb[0] + 256 * rgb[1] + rgb[2] != colour) continue;
       Point centre{};
       EXPECT_EQ(std::sscanf(use->GetAttribute("transform"), "translate(%lf,%lf)", centre.data(), &centre[1]),
                 2);
@@ -133,17 +137,17 @@ TEST_F(Figures, AreWellFormedScaleAndAreTheSameOnEveryRun) {
 TEST_F(Figures, OfSpeedupsHaveAMarkForEachOfOursAndThePapers) {
   const Svg svg = drawn(sample_results(), "speedup");
   // two scenarios and the key
-  const auto original = svg.marks(5, "#e69f00");
-  const auto fiedler = svg.marks(7, "#0072b2");
-  const auto vf_fiedler = svg.marks(9, "#009e73");
+  const auto original = svg.marks(5, 0xe69f00);
+  const auto fiedler = svg.marks(7, 0x0072b2);
+  const auto vf_fiedler = svg.marks(9, 0x009e73);
   EXPECT_EQ(original.size(), 3);
   ASSERT_EQ(fiedler.size(), 3);
   ASSERT_EQ(vf_fiedler.size(), 3);
-  EXPECT_EQ(svg.marks(11, "#cc79a7").size(), 3);
-  EXPECT_EQ(svg.marks(13, "#d55e00").size(), 0) << "the reference";
-  const auto papers = svg.marks(6, "#0072b2");
+  EXPECT_EQ(svg.marks(11, 0xcc79a7).size(), 3);
+  EXPECT_EQ(svg.marks(13, 0xd55e00).size(), 0) << "the reference";
+  const auto papers = svg.marks(6, 0x0072b2);
   ASSERT_EQ(papers.size(), 2);
-  EXPECT_EQ(svg.marks(10, "#cc79a7").size(), 0) << "the paper's text tells nothing of VF scrambled";
+  EXPECT_EQ(svg.marks(10, 0xcc79a7).size(), 0) << "the paper's text tells nothing of VF scrambled";
 
   // where they stand: 25 and 12 % here, 26.7 and 12.1 % in the paper
   std::set<double> ours{fiedler[0][0], fiedler[1][0], fiedler[2][0]};
@@ -165,9 +169,9 @@ TEST_F(Figures, OfSpansShareACurveWhereOrdersHaveTheSameSpans) {
   results.meshes[0].orders[4].span_histogram = results.meshes[0].orders[3].span_histogram;
   const Svg svg = drawn(results, "spans-dragon");
   EXPECT_TRUE(svg.says("Scrambled, VF scrambled"));
-  EXPECT_EQ(svg.marks(11, "#cc79a7").size(), 0);
-  EXPECT_EQ(svg.marks(13, "#d55e00").size(), 6 + 1) << "six bins and the key";
-  EXPECT_EQ(svg.marks(7, "#0072b2").size(), 2 + 1);
+  EXPECT_EQ(svg.marks(11, 0xcc79a7).size(), 0);
+  EXPECT_EQ(svg.marks(13, 0xd55e00).size(), 6 + 1) << "six bins and the key";
+  EXPECT_EQ(svg.marks(7, 0x0072b2).size(), 2 + 1);
   EXPECT_TRUE(svg.says("Edges in a bin of 50"));
   EXPECT_TRUE(svg.says("Edge span, vertices"));
 }
@@ -189,8 +193,8 @@ TEST_F(Figures, OfMissesAndPhasesNameWhatTheyShow) {
 
 TEST_F(Figures, OfPredictionsHaveAMarkForEachOrderOfAMesh) {
   const Svg svg = drawn(sample_results(), "prediction");
-  const auto spmv = svg.marks(7, "#0072b2");
-  EXPECT_EQ(spmv.size(), 4 + 1);
+  const auto spmv = svg.marks(7, 0x0072b2);
+  ASSERT_EQ(spmv.size(), 4 + 1);
   // as predicted: on the diagonal of a square
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
