@@ -44,6 +44,7 @@ void add_methods(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_reproduce(CLI::App& app);
 void add_serve_steps(CLI::App& app);
+void add_report(CLI::App& app);
 
 /// --json, --quiet and --threads.
 void add_common(CLI::App& subcommand, Common& common);

@@ -3,8 +3,8 @@
 #include "compare_report.hpp"
 #include "console.hpp"
 #include "progress.hpp"
-#include "report.hpp"
 #include "reuse_report.hpp"
+#include "wording.hpp"
 #include <meshorder/base/stopwatch.hpp>
 #include <meshorder/io/format.hpp>
 #include <meshorder/mesh/graphs.hpp>

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "compare_report.hpp"
 
-#include "report.hpp"
 #include "reuse_report.hpp"
+#include "wording.hpp"
 
 namespace meshorder::command {
 namespace {

@@ -2,9 +2,9 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "progress.hpp"
-#include "report.hpp"
 #include "reuse_report.hpp"
 #include "verdict.hpp"
+#include "wording.hpp"
 #include <meshorder/base/stopwatch.hpp>
 #include <meshorder/graph/components.hpp>
 #include <meshorder/io/format.hpp>

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
       "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
       "  meshorder simulate falling --mesh dragon.veg an elastic body in motion, timed\n"
       "  meshorder reproduce -o results               the paper's study on this machine, as a page\n",
+      "  meshorder report dragon.veg                  all of it as a page for the browser\n",
       "meshorder"};
   app.set_version_flag("--version", MESHORDER_VERSION);
   app.require_subcommand(1);
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
   meshorder::command::add_compare(app);
   meshorder::command::add_simulate(app);
   meshorder::command::add_reproduce(app);
+  meshorder::command::add_report(app);
   meshorder::command::add_models(app);
   meshorder::command::add_methods(app);
   meshorder::command::add_serve_steps(app);

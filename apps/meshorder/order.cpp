@@ -3,7 +3,7 @@
 #include "console.hpp"
 #include "maps.hpp"
 #include "progress.hpp"
-#include "report.hpp"
+#include "wording.hpp"
 #include <meshorder/base/stopwatch.hpp>
 #include <meshorder/io/format.hpp>
 #include <meshorder/io/output_file.hpp>

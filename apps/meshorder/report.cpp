@@ -1,118 +1,218 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "report.hpp"
-
+#include "command.hpp"
 #include "console.hpp"
+#include "progress.hpp"
+#include "verdict.hpp"
+#include "wording.hpp"
+#include <meshorder/base/error.hpp>
+#include <meshorder/io/format.hpp>
+#include <meshorder/io/output_file.hpp>
+#include <meshorder/report/study_page.hpp>
+#include <meshorder/study/machine.hpp>
+#include <meshorder/study/mesh_study.hpp>
+#include <meshorder/study/results_json.hpp>
+
+#include <fmt/chrono.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <map>
-#include <utility>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace meshorder::command {
 namespace {
+namespace fs = std::filesystem;
 
-/// Cells of each type, highest dimension first.
-std::vector<std::pair<std::string, Index>> type_counts(const Mesh& mesh) {
-  std::map<std::array<int, 3>, Index> counts;
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const Shape shape = mesh.cells.shapes[c];
-    const bool fixed = corners(shape, 0) > 0;  // polygons are one type, whatever their number of corners
-    ++counts[{-dimension(shape), static_cast<int>(shape), fixed ? mesh.cells.vertex_count(c) : 0}];
-  }
-  std::vector<std::pair<std::string, Index>> result;
-  result.reserve(counts.size());
-  for (const auto& [type, count] : counts) {
-    result.emplace_back(type_name(static_cast<Shape>(type[1]), type[2]), count);
-  }
-  return result;
+struct ReportArguments : Common {
+  std::vector<std::string> inputs;
+  std::string output;  ///< empty: report.html, or in the study's folder
+  double budget_seconds = TimingOptions{}.budget_seconds;
+  OrderingOptions ordering;
+};
+
+constexpr std::string_view kAsItIs = "original";
+constexpr std::string_view kOrdered = "meshorder";
+
+std::vector<StudyOrdering> orderings_of_report() {
+  return {{std::string(kAsItIs), "As it is", "original", "original"},
+          {"scrambled", "Scrambled", "scrambled", "scrambled"},
+          {"fiedler", "Fiedler", "fiedler", "original"},
+          {"vf-fiedler", "VF Fiedler", "fiedler", "fiedler"},
+          {std::string(kOrdered), "meshorder order", "auto", "auto"}};
 }
 
-std::string plural(const std::string& type) {
-  const std::map<std::string, std::string> irregular{
-      {"tetrahedron", "tetrahedra"}, {"hexahedron", "hexahedra"}, {"vertex", "vertex cells"}};
-  const auto found = irregular.find(type);
-  return found == irregular.end() ? type + "s" : found->second;
+/// What a record knows of one order, as `info` would have it.
+OrderCosts costs_of(const OrderOfMesh& order) {
+  OrderCosts costs;
+  costs.predicted.emplace();
+  bool measured = true;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    (*costs.predicted)[k] = order.kernels[k].predicted_ms;
+    measured = measured && order.kernels[k].measured_ms > 0;
+  }
+  if (!measured) return costs;
+  costs.measured.emplace();
+  for (std::size_t k = 0; k < kKernels.size(); ++k) (*costs.measured)[k] = order.kernels[k].measured_ms;
+  return costs;
+}
+
+/// The verdict of `info` on the mesh, of the times of this record; "" without the orders that it compares.
+std::string verdict_on(const MeshRecord& record) {
+  const auto order = [&](std::string_view name) {
+    return std::find_if(record.orders.begin(), record.orders.end(),
+                        [&](const OrderOfMesh& one) { return one.ordering == name; });
+  };
+  const auto as_it_is = order(kAsItIs);
+  const auto ordered = order(kOrdered);
+  if (as_it_is == record.orders.end() || ordered == record.orders.end()) return "";
+  Candidate candidate;
+  candidate.vertex_method.name = ordered->vertex_method;
+  candidate.element_method.name = ordered->element_method;
+  candidate.seconds = ordered->seconds;
+  candidate.costs = costs_of(*ordered);
+  return verdict_sentence({costs_of(*as_it_is), {candidate}});
+}
+
+/// The file's name without its extension, and a number where another mesh has it.
+std::string unique_name(const std::string& file, const std::vector<MeshRecord>& others) {
+  const std::string stem = fs::path(file).stem().string();
+  const auto is_taken = [&](const std::string& name) {
+    return std::any_of(others.begin(), others.end(),
+                       [&](const MeshRecord& other) { return other.name == name; });
+  };
+  std::string name = stem;
+  for (int number = 2; is_taken(name); ++number) name = fmt::format("{}-{}", stem, number);
+  return name;
+}
+
+/// Reads a mesh, studies it and adds it to the page. `from` … `to` is its share of the progress.
+void add_mesh(Page& page, const std::string& file, const ReportArguments& arguments, Progress& progress,
+              double from, double to, Notes& notes) {
+  progress.stage("reading " + file, from, from + 0.1 * (to - from));
+  const Mesh mesh = read_mesh(file, &notes);
+  if (mesh.cells.highest_dimension() < 2)
+    throw Error(file, "has neither volumes nor a surface, so that nothing can be shown",
+                "give a mesh with cells of two or three dimensions");
+  const std::string name = unique_name(file, page.results.meshes);
+  MeshStudyOptions options;
+  options.ordering = arguments.ordering;
+  options.timing.budget_seconds = arguments.budget_seconds;
+  options.progress = [&](std::string_view what, double fraction) {
+    progress.stage(fmt::format("{}: {}", name, what), from + (0.1 + 0.8 * fraction) * (to - from), to);
+  };
+  OrderedMesh studied = study_mesh(mesh, page.results.orderings, options);
+  studied.record.name = name;
+  studied.record.file = file;
+  studied.record.verdict = verdict_on(studied.record);
+
+  progress.stage("the surface of " + name, from + 0.9 * (to - from), to);
+  std::vector<std::pair<std::string, Permutation>> orders;
+  for (std::size_t i = 0; i < studied.orders.size(); ++i) {
+    orders.emplace_back(studied.record.orders[i].ordering, studied.orders[i].vertices);
+    note_convergence(studied.orders[i].vertex_fiedler, "the vertices of " + name, notes);
+  }
+  page.meshes.push_back(page_mesh(name, mesh, orders));
+  page.results.meshes.push_back(std::move(studied.record));
+}
+
+std::string title_of(const Page& page) {
+  std::vector<std::string> names;
+  for (const PageMesh& mesh : page.meshes) names.push_back(mesh.name);
+  return fmt::format("What the order of {} is worth", fmt::join(names, ", "));
+}
+
+void report_on_meshes(const Console& console, const ReportArguments& arguments) {
+  const std::string output = arguments.output.empty() ? "report.html" : arguments.output;
+  (void)OutputFile(output);  // whether it can be written is known before the work begins
+  Progress progress(!console.quiet());
+  Page page;
+  page.results.began = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  page.results.runs = 1;
+  page.results.reference = kAsItIs;
+  page.results.orderings = orderings_of_report();
+  progress.stage("measuring the memory", 0, 0.02);
+  page.results.machine = describe_machine();
+  Notes notes;
+  const double share = 0.96 / static_cast<double>(arguments.inputs.size());
+  for (std::size_t i = 0; i < arguments.inputs.size(); ++i) {
+    const double from = 0.02 + share * static_cast<double>(i);
+    add_mesh(page, arguments.inputs[i], arguments, progress, from, from + share, notes);
+  }
+  progress.stage("writing " + output, 0.98, 1);
+  page.title = title_of(page);
+  fill_from_results(page, notes);
+  for (const MeshRecord& mesh : page.results.meshes) {
+    if (!mesh.verdict.empty()) page.findings.push_back(fmt::format("{}: {}.", mesh.name, mesh.verdict));
+  }
+  write_page(page, output);
+
+  progress.finish();
+  console.log_notes(notes);
+  for (const MeshRecord& mesh : page.results.meshes)
+    console.print("{}: {} vertices, {} simplices\nVerdict: {}", mesh.file, with_commas(mesh.vertices),
+                  with_commas(mesh.tetrahedra), mesh.verdict.empty() ? "none" : mesh.verdict);
+  console.print("wrote {}", output);
+  console.print_json({{"page", output}, {"results", to_json(page.results)}, {"notes", notes}});
+}
+
+void report_on_study(const Console& console, const ReportArguments& arguments) {
+  if (!arguments.output.empty())
+    throw InvalidArgument("-o is for a report on meshes; a study's report stands in the study's folder");
+  const StudyFolder folder(arguments.inputs.front());
+  if (!fs::exists(folder.results()))
+    throw Error(folder.root().string(), "holds no results.json",
+                "name the folder of a study that `meshorder reproduce` made, or mesh files");
+  Progress progress(!console.quiet());
+  const WrittenReport report = write_report(folder, [&](std::string_view what, double fraction) {
+    progress.stage(std::string(what), fraction, std::min(1.0, fraction + 0.1));
+  });
+  progress.finish();
+  console.log_notes(report.notes);
+  auto files = nlohmann::ordered_json::array();
+  for (const fs::path& file : report.files) {
+    files.push_back(file.string());
+    console.print("wrote {}", file.string());
+  }
+  console.print_json({{"page", folder.page().string()}, {"files", files}, {"notes", report.notes}});
+}
+
+void run(const ReportArguments& arguments) {
+  const Console console(arguments);
+  const auto is_folder = [](const std::string& input) { return fs::is_directory(input); };
+  const auto folder = std::find_if(arguments.inputs.begin(), arguments.inputs.end(), is_folder);
+  if (folder == arguments.inputs.end()) return report_on_meshes(console, arguments);
+  if (arguments.inputs.size() > 1)
+    throw InvalidArgument(*folder + " is a folder: a study's report is made by itself");
+  report_on_study(console, arguments);
 }
 
 }  // namespace
 
-nlohmann::ordered_json to_json(const EdgeSpan& span) {
-  return {{"mean", span.mean}, {"max", span.max}, {"mean_log2", span.mean_log2}};
-}
-
-nlohmann::ordered_json to_json(const std::vector<FiedlerComponent>& components) {
-  auto list = nlohmann::ordered_json::array();
-  for (const FiedlerComponent& component : components) {
-    list.push_back({{"size", component.size},
-                    {"lambda2", component.lambda2},
-                    {"residual", component.residual},
-                    {"iterations", component.iterations},
-                    {"converged", component.converged}});
-  }
-  return {{"components", list}};
-}
-
-nlohmann::ordered_json to_json(const MethodChoice& choice) {
-  const bool by_auto = !choice.because.empty();
-  return {{"method", choice.name},
-          {"chosen_by", by_auto ? "auto" : "user"},
-          {"because", by_auto ? nlohmann::ordered_json(choice.because) : nullptr}};
-}
-
-nlohmann::ordered_json to_json(const Grouping& grouping) {
-  auto list = nlohmann::ordered_json::array();
-  Index first_vertex = 0;
-  for (const GroupSize& group : group_sizes(grouping)) {
-    nlohmann::ordered_json value;
-    if (group.value) value = *group.value;
-    if (!group.name.empty()) value = group.name;
-    list.push_back({{"value", value},
-                    {"first_vertex", first_vertex},
-                    {"vertices", group.vertices},
-                    {"cells", grouping.of_cells.empty() ? nullptr : nlohmann::ordered_json(group.cells)}});
-    first_vertex += group.vertices;
-  }
-  return {{"name", grouping.name}, {"on", name(grouping.on)}, {"groups", list}};
-}
-
-nlohmann::ordered_json cells_by_type(const Mesh& mesh) {
-  auto result = nlohmann::ordered_json::object();
-  for (const auto& [type, count] : type_counts(mesh)) result[type] = count;
-  return result;
-}
-
-std::string cells_in_words(const Mesh& mesh) {
-  std::string words;
-  for (const auto& [type, count] : type_counts(mesh)) {
-    words += (words.empty() ? "" : ", ") + with_commas(count) + " " + (count == 1 ? type : plural(type));
-  }
-  return words;
-}
-
-std::string method_in_words(const MethodChoice& choice) {
-  return choice.name + (choice.because.empty() ? "" : " (auto)");
-}
-
-std::string groups_in_words(const Grouping& grouping) {
-  constexpr std::size_t kShown = 8;
-  const std::size_t count = grouping.values.size();
-  std::string words = fmt::format("{} group{} by {} on {}:", with_commas(static_cast<long long>(count)),
-                                  count == 1 ? "" : "s", grouping.name, name(grouping.on));
-  for (std::size_t g = 0; g < std::min(count, kShown); ++g) {
-    words += (g == 0 ? " " : ", ") +
-             (grouping.names.empty() ? std::to_string(grouping.values[g]) : grouping.names[g]);
-  }
-  return words + (count > kShown ? ", …" : "");
-}
-
-void note_convergence(const std::vector<FiedlerComponent>& components, const std::string& of, Notes& notes) {
-  for (const FiedlerComponent& component : components) {
-    if (component.converged) continue;
-    notes.push_back(fmt::format(
-        "the Fiedler vector of {} did not converge on a component of {}: residual {:.2g} of lambda2 after {} "
-        "iterations; the best vector so far gives the order",
-        of, with_commas(component.size), component.residual / component.lambda2, component.iterations));
-  }
+void add_report(CLI::App& app) {
+  CLI::App* subcommand = app.add_subcommand(
+      "report",
+      "A page to open in a browser: meshes coloured by their order, spans, caches, kernels, tables.\n"
+      "  meshorder report dragon.veg -o dragon.html   your mesh as it is and in other orders, in half\n"
+      "                                               a minute: what each is worth, with a verdict\n"
+      "  meshorder report results/                    of a study: tables, figures and page anew\n"
+      "The page is one file that needs no network.");
+  const auto arguments = std::make_shared<ReportArguments>();
+  subcommand->add_option("INPUT", arguments->inputs, "Mesh files, or the folder of a study")
+      ->required()
+      ->type_name("MESH… | DIR");
+  subcommand->add_option("-o,--output", arguments->output,
+                         "The page on meshes; report.html in this folder if not given");
+  subcommand
+      ->add_option("--budget", arguments->budget_seconds,
+                   "Seconds to spend on running kernels, for each mesh")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  add_ordering_options(*subcommand, arguments->ordering);
+  add_common(*subcommand, *arguments);
+  subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }
 
 }  // namespace meshorder::command

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "simulate_report.hpp"
 
-#include "report.hpp"
+#include "wording.hpp"
 #include <meshorder/base/parallel.hpp>
 #include <meshorder/study/vertex_choice.hpp>
 

@@ -3,6 +3,7 @@
 #include <meshorder/io/npy.hpp>
 #include <meshorder/models/procedural.hpp>
 #include <meshorder/report/study_page.hpp>
+#include <meshorder/study/results_json.hpp>
 #include <support/files.hpp>
 #include <support/sample_meshes.hpp>
 
@@ -150,6 +151,26 @@ TEST_F(StudyPage, SaysHowFarItIs) {
   EXPECT_EQ(fractions.size(), 3U);
   EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
   EXPECT_LT(fractions.back(), 1);
+}
+
+TEST_F(StudyPage, IsWrittenWithItsTables) {
+  write_results(results, folder.results());
+  const WrittenReport report = write_report(folder);
+  ASSERT_GE(report.files.size(), 3U);
+  EXPECT_EQ(report.files.back(), folder.page());
+  for (const auto& file : report.files) EXPECT_TRUE(std::filesystem::is_regular_file(file)) << file;
+  const Page made = page_of(folder, read_results(folder.results()), notes);
+  EXPECT_EQ(test::content_of(folder.page()), to_html(made));
+  EXPECT_EQ(test::content_of(folder.tables(".csv")), to_csv(made.tables));
+  EXPECT_TRUE(test::content_of(folder.tables(".md")).starts_with("# What the order of a mesh is worth"));
+}
+
+TEST_F(StudyPage, IsWrittenWholeOrNotAtAll) {
+  write_results(results, folder.results());
+  std::filesystem::create_directory(folder.page());
+  EXPECT_THROW((void)write_report(folder), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder.tables(".md")));
+  EXPECT_FALSE(std::filesystem::exists(folder.tables(".csv")));
 }
 
 }  // namespace

@@ -147,22 +147,23 @@ Page page_of(const StudyFolder& folder, const StudyResults& results, Notes& note
   return page;
 }
 
-Notes write_report(const StudyFolder& folder, const ReportProgress& progress) {
-  Notes notes;
-  const Page page = page_of(folder, read_results(folder.results()), notes, progress);
+WrittenReport write_report(const StudyFolder& folder, const ReportProgress& progress) {
+  WrittenReport report;
+  const Page page = page_of(folder, read_results(folder.results()), report.notes, progress);
   std::error_code code;
   if (!page.figures.empty()) fs::create_directories(folder.figure("any").parent_path(), code);
   if (code) throw Error(folder.root().string(), "cannot be written: " + code.message(), "check the folder");
   std::vector<OutputFile> files;
   const auto add = [&](const fs::path& path, const std::string& content) {
     files.emplace_back(path).write(content);
+    report.files.push_back(path);
   };
   add(folder.tables(".md"), markdown_of(page));
   add(folder.tables(".csv"), to_csv(page.tables));
   for (const Figure& figure : page.figures) add(folder.figure(figure.name), figure.svg);
   add(folder.page(), to_html(page));
   OutputFile::commit_all(files);
-  return notes;
+  return report;
 }
 
 }  // namespace meshorder

@@ -5,8 +5,10 @@
 #include <meshorder/report/page_parts.hpp>
 #include <meshorder/study/folder.hpp>
 
+#include <filesystem>
 #include <functional>
 #include <string_view>
+#include <vector>
 
 namespace meshorder {
 
@@ -23,9 +25,15 @@ void fill_from_results(Page& page, Notes& notes);
 Page page_of(const StudyFolder& folder, const StudyResults& results, Notes& notes,
              const ReportProgress& progress = {}, const PageDetail& detail = {});
 
+/// What was written, and what deserves a word.
+struct WrittenReport {
+  std::vector<std::filesystem::path> files;  ///< the page is the last one
+  Notes notes;
+};
+
 /// Makes of a study's results.json and data what stands beside them: tables.md, tables.csv, the figures and
-/// report.html, all of them whole or none. Returns what deserves a word. Throws Error for results that cannot
-/// be read, for broken data, and when something cannot be written.
-Notes write_report(const StudyFolder& folder, const ReportProgress& progress = {});
+/// report.html, all of them whole or none. Throws Error for results that cannot be read, for broken data, and
+/// when something cannot be written.
+WrittenReport write_report(const StudyFolder& folder, const ReportProgress& progress = {});
 
 }  // namespace meshorder

@@ -1,0 +1,118 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "wording.hpp"
+
+#include "console.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+namespace meshorder::command {
+namespace {
+
+/// Cells of each type, highest dimension first.
+std::vector<std::pair<std::string, Index>> type_counts(const Mesh& mesh) {
+  std::map<std::array<int, 3>, Index> counts;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const Shape shape = mesh.cells.shapes[c];
+    const bool fixed = corners(shape, 0) > 0;  // polygons are one type, whatever their number of corners
+    ++counts[{-dimension(shape), static_cast<int>(shape), fixed ? mesh.cells.vertex_count(c) : 0}];
+  }
+  std::vector<std::pair<std::string, Index>> result;
+  result.reserve(counts.size());
+  for (const auto& [type, count] : counts) {
+    result.emplace_back(type_name(static_cast<Shape>(type[1]), type[2]), count);
+  }
+  return result;
+}
+
+std::string plural(const std::string& type) {
+  const std::map<std::string, std::string> irregular{
+      {"tetrahedron", "tetrahedra"}, {"hexahedron", "hexahedra"}, {"vertex", "vertex cells"}};
+  const auto found = irregular.find(type);
+  return found == irregular.end() ? type + "s" : found->second;
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const EdgeSpan& span) {
+  return {{"mean", span.mean}, {"max", span.max}, {"mean_log2", span.mean_log2}};
+}
+
+nlohmann::ordered_json to_json(const std::vector<FiedlerComponent>& components) {
+  auto list = nlohmann::ordered_json::array();
+  for (const FiedlerComponent& component : components) {
+    list.push_back({{"size", component.size},
+                    {"lambda2", component.lambda2},
+                    {"residual", component.residual},
+                    {"iterations", component.iterations},
+                    {"converged", component.converged}});
+  }
+  return {{"components", list}};
+}
+
+nlohmann::ordered_json to_json(const MethodChoice& choice) {
+  const bool by_auto = !choice.because.empty();
+  return {{"method", choice.name},
+          {"chosen_by", by_auto ? "auto" : "user"},
+          {"because", by_auto ? nlohmann::ordered_json(choice.because) : nullptr}};
+}
+
+nlohmann::ordered_json to_json(const Grouping& grouping) {
+  auto list = nlohmann::ordered_json::array();
+  Index first_vertex = 0;
+  for (const GroupSize& group : group_sizes(grouping)) {
+    nlohmann::ordered_json value;
+    if (group.value) value = *group.value;
+    if (!group.name.empty()) value = group.name;
+    list.push_back({{"value", value},
+                    {"first_vertex", first_vertex},
+                    {"vertices", group.vertices},
+                    {"cells", grouping.of_cells.empty() ? nullptr : nlohmann::ordered_json(group.cells)}});
+    first_vertex += group.vertices;
+  }
+  return {{"name", grouping.name}, {"on", name(grouping.on)}, {"groups", list}};
+}
+
+nlohmann::ordered_json cells_by_type(const Mesh& mesh) {
+  auto result = nlohmann::ordered_json::object();
+  for (const auto& [type, count] : type_counts(mesh)) result[type] = count;
+  return result;
+}
+
+std::string cells_in_words(const Mesh& mesh) {
+  std::string words;
+  for (const auto& [type, count] : type_counts(mesh)) {
+    words += (words.empty() ? "" : ", ") + with_commas(count) + " " + (count == 1 ? type : plural(type));
+  }
+  return words;
+}
+
+std::string method_in_words(const MethodChoice& choice) {
+  return choice.name + (choice.because.empty() ? "" : " (auto)");
+}
+
+std::string groups_in_words(const Grouping& grouping) {
+  constexpr std::size_t kShown = 8;
+  const std::size_t count = grouping.values.size();
+  std::string words = fmt::format("{} group{} by {} on {}:", with_commas(static_cast<long long>(count)),
+                                  count == 1 ? "" : "s", grouping.name, name(grouping.on));
+  for (std::size_t g = 0; g < std::min(count, kShown); ++g) {
+    words += (g == 0 ? " " : ", ") +
+             (grouping.names.empty() ? std::to_string(grouping.values[g]) : grouping.names[g]);
+  }
+  return words + (count > kShown ? ", …" : "");
+}
+
+void note_convergence(const std::vector<FiedlerComponent>& components, const std::string& of, Notes& notes) {
+  for (const FiedlerComponent& component : components) {
+    if (component.converged) continue;
+    notes.push_back(fmt::format(
+        "the Fiedler vector of {} did not converge on a component of {}: residual {:.2g} of lambda2 after {} "
+        "iterations; the best vector so far gives the order",
+        of, with_commas(component.size), component.residual / component.lambda2, component.iterations));
+  }
+}
+
+}  // namespace meshorder::command
