@@ -13,7 +13,6 @@
 #include <meshorder/study/results_json.hpp>
 
 #include <fmt/chrono.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <ctime>
@@ -144,9 +143,6 @@ void report_on_meshes(const Console& console, const ReportArguments& arguments) 
   progress.stage("writing " + output, 0.98, 1);
   page.title = title_of(page);
   fill_from_results(page, notes);
-  for (const MeshRecord& mesh : page.results.meshes) {
-    if (!mesh.verdict.empty()) page.findings.push_back(fmt::format("{}: {}.", mesh.name, mesh.verdict));
-  }
   write_page(page, output);
 
   progress.finish();

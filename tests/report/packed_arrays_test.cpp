@@ -32,6 +32,17 @@ TEST(PackedArrays, GiveBackWholeNumbersInTheSmallestType) {
   EXPECT_EQ(unpacked(arrays.script_elements(), arrays.add(Numbers{}, {0})), Numbers{});
 }
 
+TEST(PackedArrays, ShareOneElementWhereTheyAreEqual) {
+  PackedArrays arrays;
+  const auto first = arrays.add(Numbers{1, 2}, {2});
+  EXPECT_EQ(arrays.add(Numbers{1, 2}, {2})["blob"], first["blob"]);
+  const auto other = arrays.add(Numbers{1, 3}, {2});
+  EXPECT_NE(other["blob"], first["blob"]);
+  EXPECT_EQ(unpacked(arrays.script_elements(), other), (Numbers{1, 3}));
+  // the same bytes, but other numbers: 0x0201 in 16 bits
+  EXPECT_NE(arrays.add(Numbers{0x0201}, {1})["blob"], first["blob"]);
+}
+
 TEST(PackedArrays, GiveBackTriangles) {
   PackedArrays arrays;
   const std::vector<std::array<Index, 3>> triangles{{0, 1, 2}, {2, 1, 300}};

@@ -75,11 +75,16 @@ void describe(nlohmann::ordered_json& array, const Quantisation& quantisation) {
 }  // namespace
 
 nlohmann::ordered_json PackedArrays::add_bytes(const std::vector<char>& bytes, std::string_view type,
-                                               const std::vector<std::size_t>& shape) {
-  const std::string id = fmt::format("blob-{}", ++count_);
-  elements_ +=
-      fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, to_base64(compressed(bytes)));
-  return {{"blob", id}, {"type", type}, {"shape", shape}};
+                                               const std::vector<std::size_t>& shape, bool delta) {
+  const std::string text = to_base64(compressed(bytes));
+  // whoever unpacks them takes arrays of one element for the same numbers
+  const auto [known, is_new] = ids_.try_emplace(fmt::format("{} {} {}", type, delta ? "delta" : "", text),
+                                                fmt::format("blob-{}", ids_.size() + 1));
+  const std::string& id = known->second;
+  if (is_new) elements_ += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, text);
+  nlohmann::ordered_json array{{"blob", id}, {"type", type}, {"shape", shape}};
+  if (delta) array["delta"] = true;
+  return array;
 }
 
 nlohmann::ordered_json PackedArrays::add(std::span<const std::uint32_t> numbers,
@@ -152,9 +157,8 @@ nlohmann::ordered_json PackedArrays::add_frames(const std::vector<std::vector<Po
       }
     }
   }
-  nlohmann::ordered_json array = add_bytes(bytes, "uint16", {frames.size(), vertices, 3});
+  nlohmann::ordered_json array = add_bytes(bytes, "uint16", {frames.size(), vertices, 3}, true);
   describe(array, quantisation);
-  array["delta"] = true;
   return array;
 }
 

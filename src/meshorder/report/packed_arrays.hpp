@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,7 +18,8 @@
 namespace meshorder {
 
 /// The numbers that a page carries, packed as viewer/README.md says: little endian, compressed by zlib, as
-/// base64 in a script element each. What `add…` returns describes the array in the page's manifest.
+/// base64 in a script element each; equal arrays share one. What `add…` returns describes the array in the
+/// page's manifest.
 class PackedArrays {
  public:
   /// Whole numbers, none negative, in the smallest type that holds all. Throws InvalidArgument when they are
@@ -39,10 +41,10 @@ class PackedArrays {
 
  private:
   nlohmann::ordered_json add_bytes(const std::vector<char>& bytes, std::string_view type,
-                                   const std::vector<std::size_t>& shape);
+                                   const std::vector<std::size_t>& shape, bool delta = false);
 
   std::string elements_;
-  int count_ = 0;
+  std::map<std::string, std::string> ids_;  ///< by what the elements hold
 };
 
 }  // namespace meshorder
