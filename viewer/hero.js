@@ -19,6 +19,7 @@ class Hero {
     const shown = groups.length > 1 ? [groups[0], groups[groups.length - 1]] : groups;
     const material = bandMaterial();
     this.view = ordered.view;
+    this.orbit.face(name);
     this.pictures = shown.map(({ group }) =>
       orderPicture(ordered, group, material, spanWords(results, name, group.names[0])));
     for (const { canvas } of this.pictures) this.orbit.attach(canvas);

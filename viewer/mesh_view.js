@@ -57,6 +57,7 @@ class MeshView {
     for (const picture of this.pictures) picture.geometry.dispose();
     this.mesh = ordered.mesh;
     this.view = ordered.view;
+    this.orbit.face(name);
     this.pictures = ordered.groups.map((group) =>
       orderPicture(ordered, group, this.material, spanWords(this.results, name, group.names[0])));
     for (const { canvas } of this.pictures) this.orbit.attach(canvas);

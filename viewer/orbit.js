@@ -5,11 +5,23 @@
 const startYaw = 0.5;
 const startPitch = 0.22;
 
+/** How far a body has to be turned about its height to face the reader: of our models, one looks away. */
+function frontOf(mesh) {
+  return mesh && mesh.startsWith("armadillo") ? Math.PI : 0;
+}
+
 class Orbit {
-  constructor(onChange) {
+  /** Starts from the front of a mesh; `onChange` is called after each turn. */
+  constructor(onChange, mesh = "") {
     this.onChange = onChange;
     this.pointers = new Map();
-    this.set(startYaw, startPitch, 1);
+    this.face(mesh);
+  }
+
+  /** Turns to the front of a mesh, without a call. */
+  face(mesh) {
+    this.front = frontOf(mesh);
+    this.set(startYaw + this.front, startPitch, 1);
   }
 
   set(yaw, pitch, zoom) {
@@ -24,7 +36,7 @@ class Orbit {
   }
 
   reset() {
-    this.set(startYaw, startPitch, 1);
+    this.set(startYaw + this.front, startPitch, 1);
     this.onChange();
   }
 

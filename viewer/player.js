@@ -70,8 +70,9 @@ class Player {
     if (this.wanted !== chosen) return;  // another was chosen meanwhile
     if (this.motion) this.motion.dispose();
     this.motion = motion;
+    this.orbit.face(chosen.mesh);
     this.title.textContent = chosen.title;
-    this.details.textContent = `${chosen.mesh}, ${chosen.steps.length} frames of ${motion.lastStep} steps`;
+    this.details.textContent = `${chosen.mesh}: ${chosen.steps.length} frames of ${motion.lastStep} steps`;
     this.canvas.setAttribute("aria-label", `${chosen.title} (${chosen.mesh})`);
     this.slider.input.max = motion.lastStep;
     this.slider.input.value = Math.round(posterShare * motion.lastStep);
@@ -89,7 +90,7 @@ class Player {
       button.addEventListener("click", () => this.go(step));
       this.strip.append(button);
       this.motion.set(step);
-      this.stage.draw(canvas, this.motion.scene, new Orbit(() => {}), this.motion.view, 160);
+      this.stage.draw(canvas, this.motion.scene, new Orbit(() => {}, this.motion.motion.mesh), this.motion.view, 160);
     }
   }
 

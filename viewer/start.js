@@ -25,8 +25,14 @@ function startViews() {
   for (const [id, , makeView] of parts) whenShown(id, () => showView(id, makeView));
 
   // what was never looked at is to be on paper, too
-  const prepare = () => parts.forEach(([id, , makeView]) => showView(id, makeView));
-  (window.requestIdleCallback || setTimeout)(prepare, { timeout: 4000 });
+  const prepare = async () => {
+    for (const [id, , makeView] of parts) {
+      await new Promise((idle) => (window.requestIdleCallback || setTimeout)(idle));
+      if (!views[id]) showView(id, makeView);
+      await views[id].ready;
+    }
+  };
+  prepare();
   window.addEventListener("beforeprint", () => {
     for (const view of Object.values(views)) if (view.draw) view.draw();
   });

@@ -29,6 +29,19 @@ function sortTable(table, column, state) {
     return order || came(a) - came(b);
   });
   body.append(...rows);
+  markGroups(table, state === "none" || column === 0);
+}
+
+/** Draws rows together whose heads have all but their last word in common: "falling, Original", "falling, Fiedler". */
+function markGroups(table, wanted) {
+  let last = null;
+  for (const row of table.tBodies[0].rows) {
+    const words = row.cells[0].textContent.split(", ");
+    const group = words.length > 1 ? words.slice(0, -1).join(", ") : null;
+    row.classList.toggle("grouped", wanted && group !== null);
+    row.classList.toggle("begins", wanted && group !== last && last !== null);
+    last = group;
+  }
 }
 
 function makeSortable(table) {
@@ -36,6 +49,7 @@ function makeSortable(table) {
   const rows = table.tBodies[0] ? [...table.tBodies[0].rows] : [];
   if (rows.length < 2) return;
   rows.forEach((row, i) => { row.dataset.came = i; });
+  markGroups(table, true);
   heads.forEach((head, column) => {
     const button = document.createElement("button");
     button.type = "button";
@@ -63,9 +77,9 @@ function holdCaption(table) {
 /** A field above a long table that leaves the rows with all of its words. */
 function makeFilter(table) {
   const rows = table.tBodies[0] ? [...table.tBodies[0].rows] : [];
-  if (rows.length < longTable) return;
+  if (rows.length < longTable || !table.querySelector(".number")) return;
   const words = rows.map((row) => row.textContent.toLowerCase());
-  const input = make("input", { type: "search", placeholder: "dragon fiedler", autocomplete: "off" });
+  const input = make("input", { type: "search", placeholder: rows[1].cells[0].textContent.replaceAll(",", ""), autocomplete: "off" });
   const count = make("output", {});
   input.addEventListener("input", () => {
     const wanted = input.value.toLowerCase().split(/\s+/);

@@ -44,7 +44,6 @@ function startTabs() {
       continue;
     }
     tab.id = `tab-${panel.id}`;
-    tab.dataset.name = tab.textContent;  // holds the place of the bolder letters
     tab.setAttribute("role", "tab");
     tab.setAttribute("aria-controls", panel.id);
     panel.setAttribute("role", "tabpanel");
