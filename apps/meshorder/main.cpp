@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
       "  meshorder info   dragon.veg                  counts, spans, is it in a good order?\n"
       "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
       "  meshorder simulate falling --mesh dragon.veg an elastic body in motion, timed\n"
-      "  meshorder reproduce -o results               the paper's study on this machine, as a page\n",
+      "  meshorder reproduce -o results               the paper's study on this machine, as a page\n"
       "  meshorder report dragon.veg                  all of it as a page for the browser\n",
       "meshorder"};
   app.set_version_flag("--version", MESHORDER_VERSION);

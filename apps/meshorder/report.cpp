@@ -11,11 +11,9 @@
 #include <meshorder/study/machine.hpp>
 #include <meshorder/study/mesh_study.hpp>
 #include <meshorder/study/results_json.hpp>
-
-#include <fmt/chrono.h>
+#include <meshorder/study/timestamp.hpp>
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -128,7 +126,7 @@ void report_on_meshes(const Console& console, const ReportArguments& arguments) 
   (void)OutputFile(output);  // whether it can be written is known before the work begins
   Progress progress(!console.quiet());
   Page page;
-  page.results.began = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  page.results.began = timestamp_now();
   page.results.runs = 1;
   page.results.reference = kAsItIs;
   page.results.orderings = orderings_of_report();

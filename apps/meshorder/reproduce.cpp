@@ -3,7 +3,9 @@
 #include "console.hpp"
 #include "interruption.hpp"
 #include "progress.hpp"
-#include <meshorder/base/error.hpp>
+#include <meshorder/report/study_page.hpp>
+#include <meshorder/report/tables.hpp>
+#include <meshorder/study/results_json.hpp>
 #include <meshorder/study/scenario.hpp>
 #include <meshorder/study/study_run.hpp>
 
@@ -45,6 +47,23 @@ StudyPlan plan_of(const ReproduceArguments& arguments) {
   return plan;
 }
 
+/// Makes the report of what is there, also of a study that was stopped, and says what it found.
+void report(const Console& console, const StudyFolder& folder, Progress& progress) {
+  progress.stage("the report", 0.99, 1);
+  const WrittenReport written = write_report(folder);
+  progress.finish();
+  console.log_notes(written.notes);
+  const StudyResults results = read_results(folder.results());
+  for (const std::string& finding : findings_of(results)) console.print("{}\n", finding);
+  for (const std::filesystem::path& file : written.files) {
+    if (file.extension() != ".svg") console.print("wrote {}", file.string());
+  }
+  console.print_json({{"folder", folder.root().string()},
+                      {"page", folder.page().string()},
+                      {"notes", written.notes},
+                      {"results", to_json(results)}});
+}
+
 void run(const ReproduceArguments& arguments) {
   const Console console(arguments);
   const StudyPlan plan = plan_of(arguments);
@@ -56,7 +75,7 @@ void run(const ReproduceArguments& arguments) {
   observer.note = [&](const std::string& sentence) { console.log("{}", sentence); };
   observer.stop = [] { return Interruption::signal() != 0; };
   const bool finished = run_study(plan, folder, std::filesystem::read_symlink("/proc/self/exe"), observer);
-  progress.finish();
+  if (finished || std::filesystem::exists(folder.results())) report(console, folder, progress);
   if (!finished)
     throw Stopped(
         fmt::format("stopped; what is finished stands in {}, and the same command goes on from there",
