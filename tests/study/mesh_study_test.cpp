@@ -166,6 +166,18 @@ TEST(MeshStudy, GivesTheSameOnEveryRun) {
   EXPECT_EQ(one.record, other.record);
 }
 
+TEST(MeshStudy, OrdersAreTheSameOnOneThread) {
+  const Mesh mesh = make_ball({.size = 12});
+  MeshStudyOptions options = without_clock();
+  const OrderedMesh on_all = study_mesh(mesh, kOrderings, options);
+  options.threads = 1;
+  const OrderedMesh on_one = study_mesh(mesh, kOrderings, options);
+  for (std::size_t i = 0; i < kOrderings.size(); ++i) {
+    EXPECT_EQ(on_all.orders[i].vertices, on_one.orders[i].vertices);
+    EXPECT_EQ(on_all.orders[i].cells, on_one.orders[i].cells);
+  }
+}
+
 TEST(MeshStudy, RefusesUnknownMethods) {
   EXPECT_THROW(study_mesh(make_grid({.size = 2}), {{"a", "A", "sorted", "original"}}, without_clock()),
                InvalidArgument);

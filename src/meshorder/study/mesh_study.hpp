@@ -21,6 +21,7 @@ struct MeshStudyOptions {
   OrderingOptions ordering = {};
   /// Empty: this machine's and the paper's. Times are predicted for the first.
   std::vector<NamedCaches> hierarchies = {};
+  int threads = 0;      ///< that orders are computed with when their cost is timed; 0: all
   bool measure = true;  ///< time the kernels
   TimingOptions timing = {};
   /// Is told what is done, and which fraction of the time is over by then.
