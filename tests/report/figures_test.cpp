@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -204,20 +205,37 @@ TEST_F(Figures, OfPredictionsHaveAMarkForEachOrderOfAMesh) {
 }
 
 TEST_F(Figures, ShowHostileNamesAsTheyAre) {
-  const std::string hostile = "it's \"%d %%\" \\n <e> & {/Bold f} $1 `ls` @h |_^ #~ id='x'";
-  StudyResults results = sample_results();
-  results.meshes[0].name = hostile;
-  results.meshes[0].hierarchies[0].name = hostile;
-  results.orderings[1].title = hostile;
-  for (ScenarioRecord& scenario : results.scenarios) scenario.mesh = hostile;
-  results.scenarios[0].name = hostile;
-  for (const Figure& figure : figures_of(results)) {
-    const Svg svg(figure.svg);
-    ASSERT_TRUE(svg.well_formed()) << figure.name;
-    if (figure.section != "prediction") {
-      EXPECT_TRUE(svg.says(hostile)) << figure.name;
+  for (const std::string hostile : {"it's \"%d %%\" \\n <e> & x", "{/Bold f} $1 `ls` @h |_^",
+                                    "id='x' xlink:href='#y'", "</text><script>", "]]>&amp;"}) {
+    StudyResults results = sample_results();
+    results.meshes[0].name = hostile;
+    results.meshes[0].hierarchies[0].name = hostile;
+    results.orderings[1].title = hostile;
+    for (ScenarioRecord& scenario : results.scenarios) scenario.mesh = hostile;
+    results.scenarios[0].name = hostile;
+    for (const Figure& figure : figures_of(results)) {
+      const Svg svg(figure.svg);
+      ASSERT_TRUE(svg.well_formed()) << figure.name;
+      if (figure.section != "prediction") {
+        EXPECT_TRUE(svg.says(hostile)) << figure.name << " does not say " << hostile;
+      }
+      EXPECT_EQ(figure.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-"), std::string::npos);
     }
-    EXPECT_EQ(figure.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-"), std::string::npos);
+  }
+}
+
+TEST_F(Figures, ShortenLongNamesBetweenCharacters) {
+  StudyResults results = sample_results();
+  for (const auto& [name, expected] :
+       {std::pair<std::string, std::string>{"scenario of forty-seven letters, all of them",
+                                            "scenario of forty-seven…"},
+        {"ééééééééééééééééééééééééééééé", "ééééééééééééééééééééééé…"},
+        {"漢漢漢漢漢漢漢漢漢漢漢漢漢漢漢漢漢漢漢漢", "漢漢漢漢漢漢漢漢漢漢漢漢漢漢漢…"},
+        {"%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%", "%%%%%%%%%%%%%%%%…"}}) {
+    results.scenarios[0].name = name;
+    const Svg svg = drawn(results, "speedup");
+    ASSERT_TRUE(svg.well_formed());
+    EXPECT_TRUE(svg.says(expected)) << name << ": " << testing::PrintToString(svg.texts());
   }
 }
 

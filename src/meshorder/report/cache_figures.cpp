@@ -81,7 +81,7 @@ std::string panel(const StudyResults& results, const MeshRecord& mesh, std::size
          fmt::format(
              "set title {}\nset label 1 {} at graph 0.97, 0.9 right textcolor '#222222'\n"
              "set yrange [0:{}]\nset format y '{}'\nset xrange [0.5:{}]\nset xtics scale 0 ({})\nplot {}\n",
-             kernel == 0 ? gnuplot_quoted(caches.name) : "''", gnuplot_quoted(title_of(kKernels[kernel])),
+             kernel == 0 ? gnuplot_key(caches.name, 32) : "''", gnuplot_quoted(title_of(kKernels[kernel])),
              std::max(1.3 * most_misses(mesh, kernel), 1e-3), hierarchy == 0 ? "%g %%" : "",
              static_cast<double>(caches.caches.level_bytes.size()) + 0.5, level_tics(caches.caches),
              fmt::join(plots, ", \\\n  "));
@@ -94,7 +94,7 @@ std::string key(const StudyResults& results, const MeshRecord& mesh) {
     if (find_order(mesh, ordering.name) == nullptr) continue;
     const OrderStyle style = style_of(results, ordering.name);
     plots.push_back(fmt::format("NaN with boxes fillstyle pattern {} linecolor '{}' title {}", style.pattern,
-                                style.colour, gnuplot_quoted(ordering.title)));
+                                style.colour, gnuplot_key(title_of(results, ordering.name))));
   }
   return fmt::format(
       "unset border\nunset tics\nunset grid\nset key center center horizontal textcolor '#222222' "

@@ -57,19 +57,41 @@ std::string printable(std::string_view text) {
   return result;
 }
 
+constexpr std::ptrdiff_t kLongest = 24;   ///< characters of what stands beside an axis
+constexpr std::ptrdiff_t kTicBytes = 49;  ///< that gnuplot keeps of a tic's label
+
+/// UTF-8 text of at most so many characters and bytes, with "…" in place of what is cut off.
+std::string shortened(std::string_view text, std::ptrdiff_t characters, std::ptrdiff_t bytes) {
+  const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; };
+  if (std::count_if(text.begin(), text.end(), begins_character) <= characters && std::ssize(text) <= bytes) {
+    return std::string(text);
+  }
+  constexpr std::string_view kCut = "…";
+  std::size_t end = 0;
+  for (std::size_t i = 1; i <= text.size(); ++i) {
+    if (i < text.size() && !begins_character(text[i])) continue;
+    const auto count =
+        std::count_if(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), begins_character);
+    if (count + 1 > characters || static_cast<std::ptrdiff_t>(i + kCut.size()) > bytes) break;
+    end = i;
+  }
+  return std::string(text.substr(0, end)) + std::string(kCut);
+}
+
 std::string read(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Makes ids and references to them begin with `prefix`. Looks into tags alone, not at what a picture says.
+/// Makes ids and references to them begin with `prefix`, and escapes '>' in what the picture says, where
+/// "]]>" is no XML.
 std::string with_own_ids(const std::string& svg, const std::string& prefix) {
   static const std::regex id("(\\sid=['\"]|xlink:href=['\"]#|url\\(#)");
   std::string result;
   for (std::size_t begin = 0; begin < svg.size();) {
     const std::size_t tag = std::min(svg.find('<', begin), svg.size());
-    const std::size_t end = std::min(svg.find('>', tag), svg.size());
-    result += svg.substr(begin, tag - begin);
+    const std::size_t end = std::min(svg.find('>', tag), svg.size() - 1) + 1;
+    for (const char c : svg.substr(begin, tag - begin)) result += c == '>' ? "&gt;" : std::string(1, c);
     result += std::regex_replace(svg.substr(tag, end - tag), id, "$&" + prefix);
     begin = end;
   }
@@ -127,9 +149,13 @@ std::string gnuplot_quoted(std::string_view text) {
   return result + "'";
 }
 
+std::string gnuplot_key(std::string_view text, int characters) {
+  return gnuplot_quoted(shortened(text, characters, std::ssize(text) + 3));
+}
+
 std::string gnuplot_tic(std::string_view text) {
   std::string doubled;
-  for (const char c : text) {
+  for (const char c : shortened(text, kLongest, kTicBytes - std::count(text.begin(), text.end(), '%'))) {
     if (c == '%') doubled += '%';
     doubled += c;
   }

@@ -22,10 +22,14 @@ struct Drawing {
 /// gnuplot is not installed, and with its last line where it fails.
 std::string draw(const Drawing& drawing);
 
-/// A string as gnuplot reads it, for titles and keys: with quotes; control characters become blanks.
+/// A string as gnuplot reads it, with quotes; control characters become blanks.
 std::string gnuplot_quoted(std::string_view text);
 
-/// The same for the label of a tic, where '%' begins a format.
+/// The same for an entry of a key, where long ones push others out: not more than so many characters.
+std::string gnuplot_key(std::string_view text, int characters = 24);
+
+/// The same for the label of a tic, where '%' begins a format: not more than 24 characters, nor than the 49
+/// bytes that gnuplot keeps.
 std::string gnuplot_tic(std::string_view text);
 
 }  // namespace meshorder

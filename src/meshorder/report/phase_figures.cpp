@@ -50,7 +50,8 @@ void add_scenario(Bars& bars, const StudyResults& results, const ScenarioRecord&
       headed = true;
     }
     bars.height += 1;
-    bars.tics.push_back(fmt::format("{} {}", gnuplot_tic(ordering.title), -bars.height + 0.5));
+    bars.tics.push_back(
+        fmt::format("{} {}", gnuplot_tic(title_of(results, ordering.name)), -bars.height + 0.5));
     const Phases phases = phases_of(*order);
     double left = 0;
     for (std::size_t p = 0; p < kPhases.size(); ++p) {

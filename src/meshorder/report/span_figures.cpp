@@ -73,7 +73,7 @@ std::vector<Figure> span_figures(const StudyResults& results) {
       plots.push_back(fmt::format(
           "${} using 1:2 with linespoints linecolor '{}' linewidth 1.3 dashtype {} pointtype {} "
           "pointsize 0.55 title {}",
-          block, curve.style.colour, curve.style.dashes, curve.style.filled, gnuplot_quoted(curve.title)));
+          block, curve.style.colour, curve.style.dashes, curve.style.filled, gnuplot_key(curve.title)));
     }
     if (plots.empty()) continue;
     Figure figure{

@@ -72,7 +72,7 @@ std::vector<Figure> speedup_figures(const StudyResults& results) {
     plots.push_back(
         fmt::format("$ours{} using 1:2:3:4 with xerrorbars linecolor '{}' linewidth 1.6 "
                     "pointtype {} pointsize 0.75 title {}",
-                    o, style.colour, style.filled, gnuplot_quoted(orders[o]->title)));
+                    o, style.colour, style.filled, gnuplot_key(title_of(results, orders[o]->name))));
     if (papers.empty()) continue;
     has_paper = true;
     data += data_block(fmt::format("paper{}", o), papers);
