@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace meshorder {
@@ -47,6 +48,13 @@ double most_misses(const MeshRecord& mesh, std::size_t kernel) {
   return most;
 }
 
+/// 1, 2 or 5 times a power of ten: what divides an axis up to `most` into two to five parts.
+double step_of_axis(double most) {
+  const double power = std::pow(10, std::floor(std::log10(most)));
+  const double leading = most / power;
+  return power * (leading < 2 ? 0.5 : leading < 5 ? 1 : 2);
+}
+
 /// "'L1 48 KB' 1, 'L2 1 MB' 2"
 std::string level_tics(const Caches& caches) {
   std::vector<std::string> tics;
@@ -77,14 +85,16 @@ std::string panel(const StudyResults& results, const MeshRecord& mesh, std::size
                     block, style.pattern, style.colour));
   }
   if (plots.empty()) return {};
-  return data +
-         fmt::format(
-             "set title {}\nset label 1 {} at graph 0.97, 0.9 right textcolor '#222222'\n"
-             "set yrange [0:{}]\nset format y '{}'\nset xrange [0.5:{}]\nset xtics scale 0 ({})\nplot {}\n",
-             kernel == 0 ? gnuplot_key(caches.name, 32) : "''", gnuplot_quoted(title_of(kKernels[kernel])),
-             std::max(1.3 * most_misses(mesh, kernel), 1e-3), hierarchy == 0 ? "%g %%" : "",
-             static_cast<double>(caches.caches.level_bytes.size()) + 0.5, level_tics(caches.caches),
-             fmt::join(plots, ", \\\n  "));
+  const double most = std::max(most_misses(mesh, kernel), 1e-3);
+  return data + fmt::format(
+                    "set title {}\nset label 1 {} at graph 0.97, 0.9 right textcolor '#222222'\n"
+                    "set yrange [0:{}]\nset ytics 0,{},{}\nset format y '{}'\nset xrange [0.5:{}]\n"
+                    "set xtics scale 0 ({})\nplot {}\n",
+                    kernel == 0 ? gnuplot_key(caches.name, 32) : "''",
+                    gnuplot_quoted(title_of(kKernels[kernel])), 1.3 * most, step_of_axis(most), 1.05 * most,
+                    hierarchy == 0 ? "%g %%" : "",
+                    static_cast<double>(caches.caches.level_bytes.size()) + 0.5, level_tics(caches.caches),
+                    fmt::join(plots, ", \\\n  "));
 }
 
 /// A row above the panels.
