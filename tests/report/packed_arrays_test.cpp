@@ -71,7 +71,7 @@ TEST(PackedArrays, GiveBackFramesWithinHalfAStep) {
   PackedArrays arrays;
   const auto array = arrays.add_frames(frames);
   EXPECT_EQ(array["shape"].dump(), "[20,50,3]");
-  const double half_step = 1.0 / 8192 * 1.001;
+  const double half_step = 1.0 / 4096 * 1.001;
   expect_near(unpacked_places(arrays.script_elements(), array), all, {half_step, half_step, half_step});
 }
 

@@ -17,7 +17,7 @@ namespace meshorder {
 namespace {
 
 constexpr double kSteps = 65535;       // that 16 bits number
-constexpr double kStepsOfBody = 8192;  // along the longest side of a body that moves
+constexpr double kStepsOfBody = 4096;  // along the longest side of a body that moves
 constexpr double kNoExtent = 1;        // what is flat needs any step
 
 std::string compressed(const std::vector<char>& bytes) {

@@ -32,7 +32,7 @@ class PackedArrays {
   nlohmann::ordered_json add_places(std::span<const Point> places);
 
   /// Places of the same vertices in each frame, as differences from the frame before. A step is one
-  /// 8,192nd of the first frame's longest side, which is not seen and leaves less to compress, or wider where
+  /// 4,096th of the first frame's longest side, which is not seen and leaves less to compress, or wider where
   /// the frames do not fit in 65,536 of them. Throws InvalidArgument when frames differ in size.
   nlohmann::ordered_json add_frames(const std::vector<std::vector<Point>>& frames);
 
