@@ -3,15 +3,18 @@
 
 MESHORDER_PAGE names a page to test instead of the one made here; MESHORDER_PICTURES a folder that gets pictures of it.
 """
+import base64
 import json
 import os
 import pathlib
 import re
+import zlib
 
 import numpy
 import pytest
 
 import browser
+import conftest
 import sample_page
 
 DESKTOP = (1280, 900)
@@ -34,11 +37,16 @@ PARTS = {
 def path(tmp_path_factory):
     if os.environ.get("MESHORDER_PAGE"):
         return pathlib.Path(os.environ["MESHORDER_PAGE"])
+    folder = tmp_path_factory.mktemp("report")
+    command = conftest.Command(folder)
+    if pathlib.Path(conftest.MESHORDER).exists() and command.run("reproduce", "--help").returncode == 0:
+        mesh = command.json("models", "make", "ball", "--size", "10")["models"][0]["path"]
+        command.ok("reproduce", "--quick", "--scenario", "falling", "--scenario", "bounce", "--mesh", mesh, "-o", "study")
+        return folder / "study" / "report.html"
     if not sample_page.THREE.exists():
         pytest.skip("needs libjs-three")
-    made = tmp_path_factory.mktemp("report") / "report.html"
-    sample_page.write_sample(made)
-    return made
+    sample_page.write_sample(folder / "report.html")
+    return folder / "report.html"
 
 
 @pytest.fixture(scope="module")
@@ -134,20 +142,19 @@ def test_a_heading_sorts_its_table_and_gives_the_rows_back(page):
 
 def test_sorting_is_by_number_and_leaves_what_is_missing_last(page):
     page.run("""
-        const table = make("table", {id: "made"}, make("thead", {}, make("tr", {}, make("th", {}, "a"), make("th", {}, "b"))),
-                           make("tbody"));
-        for (const [name, value] of [["p", 10], ["q", ""], ["r", 9], ["s", -2], ["t", 9]]) {
+        const heads = ["name", "number", "word"].map((title) => make("th", {}, title));
+        const table = make("table", {id: "made"}, make("thead", {}, make("tr", {}, ...heads)), make("tbody"));
+        for (const [name, value, word] of [["p", 10, "b"], ["q", "", "c"], ["r", 9, ""], ["s", -2, "d"], ["t", 9, "a"]]) {
           const cell = make("td", {}, String(value));
           if (value !== "") cell.dataset.value = value;
-          table.tBodies[0].append(make("tr", {}, make("th", {}, name), cell));
+          table.tBodies[0].append(make("tr", {}, make("th", {}, name), cell, make("td", {}, word)));
         }
         document.querySelector("main").append(table);
         makeSortable(table);""")
-    button = "document.querySelectorAll('#made thead button')[1].click()"
-    page.run(button)
-    assert column(page, "#made", 0) == ["s", "r", "t", "p", "q"]
-    page.run(button)
-    assert column(page, "#made", 0) == ["p", "r", "t", "s", "q"]
+    for heading, up, down in ((1, "srtpq", "prtsq"), (2, "tpqsr", "sqptr")):
+        for wanted in (up, down):
+            page.run("document.querySelectorAll('#made thead button')[arguments[0]].click()", heading)
+            assert "".join(column(page, "#made", 0)) == wanted
 
 
 def test_a_long_table_is_filtered_by_words(page):
@@ -173,6 +180,32 @@ def test_tables_hold_what_the_results_say(page):
     for scenario in results["scenarios"]:
         for order in scenario.get("orders", []):
             assert order["time"]["mean"] in cells["table-2"]
+
+
+def test_arrays_are_unpacked_as_they_were_packed(page, path):
+    text = path.read_text()
+    manifest = json.loads(page.run("return document.getElementById('manifest').textContent"))
+
+    def unpacked(array):
+        packed = re.search(f'id="{array["blob"]}">([^<]*)<', text).group(1)
+        numbers = numpy.frombuffer(zlib.decompress(base64.b64decode(packed)), dtype=array["type"]).reshape(array["shape"])
+        return numpy.cumsum(numbers, axis=0, dtype=array["type"]) if array.get("delta") else numbers
+
+    frames = manifest["motions"][0]["frames"]
+    ranks = next(iter(manifest["meshes"][0]["ranks"].values()))
+    for array in (frames, ranks):
+        found = page.driver.execute_async_script(
+            "const done = arguments[1]; loadNumbers(arguments[0]).then((numbers) => done([...numbers]));", array)
+        assert (numpy.array(found) == unpacked(array).ravel()).all()
+
+    middle = frames["shape"][0] // 2
+    places = page.driver.execute_async_script("""
+        const [frames, frame, done] = arguments;
+        const vertices = frames.shape[1];
+        loadNumbers(frames).then((numbers) => done([...placesOf(frames, numbers, frame * vertices, vertices)]));
+        """, frames, middle)
+    expected = frames["offset"] + numpy.array(frames["scale"]) * unpacked(frames)[middle]
+    assert numpy.allclose(numpy.reshape(places, (-1, 3)), expected, atol=1e-6 * numpy.abs(expected).max())
 
 
 def test_the_results_can_be_saved(page):
@@ -254,7 +287,8 @@ def test_the_player_plays_and_stops(page):
     assert not is_blank(first)
     page.run(f"{button}.click()")
     page.wait("document.querySelector('#motion-view output').textContent.split(' ')[0] !== parameters[0]", str(before))
-    page.wait("(window.seen = (window.seen || new Set())).add(document.querySelector('#motion-view output').textContent).size > 4")
+    page.wait("(window.seen = (window.seen || new Set())).add(document.querySelector('#motion-view output').textContent)"
+              ".size > Math.min(views.motion.motion.lastStep, 4)")
     page.run(f"{button}.click()")
     assert (page.pixels("canvas.film") != first).any()
     held = step()
@@ -307,6 +341,18 @@ def test_on_paper_everything_stands_one_after_another(page):
     page.media("screen")
 
 
+def test_what_a_study_does_not_hold_has_no_tab(page, path, tmp_path):
+    """A report of a mesh alone has neither scenarios nor motions."""
+    of_a_mesh = tmp_path / "mesh.html"
+    of_a_mesh.write_text(re.sub(r'data-has="[a-z ]*"', 'data-has="meshes"', path.read_text(), count=1))
+    page.open(of_a_mesh)
+    left = [part for part in PARTS if part not in ("times", "motion", "by-phase")]
+    assert page.run("return [...document.querySelectorAll('.tabs a')].map((one) => one.hash.slice(1))") == left
+    for part in left:
+        page.tab(part)
+        assert shown(page, f"#{part} h2")
+
+
 def test_without_scripts_everything_stands_one_after_another(chromium, path):
     chromium.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
     try:
@@ -339,12 +385,12 @@ def test_without_webgl_it_says_so(page, path):
 def test_pictures(page, path, tmp_path):
     """The README's pictures, when MESHORDER_PICTURES says where they go."""
     folder = pathlib.Path(os.environ.get("MESHORDER_PICTURES") or tmp_path)
-    for name, (width, height), phone in (("desktop", DESKTOP, False), ("phone", PHONE, True)):
-        page.resize(width, height, phone)
+    for name, (width, height) in (("desktop", (1080, 780)), ("phone", PHONE)):
+        page.resize(width, height)
         page.open(path)
         for part in ("findings", "meshes", "motion"):
             page.tab(part)
             page.run("scrollTo(0, 0)")
             picture = folder / f"report-{part}-{name}.png"
             page.picture(picture)
-            assert picture.stat().st_size > 10_000
+            assert 10_000 < picture.stat().st_size < 300_000
