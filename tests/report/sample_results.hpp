@@ -75,6 +75,7 @@ inline std::vector<RunRecord> sample_runs(const ScenarioRecord& scenario, double
 /// Fills the orders of a scenario of 4 steps, and all that a study computes from their runs.
 inline void add_sample_orders(ScenarioRecord& scenario, const std::vector<StudyOrdering>& orderings,
                               const std::vector<SampleTimes>& times) {
+  scenario.fingerprint = "5eed";
   scenario.steps = 4;
   scenario.turn = 2;
   scenario.fixed_addresses = true;

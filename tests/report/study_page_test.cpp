@@ -31,6 +31,7 @@ class StudyPage : public testing::Test {
     ScenarioRecord scenario;
     scenario.name = "falling";
     scenario.mesh = "ball";
+    scenario.fingerprint = "5eed";
     scenario.frame_steps = {0, 5, 10, 15, 20};
     results.scenarios = {scenario};
 

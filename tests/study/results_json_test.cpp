@@ -92,6 +92,7 @@ StudyResults sample() {
                         .method = "backward-euler",
                         .material = "corotational",
                         .mesh = "grid",
+                        .fingerprint = "5eed",
                         .steps = 3,
                         .turn = 2,
                         .interleaved = false,

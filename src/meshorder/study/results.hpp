@@ -149,7 +149,7 @@ struct ScenarioRecord {
   std::string method;       ///< "backward-euler" or "admm"
   std::string material;     ///< "corotational", "springs"
   std::string mesh;         ///< MeshRecord::name
-  std::string fingerprint;  ///< of mesh and parameters, whatever the order
+  std::string fingerprint;  ///< of the mesh, and of the parameters in the first order
   Index steps = 0;
   Index turn = 0;                  ///< so many steps of one order were timed, then as many of the next
   bool interleaved = true;         ///< false: one order after another, since memory did not hold all

@@ -177,6 +177,7 @@ class Study {
     mesh.cell_blocks.clear();  // what is compared is the orders, not a file's layout
     MeshStudyOptions options;
     options.ordering = plan_.ordering;
+    options.threads = plan_.threads;
     options.progress = [&](std::string_view what, double fraction) {
       observer_.stage(subject.mesh + ": " + std::string(what), from + fraction * (to - from), to);
     };
