@@ -31,7 +31,7 @@ class MotionScene {
     this.scene.add(new THREE.Mesh(this.geometry,
       new THREE.MeshLambertMaterial({ color: bodyColour, side: THREE.DoubleSide })));
     if (obstacle) this.addObstacle(obstacle);
-    this.view = this.wholeView();
+    this.view = this.wholeView(obstacle);
   }
 
   addObstacle({ places, triangles }) {
@@ -44,17 +44,16 @@ class MotionScene {
     return placesOf(this.motion.frames, this.numbers, frame * this.vertices, this.vertices, places);
   }
 
-  /** A ball around everything that the body passes: corners of its box in some frames will do. */
-  wholeView() {
+  /** A ball around all that the body passes, and around an obstacle that is not much larger: some frames will do. */
+  wholeView(obstacle) {
     const frames = this.motion.frames.shape[0];
     const some = [];
     for (let i = 0; i < frames; i += Math.max(1, Math.floor(frames / 12))) some.push(i);
     if (some[some.length - 1] !== frames - 1) some.push(frames - 1);
-    const corners = some.flatMap((frame) => {
-      const { center, radius } = ballAround(this.placesAt(frame, this.before));
-      return [-1, 1].flatMap((side) => center.map((x) => x + side * radius * 0.8));
-    });
-    return ballAround(corners);
+    const passed = some.flatMap((frame) => [...this.placesAt(frame, this.before)]);
+    const view = ballAround(passed);
+    const withAll = obstacle ? ballAround(passed.concat([...obstacle.places])) : view;
+    return withAll.radius < 1.5 * view.radius ? withAll : view;
   }
 
   /** Places the body as it was after so many steps, which need not be whole. */

@@ -16,7 +16,7 @@ function meanSpan(results, mesh, ordering) {
   const record = ((results && results.meshes) || []).find((one) => one.name === mesh);
   const order = record && (record.orders || []).find((one) => one.ordering === ordering);
   const mean = order && order.span && order.span.mean;
-  return typeof mean === "number" ? mean : null;
+  return mean > 0 ? mean : null;
 }
 
 function spanWords(results, mesh, ordering) {
