@@ -114,6 +114,10 @@ void add_reproduce(CLI::App& app) {
       ->capture_default_str();
   subcommand->add_option("--steps", arguments->steps, "Steps, in the place of the scenarios' own")
       ->check(CLI::Range(1, 1'000'000));
+  subcommand
+      ->add_option("--budget", plan.kernel_seconds, "Seconds to spend on running kernels, for each mesh")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   subcommand->add_flag("--no-pin", arguments->no_pin,
                        "Leave threads to the system, do not bind them to processors");
   add_ordering_options(*subcommand, plan.ordering);

@@ -41,7 +41,8 @@ def path(tmp_path_factory):
     command = conftest.Command(folder)
     if pathlib.Path(conftest.MESHORDER).exists() and command.run("reproduce", "--help").returncode == 0:
         mesh = command.json("models", "make", "ball", "--size", "10")["models"][0]["path"]
-        command.ok("reproduce", "--quick", "--scenario", "falling", "--scenario", "bounce", "--mesh", mesh, "-o", "study")
+        command.ok("reproduce", "--quick", "--scenario", "falling", "--scenario", "bounce", "--mesh", mesh,
+                   "--budget", "1", "-o", "study")
         return folder / "study" / "report.html"
     if not sample_page.THREE.exists():
         pytest.skip("needs libjs-three")

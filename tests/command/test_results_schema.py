@@ -17,7 +17,7 @@ def study(tmp_path_factory):
     command = conftest.Command(tmp_path_factory.mktemp("study"))
     if "\n  reproduce " not in command.ok("--help").stdout:
         pytest.skip("needs `meshorder reproduce`")
-    command.ok("reproduce", "--quick", "--scenario", "bounce", "--mesh", "grid-4", "-o", "study")
+    command.ok("reproduce", "--quick", "--scenario", "bounce", "--mesh", "grid-4", "--budget", "0.1", "-o", "study")
     return command.folder / "study"
 
 

@@ -31,6 +31,7 @@ struct StudyPlan {
   int threads = 1;
   std::optional<Index> steps;              ///< in the place of the scenarios' own
   std::optional<double> scenario_seconds;  ///< or about as many as a scenario does in this time, 8 at least
+  double kernel_seconds = 12;              ///< to spend on running kernels, for each mesh
   bool pin = true;                         ///< bind threads to processors
   OrderingOptions ordering = {};
 };

@@ -178,6 +178,7 @@ class Study {
     MeshStudyOptions options;
     options.ordering = plan_.ordering;
     options.threads = plan_.threads;
+    options.timing.budget_seconds = plan_.kernel_seconds;
     options.progress = [&](std::string_view what, double fraction) {
       observer_.stage(subject.mesh + ": " + std::string(what), from + fraction * (to - from), to);
     };
