@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,6 +61,22 @@ class Svg {
     return std::find(texts_.begin(), texts_.end(), text) != texts_.end();
   }
   [[nodiscard]] const std::multiset<std::string>& ids() const { return ids_; }
+  /// Whether a horizontal line of that colour goes from left to right.
+  [[nodiscard]] bool has_line(double left, double right, int colour) const {
+    for (vtkXMLDataElement* const path : paths_) {
+      const char* const painted = path->GetAttribute("stroke");
+      if (painted == nullptr || colour_of(painted) != colour) continue;
+      std::istringstream strokes(path->GetAttribute("d"));
+      for (std::string from, to; strokes >> from >> to;) {
+        Point a{};
+        Point b{};
+        if (std::sscanf(from.c_str(), "M%lf,%lf", a.data(), &a[1]) != 2) continue;
+        if (std::sscanf(to.c_str(), "L%lf,%lf", b.data(), &b[1]) != 2) continue;
+        if (a[1] == b[1] && std::abs(a[0] - left) < 0.1 && std::abs(b[0] - right) < 0.1) return true;
+      }
+    }
+    return false;
+  }
   /// The centres of marks of that point type and colour, 0xrrggbb.
   [[nodiscard]] std::vector<Point> marks(int type, int colour) const {
     std::vector<Point> centres;
@@ -67,9 +84,7 @@ class Svg {
       const std::string mark = use->GetAttribute("xlink:href");
       const char* const painted = use->GetAttribute("color");
       if (!mark.ends_with("gpPt" + std::to_string(type - 1)) || painted == nullptr) continue;
-      std::array<int, 3> rgb{};
-      EXPECT_EQ(std::sscanf(painted, "rgb(%d,%d,%d)", rgb.data(), &rgb[1], &rgb[2]), 3) << painted;
-      if (65536 * rgb[0] + 256 * rgb[1] + rgb[2] != colour) continue;
+      if (colour_of(painted) != colour) continue;
       Point centre{};
       EXPECT_EQ(std::sscanf(use->GetAttribute("transform"), "translate(%lf,%lf)", centre.data(), &centre[1]),
                 2);
@@ -79,10 +94,18 @@ class Svg {
   }
 
  private:
+  /// 0xrrggbb of "rgb(  0, 114, 178)", -1 of a name
+  static int colour_of(const char* painted) {
+    std::array<int, 3> rgb{};
+    if (std::sscanf(painted, "rgb(%d,%d,%d)", rgb.data(), &rgb[1], &rgb[2]) != 3) return -1;
+    return 65536 * rgb[0] + 256 * rgb[1] + rgb[2];
+  }
+
   void collect(vtkXMLDataElement* element) {
     const std::string name = element->GetName();
     if (name == "text") texts_.emplace_back(element->GetCharacterData());
     if (name == "use") uses_.push_back(element);
+    if (name == "path") paths_.push_back(element);
     if (const char* const id = element->GetAttribute("id")) ids_.insert(id);
     for (int i = 0; i < element->GetNumberOfNestedElements(); ++i) collect(element->GetNestedElement(i));
   }
@@ -90,6 +113,7 @@ class Svg {
   vtkSmartPointer<vtkXMLDataElement> root_;
   std::vector<std::string> texts_;
   std::vector<vtkXMLDataElement*> uses_;
+  std::vector<vtkXMLDataElement*> paths_;
   std::multiset<std::string> ids_;
 };
 
@@ -152,12 +176,18 @@ TEST_F(Figures, OfSpeedupsHaveAMarkForEachOfOursAndThePapers) {
 
   // where they stand: 25 and 12 % here, 26.7 and 12.1 % in the paper
   std::set<double> ours{fiedler[0][0], fiedler[1][0], fiedler[2][0]};
-  double pixels_of_percent = (papers[0][0] - papers[1][0]) / (26.7 - 12.1);
+  const double pixels_of_percent = (papers[0][0] - papers[1][0]) / (26.7 - 12.1);
   EXPECT_GT(pixels_of_percent, 1);
   for (const double percent : {25.0, 12.0}) {
     const double expected = papers[0][0] + (percent - 26.7) * pixels_of_percent;
     EXPECT_TRUE(
         std::any_of(ours.begin(), ours.end(), [&](double x) { return std::abs(x - expected) < 0.1; }));
+  }
+  // the intervals: 24 to 26 % and 10 to 14 %
+  for (const auto& [low, high] : {std::pair{24.0, 26.0}, {10.0, 14.0}}) {
+    const double left = papers[0][0] + (low - 26.7) * pixels_of_percent;
+    const double right = papers[0][0] + (high - 26.7) * pixels_of_percent;
+    EXPECT_TRUE(svg.has_line(left, right, 0x0072b2)) << low << " to " << high;
   }
   for (const char* text : {"Original", "Fiedler", "VF Fiedler", "VF scrambled", "hollow: the paper",
                            "falling", "stretch", "Saved of the time of “Scrambled”, %"}) {

@@ -6,10 +6,10 @@
 #include <meshorder/report/gnuplot.hpp>
 
 #include <fmt/format.h>
-#include <stdlib.h>  // mkdtemp
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>  // mkdtemp
 #include <filesystem>
 #include <fstream>
 #include <iterator>
