@@ -95,6 +95,13 @@ TEST(Page, CannotBeBrokenByNames) {
   EXPECT_NE(html.find("alt=\"Edges by &lt; span\""), std::string::npos);
 }
 
+TEST(Page, ShowsCommandsInFindingsAsCode) {
+  Page page;
+  page.findings = {"`a < b` and `c`, but a lone ` stays"};
+  EXPECT_EQ(fill_page("{{findings}}", page),
+            "<p><code>a &lt; b</code> and <code>c</code>, but a lone ` stays</p>\n");
+}
+
 TEST(Page, ShowsFiguresInTheirSections) {
   const Page page = sample_page();
   EXPECT_EQ(fill_page("{{figures caches}}", page), "");

@@ -82,6 +82,7 @@ void add_face(const Mesh& mesh, const Face& face, const std::vector<int>& facet,
               std::vector<std::array<Index, 3>>& triangles) {
   const auto cell = mesh.cells[face.cell];
   std::vector<Index> corners;
+  corners.reserve(facet.size());
   for (const int position : facet) corners.push_back(cell[position]);
   const auto inner = middle(
       mesh, cell.first(meshorder::corners(mesh.cells.shapes[face.cell], static_cast<int>(cell.size()))));

@@ -105,9 +105,27 @@ std::string table_of(const Page& page, std::string_view id) {
   return table == page.tables.end() ? "" : to_html(*table);
 }
 
+/// Text as HTML, with what stands between `backticks` as code.
+std::string prose(std::string_view text) {
+  std::string html;
+  bool in_code = false;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('`', begin), text.size());
+    html += xml_escaped(text.substr(begin, end - begin));
+    if (end < text.size() && (in_code || text.find('`', end + 1) != std::string_view::npos)) {
+      in_code = !in_code;
+      html += in_code ? "<code>" : "</code>";
+    } else if (end < text.size()) {
+      html += '`';
+    }
+    begin = end + 1;
+  }
+  return html;
+}
+
 std::string findings_in(const Page& page) {
   std::string html;
-  for (const std::string& finding : page.findings) html += "<p>" + xml_escaped(finding) + "</p>\n";
+  for (const std::string& finding : page.findings) html += "<p>" + prose(finding) + "</p>\n";
   return html;
 }
 
