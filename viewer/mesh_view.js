@@ -17,7 +17,7 @@ class MeshView {
   build() {
     this.stage = theStage();
     if (!this.stage) {
-      this.root.replaceChildren(make("p", { className: "without" },
+      this.root.replaceChildren(make("p", { className: "notice" },
         "This browser has no WebGL, which the meshes in 3-D need. The tables and figures do without."));
       return;
     }

@@ -19,7 +19,7 @@ class Player {
   build() {
     this.stage = theStage();
     if (!this.stage) {
-      this.root.replaceChildren(make("p", { className: "without" },
+      this.root.replaceChildren(make("p", { className: "notice" },
         "This browser has no WebGL, which the player needs. The tables and figures do without."));
       return;
     }

@@ -100,15 +100,15 @@ def test_it_opens_from_disk_alone(page, path):
     assert page.requests() == [path.resolve().as_uri()]
 
 
-@pytest.mark.parametrize("part", PARTS)
-def test_a_tab_shows_what_it_says(page, part):
-    page.tab(part)
-    for selector in PARTS[part]:
-        assert shown(page, f"#{part} {selector}"), selector
-    others = [other for other in PARTS if other != part and shown(page, f"#{other}")]
-    assert not others
-    assert page.run("return [...document.querySelectorAll('[aria-selected=true]')].map((one) => one.id)") == [f"tab-{part}"]
-    assert page.run("return location.hash") == f"#{part}"
+def test_each_tab_shows_what_it_says_and_nothing_else(page):
+    for part, selectors in PARTS.items():
+        page.tab(part)
+        for selector in selectors:
+            assert shown(page, f"#{part} {selector}"), (part, selector)
+        assert [other for other in PARTS if shown(page, f"#{other}")] == [part]
+        selected = page.run("return [...document.querySelectorAll('[aria-selected=true]')].map((one) => one.id)")
+        assert selected == [f"tab-{part}"]
+        assert page.run("return location.hash") == f"#{part}"
 
 
 def test_the_address_names_the_tab(page, path):
@@ -259,6 +259,38 @@ def test_the_slider_uncovers_the_order(page):
     words = page.run("return document.querySelector('#mesh-view output').textContent").replace(",", "")
     half, whole = map(int, words.split(" of "))
     assert abs(2 * half - whole) <= 1
+
+
+def test_a_sweep_runs_to_the_last_vertex_and_ends(page):
+    page.tab("meshes")
+    page.run("""const input = document.querySelector('#mesh-view input[type=range]');
+        input.value = 800; input.dispatchEvent(new Event('input'));
+        [...document.querySelectorAll('#mesh-view button')].find((one) => one.textContent === 'Sweep').click();""")
+    page.wait("document.querySelector('#mesh-view input[type=range]').value === '1000' && views.meshes.sweeping === false")
+    share, whole = page.run("return document.querySelector('#mesh-view output').textContent").split(" of ")
+    assert share == whole
+
+
+def test_two_fingers_zoom(page):
+    page.resize(*PHONE, phone=True)
+    page.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
+    page.tab("motion")
+    page.run("document.querySelector('canvas.film').scrollIntoView({block: 'center'})")
+    box = page.run("const box = document.querySelector('canvas.film').getBoundingClientRect(); return [box.x, box.y, box.width, box.height]")
+    middle = (box[0] + box[2] / 2, box[1] + box[3] / 2)
+
+    def touch(kind, apart):
+        points = [{"x": middle[0] + side * apart, "y": middle[1], "id": i} for i, side in enumerate((-1, 1))]
+        page.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points if apart else []})
+
+    before = page.run("return views.motion.orbit.zoom")
+    touch("touchStart", 30)
+    for apart in (40, 50, 60):
+        touch("touchMove", apart)
+    touch("touchEnd", 0)
+    page.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": False})
+    assert 1.7 < page.run("return views.motion.orbit.zoom") / before < 2.3
+    assert page.run("return views.motion.orbit.pointers.size") == 0
 
 
 def test_contour_lines_have_no_colour(page):
