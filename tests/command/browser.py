@@ -24,7 +24,9 @@ def open_chromium(profile):
     for flag in [*FLAGS, f"--user-data-dir={profile}"]:
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+    driver = webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+    driver.set_script_timeout(90)
+    return driver
 
 
 class Browser:
@@ -53,7 +55,7 @@ class Browser:
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)
 
-    def wait(self, condition, *arguments, seconds=30):
+    def wait(self, condition, *arguments, seconds=60):
         """Waits until a JavaScript expression is true, and returns it."""
         done = self.driver.execute_async_script("""
             const done = arguments[arguments.length - 1];
