@@ -30,21 +30,6 @@ void write_map(const Permutation& map, const std::vector<std::int64_t>& ids, con
   }
 }
 
-Permutation read_map(const std::string& path, Index count, const std::string& what) {
-  const std::vector<std::int64_t> values = read_npy(path);
-  if (index_size(values) != count) {
-    throw Error(
-        path,
-        "maps " + std::to_string(values.size()) + " " + what + ", the mesh has " + std::to_string(count),
-        "give the maps that were written with this mesh");
-  }
-  try {
-    return Permutation::from_old_to_new({values.begin(), values.end()});
-  } catch (const InvalidArgument& error) {
-    throw Error(path, error.what(), "give a map that meshorder wrote");
-  }
-}
-
 std::vector<std::int64_t> read_ids(const std::string& path, Index count) {
   if (!std::filesystem::exists(path)) return {};
   std::vector<std::int64_t> ids = read_npy(path);
@@ -65,8 +50,8 @@ std::vector<std::string> write_maps(const Maps& maps, const std::string& prefix)
 }
 
 Maps read_maps(const std::string& prefix, const Mesh& mesh) {
-  return {read_map(old_to_new_path(prefix, "vertices"), mesh.vertex_count(), "vertices"),
-          read_map(old_to_new_path(prefix, "elements"), mesh.cell_count(), "cells"),
+  return {read_permutation(old_to_new_path(prefix, "vertices"), mesh.vertex_count(), "vertices"),
+          read_permutation(old_to_new_path(prefix, "elements"), mesh.cell_count(), "cells"),
           read_ids(ids_path(prefix, "vertices"), mesh.vertex_count()),
           read_ids(ids_path(prefix, "elements"), mesh.cell_count())};
 }

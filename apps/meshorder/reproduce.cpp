@@ -3,15 +3,18 @@
 #include "console.hpp"
 #include "interruption.hpp"
 #include "progress.hpp"
+#include <meshorder/base/parallel.hpp>
 #include <meshorder/report/study_page.hpp>
 #include <meshorder/report/tables.hpp>
 #include <meshorder/study/results_json.hpp>
 #include <meshorder/study/scenario.hpp>
 #include <meshorder/study/study_run.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder::command {
@@ -36,9 +39,12 @@ StudyPlan plan_of(const ReproduceArguments& arguments) {
     for (const BuiltInScenario& scenario : built_in_scenarios()) plan.scenarios.emplace_back(scenario.name);
   }
   for (const std::string& order : arguments.orders) {
-    if (order != "paper") plan.orderings.push_back(study_ordering(order));
+    StudyOrdering ordering = study_ordering(order);
+    const bool known = std::any_of(plan.orderings.begin(), plan.orderings.end(),
+                                   [&](const StudyOrdering& other) { return other.name == ordering.name; });
+    if (!known) plan.orderings.push_back(std::move(ordering));
   }
-  plan.threads = arguments.threads;
+  plan.threads = arguments.threads > 0 ? arguments.threads : thread_count();
   plan.pin = !arguments.no_pin;
   if (arguments.steps > 0) plan.steps = arguments.steps;
   if (!arguments.quick) return plan;

@@ -21,12 +21,7 @@ StepReport sums(const MotionRecord& record) {
     sum.cg_iterations += report.cg_iterations;
     sum.admm_iterations += report.admm_iterations;
     sum.contact_iterations += report.contact_iterations;
-    sum.seconds.total += report.seconds.total;
-    sum.seconds.assembly += report.seconds.assembly;
-    sum.seconds.solve += report.seconds.solve;
-    sum.seconds.local += report.seconds.local;
-    sum.seconds.global += report.seconds.global;
-    sum.seconds.collision += report.seconds.collision;
+    sum.seconds += report.seconds;
   }
   return sum;
 }

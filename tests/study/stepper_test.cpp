@@ -95,7 +95,7 @@ TEST_F(Steps, SayWhatIsWrongAndEnd) {
   other = task();
   write_npy(std::vector<Index>{0, 1, 2}, file("short.npy"));
   other.vertex_order = file("short.npy");
-  EXPECT_NE(complaint(to_json(other)).find("orders 3 things"), std::string::npos);
+  EXPECT_NE(complaint(to_json(other)).find("maps 3 vertices"), std::string::npos);
 }
 
 TEST_F(Steps, FindTheSameMeshByItsFingerprint) {

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // The format: NumPy Enhancement Proposal 1, "A Simple File Format for NumPy Arrays".
+#include <meshorder/base/error.hpp>
 #include <meshorder/io/npy.hpp>
 #include <meshorder/io/output_file.hpp>
 #include <meshorder/io/scanner.hpp>
@@ -7,6 +8,7 @@
 #include <bit>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -111,6 +113,26 @@ std::vector<std::int64_t> read_npy(const std::filesystem::path& path) {
                        : file.binary<std::int64_t>("an entry", order);
   }
   return values;
+}
+
+Permutation read_permutation(const std::filesystem::path& path, Index count, const std::string& what) {
+  const std::vector<std::int64_t> places = read_npy(path);
+  if (index_size(places) != count) {
+    throw Error(
+        path.string(),
+        "maps " + std::to_string(places.size()) + " " + what + ", the mesh has " + std::to_string(count),
+        "give the maps that were written with this mesh");
+  }
+  std::vector<Index> old_to_new;
+  old_to_new.reserve(places.size());
+  // what is no index is no place either
+  for (const std::int64_t place : places)
+    old_to_new.push_back(place < 0 || place >= count ? -1 : static_cast<Index>(place));
+  try {
+    return Permutation::from_old_to_new(std::move(old_to_new));
+  } catch (const InvalidArgument& error) {
+    throw Error(path.string(), error.what(), "give a map that meshorder wrote");
+  }
 }
 
 }  // namespace meshorder

@@ -1,9 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <meshorder/ordering/permutation.hpp>
+
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +23,10 @@ void write_npy(std::span<const std::int64_t> values, const std::filesystem::path
 /// Reads a one-dimensional NumPy array of 32- or 64-bit integers, signed or not. Throws Error, with the byte,
 /// for anything else.
 std::vector<std::int64_t> read_npy(const std::filesystem::path& path);
+
+/// Reads the new place of each of `count` things, which `what` names in the plural. Throws Error for another
+/// number of them and for what is no permutation, too.
+Permutation read_permutation(const std::filesystem::path& path, Index count, const std::string& what);
 
 /// What a NumPy file says in front of its numbers.
 struct NpyHeader {

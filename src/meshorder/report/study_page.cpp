@@ -31,20 +31,6 @@ auto blaming(const fs::path& path, const Work& work) {
   }
 }
 
-Permutation read_order(const fs::path& path, Index vertices) {
-  const std::vector<std::int64_t> places = read_npy(path);
-  return blaming(path, [&] {
-    if (places.size() != static_cast<std::size_t>(vertices))
-      throw InvalidArgument(fmt::format("an order of {} for {} vertices", places.size(), vertices));
-    std::vector<Index> old_to_new;
-    old_to_new.reserve(places.size());
-    // what is no index is no place either
-    for (const std::int64_t place : places)
-      old_to_new.push_back(place < 0 || place >= vertices ? -1 : static_cast<Index>(place));
-    return Permutation::from_old_to_new(std::move(old_to_new));
-  });
-}
-
 /// The study's parts, one after another, of which each moves the progress on.
 class Parts {
  public:
@@ -71,7 +57,7 @@ PageMesh mesh_of(const StudyFolder& folder, const StudyResults& results, const M
   for (const StudyOrdering& ordering : results.orderings) {
     const fs::path path = folder.vertex_order(record.name, ordering.name);
     if (is_there(path)) {
-      orders.emplace_back(ordering.name, read_order(path, mesh.vertex_count()));
+      orders.emplace_back(ordering.name, read_permutation(path, mesh.vertex_count(), "vertices"));
     } else {
       notes.push_back(fmt::format("the page does not show {} in the order {}: {} is missing", record.name,
                                   ordering.title, path.string()));

@@ -22,21 +22,17 @@ namespace {
 
 using nlohmann::json;
 
-Permutation read_order(const std::string& path, Index count) {
-  if (path.empty()) return Permutation::identity(count);
-  const std::vector<std::int64_t> places = read_npy(path);
-  if (index_size(places) != count)
-    throw Error(path, fmt::format("orders {} things where the mesh has {}", places.size(), count),
-                "the study's folder belongs to another mesh: give a new one");
-  return Permutation::from_old_to_new({places.begin(), places.end()});
+/// The identity where no file is given.
+Permutation order_of(const std::string& path, Index count, const std::string& what) {
+  return path.empty() ? Permutation::identity(count) : read_permutation(path, count, what);
 }
 
 Simulation set_up(const StepperTask& task) {
   Scenario scenario = find_scenario(task.scenario);
   Mesh mesh = read_mesh(task.mesh);
   Reordering order;
-  order.vertices = read_order(task.vertex_order, mesh.vertex_count());
-  order.cells = read_order(task.cell_order, mesh.cells.size());
+  order.vertices = order_of(task.vertex_order, mesh.vertex_count(), "vertices");
+  order.cells = order_of(task.cell_order, mesh.cells.size(), "cells");
   return set_up(std::move(scenario), std::move(mesh), task.mesh, std::move(order));
 }
 
@@ -94,12 +90,7 @@ class Stepping {
 
  private:
   static void add(const StepReport& report, StepperTimes& times) {
-    times.seconds.total += report.seconds.total;
-    times.seconds.assembly += report.seconds.assembly;
-    times.seconds.solve += report.seconds.solve;
-    times.seconds.local += report.seconds.local;
-    times.seconds.global += report.seconds.global;
-    times.seconds.collision += report.seconds.collision;
+    times.seconds += report.seconds;
     times.cg_iterations += report.cg_iterations;
     times.admm_iterations += report.admm_iterations;
     times.contact_iterations += report.contact_iterations;

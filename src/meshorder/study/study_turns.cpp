@@ -37,12 +37,7 @@ double available_bytes() {
 
 void add(const StepperTimes& times, RunRecord& run) {
   run.step_seconds.insert(run.step_seconds.end(), times.step_seconds.begin(), times.step_seconds.end());
-  run.seconds.total += times.seconds.total;
-  run.seconds.assembly += times.seconds.assembly;
-  run.seconds.solve += times.seconds.solve;
-  run.seconds.local += times.seconds.local;
-  run.seconds.global += times.seconds.global;
-  run.seconds.collision += times.seconds.collision;
+  run.seconds += times.seconds;
   run.cg_iterations += times.cg_iterations;
   run.admm_iterations += times.admm_iterations;
   run.contact_iterations += times.contact_iterations;

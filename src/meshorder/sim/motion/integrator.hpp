@@ -41,6 +41,15 @@ struct StepReport {
     double assembly = 0.0, solve = 0.0;                 // implicit
     double local = 0.0, global = 0.0, collision = 0.0;  // ADMM
 
+    Seconds& operator+=(const Seconds& other) {
+      total += other.total;
+      assembly += other.assembly;
+      solve += other.solve;
+      local += other.local;
+      global += other.global;
+      collision += other.collision;
+      return *this;
+    }
     bool operator==(const Seconds&) const = default;
   } seconds;
 };
