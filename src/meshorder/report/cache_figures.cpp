@@ -85,7 +85,8 @@ std::string panel(const StudyResults& results, const MeshRecord& mesh, std::size
                     block, style.pattern, style.colour));
   }
   if (plots.empty()) return {};
-  const double most = std::max(most_misses(mesh, kernel), 1e-3);
+  // less than a per cent is next to nothing, and shall look so
+  const double most = std::max(most_misses(mesh, kernel), 1.0);
   return data + fmt::format(
                     "set title {}\nset label 1 {} at graph 0.97, 0.9 right textcolor '#222222'\n"
                     "set yrange [0:{}]\nset ytics 0,{},{}\nset format y '{}'\nset xrange [0.5:{}]\n"
