@@ -5,8 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -68,15 +69,21 @@ TEST(MotionFile, BrokenFilesAreErrorsWithTheirNames) {
   };
   std::string not_finite = content;
   not_finite.replace(128, 4, std::string("\0\0\xc0\x7f", 4));
-  for (const std::string& broken :
-       {content.substr(0, content.size() - 1), changed("<f4", "<f8"), changed("False", "True "),
-        changed("(1, 1, 3)", "(1, 3, 1)"), changed("(1, 1, 3)", "(9, 1, 3)"), changed("(1, 1,", "(-1,1,"),
-        not_finite}) {
+  const std::vector<std::pair<std::string, std::string>> files{
+      {content.substr(0, content.size() - 1), "promises 1 frames of 1 vertices, but 11 bytes"},
+      {changed("(1, 1, 3)", "(9, 1, 3)"), "promises 9 frames"},
+      {changed("(1, 1,", "(-1,1,"), "promises -1 frames"},
+      {changed("<f4", "<f8"), "is no motion"},
+      {changed("False", "True "), "is no motion"},
+      {changed("(1, 1, 3)", "(1, 3, 1)"), "is no motion"},
+      {not_finite, "not finite"}};
+  for (const auto& [broken, expected] : files) {
     try {
       (void)read_motion(folder.file("b.npy", broken));
-      ADD_FAILURE() << "read " << broken;
+      ADD_FAILURE() << "read it; expected: " << expected;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("b.npy"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
     }
   }
 }
