@@ -2,6 +2,16 @@
 "use strict";
 // Beside the findings: the first mesh in its worst and its best order.
 
+/** How far apart in memory the corners of a surface's triangles are, on average. */
+function roughness(ranks, surface) {
+  const corners = surface.index.array;
+  let sum = 0;
+  for (let i = 0; i < corners.length; i += 3) {
+    sum += Math.abs(ranks[corners[i]] - ranks[corners[i + 1]]) + Math.abs(ranks[corners[i + 1]] - ranks[corners[i + 2]]);
+  }
+  return sum / corners.length;
+}
+
 class Hero {
   constructor(root, manifest, results) {
     this.redraw = coalesced(() => this.draw());
@@ -14,8 +24,8 @@ class Hero {
   async build(root, manifest, results) {
     const ordered = await loadOrderedMesh(manifest, manifest.meshes[0].name);
     const name = ordered.mesh.name;
-    const groups = ordered.groups.map((group, i) => ({ group, span: meanSpan(results, name, group.names[0]) ?? -i }));
-    groups.sort((a, b) => b.span - a.span);
+    const groups = ordered.groups.map((group) => ({ group, roughness: roughness(group.numbers, ordered.surface) }));
+    groups.sort((a, b) => b.roughness - a.roughness);
     const shown = groups.length > 1 ? [groups[0], groups[groups.length - 1]] : groups;
     const material = bandMaterial();
     this.view = ordered.view;

@@ -11,17 +11,12 @@ function bylineWords(results) {
   return parts.filter((part) => part).join(" · ");
 }
 
-/** The mean edge span of a mesh in an order; null where the results do not say. */
-function meanSpan(results, mesh, ordering) {
+/** The mean edge span of a mesh in an order, in words; empty where the results do not say. */
+function spanWords(results, mesh, ordering) {
   const record = ((results && results.meshes) || []).find((one) => one.name === mesh);
   const order = record && (record.orders || []).find((one) => one.ordering === ordering);
   const mean = order && order.span && order.span.mean;
-  return mean > 0 ? mean : null;
-}
-
-function spanWords(results, mesh, ordering) {
-  const mean = meanSpan(results, mesh, ordering);
-  return mean === null ? "" : `mean span ${grouped(mean)}`;
+  return mean > 0 ? `mean span ${grouped(mean)}` : "";
 }
 
 /** Lets the reader keep the results that the page was made from. */
