@@ -8,6 +8,7 @@
 #include <support/sample_meshes.hpp>
 
 #include <gtest/gtest.h>
+#include <report/sample_results.hpp>
 
 #include <algorithm>
 #include <fstream>
@@ -22,16 +23,25 @@ class StudyPage : public testing::Test {
  protected:
   StudyPage() {
     std::filesystem::create_directories(folder.root() / "data");
+    results.began = "2026-11-20T17:30:00Z";
+    results.reference = "scrambled";
+    results.machine = test::sample_results().machine;
     results.orderings = {{"original", "Original", "original", "original"},
                          {"scrambled", "Scrambled", "scrambled", "original"}};
     MeshRecord record;
     record.name = "ball";
+    record.file = "data/ball.vtu";
     record.vertices = ball.vertex_count();
     results.meshes = {record};
     ScenarioRecord scenario;
     scenario.name = "falling";
+    scenario.title = "A ball falls";
+    scenario.method = "backward-euler";
+    scenario.material = "corotational";
     scenario.mesh = "ball";
     scenario.fingerprint = "5eed";
+    scenario.steps = 20;
+    scenario.turn = 5;
     scenario.frame_steps = {0, 5, 10, 15, 20};
     results.scenarios = {scenario};
 
