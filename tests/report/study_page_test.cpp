@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "sample_results.hpp"
 #include <meshorder/base/error.hpp>
 #include <meshorder/io/npy.hpp>
 #include <meshorder/models/procedural.hpp>
@@ -8,7 +9,6 @@
 #include <support/sample_meshes.hpp>
 
 #include <gtest/gtest.h>
-#include <report/sample_results.hpp>
 
 #include <algorithm>
 #include <fstream>
