@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/report/cells.hpp>
+#include <meshorder/report/headline.hpp>
 #include <meshorder/report/lookup.hpp>
 #include <meshorder/report/mesh_findings.hpp>
 #include <meshorder/report/paper.hpp>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 namespace meshorder {
@@ -155,28 +157,48 @@ std::string caution(const StudyResults& results) {
       least, results.runs, results.runs == 1 ? "" : "s", kPaperSteps);
 }
 
+/// The largest distance between orders in a scenario, as a share of the body's size; none where it is not
+/// known.
+std::optional<double> largest_difference(const ScenarioRecord& scenario) {
+  std::optional<double> largest;
+  for (const OrderOfScenario& order : scenario.orders) {
+    if (!order.motion.by_frame.empty()) largest = std::max(largest.value_or(0), order.motion.largest);
+  }
+  return largest;
+}
+
 std::string same_motion(const StudyResults& results) {
+  constexpr double kSeen = 0.01;
+  std::vector<std::string> parted;
   double largest = 0;
   std::string where;
   bool known = false;
   for (const ScenarioRecord& scenario : results.scenarios) {
-    for (const OrderOfScenario& order : scenario.orders) {
-      if (order.motion.by_frame.empty()) continue;
-      known = true;
-      if (order.motion.largest > largest) {
-        largest = order.motion.largest;
-        where = scenario.name;
-      }
+    const std::optional<double> difference = largest_difference(scenario);
+    if (!difference) continue;
+    known = true;
+    if (*difference >= kSeen) {
+      parted.push_back(
+          fmt::format("{} (by {:.1f} % of the body's longest side)", scenario.name, 100 * *difference));
+    } else if (*difference >= largest) {
+      largest = *difference;
+      where = scenario.name;
     }
   }
   if (!known) return {};
-  if (largest == 0) return "The motions are the same in every order, to the last bit.";
-  constexpr double kSeen = 0.01;
-  return fmt::format("{} between orders a vertex is at most {:.1e} of the body's longest side off, in {}.",
-                     largest < kSeen
-                         ? "The motion is the same in every order:"
-                         : "The motions part, so that their times are not of quite the same work:",
-                     largest, where);
+  std::string same;
+  if (!where.empty()) {
+    same = largest == 0 ? "The motions are the same in every order, to the last bit that was kept."
+                        : fmt::format(
+                              "The motion is the same in every order{}: a vertex is at most {:.1e} of the "
+                              "body's longest side elsewhere, in {}.",
+                              parted.empty() ? "" : " of most scenarios", largest, where);
+  }
+  if (parted.empty()) return same;
+  return fmt::format(
+      "{}{}The motions part in {}: rounding differs from order to order, and contacts amplify it. Their "
+      "times are not of quite the same work.",
+      same, same.empty() ? "" : " ", in_words(parted));
 }
 
 /// Iterations of an order over the reference's, where they differ by a per cent or more: then not the memory
@@ -213,12 +235,13 @@ std::string other_work(const StudyResults& results) {
 }  // namespace
 
 std::vector<std::string> findings_of(const StudyResults& results) {
-  std::vector<std::string> findings{caution(results)};
+  std::vector<std::string> findings{headline(results), caution(results)};
   for (const StudyOrdering& ordering : results.orderings) {
     if (ordering.name == results.reference || compared(results, ordering.name).empty()) continue;
     findings.push_back(effect_of(results, ordering) + beside_paper(results, ordering) +
                        payment_of(results, ordering));
   }
+  findings.push_back(against_all_scrambled(results));
   findings.push_back(same_motion(results));
   findings.push_back(other_work(results));
   std::ranges::move(mesh_findings(results), std::back_inserter(findings));

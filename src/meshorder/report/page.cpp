@@ -105,13 +105,16 @@ std::string table_of(const Page& page, std::string_view id) {
   return table == page.tables.end() ? "" : to_html(*table);
 }
 
-/// Text as HTML, with what stands between `backticks` as code.
-std::string prose(std::string_view text) {
+/// Text as HTML, with what stands between `backticks` as code; a per cent sign stays with its number.
+std::string prose(std::string text) {
+  constexpr std::string_view kApart = " %", kTogether = "\u00a0%";
+  for (auto at = text.find(kApart); at != std::string::npos; at = text.find(kApart, at))
+    text.replace(at, kApart.size(), kTogether);
   std::string html;
   bool in_code = false;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find('`', begin), text.size());
-    html += xml_escaped(text.substr(begin, end - begin));
+    html += xml_escaped(std::string_view(text).substr(begin, end - begin));
     if (end < text.size() && (in_code || text.find('`', end + 1) != std::string_view::npos)) {
       in_code = !in_code;
       html += in_code ? "<code>" : "</code>";
