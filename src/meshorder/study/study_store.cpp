@@ -84,6 +84,8 @@ void StudyStore::resume(const StudyPlan& plan, const MachineRecord& machine) {
                   plan.orderings.end(), [](const auto& a, const auto& b) { return a.name == b.name; }),
        "other orderings");
   results_.runs = std::max(results_.runs, plan.runs);
+  summarise(results_);
+  save();
 }
 
 bool StudyStore::has_mesh(std::string_view name) const {
