@@ -1,5 +1,6 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The examples of the documentation do what it says."""
+"""The examples of the documentation do what it says, and its figures are those of its data."""
+import json
 import re
 import shlex
 import textwrap
@@ -61,3 +62,23 @@ def test_simulations(command, tmp_path):
     for folder in ("original", "ordered"):
         assert len(list((tmp_path / folder).glob("my-beam-*.vtu"))) == 51
     assert (tmp_path / "my.state").exists()
+
+
+def test_the_reproduction_is_what_its_results_say(command, tmp_path):
+    """The committed tables are those that the command makes of the committed results."""
+    committed = conftest.ROOT / "docs" / "reproduction"
+    (tmp_path / "results.json").write_bytes((committed / "results.json").read_bytes())
+    command.ok("report", ".")
+    assert (tmp_path / "tables.md").read_text() == (committed / "tables.md").read_text()
+
+
+def test_speedups_in_the_reproduction_are_those_of_its_results():
+    text = (conftest.ROOT / "docs" / "reproduction.md").read_text()
+    results = json.loads((conftest.ROOT / "docs" / "reproduction" / "results.json").read_text())
+    for scenario in results["scenarios"]:
+        row, = re.findall(rf"^\| {scenario['name']} \| \d.*$", text, flags=re.MULTILINE)
+        told = [float(number) for number in re.findall(r"[+-]\d+\.\d", row.replace("−", "-"))]
+        by_name = {order["ordering"]: order["speedup"] for order in scenario["orders"]}
+        speedups = [by_name[name][key] for name in ("original", "fiedler", "vf-fiedler", "vf-scrambled")
+                    for key in ("percent", "low", "high")]
+        assert told == pytest.approx(speedups, abs=0.051)
