@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <regex>
+#include <string_view>
 #include <system_error>
 
 namespace meshorder {
@@ -83,16 +83,37 @@ std::string read(const fs::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// Makes the ids that a tag gives or refers to begin with `prefix`.
+std::string with_own_ids_in(std::string tag, const std::string& prefix) {
+  for (const std::string_view before : {" id='", " id=\"", "\tid='", "\tid=\"", "\nid='", "\nid=\"",
+                                        "xlink:href='#", "xlink:href=\"#", "url(#"}) {
+    for (auto at = tag.find(before); at != std::string::npos; at = tag.find(before, at)) {
+      at += before.size();
+      tag.insert(at, prefix);
+    }
+  }
+  return tag;
+}
+
+/// Text with one blank in the place of each run of white space.
+std::string in_one_line(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+    if (!blank || !result.ends_with(' ')) result += blank ? ' ' : c;
+  }
+  return result;
+}
+
 /// Makes ids and references to them begin with `prefix`, and escapes '>' in what the picture says, where
 /// "]]>" is no XML.
 std::string with_own_ids(const std::string& svg, const std::string& prefix) {
-  static const std::regex id("(\\sid=['\"]|xlink:href=['\"]#|url\\(#)");
   std::string result;
   for (std::size_t begin = 0; begin < svg.size();) {
     const std::size_t tag = std::min(svg.find('<', begin), svg.size());
     const std::size_t end = std::min(svg.find('>', tag), svg.size() - 1) + 1;
     for (const char c : svg.substr(begin, tag - begin)) result += c == '>' ? "&gt;" : std::string(1, c);
-    result += std::regex_replace(svg.substr(tag, end - tag), id, "$&" + prefix);
+    result += with_own_ids_in(svg.substr(tag, end - tag), prefix);
     begin = end;
   }
   return result;
@@ -106,7 +127,7 @@ std::string tidied(const std::string& svg, const Drawing& drawing) {
   if (end == std::string::npos || svg.find("</svg>", end) == std::string::npos) {
     throw Error("figure " + drawing.name, "gnuplot drew no SVG picture", "is its package gnuplot-nox?");
   }
-  const std::string head = std::regex_replace(svg.substr(begin, title - begin), std::regex("\\s+"), " ");
+  const std::string head = in_one_line(std::string_view(svg).substr(begin, title - begin));
   const std::string body = svg.substr(end + std::string_view("</desc>").size());
   return fmt::format("{}\n<title>{}</title>\n<desc>{}</desc>{}", head, xml_escaped(printable(drawing.title)),
                      xml_escaped(printable(drawing.description)), with_own_ids(body, drawing.name + "-"));
