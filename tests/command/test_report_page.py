@@ -15,7 +15,6 @@ import pytest
 
 import browser
 import conftest
-import sample_page
 
 DESKTOP = (1280, 900)
 PHONE = (390, 844)
@@ -37,17 +36,10 @@ PARTS = {
 def path(tmp_path_factory):
     if os.environ.get("MESHORDER_PAGE"):
         return pathlib.Path(os.environ["MESHORDER_PAGE"])
-    folder = tmp_path_factory.mktemp("report")
-    command = conftest.Command(folder)
-    if pathlib.Path(conftest.MESHORDER).exists() and command.run("reproduce", "--help").returncode == 0:
-        mesh = command.json("models", "make", "ball", "--size", "10")["models"][0]["path"]
-        command.ok("reproduce", "--quick", "--scenario", "falling", "--scenario", "bounce", "--mesh", mesh,
-                   "--budget", "1", "-o", "study")
-        return folder / "study" / "report.html"
-    if not sample_page.THREE.exists():
-        pytest.skip("needs libjs-three")
-    sample_page.write_sample(folder / "report.html")
-    return folder / "report.html"
+    command = conftest.Command(tmp_path_factory.mktemp("report"))
+    command.ok("reproduce", "--quick", "--scenario", "falling", "--scenario", "bounce", "--mesh", "ball-10",
+               "--budget", "1", "-o", "study")
+    return command.folder / "study" / "report.html"
 
 
 @pytest.fixture(scope="module")

@@ -15,8 +15,6 @@ SCHEMA = schemas.read_schema(conftest.ROOT / "docs" / "results.schema.json")
 def study(tmp_path_factory):
     """The folder of a study of one small scenario."""
     command = conftest.Command(tmp_path_factory.mktemp("study"))
-    if "\n  reproduce " not in command.ok("--help").stdout:
-        pytest.skip("needs `meshorder reproduce`")
     command.ok("reproduce", "--quick", "--scenario", "bounce", "--mesh", "grid-4", "--budget", "0.1", "-o", "study")
     return command.folder / "study"
 
