@@ -10,7 +10,8 @@ import pytest
 
 FLAGS = ["--headless=new", "--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
          "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
-         "--disable-sync", "--disable-default-apps", "--hide-scrollbars", "--force-device-scale-factor=1"]
+         "--disable-sync", "--disable-default-apps", "--disable-dev-shm-usage",
+         "--hide-scrollbars", "--force-device-scale-factor=1"]
 
 
 def open_chromium(profile):
