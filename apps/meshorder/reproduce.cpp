@@ -5,7 +5,6 @@
 #include "progress.hpp"
 #include <meshorder/base/parallel.hpp>
 #include <meshorder/report/study_page.hpp>
-#include <meshorder/report/tables.hpp>
 #include <meshorder/study/results_json.hpp>
 #include <meshorder/study/scenario.hpp>
 #include <meshorder/study/study_run.hpp>
@@ -59,15 +58,14 @@ void report(const Console& console, const StudyFolder& folder, Progress& progres
   const WrittenReport written = write_report(folder);
   progress.finish();
   console.log_notes(written.notes);
-  const StudyResults results = read_results(folder.results());
-  for (const std::string& finding : findings_of(results)) console.print("{}\n", finding);
+  for (const std::string& finding : written.findings) console.print("{}\n", finding);
   for (const std::filesystem::path& file : written.files) {
     if (file.extension() != ".svg") console.print("wrote {}", file.string());
   }
   console.print_json({{"folder", folder.root().string()},
                       {"page", folder.page().string()},
                       {"notes", written.notes},
-                      {"results", to_json(results)}});
+                      {"results", to_json(written.results)}});
 }
 
 void run(const ReproduceArguments& arguments) {

@@ -1,10 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/study/json_text.hpp>
 #include <meshorder/study/machine.hpp>
 #include <meshorder/study/results_json.hpp>
+#include <support/files.hpp>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <sstream>
@@ -41,7 +40,14 @@ TEST(Machine, IsDescribedInFull) {
   EXPECT_NE(machine.flags.find("-std=c++20"), std::string::npos) << machine.flags;
   EXPECT_EQ(std::count(machine.system.begin(), machine.system.end(), ' '), 2) << machine.system;
   // as a study keeps it, which refuses what is empty
-  EXPECT_EQ(parse_machine(json_text(to_json(machine)), "machine"), machine);
+  const test::TemporaryFolder folder;
+  StudyResults results;
+  results.began = "2026-11-20T17:30:00Z";
+  results.reference = "original";
+  results.orderings = {{"original", "Original", "original", "original"}};
+  results.machine = machine;
+  write_results(results, folder.path() / "results.json");
+  EXPECT_EQ(read_results(folder.path() / "results.json").machine, machine);
 }
 
 }  // namespace

@@ -128,13 +128,6 @@ TEST(ResultsJson, ReadsBackToTheLastBit) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"results.json"});
 }
 
-TEST(ResultsJson, PartsReadBackFromTextsOfTheirOwn) {
-  const StudyResults results = sample();
-  EXPECT_EQ(parse_machine(json_text(to_json(results.machine)), "m"), results.machine);
-  EXPECT_EQ(parse_mesh_record(json_text(to_json(results.meshes[0])), "m"), results.meshes[0]);
-  EXPECT_EQ(parse_scenario_record(json_text(to_json(results.scenarios[0])), "s"), results.scenarios[0]);
-}
-
 TEST(ResultsJson, AStudyWithoutRunsIsOne) {
   const test::TemporaryFolder folder;
   StudyResults results = sample();

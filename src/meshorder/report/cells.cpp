@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include <meshorder/base/quantities.hpp>
 #include <meshorder/report/cells.hpp>
+#include <meshorder/report/lookup.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -72,5 +73,9 @@ TableCell count_cell(long long number) {
   return {with_minus(with_commas(number)), static_cast<double>(number), false};
 }
 TableCell unknown_cell() { return {"–", std::nullopt, true}; }
+
+TableCell head_of(const StudyResults& results, const ScenarioRecord& scenario, const OrderOfScenario& order) {
+  return text_cell(fmt::format("{}, {}", scenario.name, title_of(results, order.ordering)));
+}
 
 }  // namespace meshorder

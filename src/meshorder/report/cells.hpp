@@ -26,6 +26,9 @@ std::string bytes_in_words(double bytes);
 /// "falling", "falling and bowl", "falling, bowl and bounce"
 std::string in_words(const std::vector<std::string>& names);
 
+/// What heads the row of a scenario in an order: "falling, VF Fiedler".
+TableCell head_of(const StudyResults& results, const ScenarioRecord& scenario, const OrderOfScenario& order);
+
 TableCell text_cell(std::string text);
 TableCell number_cell(double number, int digits = 4);
 TableCell percent_cell(double percent);  ///< signed

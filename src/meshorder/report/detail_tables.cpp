@@ -93,14 +93,6 @@ Table misses_table(const StudyResults& results, const NamedCaches& hierarchy, st
   return table;
 }
 
-double mean_iterations(const OrderOfScenario& order) {
-  double sum = 0;
-  for (const RunRecord& run : order.runs) {
-    sum += static_cast<double>(run.cg_iterations + run.admm_iterations);
-  }
-  return sum / static_cast<double>(order.runs.size());
-}
-
 }  // namespace
 
 Table phases_table(const StudyResults& results) {
@@ -112,20 +104,16 @@ Table phases_table(const StudyResults& results) {
       "order may take some more or less.",
       {"Scenario and order", "By element, s", "System, s", "Collision, s", "Other, s", "Iterations"},
       {}};
-  for (const ScenarioRecord& scenario : results.scenarios) {
-    for (const StudyOrdering& ordering : results.orderings) {
-      const OrderOfScenario* const order = find_order(scenario, ordering.name);
-      if (order == nullptr) continue;
-      const Phases phases = phases_of(*order);
-      const double iterations = mean_iterations(*order);
-      table.rows.push_back({text_cell(fmt::format("{}, {}", scenario.name, title_of(results, ordering.name))),
-                            number_cell(phases.elements),
-                            number_cell(phases.system),
-                            number_cell(phases.collision),
-                            number_cell(phases.other),
-                            {metric(iterations), iterations, false}});
-    }
-  }
+  for_each_order(results, false, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+    const Phases phases = phases_of(order);
+    const double iterations = mean_iterations(order);
+    table.rows.push_back({head_of(results, scenario, order),
+                          number_cell(phases.elements),
+                          number_cell(phases.system),
+                          number_cell(phases.collision),
+                          number_cell(phases.other),
+                          {metric(iterations), iterations, false}});
+  });
   return table;
 }
 
@@ -137,15 +125,12 @@ Table motions_table(const StudyResults& results) {
                           results.orderings.empty() ? "" : title_of(results, results.orderings.front().name)),
               {"Scenario and order", "Largest difference"},
               {}};
-  for (const ScenarioRecord& scenario : results.scenarios) {
-    for (const StudyOrdering& ordering : results.orderings) {
-      const OrderOfScenario* const order = find_order(scenario, ordering.name);
-      if (order == nullptr || order->motion.by_frame.empty()) continue;
-      const double largest = order->motion.largest;
-      table.rows.push_back({text_cell(fmt::format("{}, {}", scenario.name, title_of(results, ordering.name))),
-                            {largest == 0 ? "0" : fmt::format("{:.1e}", largest), largest, false}});
-    }
-  }
+  for_each_order(results, false, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+    if (order.motion.by_frame.empty()) return;
+    const double largest = order.motion.largest;
+    table.rows.push_back({head_of(results, scenario, order),
+                          {largest == 0 ? "0" : fmt::format("{:.1e}", largest), largest, false}});
+  });
   return table;
 }
 

@@ -208,18 +208,11 @@ std::string other_work(const StudyResults& results) {
   for (const ScenarioRecord& scenario : results.scenarios) {
     const OrderOfScenario* const reference = find_order(scenario, results.reference);
     if (reference == nullptr) continue;
-    const auto iterations = [](const OrderOfScenario& order) {
-      double sum = 0;
-      for (const RunRecord& run : order.runs) {
-        sum += static_cast<double>(run.cg_iterations + run.admm_iterations);
-      }
-      return sum / static_cast<double>(order.runs.size());
-    };
-    const double whole = iterations(*reference);
+    const double whole = mean_iterations(*reference);
     for (const StudyOrdering& ordering : results.orderings) {
       const OrderOfScenario* const order = find_order(scenario, ordering.name);
       if (order == nullptr || whole <= 0) continue;
-      const double percent = 100 * (iterations(*order) / whole - 1);
+      const double percent = 100 * (mean_iterations(*order) / whole - 1);
       if (std::abs(percent) >= 1) {
         where.push_back(fmt::format("{}, {} ({} %)", scenario.name, title_of(results, ordering.name),
                                     signed_percent(percent)));

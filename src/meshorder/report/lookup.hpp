@@ -28,6 +28,20 @@ inline const MeshRecord* find_mesh(const StudyResults& results, std::string_view
   return found == results.meshes.end() ? nullptr : &*found;
 }
 
+/// Calls `row(scenario, order)` for what has finished runs, but for the reference where `against_reference`;
+/// and then only for scenarios in which the reference has run.
+template <class Row>
+void for_each_order(const StudyResults& results, bool against_reference, Row row) {
+  for (const ScenarioRecord& scenario : results.scenarios) {
+    if (against_reference && find_order(scenario, results.reference) == nullptr) continue;
+    for (const StudyOrdering& ordering : results.orderings) {
+      const OrderOfScenario* const order = find_order(scenario, ordering.name);
+      if (order == nullptr || (against_reference && ordering.name == results.reference)) continue;
+      row(scenario, *order);
+    }
+  }
+}
+
 /// "VF Fiedler"; the name itself of an order without a title.
 inline std::string title_of(const StudyResults& results, std::string_view ordering) {
   for (const StudyOrdering& each : results.orderings) {
@@ -73,6 +87,13 @@ inline Phases phases_of(const OrderOfScenario& order) {
     sum.other += share * std::max(0.0, s.total - s.assembly - s.local - s.solve - s.global - s.collision);
   }
   return sum;
+}
+
+/// Of conjugate gradients and of ADMM, mean of the runs.
+inline double mean_iterations(const OrderOfScenario& order) {
+  double sum = 0;
+  for (const RunRecord& run : order.runs) sum += static_cast<double>(run.cg_iterations + run.admm_iterations);
+  return sum / static_cast<double>(order.runs.size());
 }
 
 }  // namespace meshorder

@@ -16,24 +16,6 @@ namespace {
 
 constexpr const char* kHead = "Scenario and order";
 
-/// Calls `row(scenario, order)` for what has finished runs, but for the reference where `against_reference`;
-/// and then only for scenarios in which the reference has run.
-template <class Row>
-void for_each_order(const StudyResults& results, bool against_reference, Row row) {
-  for (const ScenarioRecord& scenario : results.scenarios) {
-    if (against_reference && find_order(scenario, results.reference) == nullptr) continue;
-    for (const StudyOrdering& ordering : results.orderings) {
-      const OrderOfScenario* const order = find_order(scenario, ordering.name);
-      if (order == nullptr || (against_reference && ordering.name == results.reference)) continue;
-      row(scenario, *order);
-    }
-  }
-}
-
-TableCell head_of(const StudyResults& results, const ScenarioRecord& scenario, const OrderOfScenario& order) {
-  return text_cell(fmt::format("{}, {}", scenario.name, title_of(results, order.ordering)));
-}
-
 /// Whether the paper says something of a scenario of the study, against the same reference.
 bool has_paper(const StudyResults& results) {
   return results.reference == "scrambled" &&

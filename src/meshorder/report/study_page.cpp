@@ -135,7 +135,7 @@ Page page_of(const StudyFolder& folder, const StudyResults& results, Notes& note
 
 WrittenReport write_report(const StudyFolder& folder, const ReportProgress& progress) {
   WrittenReport report;
-  const Page page = page_of(folder, read_results(folder.results()), report.notes, progress);
+  Page page = page_of(folder, read_results(folder.results()), report.notes, progress);
   std::error_code code;
   if (!page.figures.empty()) fs::create_directories(folder.figure("any").parent_path(), code);
   if (code) throw Error(folder.root().string(), "cannot be written: " + code.message(), "check the folder");
@@ -149,6 +149,8 @@ WrittenReport write_report(const StudyFolder& folder, const ReportProgress& prog
   for (const Figure& figure : page.figures) add(folder.figure(figure.name), figure.svg);
   add(folder.page(), to_html(page));
   OutputFile::commit_all(files);
+  report.results = std::move(page.results);
+  report.findings = std::move(page.findings);
   return report;
 }
 

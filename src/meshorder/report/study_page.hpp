@@ -25,8 +25,10 @@ void fill_from_results(Page& page, Notes& notes);
 Page page_of(const StudyFolder& folder, const StudyResults& results, Notes& notes,
              const ReportProgress& progress = {}, const PageDetail& detail = {});
 
-/// What was written, and what deserves a word.
+/// What was written, of what, and what deserves a word.
 struct WrittenReport {
+  StudyResults results;
+  std::vector<std::string> findings;
   std::vector<std::filesystem::path> files;  ///< the page is the last one
   Notes notes;
 };

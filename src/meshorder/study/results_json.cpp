@@ -119,14 +119,6 @@ class Reader {
   }
 };
 
-template <class Record>
-Record parse_record(std::string_view text, const std::string& file) {
-  const nlohmann::json json = parse_json(text, file, kGuide);
-  Record record;
-  Reader::read(JsonValue(json, file, kGuide), record);
-  return record;
-}
-
 }  // namespace
 
 nlohmann::ordered_json to_json(const StudyResults& results) {
@@ -134,9 +126,6 @@ nlohmann::ordered_json to_json(const StudyResults& results) {
   json.update(Writer().of(results));
   return json;
 }
-nlohmann::ordered_json to_json(const MachineRecord& machine) { return Writer().of(machine); }
-nlohmann::ordered_json to_json(const MeshRecord& mesh) { return Writer().of(mesh); }
-nlohmann::ordered_json to_json(const ScenarioRecord& scenario) { return Writer().of(scenario); }
 
 void write_results(const StudyResults& results, const std::filesystem::path& path) {
   write_json(to_json(results), path);
@@ -155,16 +144,6 @@ StudyResults read_results(const std::filesystem::path& path) {
   StudyResults results;
   Reader::read(root, results, false, {"format", "version"});
   return results;
-}
-
-MachineRecord parse_machine(std::string_view text, const std::string& file) {
-  return parse_record<MachineRecord>(text, file);
-}
-MeshRecord parse_mesh_record(std::string_view text, const std::string& file) {
-  return parse_record<MeshRecord>(text, file);
-}
-ScenarioRecord parse_scenario_record(std::string_view text, const std::string& file) {
-  return parse_record<ScenarioRecord>(text, file);
 }
 
 }  // namespace meshorder

@@ -6,16 +6,11 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
-#include <string>
-#include <string_view>
 
 namespace meshorder {
 
 /// Keys as docs/results.schema.json has them.
 nlohmann::ordered_json to_json(const StudyResults& results);
-nlohmann::ordered_json to_json(const MachineRecord& machine);
-nlohmann::ordered_json to_json(const MeshRecord& mesh);
-nlohmann::ordered_json to_json(const ScenarioRecord& scenario);
 
 /// Writes the file whole or not at all. Throws Error when it cannot be written.
 void write_results(const StudyResults& results, const std::filesystem::path& path);
@@ -23,10 +18,5 @@ void write_results(const StudyResults& results, const std::filesystem::path& pat
 /// Reads what write_results wrote: the same to the last bit. Throws Error that names the place in the file
 /// for whatever is missing, unknown or out of range.
 StudyResults read_results(const std::filesystem::path& path);
-
-/// The parts, for files of their own; `file` is named in errors.
-MachineRecord parse_machine(std::string_view text, const std::string& file);
-MeshRecord parse_mesh_record(std::string_view text, const std::string& file);
-ScenarioRecord parse_scenario_record(std::string_view text, const std::string& file);
 
 }  // namespace meshorder
