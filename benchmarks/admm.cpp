@@ -9,11 +9,11 @@
 //   step       all of it, ms, and its speedup over the first order
 // Scenarios with obstacles are measured twice: in free flight, and after the body was put right above the
 // obstacle with the speed of its fall.
+#include "io/format.hpp"
+#include "lab/models/catalogue.hpp"
+#include "lab/scenario/simulation.hpp"
 #include "measuring.hpp"
 #include "rotation_time.hpp"
-#include <meshorder/io/format.hpp>
-#include <meshorder/models/catalogue.hpp>
-#include <meshorder/study/simulation.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

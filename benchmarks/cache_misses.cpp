@@ -3,10 +3,10 @@
 // that the file has, for CACHES such as 48K,1M,32M (default: this machine's), and what predicting costs.
 // cache_misses MESH KERNEL RUNS: prepares all kernels and runs one of them; benchmarks/cachegrind.py counts
 // the misses of that.
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/mesh/graphs.hpp>
-#include <meshorder/study/access_stream.hpp>
+#include "base/stopwatch.hpp"
+#include "io/format.hpp"
+#include "mesh/graphs.hpp"
+#include "payoff/access_stream.hpp"
 
 #include <fmt/core.h>
 #include <tbb/global_control.h>

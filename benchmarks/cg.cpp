@@ -5,17 +5,17 @@
 // rounds, with the matrix in double and in float, on one and two threads, and how many per cent of the
 // measured bandwidth that is (over 100: caches hold something from pass to pass). "band" is the ideal order
 // (see ideal_band). With --solve: iterations and seconds to 1e-6 with each preconditioner.
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/mesh/graphs.hpp>
-#include <meshorder/mesh/mesh_ordering.hpp>
-#include <meshorder/sim/implicit/elastic_system.hpp>
-#include <meshorder/sim/kernels/positions.hpp>
-#include <meshorder/sim/kernels/spmv.hpp>
-#include <meshorder/sim/linear/preconditioner.hpp>
-#include <meshorder/sim/linear/solve.hpp>
-#include <meshorder/study/band.hpp>
-#include <meshorder/study/bandwidth.hpp>
+#include "base/stopwatch.hpp"
+#include "io/format.hpp"
+#include "kernels/positions.hpp"
+#include "kernels/spmv.hpp"
+#include "lab/implicit/elastic_system.hpp"
+#include "lab/linear/cg/solve.hpp"
+#include "lab/linear/preconditioners/preconditioner.hpp"
+#include "mesh/graphs.hpp"
+#include "mesh/mesh_ordering.hpp"
+#include "payoff/band.hpp"
+#include "payoff/bandwidth.hpp"
 
 #include <fmt/core.h>
 #include <tbb/global_control.h>

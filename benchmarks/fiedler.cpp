@@ -4,14 +4,14 @@
 // every direction, its vertices scrambled) the time from cells to graph, and from the graph to the vector at
 // two accuracies on one and two threads, median of five runs; the mean edge span of the order that follows;
 // the memory that the solver took, relative to the graph's.
+#include "base/stopwatch.hpp"
+#include "io/format.hpp"
+#include "mesh/graphs.hpp"
+#include "mesh/mesh_ordering.hpp"
+#include "mesh/procedural.hpp"
+#include "metrics/edge_span.hpp"
+#include "ordering/method.hpp"
 #include "peak_memory.hpp"
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/mesh/graphs.hpp>
-#include <meshorder/mesh/mesh_ordering.hpp>
-#include <meshorder/metrics/edge_span.hpp>
-#include <meshorder/models/procedural.hpp>
-#include <meshorder/ordering/method.hpp>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>

@@ -2,9 +2,9 @@
 //
 // hard_graphs: the Fiedler solver on graphs that are no meshes, on one thread: time, iterations, λ₂ beside
 // the exact one where that is known, and whether it converged.
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/spectral/fiedler.hpp>
-#include <support/sample_graphs.hpp>
+#include "base/stopwatch.hpp"
+#include "spectral/fiedler.hpp"
+#include "support/sample_graphs.hpp"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>

@@ -8,10 +8,10 @@
 //   assembly of forces and matrix, ms
 //   CG       an iteration, ms, and the rate at which it reads its matrix in per cent of the measured
 //   bandwidth step     all of it, ms, and its speedup over the first order
+#include "io/format.hpp"
+#include "lab/scenario/simulation.hpp"
 #include "measuring.hpp"
 #include "peak_flops.hpp"
-#include <meshorder/io/format.hpp>
-#include <meshorder/study/simulation.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

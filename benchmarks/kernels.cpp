@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // kernels [cubes across, default 40]: the simulators' kernels on a lattice of tetrahedra, scrambled, in its
 // own order and along a Hilbert curve: best time, rate of compulsory memory traffic, speedup over scrambled.
-#include <meshorder/mesh/graphs.hpp>
-#include <meshorder/mesh/mesh_ordering.hpp>
-#include <meshorder/models/procedural.hpp>
-#include <meshorder/study/bandwidth.hpp>
-#include <meshorder/study/kernel_timing.hpp>
+#include "mesh/graphs.hpp"
+#include "mesh/mesh_ordering.hpp"
+#include "mesh/procedural.hpp"
+#include "payoff/bandwidth.hpp"
+#include "payoff/kernel_timing.hpp"
 
 #include <fmt/core.h>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 // What the benchmarks of time steps share.
-#include <meshorder/study/bandwidth.hpp>
-#include <meshorder/study/scenario.hpp>
+#include "lab/scenario/scenario.hpp"
+#include "payoff/bandwidth.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "peak_flops.hpp"
 
-#include <meshorder/base/stopwatch.hpp>
+#include "base/stopwatch.hpp"
 
 #include <algorithm>
 

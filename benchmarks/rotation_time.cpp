@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "rotation_time.hpp"
 
-#include <meshorder/base/random.hpp>
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/sim/kernels/aligned.hpp>
+#include "base/random.hpp"
+#include "base/stopwatch.hpp"
+#include "kernels/aligned.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -13,8 +13,8 @@
 #define HWY_TARGET_INCLUDE "rotation_time.cpp"
 #include <hwy/foreach_target.h>
 // from here on once for each instruction set
-#include <meshorder/sim/kernels/float_lanes-inl.hpp>
-#include <meshorder/sim/material/rotation-inl.hpp>
+#include "kernels/float_lanes-inl.hpp"
+#include "kernels/rotation-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {

@@ -4,11 +4,11 @@
 //   scaling make CUBES FILE               a grid of tetrahedra, CUBES across, scrambled
 //   scaling vertices|elements METHOD FILE prints vertices, elements, seconds, MB before, MB at the peak
 // Elements are ordered after the vertices' Hilbert order. Memory counts the mesh and its graph.
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/mesh/graphs.hpp>
-#include <meshorder/mesh/mesh_ordering.hpp>
-#include <meshorder/models/procedural.hpp>
+#include "base/stopwatch.hpp"
+#include "io/format.hpp"
+#include "mesh/graphs.hpp"
+#include "mesh/mesh_ordering.hpp"
+#include "mesh/procedural.hpp"
 
 #include <fmt/core.h>
 

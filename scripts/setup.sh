@@ -116,16 +116,16 @@ configure() {
 build() { ninja -C "$1" -j "$(build_jobs)" "${@:2}"; }
 
 # all sources of ours, each ended by a zero byte
-sources() { find src apps tests benchmarks -name '*.[ch]pp' -print0; }
+sources() { find include src lab apps tests benchmarks -name '*.[ch]pp' -print0; }
 
 # tidy FOLDER: clang-tidy over what is built there, but for the tests and the CGAL tool. A file that passed is
 # looked at again when it, a header or the checks change.
 tidy() {
   local folder=$1 newest
-  newest=$(find .clang-tidy src apps \( -name '*.hpp' -o -name .clang-tidy \) -printf '%T@ %p\n' | sort -n | tail -n 1 | cut -d' ' -f2-)
+  newest=$(find .clang-tidy src lab apps \( -name '*.hpp' -o -name .clang-tidy \) -printf '%T@ %p\n' | sort -n | tail -n 1 | cut -d' ' -f2-)
   mkdir -p "$folder/tidy"
   # shellcheck disable=SC2016  # the inner shell's variables
-  find src apps/meshorder -name '*.cpp' -print0 | sort -z | xargs -0 -P "$(build_jobs)" -I {} bash -c '
+  find src lab apps/meshorder -name '*.cpp' -print0 | sort -z | xargs -0 -P "$(build_jobs)" -I {} bash -c '
     passed=$1/tidy/${2//\//.}
     [ "$passed" -nt "$2" ] && [ "$passed" -nt "$3" ] && exit 0
     if found=$(clang-tidy --quiet -p "$1" "$2" 2>&1); then touch "$passed"; else printf "%s\n" "$found"; exit 1; fi

@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "console.hpp"
+#include "io/format.hpp"
+#include "io/stream/output_file.hpp"
 #include "maps.hpp"
+#include "mesh/reorder.hpp"
 #include "progress.hpp"
-#include <meshorder/base/error.hpp>
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/io/output_file.hpp>
-#include <meshorder/mesh/reorder.hpp>
 
 #include <memory>
 #include <string>

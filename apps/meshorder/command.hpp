@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <meshorder/ordering/method.hpp>
+#include "ordering/method.hpp"
 
 #include <CLI/CLI.hpp>
 

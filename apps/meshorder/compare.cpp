@@ -1,18 +1,18 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "compare_report.hpp"
 #include "console.hpp"
+#include "io/format.hpp"
+#include "mesh/graphs.hpp"
+#include "mesh/mesh_ordering.hpp"
+#include "mesh/reorder.hpp"
+#include "metrics/edge_span.hpp"
+#include "payoff/band.hpp"
+#include "payoff/kernel_timing.hpp"
 #include "progress.hpp"
 #include "reuse_report.hpp"
 #include "wording.hpp"
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/mesh/graphs.hpp>
-#include <meshorder/mesh/mesh_ordering.hpp>
-#include <meshorder/mesh/reorder.hpp>
-#include <meshorder/metrics/edge_span.hpp>
-#include <meshorder/study/band.hpp>
-#include <meshorder/study/kernel_timing.hpp>
 
 #include <algorithm>
 #include <memory>

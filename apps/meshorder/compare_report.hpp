@@ -2,11 +2,11 @@
 #pragma once
 
 #include "console.hpp"
-#include <meshorder/mesh/mesh_ordering.hpp>
-#include <meshorder/metrics/cache.hpp>
-#include <meshorder/metrics/edge_span.hpp>
-#include <meshorder/study/access_stream.hpp>
-#include <meshorder/study/kernel_timing.hpp>
+#include "mesh/mesh_ordering.hpp"
+#include "metrics/cache.hpp"
+#include "metrics/edge_span.hpp"
+#include "payoff/access_stream.hpp"
+#include "payoff/kernel_timing.hpp"
 
 #include <nlohmann/json.hpp>
 

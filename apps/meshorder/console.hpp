@@ -2,8 +2,8 @@
 #pragma once
 
 #include "command.hpp"
-#include <meshorder/base/quantities.hpp>
-#include <meshorder/io/format.hpp>
+#include "io/format.hpp"
+#include "lab/support/quantities.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,16 +1,16 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "console.hpp"
+#include "graph/components.hpp"
+#include "io/format.hpp"
+#include "mesh/check.hpp"
+#include "mesh/graphs.hpp"
+#include "metrics/edge_span.hpp"
 #include "progress.hpp"
 #include "reuse_report.hpp"
 #include "verdict.hpp"
 #include "wording.hpp"
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/graph/components.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/mesh/check.hpp>
-#include <meshorder/mesh/graphs.hpp>
-#include <meshorder/metrics/edge_span.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/error.hpp"
 #include "command.hpp"
-#include <meshorder/base/error.hpp>
 
 #include <fmt/format.h>
 

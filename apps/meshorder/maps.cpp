@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "maps.hpp"
 
-#include <meshorder/base/error.hpp>
-#include <meshorder/io/npy.hpp>
+#include "base/error.hpp"
+#include "io/npy.hpp"
 
 #include <filesystem>
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
 #include "console.hpp"
-#include <meshorder/ordering/method.hpp>
+#include "ordering/method.hpp"
 
 #include <memory>
 

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
 #include "console.hpp"
+#include "lab/models/catalogue.hpp"
 #include "progress.hpp"
-#include <meshorder/models/catalogue.hpp>
 
 #include <memory>
 #include <string>

@@ -1,16 +1,16 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "console.hpp"
+#include "io/format.hpp"
+#include "io/stream/output_file.hpp"
 #include "maps.hpp"
+#include "mesh/graphs.hpp"
+#include "mesh/mesh_ordering.hpp"
+#include "mesh/reorder.hpp"
+#include "metrics/edge_span.hpp"
 #include "progress.hpp"
 #include "wording.hpp"
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/io/output_file.hpp>
-#include <meshorder/mesh/graphs.hpp>
-#include <meshorder/mesh/mesh_ordering.hpp>
-#include <meshorder/mesh/reorder.hpp>
-#include <meshorder/metrics/edge_span.hpp>
 
 #include <memory>
 #include <string>

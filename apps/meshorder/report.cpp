@@ -1,17 +1,17 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/error.hpp"
 #include "command.hpp"
 #include "console.hpp"
+#include "io/format.hpp"
+#include "io/stream/output_file.hpp"
+#include "lab/report/page/study_page.hpp"
+#include "lab/study/mesh_study.hpp"
+#include "lab/study/results_json.hpp"
+#include "lab/study/timestamp.hpp"
+#include "lab/support/machine.hpp"
 #include "progress.hpp"
 #include "verdict.hpp"
 #include "wording.hpp"
-#include <meshorder/base/error.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/io/output_file.hpp>
-#include <meshorder/report/study_page.hpp>
-#include <meshorder/study/machine.hpp>
-#include <meshorder/study/mesh_study.hpp>
-#include <meshorder/study/results_json.hpp>
-#include <meshorder/study/timestamp.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/parallel.hpp"
 #include "command.hpp"
 #include "console.hpp"
 #include "interruption.hpp"
+#include "lab/report/page/study_page.hpp"
+#include "lab/scenario/scenario.hpp"
+#include "lab/study/results_json.hpp"
+#include "lab/study/study_run.hpp"
 #include "progress.hpp"
-#include <meshorder/base/parallel.hpp>
-#include <meshorder/report/study_page.hpp>
-#include <meshorder/study/results_json.hpp>
-#include <meshorder/study/scenario.hpp>
-#include <meshorder/study/study_run.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <meshorder/metrics/cache.hpp>
-#include <meshorder/study/access_stream.hpp>
+#include "metrics/cache.hpp"
+#include "payoff/access_stream.hpp"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

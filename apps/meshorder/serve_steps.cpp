@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
-#include <meshorder/study/stepper.hpp>
+#include "lab/study/stepper.hpp"
 
 #include <iostream>
 #include <memory>

@@ -1,17 +1,17 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "console.hpp"
 #include "interruption.hpp"
+#include "io/stream/output_file.hpp"
+#include "lab/models/catalogue.hpp"
+#include "lab/scenario/checkpoint.hpp"
+#include "lab/scenario/frames.hpp"
+#include "lab/scenario/shape.hpp"
+#include "lab/scenario/simulation.hpp"
 #include "progress.hpp"
 #include "simulate_report.hpp"
-#include <meshorder/base/error.hpp>
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/io/output_file.hpp>
-#include <meshorder/models/catalogue.hpp>
-#include <meshorder/study/checkpoint.hpp>
-#include <meshorder/study/frames.hpp>
-#include <meshorder/study/shape.hpp>
-#include <meshorder/study/simulation.hpp>
 
 #include <csignal>
 #include <memory>

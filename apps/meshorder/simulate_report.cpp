@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "simulate_report.hpp"
 
+#include "base/parallel.hpp"
+#include "lab/scenario/vertex_choice.hpp"
 #include "wording.hpp"
-#include <meshorder/base/parallel.hpp>
-#include <meshorder/study/vertex_choice.hpp>
 
 #include <algorithm>
 #include <array>

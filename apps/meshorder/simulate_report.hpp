@@ -2,8 +2,8 @@
 #pragma once
 
 #include "console.hpp"
-#include <meshorder/study/motion_record.hpp>
-#include <meshorder/study/simulation.hpp>
+#include "lab/scenario/motion_record.hpp"
+#include "lab/scenario/simulation.hpp"
 
 #include <nlohmann/json.hpp>
 

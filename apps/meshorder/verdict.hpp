@@ -2,7 +2,7 @@
 #pragma once
 
 #include "console.hpp"
-#include <meshorder/study/advice.hpp>
+#include "payoff/advice.hpp"
 
 #include <nlohmann/json.hpp>
 

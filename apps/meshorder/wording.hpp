@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <meshorder/graph/csr_graph.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/mesh/grouping.hpp>
-#include <meshorder/mesh/mesh.hpp>
-#include <meshorder/metrics/edge_span.hpp>
-#include <meshorder/ordering/method.hpp>
-#include <meshorder/spectral/fiedler.hpp>
+#include "graph/csr_graph.hpp"
+#include "io/format.hpp"
+#include "mesh/groups.hpp"
+#include "mesh/mesh.hpp"
+#include "metrics/edge_span.hpp"
+#include "ordering/method.hpp"
+#include "spectral/fiedler.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -4,7 +4,7 @@
 
     fit.py TABLE.csv [--page docs/prediction.md]
 
-Prints the coefficients as C++, for src/meshorder/study/cost_model.cpp: non-negative least squares of relative errors
+Prints the coefficients as C++, for src/payoff/cost_model.cpp: non-negative least squares of relative errors
 over all meshes. What it says of their worth is of two other fits: each half of the meshes, every second one by size,
 is predicted by a fit to the other half.
 """

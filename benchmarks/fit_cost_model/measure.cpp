@@ -7,14 +7,14 @@
 //
 // MESH is the name of a model, "grid-20", "dragon", or a file; with "-skin" behind it, the triangles on its
 // surface. benchmarks/fit_cost_model/collect.py calls this for all of them.
-#include <meshorder/io/format.hpp>
-#include <meshorder/io/npy.hpp>
-#include <meshorder/mesh/graphs.hpp>
-#include <meshorder/mesh/mesh_ordering.hpp>
-#include <meshorder/mesh/reorder.hpp>
-#include <meshorder/models/catalogue.hpp>
-#include <meshorder/study/access_stream.hpp>
-#include <meshorder/study/kernel_timing.hpp>
+#include "io/format.hpp"
+#include "io/npy.hpp"
+#include "lab/models/catalogue.hpp"
+#include "mesh/graphs.hpp"
+#include "mesh/mesh_ordering.hpp"
+#include "mesh/reorder.hpp"
+#include "payoff/access_stream.hpp"
+#include "payoff/kernel_timing.hpp"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,10 @@
 //
 // `peer-graph_of MESH FOLDER` writes the largest component of a mesh's vertex graph as offsets.npy and
 // neighbours.npy, so that every peer starts from the same ready graph.
-#include <meshorder/graph/components.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/io/npy.hpp>
-#include <meshorder/mesh/graphs.hpp>
+#include "graph/components.hpp"
+#include "io/format.hpp"
+#include "io/npy.hpp"
+#include "mesh/graphs.hpp"
 
 #include <fmt/format.h>
 

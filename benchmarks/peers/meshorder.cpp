@@ -2,7 +2,7 @@
 //
 // This project's own solver, on one thread.
 #include "peer.hpp"
-#include <meshorder/spectral/fiedler.hpp>
+#include "spectral/fiedler.hpp"
 
 #include <tbb/global_control.h>
 

@@ -4,9 +4,9 @@
 // that `peer-graph_of` wrote, times its solver, and writes the vector.
 #pragma once
 
-#include <meshorder/base/stopwatch.hpp>
-#include <meshorder/graph/csr_graph.hpp>
-#include <meshorder/io/npy.hpp>
+#include "base/stopwatch.hpp"
+#include "graph/csr_graph.hpp"
+#include "io/npy.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/io/base64.hpp>
+#include "io/stream/base64.hpp"
 
 #include <gtest/gtest.h>
 

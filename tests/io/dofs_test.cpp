@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // The C++ example of docs/dofs.md; tests/command/test_docs.py sees to it that both are the same.
+#include "support/files.hpp"
+#include "support/sample_meshes.hpp"
 #include <meshorder/meshorder.hpp>
-#include <support/files.hpp>
-#include <support/sample_meshes.hpp>
 
 #include <gtest/gtest.h>
 

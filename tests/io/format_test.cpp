@@ -1,10 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/base/error.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/mesh/mesh_ordering.hpp>
-#include <meshorder/mesh/reorder.hpp>
-#include <support/files.hpp>
-#include <support/sample_meshes.hpp>
+#include "io/format.hpp"
+
+#include "base/error.hpp"
+#include "mesh/mesh_ordering.hpp"
+#include "mesh/reorder.hpp"
+#include "support/files.hpp"
+#include "support/sample_meshes.hpp"
 
 #include <gtest/gtest.h>
 

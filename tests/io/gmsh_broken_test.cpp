@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <support/files.hpp>
+#include "io/gmsh_files.hpp"
+#include "support/files.hpp"
 
 #include <gtest/gtest.h>
-#include <io/gmsh_files.hpp>
 
 namespace meshorder::test {
 namespace {

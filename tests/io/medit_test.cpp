@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/base/error.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/mesh/reorder.hpp>
-#include <support/files.hpp>
-#include <support/sample_meshes.hpp>
+#include "base/error.hpp"
+#include "io/format.hpp"
+#include "mesh/reorder.hpp"
+#include "support/files.hpp"
+#include "support/sample_meshes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

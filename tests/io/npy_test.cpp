@@ -1,7 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/base/error.hpp>
-#include <meshorder/io/npy.hpp>
-#include <support/files.hpp>
+#include "io/npy.hpp"
+
+#include "base/error.hpp"
+#include "support/files.hpp"
 
 #include <gtest/gtest.h>
 

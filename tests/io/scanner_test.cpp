@@ -1,7 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/io/output_file.hpp>
-#include <meshorder/io/scanner.hpp>
-#include <support/files.hpp>
+#include "io/stream/scanner.hpp"
+
+#include "io/stream/output_file.hpp"
+#include "support/files.hpp"
 
 #include <gtest/gtest.h>
 

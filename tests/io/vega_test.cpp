@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/io/format.hpp>
-#include <meshorder/mesh/reorder.hpp>
-#include <support/files.hpp>
-#include <support/sample_meshes.hpp>
+#include "io/format.hpp"
+#include "mesh/reorder.hpp"
+#include "support/files.hpp"
+#include "support/sample_meshes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <meshorder/graph/csr_graph.hpp>
-#include <meshorder/ordering/arrangement_graph.hpp>
+#include "graph/csr_graph.hpp"
+#include "ordering/arrangement_graph.hpp"
 
 namespace meshorder::test {
 

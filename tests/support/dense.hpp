@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <meshorder/graph/laplacian.hpp>
+#include "graph/laplacian.hpp"
 
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>

@@ -1,10 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/base/error.hpp>
-#include <meshorder/io/format.hpp>
-#include <meshorder/mesh/check.hpp>
-#include <meshorder/mesh/reorder.hpp>
-#include <support/files.hpp>
-#include <support/sample_meshes.hpp>
+#include "support/files.hpp"
+
+#include "base/error.hpp"
+#include "io/format.hpp"
+#include "mesh/check.hpp"
+#include "mesh/reorder.hpp"
+#include "support/sample_meshes.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <meshorder/mesh/mesh.hpp>
+#include "mesh/mesh.hpp"
 
 #include <filesystem>
 #include <string>

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <support/sample_graphs.hpp>
-#include <support/sample_meshes.hpp>
+#include "support/sample_graphs.hpp"
+
+#include "support/sample_meshes.hpp"
 
 #include <random>
 

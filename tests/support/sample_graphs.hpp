@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <meshorder/graph/csr_graph.hpp>
+#include "graph/csr_graph.hpp"
 
 #include <cstdint>
 #include <vector>

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include <meshorder/mesh/reorder.hpp>
-#include <support/sample_meshes.hpp>
+#include "support/sample_meshes.hpp"
+
+#include "mesh/reorder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <meshorder/mesh/mesh.hpp>
-#include <meshorder/ordering/permutation.hpp>
+#include "mesh/mesh.hpp"
+#include "ordering/permutation.hpp"
 
 #include <cstdint>
 #include <vector>

@@ -1,0 +1,55 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/admm/local_pass.hpp"
+#include "lab/linear/cholesky/sparse_matrix.hpp"
+
+#include <span>
+
+namespace meshorder {
+
+struct LocalLaw;
+
+/// What the local steps need of elements at rest: springs on two corners or tetrahedra on four, in batches as
+/// LocalPass has them. The last batch is filled up with elements of no weight, which have no force.
+///
+/// A tetrahedron that is flat to rounding (see RestShapes) has no deformation gradient: it gets the corners
+/// and shape of one nearby that has, and no weight.
+template <class Real>
+struct LocalElements {
+  Offset count = 0;
+  Index corners = 0;
+  AlignedVector<Index> vertices;
+  AlignedVector<Real> rest, directions, softness;
+  Offset softness_stride = 0;  ///< 0 where one batch of `softness` is that of all
+  Real stiffness = 0;          ///< of springs
+
+  [[nodiscard]] Offset batches() const noexcept {
+    return (count + kLocalBatch<Real> - 1) / kLocalBatch<Real>;
+  }
+  /// Numbers of D x of one element.
+  [[nodiscard]] Index rows() const noexcept { return corners == 2 ? 3 : 9; }
+
+  [[nodiscard]] Index vertex(Offset element, Index corner) const {
+    return vertices[place(element, corners) + corner * kLocalBatch<Real>];
+  }
+  /// D of one element, `corners` numbers for each column of D x: 1 and −1, or the corners' shape gradients.
+  /// Returns w².
+  double load(Offset element, double (&d)[4][3]) const;
+
+  /// Where the numbers of an element begin that has as many as that.
+  [[nodiscard]] static Offset place(Offset element, Index numbers) {
+    return element / kLocalBatch<Real> * numbers * kLocalBatch<Real> + element % kLocalBatch<Real>;
+  }
+};
+
+/// The elements of tetrahedra at rest at the points: see LocalSteps. O(simplices · log degree).
+template <class Real>
+LocalElements<Real> local_elements(const LocalLaw& law, const Simplices& simplices,
+                                   std::span<const Point> points);
+
+/// Σ Dᵀw²D on n vertices. O(elements · log degree).
+template <class Real>
+SparseMatrix stiffness_of(const LocalElements<Real>& elements, Index n);
+
+}  // namespace meshorder

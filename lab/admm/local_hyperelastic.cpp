@@ -1,0 +1,61 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/admm/local_pass.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lab/admm/local_hyperelastic.cpp"
+#include <hwy/foreach_target.h>
+// from here on once for each instruction set
+#include "lab/admm/hyperelastic_laws-inl.hpp"
+#include "lab/admm/proximal-inl.hpp"
+#include "lab/admm/tetrahedra-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace meshorder::HWY_NAMESPACE {
+namespace {
+
+template <template <class> class Law>
+void doubles(const LocalPass<double>& pass) {
+  pass_tetrahedra<ManyLanes, ProximalStep<ManyLanes, Law<ManyLanes>>>(pass);
+}
+template <template <class> class Law>
+void floats(const LocalPass<float>& pass) {
+  pass_tetrahedra<ManyFloatLanes, ProximalStep<ManyFloatLanes, Law<ManyFloatLanes>>>(pass);
+}
+
+void stvk_doubles(const LocalPass<double>& pass) { doubles<StvkSteps>(pass); }
+void stvk_floats(const LocalPass<float>& pass) { floats<StvkSteps>(pass); }
+void neo_hookean_doubles(const LocalPass<double>& pass) { doubles<NeoHookeanSteps>(pass); }
+void neo_hookean_floats(const LocalPass<float>& pass) { floats<NeoHookeanSteps>(pass); }
+void log_neo_hookean_doubles(const LocalPass<double>& pass) { doubles<LogNeoHookeanSteps>(pass); }
+void log_neo_hookean_floats(const LocalPass<float>& pass) { floats<LogNeoHookeanSteps>(pass); }
+
+}  // namespace
+}  // namespace meshorder::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace meshorder {
+namespace {
+
+HWY_EXPORT(stvk_doubles);
+HWY_EXPORT(stvk_floats);
+HWY_EXPORT(neo_hookean_doubles);
+HWY_EXPORT(neo_hookean_floats);
+HWY_EXPORT(log_neo_hookean_doubles);
+HWY_EXPORT(log_neo_hookean_floats);
+
+}  // namespace
+
+void pass_stvk(const LocalPass<double>& pass) { HWY_DYNAMIC_DISPATCH(stvk_doubles)(pass); }
+void pass_stvk(const LocalPass<float>& pass) { HWY_DYNAMIC_DISPATCH(stvk_floats)(pass); }
+void pass_neo_hookean(const LocalPass<double>& pass) { HWY_DYNAMIC_DISPATCH(neo_hookean_doubles)(pass); }
+void pass_neo_hookean(const LocalPass<float>& pass) { HWY_DYNAMIC_DISPATCH(neo_hookean_floats)(pass); }
+void pass_log_neo_hookean(const LocalPass<double>& pass) {
+  HWY_DYNAMIC_DISPATCH(log_neo_hookean_doubles)(pass);
+}
+void pass_log_neo_hookean(const LocalPass<float>& pass) {
+  HWY_DYNAMIC_DISPATCH(log_neo_hookean_floats)(pass);
+}
+
+}  // namespace meshorder
+#endif

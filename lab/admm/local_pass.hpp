@@ -1,0 +1,48 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/owned_batches.hpp"
+
+namespace meshorder {
+
+/// Local steps take as many elements at a time as an AVX-512 register has numbers.
+template <class Real>
+inline constexpr Index kLocalBatch = 64 / sizeof(Real);
+
+/// Numbers of a tetrahedron in LocalElements::rest: Dₘ⁻¹ row by row in the frame of the world, and w².
+inline constexpr Index kTetrahedronNumbers = 10;
+
+/// What a pass over one share of the batches reads and writes, checked: for local_steps.cpp and the kernels
+/// alone. Quantity q of the element in lane l of a batch stands at `q · kLocalBatch + l` of what the batch
+/// has.
+template <class Real>
+struct LocalPass {
+  const OwnedBatches& share;
+  const Index* vertices = nullptr;   ///< corners of each batch
+  const Real* rest = nullptr;        ///< kTetrahedronNumbers, or the rest length of springs
+  const Real* directions = nullptr;  ///< springs: of the rest edges, 3 quantities
+  /// Hyperelastic models: μ over the bulk modulus, of batch b from softness[softness_stride · b] on.
+  const Real* softness = nullptr;
+  Offset softness_stride = 0;
+  Real stiffness = 0;  ///< of springs
+  Real scale = 0;
+  const Real* positions = nullptr;
+  Real* right_hand_side = nullptr;
+  // of the share's batches, one after another
+  Real* duals = nullptr;        ///< 9 quantities of tetrahedra, 3 of springs
+  double* residuals = nullptr;  ///< primal and magnitude
+};
+
+// The kernels of each law.
+void pass_springs(const LocalPass<double>& pass);
+void pass_springs(const LocalPass<float>& pass);
+void pass_strain(const LocalPass<double>& pass);
+void pass_strain(const LocalPass<float>& pass);
+void pass_stvk(const LocalPass<double>& pass);
+void pass_stvk(const LocalPass<float>& pass);
+void pass_neo_hookean(const LocalPass<double>& pass);
+void pass_neo_hookean(const LocalPass<float>& pass);
+void pass_log_neo_hookean(const LocalPass<double>& pass);
+void pass_log_neo_hookean(const LocalPass<float>& pass);
+
+}  // namespace meshorder

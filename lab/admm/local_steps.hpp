@@ -1,0 +1,104 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/material.hpp"
+#include "kernels/owned_batches.hpp"
+#include "kernels/simplices.hpp"
+#include "lab/admm/local_elements.hpp"
+#include "lab/linear/cholesky/sparse_matrix.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// What the elements of a body in ADMM projective dynamics are made of: an energy U of a linear function D x
+/// of the positions, and the weight w² of its step.
+///
+/// Springs and strain have their one minimum in closed form, halfway to the rest length or the closest
+/// rotation; where q = 0, along the rest edge and to the identity, so that a body rises from a point. Of the
+/// hyperelastic models it is the minimum near rest as far as the objective is convex, to about 1e-13 (of
+/// floats 2e-6; of stvk 1e-5 at Poisson's ratio 0.3 and 1e-4 at 0), and a local one elsewhere; singular
+/// values beyond 1e4 are taken for 1e4. Nothing is NaN for finite q.
+enum class LocalModel : std::uint8_t {
+  springs,  ///< on every edge: D x = x_a − x_b, U = ½k(‖D x‖ − ℓ₀)², w² = k
+  strain,  ///< linear tetrahedral strain: D x = F, U = ½kV‖F − R‖², w² = kV (Narain, Overby, Brown 2016)
+  stvk,         ///< D x = F, U = VΨ(F) of MaterialModel::stvk, w² = V times the bulk modulus
+  neo_hookean,  ///< the same of MaterialModel::neo_hookean
+  log_neo_hookean,  ///< ½μ(‖F‖² − 3) − μ log J + ½λ log² J, infinite for J ≤ 0 (Bonet, Wood 1997)
+};
+
+struct LocalLaw {
+  LocalModel model = LocalModel::strain;
+  double stiffness = 0.0;  ///< k of all springs, N/m, or of the strain, Pa, where `stiffnesses` is empty
+  std::vector<double> stiffnesses;  ///< strain: k of each simplex
+  Lame lame;                        ///< hyperelastic models: of all simplices, where the two below are empty
+  std::vector<double> mu, lambda;   ///< of each simplex
+};
+
+/// What one pass of local steps leaves between its elements and the positions; sums over elements.
+struct LocalResidual {
+  double primal = 0.0;     ///< Σ w²‖D x − z‖²
+  double magnitude = 0.0;  ///< Σ w²‖z‖², to which that compares
+};
+
+/// The local steps of all elements, with their dual variables u. Elements are taken in the order of the
+/// simplices (springs by their edges, see springs_on_edges), and vertices as they are numbered. The same bits
+/// on every run and for any number of threads.
+///
+/// Each thread adds to a range of vertices of its own, by all elements that touch it (see owned_batches), of
+/// which those on a boundary have a copy of their duals for each thread. Tetrahedra that are flat to rounding
+/// have no volume and no force; their duals are those of one nearby. A pass streams 240 bytes a tetrahedron
+/// and 64 a spring in double, half of that in float.
+template <class Real>
+class LocalSteps {
+ public:
+  /// The elements of `simplices` (tetrahedra) at rest at `points`, with duals 0. Throws InvalidArgument,
+  /// which names what is wrong, for simplices that are no tetrahedra and numbers that are out of range or not
+  /// finite. O(simplices · log degree).
+  LocalSteps(const LocalLaw& law, const Simplices& simplices, std::span<const Point> points);
+
+  /// Σ Dᵀw²D on the vertices: n × n, the same for x, y and z.
+  [[nodiscard]] SparseMatrix stiffness() const;
+
+  /// For every element q = D x + u, z = argmin U(z) + ½w²‖z − q‖², u = q − z; then right_hand_side[v] =
+  /// scale · Σ Dᵀw²(z − u) at each vertex v. Both vectors have kPaddedStride numbers for each vertex (see
+  /// padded_positions); the right-hand side has `room()` vertices, of which those behind the mesh's are
+  /// scratch. O(elements).
+  LocalResidual pass(std::span<const Real> positions, Real scale, std::span<Real> right_hand_side);
+
+  /// Vertices that the right-hand side has room for, at least n.
+  [[nodiscard]] Index room() const noexcept;
+
+  void reset_duals();
+  /// The duals, 9 of each tetrahedron (row by row) and 3 of each spring, in an order that does not depend on
+  /// the number of threads, for a checkpoint.
+  [[nodiscard]] std::vector<Real> duals() const;
+  /// Throws InvalidArgument unless there are as many as `duals` returns and all are finite.
+  void set_duals(std::span<const Real> duals);
+
+  /// Σ U(D x), infinite where a law is. O(elements).
+  [[nodiscard]] double energy(std::span<const Real> positions) const;
+
+  [[nodiscard]] Offset element_count() const noexcept;
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  /// Where the duals of copy c of a batch begin: batches that several shares compute have one for each.
+  [[nodiscard]] Offset duals_of(Offset copy) const noexcept {
+    return copy * elements_.rows() * kLocalBatch<Real>;
+  }
+
+  LocalModel model_;
+  Index vertex_count_;
+  LocalElements<Real> elements_;
+  std::vector<OwnedBatches> shares_;
+  std::vector<Offset> first_copies_;  ///< of each share, whose copies follow one another
+  std::vector<Offset> copies_;        ///< of each batch: one of its copies
+  AlignedVector<Real> duals_;
+  std::vector<double> residuals_;  ///< of each copy: primal and magnitude
+};
+
+}  // namespace meshorder

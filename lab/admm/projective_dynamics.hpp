@@ -1,0 +1,98 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/admm/accelerated_iteration.hpp"
+#include "lab/admm/global_system.hpp"
+#include "lab/admm/local_steps.hpp"
+#include "lab/contact/search/contact_set.hpp"
+#include "lab/contact/solve/contact_solver.hpp"
+#include "lab/motion/integrator.hpp"
+#include "lab/motion/loads.hpp"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+struct ProjectiveOptions : MotionOptions {
+  int iterations = 20;     ///< of a step; at most, with a tolerance
+  double tolerance = 0.0;  ///< 0, or ends a step when both residuals (see ProjectiveDynamics) are below it
+  bool keep_duals = true;  ///< from step to step; or each step starts with zero ones
+  int acceleration = 0;    ///< earlier iterates that Anderson acceleration mixes, 0 … 10; 0 with contacts
+  ContactOptions contact;
+  ContactSolverOptions contact_solver;
+};
+
+/// What a body in projective dynamics is made of.
+struct ProjectiveBody {
+  Simplices simplices;  ///< tetrahedra
+  LocalLaw law;
+  std::vector<double> densities;  ///< kg/m³: one, or one for each simplex
+};
+
+/// An elastic body in time by ADMM projective dynamics (Narain, Overby, Brown 2016), with contacts after
+/// Overby, Brown, Li and Narain (2017). `Real` is the precision of an iteration, double or float; places and
+/// velocities are double.
+///
+/// A step of backward Euler minimises ½h⁻²‖x − x̄‖²_M + Σ Uᵢ(Dᵢx), x̄ = x + h v + h²M⁻¹f_ext. Each iteration
+/// first takes every element's local step, z = argmin U(z) + ½w²‖z − (Dx + u)‖² and u ← u + Dx − z, then the
+/// global one, A x = M x̄ + h² Σ Dᵀw²(z − u), where contacts hold. Its residuals are ‖W(Dx − z)‖ / ‖Wz‖ and
+/// the change of the right-hand side relative to the elastic part of it.
+///
+/// An obstacle is met where it is when the step ends: after the last iteration the global step is repeated
+/// until no vertex is found in an obstacle that it did not know.
+template <class Real>
+class ProjectiveDynamics final : public Integrator {
+ public:
+  /// The body at rest at `points`. Throws InvalidArgument, which names what is wrong, for a body that is not
+  /// of tetrahedra, numbers that are not finite or out of range.
+  ProjectiveDynamics(std::span<const Point> points, const ProjectiveBody& body, ProjectiveOptions options);
+
+  /// The memory is that of the duals, where they are kept.
+  [[nodiscard]] MotionState state() const override;
+  void set_state(const MotionState& state) override;
+  StepReport step() override;
+  [[nodiscard]] Balance balance() const override;
+  [[nodiscard]] std::size_t bytes() const override;
+
+  [[nodiscard]] const LocalSteps<Real>& local_steps() const noexcept { return local_; }
+  [[nodiscard]] const GlobalSystem<Real>& system() const noexcept { return system_; }
+  [[nodiscard]] std::span<const double> masses() const noexcept { return masses_; }
+
+ private:
+  void predict();
+  void complete_right_side();
+  bool has_converged(const LocalResidual& local, StepReport& report);
+  void solve(bool last, StepReport& report);
+  void accelerate();
+  void solve_with_contacts(bool last, StepReport& report);
+  std::span<const double> in_double();
+  void drop_held_contacts();
+  void spread_forces();
+  void finish(StepReport& report);
+
+  ProjectiveOptions options_;
+  std::vector<double> masses_;
+  LocalSteps<Real> local_;
+  GlobalSystem<Real> system_;
+  std::optional<ContactSet> contacts_;  ///< where there is something to touch
+  std::unique_ptr<ContactSolver<Real>> contact_solver_;
+  std::optional<AcceleratedIteration<Real>> acceleration_;
+  HeldVertices held_;
+
+  Index steps_ = 0;
+  AlignedVector<double> positions_;      ///< at the step's start, padded as all that follow
+  std::vector<double> velocities_;       ///< 3 a vertex
+  std::vector<double> loads_;            ///< f_ext, 3 a vertex
+  AlignedVector<Real> x_;                ///< the iterate
+  AlignedVector<Real> inertia_;          ///< M x̄
+  AlignedVector<Real> right_side_;       ///< h² Σ Dᵀw²(z − u), then all of it
+  AlignedVector<Real> last_right_side_;  ///< of the iteration before, where there is a tolerance
+  AlignedVector<double> widened_;        ///< x_ in double, where that is float
+  std::vector<Contact> free_contacts_;   ///< those of vertices that are not held
+  std::vector<double> contact_forces_;   ///< of all contacts, by the last global step
+};
+
+}  // namespace meshorder

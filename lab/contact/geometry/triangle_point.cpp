@@ -1,0 +1,71 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/contact/geometry/triangle_point.hpp"
+
+#include "base/point.hpp"
+
+namespace meshorder {
+namespace {
+
+using On = TrianglePoint::On;
+
+/// The nearest point of the edge from corner k to the next.
+TrianglePoint nearest_on_edge(const Point& x, const std::array<Point, 3>& corners, int k) {
+  const int next = (k + 1) % 3;
+  const Point edge = minus(corners[next], corners[k]);
+  const double along = dot(minus(x, corners[k]), edge);
+  const double square = dot(edge, edge);
+  TrianglePoint result;
+  if (!(along > 0.0)) {
+    result.on = static_cast<On>(k);
+    result.weights[k] = 1.0;
+    result.at = corners[k];
+  } else if (along >= square) {
+    result.on = static_cast<On>(next);
+    result.weights[next] = 1.0;
+    result.at = corners[next];
+  } else {
+    const double part = along / square;
+    result.on = static_cast<On>(3 + k);
+    result.weights[k] = 1.0 - part;
+    result.weights[next] = part;
+    result.at = plus_scaled(corners[k], part, edge);
+  }
+  const Point way = minus(x, result.at);
+  result.squared_distance = dot(way, way);
+  return result;
+}
+
+}  // namespace
+
+TrianglePoint nearest_on_triangle(const Point& x, const Point& a, const Point& b, const Point& c) {
+  const std::array<Point, 3> corners{a, b, c};
+  const Point normal = cross(minus(b, a), minus(c, a));
+  const double square = dot(normal, normal);
+  // which edges' outer sides x is on
+  std::array<double, 3> inside{};
+  for (int k = 0; k < 3; ++k) {
+    const Point& p = corners[k];
+    inside[k] = dot(cross(minus(corners[(k + 1) % 3], p), minus(x, p)), normal);
+  }
+  if (square > 0.0 && inside[0] >= 0.0 && inside[1] >= 0.0 && inside[2] >= 0.0) {
+    TrianglePoint result;
+    const double sum = inside[0] + inside[1] + inside[2];
+    result.weights = {inside[1] / sum, inside[2] / sum, inside[0] / sum};
+    const double height = dot(minus(x, a), normal) / square;
+    result.at = plus_scaled(x, -height, normal);
+    result.squared_distance = height * height * square;
+    return result;
+  }
+  TrianglePoint best;
+  bool any = false;
+  for (int k = 0; k < 3; ++k) {
+    if (square > 0.0 && inside[k] >= 0.0) continue;
+    const TrianglePoint on_edge = nearest_on_edge(x, corners, k);
+    if (any && !(on_edge.squared_distance < best.squared_distance)) continue;
+    best = on_edge;
+    any = true;
+  }
+  return best;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,52 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/contact/search/tetrahedron_leaves.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// How branches of tetrahedra move from their rest shape: each nearly by an affine map, which keeps inside
+/// what was inside and outside what was outside. What is left of the motion bounds what can have changed.
+class BranchMotions {
+ public:
+  /// x = constant + columns · X for a corner at X at rest, to within the deviation.
+  struct Motion {
+    alignas(64) std::array<std::array<double, 4>, 3> columns{};  ///< the fourth of each is 0
+    std::array<double, 4> constant{};
+    double deviation = 0.0;     ///< with what rounding may add to it
+    double inverse_norm = 0.0;  ///< at least the norm of the inverse matrix; not finite where there is none
+  };
+
+  BranchMotions(const TetrahedronLeaves& tetrahedra, std::span<const Point> rest);
+
+  /// Fits the motion of the branch to `positions`, and sets its box. O(tetrahedra of the branch).
+  void update(Index branch, std::span<const double> positions, TetrahedronLeaves& tetrahedra);
+
+  [[nodiscard]] const Motion& motion(Index branch) const { return motions_[branch]; }
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// A corner relative to the branch's centre, rounded.
+  struct Corner {
+    std::array<float, 3> at{};
+    Index vertex = 0;
+  };
+  struct Shape {
+    Point center{};
+    double radius = 0.0;
+    std::array<std::array<double, 3>, 3>
+        inverse_moments{};  ///< of Σ (X − center)(X − center)ᵀ; NaN if singular
+  };
+
+ private:
+  std::vector<Offset> offsets_{0};
+  AlignedVector<Corner> corners_;  ///< of each branch, none twice
+  std::vector<Shape> shapes_;
+  std::vector<Motion> motions_;
+};
+
+}  // namespace meshorder

@@ -1,0 +1,30 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+#include "base/point.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace meshorder {
+
+/// Something that a vertex must stay outside of, linearised: normal · Σ weights[k] x[vertices[k]] ≥ offset.
+///
+/// Against an obstacle one vertex has the weight 1 and the rest are absent. In contact with the body itself
+/// the first vertex has the weight 1 and the others, the corners of a triangle of the body's surface, those
+/// of a point of it with their signs turned, so that all add up to 0.
+struct Contact {
+  static constexpr Index kAbsent = -1;
+
+  std::array<Index, 4> vertices{kAbsent, kAbsent, kAbsent, kAbsent};
+  std::array<double, 4> weights{};
+  Point normal{};         ///< of length 1, the way out
+  double offset = 0.0;    ///< m
+  double friction = 0.0;  ///< Coulomb's coefficient
+  std::int32_t with = 0;  ///< number of the obstacle; −1 for the body itself
+
+  [[nodiscard]] bool is_with_itself() const noexcept { return vertices[1] != kAbsent; }
+};
+
+}  // namespace meshorder

@@ -1,0 +1,63 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/simplices.hpp"
+#include "lab/contact/obstacles/obstacle.hpp"
+#include "lab/contact/search/contact.hpp"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+struct ContactOptions {
+  /// An obstacle with its coefficient of friction.
+  struct With {
+    std::shared_ptr<const Obstacle> obstacle;
+    double friction = 0.0;
+  };
+  std::vector<With> obstacles;
+  bool with_itself = false;
+  double friction_with_itself = 0.0;
+  /// Vertices that are not yet inside but within this of an obstacle are contacts too, with a gap, m: a
+  /// solver that knows them will not let them in.
+  double reach = 0.0;
+};
+
+/// How deep a body is in what it must stay outside of.
+struct Penetration {
+  double into_obstacles = 0.0;  ///< the deepest surface vertex, m
+  double into_itself = 0.0;     ///< the deepest, in the rest shape, m
+  Index vertices_in_itself = 0;
+};
+
+/// Finds where a body of tetrahedra touches obstacles and itself. Same result on every run, for any number of
+/// threads, and whatever was asked before.
+class ContactFinder {
+ public:
+  /// The body at rest at `points`. Throws InvalidArgument for simplices that are no tetrahedra.
+  ContactFinder(const Simplices& simplices, std::span<const Point> points, ContactOptions options);
+  ~ContactFinder();
+  ContactFinder(ContactFinder&&) noexcept;
+  ContactFinder& operator=(ContactFinder&&) noexcept;
+  ContactFinder(const ContactFinder&) = delete;
+  ContactFinder& operator=(const ContactFinder&) = delete;
+
+  /// The contacts of the surface's vertices at `positions`, which were at `from` when the step began (both
+  /// kPaddedStride numbers for each vertex, see padded_positions), by rising first vertex and then obstacle,
+  /// the body itself last. A vertex inside a tetrahedron that it is no corner of is in contact with the point
+  /// of the surface that is nearest to its place in the rest shape.
+  void find(std::span<const double> positions, std::span<const double> from, std::vector<Contact>& contacts);
+
+  [[nodiscard]] Penetration penetration(std::span<const double> positions);
+
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace meshorder

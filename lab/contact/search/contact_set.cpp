@@ -1,0 +1,81 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/contact/search/contact_set.hpp"
+
+#include "kernels/positions.hpp"
+#include "lab/contact/solve/contact_rows.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// Of its depth in the body itself, what a vertex that was inside when the step began must get out of in the
+/// step. All of it would throw vertices out with any speed, and the body would gain energy.
+constexpr double kWayOut = 0.5;
+/// Of the tolerance, how far beside the body's own surface vertices are held, so that they are not inside by
+/// rounding.
+constexpr double kClearance = 0.1;
+
+/// The gap to the body itself that a vertex must have at the end of a step which it begins with `gap`: halves
+/// of depths would never end.
+double required_gap(double gap, double tolerance) {
+  return std::min(kClearance * tolerance, (gap < 0.0 ? (1.0 - kWayOut) * gap : gap) + tolerance);
+}
+
+/// The order of ContactFinder: by the vertex, then the obstacle, the body itself last.
+std::pair<Index, std::int32_t> key(const Contact& contact) {
+  return {contact.vertices[0], contact.with < 0 ? std::numeric_limits<std::int32_t>::max() : contact.with};
+}
+
+bool comes_before(const Contact& a, const Contact& b) { return key(a) < key(b); }
+
+/// Turns a contact with the body itself as its triangle has turned. False where that is flat.
+bool follow_triangle(std::span<const double> positions, Contact& contact) {
+  const std::optional<Point> normal =
+      triangle_normal(positions, contact.vertices[1], contact.vertices[2], contact.vertices[3]);
+  if (normal) contact.normal = *normal;
+  return normal.has_value();
+}
+
+}  // namespace
+
+void ContactSet::begin(std::span<const double> from) {
+  from_ = from;
+  contacts_.clear();
+}
+
+bool ContactSet::update(std::span<const double> positions, std::span<const double> forces, double tolerance) {
+  std::swap(earlier_, contacts_);
+  finder_.find(positions, from_, found_);
+  for (Contact& contact : found_) {
+    if (!contact.is_with_itself()) continue;
+    contact.offset = required_gap(-depth(contact, from_), tolerance);
+  }
+  const bool violates = std::any_of(found_.begin(), found_.end(), [&](const Contact& contact) {
+    return depth(contact, positions) > tolerance;
+  });
+  // those of the body with itself that push, where none was found for their vertex
+  std::vector<Contact> kept;
+  for (std::size_t i = 0; i < std::min(earlier_.size(), forces.size()); ++i) {
+    if (!earlier_[i].is_with_itself() || !(forces[i] > 0.0) ||
+        std::binary_search(found_.begin(), found_.end(), earlier_[i], comes_before)) {
+      continue;
+    }
+    Contact contact = earlier_[i];
+    if (follow_triangle(positions, contact)) kept.push_back(contact);
+  }
+  contacts_.clear();
+  std::merge(found_.begin(), found_.end(), kept.begin(), kept.end(), std::back_inserter(contacts_),
+             comes_before);
+  return violates;
+}
+
+std::size_t ContactSet::bytes() const {
+  return finder_.bytes() + (contacts_.capacity() + found_.capacity() + earlier_.capacity()) * sizeof(Contact);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,39 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/contact/search/contact_finder.hpp"
+
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// The contacts of a body during a step. A vertex that was pushed out of the body itself lies on its surface
+/// and is found no more; its contact is kept for as long as it pushes, or it would sink in again.
+class ContactSet {
+ public:
+  explicit ContactSet(ContactFinder finder) : finder_(std::move(finder)) {}
+
+  /// Begins a step in which vertices were at `from` (padded, see padded_positions; must outlive the step):
+  /// earlier contacts are forgotten.
+  void begin(std::span<const double> from);
+
+  /// Finds the contacts at these positions, in ContactFinder's order. `forces` are those of the contacts so
+  /// far, none where nothing was solved since `begin`. Returns whether a vertex has one that was without, and
+  /// is beyond it by more than `tolerance`, m. Vertices are held a tenth of that beside the body itself.
+  bool update(std::span<const double> positions, std::span<const double> forces, double tolerance);
+
+  [[nodiscard]] std::span<const Contact> contacts() const noexcept { return contacts_; }
+  [[nodiscard]] ContactFinder& finder() noexcept { return finder_; }
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  ContactFinder finder_;
+  std::span<const double> from_;
+  std::vector<Contact> contacts_;
+  std::vector<Contact> found_;
+  std::vector<Contact> earlier_;
+};
+
+}  // namespace meshorder

@@ -1,0 +1,49 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/contact/search/body_surface.hpp"
+#include "lab/contact/search/contact.hpp"
+#include "lab/contact/search/rest_surface.hpp"
+#include "lab/contact/search/tetrahedron_search.hpp"
+
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// Contact of a body's surface with the body itself (McAdams et al. 2011; Overby et al. 2017): a vertex of
+/// the surface that is inside a tetrahedron has a place in the rest shape, and must get out where the
+/// surface is nearest to that place.
+class SelfContact {
+ public:
+  SelfContact(const Simplices& simplices, std::span<const Point> points, const BodySurface& surface);
+
+  /// Appends a contact for each vertex of the surface inside a tetrahedron that it is no corner of, by rising
+  /// vertex. Of several tetrahedra it is the one where the vertex is deepest, and then the first.
+  ///
+  /// The way out is through the triangle of the surface that is nearest in the rest shape, of those without
+  /// the vertex: a contact with its own triangle would ask nothing of it. Its normal is that of the triangle
+  /// as it is deformed; where that has no area there is no contact.
+  void find(std::span<const double> positions, double friction, std::vector<Contact>& contacts);
+
+  struct Depth {
+    double deepest = 0.0;  ///< m from the surface, in the rest shape
+    Index vertices = 0;    ///< inside
+  };
+  [[nodiscard]] Depth depth(std::span<const double> positions);
+
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  /// The way out of the rest shape, by all triangles or those without the corner `left_out`.
+  [[nodiscard]] RestSurface::Place way_out(const VertexInside& inside, Index left_out) const;
+
+  std::vector<Point> rest_;
+  std::vector<bool> on_surface_;
+  RestSurface surface_;
+  TetrahedronSearch search_;
+  std::vector<VertexInside> inside_;
+};
+
+}  // namespace meshorder

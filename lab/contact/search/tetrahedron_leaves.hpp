@@ -1,0 +1,94 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+#include "base/point.hpp"
+#include "kernels/aligned.hpp"
+#include "kernels/simplices.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// Tetrahedra and boxes are tested sixteen at a time, the floats of an AVX-512 register.
+inline constexpr Index kLeaf = 16;
+/// Leaves in a branch, at most kLeaf: the fewer, the better is its motion an affine one, and the more
+/// branches there are to look at.
+inline constexpr Index kBranch = 8;
+
+/// The nearest float; the largest where there is none.
+inline float rounded_to_float(double a) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(a, -kLargest, kLargest));
+}
+
+/// Points that are looked for together: at most 64 neighbours, for each a bit of a mask.
+struct PointCluster {
+  static constexpr Index kMost = 64;
+
+  std::uint64_t points = 0;                                           ///< the bits of all that there are
+  std::array<Index, kMost> vertices{};                                ///< behind the last one it again
+  alignas(64) std::array<std::array<double, kMost>, 3> positions{};   ///< x, y, z of each
+  alignas(64) std::array<std::array<float, kMost>, 3> coordinates{};  ///< the same, rounded
+  std::array<float, 3> lower{}, upper{};  ///< around them; an upper end below the lower one for none
+
+  /// Of 1 … kMost vertices.
+  explicit PointCluster(std::span<const Index> some);
+};
+
+/// Tetrahedra in leaves of sixteen that are neighbours at rest, and branches of kBranch leaves: what a search
+/// among them needs in motion. Ends of boxes and points are rounded alike, which keeps their order. Vertices
+/// and tetrahedra that are not finite are never met.
+struct TetrahedronLeaves {
+  Index leaves = 0;
+  Index branches = 0;
+  /// Corner k of lane l of leaf i at 16 · (4i + k) + l. Lanes behind the last repeat one.
+  AlignedVector<Index> corners;
+  AlignedVector<Index> numbers;  ///< of the tetrahedra, as the caller knows them; −1 behind the last
+  /// End e (the three lower ones, then the upper ones) of the box of leaf l of branch b at 16 · (6b + e) + l.
+  AlignedVector<float> leaf_boxes;
+  AlignedVector<float> branch_boxes;           ///< the same of branches
+  std::vector<std::array<double, 3>> centers;  ///< of leaves, that their planes are relative to
+  /// What leaf_planes.hpp computes: of face k of lane l of leaf i the number q at 16 · (16i + 4k + q) + l:
+  /// inward normal and offset, greater by the rounding errors there.
+  AlignedVector<float> planes;
+
+  /// Of tetrahedra that are in the order of leaves. Boxes and planes are not yet set.
+  TetrahedronLeaves(std::span<const std::array<Index, 4>> tetrahedra,
+                    std::span<const Index> tetrahedron_numbers);
+
+  [[nodiscard]] Index leaves_of(Index branch) const { return std::min(kBranch, leaves - kBranch * branch); }
+  /// The ends of a leaf's box, each kLeaf behind the one before; and of a branch's.
+  [[nodiscard]] const float* leaf_box(Index leaf) const {
+    return leaf_boxes.data() + Offset{6} * kLeaf * (leaf / kBranch) + leaf % kBranch;
+  }
+  [[nodiscard]] const float* branch_box(Index branch) const {
+    return branch_boxes.data() + Offset{6} * kLeaf * (branch / kLeaf) + branch % kLeaf;
+  }
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+/// A leaf, and points of a cluster that are to be tested against it.
+struct LeafTask {
+  Index leaf = 0;
+  std::uint64_t points = 0;
+};
+
+/// The boxes of the branch's leaves at `positions`. O(tetrahedra of the branch).
+void update_boxes(TetrahedronLeaves& tetrahedra, Index branch, std::span<const double> positions);
+/// Reads where the cluster's points are.
+void update_points(PointCluster& cluster, std::span<const double> positions);
+/// The branches whose box meets the cluster's, rising.
+void branches_at(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
+                 std::vector<Index>& branches);
+/// Appends the branch's leaves in whose box points of the cluster are, of those in the mask.
+void leaves_at(const TetrahedronLeaves& tetrahedra, Index branch, const PointCluster& cluster,
+               std::uint64_t points, std::vector<LeafTask>& tasks);
+
+}  // namespace meshorder

@@ -1,0 +1,48 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/simplices.hpp"
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// A vertex strictly inside a tetrahedron that it is no corner of (see weights_inside).
+struct VertexInside {
+  Index vertex = 0;
+  Index tetrahedron = 0;
+  std::array<double, 4> weights{};  ///< barycentric, of the corners as `TetrahedronSearch::corners` has them
+};
+
+/// Finds the vertices that are inside tetrahedra, in any motion of the body. Exactly those which a test of
+/// every vertex against every tetrahedron finds, with the same bits, for any number of threads and whatever
+/// was asked before.
+class TetrahedronSearch {
+ public:
+  /// `vertices`, rising, are those that are looked for. Tetrahedra whose corners turn the other way at
+  /// `points`, where the body is at rest, are turned; those that are flat there contain nothing.
+  TetrahedronSearch(const Simplices& simplices, std::span<const Point> points,
+                    std::span<const Index> vertices);
+  ~TetrahedronSearch();
+  TetrahedronSearch(TetrahedronSearch&&) noexcept;
+  TetrahedronSearch& operator=(TetrahedronSearch&&) noexcept;
+  TetrahedronSearch(const TetrahedronSearch&) = delete;
+  TetrahedronSearch& operator=(const TetrahedronSearch&) = delete;
+
+  /// All of them at `positions` (kPaddedStride numbers for each vertex), by vertex and then tetrahedron.
+  void find(std::span<const double> positions, std::vector<VertexInside>& inside);
+
+  /// The corners of a tetrahedron that is not flat at rest, of positive volume there.
+  [[nodiscard]] std::array<Index, 4> corners(Index tetrahedron) const;
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace meshorder

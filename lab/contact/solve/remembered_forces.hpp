@@ -1,0 +1,38 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/contact/search/contact.hpp"
+
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// The force of a contact: along its normal, and along its surface as a vector, in units of A x.
+struct ContactForce {
+  double normal = 0.0;
+  Point along{};
+};
+
+/// Forces of the contacts of one call, as a first guess for those of the next that have the same first vertex
+/// and obstacle. Contacts may come in any order; of several with one key the last counts.
+class RememberedForces {
+ public:
+  void remember(std::span<const Contact> contacts, std::span<const ContactForce> forces);
+  void forget() { entries_.clear(); }
+
+  /// The force of the contact with that key, 0 where there was none. O(log contacts).
+  [[nodiscard]] ContactForce of(const Contact& contact) const;
+
+  [[nodiscard]] std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
+
+ private:
+  struct Entry {
+    Index vertex = 0;
+    std::int32_t with = 0;
+    ContactForce force;
+  };
+  std::vector<Entry> entries_;  ///< by vertex and obstacle
+};
+
+}  // namespace meshorder

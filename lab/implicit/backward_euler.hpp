@@ -1,0 +1,81 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/implicit/elastic_system.hpp"
+#include "lab/linear/cg/solve.hpp"
+#include "lab/linear/preconditioners/preconditioner.hpp"
+#include "lab/motion/integrator.hpp"
+#include "lab/motion/loads.hpp"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+enum class MatrixPrecision : std::uint8_t {
+  exact,   ///< double
+  single,  ///< CG reads the matrix in float, to the same residual (see refined_conjugate_gradients)
+};
+
+struct ImplicitOptions : MotionOptions {
+  double mass_damping = 0.0;       ///< α of Rayleigh's C = αM + βK, 1/s
+  double stiffness_damping = 0.0;  ///< β, s; K is that at the start of the step
+  Mass mass = Mass::lumped;
+  int newton_iterations = 1;       ///< 1: one linearised step (Baraff, Witkin 1998)
+  double newton_tolerance = 1e-6;  ///< on ‖g‖ / ‖g at rest‖, where more iterations are allowed
+  PreconditionerKind preconditioner = PreconditionerKind::jacobi;
+  MatrixPrecision precision = MatrixPrecision::exact;
+  SolveOptions solve;
+};
+
+/// An elastic body in time by backward Euler.
+///
+/// A step solves g(v) = M(v − vₙ) − h(f_ext − f_int(xₙ + h v)) + h C v = 0 by Newton's method from v = 0,
+/// whose first iterate is the linearised step (M + hC + h²K) Δv = h (f_ext − f_int − h K vₙ − C vₙ). Where
+/// more iterations are allowed each is damped by a line search on the potential of which g is the gradient.
+class BackwardEuler final : public Integrator {
+ public:
+  /// The body at rest at `points`. Throws InvalidArgument, which names what is wrong, for a body that is not
+  /// of tetrahedra, a vertex without mass, numbers that are not finite or out of range.
+  BackwardEuler(std::span<const Point> points, const Body& body, ImplicitOptions options);
+
+  [[nodiscard]] MotionState state() const override;
+  void set_state(const MotionState& state) override;
+
+  /// Where CG meets negative curvature the step is taken with the tangent's semi-definite part instead, and
+  /// says so.
+  StepReport step() override;
+
+  [[nodiscard]] Balance balance() const override;
+  [[nodiscard]] const ElasticSystem& system() const noexcept { return system_; }
+  [[nodiscard]] const ImplicitOptions& options() const noexcept { return options_; }
+
+  [[nodiscard]] std::size_t bytes() const override;
+
+ private:
+  struct Iterate;
+  void move_to(std::span<const double> velocities);
+  void assemble(Index iteration, Tangent tangent, StepReport& report);
+  void compute_gradient(Iterate& iterate);
+  double potential(std::span<const double> velocities);
+  void solve(Iterate& iterate, StepReport& report);
+  SolveReport solve_once(Iterate& iterate, StepReport& report);
+  bool search_line(Iterate& iterate, StepReport& report);
+
+  ImplicitOptions options_;
+  ElasticSystem system_;
+  std::unique_ptr<Preconditioner> preconditioner_;
+  BlockCsrOf<float> rounded_;  ///< the matrix in single precision, where CG reads that
+  BlockCsr damping_;  ///< hβK of the step's start; empty but for several Newton iterations with β > 0
+  HeldVertices held_;
+
+  Index steps_ = 0;
+  AlignedVector<double> positions_;  ///< 4 a vertex
+  std::vector<double> velocities_;   ///< 3 a vertex, as below
+  std::vector<double> loads_;        ///< f_ext of the step
+  AlignedVector<double> moved_;      ///< xₙ + h v, 4 a vertex
+  std::vector<double> scratch_;
+};
+
+}  // namespace meshorder

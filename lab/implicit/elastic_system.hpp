@@ -1,0 +1,62 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/point.hpp"
+#include "kernels/assembly.hpp"
+#include "kernels/elasticity.hpp"
+#include "lab/motion/mass.hpp"
+
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// What a mesh is made of: one law for all its simplices, with the densities.
+struct Body {
+  Simplices simplices;  ///< tetrahedra
+  Elasticity elasticity;
+  std::vector<double> densities;  ///< kg/m³: one, or one for each simplex
+};
+
+/// The mass, forces and matrix of an elastic body, assembled by all threads in the order in which vertices
+/// and simplices come: each thread adds to rows of its own (see owned_batches). Same bits for any number.
+class ElasticSystem {
+ public:
+  /// Throws InvalidArgument for a body that is not of tetrahedra, or a vertex without mass that a tetrahedron
+  /// uses. O(simplices · log degree).
+  ElasticSystem(std::span<const Point> points, const Body& body, Mass mass);
+
+  /// forces() = −∂E/∂x at the positions (see padded_positions), and matrix() = mass_factor M +
+  /// stiffness_factor K + `added` (of the same pattern, where given). O(simplices).
+  void assemble(std::span<const double> positions, Tangent tangent, double mass_factor,
+                double stiffness_factor, const BlockCsr* added = nullptr);
+  /// The forces alone. O(simplices).
+  void compute_forces(std::span<const double> positions);
+
+  [[nodiscard]] const BlockCsr& matrix() const noexcept { return matrix_; }
+  [[nodiscard]] BlockCsr& matrix() noexcept { return matrix_; }
+  [[nodiscard]] std::span<const double> forces() const noexcept { return forces_; }  ///< 4 a vertex
+  [[nodiscard]] const MassMatrix& mass() const noexcept { return mass_; }
+  [[nodiscard]] const RestShapes& rest() const noexcept { return rest_; }
+  [[nodiscard]] const Elasticity& elasticity() const noexcept { return elasticity_; }
+  [[nodiscard]] Index vertex_count() const noexcept { return matrix_.size(); }
+
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  struct Share {
+    OwnedBatches batches;
+    OwnedBlocks blocks;
+  };
+
+  RestShapes rest_;
+  Elasticity elasticity_;
+  BlockCsr matrix_;
+  AssemblyMap map_;
+  MassMatrix mass_;
+  AlignedVector<double> forces_;
+  std::vector<Share> shares_;
+};
+
+}  // namespace meshorder

@@ -1,0 +1,225 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/linear/cg/solve.hpp"
+
+#include "base/error.hpp"
+#include "kernels/spmv.hpp"
+#include "lab/linear/cg/row_sweeps.hpp"
+#include "lab/linear/cg/vector_passes.hpp"
+#include "lab/linear/preconditioners/local_preconditioner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace meshorder {
+namespace {
+
+/// rᵀr and rᵀz of a residual r.
+struct Norms {
+  double rr = 0.0, rz = 0.0;
+  Norms& operator+=(const Norms& other) {
+    rr += other.rr;
+    rz += other.rz;
+    return *this;
+  }
+  [[nodiscard]] bool finite() const { return std::isfinite(rr) && std::isfinite(rz); }
+};
+
+/// The vectors of the method, 3 doubles for each vertex.
+struct Vectors {
+  AlignedVector<double> r;  ///< the residual
+  AlignedVector<double> z;  ///< M⁻¹ r
+  AlignedVector<double> p;  ///< the search direction
+  AlignedVector<double> q;  ///< A p
+
+  explicit Vectors(std::size_t entries) : r(entries), z(entries), p(entries), q(entries) {}
+};
+
+/// The first vertex with an entry that is not finite, −1 for none.
+Index first_not_finite(std::span<const double> vector) {
+  const auto found =
+      std::find_if(vector.begin(), vector.end(), [](double entry) { return !std::isfinite(entry); });
+  return found == vector.end() ? -1 : static_cast<Index>((found - vector.begin()) / 3);
+}
+
+template <class Value>
+class ConjugateGradients {
+ public:
+  ConjugateGradients(const BlockCsrOf<Value>& matrix, const Preconditioner& preconditioner,
+                     std::span<const double> b, std::span<double> x, const SolveOptions& options)
+      : matrix_(matrix),
+        preconditioner_(preconditioner),
+        local_(dynamic_cast<const LocalPreconditioner*>(&preconditioner)),
+        b_(b),
+        x_(x),
+        options_(options),
+        rows_(matrix.offsets),
+        v_(x.size()) {}
+
+  SolveReport run() {
+    start();
+    if (!std::isfinite(norms_.rr)) return not_finite();
+    if (norms_.rr == 0.0) return report(SolveStatus::converged);
+    precondition();
+    if (!norms_.finite()) return not_finite();
+    if (norms_.rz <= 0.0) return report(SolveStatus::breakdown);
+    if (options_.max_iterations == 0) return report(SolveStatus::iteration_limit);
+    v_.p = v_.z;
+    for (;;) {
+      const double curvature = multiply_direction();
+      if (!std::isfinite(curvature)) return not_finite();
+      if (curvature <= 0.0) return report(SolveStatus::negative_curvature);
+      const double alpha = norms_.rz / curvature;
+      const Norms before = norms_;
+      reduce_residual(alpha);
+      if (!std::isfinite(alpha) || !norms_.finite()) {
+        norms_ = before;
+        return not_finite();
+      }
+      ++iterations_;
+      const bool converged = residual() <= options_.tolerance;
+      if (converged || norms_.rz <= 0.0 || iterations_ >= options_.max_iterations) {
+        rows_.run([&](Index begin, Index end) { passes::add(alpha, v_.p, x_, begin, end); });
+        if (converged) return report(SolveStatus::converged);
+        return report(norms_.rz <= 0.0 ? SolveStatus::breakdown : SolveStatus::iteration_limit);
+      }
+      const double beta = norms_.rz / before.rz;
+      rows_.run([&](Index begin, Index end) { passes::step(alpha, beta, v_.z, v_.p, x_, begin, end); });
+    }
+  }
+
+ private:
+  // rows of which r, z, q fit into the nearest cache beside what preconditions them
+  static constexpr Index kTile = 128;
+
+  /// r = b − A x.
+  void start() {
+    norms_.rr = rows_.template sum<double>([&](Index begin, Index end) {
+      multiply_rows(matrix_, x_, v_.r, begin, end);
+      return passes::subtract_from(b_, v_.r, begin, end);
+    });
+    first_rr_ = norms_.rr;
+  }
+
+  /// z = M⁻¹ r.
+  void precondition() {
+    preconditioner_.apply(v_.r, v_.z);
+    norms_.rz = rows_.template sum<double>(
+        [&](Index begin, Index end) { return passes::dot(v_.r, v_.z, begin, end); });
+  }
+
+  /// q = A p; returns pᵀq.
+  double multiply_direction() {
+    return rows_.template sum<double>(
+        [&](Index begin, Index end) { return multiply_rows_dot(matrix_, v_.p, v_.q, begin, end); });
+  }
+
+  /// r −= α q, z = M⁻¹ r.
+  void reduce_residual(double alpha) {
+    if (local_ == nullptr) {
+      norms_.rr = rows_.template sum<double>(
+          [&](Index begin, Index end) { return passes::subtract(alpha, v_.q, v_.r, begin, end); });
+      precondition();
+      return;
+    }
+    norms_ = rows_.template sum<Norms>([&](Index begin, Index end) {
+      Norms norms;
+      for (Index first = begin; first < end; first += kTile) {
+        const Index last = std::min(first + kTile, end);
+        norms.rr += passes::subtract(alpha, v_.q, v_.r, first, last);
+        local_->apply_rows(v_.r.data(), v_.z.data(), first, last);
+        norms.rz += passes::dot(v_.r, v_.z, first, last);
+      }
+      return norms;
+    });
+  }
+
+  [[nodiscard]] double residual() const {
+    return first_rr_ > 0.0 ? std::sqrt(norms_.rr) / std::sqrt(first_rr_) : 0.0;
+  }
+
+  [[nodiscard]] SolveReport report(SolveStatus status) const {
+    const bool converged = status == SolveStatus::converged;
+    return {status, iterations_, residual(), converged ? Index{-1} : largest_vertex(v_.r)};
+  }
+
+  /// Looks for the vertex where it began: in what was given, then in what was computed of it, where a bad row
+  /// of the matrix shows first.
+  [[nodiscard]] SolveReport not_finite() const {
+    Index vertex = first_not_finite(b_);
+    if (vertex < 0) vertex = first_not_finite(x_);
+    for (const auto* vector : {&v_.p, &v_.q, &v_.r, &v_.z}) {
+      if (vertex < 0) vertex = first_not_finite(*vector);
+    }
+    // sums alone outgrew the numbers
+    if (vertex < 0) vertex = largest_vertex(v_.r);
+    return {SolveStatus::not_finite, iterations_, residual(), vertex};
+  }
+
+  const BlockCsrOf<Value>& matrix_;
+  const Preconditioner& preconditioner_;
+  const LocalPreconditioner* local_;
+  std::span<const double> b_;
+  std::span<double> x_;
+  const SolveOptions& options_;
+  RowSweeps rows_;
+  Vectors v_;
+  Norms norms_;
+  double first_rr_ = 0.0;
+  int iterations_ = 0;
+};
+
+template <class Value>
+SolveReport checked_solve(const BlockCsrOf<Value>& matrix, const Preconditioner& preconditioner,
+                          std::span<const double> b, std::span<double> x, const SolveOptions& options) {
+  const auto entries = 3 * static_cast<std::size_t>(matrix.size());
+  if (b.size() != entries || x.size() != entries) {
+    throw InvalidArgument("conjugate_gradients: b and x must hold 3 doubles for each of the matrix's " +
+                          std::to_string(matrix.size()) + " vertices");
+  }
+  if (!(options.tolerance >= 0.0) || options.max_iterations < 0) {
+    throw InvalidArgument("conjugate_gradients: tolerance and max_iterations must not be negative");
+  }
+  return ConjugateGradients(matrix, preconditioner, b, x, options).run();
+}
+
+}  // namespace
+
+Index largest_vertex(std::span<const double> vector) {
+  Index vertex = -1;
+  double largest = -1.0;
+  for (std::size_t i = 0; i < vector.size(); ++i) {
+    if (std::abs(vector[i]) <= largest) continue;
+    largest = std::abs(vector[i]);
+    vertex = static_cast<Index>(i / 3);
+  }
+  return vertex;
+}
+
+std::string_view name(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::converged:
+      return "converged";
+    case SolveStatus::iteration_limit:
+      return "iteration limit";
+    case SolveStatus::negative_curvature:
+      return "negative curvature";
+    case SolveStatus::breakdown:
+      return "breakdown";
+    case SolveStatus::not_finite:
+      return "not finite";
+  }
+  return "";
+}
+
+SolveReport conjugate_gradients(const BlockCsr& matrix, const Preconditioner& preconditioner,
+                                std::span<const double> b, std::span<double> x, const SolveOptions& options) {
+  return checked_solve(matrix, preconditioner, b, x, options);
+}
+
+SolveReport conjugate_gradients(const BlockCsrOf<float>& matrix, const Preconditioner& preconditioner,
+                                std::span<const double> b, std::span<double> x, const SolveOptions& options) {
+  return checked_solve(matrix, preconditioner, b, x, options);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,59 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/block_csr.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace meshorder {
+
+class Preconditioner;
+
+/// How a linear solve ended.
+enum class SolveStatus : std::uint8_t {
+  converged,
+  iteration_limit,     ///< x is the last iterate, the best so far in the norm of the energy
+  negative_curvature,  ///< pᵀAp ≤ 0 for the search direction p: A is not positive definite
+  breakdown,   ///< rᵀM⁻¹r ≤ 0 for the residual r: the preconditioner M is not positive definite
+  not_finite,  ///< NaN or infinity in the matrix, the right-hand side or an iterate
+};
+
+/// "converged", "iteration limit", …
+std::string_view name(SolveStatus status);
+
+struct SolveOptions {
+  double tolerance = 1e-6;  ///< on ‖b − A x‖ / ‖b − A x₀‖
+  int max_iterations = 10'000;
+};
+
+struct SolveReport {
+  SolveStatus status = SolveStatus::converged;
+  int iterations = 0;
+  double residual = 0.0;  ///< ‖b − A x‖ / ‖b − A x₀‖, by the recurrence
+  /// The vertex with the largest residual (not finite: the first such vertex); −1 where it converged.
+  Index vertex = -1;
+};
+
+/// The vertex with the largest entry of a vector of 3 doubles for each vertex; −1 where it has none. O(n).
+Index largest_vertex(std::span<const double> vector);
+
+/// Solves A x = b by preconditioned conjugate gradients (Hestenes, Stiefel 1952), A symmetric and positive
+/// definite, x the start and the result; 3 doubles for each vertex. The preconditioner must have been updated
+/// with the matrix. However it ends, x is the last iterate before that: on negative curvature the one whose
+/// search direction had it. The same bits for any number of threads. O(blocks) an iteration; vectors of 4
+/// times the size of b. Numbers whose squares are too small for a double count as 0. Throws InvalidArgument
+/// when sizes differ or an option is negative.
+SolveReport conjugate_gradients(const BlockCsr& matrix, const Preconditioner& preconditioner,
+                                std::span<const double> b, std::span<double> x,
+                                const SolveOptions& options = {});
+
+/// The same with the matrix in single precision, all vectors and sums in double: an iteration reads about
+/// half as much. What is solved is the rounded matrix's system, whose solution differs by up to 6e-8 times
+/// the matrix's condition.
+SolveReport conjugate_gradients(const BlockCsrOf<float>& matrix, const Preconditioner& preconditioner,
+                                std::span<const double> b, std::span<double> x,
+                                const SolveOptions& options = {});
+
+}  // namespace meshorder

@@ -1,0 +1,29 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+
+#include <span>
+
+namespace meshorder::passes {
+
+// What conjugate gradients do to vectors of 3 doubles for each vertex, for the vertices begin … end − 1. Each
+// sum is in an order that depends on begin and end alone.
+
+/// aᵀb
+double dot(std::span<const double> a, std::span<const double> b, Index begin, Index end);
+
+/// y = b − y; returns yᵀy.
+double subtract_from(std::span<const double> b, std::span<double> y, Index begin, Index end);
+
+/// r −= α q; returns rᵀr.
+double subtract(double alpha, std::span<const double> q, std::span<double> r, Index begin, Index end);
+
+/// x += α p
+void add(double alpha, std::span<const double> p, std::span<double> x, Index begin, Index end);
+
+/// x += α p, then p = z + β p.
+void step(double alpha, double beta, std::span<const double> z, std::span<double> p, std::span<double> x,
+          Index begin, Index end);
+
+}  // namespace meshorder::passes

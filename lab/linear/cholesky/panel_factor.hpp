@@ -1,0 +1,48 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/aligned.hpp"
+#include "lab/linear/cholesky/ldl.hpp"
+#include "lab/linear/cholesky/panel_sweeps.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace meshorder {
+
+/// Part of a solve, independent of those that are neither above nor below it in the tree of tasks. What it
+/// gives to rows above it goes to places of its own, its slots, from which the task above takes it: so that
+/// tasks can run at the same time and sums have the same order on any number of threads.
+struct PanelTask {
+  Index first_column, end_column;
+  Index first_panel, end_panel;
+  Index first_slot, end_slot;   ///< places in the vector of the solve, behind all columns
+  std::vector<Index> children;  ///< with smaller numbers
+  double cost;                  ///< of the task and all below it, see PanelCosts
+};
+
+/// L D Lᵀ in panels (see PanelView) in the order in which a solve takes them. Vectors of a solve have a place
+/// for each column and for each slot of the tasks, kPaddedStride numbers each.
+template <class Real>
+struct PanelFactor {
+  std::vector<Index> vertex_of_column;  ///< the row of the matrix
+  std::vector<Index> column_of_vertex;
+  std::vector<Index> panel_of_column;
+  std::vector<Panel> panels;
+  std::vector<Index> rows;  ///< places: of a column, or of a task's slot
+  AlignedVector<Real> values;
+  std::vector<PanelTask> tasks;    ///< those below others come first; the last is above all
+  std::vector<Index> above_slots;  ///< for each slot, from the first: its place in the task above
+
+  [[nodiscard]] Index size() const noexcept { return static_cast<Index>(vertex_of_column.size()); }
+  /// Of a vector.
+  [[nodiscard]] Index places() const noexcept { return size() + static_cast<Index>(above_slots.size()); }
+  [[nodiscard]] PanelView<Real> view() const noexcept { return {panels.data(), rows.data(), values.data()}; }
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+/// O(entries).
+template <class Real>
+PanelFactor<Real> make_panel_factor(const Ldl& ldl);
+
+}  // namespace meshorder

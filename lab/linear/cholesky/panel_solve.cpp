@@ -1,0 +1,191 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// Gilbert: Predicting Structure in Sparse Matrix Computations (1994).
+#include "lab/linear/cholesky/panel_solve.hpp"
+
+#include "base/parallel.hpp"
+#include "kernels/positions.hpp"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace meshorder {
+namespace {
+
+/// A reach of fewer entries is not worth the start of other threads' tasks.
+constexpr Offset kLeastShared = 100'000;
+
+template <class Real>
+Real* at(Real* x, Index place) {
+  return x + Offset{kPaddedStride} * place;
+}
+
+/// One solve: from the leaves of the tree of tasks to its root, and back.
+template <class Real>
+class Solve {
+ public:
+  /// `reach` may be null: all panels.
+  Solve(const PanelFactor<Real>& factor, const FactorReach* reach, const Real* b, Real* x, Real* work)
+      : factor_(factor),
+        reach_(reach),
+        b_(b),
+        x_(x),
+        work_(work),
+        shared_(thread_count() > 1 && (reach == nullptr || reach->entries >= kLeastShared)) {}
+
+  void run() const {
+    if (factor_.tasks.empty()) return;
+    const Index root = index_size(factor_.tasks) - 1;
+    forwards(root);
+    backwards(root);
+  }
+
+ private:
+  const PanelFactor<Real>& factor_;
+  const FactorReach* reach_;
+  const Real* b_;
+  Real* x_;
+  Real* work_;
+  bool shared_;
+
+  [[nodiscard]] PanelRange panels_of(const PanelTask& task) const {
+    if (reach_ == nullptr) return {nullptr, task.first_panel, task.end_panel - task.first_panel};
+    const std::vector<Index>& panels = reach_->panels;
+    const auto begin = std::lower_bound(panels.begin(), panels.end(), task.first_panel);
+    const auto end = std::lower_bound(begin, panels.end(), task.end_panel);
+    return {panels.data() + (begin - panels.begin()), 0, static_cast<Index>(end - begin)};
+  }
+
+  /// Whether any of its panels takes part. With one of a task's panels the paths go through those above.
+  [[nodiscard]] bool takes_part(Index task) const { return panels_of(factor_.tasks[task]).count > 0; }
+
+  template <class Work>
+  void for_children(const PanelTask& task, Work work) const {
+    const auto work_on = [&](Index child) {
+      if (takes_part(child)) work(child);
+    };
+    if (shared_ && task.children.size() > 1) {
+      tbb::parallel_for(std::size_t{0}, task.children.size(),
+                        [&](std::size_t k) { work_on(task.children[k]); });
+    } else {
+      for (const Index child : task.children) work_on(child);
+    }
+  }
+
+  void forwards(Index number) const {
+    const PanelTask& task = factor_.tasks[number];
+    for_children(task, [this](Index child) { forwards(child); });
+    if (reach_ == nullptr) {
+      for_columns(task, b_, [this](Index column, Index vertex) {
+        std::copy_n(at(b_, vertex), kPaddedStride, at(work_, column));
+      });
+    }
+    std::fill(at(work_, task.first_slot), at(work_, task.end_slot), Real{0});
+    for (const Index child : task.children) {
+      if (takes_part(child)) take_from(factor_.tasks[child]);
+    }
+    sweep_forwards(factor_.view(), panels_of(task), work_);
+  }
+
+  /// Calls `copy` for all columns of a task and their vertices, whose numbers in `vector` are asked for
+  /// early.
+  template <class Vector, class Copy>
+  void for_columns(const PanelTask& task, Vector vector, Copy copy) const {
+    constexpr Index kAhead = 24;
+    const Index* const vertices = factor_.vertex_of_column.data();
+    const Index asked = std::max(task.first_column, task.end_column - kAhead);
+    for (Index j = task.first_column; j < asked; ++j) {
+      __builtin_prefetch(at(vector, vertices[j + kAhead]),
+                         std::is_const_v<std::remove_pointer_t<Vector>> ? 0 : 1);
+      copy(j, vertices[j]);
+    }
+    for (Index j = asked; j < task.end_column; ++j) copy(j, vertices[j]);
+  }
+
+  void take_from(const PanelTask& child) const {
+    for (Index slot = child.first_slot; slot < child.end_slot; ++slot) {
+      const Real* const from = at(work_, slot);
+      Real* const to = at(work_, factor_.above_slots[slot - factor_.size()]);
+      for (Index c = 0; c < kPaddedStride; ++c) to[c] += from[c];
+    }
+  }
+
+  void backwards(Index number) const {
+    const PanelTask& task = factor_.tasks[number];
+    for (Index slot = task.first_slot; slot < task.end_slot; ++slot) {
+      std::copy_n(at(work_, factor_.above_slots[slot - factor_.size()]), kPaddedStride, at(work_, slot));
+    }
+    sweep_backwards(factor_.view(), panels_of(task), work_);
+    if (reach_ == nullptr) {
+      for_columns(task, x_, [this](Index column, Index vertex) {
+        std::copy_n(at(work_, column), kPaddedStride, at(x_, vertex));
+      });
+    }
+    for_children(task, [this](Index child) { backwards(child); });
+  }
+};
+
+}  // namespace
+
+template <class Real>
+PanelWorkspace<Real>::PanelWorkspace(const PanelFactor<Real>& factor)
+    : x(std::size_t{kPaddedStride} * factor.places()), marked(factor.panels.size(), 0) {}
+
+template <class Real>
+void solve_panels(const PanelFactor<Real>& factor, const Real* b, Real* x, PanelWorkspace<Real>& workspace) {
+  Solve<Real>(factor, nullptr, b, x, workspace.x.data()).run();
+}
+
+template <class Real>
+FactorReach panels_reached(const PanelFactor<Real>& factor, std::span<const Index> vertices,
+                           PanelWorkspace<Real>& workspace) {
+  if (workspace.searches == kMaxIndex) {
+    std::fill(workspace.marked.begin(), workspace.marked.end(), 0);
+    workspace.searches = 0;
+  }
+  const Index mark = ++workspace.searches;
+  FactorReach reach;
+  reach.vertices.assign(vertices.begin(), vertices.end());
+  for (const Index v : vertices) {
+    Index p = factor.panel_of_column[factor.column_of_vertex[v]];
+    for (; p >= 0 && workspace.marked[p] != mark; p = factor.panels[p].parent) {
+      workspace.marked[p] = mark;
+      reach.panels.push_back(p);
+      const Panel& panel = factor.panels[p];
+      reach.entries += Offset{panel.width} * panel.row_count + panel.width * (panel.width + 1) / 2;
+    }
+  }
+  std::sort(reach.panels.begin(), reach.panels.end());
+  return reach;
+}
+
+template <class Real>
+void solve_panels(const PanelFactor<Real>& factor, const FactorReach& reach, const Real* b, Real* x,
+                  PanelWorkspace<Real>& workspace) {
+  Real* const work = workspace.x.data();
+  for (const Index p : reach.panels) {
+    const Panel& panel = factor.panels[p];
+    std::fill_n(at(work, panel.column), kPaddedStride * panel.width, Real{0});
+  }
+  for (const Index v : reach.vertices) {
+    std::copy_n(at(b, v), kPaddedStride, at(work, factor.column_of_vertex[v]));
+  }
+  Solve<Real>(factor, &reach, b, x, work).run();
+  for (const Index v : reach.vertices) {
+    std::copy_n(at(work, factor.column_of_vertex[v]), kPaddedStride, at(x, v));
+  }
+}
+
+template struct PanelWorkspace<double>;
+template struct PanelWorkspace<float>;
+template void solve_panels(const PanelFactor<double>&, const double*, double*, PanelWorkspace<double>&);
+template void solve_panels(const PanelFactor<float>&, const float*, float*, PanelWorkspace<float>&);
+template FactorReach panels_reached(const PanelFactor<double>&, std::span<const Index>,
+                                    PanelWorkspace<double>&);
+template FactorReach panels_reached(const PanelFactor<float>&, std::span<const Index>,
+                                    PanelWorkspace<float>&);
+template void solve_panels(const PanelFactor<double>&, const FactorReach&, const double*, double*,
+                           PanelWorkspace<double>&);
+template void solve_panels(const PanelFactor<float>&, const FactorReach&, const float*, float*,
+                           PanelWorkspace<float>&);
+
+}  // namespace meshorder

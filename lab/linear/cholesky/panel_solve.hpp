@@ -1,0 +1,39 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/linear/cholesky/cholesky.hpp"
+#include "lab/linear/cholesky/panel_factor.hpp"
+
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// What solves at the same time may not share.
+template <class Real>
+struct PanelWorkspace {
+  explicit PanelWorkspace(const PanelFactor<Real>& factor);
+
+  AlignedVector<Real> x;      ///< kPaddedStride numbers for each place
+  std::vector<Index> marked;  ///< for each panel, the last search that met it
+  Index searches = 0;
+};
+
+/// x = A⁻¹ b in the order of the matrix, kPaddedStride numbers a vertex; x may be b. On all threads; the same
+/// bits for any number of them. O(entries).
+template <class Real>
+void solve_panels(const PanelFactor<Real>& factor, const Real* b, Real* x, PanelWorkspace<Real>& workspace);
+
+/// The panels that a right-hand side reaches which is 0 but at these vertices (Gilbert 1994). O(panels
+/// reached, times the logarithm of their number).
+template <class Real>
+FactorReach panels_reached(const PanelFactor<Real>& factor, std::span<const Index> vertices,
+                           PanelWorkspace<Real>& workspace);
+
+/// The same as solve_panels for a b that is 0 elsewhere than at the vertices of `reach`; reads b and writes x
+/// there alone. O(reach.entries).
+template <class Real>
+void solve_panels(const PanelFactor<Real>& factor, const FactorReach& reach, const Real* b, Real* x,
+                  PanelWorkspace<Real>& workspace);
+
+}  // namespace meshorder

@@ -1,0 +1,49 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+
+namespace meshorder {
+
+/// Some columns of L side by side, and the rows below them that any of them has.
+struct Panel {
+  static constexpr Index kWidest = 8;
+  static constexpr Index kGroup = 4;  ///< rows
+
+  Index column;     ///< the first
+  Index width;      ///< columns
+  Index row_count;  ///< below the columns
+  Index parent;     ///< the panel with the first of these rows, −1 without rows
+  Offset rows;      ///< where the numbers of the rows begin
+  Offset values;    ///< where the entries begin
+};
+
+/// Panels of a factor L D Lᵀ. The values of each are the entries left of the diagonal of its own columns, row
+/// by row; 1/D of its columns; those of the rows below in groups of kGroup rows and one of the rest, each
+/// column by column. Behind the last must follow 16 bytes. Vectors have kPaddedStride numbers for each column
+/// and row.
+template <class Real>
+struct PanelView {
+  const Panel* panels;
+  const Index* rows;
+  const Real* values;
+};
+
+/// Which panels: those listed, or from `first` on where `list` is null.
+struct PanelRange {
+  const Index* list;
+  Index first;
+  Index count;
+
+  [[nodiscard]] Index operator[](Index i) const noexcept { return list == nullptr ? first + i : list[i]; }
+};
+
+/// x = D⁻¹ L⁻¹ x at the columns of these panels, and less what they give at their rows. O(entries).
+void sweep_forwards(const PanelView<double>& view, const PanelRange& range, double* x);
+void sweep_forwards(const PanelView<float>& view, const PanelRange& range, float* x);
+
+/// x = L⁻ᵀ x at the columns of these panels, where the rows below hold the solution. O(entries).
+void sweep_backwards(const PanelView<double>& view, const PanelRange& range, double* x);
+void sweep_backwards(const PanelView<float>& view, const PanelRange& range, float* x);
+
+}  // namespace meshorder

@@ -1,0 +1,43 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/linear/multigrid/block_rows.hpp"
+
+#include <vector>
+
+namespace meshorder {
+
+/// Where the blocks of each column of a prolongation stand: those of column a are blocks `blocks[k]`, in the
+/// rows `rows[k]`, offsets[a] ≤ k < offsets[a + 1], rows rising.
+struct ColumnBlocks {
+  std::vector<Offset> offsets{0};
+  std::vector<Index> rows;
+  std::vector<Index> blocks;
+};
+
+/// O(rows + columns + blocks).
+template <int R>
+ColumnBlocks column_blocks(const Prolongation<R>& prolongation);
+
+/// The pattern of Pᵀ A P, its diagonal and its columns in rising order, without values.
+/// O(multiplications) without the blocks' factor.
+template <int R>
+CoarseMatrix galerkin_pattern(const BlockView<R>& fine, const Prolongation<R>& p,
+                              const ColumnBlocks& transposed);
+
+/// Pᵀ A P into that pattern, for symmetric A, in double. Unknowns that P leaves out (columns of zeros) get
+/// the largest entry of the diagonal of their block there, or 1, so that the product is as definite as A.
+/// O(multiplications), on all threads; the same bits for any number of them.
+template <int R>
+void galerkin_product(const BlockView<R>& fine, const Prolongation<R>& p, const ColumnBlocks& transposed,
+                      CoarseMatrix& coarse);
+
+/// (I − ω D⁻¹ A) P₀ with D the blocks of A's diagonal (Vaněk, Mandel, Brezina 1996): the pattern without
+/// values, and the values. `inverse_diagonal` holds the blocks of D⁻¹. O(multiplications).
+Prolongation<kRigidModes> smoothed_pattern(const BlockView<kRigidModes>& matrix,
+                                           const Prolongation<kRigidModes>& tentative);
+void smooth_prolongation(const BlockView<kRigidModes>& matrix, std::span<const float> inverse_diagonal,
+                         double omega, const Prolongation<kRigidModes>& tentative,
+                         Prolongation<kRigidModes>& smoothed);
+
+}  // namespace meshorder

@@ -1,0 +1,68 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/aligned.hpp"
+#include "lab/linear/multigrid/block_rows.hpp"
+#include "spectral/row_chunks.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace meshorder {
+
+/// Floats from one node to the next in the vectors of a level with R unknowns a node: those behind the
+/// unknowns stay 0.
+template <int R>
+inline constexpr Index kNodeStride = R == 3 ? 4 : 8;
+
+/// Gauss–Seidel by blocks on a symmetric matrix A = L + D + Lᵀ of R×R blocks, of which only L, in float, and
+/// the inverses of D are kept: half of A serves both triangles, since what a row takes from those before it
+/// gives them their part of A x as well.
+///
+/// The rows go in chunks, those of a colour at the same time (see RowChunks), where every chunk touches only
+/// the next ones; L is what stands to the left of D in that order. The same bits for any number of threads.
+template <int R>
+class BlockSweeps {
+ public:
+  static constexpr Index kLeastRows = 512;  ///< fewer take less than the start of a thread's task
+
+  BlockSweeps() = default;
+
+  /// For the pattern of A, with the numbers to come; chunks have at least `least_rows` rows.
+  explicit BlockSweeps(const BlockView<R>& pattern, Index least_rows = kLeastRows);
+
+  /// Takes over the numbers. D is made positive definite where it is not. On all threads.
+  void update(const BlockView<R>& matrix);
+
+  /// Room for what rows give to the rows before them: kNodeStride floats a node each.
+  struct Given {
+    AlignedVector<float> from_below, from_above;
+  };
+
+  /// x = (L + D)⁻¹ b, and residual = b − A x = −Lᵀ x.
+  void forwards(const AlignedVector<float>& b, AlignedVector<float>& x, AlignedVector<float>& residual,
+                Given& given) const;
+
+  /// x ← (D + Lᵀ)⁻¹ (b − L x).
+  void backwards(const AlignedVector<float>& b, AlignedVector<float>& x, Given& given) const;
+
+  /// residual = L (before − x): b − A x, where `backwards` made x of `before`.
+  void residual_after_backwards(const AlignedVector<float>& before, const AlignedVector<float>& x,
+                                AlignedVector<float>& residual) const;
+
+  [[nodiscard]] Index rows() const noexcept { return index_size(offsets_) - 1; }
+  /// Blocks of D⁻¹, column by column.
+  [[nodiscard]] const AlignedVector<float>& inverse_diagonal() const noexcept { return inverse_diagonal_; }
+  [[nodiscard]] const RowChunks& chunks() const noexcept { return chunks_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  RowChunks chunks_;
+  std::vector<Offset> offsets_{0};  ///< of L
+  std::vector<Index> columns_;
+  std::vector<Index> sources_;   ///< of each block of L, that of Lᵀ in the matrix
+  AlignedVector<float> values_;  ///< blocks column by column, and room for a load past the last
+  AlignedVector<float> inverse_diagonal_;
+};
+
+}  // namespace meshorder

@@ -1,0 +1,48 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/linear/multigrid/block_galerkin.hpp"
+#include "lab/linear/multigrid/block_sweeps.hpp"
+
+#include <vector>
+
+namespace meshorder {
+
+/// One level of a multigrid hierarchy with R unknowns a node, and the way to the next coarser.
+template <int R>
+struct MultigridLevel {
+  BlockSweeps<R> sweeps;
+  Prolongation<R> prolongation;  ///< from the next level; without columns on the coarsest
+  Prolongation<R> tentative;     ///< before smoothing; empty where the prolongation is plain
+  double smoothing = 0;          ///< ω of the smoothed prolongation
+  ColumnBlocks transposed;
+  CoarseMatrix coarse;  ///< the next level's operator: its pattern, its values only during an update
+
+  [[nodiscard]] bool is_coarsest() const noexcept { return prolongation.columns_count == 0; }
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+/// Whether to smooth the prolongation of a level.
+enum class Coarsening : std::uint8_t { plain, smoothed };
+
+/// The level of a matrix, and the way to the next: aggregates by the norms of the blocks, of which `modes`
+/// (R×6 numbers a node, in the order of the view) gives those of the coarse nodes back. The level is the
+/// coarsest where coarsening would keep most nodes.
+template <int R>
+MultigridLevel<R> make_level(const BlockView<R>& matrix, Coarsening coarsening, std::vector<double>& modes);
+
+/// Takes over the numbers of a matrix of the same pattern, for the sweeps and for `coarse`.
+template <int R>
+void update_level(const BlockView<R>& matrix, MultigridLevel<R>& level);
+
+/// result = Pᵀ residual
+template <int R>
+void restrict_residual(const MultigridLevel<R>& level, const AlignedVector<float>& residual,
+                       AlignedVector<float>& result);
+
+/// x += P correction
+template <int R>
+void add_prolonged(const MultigridLevel<R>& level, const AlignedVector<float>& correction,
+                   AlignedVector<float>& x);
+
+}  // namespace meshorder

@@ -1,0 +1,41 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/point.hpp"
+#include "lab/linear/multigrid/block_rows.hpp"
+
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// Vertices or nodes by aggregate: those of a are `members[starts[a]] … members[starts[a + 1] − 1]`, rising.
+struct Aggregates {
+  std::vector<Index> starts{0};
+  std::vector<Index> members;
+
+  [[nodiscard]] Index count() const noexcept { return index_size(starts) - 1; }
+};
+
+/// The displacements of each point in the six infinitesimal rigid motions about the mean of all, 3×6 numbers
+/// a point, row by row: translations along x, y, z, rotations about x, y, z. O(points).
+std::vector<double> rigid_modes(std::span<const Point> points);
+
+/// What aggregation makes of the modes.
+template <int R>
+struct RigidProlongation {
+  Prolongation<R> prolongation;
+  /// 6×6 numbers a coarse node: its unknowns in each mode, so that prolongation reproduces the modes.
+  std::vector<double> coarse_modes;
+};
+
+/// Prolongation that is zero but where a fine node meets its own aggregate, its columns the modes restricted
+/// to the aggregate and orthonormalised (Vaněk, Mandel, Brezina 1996). A mode that an aggregate cannot tell
+/// from those before it (rotations of a single vertex, the rotation of a line about itself) gets a column of
+/// zeros. `modes` holds R×6 numbers for each of `fine_count` nodes; nodes in no aggregate get empty rows.
+/// O(fine nodes).
+template <int R>
+RigidProlongation<R> rigid_prolongation(const Aggregates& aggregates, Index fine_count,
+                                        std::span<const double> modes);
+
+}  // namespace meshorder

@@ -1,0 +1,53 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/aligned.hpp"
+#include "lab/linear/preconditioners/preconditioner.hpp"
+
+#include <atomic>
+#include <vector>
+
+namespace meshorder {
+
+/// A ≈ L D Lᵀ by 3×3 blocks in the pattern of A (Meijerink, van der Vorst 1977), L unit lower triangular and
+/// in float, which is exact enough for what is incomplete. Where a pivot is not positive definite, the blocks
+/// of the diagonal are enlarged and the factorisation begins again (Manteuffel 1980).
+///
+/// Vertices are eliminated in their order, but for those that join a chunk of rows to one before it: they
+/// come last. What is within chunks is then factored and solved on threads. The chunks depend on the pattern
+/// alone. In a local order few vertices join chunks; in a scrambled one most do, and threads gain nothing.
+class IncompleteCholesky final : public Preconditioner {
+ public:
+  /// For matrices of that pattern, which is copied. Throws InvalidArgument when a row lacks its diagonal.
+  explicit IncompleteCholesky(const BlockCsr& pattern);
+
+  /// O(blocks · row length). Throws InvalidArgument when the matrix has another size.
+  void update(const BlockCsr& matrix) override;
+  void apply(std::span<const double> r, std::span<double> z) const override;
+  [[nodiscard]] std::size_t bytes() const override;
+
+  /// By which part of themselves the blocks of the diagonal were enlarged; 0 where that was not needed.
+  [[nodiscard]] double shift() const noexcept { return shift_; }
+
+ private:
+  bool factor(const BlockCsr& matrix, double shift);
+  void factor_rows(const BlockCsr& matrix, double shift, Index begin, Index end, std::atomic<bool>& definite);
+  void keep_diagonal(const BlockCsr& matrix);
+  [[nodiscard]] Index size() const noexcept { return index_size(vertices_); }
+  /// Calls `work(begin, end)` for the rows of each chunk, on all threads.
+  template <class Work>
+  void for_each_inner_range(Work work) const;
+
+  std::vector<Index> bounds_;       ///< rows of the chunks' inner vertices; the rows of the others follow
+  std::vector<Index> vertices_;     ///< of each row
+  std::vector<Index> rows_;         ///< of each vertex
+  std::vector<Offset> offsets_;     ///< of each row's blocks left of the diagonal
+  std::vector<Index> columns_;      ///< their vertices, in the order of elimination
+  std::vector<Offset> sources_;     ///< which blocks of the matrix they come from
+  std::vector<Offset> diagonals_;   ///< the matrix's blocks on the diagonal, for each row
+  AlignedVector<float> values_;     ///< L's blocks, and one number more that vectors may read
+  AlignedVector<double> inverses_;  ///< D⁻¹, 6 for each vertex: 00 01 02 11 12 22
+  double shift_ = 0.0;
+};
+
+}  // namespace meshorder

@@ -1,0 +1,35 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/aligned.hpp"
+#include "lab/linear/preconditioners/local_preconditioner.hpp"
+
+namespace meshorder {
+
+/// z_i = r_i / |a_ii|. A diagonal entry that is 0 or not finite counts as 1, so that the preconditioner stays
+/// positive definite and the solver finds out about the matrix.
+class Jacobi final : public LocalPreconditioner {
+ public:
+  explicit Jacobi(Index vertices) : LocalPreconditioner(vertices) {}
+  void update(const BlockCsr& matrix) override;
+  void apply_rows(const double* r, double* z, Index begin, Index end) const override;
+  [[nodiscard]] std::size_t bytes() const override;
+
+ private:
+  AlignedVector<double> inverses_;  ///< 3 for each vertex
+};
+
+/// z_v = A_vv⁻¹ r_v with the 3×3 blocks A_vv of the diagonal, of which the upper triangles are read. A block
+/// that is not positive definite is replaced by its diagonal, as in `Jacobi`.
+class BlockJacobi final : public LocalPreconditioner {
+ public:
+  explicit BlockJacobi(Index vertices) : LocalPreconditioner(vertices) {}
+  void update(const BlockCsr& matrix) override;
+  void apply_rows(const double* r, double* z, Index begin, Index end) const override;
+  [[nodiscard]] std::size_t bytes() const override;
+
+ private:
+  AlignedVector<double> inverses_;  ///< 6 for each vertex: 00 01 02 11 12 22
+};
+
+}  // namespace meshorder

@@ -1,0 +1,46 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/linear/preconditioners/preconditioner.hpp"
+
+#include "base/error.hpp"
+#include "lab/linear/multigrid/multigrid.hpp"
+#include "lab/linear/preconditioners/incomplete_cholesky.hpp"
+#include "lab/linear/preconditioners/jacobi.hpp"
+
+#include <string>
+
+namespace meshorder {
+
+std::string_view name(PreconditionerKind kind) {
+  switch (kind) {
+    case PreconditionerKind::jacobi:
+      return "jacobi";
+    case PreconditionerKind::block_jacobi:
+      return "block-jacobi";
+    case PreconditionerKind::incomplete_cholesky:
+      return "incomplete-cholesky";
+    case PreconditionerKind::multigrid:
+      return "multigrid";
+  }
+  return "";
+}
+
+std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const BlockCsr& pattern,
+                                                    std::span<const Point> points) {
+  if (points.size() != static_cast<std::size_t>(pattern.size())) {
+    throw InvalidArgument("preconditioner: " + std::to_string(points.size()) + " points for a matrix of " +
+                          std::to_string(pattern.size()) + " vertices");
+  }
+  switch (kind) {
+    case PreconditionerKind::jacobi:
+      return std::make_unique<Jacobi>(pattern.size());
+    case PreconditionerKind::block_jacobi:
+      return std::make_unique<BlockJacobi>(pattern.size());
+    case PreconditionerKind::incomplete_cholesky:
+      return std::make_unique<IncompleteCholesky>(pattern);
+    case PreconditionerKind::multigrid:
+      return make_multigrid(pattern, points);
+  }
+  throw InvalidArgument("preconditioner: none of the known ones");
+}
+
+}  // namespace meshorder

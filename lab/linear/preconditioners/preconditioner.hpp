@@ -1,0 +1,53 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/point.hpp"
+#include "kernels/block_csr.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+namespace meshorder {
+
+/// Approximates the inverse of a symmetric positive definite matrix of 3×3 blocks. Symmetric and positive
+/// definite itself; the same bits for any number of threads.
+class Preconditioner {
+ public:
+  Preconditioner() = default;
+  Preconditioner(const Preconditioner&) = delete;
+  Preconditioner(Preconditioner&&) = delete;
+  Preconditioner& operator=(const Preconditioner&) = delete;
+  Preconditioner& operator=(Preconditioner&&) = delete;
+  virtual ~Preconditioner() = default;
+
+  /// Takes over the numbers of a matrix of the pattern that it was made for. To be called before `apply`,
+  /// and again when the matrix has changed.
+  virtual void update(const BlockCsr& matrix) = 0;
+
+  /// z ≈ A⁻¹ r, 3 doubles for each vertex.
+  virtual void apply(std::span<const double> r, std::span<double> z) const = 0;
+
+  /// Memory held.
+  [[nodiscard]] virtual std::size_t bytes() const = 0;
+};
+
+enum class PreconditionerKind : std::uint8_t {
+  jacobi,               ///< the diagonal
+  block_jacobi,         ///< the 3×3 blocks of the diagonal
+  incomplete_cholesky,  ///< L Lᵀ in the pattern of A, by blocks
+  multigrid,            ///< a cycle over aggregates with rigid-body modes (see make_multigrid)
+};
+
+/// "jacobi", "block-jacobi", "incomplete-cholesky", "multigrid".
+std::string_view name(PreconditionerKind kind);
+
+/// A preconditioner for matrices of this pattern, the vertices at rest at `points` (of which multigrid makes
+/// its rigid-body modes). Throws InvalidArgument when these are not as many as the pattern has rows; it or
+/// `update` where a row lacks its diagonal.
+std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const BlockCsr& pattern,
+                                                    std::span<const Point> points);
+
+}  // namespace meshorder

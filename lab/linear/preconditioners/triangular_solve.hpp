@@ -1,0 +1,29 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+
+namespace meshorder {
+
+/// L D Lᵀ in 3×3 blocks, L unit lower triangular with its rows in an order of its own: row i is that of the
+/// vertex `vertices[i]` and has left of its diagonal the blocks `offsets[i] … offsets[i + 1] − 1`, whose
+/// columns are vertices too.
+struct BlockFactor {
+  const Index* vertices;
+  const Offset* offsets;
+  const Index* columns;
+  const float* values;     ///< 9 for each block, row by row; one more must follow the last
+  const double* inverses;  ///< of D's blocks, 6 for each vertex: 00 01 02 11 12 22
+};
+
+/// The rows begin … end − 1 of L z = r: z at their vertices. O(blocks).
+void solve_lower(const BlockFactor& factor, const double* r, double* z, Index begin, Index end);
+
+/// The rows end − 1 … begin of Lᵀ z = y, with z on entry y less what later rows have taken from it.
+/// O(blocks).
+void solve_upper(const BlockFactor& factor, double* z, Index begin, Index end);
+
+/// z = D⁻¹ z at the vertices of the rows begin … end − 1.
+void solve_diagonal(const BlockFactor& factor, double* z, Index begin, Index end);
+
+}  // namespace meshorder

@@ -1,0 +1,110 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/models/cache.hpp"
+
+#include "base/error.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <system_error>
+
+namespace meshorder::models {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kElsewhere = "set MESHORDER_CACHE to a folder that can be written";
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& what) {
+  throw Error(path.string(), what, kElsewhere);
+}
+
+/// The variable's folder; empty when it is not set. The XDG standard takes relative paths for mistakes.
+fs::path folder_in(const char* variable) {
+  const char* const value = std::getenv(variable);
+  fs::path folder = value != nullptr ? value : "";
+  return folder.is_absolute() ? folder : fs::path();
+}
+
+/// The first number in a file that is no comment; 0 when there is none.
+Index first_number(const fs::path& path) {
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string word;
+    if (!(words >> word) || word.front() == '#') continue;
+    Index number = 0;
+    std::istringstream(word) >> number;
+    return number;
+  }
+  return 0;
+}
+
+}  // namespace
+
+fs::path cache_folder() {
+  const char* const own = std::getenv("MESHORDER_CACHE");
+  if (own != nullptr && *own != '\0') return fs::absolute(own);
+  if (const fs::path folder = folder_in("XDG_CACHE_HOME"); !folder.empty()) return folder / "meshorder";
+  if (const fs::path home = folder_in("HOME"); !home.empty()) return home / ".cache/meshorder";
+  refuse("models", "neither HOME nor XDG_CACHE_HOME tells where to keep them");
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code || !fs::is_directory(folder)) {
+    refuse(folder, "cannot be made" + (code ? ": " + code.message() : std::string()));
+  }
+}
+
+MakingLock::MakingLock(const fs::path& folder, std::string_view name)
+    : file_(::open((folder / ("." + std::string(name) + ".lock")).c_str(), O_RDWR | O_CREAT | O_CLOEXEC,
+                   0644)) {
+  if (file_ < 0) refuse(folder, "cannot be written: " + std::generic_category().message(errno));
+  // file systems without locks (ENOLCK) go without
+  while (::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
+  }
+}
+
+MakingLock::~MakingLock() { ::close(file_); }
+
+Workshop::Workshop(const fs::path& folder, std::string_view name)
+    : path_(folder / ("." + std::string(name) + ".making")) {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+  make_folder(path_);
+}
+
+Workshop::~Workshop() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+Counts counts_of(const fs::path& node_file) {
+  fs::path ele_file = node_file;
+  ele_file.replace_extension(".ele");
+  const Counts counts{first_number(node_file), first_number(ele_file)};
+  return counts.vertices > 0 && counts.elements > 0 ? counts : Counts{};
+}
+
+void publish(const fs::path& from, const fs::path& to) {
+  // the .node file comes last: without it there is no model
+  for (const std::string_view extension : {".ele", ".node"}) {
+    fs::path source = from;
+    fs::path target = to;
+    source += extension;
+    target += extension;
+    std::error_code code;
+    fs::rename(source, target, code);
+    if (code) refuse(target, "cannot be written: " + code.message());
+  }
+}
+
+}  // namespace meshorder::models

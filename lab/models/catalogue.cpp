@@ -1,0 +1,202 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/models/catalogue.hpp"
+
+#include "base/error.hpp"
+#include "io/format.hpp"
+#include "lab/models/cache.hpp"
+#include "lab/models/surfaces.hpp"
+#include "mesh/procedural.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <system_error>
+
+namespace meshorder {
+namespace fs = std::filesystem;
+
+namespace {
+
+// ---- what there is
+
+/// How a model comes out of a surface; apps/meshorder-models/README.md tells why by these steps.
+struct Recipe {
+  std::string_view name;
+  std::string_view sentence;
+  std::string_view surface;
+  std::string_view tetgen_options;
+  double alpha_ratio = 0;  ///< of the wrap; 0 fills the surface as it is
+  double offset_ratio = 0;
+};
+
+constexpr std::array<Recipe, 4> kRecipes{{
+    {"dragon", "the paper's dragon: 46 thousand vertices, all on its surface", "ChineseDragon-10kv.off", "-p",
+     216, 2500},
+    {"armadillo", "the paper's armadillo: 46 thousand vertices, all on its surface", "armadillo.off", "-p",
+     304, 600},
+    {"bunny", "the paper's bunny: 35 thousand vertices, all on its surface", "bunny00.off", "-p", 234, 1000},
+    {"armadillo-300k", "the armadillo filled evenly: 290 thousand vertices, 1.3 million tetrahedra",
+     "armadillo.off", "-pq1.4a2.2"},
+}};
+
+struct Rule {
+  std::string_view name;
+  std::string_view sentence;
+  Mesh (*make)(const ProceduralOptions&);
+};
+
+constexpr std::array<Rule, 3> kRules{{
+    {"grid", "a cube cut into tetrahedra, in any size, numbered along its rows", make_grid},
+    {"ball", "a ball cut into tetrahedra, in any size, numbered along its rows", make_ball},
+    {"torus", "a torus cut into tetrahedra, in any size, numbered along its rows", make_torus},
+}};
+
+/// The number at the end of "grid-40", for the rule "grid".
+std::optional<Index> size_in(std::string_view name, const Rule& rule) {
+  if (!name.starts_with(rule.name) || name.size() == rule.name.size()) return std::nullopt;
+  name.remove_prefix(rule.name.size());
+  Index size = 0;
+  const char* const end = name.data() + name.size();
+  const auto [stopped, error] = std::from_chars(name.data() + 1, end, size);
+  if (name.front() != '-' || error != std::errc() || stopped != end || name[1] == '0') return std::nullopt;
+  return size;
+}
+
+/// A model, with what its files tell if it is made.
+Model look_up(std::string name, std::string_view sentence, bool procedural) {
+  Model model{std::move(name), std::string(sentence), procedural, {}, 0, 0};
+  fs::path path = models_folder() / (model.name + ".node");
+  const auto [vertices, elements] = models::counts_of(path);
+  if (vertices == 0) return model;
+  model.path = std::move(path);
+  model.vertices = vertices;
+  model.elements = elements;
+  return model;
+}
+
+std::vector<Index> made_sizes(const Rule& rule) {
+  std::vector<Index> sizes;
+  std::error_code nothing_made_yet;
+  for (const auto& entry : fs::directory_iterator(models_folder(), nothing_made_yet)) {
+    if (entry.path().extension() != ".node") continue;
+    if (const auto size = size_in(entry.path().stem().string(), rule)) sizes.push_back(*size);
+  }
+  std::sort(sizes.begin(), sizes.end());
+  return sizes;
+}
+
+// ---- making
+
+using Progress = std::function<void(std::string_view, double)>;
+
+/// Each writes its .node and .ele into `folder` and returns their path without extension.
+fs::path make_by_rule(const Rule& rule, Index size, const fs::path& folder, const Progress& progress) {
+  progress("Building the mesh", 0);
+  fs::path path = folder / rule.name;
+  write_mesh(rule.make({.size = size}), path.string() + ".node");
+  return path;
+}
+
+fs::path make_by_recipe(const Recipe& recipe, const fs::path& folder, const Progress& progress) {
+  using namespace models;
+  const bool wrapped = recipe.alpha_ratio > 0;
+  require_tools(recipe.name, {"tetgen"});
+  if (wrapped) require_tools(recipe.name, {"meshorder-models"});
+
+  const fs::path surface = surface_file(recipe.surface);
+  const bool fetch = !fs::exists(surface);
+  if (fetch) {
+    progress("Downloading the surface (24 MB, Debian's libcgal-demo)", 0);
+    fetch_surfaces(recipe.name);
+  }
+
+  const std::string input = fmt::format("{}.off", recipe.name);
+  if (wrapped) {
+    progress("Wrapping the surface (some 15 s)", fetch ? 0.3 : 0);
+    run_tool(recipe.name, "meshorder-models",
+             {"wrap", surface.string(), input, "--alpha-ratio", fmt::format("{}", recipe.alpha_ratio),
+              "--offset-ratio", fmt::format("{}", recipe.offset_ratio)},
+             folder);
+  } else {
+    fs::copy_file(surface, folder / input);
+  }
+
+  progress(fmt::format("Filling it with tetrahedra (TetGen, some {} s)", wrapped ? 1 : 25), wrapped ? 0.95
+                                                                                            : fetch ? 0.2
+                                                                                                    : 0);
+  run_tool(recipe.name, "tetgen", {std::string(recipe.tetgen_options), input}, folder);
+  return folder / fmt::format("{}.1", recipe.name);
+}
+
+/// Makes `name` in the cache unless another process does so meanwhile; `make` gets an empty folder.
+template <class Make>
+void make_kept(const std::string& name, bool force, const Progress& progress, const Make& make) {
+  const fs::path folder = models_folder();
+  models::make_folder(folder);
+  const models::MakingLock lock(folder, name);
+  if (!force && models::counts_of(folder / (name + ".node")).vertices > 0) return;
+  const models::Workshop workshop(folder, name);
+  const fs::path made = make(workshop.path());
+  if (models::counts_of(made.string() + ".node").vertices == 0) {
+    throw Error("model " + name, "its last step left no mesh behind", "is the disk full?");
+  }
+  models::publish(made, folder / name);
+  progress("Done", 1);
+}
+
+[[noreturn]] void refuse_name(std::string_view name) {
+  std::string known;
+  for (const Recipe& recipe : kRecipes) known += fmt::format("{}, ", recipe.name);
+  for (const Rule& rule : kRules) known += fmt::format("{}, ", rule.name);
+  throw InvalidArgument(fmt::format("unknown model '{}'; known are {} and sizes as in grid-40", name,
+                                    known.substr(0, known.size() - 2)));
+}
+
+}  // namespace
+
+fs::path models_folder() { return models::cache_folder() / "models"; }
+
+std::vector<Model> list_models() {
+  std::vector<Model> result;
+  result.reserve(kRecipes.size() + kRules.size());
+  for (const Recipe& recipe : kRecipes) {
+    result.push_back(look_up(std::string(recipe.name), recipe.sentence, false));
+  }
+  for (const Rule& rule : kRules) {
+    result.push_back({std::string(rule.name), std::string(rule.sentence), true, {}, 0, 0});
+    for (const Index size : made_sizes(rule)) {
+      result.push_back(look_up(fmt::format("{}-{}", rule.name, size),
+                               fmt::format("the {} in size {}", rule.name, size), true));
+    }
+  }
+  return result;
+}
+
+Model make_model(std::string_view name, const MakeOptions& options) {
+  const Progress progress = options.progress ? options.progress : [](std::string_view, double) {};
+  const auto kept_or_made = [&](Model model, const auto& make) {
+    if (!options.force && !model.path.empty()) return model;
+    make_kept(model.name, options.force, progress, make);
+    return look_up(model.name, model.sentence, model.procedural);
+  };
+
+  for (const Recipe& recipe : kRecipes) {
+    if (name != recipe.name) continue;
+    return kept_or_made(look_up(std::string(name), recipe.sentence, false),
+                        [&](const fs::path& folder) { return make_by_recipe(recipe, folder, progress); });
+  }
+  for (const Rule& rule : kRules) {
+    const std::optional<Index> own_size = size_in(name, rule);
+    if (name != rule.name && !own_size) continue;
+    const Index size = own_size.value_or(options.size);
+    return kept_or_made(look_up(fmt::format("{}-{}", rule.name, size),
+                                fmt::format("the {} in size {}", rule.name, size), true),
+                        [&](const fs::path& folder) { return make_by_rule(rule, size, folder, progress); });
+  }
+  refuse_name(name);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,97 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+#include "base/point.hpp"
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+
+/// Where everything is and how fast.
+struct MotionState {
+  Index step = 0;                 ///< steps done
+  double time = 0;                ///< s
+  std::vector<Point> positions;   ///< m
+  std::vector<Point> velocities;  ///< m/s
+  /// What else an integrator keeps from step to step, empty where that is nothing.
+  std::vector<double> memory = {};
+};
+
+/// What a step took. Numbers of other methods than the integrator's are 0.
+struct StepReport {
+  // implicit
+  int newton_iterations = 0;
+  int cg_iterations = 0;
+  double newton_residual = 0.0;  ///< ‖g‖ / ‖g at rest‖ at the end, where more iterations are allowed
+  // ADMM
+  int admm_iterations = 0;
+  int contact_iterations = 0;    ///< of the solver of the global step with contacts
+  Index contacts = 0;            ///< vertices that something pushes at, at the step's end
+  double penetration = 0.0;      ///< the deepest surface vertex in an obstacle at the step's end, m
+  Index vertices_in_itself = 0;  ///< surface vertices inside the body at the step's end
+
+  double residual = 0.0;              ///< of the last linear solve, or of the last ADMM iteration; relative
+  std::vector<std::string> warnings;  ///< sentences that say which vertex
+  struct Seconds {
+    double total = 0.0;
+    double assembly = 0.0, solve = 0.0;                 // implicit
+    double local = 0.0, global = 0.0, collision = 0.0;  // ADMM
+
+    Seconds& operator+=(const Seconds& other) {
+      total += other.total;
+      assembly += other.assembly;
+      solve += other.solve;
+      local += other.local;
+      global += other.global;
+      collision += other.collision;
+      return *this;
+    }
+    bool operator==(const Seconds&) const = default;
+  } seconds;
+};
+
+/// Conserved quantities.
+struct Balance {
+  double kinetic = 0.0, elastic = 0.0, potential = 0.0;  ///< J; potential is gravity's, 0 at the origin
+  Point momentum{};                                      ///< kg m/s
+  Point angular_momentum{};                              ///< kg m²/s, about the origin
+};
+
+/// A body in time. It takes vertices and elements in the order in which they come. Vertices that no element
+/// uses stay where they are. The same bits on every run and for any number of threads.
+class Integrator {
+ public:
+  Integrator() = default;
+  Integrator(const Integrator&) = delete;
+  Integrator(Integrator&&) = delete;
+  Integrator& operator=(const Integrator&) = delete;
+  Integrator& operator=(Integrator&&) = delete;
+  virtual ~Integrator() = default;
+
+  [[nodiscard]] virtual MotionState state() const = 0;
+  /// Goes on from there. Throws InvalidArgument when the sizes differ or a number is not finite. A state
+  /// without memory is one of a body that begins.
+  virtual void set_state(const MotionState& state) = 0;
+
+  /// One time step. Throws Error, which says which vertex, when the motion is not finite any more. The state
+  /// is then that before the step.
+  virtual StepReport step() = 0;
+
+  [[nodiscard]] virtual Balance balance() const = 0;
+  /// Memory held.
+  [[nodiscard]] virtual std::size_t bytes() const = 0;
+};
+
+/// Throws InvalidArgument unless the state is one of n vertices and finite.
+void check(const MotionState& state, Index n);
+
+/// The balance of a body whose vertices have these masses, places (kPaddedStride numbers for each vertex, see
+/// padded_positions), velocities and momenta (3 numbers), but for its elastic energy. O(vertices).
+Balance balance_of(std::span<const double> masses, std::span<const double> positions,
+                   std::span<const double> velocities, std::span<const double> momenta, const Point& gravity);
+
+}  // namespace meshorder

@@ -1,0 +1,39 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/assembly.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+enum class Mass : std::uint8_t {
+  lumped,      ///< a quarter of each tetrahedron's mass on each of its corners
+  consistent,  ///< ∫ρ φ_a φ_b: a matrix with the pattern of the stiffness
+};
+
+/// The lumped masses of `vertex_count` vertices, kg. `densities` in kg/m³ are one, or one for each simplex.
+/// O(simplices).
+std::vector<double> lumped_masses(const RestShapes& rest, std::span<const double> densities,
+                                  Index vertex_count);
+
+/// The mass matrix of simplices: m I in each block that has a number m.
+struct MassMatrix {
+  std::vector<double> vertices;  ///< the mass of each vertex, kg: the sum of its row
+  std::vector<double> blocks;    ///< consistent: m of each block of the pattern; lumped: empty
+};
+
+/// `densities` in kg/m³ are one, or one for each simplex; `map` is that into `pattern`. O(simplices).
+MassMatrix mass_matrix(Mass kind, const RestShapes& rest, std::span<const double> densities,
+                       const AssemblyMap& map, const BlockCsr& pattern);
+
+/// y = M x, 3 doubles for each vertex. O(vertices), or O(blocks) for a consistent matrix.
+void multiply(const MassMatrix& mass, const BlockCsr& pattern, std::span<const double> x,
+              std::span<double> y);
+
+/// The rows begin_row … end_row − 1 of matrix = factor M, zero where M has nothing.
+void set_rows(const MassMatrix& mass, double factor, Index begin_row, Index end_row, BlockCsr& matrix);
+
+}  // namespace meshorder

@@ -1,0 +1,171 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/report/figures/figure_groups.hpp"
+#include "lab/report/figures/figure_style.hpp"
+#include "lab/report/figures/gnuplot.hpp"
+#include "lab/report/findings/lookup.hpp"
+#include "lab/report/findings/numbers_in_words.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+constexpr double kBarsOfLevel = 0.8;  ///< share of a level's width that its bars take
+
+/// The bars of an order in a panel, "left right misses", misses in per cent of the accesses.
+std::vector<std::string> bars_of(const OrderOfMesh& order, std::size_t kernel, std::size_t hierarchy,
+                                 std::size_t place, std::size_t orders) {
+  std::vector<std::string> bars;
+  const KernelRecord& record = order.kernels[kernel];
+  if (hierarchy >= record.misses.size() || record.accesses <= 0) return bars;
+  const double width = kBarsOfLevel / static_cast<double>(orders);
+  for (std::size_t level = 0; level < record.misses[hierarchy].size(); ++level) {
+    const double left =
+        static_cast<double>(level) + 1 - kBarsOfLevel / 2 + width * static_cast<double>(place);
+    const double share =
+        100 * static_cast<double>(record.misses[hierarchy][level]) / static_cast<double>(record.accesses);
+    bars.push_back(fmt::format("{} {} {}", left, left + 0.88 * width, share));
+  }
+  return bars;
+}
+
+double most_misses(const MeshRecord& mesh, std::size_t kernel) {
+  double most = 0;
+  for (const OrderOfMesh& order : mesh.orders) {
+    const KernelRecord& record = order.kernels[kernel];
+    if (record.accesses <= 0) continue;
+    for (const auto& levels : record.misses) {
+      for (const Offset misses : levels) {
+        most = std::max(most, 100 * static_cast<double>(misses) / static_cast<double>(record.accesses));
+      }
+    }
+  }
+  return most;
+}
+
+/// 1, 2 or 5 times a power of ten: what divides an axis up to `most` into two to five parts.
+double step_of_axis(double most) {
+  const double power = std::pow(10, std::floor(std::log10(most)));
+  const double leading = most / power;
+  return power * (leading < 2 ? 0.5 : leading < 5 ? 1 : 2);
+}
+
+/// "'L1 48 KB' 1, 'L2 1 MB' 2"
+std::string level_tics(const Caches& caches) {
+  std::vector<std::string> tics;
+  for (const Offset bytes : caches.level_bytes) {
+    tics.push_back(
+        fmt::format("{} {}", gnuplot_tic(bytes_in_words(static_cast<double>(bytes))), tics.size() + 1));
+  }
+  return fmt::format("{}", fmt::join(tics, ", "));
+}
+
+/// One kernel on one hierarchy.
+std::string panel(const StudyResults& results, const MeshRecord& mesh, std::size_t kernel,
+                  std::size_t hierarchy) {
+  const NamedCaches& caches = mesh.hierarchies[hierarchy];
+  std::string data;
+  std::vector<std::string> plots;
+  for (std::size_t o = 0; o < results.orderings.size(); ++o) {
+    const OrderOfMesh* const order = find_order(mesh, results.orderings[o].name);
+    if (order == nullptr) continue;
+    const auto bars = bars_of(*order, kernel, hierarchy, o, results.orderings.size());
+    if (bars.empty()) continue;
+    const OrderStyle style = style_of(results, results.orderings[o].name);
+    const std::string block = fmt::format("bars{}_{}_{}", kernel, hierarchy, o);
+    data += data_block(block, bars);
+    plots.push_back(
+        fmt::format("${} using 1:(0):1:2:(0):3 with boxxyerror fillstyle pattern {} linecolor '{}' "
+                    "notitle",
+                    block, style.pattern, style.colour));
+  }
+  if (plots.empty()) return {};
+  // less than a per cent is next to nothing, and shall look so
+  const double most = std::max(most_misses(mesh, kernel), 1.0);
+  return data + fmt::format(
+                    "set title {}\nset label 1 {} at graph 0.97, 0.9 right textcolor '#222222'\n"
+                    "set yrange [0:{}]\nset ytics 0,{},{}\nset format y '{}'\nset xrange [0.5:{}]\n"
+                    "set xtics scale 0 ({})\nplot {}\n",
+                    kernel == 0 ? gnuplot_key(caches.name, 32) : "''",
+                    gnuplot_quoted(title_of(kKernels[kernel])), 1.3 * most, step_of_axis(most), 1.05 * most,
+                    hierarchy == 0 ? "%g %%" : "",
+                    static_cast<double>(caches.caches.level_bytes.size()) + 0.5, level_tics(caches.caches),
+                    fmt::join(plots, ", \\\n  "));
+}
+
+/// A row above the panels.
+std::string key(const StudyResults& results, const MeshRecord& mesh) {
+  std::vector<std::string> plots;
+  for (const StudyOrdering& ordering : results.orderings) {
+    if (find_order(mesh, ordering.name) == nullptr) continue;
+    const OrderStyle style = style_of(results, ordering.name);
+    plots.push_back(fmt::format("NaN with boxes fillstyle pattern {} linecolor '{}' title {}", style.pattern,
+                                style.colour, gnuplot_key(title_of(results, ordering.name))));
+  }
+  return fmt::format(
+      "unset border\nunset tics\nunset grid\nset key center center horizontal textcolor '#222222' "
+      "samplen 2\nset xrange [0:1]\nset yrange [0:1]\nplot {}\n",
+      fmt::join(plots, ", "));
+}
+
+/// Where the edges of a panel are, in pixels from the picture's upper left corner.
+struct Panel {
+  int left, right, top, bottom;
+};
+std::string place(const Panel& panel, double width, double height) {
+  return fmt::format(
+      "set lmargin at screen {}\nset rmargin at screen {}\nset tmargin at screen {}\n"
+      "set bmargin at screen {}\n",
+      panel.left / width, panel.right / width, 1 - panel.top / height, 1 - panel.bottom / height);
+}
+
+Figure cache_figure(const StudyResults& results, const MeshRecord& mesh) {
+  Figure figure{
+      figure_name("misses", results, mesh),
+      "caches",
+      "Simulated cache misses on " + mesh.name,
+      "Cache lines fetched from beyond each level, in per cent of a kernel's accesses to lines, when it "
+      "runs again and again: one row for each kernel, one column for each processor's caches. Where "
+      "bars of a level are alike, the order does not matter there.",
+      {}};
+  // in pixels, since the text is; the panels' edges stand where they are put
+  constexpr int kWidth = 520;
+  constexpr int kLeft = 54;
+  constexpr int kTop = 80;
+  constexpr int kRow = 140;
+  const int height = kTop + kRow * static_cast<int>(kKernels.size());
+  const int column = (kWidth - kLeft) / static_cast<int>(mesh.hierarchies.size());
+  std::string script = plain_axes() + "set multiplot\nset grid noxtics\nunset key\n";
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    for (std::size_t h = 0; h < mesh.hierarchies.size(); ++h) {
+      const int left = kLeft + column * static_cast<int>(h);
+      const int top = kTop + kRow * static_cast<int>(k);
+      script += place({left, left + column - 14, top, top + kRow - 34}, kWidth, height);
+      script += panel(results, mesh, k, h);
+    }
+  }
+  script += "set title ''\nunset label 1\n" + place({0, kWidth, 0, 44}, kWidth, height) + key(results, mesh) +
+            "unset multiplot";
+  figure.svg = draw({figure.name, figure.title, figure.caption, kWidth, height, script});
+  return figure;
+}
+
+}  // namespace
+
+std::vector<Figure> cache_figures(const StudyResults& results) {
+  std::vector<Figure> figures;
+  for (const MeshRecord& mesh : results.meshes) {
+    const bool simulated = std::any_of(mesh.orders.begin(), mesh.orders.end(), [](const OrderOfMesh& order) {
+      return !order.kernels.front().misses.empty() && order.kernels.front().accesses > 0;
+    });
+    if (simulated && !mesh.hierarchies.empty()) figures.push_back(cache_figure(results, mesh));
+  }
+  return figures;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,187 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/report/figures/gnuplot.hpp"
+
+#include "base/error.hpp"
+#include "io/vtk/xml_text.hpp"
+#include "lab/report/figures/figures.hpp"
+#include "lab/support/process.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>  // mkdtemp
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <system_error>
+
+namespace meshorder {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kProgram = "gnuplot";
+
+/// A new folder for a run of gnuplot, removed at the end.
+class WorkFolder {
+ public:
+  WorkFolder() {
+    std::string pattern = (fs::temp_directory_path() / "meshorder-figure-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr) {
+      throw Error(pattern, std::generic_category().message(errno), "is the disk full?");
+    }
+    path_ = pattern;
+  }
+  ~WorkFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder(WorkFolder&&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  WorkFolder& operator=(WorkFolder&&) = delete;
+
+  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Text without control characters, which neither gnuplot's strings nor XML can hold.
+std::string printable(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  }
+  return result;
+}
+
+constexpr std::ptrdiff_t kLongest = 24;   ///< characters of what stands beside an axis
+constexpr std::ptrdiff_t kTicBytes = 49;  ///< that gnuplot keeps of a tic's label
+
+/// UTF-8 text of at most so many characters and bytes, with "…" in place of what is cut off.
+std::string shortened(std::string_view text, std::ptrdiff_t characters, std::ptrdiff_t bytes) {
+  const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; };
+  if (std::count_if(text.begin(), text.end(), begins_character) <= characters && std::ssize(text) <= bytes) {
+    return std::string(text);
+  }
+  constexpr std::string_view kCut = "…";
+  std::size_t end = 0;
+  for (std::size_t i = 1; i <= text.size(); ++i) {
+    if (i < text.size() && !begins_character(text[i])) continue;
+    const auto count =
+        std::count_if(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), begins_character);
+    if (count + 1 > characters || static_cast<std::ptrdiff_t>(i + kCut.size()) > bytes) break;
+    end = i;
+  }
+  return std::string(text.substr(0, end)) + std::string(kCut);
+}
+
+std::string read(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Makes the ids that a tag gives or refers to begin with `prefix`.
+std::string with_own_ids_in(std::string tag, const std::string& prefix) {
+  for (const std::string_view before : {" id='", " id=\"", "\tid='", "\tid=\"", "\nid='", "\nid=\"",
+                                        "xlink:href='#", "xlink:href=\"#", "url(#"}) {
+    for (auto at = tag.find(before); at != std::string::npos; at = tag.find(before, at)) {
+      at += before.size();
+      tag.insert(at, prefix);
+    }
+  }
+  return tag;
+}
+
+/// Text with one blank in the place of each run of white space.
+std::string in_one_line(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+    if (!blank || !result.ends_with(' ')) result += blank ? ' ' : c;
+  }
+  return result;
+}
+
+/// Makes ids and references to them begin with `prefix`, and escapes '>' in what the picture says, where
+/// "]]>" is no XML.
+std::string with_own_ids(const std::string& svg, const std::string& prefix) {
+  std::string result;
+  for (std::size_t begin = 0; begin < svg.size();) {
+    const std::size_t tag = std::min(svg.find('<', begin), svg.size());
+    const std::size_t end = std::min(svg.find('>', tag), svg.size() - 1) + 1;
+    for (const char c : svg.substr(begin, tag - begin)) result += c == '>' ? "&gt;" : std::string(1, c);
+    result += with_own_ids_in(svg.substr(tag, end - tag), prefix);
+    begin = end;
+  }
+  return result;
+}
+
+/// Replaces gnuplot's own head.
+std::string tidied(const std::string& svg, const Drawing& drawing) {
+  const std::size_t begin = svg.find("<svg");
+  const std::size_t title = svg.find("<title>", begin);
+  const std::size_t end = svg.find("</desc>", title);
+  if (end == std::string::npos || svg.find("</svg>", end) == std::string::npos) {
+    throw Error("figure " + drawing.name, "gnuplot drew no SVG picture", "is its package gnuplot-nox?");
+  }
+  const std::string head = in_one_line(std::string_view(svg).substr(begin, title - begin));
+  const std::string body = svg.substr(end + std::string_view("</desc>").size());
+  return fmt::format("{}\n<title>{}</title>\n<desc>{}</desc>{}", head, xml_escaped(printable(drawing.title)),
+                     xml_escaped(printable(drawing.description)), with_own_ids(body, drawing.name + "-"));
+}
+
+}  // namespace
+
+bool can_draw_figures() { return !models::find_program(kProgram).empty(); }
+
+std::string draw(const Drawing& drawing) {
+  const fs::path program = models::find_program(kProgram);
+  if (program.empty()) {
+    throw Error("figure " + drawing.name, "gnuplot is not installed", "apt-get install gnuplot-nox");
+  }
+  const WorkFolder folder;
+  const fs::path script = folder.path() / "script";
+  std::ofstream(script, std::ios::binary) << fmt::format(
+      "set encoding utf8\n"
+      "set terminal svg size {},{} fixed font 'sans-serif,13' noenhanced background '#ffffff'\n"
+      "set output 'figure.svg'\n{}\nunset output\n",
+      drawing.width, drawing.height, drawing.script);
+  // without the user's own settings
+  const models::Ended ended = models::run_process(program, {"--default-settings", script.string()},
+                                                  folder.path(), folder.path() / "log");
+  if (ended.code != 0) {
+    throw Error("figure " + drawing.name,
+                fmt::format("gnuplot failed: {}",
+                            ended.last_line.empty() ? fmt::format("status {}", ended.code) : ended.last_line),
+                "is it version 5.4 or newer, and is there space in the folder for temporary files?");
+  }
+  return tidied(read(folder.path() / "figure.svg"), drawing);
+}
+
+std::string gnuplot_quoted(std::string_view text) {
+  std::string result = "'";
+  for (const char c : printable(text)) {
+    if (c == '\'') result += '\'';
+    result += c;
+  }
+  return result + "'";
+}
+
+std::string gnuplot_key(std::string_view text, int characters) {
+  return gnuplot_quoted(shortened(text, characters, std::ssize(text) + 3));
+}
+
+std::string gnuplot_tic(std::string_view text) {
+  std::string doubled;
+  for (const char c : shortened(text, kLongest, kTicBytes - std::count(text.begin(), text.end(), '%'))) {
+    if (c == '%') doubled += '%';
+    doubled += c;
+  }
+  return gnuplot_quoted(doubled);
+}
+
+}  // namespace meshorder

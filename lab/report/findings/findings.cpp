@@ -1,0 +1,245 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/report/findings/headline.hpp"
+#include "lab/report/findings/lookup.hpp"
+#include "lab/report/findings/mesh_findings.hpp"
+#include "lab/report/findings/numbers_in_words.hpp"
+#include "lab/report/findings/paper.hpp"
+#include "lab/report/tables/tables.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// A scenario and what an order does there.
+struct Compared {
+  const ScenarioRecord* scenario;
+  const Speedup* speedup;
+};
+
+/// Scenarios in which an order and the reference have run.
+std::vector<Compared> compared(const StudyResults& results, const std::string& ordering) {
+  std::vector<Compared> list;
+  for (const ScenarioRecord& scenario : results.scenarios) {
+    const OrderOfScenario* const order = find_order(scenario, ordering);
+    if (order != nullptr && find_order(scenario, results.reference) != nullptr) {
+      list.push_back({&scenario, &order->speedup});
+    }
+  }
+  return list;
+}
+
+/// "8.6 % (bounce) to 16.7 % (falling)" of the sizes of speedups, or just the one.
+std::string range_of(std::vector<Compared> list) {
+  std::sort(list.begin(), list.end(), [](const Compared& a, const Compared& b) {
+    return std::abs(a.speedup->percent) < std::abs(b.speedup->percent);
+  });
+  const auto one = [](const Compared& c) {
+    return fmt::format("{:.1f} % ({})", std::abs(c.speedup->percent), c.scenario->name);
+  };
+  if (list.size() == 1) return one(list.front());
+  return one(list.front()) + " to " + one(list.back());
+}
+
+std::string scenarios_in_words(std::size_t some, std::size_t all) {
+  if (all == 1) return "in the one scenario";
+  if (all == 2 && some == 2) return "in both scenarios";
+  return some == all ? fmt::format("in all {} scenarios", all)
+                     : fmt::format("in {} of {} scenarios", some, all);
+}
+
+/// What an order gains and loses over the reference, by scenario.
+std::string effect_of(const StudyResults& results, const StudyOrdering& ordering) {
+  std::vector<Compared> gains;
+  std::vector<Compared> losses;
+  std::vector<std::string> nulls;
+  const std::vector<Compared> all = compared(results, ordering.name);
+  for (const Compared& c : all) {
+    if (!c.speedup->beyond_noise) {
+      nulls.push_back(c.scenario->name);
+    } else {
+      (c.speedup->percent > 0 ? gains : losses).push_back(c);
+    }
+  }
+  std::vector<std::string> parts;
+  if (!gains.empty()) {
+    parts.push_back(
+        fmt::format("saves time {}: {}", scenarios_in_words(gains.size(), all.size()), range_of(gains)));
+  }
+  if (!losses.empty()) {
+    parts.push_back(
+        fmt::format("loses time {}: {}", scenarios_in_words(losses.size(), all.size()), range_of(losses)));
+  }
+  if (!nulls.empty()) parts.push_back("differs by no more than the noise in " + in_words(nulls));
+  return fmt::format("Against “{}”, {} {}.", title_of(results, results.reference),
+                     title_of(results, ordering.name), fmt::join(parts, "; it "));
+}
+
+/// Where the paper's figure for an order lies above ours, below, or within its interval.
+std::string beside_paper(const StudyResults& results, const StudyOrdering& ordering) {
+  if (results.reference != "scrambled") return {};
+  std::vector<std::string> more;
+  std::vector<std::string> less;
+  std::vector<std::string> same;
+  double least = 100;
+  double most = -100;
+  for (const Compared& c : compared(results, ordering.name)) {
+    const auto saving = paper_saving(c.scenario->name, ordering.name);
+    if (!saving) continue;
+    least = std::min(least, saving->percent);
+    most = std::max(most, saving->percent);
+    const bool below = saving->percent < c.speedup->low;
+    const bool above = saving->percent > c.speedup->high;
+    (below ? more : above ? less : same).push_back(c.scenario->name);
+  }
+  const std::size_t all = more.size() + less.size() + same.size();
+  const auto in = [all](const std::vector<std::string>& names) {
+    return names.size() == all && all > 1 ? "in all of them" : "in " + in_words(names);
+  };
+  std::vector<std::string> parts;
+  if (!more.empty()) parts.push_back("more is saved here " + in(more));
+  if (!less.empty()) parts.push_back("less is saved here " + in(less));
+  if (!same.empty()) parts.push_back("as much, by the interval measured here, " + in(same));
+  if (parts.empty()) return {};
+  const std::string range =
+      least == most ? fmt::format("{} %", least) : fmt::format("{} to {} %", least, most);
+  return fmt::format(" The paper reports {} in these scenarios: {}.", range, fmt::join(parts, "; "));
+}
+
+/// When the cost of an order is paid.
+std::string payment_of(const StudyResults& results, const StudyOrdering& ordering) {
+  if (ordering.vertices == "original" && ordering.elements == "original") return {};
+  std::vector<std::pair<Index, std::string>> paid;
+  std::vector<std::string> never;
+  for (const Compared& c : compared(results, ordering.name)) {
+    if (!c.speedup->beyond_noise || c.speedup->percent <= 0) continue;
+    if (c.speedup->break_even_step) {
+      paid.emplace_back(*c.speedup->break_even_step, c.scenario->name);
+    } else {
+      never.push_back(c.scenario->name);
+    }
+  }
+  if (paid.empty() && never.empty()) return {};
+  std::sort(paid.begin(), paid.end());
+  std::vector<std::string> parts;
+  if (!paid.empty()) {
+    std::string steps =
+        fmt::format("is paid after {} step{}", paid.front().first, paid.front().first == 1 ? "" : "s");
+    if (paid.size() > 1) {
+      steps = paid.front().first == paid.back().first
+                  ? steps
+                  : fmt::format("is paid after {} ({}) to {} steps ({})", paid.front().first,
+                                paid.front().second, paid.back().first, paid.back().second);
+    }
+    parts.push_back(steps);
+  }
+  if (!never.empty()) parts.push_back("is not paid within the steps of " + in_words(never));
+  return fmt::format(" Where it saves time, the cost of computing the order {}.", fmt::join(parts, ", and "));
+}
+
+/// Of a study that is shorter than the paper's.
+std::string caution(const StudyResults& results) {
+  const auto shorter = [](const ScenarioRecord& scenario) { return scenario.steps < kPaperSteps; };
+  const bool few_steps = std::any_of(results.scenarios.begin(), results.scenarios.end(), shorter);
+  if (results.scenarios.empty() || (!few_steps && results.runs >= 3)) return {};
+  Index least = kMaxIndex;
+  for (const ScenarioRecord& scenario : results.scenarios) least = std::min(least, scenario.steps);
+  return fmt::format(
+      "This is a first look, of {} steps and {} run{}; the paper's study is of {} steps and 3 runs, "
+      "and later steps may cost otherwise than the first.",
+      least, results.runs, results.runs == 1 ? "" : "s", kPaperSteps);
+}
+
+/// The largest distance between orders in a scenario, as a share of the body's size; none where it is not
+/// known.
+std::optional<double> largest_difference(const ScenarioRecord& scenario) {
+  std::optional<double> largest;
+  for (const OrderOfScenario& order : scenario.orders) {
+    if (!order.motion.by_frame.empty()) largest = std::max(largest.value_or(0), order.motion.largest);
+  }
+  return largest;
+}
+
+std::string same_motion(const StudyResults& results) {
+  constexpr double kSeen = 0.01;
+  std::vector<std::string> parted;
+  double largest = 0;
+  std::string where;
+  bool known = false;
+  for (const ScenarioRecord& scenario : results.scenarios) {
+    const std::optional<double> difference = largest_difference(scenario);
+    if (!difference) continue;
+    known = true;
+    if (*difference >= kSeen) {
+      parted.push_back(
+          fmt::format("{} (by {:.1f} % of the body's longest side)", scenario.name, 100 * *difference));
+    } else if (*difference >= largest) {
+      largest = *difference;
+      where = scenario.name;
+    }
+  }
+  if (!known) return {};
+  std::string same;
+  if (!where.empty()) {
+    same = largest == 0 ? "The motions are the same in every order, to the last bit that was kept."
+                        : fmt::format(
+                              "The motion is the same in every order{}: a vertex is at most {:.1e} of the "
+                              "body's longest side elsewhere, in {}.",
+                              parted.empty() ? "" : " of most scenarios", largest, where);
+  }
+  if (parted.empty()) return same;
+  return fmt::format(
+      "{}{}The motions part in {}: rounding differs from order to order, and contacts amplify it. Their "
+      "times are not of quite the same work.",
+      same, same.empty() ? "" : " ", in_words(parted));
+}
+
+/// Iterations of an order over the reference's, where they differ by a per cent or more: then not the memory
+/// alone makes the difference.
+std::string other_work(const StudyResults& results) {
+  std::vector<std::string> where;
+  for (const ScenarioRecord& scenario : results.scenarios) {
+    const OrderOfScenario* const reference = find_order(scenario, results.reference);
+    if (reference == nullptr) continue;
+    const double whole = mean_iterations(*reference);
+    for (const StudyOrdering& ordering : results.orderings) {
+      const OrderOfScenario* const order = find_order(scenario, ordering.name);
+      if (order == nullptr || whole <= 0) continue;
+      const double percent = 100 * (mean_iterations(*order) / whole - 1);
+      if (std::abs(percent) >= 1) {
+        where.push_back(fmt::format("{}, {} ({} %)", scenario.name, title_of(results, ordering.name),
+                                    signed_percent(percent)));
+      }
+    }
+  }
+  if (where.empty()) return {};
+  return fmt::format(
+      "Not all of a difference is memory's where an order takes other numbers of iterations: {}.",
+      fmt::join(where, "; "));
+}
+
+}  // namespace
+
+std::vector<std::string> findings_of(const StudyResults& results) {
+  std::vector<std::string> findings{headline(results), caution(results)};
+  for (const StudyOrdering& ordering : results.orderings) {
+    if (ordering.name == results.reference || compared(results, ordering.name).empty()) continue;
+    findings.push_back(effect_of(results, ordering) + beside_paper(results, ordering) +
+                       payment_of(results, ordering));
+  }
+  findings.push_back(against_all_scrambled(results));
+  findings.push_back(same_motion(results));
+  findings.push_back(other_work(results));
+  std::ranges::move(mesh_findings(results), std::back_inserter(findings));
+  std::erase(findings, "");
+  return findings;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,99 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/study/results.hpp"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+namespace meshorder {
+
+/// What a mesh or scenario record says of an order; nullptr where it was not computed or no run is finished.
+template <class Record>
+auto find_order(const Record& record, std::string_view ordering) -> decltype(record.orders.data()) {
+  const auto found = std::find_if(record.orders.begin(), record.orders.end(),
+                                  [ordering](const auto& order) { return order.ordering == ordering; });
+  if (found == record.orders.end()) return nullptr;
+  if constexpr (requires { found->runs; }) {
+    if (found->runs.empty()) return nullptr;
+  }
+  return &*found;
+}
+
+/// nullptr for a mesh that the study does not hold.
+inline const MeshRecord* find_mesh(const StudyResults& results, std::string_view name) {
+  const auto found = std::find_if(results.meshes.begin(), results.meshes.end(),
+                                  [name](const MeshRecord& mesh) { return mesh.name == name; });
+  return found == results.meshes.end() ? nullptr : &*found;
+}
+
+/// Calls `row(scenario, order)` for what has finished runs, but for the reference where `against_reference`;
+/// and then only for scenarios in which the reference has run.
+template <class Row>
+void for_each_order(const StudyResults& results, bool against_reference, Row row) {
+  for (const ScenarioRecord& scenario : results.scenarios) {
+    if (against_reference && find_order(scenario, results.reference) == nullptr) continue;
+    for (const StudyOrdering& ordering : results.orderings) {
+      const OrderOfScenario* const order = find_order(scenario, ordering.name);
+      if (order == nullptr || (against_reference && ordering.name == results.reference)) continue;
+      row(scenario, *order);
+    }
+  }
+}
+
+/// "VF Fiedler"; the name itself of an order without a title.
+inline std::string title_of(const StudyResults& results, std::string_view ordering) {
+  for (const StudyOrdering& each : results.orderings) {
+    if (each.name == ordering && !each.title.empty()) return each.title;
+  }
+  return std::string(ordering);
+}
+
+/// What it heads its columns and axes with: "element force".
+inline std::string_view title_of(Kernel kernel) {
+  switch (kernel) {
+    case Kernel::spmv:
+      return "SpMV";
+    case Kernel::element:
+      return "element force";
+    case Kernel::assembly:
+      return "assembly";
+    case Kernel::springs:
+      break;
+  }
+  return "springs";
+}
+
+/// A scenario's parts of a step, which the two methods share: what is done by element (the assembly; ADMM's
+/// local step), what by a system of equations (the solve; the global step), collisions, and the rest.
+/// Seconds, mean of the runs.
+struct Phases {
+  double elements = 0;
+  double system = 0;
+  double collision = 0;
+  double other = 0;
+
+  [[nodiscard]] double total() const { return elements + system + collision + other; }
+};
+inline Phases phases_of(const OrderOfScenario& order) {
+  Phases sum;
+  for (const RunRecord& run : order.runs) {
+    const StepReport::Seconds& s = run.seconds;
+    const double share = 1.0 / static_cast<double>(order.runs.size());
+    sum.elements += share * (s.assembly + s.local);
+    sum.system += share * (s.solve + s.global);
+    sum.collision += share * s.collision;
+    sum.other += share * std::max(0.0, s.total - s.assembly - s.local - s.solve - s.global - s.collision);
+  }
+  return sum;
+}
+
+/// Of conjugate gradients and of ADMM, mean of the runs.
+inline double mean_iterations(const OrderOfScenario& order) {
+  double sum = 0;
+  for (const RunRecord& run : order.runs) sum += static_cast<double>(run.cg_iterations + run.admm_iterations);
+  return sum / static_cast<double>(order.runs.size());
+}
+
+}  // namespace meshorder

@@ -1,0 +1,126 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/report/findings/mesh_findings.hpp"
+
+#include "lab/report/findings/lookup.hpp"
+#include "lab/report/findings/numbers_in_words.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// The least mean span of each mesh beside the reference's.
+std::string spans_in_words(const StudyResults& results) {
+  std::vector<std::string> parts;
+  for (const MeshRecord& mesh : results.meshes) {
+    const OrderOfMesh* const reference = find_order(mesh, results.reference);
+    if (reference == nullptr) continue;
+    const auto best = std::min_element(
+        mesh.orders.begin(), mesh.orders.end(),
+        [](const OrderOfMesh& a, const OrderOfMesh& b) { return a.span.mean < b.span.mean; });
+    if (best->span.mean >= reference->span.mean) continue;
+    parts.push_back(fmt::format("from {} to {} on {} ({})", with_digits(reference->span.mean, 3),
+                                with_digits(best->span.mean, 3), mesh.name,
+                                title_of(results, best->ordering)));
+  }
+  if (parts.empty()) return {};
+  return fmt::format("From “{}” to the order where it is least the mean edge span falls {}.",
+                     title_of(results, results.reference), in_words(parts));
+}
+
+/// Misses of the last level of a hierarchy in an order: of all kernels on all meshes together. Nothing where
+/// one of them was not simulated.
+std::optional<double> last_level_misses(const StudyResults& results, const std::string& ordering,
+                                        std::size_t hierarchy) {
+  double sum = 0;
+  for (const MeshRecord& mesh : results.meshes) {
+    const OrderOfMesh* const order = find_order(mesh, ordering);
+    if (order == nullptr) return std::nullopt;
+    for (const KernelRecord& kernel : order->kernels) {
+      if (hierarchy >= kernel.misses.size() || kernel.misses[hierarchy].empty()) return std::nullopt;
+      sum += static_cast<double>(kernel.misses[hierarchy].back());
+    }
+  }
+  return sum;
+}
+
+/// On one processor: "7.13 M times on this machine (32 MB), 0.98 times as often in Fiedler".
+std::string misses_on(const StudyResults& results, std::size_t hierarchy) {
+  const auto whole = last_level_misses(results, results.reference, hierarchy);
+  const NamedCaches& caches = results.meshes.front().hierarchies[hierarchy];
+  if (!whole || caches.caches.level_bytes.empty()) return {};
+  std::string words = fmt::format("{} times on {} ({})", metric(*whole), caches.name,
+                                  bytes_in_words(static_cast<double>(caches.caches.level_bytes.back())));
+  std::vector<std::string> others;
+  for (const StudyOrdering& ordering : results.orderings) {
+    const auto misses = last_level_misses(results, ordering.name, hierarchy);
+    if (!misses || ordering.name == results.reference || *whole <= 0) continue;
+    others.push_back(
+        fmt::format("{:.2f} times as often in {}", *misses / *whole, title_of(results, ordering.name)));
+  }
+  return others.empty() ? words : fmt::format("{}, {}", words, in_words(others));
+}
+
+std::string misses_in_words(const StudyResults& results) {
+  std::vector<std::string> parts;
+  for (std::size_t h = 0; !results.meshes.empty() && h < results.meshes.front().hierarchies.size(); ++h) {
+    std::string words = misses_on(results, h);
+    if (!words.empty()) parts.push_back(std::move(words));
+  }
+  if (parts.empty()) return {};
+  return fmt::format("Simulated, one run of each kernel on each mesh in “{}” misses the last-level cache {}.",
+                     title_of(results, results.reference), fmt::join(parts, "; "));
+}
+
+/// The kernel and order that gain most over the reference by the clock, and those that lose most.
+std::string kernels_of(const StudyResults& results, const MeshRecord& mesh) {
+  const OrderOfMesh* const reference = find_order(mesh, results.reference);
+  if (reference == nullptr) return {};
+  struct Case {
+    double factor = 1;
+    std::string words;
+  };
+  Case best;
+  Case worst;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    for (const OrderOfMesh& order : mesh.orders) {
+      const double ms = order.kernels[k].measured_ms;
+      const double whole = reference->kernels[k].measured_ms;
+      if (&order == reference || ms <= 0 || whole <= 0) continue;
+      const auto words = [&](const char* how, double times) {
+        return fmt::format("{} runs {:.2f} times {} in {}", title_of(kKernels[k]), times, how,
+                           title_of(results, order.ordering));
+      };
+      if (whole / ms > best.factor) best = {whole / ms, words("faster", whole / ms)};
+      if (whole / ms < worst.factor) worst = {whole / ms, words("slower", ms / whole)};
+    }
+  }
+  std::vector<std::string> parts;
+  for (const Case& found : {best, worst}) {
+    if (!found.words.empty()) parts.push_back(found.words);
+  }
+  if (parts.empty()) return {};
+  return fmt::format("By the clock, of the kernels on {} over “{}”: {}.", mesh.name,
+                     title_of(results, results.reference), fmt::join(parts, "; "));
+}
+
+}  // namespace
+
+std::vector<std::string> mesh_findings(const StudyResults& results) {
+  std::vector<std::string> findings;
+  for (const MeshRecord& mesh : results.meshes) {
+    if (!mesh.verdict.empty()) findings.push_back(fmt::format("{}: {}.", mesh.name, mesh.verdict));
+    if (results.scenarios.empty()) findings.push_back(kernels_of(results, mesh));
+  }
+  findings.push_back(spans_in_words(results));
+  findings.push_back(misses_in_words(results));
+  std::erase(findings, "");
+  return findings;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,164 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/report/page/page.hpp"
+
+#include "base/error.hpp"
+#include "io/stream/base64.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/vtk/xml_text.hpp"
+#include "lab/report/page/packed_arrays.hpp"
+#include "lab/report/page/template.hpp"
+#include "lab/report/page/viewer_sources.hpp"
+#include "lab/study/results_json.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <string_view>
+
+namespace meshorder {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A script element of JSON; nothing in it can end the element.
+std::string json_element(std::string_view id, const Json& json) {
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
+  return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, text);
+}
+
+Json describe(const PageMesh& mesh, const StudyResults& results, PackedArrays& arrays) {
+  const auto record = std::find_if(results.meshes.begin(), results.meshes.end(),
+                                   [&](const MeshRecord& one) { return one.name == mesh.name; });
+  Json json{{"name", mesh.name}};
+  if (record != results.meshes.end()) json["vertices"] = record->vertices;
+  json["positions"] = arrays.add_places(mesh.points);
+  json["triangles"] = arrays.add(mesh.surface.triangles);
+  json["ranks"] = json["sparsity"] = Json::object();
+  for (const PageMesh::Order& order : mesh.orders) {
+    const auto side = static_cast<std::size_t>(order.sparsity.side);
+    json["ranks"][order.ordering] = arrays.add(order.ranks);
+    json["sparsity"][order.ordering] = arrays.add(order.sparsity.counts, {side, side});
+  }
+  return json;
+}
+
+Json describe(const PageMotion& motion, const StudyResults& results, PackedArrays& arrays) {
+  const auto record = std::find_if(results.scenarios.begin(), results.scenarios.end(),
+                                   [&](const ScenarioRecord& one) { return one.name == motion.scenario; });
+  Json json{{"scenario", motion.scenario}, {"title", motion.scenario}};
+  if (record != results.scenarios.end()) {
+    json["title"] = record->title;
+    json["mesh"] = record->mesh;
+  }
+  json["steps"] = motion.steps;
+  json["triangles"] = arrays.add(motion.surface.triangles);
+  json["frames"] = arrays.add_frames(motion.frames);
+  json["obstacle"] = nullptr;
+  if (!motion.obstacle.triangles.empty()) {
+    json["obstacle"] = {{"positions", arrays.add_places(motion.obstacle_points)},
+                        {"triangles", arrays.add(motion.obstacle.triangles)}};
+  }
+  return json;
+}
+
+/// The script elements at the end of the page.
+std::string data_of(const Page& page) {
+  PackedArrays arrays;
+  Json manifest{{"orderings", Json::array()}, {"meshes", Json::array()}, {"motions", Json::array()}};
+  for (const StudyOrdering& ordering : page.results.orderings)
+    manifest["orderings"].push_back({{"name", ordering.name}, {"title", ordering.title}});
+  for (const PageMesh& mesh : page.meshes) manifest["meshes"].push_back(describe(mesh, page.results, arrays));
+  for (const PageMotion& motion : page.motions)
+    manifest["motions"].push_back(describe(motion, page.results, arrays));
+  return json_element("results", to_json(page.results)) + json_element("manifest", manifest) +
+         arrays.script_elements();
+}
+
+std::string words_of(const Page& page) {
+  std::string words;
+  const auto add = [&](bool there, std::string_view word) {
+    if (there) words += (words.empty() ? "" : " ") + std::string(word);
+  };
+  add(!page.results.meshes.empty(), "meshes");
+  add(!page.results.scenarios.empty(), "scenarios");
+  add(!page.motions.empty(), "motions");
+  return words;
+}
+
+std::string figures_in(const Page& page, std::string_view section) {
+  std::string html;
+  for (const Figure& figure : page.figures) {
+    if (figure.section != section) continue;
+    html += fmt::format(
+        "<figure id=\"figure-{}\"><img src=\"data:image/svg+xml;base64,{}\" alt=\"{}\"><figcaption>"
+        "<strong>{}</strong> {}</figcaption></figure>\n",
+        xml_escaped(figure.name), to_base64(figure.svg), xml_escaped(figure.caption),
+        xml_escaped(figure.title), xml_escaped(figure.caption));
+  }
+  return html;
+}
+
+std::string table_of(const Page& page, std::string_view id) {
+  const auto table =
+      std::find_if(page.tables.begin(), page.tables.end(), [&](const Table& one) { return one.id == id; });
+  return table == page.tables.end() ? "" : to_html(*table);
+}
+
+/// Text as HTML, with what stands between `backticks` as code; a per cent sign stays with its number.
+std::string prose(std::string text) {
+  constexpr std::string_view kApart = " %", kTogether = "\u00a0%";
+  for (auto at = text.find(kApart); at != std::string::npos; at = text.find(kApart, at))
+    text.replace(at, kApart.size(), kTogether);
+  std::string html;
+  bool in_code = false;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('`', begin), text.size());
+    html += xml_escaped(std::string_view(text).substr(begin, end - begin));
+    if (end < text.size() && (in_code || text.find('`', end + 1) != std::string_view::npos)) {
+      in_code = !in_code;
+      html += in_code ? "<code>" : "</code>";
+    } else if (end < text.size()) {
+      html += '`';
+    }
+    begin = end + 1;
+  }
+  return html;
+}
+
+std::string findings_in(const Page& page) {
+  std::string html;
+  for (const std::string& finding : page.findings) html += "<p>" + prose(finding) + "</p>\n";
+  return html;
+}
+
+}  // namespace
+
+std::string fill_page(std::string_view frame, const Page& page) {
+  return fill_template(frame, [&](std::string_view placeholder) -> std::string {
+    const auto blank = std::min(placeholder.find(' '), placeholder.size());
+    const std::string_view word = placeholder.substr(0, blank);
+    const std::string_view name = placeholder.substr(std::min(blank + 1, placeholder.size()));
+    if (word == "title") return xml_escaped(page.title);
+    if (word == "has") return words_of(page);
+    if (word == "findings") return findings_in(page);
+    if (word == "table") return table_of(page, name);
+    if (word == "figures") return figures_in(page, name);
+    if (word == "style") return std::string(viewer_sources().style);
+    if (word == "three") return std::string(viewer_sources().three);
+    if (word == "scripts") return std::string(viewer_sources().scripts);
+    if (word == "data") return data_of(page);
+    throw InvalidArgument("the page's frame has an unknown placeholder: " + std::string(placeholder));
+  });
+}
+
+std::string to_html(const Page& page) { return fill_page(viewer_sources().page, page); }
+
+void write_page(const Page& page, const std::filesystem::path& path) {
+  OutputFile file(path);
+  file.write(to_html(page));
+  file.commit();
+}
+
+}  // namespace meshorder

@@ -1,0 +1,73 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/report/page/page_parts.hpp"
+
+#include "base/error.hpp"
+#include "mesh/graphs.hpp"
+
+#include <fmt/format.h>
+
+namespace meshorder {
+namespace {
+
+std::vector<Point> points_of(const SurfaceView& surface, const Mesh& mesh) {
+  std::vector<Point> points;
+  points.reserve(surface.vertices.size());
+  for (const Index v : surface.vertices) points.push_back(mesh.points[v]);
+  return points;
+}
+
+/// The frames that are shown of so many, the first and the last among them, as evenly as may be.
+std::vector<std::size_t> shown_frames(std::size_t frames, std::size_t most) {
+  std::vector<std::size_t> shown;
+  const std::size_t count = std::min(frames, std::max<std::size_t>(most, 2));
+  for (std::size_t k = 0; k < count; ++k) shown.push_back(count == 1 ? 0 : k * (frames - 1) / (count - 1));
+  return shown;
+}
+
+}  // namespace
+
+PageMesh page_mesh(const std::string& name, const Mesh& mesh,
+                   const std::vector<std::pair<std::string, Permutation>>& orders, const PageDetail& detail) {
+  PageMesh result;
+  result.name = name;
+  result.surface = surface_view(mesh, detail.mesh_triangles);
+  result.points = points_of(result.surface, mesh);
+  const CsrGraph graph = vertex_graph(mesh);
+  for (const auto& [ordering, order] : orders) {
+    PageMesh::Order shown{ordering, {}, sparsity_pattern(graph, order, detail.sparsity_side)};
+    for (const Index v : result.surface.vertices) shown.ranks.push_back(order.old_to_new()[v]);
+    result.orders.push_back(std::move(shown));
+  }
+  return result;
+}
+
+PageMotion page_motion(const ScenarioRecord& scenario, const Mesh& mesh, const Motion& motion,
+                       const Mesh* obstacles, const PageDetail& detail) {
+  if (motion.vertices != mesh.vertex_count()) {
+    throw InvalidArgument(
+        fmt::format("a motion of {} vertices for a mesh of {}", motion.vertices, mesh.vertex_count()));
+  }
+  if (motion.frames.size() != scenario.frame_steps.size()) {
+    throw InvalidArgument(fmt::format("a motion of {} frames where {} were kept", motion.frames.size(),
+                                      scenario.frame_steps.size()));
+  }
+  PageMotion result;
+  result.scenario = scenario.name;
+  result.surface = surface_view(mesh, detail.motion_triangles);
+  for (const std::size_t f : shown_frames(motion.frames.size(), detail.frames)) {
+    result.steps.push_back(scenario.frame_steps[f]);
+    std::vector<Point>& frame = result.frames.emplace_back();
+    frame.reserve(result.surface.vertices.size());
+    for (const Index v : result.surface.vertices) {
+      const auto& place = motion.frames[f][v];
+      frame.push_back({place[0], place[1], place[2]});
+    }
+  }
+  if (obstacles != nullptr) {
+    result.obstacle = surface_view(*obstacles, detail.motion_triangles);
+    result.obstacle_points = points_of(result.obstacle, *obstacles);
+  }
+  return result;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,174 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/report/tables/detail_tables.hpp"
+
+#include "lab/report/findings/lookup.hpp"
+#include "lab/report/findings/numbers_in_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// Calls `row(mesh, kernel, order, reference)`; the reference is nullptr where the mesh was not ordered so.
+template <class Row>
+void for_each_kernel(const StudyResults& results, Row row) {
+  for (const MeshRecord& mesh : results.meshes) {
+    const OrderOfMesh* const reference = find_order(mesh, results.reference);
+    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+      for (const StudyOrdering& ordering : results.orderings) {
+        if (const OrderOfMesh* const order = find_order(mesh, ordering.name)) row(mesh, k, *order, reference);
+      }
+    }
+  }
+}
+
+TableCell kernel_head(const StudyResults& results, const MeshRecord& mesh, std::size_t kernel,
+                      const OrderOfMesh& order) {
+  return text_cell(
+      fmt::format("{}, {}, {}", mesh.name, title_of(kKernels[kernel]), title_of(results, order.ordering)));
+}
+
+/// The misses of a level; nothing where the record does not hold them.
+std::optional<Offset> misses_of(const OrderOfMesh& order, std::size_t kernel, std::size_t hierarchy,
+                                std::size_t level) {
+  const auto& misses = order.kernels[kernel].misses;
+  if (hierarchy >= misses.size() || level >= misses[hierarchy].size()) return std::nullopt;
+  return misses[hierarchy][level];
+}
+
+/// "12.3 k (0.43×)": misses, and how many there are for each of the reference's.
+TableCell misses_cell(const std::optional<Offset>& misses, const std::optional<Offset>& reference) {
+  if (!misses) return unknown_cell();
+  TableCell cell{metric(static_cast<double>(*misses)), static_cast<double>(*misses), false};
+  if (reference && *reference > 0) {
+    cell.text += fmt::format(" ({:.2f}×)", static_cast<double>(*misses) / static_cast<double>(*reference));
+  }
+  return cell;
+}
+
+TableCell factor_cell(double milliseconds, double reference) {
+  if (milliseconds <= 0 || reference <= 0) return unknown_cell();
+  const double factor = reference / milliseconds;
+  return {fmt::format("{:.2f}×", factor), factor, false};
+}
+
+/// The place of a hierarchy in a mesh's list, by its name.
+std::optional<std::size_t> place_of(const std::string& hierarchy, const MeshRecord& mesh) {
+  for (std::size_t h = 0; h < mesh.hierarchies.size(); ++h) {
+    if (mesh.hierarchies[h].name == hierarchy) return h;
+  }
+  return std::nullopt;
+}
+
+Table misses_table(const StudyResults& results, const NamedCaches& hierarchy, std::size_t number) {
+  Table table{
+      fmt::format("misses-{}", number),
+      fmt::format("Simulated cache misses: {}", hierarchy.name),
+      fmt::format(
+          "Cache lines that one run of a kernel in its usual round fetches from beyond each level, by a "
+          "model "
+          "that keeps the most recently used lines, fetches nothing ahead and belongs to one thread; in "
+          "brackets, over those of “{}”.",
+          title_of(results, results.reference)),
+      {"Mesh, kernel and order"},
+      {}};
+  for (std::size_t level = 0; level < hierarchy.caches.level_bytes.size(); ++level) {
+    table.columns.push_back(fmt::format(
+        "L{} {}", level + 1, bytes_in_words(static_cast<double>(hierarchy.caches.level_bytes[level]))));
+  }
+  for_each_kernel(results, [&](const MeshRecord& mesh, std::size_t kernel, const OrderOfMesh& order,
+                               const OrderOfMesh* reference) {
+    const auto place = place_of(hierarchy.name, mesh);
+    if (!place || !misses_of(order, kernel, *place, 0)) return;
+    table.rows.push_back({kernel_head(results, mesh, kernel, order)});
+    for (std::size_t level = 0; level < hierarchy.caches.level_bytes.size(); ++level) {
+      const bool compared = reference != nullptr && reference != &order;
+      table.rows.back().push_back(
+          misses_cell(misses_of(order, kernel, *place, level),
+                      compared ? misses_of(*reference, kernel, *place, level) : std::nullopt));
+    }
+  });
+  return table;
+}
+
+}  // namespace
+
+Table phases_table(const StudyResults& results) {
+  Table table{
+      "phases",
+      "Seconds by phase of a step",
+      "Means of the runs. By element: backward Euler's assembly, ADMM's local step. System: the linear "
+      "solve, the global step. Iterations: of conjugate gradients, of ADMM; with other roundings an "
+      "order may take some more or less.",
+      {"Scenario and order", "By element, s", "System, s", "Collision, s", "Other, s", "Iterations"},
+      {}};
+  for_each_order(results, false, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+    const Phases phases = phases_of(order);
+    const double iterations = mean_iterations(order);
+    table.rows.push_back({head_of(results, scenario, order),
+                          number_cell(phases.elements),
+                          number_cell(phases.system),
+                          number_cell(phases.collision),
+                          number_cell(phases.other),
+                          {metric(iterations), iterations, false}});
+  });
+  return table;
+}
+
+Table motions_table(const StudyResults& results) {
+  Table table{"motions",
+              "The same motion in every order",
+              fmt::format("The largest distance, at the times of the frames, of a vertex from where it is in "
+                          "the order “{}”, as a share of the body's longest side.",
+                          results.orderings.empty() ? "" : title_of(results, results.orderings.front().name)),
+              {"Scenario and order", "Largest difference"},
+              {}};
+  for_each_order(results, false, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+    if (order.motion.by_frame.empty()) return;
+    const double largest = order.motion.largest;
+    table.rows.push_back({head_of(results, scenario, order),
+                          {largest == 0 ? "0" : fmt::format("{:.1e}", largest), largest, false}});
+  });
+  return table;
+}
+
+std::vector<Table> misses_tables(const StudyResults& results) {
+  std::vector<Table> tables;
+  std::vector<std::string> done;
+  for (const MeshRecord& mesh : results.meshes) {
+    for (const NamedCaches& hierarchy : mesh.hierarchies) {
+      if (std::find(done.begin(), done.end(), hierarchy.name) != done.end()) continue;
+      done.push_back(hierarchy.name);
+      tables.push_back(misses_table(results, hierarchy, done.size()));
+    }
+  }
+  return tables;
+}
+
+Table kernels_table(const StudyResults& results) {
+  Table table{
+      "kernels",
+      "Kernels: predicted and measured",
+      fmt::format("How many times faster than in the order “{}” a kernel runs: predicted from simulated "
+                  "misses with the costs of the model's machine, and measured on one thread of this "
+                  "one, as the best of interleaved rounds.",
+                  title_of(results, results.reference)),
+      {"Mesh, kernel and order", "Predicted", "Measured", "Measured, ms"},
+      {}};
+  for_each_kernel(results, [&](const MeshRecord& mesh, std::size_t k, const OrderOfMesh& order,
+                               const OrderOfMesh* reference) {
+    const KernelRecord& kernel = order.kernels[k];
+    if (kernel.predicted_ms <= 0 && kernel.measured_ms <= 0) return;
+    const KernelRecord compared = reference == nullptr ? KernelRecord{} : reference->kernels[k];
+    table.rows.push_back({kernel_head(results, mesh, k, order),
+                          factor_cell(kernel.predicted_ms, compared.predicted_ms),
+                          factor_cell(kernel.measured_ms, compared.measured_ms),
+                          kernel.measured_ms > 0 ? number_cell(kernel.measured_ms, 3) : unknown_cell()});
+  });
+  return table;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,195 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/report/tables/paper_tables.hpp"
+
+#include "lab/report/findings/lookup.hpp"
+#include "lab/report/findings/numbers_in_words.hpp"
+#include "lab/report/findings/paper.hpp"
+#include "lab/support/quantities.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+constexpr const char* kHead = "Scenario and order";
+
+/// Whether the paper says something of a scenario of the study, against the same reference.
+bool has_paper(const StudyResults& results) {
+  return results.reference == "scrambled" &&
+         std::any_of(results.scenarios.begin(), results.scenarios.end(), [](const ScenarioRecord& scenario) {
+           return find_paper_scenario(scenario.name) != nullptr;
+         });
+}
+
+/// What differs between the paper's runs and these, for captions: " Here: falling 20 steps, on dragon-300k."
+std::string differences(const StudyResults& results) {
+  std::string words;
+  for (const ScenarioRecord& scenario : results.scenarios) {
+    const PaperScenario* const paper = find_paper_scenario(scenario.name);
+    if (paper == nullptr) continue;
+    const bool other_mesh = scenario.mesh != paper->mesh || results.size != "paper";
+    if (scenario.steps == kPaperSteps && !other_mesh) continue;
+    words += fmt::format("{} {}", words.empty() ? " Not as in the paper:" : ";", scenario.name);
+    if (scenario.steps != kPaperSteps) words += fmt::format(", {} steps", scenario.steps);
+    if (other_mesh) words += fmt::format(", on {}", scenario.mesh);
+  }
+  return words + (words.empty() ? "" : ".");
+}
+
+/// The column's cell, rounded to what can be known of a number that is derived from rounded ones.
+TableCell derived_cell(const std::optional<double>& seconds) {
+  if (!seconds) return unknown_cell();
+  const double unit = *seconds < 1000 ? 1 : 10;
+  return {fmt::format("≈ {}", with_commas(std::llround(*seconds / unit) * static_cast<long long>(unit))),
+          seconds, false};
+}
+
+constexpr const char* kNotTold =
+    " –: the paper's text gives no figure, which it does in the captions of its Figures 4 to 9 alone.";
+
+/// Seconds that are a part of others, with as many digits after the point.
+TableCell part_cell(double seconds, double whole) {
+  return {with_digits_of(seconds, whole, 4), seconds, false};
+}
+
+/// A number as the paper prints it.
+TableCell printed_cell(double number) { return {fmt::format("{}", number), number, false}; }
+
+}  // namespace
+
+Table edge_span_table(const StudyResults& results) {
+  Table table{
+      "table-1",
+      "Table 1: edge spans",
+      "How far apart in memory the ends of an edge lie, on average over the edges and at most, in "
+      "vertices. A random order's mean span is a third of the number of vertices. The paper's figures "
+      "are not in its text, which tells that the Fiedler order's mean is about two orders of magnitude "
+      "below the scrambled one's.",
+      {"Mesh and order", "Mean span", "% of a random order's", "Largest span"},
+      {}};
+  for (const MeshRecord& mesh : results.meshes) {
+    for (const StudyOrdering& ordering : results.orderings) {
+      const OrderOfMesh* const order = find_order(mesh, ordering.name);
+      if (order == nullptr) continue;
+      const double random = (mesh.vertices + 1.0) / 3.0;
+      table.rows.push_back({text_cell(fmt::format("{}, {}", mesh.name, title_of(results, ordering.name))),
+                            number_cell(order->span.mean), number_cell(100 * order->span.mean / random, 3),
+                            count_cell(order->span.max)});
+    }
+  }
+  return table;
+}
+
+Table seconds_table(const StudyResults& results) {
+  const bool paper = has_paper(results);
+  Table table{"table-2",
+              "Table 2: seconds",
+              fmt::format("Seconds of a scenario's steps without set-up: mean and standard deviation of the "
+                          "runs ({}).",
+                          results.runs),
+              {kHead, "Mean, s", "± s"},
+              {}};
+  if (paper) {
+    table.columns.emplace_back("Paper, s");
+    table.caption += fmt::format(
+        " The paper's are derived: its scrambled order's are the seconds saved over the per cents, good to "
+        "half "
+        "a per cent, of {} steps (three runs, or five: it says both).{}{}",
+        kPaperSteps, differences(results), kNotTold);
+  }
+  for_each_order(results, false, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+    table.rows.push_back({head_of(results, scenario, order), number_cell(order.time.mean),
+                          order.runs.size() > 1 ? number_cell(order.time.deviation, 2) : unknown_cell()});
+    if (paper) table.rows.back().push_back(derived_cell(paper_seconds(scenario.name, order.ordering)));
+  });
+  return table;
+}
+
+Table saved_table(const StudyResults& results) {
+  const bool paper = has_paper(results);
+  Table table{"table-3",
+              "Table 3: seconds saved",
+              fmt::format("The mean seconds of “{}” less those of each order; below 0 the order loses.",
+                          title_of(results, results.reference)),
+              {kHead, "Saved, s"},
+              {}};
+  if (paper) {
+    table.columns.emplace_back("Paper, s");
+    table.caption +=
+        fmt::format(" The paper's {} steps on its Xeon.{}{}", kPaperSteps, differences(results), kNotTold);
+  }
+  for_each_order(results, true, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+    table.rows.push_back(
+        {head_of(results, scenario, order),
+         part_cell(order.speedup.saved_seconds, order.time.mean + order.speedup.saved_seconds)});
+    table.rows.back().back().weak = !order.speedup.beyond_noise;
+    if (!paper) return;
+    const auto saving = paper_saving(scenario.name, order.ordering);
+    table.rows.back().push_back(saving ? printed_cell(saving->seconds) : unknown_cell());
+  });
+  return table;
+}
+
+Table speedup_table(const StudyResults& results) {
+  const bool paper = has_paper(results);
+  Table table{"table-4",
+              "Table 4: speedups in per cent",
+              fmt::format("Time saved in per cent of that of “{}”, with its 95 % confidence interval. Within "
+                          "noise: the interval holds 0. Undisturbed: of the times with every step at its "
+                          "fastest of the runs.",
+                          title_of(results, results.reference)),
+              {kHead, "Speedup, %", "95 % from", "95 % to", "In words", "Undisturbed, %"},
+              {}};
+  if (paper) {
+    table.columns.insert(table.columns.begin() + 2, "Paper, %");
+    table.caption += differences(results) + kNotTold;
+  }
+  for_each_order(results, true, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+    const Speedup& s = order.speedup;
+    const std::string words = !s.beyond_noise ? "within noise" : s.percent > 0 ? "gain" : "loss";
+    std::vector<TableCell> row{head_of(results, scenario, order),
+                               percent_cell(s.percent),
+                               percent_cell(s.low),
+                               percent_cell(s.high),
+                               text_cell(words),
+                               percent_cell(s.undisturbed_percent)};
+    for (std::size_t i = 1; i <= 4; ++i) row[i].weak = !s.beyond_noise;
+    if (paper) {
+      const auto saving = paper_saving(scenario.name, order.ordering);
+      row.insert(row.begin() + 2, saving
+                                      ? TableCell{fmt::format("+{}", saving->percent), saving->percent, false}
+                                      : unknown_cell());
+    }
+    table.rows.push_back(std::move(row));
+  });
+  return table;
+}
+
+Table break_even_table(const StudyResults& results) {
+  Table table{
+      "break-even",
+      "What an order costs, and when that is paid",
+      fmt::format("Seconds that it takes to compute the order and move the mesh, and the first step at "
+                  "whose end the steps so far have saved as much over “{}”.",
+                  title_of(results, results.reference)),
+      {kHead, "Cost, s", "Paid at step", "Of steps"},
+      {}};
+  for_each_order(results, true, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+    const MeshRecord* const mesh = find_mesh(results, scenario.mesh);
+    const OrderOfMesh* const of_mesh = mesh == nullptr ? nullptr : find_order(*mesh, order.ordering);
+    const auto& step = order.speedup.break_even_step;
+    TableCell paid{"never", std::nullopt, true};
+    if (step) paid = count_cell(*step);
+    paid.weak = !step || !order.speedup.beyond_noise;
+    table.rows.push_back({head_of(results, scenario, order),
+                          of_mesh == nullptr ? unknown_cell() : number_cell(of_mesh->seconds, 3), paid,
+                          count_cell(scenario.steps)});
+  });
+  return table;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,130 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/scenario/fingerprint.hpp"
+
+#include <bit>
+#include <string>
+#include <type_traits>
+
+namespace meshorder {
+namespace {
+
+/// FNV-1a (Fowler, Noll, Vo) over 64-bit words.
+class Checksum {
+ public:
+  template <class Number>
+  void add(Number number) {
+    static_assert(std::is_arithmetic_v<Number> || std::is_enum_v<Number>);
+    if constexpr (std::is_floating_point_v<Number>) {
+      mix(std::bit_cast<std::uint64_t>(static_cast<double>(number)));
+    } else {
+      mix(static_cast<std::uint64_t>(number));
+    }
+  }
+  void add(const Point& point) {
+    for (const double x : point) add(x);
+  }
+  template <class Range>
+  void add_all(const Range& range) {
+    add(range.size());
+    for (const auto& entry : range) add(entry);
+  }
+  [[nodiscard]] std::uint64_t value() const noexcept { return value_; }
+
+ private:
+  void mix(std::uint64_t word) { value_ = (value_ ^ word) * 0x100000001B3U ^ (value_ >> 32U); }
+
+  std::uint64_t value_ = 0xCBF29CE484222325U;
+};
+
+void add_selection(const Selection& selection, Checksum& sum) {
+  sum.add_all(selection.vertices);
+  sum.add(selection.from);
+  sum.add(selection.until);
+}
+
+void add_motion(const MotionOptions& options, const MotionState& start, Checksum& sum) {
+  sum.add(options.time_step);
+  sum.add(options.gravity);
+  for (const VertexForce& force : options.forces) {
+    add_selection(force, sum);
+    sum.add(force.newtons);
+  }
+  sum.add(options.forces.size());
+  for (const PrescribedMotion& motion : options.prescribed) {
+    add_selection(motion, sum);
+    sum.add(motion.velocity);
+  }
+  sum.add_all(start.positions);
+  sum.add_all(start.velocities);
+}
+
+void add_obstacle(const ScenarioObstacle& obstacle, Checksum& sum) {
+  sum.add(obstacle.kind);
+  sum.add(obstacle.place);
+  sum.add(obstacle.direction);
+  for (const double number : {obstacle.radius, obstacle.thickness, obstacle.opening, obstacle.friction})
+    sum.add(number);
+  sum.add_all(obstacle.file);
+}
+
+}  // namespace
+
+std::uint64_t checksum_of(const std::vector<Point>& points, const Simplices& simplices) {
+  Checksum sum;
+  sum.add_all(points);
+  sum.add_all(simplices.vertices);
+  return sum.value();
+}
+
+std::uint64_t checksum_of(const Reordering& order) {
+  Checksum sum;
+  sum.add_all(order.vertices.old_to_new());
+  sum.add_all(order.cells.old_to_new());
+  return sum.value();
+}
+
+std::uint64_t checksum_of(const ImplicitOptions& options, const Body& body, const MotionState& start) {
+  Checksum sum;
+  add_motion(options, start, sum);
+  for (const double number :
+       {options.mass_damping, options.stiffness_damping, options.newton_tolerance, options.solve.tolerance})
+    sum.add(number);
+  for (const int number : {options.newton_iterations, options.solve.max_iterations}) sum.add(number);
+  sum.add(options.mass);
+  sum.add(options.preconditioner);
+  sum.add(options.precision);
+  sum.add(body.elasticity.model);
+  sum.add(body.elasticity.tangent);
+  sum.add(body.elasticity.lame.mu);
+  sum.add(body.elasticity.lame.lambda);
+  sum.add_all(body.elasticity.mu);
+  sum.add_all(body.elasticity.lambda);
+  sum.add_all(body.densities);
+  return sum.value();
+}
+
+std::uint64_t checksum_of(const ProjectiveOptions& options, const ProjectiveScenario& scenario,
+                          const ProjectiveBody& body, const MotionState& start) {
+  Checksum sum;
+  add_motion(options, start, sum);
+  sum.add(options.iterations);
+  sum.add(options.tolerance);
+  sum.add(options.keep_duals);
+  sum.add(options.acceleration);
+  for (const ScenarioObstacle& obstacle : scenario.obstacles) add_obstacle(obstacle, sum);
+  sum.add(options.contact.with_itself);
+  sum.add(options.contact.friction_with_itself);
+  sum.add(options.contact.reach);
+  sum.add(options.contact_solver.kind);
+  sum.add(options.contact_solver.tolerance);
+  sum.add(options.contact_solver.max_iterations);
+  sum.add(options.contact_solver.over_relaxation);
+  sum.add(scenario.precision);
+  sum.add(body.law.model);
+  for (const double number : {body.law.stiffness, body.law.lame.mu, body.law.lame.lambda}) sum.add(number);
+  for (const auto* numbers : {&body.law.stiffnesses, &body.law.mu, &body.law.lambda, &body.densities})
+    sum.add_all(*numbers);
+  return sum.value();
+}
+
+}  // namespace meshorder

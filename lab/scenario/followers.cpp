@@ -1,0 +1,72 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/scenario/followers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace meshorder {
+namespace {
+
+Point difference(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+double determinant(const Point& a, const Point& b, const Point& c) {
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+         a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+/// Barycentric coordinates by Cramer's rule; not finite in a flat tetrahedron.
+std::array<double, 4> weights_of(const Point& at, const std::array<Point, 4>& corners) {
+  const Point a = difference(corners[1], corners[0]);
+  const Point b = difference(corners[2], corners[0]);
+  const Point c = difference(corners[3], corners[0]);
+  const Point x = difference(at, corners[0]);
+  const double volume = determinant(a, b, c);
+  const std::array<double, 3> shares{determinant(x, b, c) / volume, determinant(a, x, c) / volume,
+                                     determinant(a, b, x) / volume};
+  return {1.0 - shares[0] - shares[1] - shares[2], shares[0], shares[1], shares[2]};
+}
+
+}  // namespace
+
+std::vector<Follower> followers(const Mesh& mesh, const Simplices& simplices) {
+  std::vector<char> is_corner(mesh.points.size(), 0);
+  for (const Index v : simplices.vertices) is_corner[v] = 1;
+  std::vector<Follower> found(mesh.points.size());
+  std::vector<double> depth(mesh.points.size(), -std::numeric_limits<double>::infinity());
+  for (Offset s = 0; s < simplices.size(); ++s) {
+    std::array<Index, 4> corners{};
+    std::copy_n(simplices.vertices.begin() + 4 * s, 4, corners.begin());
+    std::array<Point, 4> points{};
+    for (std::size_t i = 0; i < 4; ++i) points[i] = mesh.points[corners[i]];
+    for (const Index v : mesh.cells[simplices.cells[s]]) {
+      if (is_corner[v] != 0) continue;
+      const std::array<double, 4> weights = weights_of(mesh.points[v], points);
+      const double least = *std::min_element(weights.begin(), weights.end());
+      if (!(least > depth[v])) continue;
+      depth[v] = least;
+      found[v] = {v, corners, weights};
+    }
+  }
+  std::vector<Follower> result;
+  for (std::size_t v = 0; v < found.size(); ++v) {
+    if (std::isfinite(depth[v])) result.push_back(found[v]);
+  }
+  return result;
+}
+
+void carry(const std::vector<Follower>& followers, std::span<const Point> rest, MotionState& state) {
+  for (const Follower& follower : followers) {
+    Point& position = state.positions[follower.vertex];
+    position = rest[follower.vertex];
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Index corner = follower.corners[i];
+      for (std::size_t c = 0; c < 3; ++c) {
+        position[c] += follower.weights[i] * (state.positions[corner][c] - rest[corner][c]);
+        state.velocities[follower.vertex][c] += follower.weights[i] * state.velocities[corner][c];
+      }
+    }
+  }
+}
+
+}  // namespace meshorder

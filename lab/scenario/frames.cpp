@@ -1,0 +1,109 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/scenario/frames.hpp"
+
+#include "base/error.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/vtk/metadata.hpp"
+#include "lab/scenario/scenario_obstacles.hpp"
+#include "lab/scenario/vertex_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+namespace meshorder {
+namespace {
+namespace fs = std::filesystem;
+
+// the frame's own arrays, in front of the mesh's, which then give way where they have the same names
+enum OwnArray : std::uint8_t { kDisplacement, kVelocity, kOriginalVertex, kOriginalCell };
+
+std::vector<DataArray> own_arrays(const Mesh& mesh, const Reordering& order) {
+  std::vector<float> zeros(3 * mesh.points.size(), 0.0F);
+  std::vector<DataArray> arrays(4);
+  arrays[kDisplacement] = {"displacement", Attached::vertices, 3, zeros, {}, {}};
+  arrays[kVelocity] = {"velocity", Attached::vertices, 3, std::move(zeros), {}, {}};
+  arrays[kOriginalVertex] = {"original_vertex", Attached::vertices, 1, order.vertices.new_to_old(), {}, {}};
+  arrays[kOriginalCell] = {"original_cell", Attached::cells, 1, order.cells.new_to_old(), {}, {}};
+  return arrays;
+}
+
+/// What a .vtu file says beyond the mesh: of one that came from VTK what it had; compressed.
+std::shared_ptr<VtkResidue> residue_of(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const VtkResidue*>(mesh.residue.get());
+  auto residue = own != nullptr ? std::make_shared<VtkResidue>(*own) : std::make_shared<VtkResidue>();
+  residue->legacy.reset();
+  residue->float_points = true;
+  // raw bytes would be a quarter less, but no XML: meshio 5.0 takes one file in some hundreds apart wrongly
+  residue->vtu =
+      VtuEncoding{.mode = VtuEncoding::Mode::appended_base64, .compressor = VtuEncoding::Compressor::zlib};
+  return residue;
+}
+
+}  // namespace
+
+FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index every)
+    : folder_(std::move(folder)),
+      name_(simulation.scenario.name),
+      every_(every),
+      time_step_(simulation.scenario.motion().time_step),
+      collection_(folder_ / (name_ + ".pvd")),
+      rest_(simulation.mesh.points),
+      followers_(followers(simulation.mesh, cut_into_simplices(simulation.mesh))),
+      frame_(simulation.mesh) {
+  if (every < 1) throw InvalidArgument("frames: one of every " + std::to_string(every) + " steps");
+  std::error_code code;
+  fs::create_directories(folder_, code);
+  if (code)
+    throw Error(folder_.string(), "cannot be made: " + code.message(), "name a folder for the frames");
+  (void)OutputFile(collection_);  // whether it can be written is known before the work begins
+  std::vector<DataArray> arrays = own_arrays(frame_, simulation.order);
+  arrays.insert(arrays.end(), std::make_move_iterator(frame_.data.begin()),
+                std::make_move_iterator(frame_.data.end()));
+  frame_.data = std::move(arrays);
+  frame_.vertex_ids.clear();  // they would run along the order
+  frame_.cell_ids.clear();
+  frame_.residue = residue_of(simulation.mesh);
+  write_obstacles(simulation);
+}
+
+void FrameWriter::write_obstacles(const Simulation& simulation) const {
+  if (simulation.scenario.is_implicit() || simulation.scenario.projective().obstacles.empty()) return;
+  const double extent = bounding_box(rest_, simulation.vertices).longest_side();
+  write_mesh(surfaces_of(simulation.scenario.projective().obstacles, extent),
+             folder_ / (name_ + "-obstacles.vtu"));
+}
+
+std::string FrameWriter::file_name(Index step) const { return fmt::format("{}-{:06}.vtu", name_, step); }
+
+void FrameWriter::list(Index step) { entries_.push_back({time_step_ * step, file_name(step)}); }
+
+void FrameWriter::resume_after(Index step) {
+  std::error_code code;
+  for (Index earlier = 0; earlier <= step; earlier += every_) {
+    if (fs::exists(folder_ / file_name(earlier), code)) list(earlier);
+  }
+}
+
+void FrameWriter::write(MotionState state) {
+  carry(followers_, rest_, state);
+  auto& displacement = std::get<std::vector<float>>(frame_.data[kDisplacement].values);
+  auto& velocity = std::get<std::vector<float>>(frame_.data[kVelocity].values);
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      displacement[3 * v + c] = static_cast<float>(state.positions[v][c] - rest_[v][c]);
+      velocity[3 * v + c] = static_cast<float>(state.velocities[v][c]);
+      frame_.points[v][c] = static_cast<float>(state.positions[v][c]);
+    }
+  }
+  Notes notes;
+  write_mesh(frame_, folder_ / file_name(state.step), &notes);
+  if (entries_.empty()) notes_ = std::move(notes);
+  list(state.step);
+  write_pvd(entries_, collection_);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,240 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/scenario/integrator_reader.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+constexpr NumberRange kTolerance{.least = 0, .most = 1, .least_open = true, .most_open = true};
+constexpr int kMostIterations = 1'000'000;
+
+enum class Method : std::uint8_t { backward_euler, admm };
+constexpr std::array kMethods{std::pair(std::string_view("backward-euler"), Method::backward_euler),
+                              std::pair(std::string_view("admm"), Method::admm)};
+constexpr std::array kDuals{std::pair(std::string_view("kept"), true),
+                            std::pair(std::string_view("reset"), false)};
+
+void read_count(const JsonValue& owner, std::string_view key, int most, int& count) {
+  if (const auto value = owner.find(key)) count = static_cast<int>(value->whole(1, most));
+}
+
+// ---- materials
+
+/// Young's modulus and Poisson's ratio, or a stiffness alone.
+enum class Elastic : std::uint8_t { moduli, stiffness };
+
+Material material_of(const JsonValue& value, Elastic elastic, Material numbers) {
+  if (elastic == Elastic::stiffness) {
+    numbers.poisson = 0.0;
+    if (const auto stiffness = value.find("stiffness")) numbers.young = stiffness->number(kPositive);
+  } else {
+    if (const auto young = value.find("young")) numbers.young = young->number(kPositive);
+    if (const auto poisson = value.find("poisson"))
+      numbers.poisson = poisson->number({.least = -1, .most = 0.5, .least_open = true, .most_open = true});
+  }
+  if (const auto density = value.find("density")) numbers.density = density->number(kPositive);
+  return numbers;
+}
+
+void read_regions(const JsonValue& value, Elastic elastic, Scenario& scenario) {
+  value.expect_keys({"by", "groups"});
+  scenario.regions_by = value["by"].text();
+  for (const JsonValue& entry : value["groups"].items(1)) {
+    if (elastic == Elastic::stiffness) {
+      entry.expect_keys({"group", "stiffness", "density"});
+    } else {
+      entry.expect_keys({"group", "young", "poisson", "density"});
+    }
+    const JsonValue group = entry["group"];
+    RegionMaterial region;
+    region.region = group.is_text() ? group.text()
+                                    : std::to_string(group.whole(std::numeric_limits<std::int64_t>::min(),
+                                                                 std::numeric_limits<std::int64_t>::max()));
+    for (const RegionMaterial& other : scenario.regions) {
+      if (other.region == region.region) throw group.error("has an entry already", "keep one of them");
+    }
+    region.material = material_of(entry, elastic, scenario.material);
+    scenario.regions.push_back(std::move(region));
+  }
+}
+
+void read_numbers(const JsonValue& value, Elastic elastic, Scenario& scenario) {
+  if (elastic == Elastic::stiffness) {
+    for (const std::string_view needed : {"stiffness", "density"}) (void)value[needed];
+  } else {
+    for (const std::string_view needed : {"young", "poisson", "density"}) (void)value[needed];
+  }
+  scenario.material = material_of(value, elastic, scenario.material);
+  if (const auto regions = value.find("regions")) read_regions(*regions, elastic, scenario);
+}
+
+// ---- backward Euler
+
+void read_implicit_material(const JsonValue& value, Scenario& scenario) {
+  value.expect_keys({"model", "tangent", "young", "poisson", "density", "regions"});
+  scenario.model = value["model"].one_of(kMaterialModels);
+  if (const auto tangent = value.find("tangent")) {
+    scenario.tangent = tangent->one_of(kTangents);
+    if (scenario.tangent == Tangent::approximate && scenario.model != MaterialModel::corotational)
+      throw tangent->error("'approximate' is of the corotational model alone", "give exact or projected");
+  }
+  read_numbers(value, Elastic::moduli, scenario);
+}
+
+void read_implicit(const JsonValue& value, ImplicitOptions& options) {
+  value.expect_keys({"method", "time_step", "mass", "rayleigh", "gravity", "newton"});
+  if (const auto mass = value.find("mass")) options.mass = mass->one_of(kMasses);
+  if (const auto rayleigh = value.find("rayleigh")) {
+    rayleigh->expect_keys({"alpha", "beta"});
+    if (const auto alpha = rayleigh->find("alpha")) options.mass_damping = alpha->number(kNotNegative);
+    if (const auto beta = rayleigh->find("beta")) options.stiffness_damping = beta->number(kNotNegative);
+  }
+  if (const auto newton = value.find("newton")) {
+    newton->expect_keys({"iterations", "tolerance"});
+    read_count(*newton, "iterations", kMostIterations, options.newton_iterations);
+    if (const auto tolerance = newton->find("tolerance"))
+      options.newton_tolerance = tolerance->number(kTolerance);
+  }
+}
+
+void read_implicit_solver(const JsonValue& value, ImplicitOptions& options) {
+  value.expect_keys({"preconditioner", "tolerance", "max_iterations", "precision"});
+  if (const auto preconditioner = value.find("preconditioner"))
+    options.preconditioner = preconditioner->one_of(kPreconditioners);
+  if (const auto tolerance = value.find("tolerance")) options.solve.tolerance = tolerance->number(kTolerance);
+  read_count(value, "max_iterations", kMostIterations, options.solve.max_iterations);
+  if (const auto precision = value.find("precision")) options.precision = precision->one_of(kPrecisions);
+}
+
+// ---- ADMM
+
+void read_projective_material(const JsonValue& value, ProjectiveScenario& options, Scenario& scenario) {
+  options.model = value["model"].one_of(kLocalModels);
+  switch (options.model) {
+    case LocalModel::springs:
+      value.expect_keys({"model", "stiffness", "density"});
+      return read_numbers(value, Elastic::stiffness, scenario);
+    case LocalModel::strain:
+      value.expect_keys({"model", "stiffness", "density", "regions"});
+      return read_numbers(value, Elastic::stiffness, scenario);
+    case LocalModel::stvk:
+    case LocalModel::neo_hookean:
+    case LocalModel::log_neo_hookean:
+      value.expect_keys({"model", "young", "poisson", "density", "regions"});
+      return read_numbers(value, Elastic::moduli, scenario);
+  }
+}
+
+void read_projective(const JsonValue& value, ProjectiveScenario& options) {
+  value.expect_keys({"method", "time_step", "gravity", "iterations", "tolerance", "duals", "acceleration"});
+  read_count(value, "iterations", kMostIterations, options.iterations);
+  if (const auto tolerance = value.find("tolerance"))
+    options.tolerance = tolerance->number({.least = 0, .most = 1, .most_open = true});
+  if (const auto window = value.find("acceleration"))
+    options.acceleration = static_cast<int>(window->whole(0, AndersonMixer<double>::kWidestWindow));
+  if (const auto duals = value.find("duals")) options.keep_duals = duals->one_of(kDuals);
+}
+
+/// A direction: a vector other than 0.
+Point direction(const JsonValue& value) {
+  const Point vector = value.vector();
+  if (!(std::hypot(vector[0], vector[1], vector[2]) > 0.0))
+    throw value.error("has no direction", "give a vector other than 0");
+  return vector;
+}
+
+ScenarioObstacle obstacle(const JsonValue& value) {
+  using Kind = ScenarioObstacle::Kind;
+  value.expect_keys({"half_space", "sphere", "bowl", "surface", "friction"});
+  int kinds = 0;
+  for (const std::string_view kind : {"half_space", "sphere", "bowl", "surface"})
+    kinds += value.has(kind) ? 1 : 0;
+  if (kinds != 1)
+    throw value.error("does not say which obstacle", "give one of half_space, sphere, bowl, surface");
+  ScenarioObstacle result;
+  if (const auto plane = value.find("half_space")) {
+    plane->expect_keys({"point", "normal"});
+    result.kind = Kind::half_space;
+    result.place = (*plane)["point"].vector();
+    result.direction = direction((*plane)["normal"]);
+  } else if (const auto ball = value.find("sphere")) {
+    ball->expect_keys({"center", "radius"});
+    result.kind = Kind::sphere;
+    result.place = (*ball)["center"].vector();
+    result.radius = (*ball)["radius"].number(kPositive);
+  } else if (const auto bowl = value.find("bowl")) {
+    bowl->expect_keys({"center", "axis", "radius", "thickness", "opening"});
+    result.kind = Kind::bowl;
+    result.place = (*bowl)["center"].vector();
+    result.direction = direction((*bowl)["axis"]);
+    result.radius = (*bowl)["radius"].number(kPositive);
+    result.thickness =
+        (*bowl)["thickness"].number({.least = 0, .most = 2 * result.radius, .least_open = true});
+    result.opening =
+        (*bowl)["opening"].number({.least = 0, .most = 180, .least_open = true, .most_open = true});
+  } else {
+    result.kind = Kind::surface;
+    result.file = (std::filesystem::path(value.file()).parent_path() / value["surface"].text()).string();
+  }
+  if (const auto friction = value.find("friction")) result.friction = friction->number(kNotNegative);
+  return result;
+}
+
+void read_contact(const JsonValue& value, ProjectiveScenario& options) {
+  value.expect_keys(
+      {"obstacles", "with_itself", "friction", "solver", "tolerance", "max_iterations", "over_relaxation"});
+  if (const auto obstacles = value.find("obstacles")) {
+    for (const JsonValue& entry : obstacles->items()) options.obstacles.push_back(obstacle(entry));
+  }
+  if (const auto with_itself = value.find("with_itself")) options.contact.with_itself = with_itself->truth();
+  if (const auto friction = value.find("friction"))
+    options.contact.friction_with_itself = friction->number(kNotNegative);
+  ContactSolverOptions& solver = options.contact_solver;
+  if (const auto kind = value.find("solver")) solver.kind = kind->one_of(kContactSolvers);
+  if (const auto tolerance = value.find("tolerance")) solver.tolerance = tolerance->number(kTolerance);
+  read_count(value, "max_iterations", kMostIterations, solver.max_iterations);
+  if (const auto relaxation = value.find("over_relaxation"))
+    solver.over_relaxation =
+        relaxation->number({.least = 0, .most = 2, .least_open = true, .most_open = true});
+}
+
+}  // namespace
+
+void read_integrator(const JsonValue& root, Scenario& scenario) {
+  const JsonValue integrator = root["integrator"];
+  const JsonValue material = root["material"];
+  const auto solver = root.find("solver");
+  const auto contact = root.find("contact");
+  const auto read_common = [&](MotionOptions& options) {
+    options.time_step = integrator["time_step"].number(kPositive);
+    if (const auto gravity = integrator.find("gravity")) options.gravity = gravity->vector();
+  };
+  const auto method = integrator.find("method");
+  if (!method || method->one_of(kMethods) == Method::backward_euler) {
+    ImplicitOptions options;
+    read_implicit_material(material, scenario);
+    read_implicit(integrator, options);
+    read_common(options);
+    if (solver) read_implicit_solver(*solver, options);
+    if (contact) throw contact->error("is unknown to backward-euler", "give the integrator the method admm");
+    scenario.integrator = std::move(options);
+    return;
+  }
+  ProjectiveScenario options;
+  read_projective_material(material, options, scenario);
+  read_projective(integrator, options);
+  read_common(options);
+  if (solver) {
+    solver->expect_keys({"precision"});
+    if (const auto precision = solver->find("precision")) options.precision = precision->one_of(kPrecisions);
+  }
+  if (contact) read_contact(*contact, options);
+  if (options.acceleration > 0 && (!options.obstacles.empty() || options.contact.with_itself))
+    throw integrator["acceleration"].error("is not for contacts", "leave out one of them");
+  scenario.integrator = std::move(options);
+}
+
+}  // namespace meshorder

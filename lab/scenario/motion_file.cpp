@@ -1,0 +1,82 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/scenario/motion_file.hpp"
+
+#include "base/error.hpp"
+#include "io/npy.hpp"
+#include "io/stream/scanner.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// As long for any number of frames, so that it can be written when that is known.
+std::string header_of(Index frames, Index vertices) {
+  return npy_header("<f4", std::array<std::int64_t, 3>{frames, vertices, 3});
+}
+
+}  // namespace
+
+MotionFile::MotionFile(std::filesystem::path path, Index vertices)
+    : file_(std::move(path)), vertices_(vertices) {
+  file_.write(header_of(0, vertices));
+}
+
+void MotionFile::add(std::span<const Point> positions) {
+  if (positions.size() != static_cast<std::size_t>(vertices_)) {
+    throw InvalidArgument(
+        fmt::format("a frame of {} vertices in a motion of {}", positions.size(), vertices_));
+  }
+  for (const Point& position : positions) {
+    for (const double x : position) file_.binary(static_cast<float>(x), std::endian::little);
+  }
+  ++frames_;
+}
+
+void MotionFile::commit() {
+  file_.close();
+  std::fstream stream(file_.temporary(), std::ios::binary | std::ios::in | std::ios::out);
+  stream << header_of(frames_, vertices_);
+  stream.close();
+  if (!stream) throw Error(file_.target().string(), "cannot be written to the end", "is the disk full?");
+  file_.commit();
+}
+
+Motion read_motion(const std::filesystem::path& path) {
+  Scanner file(path);
+  const NpyHeader header = read_npy_header(file);
+  const auto& shape = header.shape;
+  if (header.type != "<f4" || header.columns_first || shape.size() != 3 || shape[2] != 3) {
+    file.fail_at_byte("is no motion", "frames × vertices × 3 numbers of type <f4 in C order are one");
+  }
+  const std::int64_t frames = shape[0];
+  const std::int64_t vertices = shape[1];
+  constexpr std::int64_t kBytes = 3 * sizeof(float);
+  if (frames < 0 || vertices < 0 || vertices > kMaxIndex || (vertices == 0 && frames > 0) ||
+      (frames > 0 && vertices > file.bytes_left() / kBytes / frames)) {
+    file.fail_at_byte(fmt::format("promises {} frames of {} vertices, but {} bytes follow", frames, vertices,
+                                  file.bytes_left()),
+                      "it may be cut short");
+  }
+  Motion motion{static_cast<Index>(vertices), {}};
+  motion.frames.resize(frames);
+  for (auto& frame : motion.frames) {
+    frame.resize(motion.vertices);
+    for (auto& position : frame) {
+      for (float& x : position) {
+        x = file.binary<float>("a coordinate", std::endian::little);
+        if (!std::isfinite(x)) file.fail_at_byte("holds a place that is not finite", "the motion blew up");
+      }
+    }
+  }
+  return motion;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,26 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/scenario/scenario.hpp"
+
+#include "base/error.hpp"
+
+namespace meshorder {
+
+bool names_a_model(std::string_view mesh) {
+  return mesh.find('/') == std::string_view::npos && std::filesystem::path(mesh).extension().empty();
+}
+
+Scenario find_scenario(const std::string& name_or_file) {
+  std::string known;
+  for (const BuiltInScenario& scenario : built_in_scenarios()) {
+    if (scenario.name == name_or_file)
+      return parse_scenario(scenario.text, "scenario " + std::string(scenario.name));
+    known += (known.empty() ? "" : ", ") + std::string(scenario.name);
+  }
+  std::error_code code;
+  if (!std::filesystem::exists(name_or_file, code))
+    throw Error(name_or_file, "no scenario has this name, and no file either",
+                "there are " + known + ", or give a file as docs/simulate.md describes");
+  return read_scenario(name_or_file);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,204 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/error.hpp"
+#include "base/index.hpp"
+#include "base/point.hpp"
+#include "kernels/material.hpp"
+#include "kernels/regions.hpp"
+#include "lab/admm/projective_dynamics.hpp"
+#include "lab/implicit/backward_euler.hpp"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace meshorder {
+
+/// Some vertices of a mesh, named so that it does not matter how they are numbered.
+struct VertexChoice {
+  enum class By : std::uint8_t {
+    all,
+    set,      ///< members of the set `name`, or the vertices of its cells
+    label,    ///< those with the value `label` in the array `name`, or the vertices of cells with it; without
+              ///< a name those that have this label, or where there are none the vertices of cells with it
+    box,      ///< those from `low` to `high`
+    nearest,  ///< the one nearest to `low`
+  };
+  By by = By::all;
+  std::string name;
+  std::int64_t label = 0;
+  Point low{}, high{};  ///< relative to the bounding box: 0 … 1 along each axis
+  std::string where;    ///< its place in the scenario's file
+};
+
+/// Steps are counted from 1; both ends count.
+struct StepRange {
+  Index first = 1;
+  Index last = kMaxIndex;
+};
+
+struct ScenarioForce {
+  VertexChoice on;
+  StepRange steps;
+  Point newtons{};  ///< on each vertex
+};
+
+struct ScenarioMotion {
+  VertexChoice on;
+  StepRange steps;
+  Point velocity{};  ///< m/s
+};
+
+/// Where vertices are when the motion starts, and how fast; what is not given stays.
+struct ScenarioStart {
+  VertexChoice on;
+  std::optional<Point> velocity;  ///< m/s
+  std::optional<Point> at;        ///< all at one place, relative to the bounding box
+};
+
+/// What the body must stay outside of, in metres where the body is.
+struct ScenarioObstacle {
+  enum class Kind : std::uint8_t { half_space, sphere, bowl, surface };
+  Kind kind = Kind::half_space;
+  Point place{};           ///< a point of the plane; the centre
+  Point direction{};       ///< the plane's normal; the bowl's axis
+  double radius = 0.0;     ///< of the sphere, of the bowl's middle
+  double thickness = 0.0;  ///< of the bowl
+  double opening = 0.0;    ///< the bowl's, half of it, degrees
+  std::string file;        ///< of a closed surface
+  double friction = 0.0;   ///< Coulomb's coefficient
+};
+
+/// ADMM projective dynamics, its options without obstacles, which are bound to the mesh.
+struct ProjectiveScenario : ProjectiveOptions {
+  LocalModel model = LocalModel::strain;
+  MatrixPrecision precision = MatrixPrecision::exact;
+  std::vector<ScenarioObstacle> obstacles;
+};
+
+/// What is simulated: a mesh, what it is made of, what happens to it and how that is computed. Nothing in it
+/// depends on the order of vertices or elements. docs/simulate.md describes its file.
+struct Scenario {
+  std::string file;  ///< where it comes from
+  std::string name;
+  std::string title;
+  std::string mesh;             ///< a model's name, or the path of a file
+  double longest_side = 0;      ///< of the bounding box that the mesh is scaled to, m; 0: as it is
+  double height = 0;            ///< or the box's side along y
+  std::optional<Point> bottom;  ///< where the middle of the box's bottom is put, m
+  std::string vertex_order = "original";
+  std::string element_order = "original";
+
+  MaterialModel model = MaterialModel::corotational;  ///< of the implicit method, as the tangent
+  Tangent tangent = Tangent::exact;
+  /// Springs and strain have their stiffness (N/m, Pa) in the place of Young's modulus.
+  Material material;
+  std::string regions_by;  ///< the array whose groups the regions are (see `grouping_by`); else empty
+  std::vector<RegionMaterial> regions;
+
+  /// Forces and prescribed motions in it are empty: they are these.
+  std::variant<ImplicitOptions, ProjectiveScenario> integrator;
+  std::vector<ScenarioStart> start;  ///< of two for one vertex the later counts
+  std::vector<ScenarioForce> forces;
+  std::vector<ScenarioMotion> motions;  ///< fixed vertices have the velocity 0
+  Index steps = 240;
+
+  std::vector<std::string> paper;  ///< paths in the file of what is the paper's
+  std::vector<std::string> notes;
+
+  [[nodiscard]] bool is_implicit() const noexcept {
+    return std::holds_alternative<ImplicitOptions>(integrator);
+  }
+  [[nodiscard]] const ImplicitOptions& implicit() const { return std::get<ImplicitOptions>(integrator); }
+  [[nodiscard]] ImplicitOptions& implicit() { return std::get<ImplicitOptions>(integrator); }
+  [[nodiscard]] const ProjectiveScenario& projective() const {
+    return std::get<ProjectiveScenario>(integrator);
+  }
+  [[nodiscard]] ProjectiveScenario& projective() { return std::get<ProjectiveScenario>(integrator); }
+  [[nodiscard]] const MotionOptions& motion() const {
+    return std::visit([](const MotionOptions& options) -> const MotionOptions& { return options; },
+                      integrator);
+  }
+};
+
+// Names in files and on the command line, and what they mean.
+inline constexpr std::array kPreconditioners{
+    std::pair(std::string_view("jacobi"), PreconditionerKind::jacobi),
+    std::pair(std::string_view("block-jacobi"), PreconditionerKind::block_jacobi),
+    std::pair(std::string_view("incomplete-cholesky"), PreconditionerKind::incomplete_cholesky),
+    std::pair(std::string_view("multigrid"), PreconditionerKind::multigrid)};
+inline constexpr std::array kPrecisions{std::pair(std::string_view("double"), MatrixPrecision::exact),
+                                        std::pair(std::string_view("single"), MatrixPrecision::single)};
+inline constexpr std::array kMaterialModels{
+    std::pair(std::string_view("corotational"), MaterialModel::corotational),
+    std::pair(std::string_view("stvk"), MaterialModel::stvk),
+    std::pair(std::string_view("neo-hookean"), MaterialModel::neo_hookean)};
+inline constexpr std::array kLocalModels{
+    std::pair(std::string_view("springs"), LocalModel::springs),
+    std::pair(std::string_view("strain"), LocalModel::strain),
+    std::pair(std::string_view("stvk"), LocalModel::stvk),
+    std::pair(std::string_view("neo-hookean"), LocalModel::neo_hookean),
+    std::pair(std::string_view("log-neo-hookean"), LocalModel::log_neo_hookean)};
+inline constexpr std::array kContactSolvers{
+    std::pair(std::string_view("uzawa"), ContactSolverKind::uzawa),
+    std::pair(std::string_view("gauss-seidel"), ContactSolverKind::gauss_seidel)};
+inline constexpr std::array kTangents{std::pair(std::string_view("exact"), Tangent::exact),
+                                      std::pair(std::string_view("approximate"), Tangent::approximate),
+                                      std::pair(std::string_view("projected"), Tangent::projected)};
+inline constexpr std::array kMasses{std::pair(std::string_view("lumped"), Mass::lumped),
+                                    std::pair(std::string_view("consistent"), Mass::consistent)};
+
+/// The name of a meaning in one of these lists.
+template <class Meaning, std::size_t N>
+constexpr std::string_view name_in(const std::array<std::pair<std::string_view, Meaning>, N>& names,
+                                   Meaning meaning) {
+  for (const auto& [word, known] : names) {
+    if (known == meaning) return word;
+  }
+  return "";
+}
+
+/// The meaning of a name in one of these lists. Throws InvalidArgument that lists them for others; `what`
+/// is what it names.
+template <class Meaning, std::size_t N>
+Meaning meaning_in(const std::array<std::pair<std::string_view, Meaning>, N>& names, std::string_view given,
+                   std::string_view what) {
+  std::string known;
+  for (const auto& [word, meaning] : names) {
+    if (word == given) return meaning;
+    known += (known.empty() ? "" : ", ") + std::string(word);
+  }
+  throw InvalidArgument("unknown " + std::string(what) + " '" + std::string(given) + "'; known are " + known);
+}
+
+/// Whether a scenario's mesh, or what a user gives in its place, names a model rather than a file: it has no
+/// extension.
+bool names_a_model(std::string_view mesh);
+
+/// The scenario of a file's text. `file` is named in errors, and a mesh file's path is relative to its
+/// folder. Throws Error, which names the path in the file, for whatever is unknown, missing, of the wrong
+/// type or out of range. The mesh is not looked at.
+Scenario parse_scenario(std::string_view text, const std::string& file);
+
+/// Reads a scenario's file. Throws Error like `parse_scenario`, and when there is no such file.
+Scenario read_scenario(const std::filesystem::path& path);
+
+/// A scenario that is part of the program, from `scenarios/` of its sources.
+struct BuiltInScenario {
+  std::string_view name;
+  std::string_view text;
+};
+std::span<const BuiltInScenario> built_in_scenarios();
+
+/// The scenario of that name, or else of that file. Throws Error that lists the names when it is neither.
+Scenario find_scenario(const std::string& name_or_file);
+
+}  // namespace meshorder

@@ -1,0 +1,48 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/scenario/shape.hpp"
+
+#include "kernels/rotation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshorder {
+namespace {
+
+Point mean(std::span<const Point> points, std::span<const Index> vertices) {
+  Point sum{};
+  for (const Index v : vertices) {
+    for (int c = 0; c < 3; ++c) sum[c] += points[v][c];
+  }
+  for (double& x : sum) x /= static_cast<double>(vertices.size());
+  return sum;
+}
+
+}  // namespace
+
+double distance_from_shape(std::span<const Point> rest, std::span<const Point> positions,
+                           std::span<const Index> vertices) {
+  if (vertices.empty()) return 0.0;
+  const Point from = mean(rest, vertices);
+  const Point to = mean(positions, vertices);
+  Matrix3 correlation{};
+  for (const Index v : vertices) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) correlation[i][j] += (positions[v][i] - to[i]) * (rest[v][j] - from[j]);
+    }
+  }
+  const Matrix3 rotation = closest_rotation(correlation);
+  double largest = 0.0;
+  for (const Index v : vertices) {
+    double squared = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      double difference = positions[v][i] - to[i];
+      for (int j = 0; j < 3; ++j) difference -= rotation[i][j] * (rest[v][j] - from[j]);
+      squared += difference * difference;
+    }
+    largest = std::max(largest, squared);
+  }
+  return std::sqrt(largest);
+}
+
+}  // namespace meshorder

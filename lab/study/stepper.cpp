@@ -1,0 +1,154 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/study/stepper.hpp"
+
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
+#include "io/npy.hpp"
+#include "lab/scenario/followers.hpp"
+#include "lab/scenario/motion_file.hpp"
+#include "lab/scenario/motion_record.hpp"
+#include "lab/scenario/simulation.hpp"
+#include "lab/scenario/vertex_choice.hpp"
+#include "payoff/processors.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+using nlohmann::json;
+
+/// The identity where no file is given.
+Permutation order_of(const std::string& path, Index count, const std::string& what) {
+  return path.empty() ? Permutation::identity(count) : read_permutation(path, count, what);
+}
+
+Simulation set_up(const StepperTask& task) {
+  Scenario scenario = find_scenario(task.scenario);
+  Mesh mesh = read_mesh(task.mesh);
+  Reordering order;
+  order.vertices = order_of(task.vertex_order, mesh.vertex_count(), "vertices");
+  order.cells = order_of(task.cell_order, mesh.cells.size(), "cells");
+  return set_up(std::move(scenario), std::move(mesh), task.mesh, std::move(order));
+}
+
+/// The state's places in the mesh's own order.
+std::vector<Point> in_own_order(const MotionState& state, const Permutation& vertices) {
+  std::vector<Point> points(state.positions.size());
+  for (std::size_t v = 0; v < points.size(); ++v) points[v] = state.positions[vertices.old_to_new()[v]];
+  return points;
+}
+
+/// A simulation that takes turns.
+class Stepping {
+ public:
+  explicit Stepping(const StepperTask& task)
+      : simulation_(set_up(task)),
+        followers_(followers(simulation_.mesh, cut_into_simplices(simulation_.mesh))) {
+    ready_.vertices = simulation_.mesh.vertex_count();
+    ready_.tetrahedra = simulation_.tetrahedra;
+    ready_.longest_side = bounding_box(simulation_.mesh.points, simulation_.vertices).longest_side();
+    ready_.setup_seconds = simulation_.setup_seconds;
+    ready_.bytes = static_cast<Offset>(simulation_.body->bytes());
+    ready_.fingerprint =
+        fmt::format("{:016x}{:016x}", simulation_.fingerprint.mesh, simulation_.fingerprint.parameters);
+    ready_.fixed_addresses = has_fixed_addresses();
+    const MotionState start = simulation_.body->state();
+    const Stopwatch warming_up;
+    simulation_.body->step();
+    ready_.step_seconds = warming_up.seconds();
+    simulation_.body->set_state(start);
+  }
+
+  [[nodiscard]] const StepperReady& ready() const noexcept { return ready_; }
+
+  StepperTimes take(const StepperTurn& turn) {
+    if (!turn.frames.empty() && !frames_) {
+      frames_.emplace(turn.frames, simulation_.mesh.vertex_count());
+      add_frame();
+    }
+    StepperTimes times;
+    for (Index i = 0; i < turn.steps; ++i) {
+      const Stopwatch stopwatch;
+      const StepReport report = simulation_.body->step();
+      times.step_seconds.push_back(std::round(1e7 * stopwatch.seconds()) / 1e7);
+      ++step_;
+      add(report, times);
+      for (const std::string& warning : report.warnings) {
+        if (add_warning(warning, step_, warnings_))
+          times.warnings.push_back(fmt::format("step {}: {}", step_, warning));
+      }
+      if (frames_ && step_ % turn.frame_every == 0) add_frame();
+    }
+    if (frames_ && turn.last) frames_->commit();
+    return times;
+  }
+
+ private:
+  static void add(const StepReport& report, StepperTimes& times) {
+    times.seconds += report.seconds;
+    times.cg_iterations += report.cg_iterations;
+    times.admm_iterations += report.admm_iterations;
+    times.contact_iterations += report.contact_iterations;
+  }
+
+  void add_frame() {
+    MotionState state = simulation_.body->state();
+    carry(followers_, simulation_.mesh.points, state);
+    frames_->add(in_own_order(state, simulation_.order.vertices));
+  }
+
+  Simulation simulation_;
+  std::vector<Follower> followers_;
+  StepperReady ready_;
+  Index step_ = 0;
+  std::vector<WarningRecord> warnings_;
+  std::optional<MotionFile> frames_;
+};
+
+}  // namespace
+
+void serve_steps(std::istream& questions, std::ostream& answers) {
+  const auto answer = [&](const json& message) { answers << message.dump() << std::endl; };
+  try {
+    std::optional<Stepping> stepping;
+    for (std::string line; std::getline(questions, line);) {
+      const json question = json::parse(line);
+      if (stepping) {
+        answer(to_json(stepping->take(stepper_turn(question))));
+        continue;
+      }
+      const StepperTask task = stepper_task(question);
+      if (!task.processors.empty() && !bind_to(task.processors))
+        throw Error("processors", "the threads cannot be bound to them", "leave them free: --no-pin");
+      stepping.emplace(task);
+      answer(to_json(stepping->ready()));
+    }
+  } catch (const std::bad_alloc&) {
+    answer({{"error", "out of memory"}});
+  } catch (const std::exception& error) {
+    answer({{"error", error.what()}});
+  }
+}
+
+Stepper::Stepper(const std::filesystem::path& program, int threads, const StepperTask& task)
+    : name_(task.scenario), process_(program, {"serve-steps", "--threads", std::to_string(threads)}, true) {
+  ready_ = stepper_ready(ask(to_json(task)));
+}
+
+StepperTimes Stepper::take(const StepperTurn& turn) { return stepper_times(ask(to_json(turn))); }
+
+json Stepper::ask(const json& question) {
+  process_.send(question.dump());
+  json answer = json::parse(process_.receive());
+  if (answer.contains("error"))
+    throw Error(name_ + ", in a process of its own", answer["error"], "this run is not kept");
+  return answer;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,50 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/study/study_plan.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+
+namespace meshorder {
+
+std::vector<StudyOrdering> paper_orderings() {
+  return {{"original", "Original", "original", "original"},
+          {"fiedler", "Fiedler", "fiedler", "original"},
+          {"vf-fiedler", "VF Fiedler", "fiedler", "fiedler"},
+          {"scrambled", "Scrambled", "scrambled", "original"},
+          {"vf-scrambled", "VF scrambled", "scrambled", "scrambled"}};
+}
+
+StudyOrdering study_ordering(std::string_view name) {
+  for (const StudyOrdering& ordering : paper_orderings()) {
+    if (ordering.name == name) return ordering;
+  }
+  const auto slash = name.find('/');
+  const std::string vertices(name.substr(0, slash));
+  const std::string elements(slash == std::string_view::npos ? "" : name.substr(slash + 1));
+  const auto known = [](const auto& methods, const std::string& method) {
+    return std::any_of(methods.begin(), methods.end(), [&](const auto& m) { return m.name == method; });
+  };
+  if (!known(vertex_methods(), vertices) || !known(element_methods(), elements)) {
+    std::string names;
+    for (const StudyOrdering& ordering : paper_orderings()) names += ordering.name + ", ";
+    throw InvalidArgument("unknown ordering '" + std::string(name) + "'; known are " + names +
+                          "and VERTICES/ELEMENTS, see meshorder methods");
+  }
+  return {vertices + "-" + elements, vertices + "/" + elements, vertices, elements};
+}
+
+std::vector<std::string_view> study_sizes() { return {"paper", "300k", "2m"}; }
+
+std::string mesh_of_size(std::string_view size, const std::string& mesh) {
+  if (size == "paper") return mesh;
+  if (size == "300k") return "armadillo-300k";
+  if (size == "2m") return "grid-122";
+  throw InvalidArgument("unknown size '" + std::string(size) + "'; known are paper, 300k and 2m");
+}
+
+bool can_be_had(std::string_view size, const Scenario& scenario) {
+  return size != "2m" || scenario.is_implicit();
+}
+
+}  // namespace meshorder

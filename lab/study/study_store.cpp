@@ -1,0 +1,154 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/study/study_store.hpp"
+
+#include "base/error.hpp"
+#include "io/format.hpp"
+#include "io/npy.hpp"
+#include "lab/study/results_json.hpp"
+#include "lab/study/statistics.hpp"
+#include "lab/study/timestamp.hpp"
+#include "lab/support/machine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+namespace meshorder {
+namespace {
+namespace fs = std::filesystem;
+
+void make_folders(const StudyFolder& folder) {
+  std::error_code code;
+  fs::create_directories(folder.data(), code);
+  if (code)
+    throw Error(folder.root().string(), "cannot be made: " + code.message(), "name a folder for the results");
+}
+
+/// What an interrupted study left unfinished.
+void remove_unfinished(const StudyFolder& folder) {
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.data())) {
+    if (entry.path().filename().string().front() == '.') fs::remove(entry.path(), code);
+  }
+}
+
+/// Where a scenario stands in the paper; others behind.
+std::ptrdiff_t place_of(const ScenarioRecord& record) {
+  const auto known = built_in_scenarios();
+  const auto found = std::find_if(known.begin(), known.end(),
+                                  [&](const BuiltInScenario& b) { return b.name == record.name; });
+  return found - known.begin();
+}
+
+}  // namespace
+
+StudyStore::StudyStore(const StudyPlan& plan, const StudyFolder& folder) : folder_(folder) {
+  make_folders(folder);
+  remove_unfinished(folder);
+  MachineRecord machine = describe_machine();
+  std::error_code code;
+  if (fs::exists(folder.results(), code)) {
+    resume(plan, machine);
+  } else {
+    begin(plan, std::move(machine));
+  }
+}
+
+void StudyStore::begin(const StudyPlan& plan, MachineRecord machine) {
+  results_.began = timestamp_now();
+  results_.size = plan.size;
+  results_.runs = plan.runs;
+  results_.threads = plan.threads;
+  results_.reference = plan.reference;
+  results_.orderings = plan.orderings;
+  results_.machine = std::move(machine);
+}
+
+void StudyStore::resume(const StudyPlan& plan, const MachineRecord& machine) {
+  results_ = read_results(folder_.results());
+  const auto same = [&](bool is_same, const std::string& what) {
+    if (!is_same)
+      throw Error(folder_.results().string(), "is of a study with " + what,
+                  "give a new folder, or the same options as before");
+  };
+  const MachineRecord& before = results_.machine;
+  same(before.processor == machine.processor, "another processor: " + before.processor);
+  same(before.program == machine.program && before.compiler == machine.compiler &&
+           before.flags == machine.flags,
+       "another build of meshorder");
+  same(results_.size == plan.size, "meshes of size " + results_.size);
+  same(results_.threads == plan.threads, fmt::format("{} threads", results_.threads));
+  same(results_.reference == plan.reference, "another reference: " + results_.reference);
+  same(std::equal(results_.orderings.begin(), results_.orderings.end(), plan.orderings.begin(),
+                  plan.orderings.end(), [](const auto& a, const auto& b) { return a.name == b.name; }),
+       "other orderings");
+  results_.runs = std::max(results_.runs, plan.runs);
+  summarise(results_);
+  save();
+}
+
+bool StudyStore::has_mesh(std::string_view name) const {
+  return std::any_of(results_.meshes.begin(), results_.meshes.end(),
+                     [&](const MeshRecord& mesh) { return mesh.name == name; });
+}
+
+const ScenarioRecord* StudyStore::find(std::string_view scenario) const {
+  const auto found = std::find_if(results_.scenarios.begin(), results_.scenarios.end(),
+                                  [&](const ScenarioRecord& record) { return record.name == scenario; });
+  return found == results_.scenarios.end() ? nullptr : &*found;
+}
+
+int StudyStore::runs_done(std::string_view scenario) const {
+  const ScenarioRecord* const record = find(scenario);
+  return record == nullptr ? 0 : static_cast<int>(record->orders.front().runs.size());
+}
+
+ScenarioRecord StudyStore::new_record(const Scenario& scenario) const {
+  ScenarioRecord record;
+  record.name = scenario.name;
+  record.title = scenario.title;
+  record.method = scenario.is_implicit() ? "backward-euler" : "admm";
+  record.material = scenario.is_implicit() ? name_in(kMaterialModels, scenario.model)
+                                           : name_in(kLocalModels, scenario.projective().model);
+  for (const StudyOrdering& ordering : results_.orderings)
+    record.orders.emplace_back().ordering = ordering.name;
+  return record;
+}
+
+void StudyStore::keep(const Mesh& mesh, OrderedMesh studied) {
+  const std::string& name = studied.record.name;
+  for (std::size_t i = 0; i < studied.orders.size(); ++i) {
+    const std::string& ordering = studied.record.orders[i].ordering;
+    write_npy(studied.orders[i].vertices.old_to_new(), folder_.vertex_order(name, ordering));
+    write_npy(studied.orders[i].cells.old_to_new(), folder_.cell_order(name, ordering));
+  }
+  Mesh bare;
+  bare.points = mesh.points;
+  bare.cells = mesh.cells;
+  write_mesh(bare, folder_.mesh(name));
+  studied.record.file = fs::relative(folder_.mesh(name), folder_.root()).string();
+  results_.meshes.push_back(std::move(studied.record));
+  save();
+}
+
+void StudyStore::begin(ScenarioRecord record) {
+  results_.scenarios.push_back(std::move(record));
+  std::stable_sort(
+      results_.scenarios.begin(), results_.scenarios.end(),
+      [](const ScenarioRecord& a, const ScenarioRecord& b) { return place_of(a) < place_of(b); });
+}
+
+void StudyStore::keep(std::string_view scenario, const std::vector<RunRecord>& runs) {
+  for (ScenarioRecord& record : results_.scenarios) {
+    if (record.name != scenario) continue;
+    for (std::size_t i = 0; i < runs.size(); ++i) record.orders[i].runs.push_back(runs[i]);
+  }
+  summarise(results_);
+  save();
+}
+
+void StudyStore::save() const { write_results(results_, folder_.results()); }
+
+}  // namespace meshorder

@@ -1,0 +1,162 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/support/json_value.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace meshorder {
+namespace {
+
+/// What the parser says, without its own numbers and place.
+std::string reason(std::string what) {
+  for (const std::string_view mark : {"syntax error ", "] "}) {
+    const std::size_t found = what.find(mark);
+    if (found == std::string::npos) continue;
+    what.erase(0, found + mark.size());
+    break;
+  }
+  return what;
+}
+
+/// Throws where an object has a key twice, of which the parser would keep the last.
+class UniqueKeys {
+ public:
+  explicit UniqueKeys(std::string file) : file_(std::move(file)) {}
+
+  bool operator()(int /*depth*/, nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
+    using Event = nlohmann::json::parse_event_t;
+    if (event == Event::object_start) keys_.emplace_back();
+    if (event == Event::object_end) keys_.pop_back();
+    if (event == Event::key && !keys_.back().insert(parsed.get<std::string>()).second)
+      throw Error(file_, "an object has the key '" + parsed.get<std::string>() + "' twice",
+                  "keep one of them");
+    return true;
+  }
+
+ private:
+  std::string file_;
+  std::vector<std::set<std::string>> keys_;
+};
+
+std::string joined(std::span<const std::string_view> words) {
+  std::string result;
+  for (const std::string_view word : words) result += (result.empty() ? "" : ", ") + std::string(word);
+  return result;
+}
+
+}  // namespace
+
+nlohmann::json parse_json(std::string_view text, const std::string& file, std::string_view guide) {
+  const std::string remedy = std::string(guide) + " has examples";
+  try {
+    return nlohmann::json::parse(text, UniqueKeys(file));
+  } catch (const nlohmann::json::parse_error& error) {
+    const std::string_view before = text.substr(0, std::min(error.byte, text.size()));
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    throw Error(Location{file, line, -1}, "no JSON: " + reason(error.what()), remedy);
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(file, "no JSON: " + reason(error.what()), remedy);
+  }
+}
+
+std::string JsonValue::kind() const {
+  if (value_->is_null()) return "null";
+  if (value_->is_boolean()) return value_->get<bool>() ? "true" : "false";
+  if (value_->is_string()) return "the text '" + value_->get<std::string>() + "'";
+  if (value_->is_number()) return "the number " + value_->dump();
+  return value_->is_array() ? fmt::format("a list of {}", value_->size()) : "an object";
+}
+
+JsonValue JsonValue::at(const nlohmann::json& value, std::string path) const {
+  JsonValue result(value, file_, guide_);
+  result.path_ = std::move(path);
+  return result;
+}
+
+void JsonValue::expect_keys(std::initializer_list<std::string_view> known) const {
+  expect_keys(std::span<const std::string_view>(known.begin(), known.size()));
+}
+
+void JsonValue::expect_keys(std::span<const std::string_view> known) const {
+  if (!value_->is_object()) throw error("is " + kind(), "an object {…} of " + joined(known) + " is needed");
+  for (const auto& [key, value] : value_->items()) {
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      throw error("the key '" + key + "' is unknown", "known are " + joined(known));
+  }
+}
+
+JsonValue JsonValue::operator[](std::string_view key) const {
+  std::optional<JsonValue> found = find(key);
+  if (!found) throw error("'" + std::string(key) + "' is missing", "give it; see " + std::string(guide_));
+  return *std::move(found);
+}
+
+std::optional<JsonValue> JsonValue::find(std::string_view key) const {
+  const auto found = value_->find(key);
+  if (found == value_->end()) return std::nullopt;
+  return at(*found, (path_.empty() ? "" : path_ + ".") + std::string(key));
+}
+
+std::vector<JsonValue> JsonValue::items(std::size_t least, std::size_t most) const {
+  if (!value_->is_array()) throw error("is " + kind(), "a list […] is needed");
+  if (value_->size() < least || value_->size() > most) {
+    const std::string wanted = least == most ? fmt::format("{}", least) : fmt::format("at least {}", least);
+    throw error(fmt::format("has {} entries", value_->size()), "give " + wanted);
+  }
+  std::vector<JsonValue> result;
+  for (const auto& item : *value_) result.push_back(at(item, fmt::format("{}[{}]", path_, result.size())));
+  return result;
+}
+
+std::string JsonValue::any_text() const {
+  if (!value_->is_string()) throw error("is " + kind(), "a text in quotes is needed");
+  return value_->get<std::string>();
+}
+
+std::string JsonValue::text() const {
+  std::string result = any_text();
+  if (result.empty()) throw error("is an empty text", "give one");
+  return result;
+}
+
+double JsonValue::number(const NumberRange& range) const {
+  if (!value_->is_number()) throw error("is " + kind(), "a number is needed");
+  const auto result = value_->get<double>();
+  const bool above = range.least_open ? result > range.least : result >= range.least;
+  const bool below = range.most_open ? result < range.most : result <= range.most;
+  if (!std::isfinite(result) || !above || !below) {
+    std::string wanted;
+    if (range.least > std::numeric_limits<double>::lowest())
+      wanted = fmt::format("{} {}", range.least_open ? "above" : "at least", range.least);
+    if (range.most < std::numeric_limits<double>::max())
+      wanted += fmt::format("{}{} {}", wanted.empty() ? "" : " and ", range.most_open ? "below" : "at most",
+                            range.most);
+    throw error("is " + value_->dump(), "it must be " + (wanted.empty() ? "finite" : wanted));
+  }
+  return result;
+}
+
+std::int64_t JsonValue::whole(std::int64_t least, std::int64_t most) const {
+  const std::string wanted = fmt::format("a whole number from {} to {} is needed", least, most);
+  if (!value_->is_number_integer()) throw error("is " + kind(), wanted);
+  const bool fits =
+      !value_->is_number_unsigned() || std::in_range<std::int64_t>(value_->get<std::uint64_t>());
+  const auto result = value_->get<std::int64_t>();
+  if (!fits || result < least || result > most) throw error("is " + kind(), wanted);
+  return result;
+}
+
+bool JsonValue::truth() const {
+  if (!value_->is_boolean()) throw error("is " + kind(), "true or false is needed");
+  return value_->get<bool>();
+}
+
+Point JsonValue::vector() const {
+  const std::vector<JsonValue> numbers = items(3, 3);
+  return {numbers[0].number(), numbers[1].number(), numbers[2].number()};
+}
+
+}  // namespace meshorder

@@ -1,0 +1,72 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/support/machine.hpp"
+
+#include "base/parallel.hpp"
+#include "kernels/simd_target.hpp"
+#include "payoff/bandwidth.hpp"
+#include "payoff/memory.hpp"
+
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+
+namespace meshorder {
+namespace {
+
+constexpr int kPasses = 8;
+
+/// Several times the last cache, but not so much that a small machine swaps.
+std::size_t buffer_bytes(const MachineRecord& machine) {
+  constexpr std::size_t kLeast = std::size_t{256} << 20;
+  constexpr std::size_t kMost = std::size_t{1} << 30;
+  const auto last = static_cast<std::size_t>(machine.caches.level_bytes.back());
+  return std::min(std::clamp(4 * last, kLeast, kMost), static_cast<std::size_t>(machine.memory_bytes) / 8);
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+}  // namespace
+
+std::string processor_name(std::istream& cpuinfo, const std::string& architecture) {
+  std::map<std::string, std::string> first_values;
+  for (std::string line; std::getline(cpuinfo, line);) {
+    const std::size_t colon = line.find(':');
+    if (colon != std::string::npos)
+      first_values.emplace(trimmed(line.substr(0, colon)), trimmed(line.substr(colon + 1)));
+  }
+  if (!first_values["model name"].empty()) return first_values["model name"];
+  std::string result = architecture + " processor";
+  const std::string maker = first_values["CPU implementer"];
+  const std::string part = first_values["CPU part"];
+  if (!maker.empty() && !part.empty()) result += ", implementer " + maker + ", part " + part;
+  return result;
+}
+
+MachineRecord describe_machine() {
+  MachineRecord machine;
+  utsname system{};
+  uname(&system);
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  machine.processor = processor_name(cpuinfo, system.machine);
+  machine.cores = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+  machine.system = std::string(system.sysname) + " " + system.release + " " + system.machine;
+  machine.caches = caches_of_this_machine();
+  machine.memory_bytes = memory_of_this_machine();
+  const std::size_t bytes = buffer_bytes(machine);
+  machine.read_bandwidth = read_bandwidth(bytes, kPasses);
+  const int threads = thread_count();
+  machine.read_bandwidth_all = threads > 1 ? read_bandwidth(bytes, kPasses, threads) : machine.read_bandwidth;
+  machine.program = MESHORDER_VERSION;
+  machine.compiler = MESHORDER_COMPILER;
+  machine.flags = trimmed(MESHORDER_FLAGS);
+  machine.simd = simd_target();
+  return machine;
+}
+
+}  // namespace meshorder

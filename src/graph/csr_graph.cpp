@@ -1,0 +1,111 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "graph/csr_graph.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace meshorder {
+namespace {
+
+/// Sorts every row, drops loops and repeats, and closes the gaps.
+void tidy_rows(CsrGraph& graph) {
+  Offset kept = 0;
+  Offset begin = 0;
+  for (Index v = 0; v < graph.size(); ++v) {
+    const Offset end = graph.offsets[v + 1];
+    std::sort(graph.neighbours.begin() + begin, graph.neighbours.begin() + end);
+    const Offset row = kept;
+    for (Offset k = begin; k < end; ++k) {
+      const Index u = graph.neighbours[k];
+      if (u != v && (kept == row || graph.neighbours[kept - 1] != u)) graph.neighbours[kept++] = u;
+    }
+    graph.offsets[v + 1] = kept;
+    begin = end;
+  }
+  graph.neighbours.resize(kept);
+}
+
+}  // namespace
+
+CsrGraph graph_from_edges(Index n, std::span<const Edge> edges) {
+  CsrGraph graph;
+  graph.offsets.assign(Offset{n} + 1, 0);
+  for (const Edge& edge : edges) {
+    if (edge.a < 0 || edge.a >= n || edge.b < 0 || edge.b >= n) {
+      throw InvalidArgument("graph: edge " + std::to_string(edge.a) + "–" + std::to_string(edge.b) +
+                            " leaves 0 … " + std::to_string(n - 1));
+    }
+    ++graph.offsets[edge.a + 1];
+    ++graph.offsets[edge.b + 1];
+  }
+  std::partial_sum(graph.offsets.begin(), graph.offsets.end(), graph.offsets.begin());
+  graph.neighbours.resize(graph.offsets.back());
+  std::vector<Offset> next(graph.offsets.begin(), graph.offsets.end() - 1);
+  for (const Edge& edge : edges) {
+    graph.neighbours[next[edge.a]++] = edge.b;
+    graph.neighbours[next[edge.b]++] = edge.a;
+  }
+  tidy_rows(graph);
+  return graph;
+}
+
+CsrGraph renumbered(const CsrGraph& graph, std::span<const Index> old_to_new) {
+  CsrGraph result;
+  result.offsets.assign(graph.offsets.size(), 0);
+  for (Index v = 0; v < graph.size(); ++v) result.offsets[old_to_new[v] + 1] = graph.degree(v);
+  std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
+  result.neighbours.resize(graph.neighbours.size());
+  for (Index v = 0; v < graph.size(); ++v) {
+    const auto row = result.neighbours.begin() + result.offsets[old_to_new[v]];
+    std::transform(graph[v].begin(), graph[v].end(), row, [&](Index u) { return old_to_new[u]; });
+    std::sort(row, row + graph.degree(v));
+  }
+  return result;
+}
+
+CsrGraph induced_subgraph(const CsrGraph& graph, std::span<const Index> vertices) {
+  std::vector<Index> local(graph.size(), -1);
+  for (Index k = 0; k < index_size(vertices); ++k) local[vertices[k]] = k;
+  CsrGraph result;
+  result.offsets.reserve(vertices.size() + 1);
+  for (const Index v : vertices) {
+    const auto row = static_cast<std::ptrdiff_t>(result.neighbours.size());
+    for (const Index u : graph[v]) {
+      if (local[u] >= 0) result.neighbours.push_back(local[u]);
+    }
+    std::sort(result.neighbours.begin() + row, result.neighbours.end());
+    result.offsets.push_back(static_cast<Offset>(result.neighbours.size()));
+  }
+  return result;
+}
+
+void check(const CsrGraph& graph) {
+  if (graph.offsets.empty() || graph.offsets.front() != 0 ||
+      graph.offsets.back() != static_cast<Offset>(graph.neighbours.size()) ||
+      !std::is_sorted(graph.offsets.begin(), graph.offsets.end())) {
+    throw InvalidArgument("graph: offsets do not fit the neighbours");
+  }
+  for (Index v = 0; v < graph.size(); ++v) {
+    Index last = -1;
+    for (const Index u : graph[v]) {
+      if (u <= last || u >= graph.size() || u == v) {
+        throw InvalidArgument("graph: the neighbours of " + std::to_string(v) +
+                              " must rise within the graph and leave out " + std::to_string(v));
+      }
+      last = u;
+    }
+  }
+  for (Index v = 0; v < graph.size(); ++v) {
+    for (const Index u : graph[v]) {
+      if (!std::binary_search(graph[u].begin(), graph[u].end(), v)) {
+        throw InvalidArgument("graph: edge " + std::to_string(v) + "–" + std::to_string(u) +
+                              " stands in one row only");
+      }
+    }
+  }
+}
+
+}  // namespace meshorder

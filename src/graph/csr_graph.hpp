@@ -1,0 +1,47 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// An undirected graph in compressed sparse rows: the neighbours of vertex v are
+/// `neighbours[offsets[v]] … neighbours[offsets[v + 1] − 1]`, rising, without v itself and without repeats.
+/// Every edge stands in the rows of both its ends.
+struct CsrGraph {
+  std::vector<Offset> offsets{0};  ///< n + 1
+  std::vector<Index> neighbours;   ///< twice the number of edges
+
+  [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
+  [[nodiscard]] Offset edge_count() const noexcept { return static_cast<Offset>(neighbours.size() / 2); }
+  [[nodiscard]] Index degree(Index v) const { return static_cast<Index>(offsets[v + 1] - offsets[v]); }
+  [[nodiscard]] std::span<const Index> operator[](Index v) const {
+    return {neighbours.data() + offsets[v], neighbours.data() + offsets[v + 1]};
+  }
+  bool operator==(const CsrGraph&) const = default;
+};
+
+/// An edge given by its two ends.
+struct Edge {
+  Index a;
+  Index b;
+};
+
+/// The graph of 0 … n−1 with the given edges; loops are dropped and repeats merged. Throws InvalidArgument
+/// for an end outside 0 … n−1. O(n + edges · log degree).
+CsrGraph graph_from_edges(Index n, std::span<const Edge> edges);
+
+/// The same graph with vertex v renamed `old_to_new[v]`, a bijection of 0 … n−1. O(n + edges · log degree).
+CsrGraph renumbered(const CsrGraph& graph, std::span<const Index> old_to_new);
+
+/// The subgraph of the listed vertices (each once): vertex k of the result is `vertices[k]`. Edges that leave
+/// the list are dropped. O(n of `graph` + entries of the listed rows · log degree).
+CsrGraph induced_subgraph(const CsrGraph& graph, std::span<const Index> vertices);
+
+/// Throws InvalidArgument unless the graph keeps the promises of its type. O(n + edges · log degree).
+void check(const CsrGraph& graph);
+
+}  // namespace meshorder

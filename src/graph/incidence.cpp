@@ -1,0 +1,155 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "graph/incidence.hpp"
+
+#include "base/parallel.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace meshorder {
+
+Incidence transposed(const Incidence& incidence) {
+  Incidence result;
+  result.vertex_count = incidence.size();
+  result.offsets.assign(Offset{incidence.vertex_count} + 1, 0);
+  for (const Index v : incidence.vertices) ++result.offsets[v + 1];
+  std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
+  result.vertices.resize(incidence.vertices.size());
+  std::vector<Offset> next(result.offsets.begin(), result.offsets.end() - 1);
+  for (Index e = 0; e < incidence.size(); ++e) {
+    for (const Index v : incidence[e]) result.vertices[next[v]++] = e;
+  }
+  return result;
+}
+
+namespace {
+
+constexpr Index kChunk = 16384;  // vertices whose rows a thread finds together
+
+/// The size that all elements share, 0 where they differ.
+Offset common_size(const Incidence& elements) {
+  if (elements.size() == 0) return 0;
+  const Offset size = elements.offsets[1];
+  for (Index e = 0; e < elements.size(); ++e) {
+    if (elements.offsets[e + 1] != (e + 1) * size) return 0;
+  }
+  return size;
+}
+
+/// Rows of a graph one after another, entries within a row in any order.
+struct Rows {
+  std::vector<Index> neighbours;
+  Offset end = 0;  ///< of what is used
+};
+
+/// Where the elements stand among all vertices of elements. `Size` is the size of every element, which
+/// spares reading the offsets, or 0 where they differ.
+template <int Size>
+struct Elements {
+  const Incidence& incidence;
+
+  [[nodiscard]] const Index* begin(Index e) const {
+    return incidence.vertices.data() + (Size > 0 ? Offset{e} * Size : incidence.offsets[e]);
+  }
+  [[nodiscard]] Offset size(Index e) const {
+    return Size > 0 ? Size : incidence.offsets[e + 1] - incidence.offsets[e];
+  }
+};
+
+/// Appends the neighbours of v. `seen_by[u] == v` marks those that the row already has.
+template <int Size>
+void append_row(Elements<Size> elements, const Incidence& at_vertex, Index v, std::vector<Index>& seen_by,
+                Rows& rows) {
+  constexpr Offset kAhead = 12;  // elements lie anywhere in memory: ask for them early
+  Offset most = 0;
+  for (const Index e : at_vertex[v]) most += elements.size(e);
+  if (rows.end + most >= static_cast<Offset>(rows.neighbours.size())) {
+    rows.neighbours.resize(3 * rows.neighbours.size() / 2 + static_cast<std::size_t>(most) + 1);
+  }
+  const auto last_incidence = static_cast<Offset>(at_vertex.vertices.size()) - 1;
+  Index* const found = rows.neighbours.data();
+  Index* const seen = seen_by.data();
+  Offset end = rows.end;
+  seen[v] = v;
+  for (Offset k = at_vertex.offsets[v]; k < at_vertex.offsets[v + 1]; ++k) {
+    __builtin_prefetch(elements.begin(at_vertex.vertices[std::min(k + kAhead, last_incidence)]));
+    const Index e = at_vertex.vertices[k];
+    const Index* const vertices = elements.begin(e);
+    for (Offset i = 0; i < elements.size(e); ++i) {
+      // without a branch: whether a neighbour is new is a coin's toss
+      const Index u = vertices[i];
+      found[end] = u;
+      end += seen[u] == v ? 0 : 1;
+      seen[u] = v;
+    }
+  }
+  rows.end = end;
+}
+
+/// All rows, kChunk in each part, and the degrees: `degrees[v + 1]` is that of v.
+template <int Size>
+std::vector<Rows> find_rows(Elements<Size> elements, std::vector<Offset>& degrees) {
+  const Incidence at_vertex = transposed(elements.incidence);
+  const Index n = elements.incidence.vertex_count;
+  std::vector<Rows> parts(chunk_count(n, kChunk));
+  tbb::enumerable_thread_specific<std::vector<Index>> marks([n] { return std::vector<Index>(n, -1); });
+  for_each_chunk(n, kChunk, [&](Index chunk, Index begin, Index end) {
+    Rows& rows = parts[chunk];
+    // enough for meshes of triangles and tetrahedra
+    rows.neighbours.resize(at_vertex.offsets[end] - at_vertex.offsets[begin]);
+    std::vector<Index>& seen_by = marks.local();
+    for (Index v = begin; v < end; ++v) {
+      const Offset row = rows.end;
+      append_row(elements, at_vertex, v, seen_by, rows);
+      degrees[v + 1] = rows.end - row;
+    }
+  });
+  return parts;
+}
+
+/// The same for elements whose size is known only now.
+std::vector<Rows> find_rows(const Incidence& elements, std::vector<Offset>& degrees) {
+  switch (common_size(elements)) {
+    case 3:
+      return find_rows(Elements<3>{elements}, degrees);
+    case 4:
+      return find_rows(Elements<4>{elements}, degrees);
+    default:
+      return find_rows(Elements<0>{elements}, degrees);
+  }
+}
+
+/// The symmetric graph with these rows, kChunk in each of `chunks`, each sorted: reading the rows in turn and
+/// the entries the other way sorts them all in one pass.
+CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::span<const Rows> chunks) {
+  CsrGraph graph;
+  graph.neighbours.resize(offsets.back());
+  std::vector<Offset> next(offsets.begin(), offsets.end() - 1);
+  graph.offsets = std::move(offsets);
+  for (Index v = 0, chunk = 0; v < graph.size(); ++chunk) {
+    const Rows& rows = chunks[chunk];
+    Offset k = 0;
+    for (const Index chunk_end = std::min(graph.size() - v, kChunk) + v; v < chunk_end; ++v) {
+      for (const Offset end = k + graph.degree(v); k < end; ++k) {
+        graph.neighbours[next[rows.neighbours[k]]++] = v;
+      }
+    }
+  }
+  return graph;
+}
+
+}  // namespace
+
+CsrGraph vertex_graph(const Incidence& elements) {
+  std::vector<Offset> offsets(Offset{elements.vertex_count} + 1, 0);
+  const std::vector<Rows> rows = find_rows(elements, offsets);
+  std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+  return with_sorted_rows(std::move(offsets), rows);
+}
+
+CsrGraph dual_graph_by_vertex(const Incidence& elements) { return vertex_graph(transposed(elements)); }
+
+}  // namespace meshorder

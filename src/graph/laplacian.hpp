@@ -1,0 +1,70 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/parallel.hpp"
+#include "graph/csr_graph.hpp"
+
+#include <array>
+#include <vector>
+
+namespace meshorder {
+
+/// `M` real vectors of n entries stored together: entry v of all of them side by side, so that one pass over
+/// a graph serves all.
+template <int M>
+using VectorBlock = std::vector<std::array<double, M>>;
+
+/// The Laplacian L = D − A of a weighted graph as an operator. Row v has −weight at each neighbour and on the
+/// diagonal the sum of its weights, so that constants are in the null space.
+struct Laplacian {
+  std::vector<Offset> offsets{0};  ///< n + 1
+  std::vector<Index> neighbours;
+  std::vector<double> weights;   ///< one for each neighbour; empty when all are 1
+  std::vector<double> diagonal;  ///< n
+
+  [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
+  [[nodiscard]] bool is_weighted() const noexcept { return !weights.empty(); }
+  [[nodiscard]] double weight(Offset k) const { return is_weighted() ? weights[k] : 1.0; }
+
+  /// Σ weight · x over the neighbours of v: minus the off-diagonal part of row v of L x.
+  template <int M>
+  [[nodiscard]] std::array<double, M> neighbour_sum(Index v, const VectorBlock<M>& x) const {
+    std::array<double, M> sum{};
+    const std::array<double, M>* const entries = x.data();
+    const Index* const end = neighbours.data() + offsets[v + 1];
+    const Index* u = neighbours.data() + offsets[v];
+    if (is_weighted()) {
+      for (const double* weight = weights.data() + offsets[v]; u < end; ++u, ++weight) {
+        for (int m = 0; m < M; ++m) sum[m] += *weight * entries[*u][m];
+      }
+    } else {
+      for (; u < end; ++u) {
+        for (int m = 0; m < M; ++m) sum[m] += entries[*u][m];
+      }
+    }
+    return sum;
+  }
+
+  /// y = L x, from differences along edges: where x hardly varies, as eigenvectors along heavy edges, nothing
+  /// cancels. O(n + edges), on all threads.
+  template <int M>
+  void apply(const VectorBlock<M>& x, VectorBlock<M>& y) const {
+    constexpr Index kRows = 4096;
+    for_each_chunk(size(), kRows, [&](Index, Index begin, Index end) {
+      for (Index v = begin; v < end; ++v) {
+        std::array<double, M> sum{};
+        const std::array<double, M> here = x[v];
+        for (Offset k = offsets[v]; k < offsets[v + 1]; ++k) {
+          const std::array<double, M>& there = x[neighbours[k]];
+          for (int m = 0; m < M; ++m) sum[m] += weight(k) * (here[m] - there[m]);
+        }
+        y[v] = sum;
+      }
+    });
+  }
+};
+
+/// The Laplacian of a graph whose edges all have weight 1. O(n + edges).
+Laplacian combinatorial_laplacian(const CsrGraph& graph);
+
+}  // namespace meshorder

@@ -1,0 +1,20 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/format.hpp"
+
+namespace meshorder {
+
+// Each is defined in the file of its name; format.cpp lists them.
+Format tetgen_format();  ///< .node with .ele, .face and .edge beside it
+Format vega_format();    ///< .veg
+Format gmsh_format();    ///< .msh 2.2 and 4.1, text and binary
+Format medit_format();   ///< .mesh
+Format vtu_format();     ///< VTK's XML unstructured grid
+Format vtk_format();     ///< VTK's legacy files
+Format off_format();
+Format obj_format();
+Format ply_format();
+Format stl_format();
+
+}  // namespace meshorder

@@ -1,0 +1,330 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/error.hpp"
+#include "io/gmsh/gmsh.hpp"
+#include "io/unsupported.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+// Data of nodes and elements: the sections $NodeData, $ElementData and $ElementNodeData.
+
+namespace meshorder::gmsh {
+namespace {
+
+constexpr std::int64_t kMostComponents = 1 << 20;
+constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers up to here are exact as double
+
+/// `"name"` without its quotes.
+std::string unquoted(std::string_view text) {
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
+  return std::string(text);
+}
+
+/// Reads what stands before the values.
+View read_view_head(Source& source, std::string_view section) {
+  View view;
+  view.section = section;
+  view.on = section == "NodeData" ? Attached::vertices : Attached::cells;
+  const Index strings = source.checked(source.text_integer("the number of string tags"), "string tags", 1);
+  (void)source.in.raw_line();
+  for (Index i = 0; i < strings; ++i) view.strings.emplace_back(source.in.rest_of_line());
+  view.array = view.strings.empty() ? std::string(section) : unquoted(view.strings.front());
+  view.reals.resize(source.checked(source.text_integer("the number of real tags"), "real tags", 2));
+  for (double& value : view.reals) value = source.text_real("a real tag");
+  view.integers.resize(source.checked(source.text_integer("the number of integer tags"), "integer tags", 2));
+  if (view.integers.size() < 3) {
+    source.fail("$" + std::string(section) + " has " + std::to_string(view.integers.size()) + " integer tags",
+                "step, components and number of entries are needed");
+  }
+  for (std::size_t i = 0; i < view.integers.size(); ++i) {
+    const std::int64_t value = source.text_integer("an integer tag");
+    if (i == 1 && (value < 1 || value > kMostComponents)) {
+      source.fail("the number of components is " + std::to_string(value), "1, 3 and 9 are usual");
+    }
+    if (!std::in_range<std::int32_t>(value)) {
+      source.fail("an integer tag is " + std::to_string(value), "that is too large");
+    }
+    view.integers[i] = static_cast<std::int32_t>(value);
+  }
+  source.begin_binary();
+  return view;
+}
+
+/// How many nodes the entry of cell c has according to a rule.
+int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
+  const int vertices = mesh.cells.vertex_count(c);
+  switch (per) {
+    case PerElement::one:
+      return 1;
+    case PerElement::each_node:
+      return vertices;
+    case PerElement::each_corner:
+      return corners(mesh.cells.shapes[c], vertices);
+    case PerElement::fixed:
+      return fixed;
+  }
+  return fixed;
+}
+
+/// Entries of a section as they stand in the file: rows with `nodes` × components values each.
+struct Entries {
+  std::vector<Index> rows;
+  std::vector<int> nodes;  ///< empty: one for all
+  std::vector<double> values;
+};
+
+/// Finds the rule that tells the numbers of nodes from the cells.
+void find_rule(const Reading& reading, const Entries& entries, View& view) {
+  if (entries.nodes.empty()) return;
+  for (const PerElement per : {PerElement::each_node, PerElement::each_corner, PerElement::fixed}) {
+    bool fits = true;
+    for (std::size_t i = 0; i < entries.rows.size() && fits; ++i) {
+      fits = entries.nodes[i] == nodes_of_entry(reading.mesh, entries.rows[i], per, entries.nodes.front());
+    }
+    if (!fits) continue;
+    view.per = per;
+    view.nodes = entries.nodes.front();
+    return;
+  }
+  reading.source.fail("$ElementNodeData has values for other numbers of nodes than its elements have",
+                      "give values for all nodes or for the corners");
+}
+
+Entries read_entries(Reading& reading, const View& view) {
+  Source& source = reading.source;
+  const bool per_node = view.section == "ElementNodeData";
+  const std::int64_t components = view.integers[1];
+  const std::int64_t fields = 1 + (per_node ? 1 : 0);
+  const Index count = source.checked(view.integers[2], "the number of entries",
+                                     source.binary ? 4 * fields + (per_node ? 0 : 8 * components)
+                                                   : 2 * (fields + (per_node ? 0 : components)));
+  const Places& places = view.on == Attached::vertices ? reading.nodes : reading.elements;
+  Entries entries;
+  entries.rows.reserve(count);
+  for (Index i = 0; i < count; ++i) {
+    const std::int64_t id = source.binary ? source.int32("the number of an entry") : source.size("an entry");
+    const Index place = places.find(id);
+    if (place < 0) {
+      source.fail("$" + view.section + " names " + (view.on == Attached::vertices ? "node " : "element ") +
+                      std::to_string(id) + ", which the file does not have",
+                  "give values for what exists");
+    }
+    entries.rows.push_back(place);
+    std::int64_t nodes = 1;
+    if (per_node) {
+      nodes = source.checked(source.int32("the number of nodes of an entry"),
+                             "the number of nodes of an entry", (source.binary ? 8 : 2) * components);
+      entries.nodes.push_back(static_cast<int>(nodes));
+    }
+    for (std::int64_t k = 0; k < nodes * components; ++k) entries.values.push_back(source.real("a value"));
+  }
+  return entries;
+}
+
+/// The entries as rows of even width, filled with 0.
+std::vector<double> even_rows(const Reading& reading, Entries& entries, const View& view, Index& width) {
+  const int components = view.integers[1];
+  int most = 1;
+  int least = entries.nodes.empty() ? 1 : entries.nodes.front();
+  for (const int nodes : entries.nodes) {
+    most = std::max(most, nodes);
+    least = std::min(least, nodes);
+  }
+  width = most * components;
+  if (entries.nodes.empty() || most == least) return std::move(entries.values);
+  const std::size_t total = entries.rows.size() * static_cast<std::size_t>(width);
+  if (total > 1024 * entries.values.size() + 4096) {
+    reading.source.fail("an entry of $" + view.section + " has " + std::to_string(most) + " nodes",
+                        "the file may be damaged");
+  }
+  std::vector<double> values(total, 0.0);
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < entries.rows.size(); ++i) {
+    const std::size_t length = static_cast<std::size_t>(entries.nodes[i]) * components;
+    std::copy_n(entries.values.begin() + static_cast<Offset>(from), length,
+                values.begin() + static_cast<Offset>(i * width));
+    from += length;
+  }
+  return values;
+}
+
+/// Rows that cover everything go into the mesh's order.
+void sort_full(DataArray& array, std::vector<double>& values, Index count) {
+  if (index_size(array.rows) != count) return;
+  std::vector<double> sorted(values.size());
+  const auto width = static_cast<std::size_t>(array.components);
+  for (std::size_t i = 0; i < array.rows.size(); ++i) {
+    std::copy_n(values.begin() + static_cast<Offset>(i * width), width,
+                sorted.begin() + static_cast<Offset>(array.rows[i] * width));
+  }
+  values = std::move(sorted);
+  array.rows.clear();
+}
+
+/// Labels that were converted to real numbers become integers again, for those who look for labels.
+void restore_labels(DataArray& array) {
+  const auto* values = std::get_if<std::vector<double>>(&array.values);
+  if (array.name != kLabel || array.components != 1 || !values) return;
+  double greatest = 0;
+  for (const double value : *values) {
+    if (std::trunc(value) != value) return;  // not a number, too
+    greatest = std::max(greatest, std::abs(value));
+  }
+  if (greatest < 2147483648.0) {
+    array.values = Values(std::vector<std::int32_t>(values->begin(), values->end()));
+  } else if (greatest <= kExact) {
+    array.values = Values(std::vector<std::int64_t>(values->begin(), values->end()));
+  }
+}
+
+/// Whether another array has the same name.
+bool is_taken(const Mesh& mesh, const DataArray& array) {
+  return std::any_of(mesh.data.begin(), mesh.data.end(), [&](const DataArray& other) {
+    return &other != &array && other.on == array.on && other.name == array.name;
+  });
+}
+
+/// The smallest number of components that Gmsh knows and that holds so many; 0 where there is none.
+Index gmsh_components(Index components) {
+  for (const Index known : {1, 3, 9}) {
+    if (components <= known) return known;
+  }
+  return 0;
+}
+
+template <class Number>
+double as_double(const Number& value) {
+  if constexpr (std::is_arithmetic_v<Number>) {
+    return static_cast<double>(value);
+  } else {
+    return 0.0;  // strings never get a view
+  }
+}
+
+}  // namespace
+
+void check_distinct(const Source& source, std::vector<Index> rows, std::string_view section) {
+  std::sort(rows.begin(), rows.end());
+  if (std::adjacent_find(rows.begin(), rows.end()) != rows.end()) {
+    source.fail("$" + std::string(section) + " gives the same node or element twice",
+                "each can have one value");
+  }
+}
+
+void read_view(Reading& reading, std::string_view section) {
+  View view = read_view_head(reading.source, section);
+  const bool on_vertices = view.on == Attached::vertices;
+  Entries entries = read_entries(reading, view);
+  check_distinct(reading.source, entries.rows, section);
+  find_rule(reading, entries, view);
+  DataArray array;
+  array.name = view.array;
+  array.on = view.on;
+  std::vector<double> values = even_rows(reading, entries, view, array.components);
+  reading.source.expect_end(section);
+  reading.residue.sections.push_back({SectionKind::view, view.section, "", reading.residue.views.size()});
+  reading.view_arrays.push_back(reading.mesh.data.size());
+  if (entries.rows.empty()) {  // an array without rows would mean all
+    view.array.clear();
+  } else {
+    array.rows = std::move(entries.rows);
+    sort_full(array, values, on_vertices ? reading.mesh.vertex_count() : reading.mesh.cell_count());
+    array.values = std::move(values);
+    reading.mesh.data.push_back(std::move(array));
+  }
+  reading.residue.views.push_back(std::move(view));
+}
+
+void name_views(Reading& reading) {
+  auto& views = reading.residue.views;
+  std::map<std::pair<std::string, std::string>, int> steps;
+  for (const View& view : views) ++steps[{view.section, view.array}];
+  const std::map<std::pair<std::string, std::string>, int> counts = std::move(steps);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    View& view = views[i];
+    if (view.array.empty()) continue;
+    DataArray& array = reading.mesh.data[reading.view_arrays[i]];
+    std::string name = view.array;
+    if (counts.at({view.section, view.array}) > 1) name += " step " + std::to_string(view.integers[0]);
+    array.name = name;
+    for (int k = 2; is_taken(reading.mesh, array); ++k) array.name = name + " (" + std::to_string(k) + ")";
+    restore_labels(array);
+    view.array = array.name;
+  }
+}
+
+bool add_view(GmshResidue& layout, const DataArray& array, Notes& notes) {
+  const Index components = gmsh_components(array.components);
+  if (std::holds_alternative<std::vector<std::string>>(array.values) || components == 0) {
+    note_array_left_out(array, "Gmsh", notes);
+    return false;
+  }
+  if (components != array.components) {
+    notes.push_back("the array '" + array.name +
+                    "' is filled up with zeros: Gmsh's data have 1, 3 or 9 components");
+  }
+  const bool inexact = std::visit(
+      [](const auto& values) {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        if constexpr (std::is_integral_v<T> && sizeof(T) == 8) {
+          return std::any_of(values.begin(), values.end(),
+                             [](T value) { return std::abs(static_cast<double>(value)) > kExact; });
+        }
+        return false;
+      },
+      array.values);
+  if (inexact) {
+    notes.push_back("the array '" + array.name + "' loses digits: Gmsh's data are real numbers of 53 bits");
+  }
+  View view;
+  view.section = array.on == Attached::vertices ? "NodeData" : "ElementData";
+  view.on = array.on;
+  view.array = array.name;
+  view.strings = {'"' + array.name + '"'};
+  std::replace(view.strings[0].begin() + 1, view.strings[0].end() - 1, '"', '\'');
+  std::replace(view.strings[0].begin(), view.strings[0].end(), '\n', ' ');
+  view.reals = {0.0};
+  view.integers = {0, components, 0};
+  layout.sections.push_back({SectionKind::view, view.section, "", layout.views.size()});
+  layout.views.push_back(std::move(view));
+  return true;
+}
+
+void write_view(Sink& sink, const Output& output, const View& view) {
+  const Mesh& mesh = output.mesh;
+  const DataArray* array = find_array(mesh, view.array, view.on);
+  const Index rows = array ? row_count(*array) : 0;
+  const Index components = view.integers[1];
+
+  sink.out.print("{}\n", view.strings.size());
+  for (const std::string& line : view.strings) sink.out.print("{}\n", line);
+  sink.out.print("{}\n", view.reals.size());
+  for (const double value : view.reals) sink.out.print("{}\n", value);
+  sink.out.print("{}\n", view.integers.size());
+  for (std::size_t i = 0; i < view.integers.size(); ++i) sink.text_line(i == 2 ? rows : view.integers[i]);
+  if (!array) return;
+
+  std::visit(
+      [&](const auto& values) {
+        const auto width = static_cast<std::size_t>(array->components);
+        for (Index row = 0; row < rows; ++row) {
+          const Index place = array->covers_all() ? row : array->rows[row];
+          const std::int64_t id =
+              view.on == Attached::vertices ? output.node_id(place) : output.cell_id(place);
+          sink.int32(id);
+          int nodes = 1;
+          if (view.per != PerElement::one) {
+            nodes = nodes_of_entry(mesh, place, view.per, view.nodes);
+            sink.int32(nodes);
+          }
+          for (std::size_t k = 0; k < static_cast<std::size_t>(nodes) * components; ++k) {
+            sink.real(k < width ? as_double(values[row * width + k]) : 0.0);
+          }
+          sink.end_line();
+        }
+      },
+      array->values);
+}
+
+}  // namespace meshorder::gmsh

@@ -1,0 +1,556 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/gmsh/gmsh.hpp"
+
+#include "base/error.hpp"
+#include "io/all_formats.hpp"
+#include "io/unsupported.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+// Specification: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format. This file goes through the
+// sections; gmsh_v2.cpp and gmsh_v4.cpp read and write nodes and elements, gmsh_data.cpp and gmsh_links.cpp
+// what is attached to them, gmsh_groups.cpp makes groups and entities.
+
+namespace meshorder {
+namespace gmsh {
+namespace {
+
+// ---- reading
+
+const std::set<std::string_view> kDataSections{"NodeData", "ElementData", "ElementNodeData"};
+
+/// Sections without numbers of nodes or elements, which therefore stay as they are. $Parametrizations has
+/// triangles over nodes of its own.
+const std::set<std::string_view> kVerbatimSections{"Comments", "InterpolationScheme", "Parametrizations"};
+
+/// Goes to the line $EndName and returns all before it.
+std::string_view body(Source& source, std::string_view section) {
+  const std::string_view all = source.in.all();
+  const std::string end = "$End" + std::string(section);
+  const auto begin = static_cast<std::size_t>(source.in.byte());
+  for (std::size_t at = all.find(end, begin); at != std::string_view::npos; at = all.find(end, at + 1)) {
+    const char before = at == 0 ? '\n' : all[at - 1];
+    const std::size_t behind = at + end.size();
+    const bool ends =
+        behind == all.size() || std::string_view(" \t\r\n").find(all[behind]) != std::string_view::npos;
+    if ((before != '\n' && before != '\r') || !ends) continue;
+    source.in.seek(static_cast<std::int64_t>(at));
+    return all.substr(begin, at - begin);
+  }
+  source.fail("$" + std::string(section) + " has no " + end, "the file may be cut short");
+}
+
+/// Fails unless the version is one that we read.
+void check_version(const Source& source, double version) {
+  if ((version >= 2 && version < 2.3) || (version > 4.05 && version < 4.15)) return;
+  source.fail(fmt::format("version {} of Gmsh's format is not supported", version),
+              "2.2 and 4.1 are; convert the file with gmsh -save -format msh41");
+}
+
+void read_format(Reading& reading) {
+  Source& source = reading.source;
+  const std::int64_t begin = source.in.byte();
+  reading.residue.version = source.in.real("the version");
+  check_version(source, reading.residue.version);
+  const auto file_type = source.in.integer<std::int32_t>("the file type");
+  const auto data_size = source.in.integer<std::int32_t>("the data size");
+  if (file_type != 0 && file_type != 1) {
+    source.fail("the file type is " + std::to_string(file_type), "0 (text) and 1 (binary) are possible");
+  }
+  if (file_type == 1 && data_size != 8) {
+    source.fail("the data size is " + std::to_string(data_size),
+                "only binary files with 8 are read; convert the file with gmsh -save");
+  }
+  reading.residue.header = source.in.all().substr(begin, source.in.byte() - begin);
+  (void)source.in.raw_line();
+  source.binary = reading.residue.binary = file_type == 1;
+  if (source.binary) {
+    const auto one = source.int32("the number 1 that shows the byte order");
+    if (one != 1 && one != 0x01000000) {
+      source.fail("the number that shows the byte order is " + std::to_string(one), "it must be 1");
+    }
+    const auto other = std::endian::native == std::endian::little ? std::endian::big : std::endian::little;
+    source.order = reading.residue.order = one == 1 ? std::endian::native : other;
+  }
+  source.expect_end("MeshFormat");
+  reading.residue.sections.push_back({SectionKind::format, "MeshFormat", "", 0});
+}
+
+/// Names of physical groups stay as they stand, and are understood where that is possible: version 2.0 does
+/// not tell dimensions.
+void read_names(Reading& reading) {
+  Source& source = reading.source;
+  if (reading.residue.version > 2.05) {
+    const std::int64_t begin = source.in.byte();
+    const Index count = source.checked(source.text_integer("the number of names"), "the number of names", 4);
+    for (Index i = 0; i < count; ++i) {
+      PhysicalName name{};
+      name.dimension = static_cast<std::int32_t>(source.text_integer("the dimension of a physical group"));
+      name.tag = static_cast<std::int32_t>(source.text_integer("the tag of a physical group"));
+      const std::string_view text = source.in.rest_of_line();
+      if (text.size() < 2 || text.front() != '"' || text.back() != '"') {
+        source.fail("the name of the physical group " + std::to_string(name.tag) + " has no quotes",
+                    "write it as \"name\"");
+      }
+      name.name = text.substr(1, text.size() - 2);
+      reading.residue.names.push_back(std::move(name));
+    }
+    source.expect_end("PhysicalNames");
+    source.in.seek(begin);
+  }
+  const std::string_view text = body(source, "PhysicalNames");
+  source.expect_end("PhysicalNames");
+  reading.residue.sections.push_back({SectionKind::verbatim, "PhysicalNames", std::string(text), 0});
+}
+
+/// Entities stay as they stand; what is taken from them are their physical groups.
+void read_entities(Reading& reading, const std::string& section) {
+  Source& source = reading.source;
+  const std::int64_t begin = source.in.byte();
+  read_entities_4(reading, section == "PartitionedEntities");
+  (void)source.in.at_end();
+  const std::string_view text = source.in.all().substr(begin, source.in.byte() - begin);
+  source.expect_end(section);
+  reading.residue.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
+}
+
+/// Whether a word of the text is a number.
+bool has_numbers(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n,;:";
+  for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos;) {
+    const std::string_view word = text.substr(at, text.find_first_of(kBlanks, at) - at);
+    double value = 0;
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (code != std::errc::invalid_argument && end == word.data() + word.size()) return true;
+    at = text.find_first_not_of(kBlanks, at + word.size());
+  }
+  return false;
+}
+
+bool is_text(std::string_view text) {
+  return std::none_of(text.begin(), text.end(),
+                      [](char c) { return (c >= '\0' && c < '\t') || (c > '\r' && c < ' ') || c == '\x7f'; });
+}
+
+/// A section that nobody here knows stays as it is if its words can hardly number nodes or elements.
+void read_verbatim(Reading& reading, const std::string& section) {
+  Source& source = reading.source;
+  const std::int64_t line = source.in.line();
+  const std::string_view text = body(source, section);
+  if (!kVerbatimSections.contains(section) && (has_numbers(text) || !is_text(text))) {
+    source.fail(fmt::format("the section ${} from line {} on holds numbers of unknown meaning, which another "
+                            "order could falsify",
+                            section, line - 1),
+                "take it out of the file, or keep it as $Comments");
+  }
+  source.expect_end(section);
+  reading.residue.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
+}
+
+void read_nodes(Reading& reading) {
+  reading.residue.is_version_2() ? read_nodes_2(reading, "Nodes") : read_nodes_4(reading);
+}
+
+void read_parametric_nodes(Reading& reading) {
+  if (!reading.residue.is_version_2()) {
+    reading.source.fail("a section $ParametricNodes", "in version 4.1 it is called $Nodes");
+  }
+  read_nodes_2(reading, "ParametricNodes");
+}
+
+void read_elements(Reading& reading) {
+  reading.residue.is_version_2() ? read_elements_2(reading) : read_elements_4(reading);
+}
+
+void read_periodic_or_ghosts(Reading& reading, SectionKind kind) {
+  kind == SectionKind::periodic ? read_periodic(reading) : read_ghosts(reading);
+}
+
+bool has_section(const GmshResidue& residue, SectionKind kind) {
+  return std::any_of(residue.sections.begin(), residue.sections.end(),
+                     [kind](const Section& section) { return section.kind == kind; });
+}
+
+/// The kinds of section that a file has once.
+struct Single {
+  std::string_view name;
+  SectionKind kind;
+  SectionKind after;
+  void (*read)(Reading&);
+};
+
+constexpr std::array kSingles{
+    Single{"Nodes", SectionKind::nodes, SectionKind::format, read_nodes},
+    Single{"ParametricNodes", SectionKind::nodes, SectionKind::format, read_parametric_nodes},
+    Single{"Elements", SectionKind::elements, SectionKind::nodes, read_elements},
+    Single{"Periodic", SectionKind::periodic, SectionKind::nodes,
+           [](Reading& reading) { read_periodic_or_ghosts(reading, SectionKind::periodic); }},
+    Single{"GhostElements", SectionKind::ghosts, SectionKind::elements,
+           [](Reading& reading) { read_periodic_or_ghosts(reading, SectionKind::ghosts); }},
+};
+
+void read_single(Reading& reading, const Single& single) {
+  const std::string name(single.name);
+  if (has_section(reading.residue, single.kind)) {
+    reading.source.fail("a second section $" + name, "a file has one of them");
+  }
+  if (!has_section(reading.residue, single.after)) {
+    reading.source.fail("$" + name + " stands before what it names", "put $Nodes and $Elements first");
+  }
+  single.read(reading);
+  reading.residue.sections.push_back({single.kind, name, "", 0});
+}
+
+/// Reads the section of that name, whose first line was read.
+void read_section(Reading& reading, const std::string& name) {
+  Source& source = reading.source;
+  const bool has_format = has_section(reading.residue, SectionKind::format);
+  if (name == "NOD") {
+    source.fail("version 1 of Gmsh's format is not supported",
+                "convert the file with gmsh -save -format msh41");
+  }
+  if (name == "MeshFormat") {
+    if (has_format) source.fail("a second section $MeshFormat", "a file has one");
+    return read_format(reading);
+  }
+  if (!has_format && name != "Comments") {
+    source.fail("$" + name + " stands before $MeshFormat", "a Gmsh file begins with $MeshFormat");
+  }
+  if (name == "PhysicalNames") return read_names(reading);
+  const bool entities = name == "Entities" || name == "PartitionedEntities";
+  if (entities && !reading.residue.is_version_2()) return read_entities(reading, name);
+  if (kDataSections.contains(name)) {
+    if (!has_section(reading.residue, SectionKind::elements)) {
+      source.fail("$" + name + " stands before $Elements", "put $Nodes and $Elements first");
+    }
+    return read_view(reading, name);
+  }
+  for (const Single& single : kSingles) {
+    if (single.name == name) return read_single(reading, single);
+  }
+  read_verbatim(reading, name);
+}
+
+/// What can only be done when all sections are known.
+void finish(Reading& reading) {
+  Mesh& mesh = reading.mesh;
+  for (const auto& [kind, name] : {std::pair{SectionKind::format, "$MeshFormat"},
+                                   {SectionKind::nodes, "$Nodes"},
+                                   {SectionKind::elements, "$Elements"}}) {
+    if (!has_section(reading.residue, kind)) {
+      reading.source.fail("the file has no section " + std::string(name), "it may be cut short");
+    }
+  }
+  if (!reading.residue.is_version_2()) {
+    std::vector<std::int32_t> labels = labels_of_entities(mesh, reading.residue);
+    if (!labels.empty())
+      mesh.data.push_back({std::string(kLabel), Attached::cells, 1, std::move(labels), {}, {}});
+  }
+  name_views(reading);
+  std::vector<Set> sets = physical_sets(mesh, reading.residue);
+  std::move(sets.begin(), sets.end(), std::back_inserter(mesh.sets));
+  mesh.residue = std::make_shared<GmshResidue>(std::move(reading.residue));
+}
+
+Mesh read(const std::filesystem::path& path, Notes& notes) {
+  Reading reading{Source(path), {}, {}, {}, {}, {}, notes};
+  Scanner& in = reading.source.in;
+  while (!in.at_end()) {
+    const std::string word(in.peek_word());
+    if (word.front() != '$' || word.size() < 2 || word.substr(0, 4) == "$End") {
+      reading.source.fail("something stands outside the sections",
+                          "a section begins with a line such as $Nodes");
+    }
+    (void)in.raw_line();
+    read_section(reading, word.substr(1));
+  }
+  finish(reading);
+  return std::move(reading.mesh);
+}
+
+// ---- writing
+
+/// The type of every cell; throws Error for a cell that Gmsh does not have.
+std::vector<const ElementType*> types_of_cells(const Mesh& mesh, const std::filesystem::path& path) {
+  refuse_other_cells(
+      mesh, path, "Gmsh", [](Shape shape, int nodes) { return find_type(shape, nodes) != nullptr; },
+      "write another format, or split such cells into triangles and quads");
+  const std::vector<std::int32_t> numbers = integers_of(mesh, kCellType, Attached::cells);
+  std::vector<const ElementType*> types;
+  types.reserve(mesh.cells.shapes.size());
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const Shape shape = mesh.cells.shapes[c];
+    const int nodes = mesh.cells.vertex_count(c);
+    const ElementType* last = types.empty() ? nullptr : types.back();
+    if (!last || last->shape != shape || last->nodes != nodes || !numbers.empty()) {
+      last = find_type(shape, nodes);
+      const ElementType* kept = numbers.empty() ? nullptr : find_type(numbers[c]);
+      if (kept && kept->shape == shape && kept->nodes == nodes) last = kept;
+    }
+    types.push_back(last);
+  }
+  return types;
+}
+
+/// Ids of another format, where Gmsh can take them: positive, and different for all cells.
+std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::string_view what,
+                                     Notes& notes) {
+  std::vector<std::int64_t> sorted = ids;
+  std::sort(sorted.begin(), sorted.end());
+  const bool usable = sorted.empty() || (sorted.front() > 0 &&
+                                         std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end());
+  if (usable) return ids;
+  notes.push_back(fmt::format("the {} are numbered anew: Gmsh's numbers are positive and different", what));
+  return {};
+}
+
+bool is_parametric_2(const GmshResidue& layout) {
+  return layout.is_version_2() &&
+         std::any_of(layout.sections.begin(), layout.sections.end(),
+                     [](const Section& section) { return section.name == "ParametricNodes"; });
+}
+
+/// Whether the arrays that a file of this layout needs are still there.
+bool still_fits(const Mesh& mesh, const GmshResidue& layout) {
+  const DataArray* entities = find_array(mesh, kNodeEntity, Attached::vertices);
+  const bool has_node_entities =
+      entities && entities->components == 2 && !integers_of(mesh, kNodeEntity, Attached::vertices).empty();
+  if (layout.is_version_2()) return !is_parametric_2(layout) || (has_node_entities && parameters_of(mesh));
+  return has_node_entities &&
+         integers_of(mesh, kCellEntity, Attached::cells).size() == mesh.cells.shapes.size();
+}
+
+/// Fills in what the mesh has kept from its Gmsh file.
+void take_layout(const GmshResidue& layout, Output& output) {
+  const Mesh& mesh = output.mesh;
+  const auto place = [&](std::string_view name, Attached on) {
+    output.placed.push_back(find_array(mesh, name, on));
+  };
+  output.node_ids = mesh.vertex_ids;
+  output.cell_ids = mesh.cell_ids;
+  place(kCellEntity, Attached::cells);
+  if (layout.is_version_2()) {
+    if (!integers_of(mesh, kLabel, Attached::cells).empty()) place(kLabel, Attached::cells);
+    place(kCellPartitions, Attached::cells);
+    place(kCellTagCount, Attached::cells);
+    if (!is_parametric_2(layout)) return;
+    output.node_entities = integers_of(mesh, kNodeEntity, Attached::vertices);
+    place(kNodeEntity, Attached::vertices);
+    place(kNodeParameters, Attached::vertices);
+    return;
+  }
+  output.cell_tags = integers_of(mesh, kCellEntity, Attached::cells);
+  output.cell_dimensions = integers_of(mesh, kCellDimension, Attached::cells);
+  if (output.cell_dimensions.empty()) {
+    for (const Shape shape : mesh.cells.shapes) output.cell_dimensions.push_back(dimension(shape));
+  }
+  output.node_entities = integers_of(mesh, kNodeEntity, Attached::vertices);
+  place(kCellDimension, Attached::cells);
+  place(kNodeEntity, Attached::vertices);
+  place(kNodeParameters, Attached::vertices);
+  if (has_section(layout, SectionKind::ghosts)) place(kCellGhosts, Attached::cells);
+  // labels that were changed after reading are no longer those of the entities: they become data
+  const std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Attached::cells);
+  if (!labels.empty() && labels == labels_of_entities(mesh, layout)) place(kLabel, Attached::cells);
+}
+
+/// Notes the sets that the layout does not hold as they are.
+void note_sets(const Mesh& mesh, const GmshResidue& layout, Notes& notes) {
+  const std::vector<Set> physical = physical_sets(mesh, layout);
+  std::set<std::string> periodic;
+  for (const PeriodicLink& link : layout.periodic) periodic.insert({link.nodes, link.master_nodes});
+  for (const Set& set : mesh.sets) {
+    if (set.on == Attached::vertices && periodic.contains(set.name)) continue;
+    std::vector<Index> members = set.members;
+    std::sort(members.begin(), members.end());
+    const bool held = std::any_of(physical.begin(), physical.end(), [&](const Set& other) {
+      return set.on == other.on && set.name == other.name && members == other.members;
+    });
+    if (!held) note_set_left_out(set, "Gmsh", notes);
+  }
+}
+
+/// Gives a data section to every array that is neither placed elsewhere nor in a section already.
+void add_views(GmshResidue& layout, const Output& output, Notes& notes) {
+  const auto has_view = [&](const DataArray& array) {
+    return std::any_of(layout.views.begin(), layout.views.end(),
+                       [&](const View& view) { return view.on == array.on && view.array == array.name; });
+  };
+  for (const DataArray& array : output.mesh.data) {
+    const auto& placed = output.placed;
+    if (has_view(array) || std::find(placed.begin(), placed.end(), &array) != placed.end()) continue;
+    add_view(layout, array, notes);
+  }
+}
+
+void write_format(Sink& sink, const GmshResidue& layout) {
+  sink.out.print("{}\n", layout.header);
+  if (!layout.binary) return;
+  sink.int32(1);
+  sink.out.write("\n");
+}
+
+void write_section(Sink& sink, const Output& output, const Section& section) {
+  const bool version_2 = output.layout.is_version_2();
+  sink.out.print("${}\n", section.name);
+  switch (section.kind) {
+    case SectionKind::format:
+      write_format(sink, output.layout);
+      break;
+    case SectionKind::verbatim:
+      break;
+    case SectionKind::nodes:
+      version_2 ? write_nodes_2(sink, output) : write_nodes_4(sink, output);
+      break;
+    case SectionKind::elements:
+      version_2 ? write_elements_2(sink, output) : write_elements_4(sink, output);
+      break;
+    case SectionKind::periodic:
+      write_periodic(sink, output);
+      break;
+    case SectionKind::ghosts:
+      write_ghosts(sink, output);
+      break;
+    case SectionKind::view:
+      write_view(sink, output, output.layout.views[section.view]);
+      break;
+  }
+  const bool has_binary = section.kind != SectionKind::format && section.kind != SectionKind::verbatim &&
+                          !(version_2 && section.kind == SectionKind::periodic);
+  if (sink.binary && has_binary) sink.out.write("\n");
+  sink.out.write(section.text);
+  sink.out.print("$End{}\n", section.name);
+}
+
+void write(const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
+  const auto* own = dynamic_cast<const GmshResidue*>(mesh.residue.get());
+  const bool keeps_layout = own && still_fits(mesh, *own);
+  GmshResidue layout = keeps_layout ? *own : GmshResidue{};
+  Output output{mesh, layout, types_of_cells(mesh, path), {}, {}, {}, {}, {}, {}};
+  output.placed.push_back(find_array(mesh, kCellType, Attached::cells));
+  if (keeps_layout) {
+    take_layout(layout, output);
+    note_sets(mesh, layout, notes);
+  } else {
+    note_residue_left_out(mesh, "Gmsh", notes);
+    output.node_ids = usable_ids(mesh.vertex_ids, "vertices", notes);
+    output.cell_ids = usable_ids(mesh.cell_ids, "cells", notes);
+    classify(layout, output, notes);
+  }
+  add_views(layout, output, notes);
+
+  OutputFile out(path);
+  Sink sink{out, path.string(), layout.binary, layout.order};
+  for (const Section& section : layout.sections) write_section(sink, output, section);
+  out.commit();
+}
+
+}  // namespace
+
+std::vector<std::string> GmshResidue::contents() const {
+  std::vector<std::string> result;
+  const auto add = [&](std::string what) {
+    if (std::find(result.begin(), result.end(), what) == result.end()) result.push_back(std::move(what));
+  };
+  for (const Section& section : sections) {
+    if (section.kind != SectionKind::verbatim) continue;
+    // the groups themselves are labels and sets
+    const bool has_names = section.name == "PhysicalNames";
+    add(has_names ? "the numbers of named physical groups" : "the section $" + section.name);
+  }
+  if (!periodic.empty()) add(fmt::format("which of {} periodic entities copies which", periodic.size()));
+  const bool timed = std::any_of(views.begin(), views.end(), [](const View& view) {
+    return (!view.reals.empty() && view.reals[0] != 0) || view.integers[0] != 0;
+  });
+  if (timed) add("the times and steps of data");
+  return result;
+}
+
+const ElementType& known_type(const Source& source, std::int64_t number) {
+  const ElementType* type = number < 0 || number > 1000 ? nullptr : find_type(static_cast<int>(number));
+  if (!type) {
+    source.fail("the element type " + std::to_string(number) + " is not supported",
+                "types with a fixed number of nodes are, such as 4 for tetrahedra");
+  }
+  return *type;
+}
+
+void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes) {
+  const std::span<const int> order = vtk_order(type.shape, type.nodes);
+  if (order.empty()) return mesh.cells.push_back(type.shape, nodes);
+  std::array<Index, 27> sorted{};  // only cells of second order are sorted
+  for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = nodes[order[k]];
+  mesh.cells.push_back(type.shape, std::span(sorted).first(order.size()));
+}
+
+void write_cell_nodes(Sink& sink, const Output& output, Index c, bool wide) {
+  const auto nodes = output.mesh.cells[c];
+  const std::span<const int> order = vtk_order(output.types[c]->shape, output.types[c]->nodes);
+  std::array<Index, 27> sorted{};
+  for (std::size_t k = 0; k < order.size(); ++k) sorted[order[k]] = nodes[k];
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const std::int64_t id = output.node_id(order.empty() ? nodes[k] : sorted[k]);
+    wide ? sink.size(id) : sink.int32(id);
+  }
+}
+
+Index place_of_node(const Reading& reading, std::int64_t id, std::string_view owner, std::int64_t owner_id) {
+  const Index place = reading.nodes.find(id);
+  if (place < 0) {
+    reading.source.fail(fmt::format("{} {} names node {}, which $Nodes does not have", owner, owner_id, id),
+                        "name nodes that exist");
+  }
+  return place;
+}
+
+void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers) {
+  const ElementType* last = nullptr;
+  for (const std::int32_t number : numbers) {
+    if (last && last->number == number) continue;
+    last = find_type(number);
+    if (find_type(last->shape, last->nodes) == last) continue;
+    mesh.data.push_back({std::string(kCellType), Attached::cells, 1, numbers, {}, {}});
+    return;
+  }
+}
+
+void keep_parameters(Mesh& mesh, std::vector<double> values) {
+  values.resize(4 * mesh.points.size(), 0.0);
+  mesh.data.push_back(
+      {std::string(kNodeParameters), Attached::vertices, 4, std::move(values), {}, {"given", "u", "v", "w"}});
+}
+
+const std::vector<double>* parameters_of(const Mesh& mesh) {
+  const DataArray* array = find_array(mesh, kNodeParameters, Attached::vertices);
+  if (!array || array->components != 4 || !array->covers_all()) return nullptr;
+  return std::get_if<std::vector<double>>(&array->values);
+}
+
+std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Attached on) {
+  const DataArray* array = find_array(mesh, name, on);
+  if (!array || !array->covers_all()) return {};
+  return std::visit(
+      [](const auto& values) {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        std::vector<std::int32_t> result;
+        if constexpr (std::is_integral_v<T>) {
+          result.reserve(values.size());
+          for (const T value : values) {
+            if (!std::in_range<std::int32_t>(value)) return std::vector<std::int32_t>{};
+            result.push_back(static_cast<std::int32_t>(value));
+          }
+        }
+        return result;
+      },
+      array->values);
+}
+
+}  // namespace gmsh
+
+Format gmsh_format() { return {"Gmsh", {".msh"}, false, gmsh::read, gmsh::write}; }
+
+}  // namespace meshorder

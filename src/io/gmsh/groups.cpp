@@ -1,0 +1,317 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/gmsh/gmsh.hpp"
+#include "io/unsupported.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+
+// Physical groups and the entities that belong to them: found in a file's entities, or made for a mesh that
+// comes from elsewhere.
+
+namespace meshorder::gmsh {
+namespace {
+
+/// Dimension and tag of each cell's entity, as the mesh's arrays tell.
+struct CellEntities {
+  explicit CellEntities(const Mesh& mesh)
+      : tags(integers_of(mesh, kCellEntity, Attached::cells)),
+        dimensions(integers_of(mesh, kCellDimension, Attached::cells)),
+        cells(mesh.cells) {}
+
+  [[nodiscard]] Entity operator()(Index c) const {
+    return {dimensions.empty() ? dimension(cells.shapes[c]) : dimensions[c], tags.empty() ? 0 : tags[c]};
+  }
+
+  std::vector<std::int32_t> tags;
+  std::vector<std::int32_t> dimensions;
+  const Cells& cells;
+};
+
+/// Looks things up by entity; neighbours in a mesh mostly share theirs.
+template <class Value>
+class EntityTable {
+ public:
+  explicit EntityTable(const std::map<Entity, Value>& table) : table_(table) {}
+  const Value* find(Entity entity) {
+    if (!known_ || entity != last_) {
+      const auto found = table_.find(entity);
+      value_ = found == table_.end() ? nullptr : &found->second;
+      last_ = entity;
+      known_ = true;
+    }
+    return value_;
+  }
+
+ private:
+  const std::map<Entity, Value>& table_;
+  bool known_ = false;
+  Entity last_{};
+  const Value* value_ = nullptr;
+};
+
+// ---- for a mesh from elsewhere: a group of cells with the same label and in the same sets is an entity
+
+struct Box {
+  Point least{};
+  Point greatest{};
+  bool empty = true;
+
+  void add(const Point& point) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      least[k] = empty ? point[k] : std::min(least[k], point[k]);
+      greatest[k] = empty ? point[k] : std::max(greatest[k], point[k]);
+    }
+    empty = false;
+  }
+};
+
+struct Group {
+  std::int32_t dimension;
+  std::int32_t wanted;  ///< the tag that it would like to have
+  std::vector<std::int32_t> physicals;
+  std::int32_t tag = 0;
+  Box box;
+};
+
+struct Groups {
+  std::vector<Group> groups;
+  std::vector<Index> of_cell;
+};
+
+/// Labels that can be numbers of physical groups; empty, with a note, where they cannot.
+std::vector<std::int32_t> labels_for_groups(const Mesh& mesh, Notes& notes) {
+  const DataArray* array = find_array(mesh, kLabel, Attached::cells);
+  std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Attached::cells);
+  const bool usable =
+      array && array->components == 1 && !labels.empty() &&
+      std::all_of(labels.begin(), labels.end(), [](std::int32_t label) { return label >= 0; });
+  if (usable) return labels;
+  if (array) {
+    notes.push_back(
+        "the labels of cells are written as data: Gmsh's physical groups are positive numbers for all cells");
+  }
+  return {};
+}
+
+Groups groups_by_label(const Mesh& mesh, const std::vector<std::int32_t>& labels,
+                       const std::vector<std::int32_t>& entities) {
+  Groups result;
+  result.of_cell.resize(mesh.cells.shapes.size());
+  std::map<std::array<std::int32_t, 3>, Index> known;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const std::int32_t label = labels.empty() ? 0 : labels[c];
+    const std::int32_t entity = entities.empty() ? 0 : entities[c];
+    const std::int32_t dim = dimension(mesh.cells.shapes[c]);
+    const auto [found, is_new] = known.try_emplace({dim, label, entity}, index_size(result.groups));
+    if (is_new) {
+      Group group{dim, entity > 0 ? entity : std::max(label, 1), {}, 0, {}};
+      if (label > 0) group.physicals.push_back(label);
+      result.groups.push_back(std::move(group));
+    }
+    result.of_cell[c] = found->second;
+  }
+  return result;
+}
+
+/// Splits every group into the cells that are in the set and the others.
+void split_by_set(Groups& groups, const Set& set, std::int32_t physical) {
+  std::map<Index, Index> inside;  // group, the part of it that is in the set
+  std::set<Index> parts;
+  for (const Index c : set.members) {
+    const Index group = groups.of_cell[c];
+    if (parts.contains(group)) continue;  // the set names this cell twice
+    const auto [found, is_new] = inside.try_emplace(group, index_size(groups.groups));
+    if (is_new) {
+      Group part = groups.groups[group];
+      part.physicals.push_back(physical);
+      groups.groups.push_back(std::move(part));
+      parts.insert(found->second);
+    }
+    groups.of_cell[c] = found->second;
+  }
+}
+
+/// Gives every group that has cells its tag: the wanted one to the first that comes, new ones to the others.
+void assign_tags(const Mesh& mesh, Groups& groups) {
+  std::array<std::int32_t, 4> last{};
+  for (const Group& group : groups.groups) {
+    last[group.dimension] = std::max(last[group.dimension], group.wanted);
+  }
+  std::set<Entity> taken;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    Group& group = groups.groups[groups.of_cell[c]];
+    if (group.tag == 0) {
+      group.tag = group.wanted;
+      while (!taken.insert({group.dimension, group.tag}).second) {
+        std::int32_t& next = last[group.dimension];
+        next = next == std::numeric_limits<std::int32_t>::max() ? 1 : next + 1;
+        group.tag = next;
+      }
+    }
+    for (const Index v : mesh.cells[c]) group.box.add(mesh.points[v]);
+  }
+}
+
+/// Entities of the nodes: those that they had in Gmsh, or the first entity of the highest dimension.
+std::vector<std::int32_t> entities_of_nodes(const Mesh& mesh, std::map<Entity, Group>& entities,
+                                            Output& output) {
+  std::vector<std::int32_t> kept = integers_of(mesh, kNodeEntity, Attached::vertices);
+  const DataArray* array = find_array(mesh, kNodeEntity, Attached::vertices);
+  bool usable = !kept.empty() && array->components == 2;
+  for (std::size_t i = 0; usable && i < kept.size(); i += 2) {
+    usable = kept[i] >= 0 && kept[i] <= 3 && kept[i + 1] > 0;
+  }
+  if (usable) {
+    output.placed.push_back(array);
+    if (parameters_of(mesh)) output.placed.push_back(find_array(mesh, kNodeParameters, Attached::vertices));
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+      const Entity entity{kept[2 * static_cast<std::size_t>(v)], kept[2 * static_cast<std::size_t>(v) + 1]};
+      const auto [found, is_new] =
+          entities.try_emplace(entity, Group{entity.first, 0, {}, entity.second, {}});
+      found->second.box.add(mesh.points[v]);
+    }
+    return kept;
+  }
+  const Entity last = entities.empty() ? Entity{0, 1} : entities.rbegin()->first;
+  const auto first_of_dimension = entities.lower_bound({last.first, 0});
+  const Entity all = entities.empty() ? last : first_of_dimension->first;
+  std::vector<std::int32_t> result;
+  result.reserve(2 * mesh.points.size());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) result.insert(result.end(), {all.first, all.second});
+  return result;
+}
+
+std::string entities_text(const std::map<Entity, Group>& entities) {
+  std::array<int, 4> counts{};
+  for (const auto& [entity, group] : entities) ++counts[entity.first];
+  std::string text = fmt::format("{} {} {} {}\n", counts[0], counts[1], counts[2], counts[3]);
+  for (const auto& [entity, group] : entities) {
+    text += fmt::format("{} {}", entity.second, fmt::join(group.box.least, " "));
+    if (entity.first > 0) text += fmt::format(" {}", fmt::join(group.box.greatest, " "));
+    text += fmt::format(" {}", group.physicals.size());
+    for (const std::int32_t physical : group.physicals) text += fmt::format(" {}", physical);
+    text += entity.first > 0 ? " 0\n" : "\n";
+  }
+  return text;
+}
+
+std::string names_text(const std::vector<PhysicalName>& names) {
+  std::string text = fmt::format("{}\n", names.size());
+  for (const PhysicalName& name : names) {
+    std::string shown = name.name;
+    std::replace(shown.begin(), shown.end(), '"', '\'');
+    std::replace(shown.begin(), shown.end(), '\n', ' ');
+    text += fmt::format("{} {} \"{}\"\n", name.dimension, name.tag, shown);
+  }
+  return text;
+}
+
+/// Turns the sets of cells into named physical groups.
+std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups, std::int64_t next, Notes& notes) {
+  std::vector<PhysicalName> names;
+  for (const Set& set : mesh.sets) {
+    if (set.on == Attached::vertices || set.members.empty() ||
+        next > std::numeric_limits<std::int32_t>::max()) {
+      note_set_left_out(set, "Gmsh", notes);
+      continue;
+    }
+    const auto physical = static_cast<std::int32_t>(next++);
+    split_by_set(groups, set, physical);
+    std::set<std::int32_t> dimensions;
+    for (const Index c : set.members) dimensions.insert(dimension(mesh.cells.shapes[c]));
+    for (const std::int32_t dim : dimensions) names.push_back({dim, physical, set.name});
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<Set> physical_sets(const Mesh& mesh, const GmshResidue& residue) {
+  // a name may stand for groups of several dimensions: they are one set
+  std::vector<Set> sets;
+  std::map<std::string, Index> set_of_name;
+  std::map<Entity, std::vector<Index>> sets_of_group;
+  for (const PhysicalName& name : residue.names) {
+    const auto [found, is_new] = set_of_name.try_emplace(name.name, index_size(sets));
+    if (is_new) sets.push_back({name.name, Attached::cells, {}});
+    sets_of_group[{name.dimension, name.tag}].push_back(found->second);
+  }
+
+  // in version 2 the cells have groups, in version 4 their entities
+  std::map<Entity, std::vector<Index>> sets_of_entity;
+  for (const auto& [entity, physicals] : residue.physicals) {
+    std::set<Index> of_entity;
+    for (const std::int32_t physical : physicals) {
+      const auto found = sets_of_group.find({entity.first, physical});
+      if (found != sets_of_group.end()) of_entity.insert(found->second.begin(), found->second.end());
+    }
+    if (!of_entity.empty()) sets_of_entity[entity].assign(of_entity.begin(), of_entity.end());
+  }
+  const CellEntities entities(mesh);
+  const std::vector<std::int32_t> labels =
+      residue.is_version_2() ? integers_of(mesh, kLabel, Attached::cells) : std::vector<std::int32_t>{};
+  EntityTable<std::vector<Index>> table(residue.is_version_2() ? sets_of_group : sets_of_entity);
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    Entity entity = entities(c);
+    if (residue.is_version_2()) entity = {dimension(mesh.cells.shapes[c]), labels.empty() ? 0 : labels[c]};
+    const std::vector<Index>* of_cell = table.find(entity);
+    if (!of_cell) continue;
+    for (const Index s : *of_cell) sets[s].members.push_back(c);
+  }
+  std::erase_if(sets, [](const Set& set) { return set.members.empty(); });
+  return sets;
+}
+
+std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshResidue& residue) {
+  const CellEntities entities(mesh);
+  EntityTable<std::vector<std::int32_t>> table(residue.physicals);
+  std::vector<std::int32_t> labels(mesh.cells.shapes.size(), 0);
+  bool any = false;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const std::vector<std::int32_t>* physicals = table.find(entities(c));
+    if (!physicals) continue;
+    labels[c] = physicals->front();
+    any = true;
+  }
+  if (!any) labels.clear();
+  return labels;
+}
+
+void classify(GmshResidue& layout, Output& output, Notes& notes) {
+  const Mesh& mesh = output.mesh;
+  const std::vector<std::int32_t> labels = labels_for_groups(mesh, notes);
+  if (!labels.empty()) output.placed.push_back(find_array(mesh, kLabel, Attached::cells));
+  const std::vector<std::int32_t> kept = integers_of(mesh, kCellEntity, Attached::cells);
+  if (!kept.empty()) output.placed.push_back(find_array(mesh, kCellEntity, Attached::cells));
+
+  // groups of cells become entities
+  Groups groups = groups_by_label(mesh, labels, kept);
+  const std::int64_t highest = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end());
+  layout.names = groups_by_sets(mesh, groups, highest + 1, notes);
+  assign_tags(mesh, groups);
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const Group& group = groups.groups[groups.of_cell[c]];
+    output.cell_dimensions.push_back(group.dimension);
+    output.cell_tags.push_back(group.tag);
+  }
+  std::map<Entity, Group> entities;
+  for (const Group& group : groups.groups) {
+    if (group.tag > 0) entities.try_emplace({group.dimension, group.tag}, group);
+  }
+  output.node_entities = entities_of_nodes(mesh, entities, output);
+
+  layout.sections.push_back({SectionKind::format, "MeshFormat", "", 0});
+  if (!layout.names.empty()) {
+    layout.sections.push_back({SectionKind::verbatim, "PhysicalNames", names_text(layout.names), 0});
+  }
+  layout.sections.push_back({SectionKind::verbatim, "Entities", entities_text(entities), 0});
+  layout.sections.push_back({SectionKind::nodes, "Nodes", "", 0});
+  layout.sections.push_back({SectionKind::elements, "Elements", "", 0});
+}
+
+}  // namespace meshorder::gmsh

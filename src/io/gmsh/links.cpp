@@ -1,0 +1,182 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/gmsh/gmsh.hpp"
+
+#include <algorithm>
+
+// Sections that tie nodes and elements to each other by their numbers: $Periodic and $GhostElements.
+
+namespace meshorder::gmsh {
+namespace {
+
+const Set* find_set(const Mesh& mesh, const std::string& name) {
+  const auto found = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const Set& set) {
+    return set.on == Attached::vertices && set.name == name;
+  });
+  return found == mesh.sets.end() ? nullptr : &*found;
+}
+
+/// Version 2.2 has a line "Affine …" of 16 numbers, or none; 4.1 a count and so many numbers.
+void read_affine(Reading& reading, PeriodicLink& link) {
+  Source& source = reading.source;
+  if (!reading.residue.is_version_2()) {
+    link.affine.resize(source.count("the number of affine coefficients", 2, 8));
+  } else if (source.in.peek_word() == "Affine") {
+    (void)source.in.word("Affine");
+    link.affine.resize(16);
+  }
+  for (double& value : link.affine) value = source.real("an affine coefficient");
+}
+
+/// Pairs of nodes; those that the file does not have, as in meshes saved in part, are left out.
+Index read_pairs(Reading& reading, PeriodicLink& link) {
+  Source& source = reading.source;
+  const Index count = source.count("the number of periodic nodes", 4, 16);
+  const std::string name = "gmsh:periodic " + std::to_string(link.dimension) + " " + std::to_string(link.tag);
+  Set nodes{name, Attached::vertices, {}};
+  Set masters{name + " master", Attached::vertices, {}};
+  Index missing = 0;
+  for (Index i = 0; i < count; ++i) {
+    const Index node = reading.nodes.find(source.size("a periodic node"));
+    const Index master = reading.nodes.find(source.size("a periodic node"));
+    if (node < 0 || master < 0) {
+      ++missing;
+      continue;
+    }
+    nodes.members.push_back(node);
+    masters.members.push_back(master);
+  }
+  link.nodes = nodes.name;
+  link.master_nodes = masters.name;
+  reading.mesh.sets.push_back(std::move(nodes));
+  reading.mesh.sets.push_back(std::move(masters));
+  return missing;
+}
+
+}  // namespace
+
+void read_periodic(Reading& reading) {
+  Source& source = reading.source;
+  // version 2.2 writes this section as text in binary files, too
+  const bool binary = source.binary;
+  if (reading.residue.is_version_2()) source.binary = false;
+  const Index links = source.count("the number of periodic entities", 8, 28);
+  Index missing = 0;
+  for (Index i = 0; i < links; ++i) {
+    PeriodicLink link;
+    link.dimension = source.int32("the dimension of a periodic entity");
+    link.tag = source.int32("the tag of a periodic entity");
+    link.master = source.int32("the tag of a master entity");
+    for (const PeriodicLink& other : reading.residue.periodic) {
+      if (other.dimension == link.dimension && other.tag == link.tag) {
+        source.fail("the periodic entity " + std::to_string(link.tag) + " of dimension " +
+                        std::to_string(link.dimension) + " is given twice",
+                    "each has one master");
+      }
+    }
+    read_affine(reading, link);
+    missing += read_pairs(reading, link);
+    reading.residue.periodic.push_back(std::move(link));
+  }
+  source.expect_end("Periodic");
+  source.binary = binary;
+  if (missing > 0) {
+    reading.notes.push_back(std::to_string(missing) +
+                            " pairs of $Periodic are left out: they name nodes that the file does not have");
+  }
+}
+
+void write_periodic(Sink& sink, const Output& output) {
+  const bool version_2 = output.layout.is_version_2();
+  Sink text{sink.out, sink.file};
+  Sink& to = version_2 ? text : sink;
+  to.size(index_size(output.layout.periodic));
+  to.end_line();
+  for (const PeriodicLink& link : output.layout.periodic) {
+    to.int32(link.dimension);
+    to.int32(link.tag);
+    to.int32(link.master);
+    to.end_line();
+    if (!version_2) to.size(index_size(link.affine));
+    if (version_2 && !link.affine.empty()) sink.out.write("Affine");
+    if (version_2) to.at_line_start = link.affine.empty();
+    for (const double value : link.affine) to.real(value);
+    if (!version_2 || !link.affine.empty()) to.end_line();
+    // the sets may have been taken out of the mesh
+    const Set* nodes = find_set(output.mesh, link.nodes);
+    const Set* masters = find_set(output.mesh, link.master_nodes);
+    const Index count =
+        nodes && masters ? std::min(index_size(nodes->members), index_size(masters->members)) : 0;
+    to.size(count);
+    to.end_line();
+    for (Index i = 0; i < count; ++i) {
+      to.size(output.node_id(nodes->members[i]));
+      to.size(output.node_id(masters->members[i]));
+      to.end_line();
+    }
+  }
+}
+
+// ---- ghost elements
+
+void read_ghosts(Reading& reading) {
+  Source& source = reading.source;
+  const Index count = source.count("the number of ghost elements", 6, 20);
+  DataArray array;
+  array.name = kCellGhosts;
+  array.on = Attached::cells;
+  std::vector<std::int32_t> owners;
+  std::vector<std::vector<std::int32_t>> ghosts;
+  std::size_t most = 0;
+  std::size_t total = 0;
+  for (Index i = 0; i < count; ++i) {
+    const std::int64_t id = source.size("the number of a ghost element");
+    const Index place = reading.elements.find(id);
+    if (place < 0) {
+      source.fail("$GhostElements names element " + std::to_string(id) + ", which $Elements does not have",
+                  "name elements that exist");
+    }
+    array.rows.push_back(place);
+    owners.push_back(source.int32("a partition"));
+    auto& partitions = ghosts.emplace_back(source.count("the number of ghost partitions", 2, 4));
+    for (std::int32_t& partition : partitions) partition = source.int32("a ghost partition");
+    most = std::max(most, partitions.size());
+    total += partitions.size();
+  }
+  source.expect_end("GhostElements");
+  check_distinct(source, array.rows, "GhostElements");
+  if (count == 0) return;
+  const std::size_t width = 2 + most;
+  if (width * owners.size() > 64 * (total + owners.size()) + 4096) {
+    source.fail("a ghost element has " + std::to_string(most) + " partitions, far more than the others",
+                "the file may be damaged");
+  }
+  std::vector<std::int32_t> values(width * owners.size(), 0);
+  for (std::size_t i = 0; i < owners.size(); ++i) {
+    values[i * width] = owners[i];
+    values[i * width + 1] = static_cast<std::int32_t>(ghosts[i].size());
+    std::copy(ghosts[i].begin(), ghosts[i].end(), values.begin() + static_cast<Offset>(i * width + 2));
+  }
+  array.components = static_cast<Index>(width);
+  array.values = std::move(values);
+  reading.mesh.data.push_back(std::move(array));
+}
+
+void write_ghosts(Sink& sink, const Output& output) {
+  const DataArray* array = find_array(output.mesh, kCellGhosts, Attached::cells);
+  const auto* values = array ? std::get_if<std::vector<std::int32_t>>(&array->values) : nullptr;
+  const Index rows = values ? row_count(*array) : 0;
+  sink.size(rows);
+  sink.end_line();
+  for (Index row = 0; row < rows; ++row) {
+    const auto width = static_cast<std::size_t>(array->components);
+    const auto* of_row = values->data() + row * width;
+    const auto count = std::clamp<std::int64_t>(of_row[1], 0, static_cast<std::int64_t>(width) - 2);
+    sink.size(output.cell_id(array->covers_all() ? row : array->rows[row]));
+    sink.int32(of_row[0]);
+    sink.size(count);
+    for (std::int64_t k = 0; k < count; ++k) sink.int32(of_row[2 + k]);
+    sink.end_line();
+  }
+}
+
+}  // namespace meshorder::gmsh

@@ -1,0 +1,237 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/gmsh/gmsh.hpp"
+
+#include <algorithm>
+
+// Versions 2.0 to 2.2: one list of nodes, one list of elements, each with tags of its own: first the physical
+// group, then the entity, then partitions.
+
+namespace meshorder::gmsh {
+namespace {
+
+/// The tags of all elements, which may have different numbers of them.
+struct Tags {
+  std::vector<Offset> offsets{0};
+  std::vector<std::int32_t> values;
+
+  [[nodiscard]] Index size() const { return static_cast<Index>(offsets.size()) - 1; }
+  [[nodiscard]] std::span<const std::int32_t> operator[](Index c) const {
+    return {values.data() + offsets[c], values.data() + offsets[c + 1]};
+  }
+};
+
+/// What is being read of one element.
+struct Element {
+  std::int64_t id;
+  const ElementType* type;
+  Index tag_count;
+};
+
+/// Stops at tags that are numbers of elements: parents and domains of cut elements, which follow partitions.
+void refuse_element_tags(const Source& source, double version, std::span<const std::int32_t> tags) {
+  const std::size_t plain =
+      version < 2.15 || tags.size() < 4 ? 3 : 3 + static_cast<std::size_t>(std::max(0, tags[2]));
+  if (tags.size() > plain) {
+    source.fail("an element has more tags than its partitions explain",
+                "elements cut from a parent cannot be reordered; save the mesh without them");
+  }
+}
+
+void read_element_body(Reading& reading, const Element& element, Tags& tags, std::vector<Index>& nodes) {
+  Source& source = reading.source;
+  for (Index t = 0; t < element.tag_count; ++t) tags.values.push_back(source.int32("a tag"));
+  tags.offsets.push_back(static_cast<Offset>(tags.values.size()));
+  refuse_element_tags(source, reading.residue.version, tags[tags.size() - 1]);
+  nodes.clear();
+  for (int k = 0; k < element.type->nodes; ++k) {
+    nodes.push_back(place_of_node(reading, source.int32("a node of an element"), "element", element.id));
+  }
+  add_cell(reading.mesh, *element.type, nodes);
+}
+
+Index read_tag_count(Source& source) {
+  return source.checked(source.int32("the number of tags"), "the number of tags", source.binary ? 4 : 2);
+}
+
+/// Tag number `first` … of all cells as an array; cells with fewer have 0.
+DataArray tags_as_array(const Tags& tags, std::string_view name, std::size_t first, std::size_t components) {
+  std::vector<std::int32_t> values(tags.size() * components, 0);
+  for (Index c = 0; c < tags.size(); ++c) {
+    const auto of_cell = tags[c];
+    for (std::size_t k = 0; k < components && first + k < of_cell.size(); ++k) {
+      values[c * components + k] = of_cell[first + k];
+    }
+  }
+  return {std::string(name), Attached::cells, static_cast<Index>(components), std::move(values), {}, {}};
+}
+
+void keep_tags(const Source& source, Mesh& mesh, const Tags& tags) {
+  std::size_t most = 0;
+  bool even = true;
+  for (Index c = 0; c < tags.size(); ++c) {
+    most = std::max(most, tags[c].size());
+    even = even && tags[c].size() == tags[0].size();
+  }
+  // every cell gets room for the most tags that any has; a damaged file may not make that absurd
+  if (most * static_cast<std::size_t>(tags.size()) > 64 * tags.values.size() + 4096) {
+    source.fail("an element has " + std::to_string(most) + " tags, far more than the others",
+                "the file may be damaged");
+  }
+  if (most > 0) mesh.data.push_back(tags_as_array(tags, kLabel, 0, 1));
+  if (most > 1) mesh.data.push_back(tags_as_array(tags, kCellEntity, 1, 1));
+  if (most > 2) mesh.data.push_back(tags_as_array(tags, kCellPartitions, 2, most - 2));
+  if (!even) {
+    std::vector<std::int32_t> counts(tags.size());
+    for (Index c = 0; c < tags.size(); ++c) counts[c] = static_cast<std::int32_t>(tags[c].size());
+    mesh.data.push_back({std::string(kCellTagCount), Attached::cells, 1, std::move(counts), {}, {}});
+  }
+}
+
+/// Parametric coordinates of a node on an entity of that dimension, in $ParametricNodes.
+int parameters_2(std::int32_t dimension) { return dimension == 1 || dimension == 2 ? dimension : 0; }
+
+/// The same for writing: how many tags a cell has, and each of them.
+class TagsOfMesh {
+ public:
+  explicit TagsOfMesh(const Mesh& mesh, bool labels_are_tags)
+      : labels_(labels_are_tags ? integers_of(mesh, kLabel, Attached::cells) : std::vector<std::int32_t>{}),
+        entities_(integers_of(mesh, kCellEntity, Attached::cells)),
+        partitions_(integers_of(mesh, kCellPartitions, Attached::cells)),
+        counts_(integers_of(mesh, kCellTagCount, Attached::cells)),
+        width_(partitions_.empty() ? 0 : partitions_.size() / mesh.cells.shapes.size()) {}
+
+  [[nodiscard]] std::size_t count(Index c) const {
+    if (!counts_.empty()) return static_cast<std::size_t>(std::max(0, counts_[c]));
+    if (!partitions_.empty()) return 2 + width_;
+    if (!entities_.empty()) return 2;
+    return labels_.empty() ? 0 : 1;
+  }
+  [[nodiscard]] std::int32_t tag(Index c, std::size_t k) const {
+    if (k == 0) return labels_.empty() ? 0 : labels_[c];
+    if (k == 1) return entities_.empty() ? 0 : entities_[c];
+    return k - 2 < width_ ? partitions_[c * width_ + k - 2] : 0;
+  }
+
+ private:
+  std::vector<std::int32_t> labels_, entities_, partitions_, counts_;
+  std::size_t width_;
+};
+
+}  // namespace
+
+void read_nodes_2(Reading& reading, std::string_view section) {
+  Source& source = reading.source;
+  const bool parametric = section == "ParametricNodes";
+  const Index count = source.checked(source.text_integer("the number of nodes"), "the number of nodes",
+                                     source.binary ? 28 : 8);
+  source.begin_binary();
+  std::vector<std::int64_t> ids(count);
+  std::vector<std::int32_t> entities;
+  std::vector<double> parameters;
+  reading.mesh.points.resize(count);
+  for (Index v = 0; v < count; ++v) {
+    ids[v] = source.int32("the number of a node");
+    for (double& x : reading.mesh.points[v]) x = source.finite("a coordinate");
+    if (!parametric) continue;
+    const std::int32_t dimension = source.int32("the dimension of a node's entity");
+    entities.insert(entities.end(), {dimension, source.int32("the tag of a node's entity")});
+    parameters.push_back(1);
+    for (int k = 0; k < 3; ++k) {
+      parameters.push_back(k < parameters_2(dimension) ? source.real("a parametric coordinate") : 0.0);
+    }
+  }
+  source.expect_end(section);
+  reading.nodes = Places(source, ids, "node");
+  if (!reading.nodes.consecutive()) reading.mesh.vertex_ids = std::move(ids);
+  if (!parametric) return;
+  reading.mesh.data.push_back({std::string(kNodeEntity), Attached::vertices, 2, std::move(entities), {}, {}});
+  keep_parameters(reading.mesh, std::move(parameters));
+}
+
+void read_elements_2(Reading& reading) {
+  Source& source = reading.source;
+  const Index count =
+      source.checked(source.text_integer("the number of elements"), "the number of elements", 8);
+  source.begin_binary();
+  std::vector<std::int64_t> ids;
+  std::vector<std::int32_t> types;
+  std::vector<Index> nodes;
+  Tags tags;
+  ids.reserve(count);
+  types.reserve(count);
+  while (index_size(ids) < count) {
+    // text says type and tags for each element, binary for a run of them
+    Index run = 1;
+    Element element{};
+    if (!source.binary) element.id = source.int32("the number of an element");
+    element.type = &known_type(source, source.int32("an element's type"));
+    if (source.binary) run = source.checked(source.int32("the length of a run"), "the length of a run", 8);
+    element.tag_count = read_tag_count(source);
+    if (run > count - index_size(ids)) {
+      source.fail("$Elements has more elements than the " + std::to_string(count) + " it promises",
+                  "the count is wrong or the file is damaged");
+    }
+    for (Index i = 0; i < run; ++i) {
+      if (source.binary) element.id = source.int32("the number of an element");
+      read_element_body(reading, element, tags, nodes);
+      ids.push_back(element.id);
+      types.push_back(element.type->number);
+    }
+  }
+  source.expect_end("Elements");
+  reading.elements = Places(source, ids, "element");
+  if (!reading.elements.consecutive()) reading.mesh.cell_ids = std::move(ids);
+  keep_tags(source, reading.mesh, tags);
+  keep_unusual_types(reading.mesh, types);
+}
+
+void write_nodes_2(Sink& sink, const Output& output) {
+  const Mesh& mesh = output.mesh;
+  const std::vector<double>* parameters = parameters_of(mesh);
+  sink.text_line(mesh.vertex_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    sink.int32(output.node_id(v));
+    for (const double x : mesh.points[v]) sink.real(x);
+    if (!output.node_entities.empty()) {
+      const std::size_t at = 2 * static_cast<std::size_t>(v);
+      sink.int32(output.node_entities[at]);
+      sink.int32(output.node_entities[at + 1]);
+      for (int k = 0; k < parameters_2(output.node_entities[at]); ++k) {
+        sink.real((*parameters)[2 * at + 1 + k]);
+      }
+    }
+    sink.end_line();
+  }
+}
+
+void write_elements_2(Sink& sink, const Output& output) {
+  const Mesh& mesh = output.mesh;
+  const DataArray* labels = find_array(mesh, kLabel, Attached::cells);
+  const TagsOfMesh tags(mesh,
+                        std::find(output.placed.begin(), output.placed.end(), labels) != output.placed.end());
+  sink.text_line(mesh.cell_count());
+  Index run_end = 0;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const ElementType& type = *output.types[c];
+    const std::size_t tag_count = tags.count(c);
+    if (sink.binary && c == run_end) {
+      while (run_end < mesh.cell_count() && output.types[run_end] == &type &&
+             tags.count(run_end) == tag_count) {
+        ++run_end;
+      }
+      sink.int32(type.number);
+      sink.int32(run_end - c);
+      sink.int32(static_cast<std::int64_t>(tag_count));
+    }
+    sink.int32(output.cell_id(c));
+    if (!sink.binary) {
+      sink.int32(type.number);
+      sink.int32(static_cast<std::int64_t>(tag_count));
+    }
+    for (std::size_t k = 0; k < tag_count; ++k) sink.int32(tags.tag(c, k));
+    write_cell_nodes(sink, output, c, false);
+    sink.end_line();
+  }
+}
+
+}  // namespace meshorder::gmsh

@@ -1,0 +1,287 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/gmsh/gmsh.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+// Version 4.1: nodes and elements stand in blocks, each of which belongs to an entity of the geometry;
+// entities have physical groups. An entity may have several blocks.
+
+namespace meshorder::gmsh {
+namespace {
+
+/// Reads a count and so many ints.
+std::vector<std::int32_t> read_ints(Source& source, std::string_view what) {
+  std::vector<std::int32_t> result(source.count(what, 2, 4));
+  for (std::int32_t& value : result) value = source.int32(what);
+  return result;
+}
+
+void skip_reals(Source& source, int count, std::string_view what) {
+  for (int i = 0; i < count; ++i) (void)source.real(what);
+}
+
+std::int32_t read_dimension(Source& source) {
+  const std::int32_t dimension = source.int32("an entity's dimension");
+  if (dimension < 0 || dimension > 3) {
+    source.fail("an entity's dimension is " + std::to_string(dimension), "0, 1, 2 and 3 are possible");
+  }
+  return dimension;
+}
+
+/// Reads one block of nodes behind its head; `parameters` gets four numbers for each.
+void read_node_block(Reading& reading, const EmptyBlock& head, Index count, std::vector<std::int64_t>& ids,
+                     std::vector<double>& parameters) {
+  Source& source = reading.source;
+  const bool parametric = head[2] == 1;
+  for (Index i = 0; i < count; ++i) ids.push_back(source.size("the number of a node"));
+  for (Index i = 0; i < count; ++i) {
+    Point& point = reading.mesh.points.emplace_back();
+    for (double& x : point) x = source.finite("a coordinate");
+    if (!parametric) continue;
+    // nodes before, of which none had any
+    parameters.resize(4 * (reading.mesh.points.size() - 1), 0.0);
+    parameters.push_back(1);
+    for (int k = 0; k < 3; ++k) {
+      parameters.push_back(k < head[0] ? source.real("a parametric coordinate") : 0.0);
+    }
+  }
+}
+
+/// What stands before the blocks of nodes or elements.
+struct Head {
+  Index blocks;
+  Index count;
+};
+
+Head read_head(Source& source, std::string_view what, std::int64_t text_bytes, std::int64_t binary_bytes) {
+  Head head{};
+  head.blocks = source.count("the number of blocks", 8, 20);
+  head.count = source.count("the number of " + std::string(what), text_bytes, binary_bytes);
+  // the least and the greatest number; Gmsh itself does not rely on them
+  (void)source.size("the least number of " + std::string(what));
+  (void)source.size("the greatest number of " + std::string(what));
+  return head;
+}
+
+[[noreturn]] void fail_count(const Source& source, std::string_view section, std::int64_t blocks,
+                             std::int64_t promised) {
+  source.fail("the blocks of $" + std::string(section) + " have " + std::to_string(blocks) +
+                  (blocks > promised ? " or more" : "") + " instead of the promised " +
+                  std::to_string(promised),
+              "the counts must agree");
+}
+
+/// The smallest and greatest number, 0 without any.
+std::pair<std::int64_t, std::int64_t> range_of(const std::vector<std::int64_t>& ids, Index count) {
+  if (count == 0) return {0, 0};
+  if (ids.empty()) return {1, count};
+  const auto [least, greatest] = std::minmax_element(ids.begin(), ids.end());
+  return {*least, *greatest};
+}
+
+void write_head(Sink& sink, std::size_t blocks, Index count, const std::vector<std::int64_t>& ids) {
+  const auto [least, greatest] = range_of(ids, count);
+  sink.size(static_cast<std::int64_t>(blocks));
+  sink.size(count);
+  sink.size(least);
+  sink.size(greatest);
+  sink.end_line();
+}
+
+void write_block_head(Sink& sink, const EmptyBlock& head, Index count) {
+  for (const std::int32_t number : head) sink.int32(number);
+  sink.size(count);
+  sink.end_line();
+}
+
+/// Where runs of equal heads begin, with the end behind them.
+template <class Head, class Breaks>
+std::vector<Index> runs(Index count, const Head& head, const Breaks& breaks) {
+  std::vector<Index> starts;
+  for (Index i = 0; i < count; ++i) {
+    if (i == 0 || breaks(i) || head(i) != head(i - 1)) starts.push_back(i);
+  }
+  starts.push_back(count);
+  return starts;
+}
+
+}  // namespace
+
+void read_entities_4(Reading& reading, bool partitioned) {
+  Source& source = reading.source;
+  if (partitioned) {
+    (void)source.size("the number of partitions");
+    const Index ghosts = source.count("the number of ghost entities", 4, 8);
+    for (Index i = 0; i < ghosts; ++i) {
+      (void)source.int32("the tag of a ghost entity");
+      (void)source.int32("the partition of a ghost entity");
+    }
+  }
+  std::array<Index, 4> counts{};
+  for (Index& count : counts) count = source.count("a number of entities", 8, 20);
+  for (std::int32_t dimension = 0; dimension < 4; ++dimension) {
+    for (Index i = 0; i < counts[dimension]; ++i) {
+      const std::int32_t tag = source.int32("an entity's tag");
+      if (partitioned) {
+        (void)source.int32("the dimension of a parent entity");
+        (void)source.int32("the tag of a parent entity");
+        (void)read_ints(source, "an entity's partitions");
+      }
+      skip_reals(source, dimension == 0 ? 3 : 6, "an entity's extent");
+      auto physicals = read_ints(source, "an entity's physical groups");
+      if (dimension > 0) (void)read_ints(source, "an entity's boundary");
+      // negative ones tell an orientation
+      for (std::int32_t& physical : physicals) {
+        if (physical < 0 && physical > std::numeric_limits<std::int32_t>::min()) physical = -physical;
+      }
+      if (!physicals.empty()) reading.residue.physicals[{dimension, tag}] = std::move(physicals);
+    }
+  }
+}
+
+void read_nodes_4(Reading& reading) {
+  Source& source = reading.source;
+  Mesh& mesh = reading.mesh;
+  const Head head = read_head(source, "nodes", 8, 32);
+  std::vector<std::int64_t> ids;
+  std::vector<std::int32_t> entities;
+  std::vector<double> parameters;
+  ids.reserve(head.count);
+  mesh.points.reserve(head.count);
+  entities.reserve(2 * static_cast<std::size_t>(head.count));
+  for (Index b = 0; b < head.blocks; ++b) {
+    EmptyBlock block{};
+    block[0] = read_dimension(source);
+    block[1] = source.int32("an entity's tag");
+    block[2] = source.int32("whether nodes have parametric coordinates");
+    if (block[2] != 0 && block[2] != 1) {
+      source.fail("'parametric' is " + std::to_string(block[2]), "0 and 1 are possible");
+    }
+    const Index count = source.count("the number of nodes in a block", 8, 32);
+    if (count > head.count - index_size(ids)) {
+      fail_count(source, "Nodes", Offset{count} + index_size(ids), head.count);
+    }
+    if (count == 0) reading.residue.empty_node_blocks.push_back(block);
+    for (Index i = 0; i < count; ++i) entities.insert(entities.end(), {block[0], block[1]});
+    read_node_block(reading, block, count, ids, parameters);
+  }
+  if (index_size(ids) != head.count) fail_count(source, "Nodes", index_size(ids), head.count);
+  source.expect_end("Nodes");
+  reading.nodes = Places(source, ids, "node");
+  if (!reading.nodes.consecutive()) mesh.vertex_ids = std::move(ids);
+  mesh.data.push_back({std::string(kNodeEntity), Attached::vertices, 2, std::move(entities), {}, {}});
+  if (!parameters.empty()) keep_parameters(mesh, std::move(parameters));
+}
+
+void read_elements_4(Reading& reading) {
+  Source& source = reading.source;
+  Mesh& mesh = reading.mesh;
+  const Head head = read_head(source, "elements", 4, 16);
+  std::vector<std::int64_t> ids;
+  std::vector<std::int32_t> tags;
+  std::vector<std::int32_t> dimensions;
+  std::vector<std::int32_t> types;
+  std::vector<Index> starts;
+  std::vector<Index> nodes;
+  std::set<EmptyBlock> kinds;
+  bool repeated = false;
+  ids.reserve(head.count);
+  for (Index b = 0; b < head.blocks; ++b) {
+    const std::int32_t dimension = read_dimension(source);
+    const std::int32_t tag = source.int32("an entity's tag");
+    const ElementType& type = known_type(source, source.int32("a block's element type"));
+    const Index count =
+        source.count("the number of elements in a block", 2 + 2 * type.nodes, 8 + 8 * type.nodes);
+    if (count > head.count - index_size(ids)) {
+      fail_count(source, "Elements", Offset{count} + index_size(ids), head.count);
+    }
+    if (count == 0) {
+      reading.residue.empty_element_blocks.push_back({dimension, tag, type.number});
+      continue;
+    }
+    starts.push_back(index_size(ids));
+    repeated = !kinds.insert({dimension, tag, type.number}).second || repeated;
+    for (Index i = 0; i < count; ++i) {
+      const std::int64_t id = source.size("the number of an element");
+      nodes.clear();
+      for (int k = 0; k < type.nodes; ++k) {
+        nodes.push_back(place_of_node(reading, source.size("a node of an element"), "element", id));
+      }
+      add_cell(mesh, type, nodes);
+      ids.push_back(id);
+    }
+    tags.insert(tags.end(), count, tag);
+    dimensions.insert(dimensions.end(), count, dimension);
+    types.insert(types.end(), count, type.number);
+  }
+  if (index_size(ids) != head.count) fail_count(source, "Elements", index_size(ids), head.count);
+  source.expect_end("Elements");
+  reading.elements = Places(source, ids, "element");
+  if (!reading.elements.consecutive()) mesh.cell_ids = std::move(ids);
+
+  // blocks that come back (a converted mesh, whose order counts more than its blocks) do not bind their cells
+  if (!repeated && starts.size() > 1) mesh.cell_blocks = std::move(starts);
+  bool own = true;
+  for (Index c = 0; c < mesh.cell_count(); ++c) own = own && dimensions[c] == dimension(mesh.cells.shapes[c]);
+  mesh.data.push_back({std::string(kCellEntity), Attached::cells, 1, std::move(tags), {}, {}});
+  if (!own)
+    mesh.data.push_back({std::string(kCellDimension), Attached::cells, 1, std::move(dimensions), {}, {}});
+  keep_unusual_types(mesh, types);
+}
+
+void write_nodes_4(Sink& sink, const Output& output) {
+  const Mesh& mesh = output.mesh;
+  const std::vector<double>* parameters = parameters_of(mesh);
+  const auto head = [&](Index v) -> EmptyBlock {
+    const std::size_t at = 2 * static_cast<std::size_t>(v);
+    return {output.node_entities[at], output.node_entities[at + 1],
+            parameters && (*parameters)[2 * at] != 0 ? 1 : 0};
+  };
+
+  // neighbours of one entity make a block, so that the nodes stand in the mesh's order
+  const std::vector<Index> starts = runs(mesh.vertex_count(), head, [](Index) { return false; });
+  const auto& empty = output.layout.empty_node_blocks;
+  write_head(sink, starts.size() - 1 + empty.size(), mesh.vertex_count(), output.node_ids);
+  for (const EmptyBlock& block : empty) write_block_head(sink, block, 0);
+  for (std::size_t b = 0; b + 1 < starts.size(); ++b) {
+    const EmptyBlock block = head(starts[b]);
+    write_block_head(sink, block, starts[b + 1] - starts[b]);
+    for (Index v = starts[b]; v < starts[b + 1]; ++v) {
+      sink.size(output.node_id(v));
+      sink.end_line();
+    }
+    for (Index v = starts[b]; v < starts[b + 1]; ++v) {
+      for (const double x : mesh.points[v]) sink.real(x);
+      for (int k = 0; block[2] == 1 && k < block[0]; ++k) {
+        sink.real((*parameters)[4 * static_cast<std::size_t>(v) + 1 + k]);
+      }
+      sink.end_line();
+    }
+  }
+}
+
+void write_elements_4(Sink& sink, const Output& output) {
+  const Mesh& mesh = output.mesh;
+  const auto head = [&](Index c) -> EmptyBlock {
+    return {output.cell_dimensions[c], output.cell_tags[c], output.types[c]->number};
+  };
+  const auto begins_block = [&](Index c) {
+    return std::binary_search(mesh.cell_blocks.begin(), mesh.cell_blocks.end(), c);
+  };
+  const std::vector<Index> starts = runs(mesh.cell_count(), head, begins_block);
+  const auto& empty = output.layout.empty_element_blocks;
+  write_head(sink, starts.size() - 1 + empty.size(), mesh.cell_count(), output.cell_ids);
+  for (const EmptyBlock& block : empty) write_block_head(sink, block, 0);
+  for (std::size_t b = 0; b + 1 < starts.size(); ++b) {
+    write_block_head(sink, head(starts[b]), starts[b + 1] - starts[b]);
+    for (Index c = starts[b]; c < starts[b + 1]; ++c) {
+      sink.size(output.cell_id(c));
+      write_cell_nodes(sink, output, c, true);
+      sink.end_line();
+    }
+  }
+}
+
+}  // namespace meshorder::gmsh

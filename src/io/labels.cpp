@@ -1,0 +1,52 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/labels.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+
+const DataArray* label_array(const Mesh& mesh, Attached on) {
+  const DataArray* array = find_array(mesh, kLabel, on);
+  if (!array || array->components != 1) return nullptr;
+  const bool whole = std::visit(
+      [](const auto& values) {
+        return std::is_integral_v<typename std::decay_t<decltype(values)>::value_type>;
+      },
+      array->values);
+  return whole ? array : nullptr;
+}
+
+Labels labels_of(const Mesh& mesh, Attached on) {
+  Labels result;
+  const DataArray* array = label_array(mesh, on);
+  if (!array) return result;
+  const Index count = on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
+  result.values.assign(count, 0);
+  result.given.assign(count, array->covers_all());
+  std::visit(
+      [&](const auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        if constexpr (std::is_integral_v<Value>) {
+          for (std::size_t i = 0; i < values.size(); ++i) {
+            const std::size_t item = array->covers_all() ? i : static_cast<std::size_t>(array->rows[i]);
+            result.values[item] = static_cast<std::int64_t>(values[i]);
+            result.given[item] = true;
+          }
+        }
+      },
+      array->values);
+  return result;
+}
+
+Values label_values(std::vector<std::int64_t> labels) {
+  using Limits = std::numeric_limits<std::int32_t>;
+  const bool small = std::all_of(labels.begin(), labels.end(),
+                                 [](std::int64_t x) { return x >= Limits::min() && x <= Limits::max(); });
+  if (!small) return labels;
+  return std::vector<std::int32_t>(labels.begin(), labels.end());
+}
+
+}  // namespace meshorder

@@ -1,0 +1,230 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/medit/medit.hpp"
+
+#include "io/all_formats.hpp"
+#include "io/labels.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/unsupported.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder::medit {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The cells of each section in their order, the order of the sections, and where each cell stands.
+struct Layout {
+  std::array<std::vector<Index>, kCellKinds.size()> cells;
+  std::array<Index, kCellKinds.size()> counts{};
+  std::vector<std::size_t> kinds;
+  std::vector<Index> place;  ///< of each cell in its section
+};
+
+/// Sections follow each other as their first cells do; those of a mesh with interleaved types from volumes to
+/// edges, as group_cells_by_type has them.
+Layout layout_of(const Mesh& mesh) {
+  Layout layout;
+  layout.place.reserve(mesh.cell_count());
+  bool together = true;
+  std::size_t last = kCellKinds.size();
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const std::size_t kind = kind_of(mesh.cells.shapes[c], mesh.cells.vertex_count(c));
+    auto& cells = layout.cells[kind];
+    if (cells.empty()) layout.kinds.push_back(kind);
+    together = together && (cells.empty() || kind == last);
+    last = kind;
+    layout.place.push_back(index_size(cells));
+    cells.push_back(c);
+  }
+  if (!together) {
+    std::sort(layout.kinds.begin(), layout.kinds.end(), [](std::size_t a, std::size_t b) {
+      const auto rank = [](const CellKind& kind) {
+        return std::array{-dimension(kind.shape), static_cast<int>(kind.shape), kind.nodes};
+      };
+      return rank(kCellKinds[a]) < rank(kCellKinds[b]);
+    });
+  }
+  for (std::size_t kind = 0; kind < kCellKinds.size(); ++kind)
+    layout.counts[kind] = index_size(layout.cells[kind]);
+  return layout;
+}
+
+struct Writing {
+  const Mesh& mesh;
+  const MeshResidue* own;  ///< nullptr when the mesh comes from another format
+  Layout layout;
+  Labels vertex_labels;
+  Labels cell_labels;
+};
+
+/// References of 64 bits need version 4.
+std::int64_t version(const Writing& from) {
+  const std::int64_t wanted = from.own ? from.own->version : 2;
+  using Limits = std::numeric_limits<std::int32_t>;
+  const auto large = [](std::int64_t x) { return x < Limits::min() || x > Limits::max(); };
+  const auto has_large = [&](const Labels& labels) {
+    return std::any_of(labels.values.begin(), labels.values.end(), large);
+  };
+  return has_large(from.vertex_labels) || has_large(from.cell_labels) ? 4 : wanted;
+}
+
+void write_vertices(OutputFile& out, const Writing& from) {
+  const Mesh& mesh = from.mesh;
+  out.print("\nVertices\n{}\n", mesh.vertex_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    for (int k = 0; k < mesh.dimension; ++k) out.print("{} ", mesh.points[v][k]);
+    out.print("{}\n", from.vertex_labels.any() ? from.vertex_labels.values[v] : 0);
+  }
+}
+
+/// Where the nodes of a kind stand in the file; empty for VTK's order.
+std::vector<int> places(const Writing& from, std::size_t kind) {
+  if (!from.own) return {};
+  const auto found = from.own->places.find(kind);
+  return found == from.own->places.end() ? std::vector<int>{} : found->second;
+}
+
+void write_cells(OutputFile& out, const Writing& from, std::size_t kind) {
+  const auto& cells = from.layout.cells[kind];
+  const std::vector<int> order = places(from, kind);
+  std::array<Index, 27> as_given{};
+  out.print("\n{}\n{}\n", kCellKinds[kind].keyword, cells.size());
+  for (const Index c : cells) {
+    const auto cell = from.mesh.cells[c];
+    for (std::size_t k = 0; k < cell.size(); ++k) as_given[order.empty() ? k : order[k]] = cell[k];
+    for (std::size_t k = 0; k < cell.size(); ++k) out.print("{} ", as_given[k] + 1);
+    out.print("{}\n", from.cell_labels.any() ? from.cell_labels.values[c] : 0);
+  }
+}
+
+/// The order of nodes in second-order cells, so that a reader need not guess.
+void write_ordering(OutputFile& out, std::size_t kind) {
+  const auto nodes = reference_nodes(kCellKinds[kind].shape);
+  out.print("\n{}Ordering\n{}\n", kCellKinds[kind].keyword, nodes.size());
+  for (const auto& node : nodes) out.print("{}\n", fmt::join(node, " "));
+}
+
+// ---- sections that count vertices or cells
+
+/// Where a vertex or cell stands in what the positions of a section count; −1 when it is not part of that.
+Index position_in(const Writing& from, const Target& target, Index item) {
+  if (!target) return item;
+  const std::size_t kind = counted_kind(*target, from.layout.counts);
+  const auto& cells = from.mesh.cells;
+  return kind_of(cells.shapes[item], cells.vertex_count(item)) == kind ? from.layout.place[item] : -1;
+}
+
+/// The kind of section with that name that all `items` fit, or nullptr.
+template <std::size_t N>
+const ListKind* fitting_kind(const std::array<ListKind, N>& kinds, const Writing& from, std::string_view name,
+                             Attached on, const std::vector<Index>& items) {
+  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const ListKind& kind) {
+    return kind.keyword == name && (kind.target ? Attached::cells : Attached::vertices) == on;
+  });
+  if (found == kinds.end()) return nullptr;
+  const bool fit = std::all_of(items.begin(), items.end(),
+                               [&](Index item) { return position_in(from, found->target, item) >= 0; });
+  return fit ? &*found : nullptr;
+}
+
+void write_set(OutputFile& out, const Writing& from, const Set& set, Notes& notes) {
+  const ListKind* kind = fitting_kind(kListKinds, from, set.name, set.on, set.members);
+  if (!kind) return note_set_left_out(set, "Medit", notes);
+  out.print("\n{}\n{}\n", set.name, set.members.size());
+  for (const Index member : set.members) out.print("{}\n", position_in(from, kind->target, member) + 1);
+}
+
+void print_value(OutputFile& out, const Values& values, Offset at) {
+  std::visit(
+      [&](const auto& numbers) {
+        using Value = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_arithmetic_v<Value>) out.print(" {}", numbers[at]);
+      },
+      values);
+}
+
+/// Tables are known by their name, and go with sections that only a mesh of this format has.
+void write_array(OutputFile& out, const Writing& from, const DataArray& array, Notes& notes) {
+  const ListKind* kind = nullptr;
+  const bool numbers = !std::holds_alternative<std::vector<std::string>>(array.values);
+  if (from.own && numbers && !array.covers_all()) {
+    kind = fitting_kind(kTableKinds, from, array.name, array.on, array.rows);
+  }
+  if (!kind) return note_array_left_out(array, "Medit", notes);
+  out.print("\n{}\n{}\n", array.name, array.rows.size());
+  for (Index row = 0; row < index_size(array.rows); ++row) {
+    out.print("{}", position_in(from, kind->target, array.rows[row]) + 1);
+    for (Index k = 0; k < array.components; ++k) {
+      print_value(out, array.values, Offset{row} * array.components + k);
+    }
+    out.write("\n");
+  }
+}
+
+// ---- the file
+
+void write_sections(OutputFile& out, const Writing& from, bool before_vertices) {
+  if (!from.own) return;
+  for (const MeshResidue::Section& section : from.own->sections) {
+    if (section.before_vertices == before_vertices) out.print("\n{}\n", section.text);
+  }
+}
+
+void note_missing_labels(const Labels& labels, std::string_view what, Notes& notes) {
+  const auto missing = std::count(labels.given.begin(), labels.given.end(), false);
+  if (missing > 0) notes.push_back(fmt::format("{} {} have no label and get the reference 0", missing, what));
+}
+
+void write_all_cells(OutputFile& out, const Writing& from) {
+  for (const std::size_t kind : from.layout.kinds) {
+    if (!from.own && kind >= kLinearKinds) write_ordering(out, kind);
+    write_cells(out, from, kind);
+  }
+  if (!from.own) return;
+  for (const std::size_t kind : from.own->empty_sections) {
+    if (from.layout.counts[kind] == 0) write_cells(out, from, kind);
+  }
+}
+
+bool holds(Shape shape, int vertices) { return kind_of(shape, vertices) < kCellKinds.size(); }
+
+}  // namespace
+
+void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
+  refuse_other_cells(mesh, path, "Medit", holds, "write .msh, .vtu or .vtk instead");
+  const Writing from{mesh, dynamic_cast<const MeshResidue*>(mesh.residue.get()), layout_of(mesh),
+                     labels_of(mesh, Attached::vertices), labels_of(mesh, Attached::cells)};
+  OutputFile out(path);
+  if (from.own) out.write(from.own->comments_before);
+  out.print("MeshVersionFormatted {}\nDimension {}\n", version(from), mesh.dimension);
+  write_sections(out, from, true);
+  write_vertices(out, from);
+  write_all_cells(out, from);
+  for (const Set& set : mesh.sets) write_set(out, from, set, notes);
+  for (const DataArray& array : mesh.data) {
+    if (&array != label_array(mesh, array.on)) write_array(out, from, array, notes);
+  }
+  write_sections(out, from, false);
+  out.print("\nEnd{}\n", from.own ? from.own->after_end : "");
+  out.commit();
+
+  note_missing_labels(from.vertex_labels, "vertices", notes);
+  note_missing_labels(from.cell_labels, "cells", notes);
+  note_ids_left_out(mesh, "Medit", notes);
+  if (!from.own) note_residue_left_out(mesh, "Medit", notes);
+  note_solutions(path, "does not fit the mesh that was just written beside it", notes);
+}
+
+}  // namespace meshorder::medit
+
+namespace meshorder {
+
+Format medit_format() { return {"Medit", {".mesh"}, true, medit::read, medit::write}; }
+
+}  // namespace meshorder

@@ -1,0 +1,124 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// What the reader and the writer of Medit's ASCII meshes share: the sections that the format has.
+//
+// Formats: P. Frey, "MEDIT: An interactive mesh visualization software", INRIA RT-0253 (2001), and the Gamma
+// Mesh Format of L. Maréchal's libMeshb, https://github.com/LoicMarechal/libMeshb (Documentation).
+
+#include "io/format.hpp"
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshorder::medit {
+
+/// A section of cells: so many vertices each, and a reference.
+struct CellKind {
+  std::string_view keyword;
+  Shape shape;
+  int nodes;
+  std::string_view alias;  ///< another name in older files
+};
+
+inline constexpr std::array kCellKinds{
+    CellKind{"Edges", Shape::line, 2, ""},
+    CellKind{"Triangles", Shape::triangle, 3, ""},
+    CellKind{"Quadrilaterals", Shape::quad, 4, ""},
+    CellKind{"Tetrahedra", Shape::tetrahedron, 4, ""},
+    CellKind{"Pyramids", Shape::pyramid, 5, ""},
+    CellKind{"Prisms", Shape::wedge, 6, "Pentahedra"},
+    CellKind{"Hexahedra", Shape::hexahedron, 8, "Hexaedra"},
+    CellKind{"EdgesP2", Shape::line, 3, ""},
+    CellKind{"TrianglesP2", Shape::triangle, 6, ""},
+    CellKind{"QuadrilateralsQ2", Shape::quad, 9, ""},
+    CellKind{"TetrahedraP2", Shape::tetrahedron, 10, ""},
+    CellKind{"PyramidsP2", Shape::pyramid, 14, ""},
+    CellKind{"PrismsP2", Shape::wedge, 18, ""},
+    CellKind{"HexahedraQ2", Shape::hexahedron, 27, ""},
+};
+inline constexpr std::size_t kLinearKinds = 7;
+
+/// What the positions in a list or table count: vertices, or the cells of one section.
+using Target = std::optional<Shape>;  // none: vertices
+
+/// A list of positions: a set of that name.
+struct ListKind {
+  std::string_view keyword;
+  Target target;
+};
+
+inline constexpr std::array kListKinds{
+    ListKind{"Corners", {}},
+    ListKind{"RequiredVertices", {}},
+    ListKind{"Ridges", Shape::line},
+    ListKind{"RequiredEdges", Shape::line},
+    ListKind{"RequiredTriangles", Shape::triangle},
+    ListKind{"RequiredQuadrilaterals", Shape::quad},
+    ListKind{"RequiredTetrahedra", Shape::tetrahedron},
+};
+
+/// Lines that begin with a position; the numbers behind it count normals, tangents or parts of a geometry in
+/// another file, and stay as they are. An array of that name on the positions that occur.
+inline constexpr std::array kTableKinds{
+    ListKind{"NormalAtVertices", {}},
+    ListKind{"TangentAtVertices", {}},
+    ListKind{"VerticesOnGeometricVertices", {}},
+    ListKind{"VerticesOnGeometricEdges", {}},
+    ListKind{"VerticesOnGeometricTriangles", {}},
+    ListKind{"VerticesOnGeometricQuadrilaterals", {}},
+    ListKind{"EdgesOnGeometricEdges", Shape::line},
+    ListKind{"TrianglesOnGeometricTriangles", Shape::triangle},
+    ListKind{"TrianglesOnGeometricQuadrilaterals", Shape::triangle},
+    ListKind{"QuadrilateralsOnGeometricTriangles", Shape::quad},
+    ListKind{"QuadrilateralsOnGeometricQuadrilaterals", Shape::quad},
+    ListKind{"VertexOnGeometricVertex", {}},  // the last three are BAMG's
+    ListKind{"VertexOnGeometricEdge", {}},
+    ListKind{"EdgeOnGeometricEdge", Shape::line},
+};
+
+/// What other formats cannot hold and this one keeps.
+struct MeshResidue final : Residue {
+  struct Section {
+    std::string keyword;
+    std::string text;  ///< from the keyword on, as it stood
+    bool before_vertices;
+  };
+  std::int64_t version = 2;
+  std::string comments_before;
+  std::string after_end;
+  std::vector<Section> sections;            ///< those that do not depend on the order
+  std::vector<std::size_t> empty_sections;  ///< kinds of cells that the file has none of, but names
+  /// Where the nodes of a cell in VTK's order stand in the file, for the kinds of which it tells.
+  std::map<std::size_t, std::vector<int>> places;
+
+  [[nodiscard]] std::vector<std::string> contents() const override;
+};
+
+/// The kind of a cell type, or the number of kinds when there is none.
+std::size_t kind_of(Shape shape, int nodes);
+
+/// The section that a section "…Ordering" describes, or the number of kinds.
+std::size_t kind_of_ordering(std::string_view keyword);
+
+/// The reference coordinates of a second-order cell's nodes, in VTK's order, in halves of an edge;
+/// barycentric in triangles, tetrahedra and prisms, as sections "…Ordering" give them.
+std::vector<std::vector<int>> reference_nodes(Shape shape);
+
+/// The kind of cells that positions of a target count: the linear ones, else those of second order; the
+/// number of kinds when the mesh has neither. `counts` are the cells of each kind.
+std::size_t counted_kind(Shape target, std::span<const Index> counts);
+
+/// Notes a file of solutions beside the mesh.
+void note_solutions(const std::filesystem::path& path, std::string_view what, Notes& notes);
+
+Mesh read(const std::filesystem::path& path, Notes& notes);
+void write(const Mesh& mesh, const std::filesystem::path& path, Notes& notes);
+
+}  // namespace meshorder::medit

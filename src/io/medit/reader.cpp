@@ -1,0 +1,443 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/error.hpp"
+#include "io/labels.hpp"
+#include "io/medit/medit.hpp"
+#include "io/stream/scanner.hpp"
+#include "io/stream/text_ends.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <memory>
+#include <unordered_set>
+#include <utility>
+
+namespace meshorder::medit {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kComment = '#';
+
+/// A section that depends on none that counts vertices or cells, and is kept as it stands.
+struct PlainKind {
+  std::string_view keyword;
+  enum Form : std::uint8_t {
+    words,
+    rows,
+    line,
+    lines
+  } form;  ///< rows and lines have their count before them
+  int words_per_row;
+  int words_per_dimension;
+};
+
+constexpr std::array kPlainKinds{
+    PlainKind{"Normals", PlainKind::rows, 0, 1},
+    PlainKind{"Tangents", PlainKind::rows, 0, 1},
+    PlainKind{"BoundingBox", PlainKind::words, 0, 2},
+    PlainKind{"AngleOfCornerBound", PlainKind::words, 1, 0},
+    PlainKind{"MaximalAngleOfCorner", PlainKind::words, 1, 0},
+    PlainKind{"Iterations", PlainKind::words, 1, 0},
+    PlainKind{"Time", PlainKind::words, 1, 0},
+    PlainKind{"BezierBasis", PlainKind::words, 1, 0},
+    PlainKind{"FloatingPointPrecision", PlainKind::words, 1, 0},
+    PlainKind{"EdgesReferenceElement", PlainKind::words, 2, 0},
+    PlainKind{"TriangleReferenceElement", PlainKind::words, 6, 0},
+    PlainKind{"QuadrilateralReferenceElement", PlainKind::words, 8, 0},
+    PlainKind{"TetrahedronReferenceElement", PlainKind::words, 12, 0},
+    PlainKind{"PyramidReferenceElement", PlainKind::words, 15, 0},
+    PlainKind{"PrismReferenceElement", PlainKind::words, 18, 0},
+    PlainKind{"HexahedronReferenceElement", PlainKind::words, 24, 0},
+    PlainKind{"Identifier", PlainKind::line, 0, 0},
+    PlainKind{"Geometry", PlainKind::line, 0, 0},
+    PlainKind{"Comments", PlainKind::lines, 0, 0},
+    PlainKind{"ReferenceStrings", PlainKind::lines, 0, 0},
+};
+
+/// The place of the kind with that keyword, or the size of the table.
+template <class Kinds>
+std::size_t find_kind(const Kinds& kinds, std::string_view keyword) {
+  const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                  [&](const auto& kind) { return same_but_for_case(kind.keyword, keyword); });
+  return static_cast<std::size_t>(found - kinds.begin());
+}
+
+/// A section to be read when those before it in need are known; it lies at `byte`, behind its keyword.
+struct Pending {
+  std::size_t kind;
+  std::int64_t byte;
+};
+
+class Reader {
+ public:
+  Reader(const fs::path& path, Notes& notes) : in_(path, kComment), notes_(notes) {}
+
+  Mesh read() {
+    refuse_other_formats();
+    residue_->comments_before = comments_before(in_.all(), kComment);
+    while (!in_.at_end() && read_section()) {
+    }
+    if (!has_end_) note_missing_end();
+    read_pending();
+    arrange_nodes();
+    set_labels();
+    mesh_.residue = residue_;
+    return std::move(mesh_);
+  }
+
+ private:
+  void refuse_other_formats() {
+    if (in_.all().substr(0, 16).find('\0') != std::string_view::npos) {
+      throw Error(in_.file(), "is binary, perhaps a .meshb file", "convert it to an ASCII .mesh");
+    }
+    if (in_.at_end() || !same_but_for_case(in_.peek_word(), "MeshVersionFormatted")) {
+      in_.fail("this is no Medit mesh", "its first word must be MeshVersionFormatted");
+    }
+  }
+
+  /// Reads or skips one section; false at the end of the mesh.
+  bool read_section() {
+    begin_ = in_.byte();
+    const std::string keyword(in_.word("a keyword"));
+    if (same_but_for_case(keyword, "End")) {
+      read_end();
+      return false;
+    }
+    refuse_numbers(keyword);
+    if (!kinds_seen_.insert(lower(keyword)).second) {
+      in_.fail("a second section " + keyword, "each may stand once");
+    }
+    last_keyword_ = keyword;
+
+    if (same_but_for_case(keyword, "MeshVersionFormatted")) {
+      residue_->version = in_.integer<std::int64_t>("the version");
+      if (residue_->version < 0 || residue_->version > 4) {
+        in_.fail(fmt::format("the version is {}", residue_->version), "1 to 4 are known");
+      }
+    } else if (same_but_for_case(keyword, "Dimension")) {
+      mesh_.dimension = in_.integer<std::int32_t>("the dimension");
+      if (mesh_.dimension != 2 && mesh_.dimension != 3) {
+        in_.fail(fmt::format("the dimension is {}", mesh_.dimension), "2 or 3 are possible");
+      }
+      has_dimension_ = true;
+    } else if (!has_dimension_) {
+      in_.fail("the section " + keyword + " stands before the Dimension", "Dimension 2 or 3 must come first");
+    } else if (same_but_for_case(keyword, "Vertices")) {
+      read_vertices();
+    } else {
+      read_other_section(keyword);
+    }
+    return true;
+  }
+
+  static std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+  }
+
+  void refuse_numbers(const std::string& keyword) const {
+    if (std::isalpha(static_cast<unsigned char>(keyword.front())) != 0 && keyword.size() < 64) return;
+    std::string shown = keyword.substr(0, 20);
+    std::replace_if(
+        shown.begin(), shown.end(), [](unsigned char c) { return std::isprint(c) == 0; }, '?');
+    in_.fail(fmt::format("'{}' stands where a keyword should", shown),
+             fmt::format("the count of {} may be wrong", last_keyword_));
+  }
+
+  void read_other_section(const std::string& keyword) {
+    if (std::size_t kind = find_cell_kind(keyword); kind < kCellKinds.size()) {
+      if (!has_vertices_) return skip_rows(pending_cells_, kind, kCellKinds[kind].nodes + 1);
+      return read_cells(kind);
+    }
+    if (const std::size_t kind = find_kind(kListKinds, keyword); kind < kListKinds.size()) {
+      return skip_rows(pending_lists_, kind, 1);
+    }
+    if (const std::size_t kind = find_kind(kTableKinds, keyword); kind < kTableKinds.size()) {
+      return skip_rows(pending_tables_, kind, 0);
+    }
+    if (const std::size_t kind = kind_of_ordering(keyword); kind < kCellKinds.size()) {
+      read_ordering(kind);
+      return keep_section(keyword);
+    }
+    if (const std::size_t kind = find_kind(kPlainKinds, keyword); kind < kPlainKinds.size()) {
+      skip_plain(kPlainKinds[kind]);
+      return keep_section(keyword);
+    }
+    in_.fail("the section " + keyword + " is not understood, and its numbers may be wrong after reordering",
+             "remove it from the file");
+  }
+
+  static std::size_t find_cell_kind(std::string_view keyword) {
+    const std::size_t kind = find_kind(kCellKinds, keyword);
+    if (kind < kCellKinds.size()) return kind;
+    const auto found = std::find_if(kCellKinds.begin(), kCellKinds.end(), [&](const CellKind& candidate) {
+      return same_but_for_case(candidate.alias, keyword);
+    });
+    return static_cast<std::size_t>(found - kCellKinds.begin());
+  }
+
+  // ---- sections that are kept
+
+  void keep_section(const std::string& keyword) {
+    residue_->sections.push_back(
+        {keyword, std::string(in_.all().substr(begin_, in_.byte() - begin_)), !has_vertices_});
+  }
+
+  void skip_plain(const PlainKind& kind) {
+    const bool has_count = kind.form == PlainKind::rows || kind.form == PlainKind::lines;
+    const Index count = has_count ? in_.count(what_count(), 2) : 1;
+    const int words = kind.words_per_row + kind.words_per_dimension * mesh_.dimension;
+    const std::string what = what_number();
+    for (Index row = 0; row < count; ++row) {
+      if (kind.form == PlainKind::line || kind.form == PlainKind::lines) {
+        if (in_.at_end()) in_.word("a line of " + last_keyword_);  // says that the file ends
+        in_.raw_line();
+      } else {
+        for (int k = 0; k < words; ++k) in_.real(what);
+      }
+    }
+  }
+
+  /// The order of nodes in a kind of cells, by their coordinates in the reference cell.
+  void read_ordering(std::size_t kind) {
+    const auto nodes = reference_nodes(kCellKinds[kind].shape);
+    const Index count = in_.count(what_count(), 2);
+    if (count != index_size(nodes)) {
+      in_.fail(fmt::format("{} has {} lines", last_keyword_, count),
+               fmt::format("{} are needed", nodes.size()));
+    }
+    std::vector<int> places(nodes.size(), -1);
+    for (Index place = 0; place < count; ++place) {
+      std::vector<int> node(nodes.front().size());
+      for (int& x : node) x = in_.integer<std::int32_t>("a coordinate of " + last_keyword_);
+      const auto found = std::find(nodes.begin(), nodes.end(), node);
+      if (found != nodes.end()) places[found - nodes.begin()] = place;
+    }
+    if (std::find(places.begin(), places.end(), -1) != places.end()) {
+      notes_.push_back(fmt::format("{} is not understood: the nodes of {} keep the order of the file",
+                                   last_keyword_, kCellKinds[kind].keyword));
+      return;
+    }
+    residue_->places[kind] = std::move(places);
+  }
+
+  // ---- vertices and cells
+
+  void read_vertices() {
+    const Index count = in_.count("the count of Vertices", 2 * (mesh_.dimension + 1));
+    mesh_.points.resize(count, {0, 0, 0});
+    std::vector<std::int64_t> references;
+    references.reserve(count);
+    for (Point& point : mesh_.points) {
+      for (int k = 0; k < mesh_.dimension; ++k) point[k] = in_.finite("a coordinate");
+      references.push_back(in_.integer<std::int64_t>("the reference of a vertex"));
+    }
+    has_vertices_ = true;
+    mesh_.data.push_back(
+        {std::string(kLabel), Attached::vertices, 1, label_values(std::move(references)), {}, {}});
+  }
+
+  /// A position from 1 to `count`, counted from 0.
+  Index position(Index count, std::string_view what) {
+    const auto number = in_.integer<std::int64_t>(what);
+    if (number < 1 || number > count) {
+      in_.fail(fmt::format("{} is {}", what, number), fmt::format("1 to {} are possible", count));
+    }
+    return static_cast<Index>(number - 1);
+  }
+
+  void read_cells(std::size_t kind) {
+    const auto& [keyword, shape, nodes, alias] = kCellKinds[kind];
+    const Index count = in_.count(what_count(), 2 * (nodes + 1));
+    if (count == 0) {
+      residue_->empty_sections.push_back(kind);
+      return;
+    }
+    mesh_.cell_blocks.push_back(mesh_.cell_count());
+    first_[kind] = mesh_.cell_count();
+    counts_[kind] = count;
+    Cells& cells = mesh_.cells;
+    cells.reserve(Offset{cells.size()} + count, cells.offsets.back() + Offset{count} * nodes);
+    std::array<Index, 27> cell{};
+    for (Index c = 0; c < count; ++c) {
+      for (int k = 0; k < nodes; ++k) cell[k] = position(mesh_.vertex_count(), "a vertex of the cell");
+      cells.push_back(shape, {cell.data(), static_cast<std::size_t>(nodes)});
+      references_.push_back(in_.integer<std::int64_t>("the reference of a cell"));
+    }
+  }
+
+  // ---- sections that count vertices or cells of others
+
+  /// Leaves a section for later; without words per row, its first line tells.
+  void skip_rows(std::vector<Pending>& pending, std::size_t kind, int words) {
+    pending.push_back({kind, in_.byte()});
+    const Index count = in_.count(what_count(), 2 * std::max(words, 1));
+    if (words == 0) words = words_of_line();
+    const std::string what = what_number();
+    for (Index row = 0; row < count; ++row) {
+      for (int k = 0; k < words; ++k) in_.word(what);
+    }
+  }
+
+  /// The words of the line of the next word.
+  int words_of_line() {
+    if (in_.at_end()) return 1;
+    std::string_view line = in_.peek_line();
+    line = line.substr(0, line.find(kComment));
+    int words = 0;
+    for (; !next_word(line, " \t\f\v").empty(); ++words) {
+    }
+    return words;
+  }
+
+  void read_pending() {
+    if (!has_vertices_) in_.fail("the file has no Vertices", "a mesh needs some");
+    for (const auto& [kind, byte] : pending_cells_) {
+      go_to(byte, kCellKinds[kind].keyword);
+      read_cells(kind);
+    }
+    for (const auto& [kind, byte] : pending_lists_) {
+      go_to(byte, kListKinds[kind].keyword);
+      read_list(kListKinds[kind]);
+    }
+    for (const auto& [kind, byte] : pending_tables_) {
+      go_to(byte, kTableKinds[kind].keyword);
+      read_table(kTableKinds[kind]);
+    }
+  }
+
+  void go_to(std::int64_t byte, std::string_view keyword) {
+    in_.seek(byte);
+    last_keyword_ = keyword;
+  }
+
+  /// What `needed` positions count: the first of them, and how many there are.
+  std::pair<Index, Index> range_of(const Target& target, Index needed) {
+    if (!target) return {0, mesh_.vertex_count()};
+    const std::size_t kind = counted_kind(*target, counts_);
+    if (kind < kCellKinds.size()) return {first_[kind], counts_[kind]};
+    if (needed > 0) {
+      in_.fail(fmt::format("{} counts cells of type {}, and there are none", last_keyword_, name(*target)),
+               "remove the section");
+    }
+    return {0, 0};
+  }
+
+  void read_list(const ListKind& kind) {
+    Set set{std::string(kind.keyword), kind.target ? Attached::cells : Attached::vertices, {}};
+    const Index members = in_.count(what_count(), 2);
+    const auto [first, count] = range_of(kind.target, members);
+    const std::string what = what_number();
+    for (Index i = 0; i < members; ++i) set.members.push_back(first + position(count, what));
+    mesh_.sets.push_back(std::move(set));
+  }
+
+  void read_table(const ListKind& kind) {
+    DataArray array{
+        std::string(kind.keyword), kind.target ? Attached::cells : Attached::vertices, 1, {}, {}, {}};
+    const Index rows = in_.count(what_count(), 2);
+    if (rows == 0) {
+      residue_->sections.push_back({array.name, array.name + "\n0", false});
+      return;
+    }
+    array.components = words_of_line() - 1;
+    if (array.components < 1)
+      in_.fail("a line of " + array.name + " has one number", "two or more are needed");
+
+    const auto [first, count] = range_of(kind.target, rows);
+    const std::string what = what_number();
+    std::vector<double> values;
+    std::vector<bool> seen(count, false);
+    for (Index row = 0; row < rows; ++row) {
+      const Index item = position(count, what);
+      if (seen[item]) {
+        in_.fail(fmt::format("{} names {} twice, which cannot be kept", array.name, item + 1),
+                 "remove the section or one of the lines");
+      }
+      seen[item] = true;
+      array.rows.push_back(first + item);
+      for (Index k = 0; k < array.components; ++k) values.push_back(in_.real(what));
+    }
+    array.values = std::move(values);
+    mesh_.data.push_back(std::move(array));
+  }
+
+  // ---- the end
+
+  void read_end() {
+    has_end_ = true;
+    const std::string_view rest = in_.all().substr(in_.byte());
+    // npos + 1 is 0: nothing but blanks
+    residue_->after_end = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);
+  }
+
+  void note_missing_end() {
+    notes_.push_back(in_.file() + " has no End: if it was cut short, sections may be missing");
+    note_missing_line_end(in_, kComment, notes_);
+  }
+
+  /// Brings second-order nodes from the order that the file describes into VTK's.
+  void arrange_nodes() {
+    for (std::size_t kind = kLinearKinds; kind < kCellKinds.size(); ++kind) {
+      if (counts_[kind] == 0) continue;
+      const auto order = residue_->places.find(kind);
+      // libMeshb leaves the order of nodes to the file; for simplices all writers agree
+      const Shape shape = kCellKinds[kind].shape;
+      const bool simplex = shape == Shape::line || shape == Shape::triangle || shape == Shape::tetrahedron;
+      if (order == residue_->places.end()) {
+        if (!simplex) {
+          notes_.push_back(
+              fmt::format("the nodes of {} are taken to be in VTK's order, as the file does not tell",
+                          kCellKinds[kind].keyword));
+        }
+        continue;
+      }
+      std::vector<Index> as_given;
+      for (Index c = first_[kind]; c < first_[kind] + counts_[kind]; ++c) {
+        const auto cell = mesh_.cells[c];
+        as_given.assign(cell.begin(), cell.end());
+        for (std::size_t k = 0; k < as_given.size(); ++k) cell[k] = as_given[order->second[k]];
+      }
+    }
+  }
+
+  void set_labels() {
+    if (references_.empty()) return;
+    mesh_.data.insert(
+        mesh_.data.begin() + 1,
+        {std::string(kLabel), Attached::cells, 1, label_values(std::move(references_)), {}, {}});
+  }
+
+  [[nodiscard]] std::string what_count() const { return "the count of " + last_keyword_; }
+  [[nodiscard]] std::string what_number() const { return "a number of " + last_keyword_; }
+
+  Scanner in_;
+  Notes& notes_;
+  Mesh mesh_;
+  std::shared_ptr<MeshResidue> residue_ = std::make_shared<MeshResidue>();
+  std::int64_t begin_ = 0;  // of the section
+  std::string last_keyword_;
+  std::unordered_set<std::string> kinds_seen_;
+  bool has_dimension_ = false;
+  bool has_vertices_ = false;
+  bool has_end_ = false;
+  std::vector<Pending> pending_cells_;
+  std::vector<Pending> pending_lists_;
+  std::vector<Pending> pending_tables_;
+  std::array<Index, kCellKinds.size()> first_{};
+  std::array<Index, kCellKinds.size()> counts_{};
+  std::vector<std::int64_t> references_;
+};
+
+}  // namespace
+
+Mesh read(const fs::path& path, Notes& notes) {
+  note_solutions(path, "is not carried along: its values stand in the original order", notes);
+  return Reader(path, notes).read();
+}
+
+}  // namespace meshorder::medit

@@ -1,0 +1,118 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/medit/medit.hpp"
+#include "io/words.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+namespace meshorder::medit {
+namespace {
+
+/// A reference cell: the coordinates of its corners, and pairs of corners in whose middle the other nodes
+/// lie.
+struct Reference {
+  std::vector<std::vector<int>> corners;
+  std::vector<std::array<int, 2>> middles;
+};
+
+Reference reference(Shape shape) {
+  switch (shape) {
+    case Shape::line:
+      return {{{0}, {2}}, {{0, 1}}};
+    case Shape::triangle:
+      return {{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}, {{0, 1}, {1, 2}, {2, 0}}};
+    case Shape::quad:
+      return {{{0, 0}, {2, 0}, {2, 2}, {0, 2}}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 2}}};
+    case Shape::tetrahedron:
+      return {{{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 2, 0}, {0, 0, 0, 2}},
+              {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+    case Shape::pyramid:
+      return {{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}},
+              {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}, {0, 2}}};
+    case Shape::wedge:
+      return {
+          {{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 2, 0}, {2, 0, 0, 2}, {0, 2, 0, 2}, {0, 0, 2, 2}},
+          {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}, {0, 4}, {1, 5}, {2, 3}}};
+    case Shape::hexahedron:
+      return {{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}},
+              {{0, 1},
+               {1, 2},
+               {2, 3},
+               {3, 0},
+               {4, 5},
+               {5, 6},
+               {6, 7},
+               {7, 4},
+               {0, 4},
+               {1, 5},
+               {2, 6},
+               {3, 7},
+               {0, 7},
+               {1, 6},
+               {0, 5},
+               {2, 7},
+               {0, 2},
+               {4, 6},
+               {0, 6}}};
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> MeshResidue::contents() const {
+  std::vector<std::string> result;
+  for (const Section& section : sections) result.push_back("the section " + section.keyword);
+  return result;
+}
+
+std::size_t kind_of(Shape shape, int nodes) {
+  const auto found = std::find_if(kCellKinds.begin(), kCellKinds.end(), [&](const CellKind& kind) {
+    return kind.shape == shape && kind.nodes == nodes;
+  });
+  return static_cast<std::size_t>(found - kCellKinds.begin());
+}
+
+std::size_t kind_of_ordering(std::string_view keyword) {
+  constexpr std::string_view kEnd = "Ordering";
+  if (keyword.size() <= kEnd.size() ||
+      !same_but_for_case(keyword.substr(keyword.size() - kEnd.size()), kEnd)) {
+    return kCellKinds.size();
+  }
+  const std::string_view name = keyword.substr(0, keyword.size() - kEnd.size());
+  const auto found =
+      std::find_if(kCellKinds.begin() + kLinearKinds, kCellKinds.end(),
+                   [&](const CellKind& kind) { return same_but_for_case(kind.keyword, name); });
+  return static_cast<std::size_t>(found - kCellKinds.begin());
+}
+
+std::vector<std::vector<int>> reference_nodes(Shape shape) {
+  const Reference cell = reference(shape);
+  std::vector<std::vector<int>> result = cell.corners;
+  for (const auto& [a, b] : cell.middles) {
+    std::vector<int> node = cell.corners[a];
+    for (std::size_t k = 0; k < node.size(); ++k) node[k] = (node[k] + cell.corners[b][k]) / 2;
+    result.push_back(std::move(node));
+  }
+  return result;
+}
+
+std::size_t counted_kind(Shape target, std::span<const Index> counts) {
+  for (std::size_t kind = 0; kind < kCellKinds.size(); ++kind) {
+    if (kCellKinds[kind].shape == target && counts[kind] > 0) return kind;
+  }
+  return kCellKinds.size();
+}
+
+void note_solutions(const std::filesystem::path& path, std::string_view what, Notes& notes) {
+  for (const char* extension : {".sol", ".solb"}) {
+    std::filesystem::path solutions = path;
+    solutions.replace_extension(extension);
+    std::error_code ignored;
+    if (std::filesystem::exists(solutions, ignored))
+      notes.push_back(solutions.string() + " " + std::string(what));
+  }
+}
+
+}  // namespace meshorder::medit

@@ -1,0 +1,93 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace meshorder {
+
+/// The numbers that a file gives to its vertices or cells, in file order, and the way back from such a number
+/// to its position (counted from 0). Numbers that run without gaps cost no memory, others a table while they
+/// are dense, else a hash map.
+class Numbering {
+ public:
+  /// The number of the next position. False, and nothing added, when that number was given before. O(1).
+  bool add(std::int64_t id) {
+    if (ids_.empty() &&
+        (size_ == 0 || (id > first_ && above_first(id) == static_cast<std::uint64_t>(size_)))) {
+      if (size_ == 0) first_ = id;
+      ++size_;
+      return true;
+    }
+    if (find(id) >= 0) return false;
+    if (ids_.empty()) {
+      // the run ends here: from now on every number is kept
+      for (Index i = 0; i < size_; ++i) keep(first_ + i, i);
+    }
+    keep(id, size_);
+    ++size_;
+    return true;
+  }
+
+  /// The position of that number, −1 when there is none. O(1).
+  [[nodiscard]] Index find(std::int64_t id) const {
+    if (ids_.empty()) {
+      const bool within = id >= first_ && above_first(id) < static_cast<std::uint64_t>(size_);
+      return within ? static_cast<Index>(id - first_) : -1;
+    }
+    if (id >= 0 && id < index_size(table_) && table_[id] >= 0) return table_[id];
+    const auto found = sparse_.find(id);
+    return found == sparse_.end() ? -1 : found->second;
+  }
+
+  [[nodiscard]] Index size() const noexcept { return size_; }
+
+  /// The number at that position. O(1).
+  [[nodiscard]] std::int64_t id(Index position) const {
+    return ids_.empty() ? first_ + position : ids_[position];
+  }
+
+  /// Whether the numbers are base, base + 1, … (or there are none).
+  [[nodiscard]] bool runs_from(std::int64_t base) const noexcept {
+    return size_ == 0 || (ids_.empty() && first_ == base);
+  }
+
+  /// All numbers; empty when they are base, base + 1, …
+  [[nodiscard]] std::vector<std::int64_t> ids_unless_from(std::int64_t base) const {
+    std::vector<std::int64_t> result;
+    if (runs_from(base)) return result;
+    result.reserve(size_);
+    for (Index i = 0; i < size_; ++i) result.push_back(id(i));
+    return result;
+  }
+
+ private:
+  /// id − first_ for id ≥ first_; unsigned, as it may need 64 bits.
+  [[nodiscard]] std::uint64_t above_first(std::int64_t id) const {
+    return static_cast<std::uint64_t>(id) - static_cast<std::uint64_t>(first_);
+  }
+
+  void keep(std::int64_t id, Index position) {
+    ids_.push_back(id);
+    // a table of a few entries for each number so far; what lies beyond goes into the map
+    const std::int64_t dense = 4 * std::int64_t{size_} + 1024;
+    if (id < 0 || id >= dense || id >= kMaxIndex / 2) {
+      sparse_.emplace(id, position);
+      return;
+    }
+    if (id >= index_size(table_)) table_.resize(id + 1 + id / 2, -1);
+    table_[id] = position;
+  }
+
+  Index size_ = 0;
+  std::int64_t first_ = 0;
+  std::vector<std::int64_t> ids_;  // empty as long as they run without gaps
+  std::vector<Index> table_;       // id → position or −1
+  std::unordered_map<std::int64_t, Index> sparse_;
+};
+
+}  // namespace meshorder

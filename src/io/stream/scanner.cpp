@@ -1,0 +1,219 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/stream/scanner.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <system_error>
+
+namespace meshorder {
+namespace {
+
+bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
+
+/// A word as it can be shown in a message: short, and printable.
+std::string shown(std::string_view text) {
+  std::string result;
+  for (const char c : text.substr(0, 40)) result += (c >= ' ' && c < 127) ? c : '?';
+  return text.size() > 40 ? result + "…" : result;
+}
+
+}  // namespace
+
+Scanner::Scanner(const std::filesystem::path& path, char comment) : file_(path.string()), comment_(comment) {
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) throw Error(file_, "no such file", "check the path");
+  if (std::filesystem::is_directory(status)) throw Error(file_, "is a folder", "give a mesh file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error(file_, "cannot be read", "check its permissions");
+  const auto size = std::filesystem::file_size(path, code);
+  if (!code) {
+    text_.resize(size);
+    stream.read(text_.data(), static_cast<std::streamsize>(size));
+    text_.resize(static_cast<std::size_t>(stream.gcount()));
+  } else {  // a pipe
+    text_.assign(std::istreambuf_iterator<char>(stream), {});
+  }
+  if (text_.empty()) throw Error(file_, "is empty", "give a mesh file");
+}
+
+void Scanner::seek(std::int64_t byte) {
+  const auto target = std::min(static_cast<std::size_t>(byte), text_.size());
+  if (target < position_) {
+    position_ = 0;
+    line_ = 1;
+  }
+  while (position_ < target) {
+    if (is_line_end(text_[position_])) {
+      const bool pair =
+          text_[position_] == '\r' && position_ + 1 < text_.size() && text_[position_ + 1] == '\n';
+      ++line_;
+      position_ += pair ? 2 : 1;
+    } else {
+      ++position_;
+    }
+  }
+  position_ = target;
+}
+
+void Scanner::fail(const std::string& what, const std::string& remedy) const {
+  throw Error(Location{file_, line_, -1}, what, remedy);
+}
+
+void Scanner::fail_at_byte(const std::string& what, const std::string& remedy) const {
+  throw Error(Location{file_, 0, byte()}, what, remedy);
+}
+
+bool Scanner::at_break() const { return position_ >= text_.size() || is_line_end(text_[position_]); }
+
+void Scanner::skip_blanks() {
+  while (position_ < text_.size() && is_blank(text_[position_])) ++position_;
+  if (comment_ != '\0' && position_ < text_.size() && text_[position_] == comment_) {
+    while (!at_break()) ++position_;
+  }
+}
+
+void Scanner::next_line() {
+  if (position_ >= text_.size()) return;
+  if (text_[position_] == '\r' && position_ + 1 < text_.size() && text_[position_ + 1] == '\n') ++position_;
+  ++position_;
+  ++line_;
+}
+
+bool Scanner::at_line_end() {
+  skip_blanks();
+  return at_break();
+}
+
+bool Scanner::at_end() {
+  while (at_line_end()) {
+    if (position_ >= text_.size()) return true;
+    next_line();
+  }
+  return false;
+}
+
+std::string_view Scanner::peek_word() {
+  if (at_end()) return {};
+  std::size_t end = position_;
+  while (end < text_.size() && !is_blank(text_[end]) && !is_line_end(text_[end]) &&
+         (comment_ == '\0' || text_[end] != comment_)) {
+    ++end;
+  }
+  return std::string_view(text_).substr(position_, end - position_);
+}
+
+std::string_view Scanner::word(std::string_view what) {
+  const std::string_view result = peek_word();
+  if (result.empty()) {
+    fail("the file ends where " + std::string(what) + " should stand", "it may be cut short");
+  }
+  position_ += result.size();
+  return result;
+}
+
+double Scanner::real(std::string_view what) { return parse_real(*this, word(what), what); }
+
+double Scanner::finite(std::string_view what) {
+  const double value = real(what);
+  if (!std::isfinite(value)) {
+    fail(std::string(what) + " is not finite", "a finite number is needed");
+  }
+  return value;
+}
+
+Index Scanner::count(std::string_view what, std::int64_t least_bytes) {
+  return checked_count(integer<std::int64_t>(what), what, least_bytes);
+}
+
+Index Scanner::checked_count(std::int64_t number, std::string_view what, std::int64_t least_bytes) const {
+  const std::string shown_count = std::string(what) + " is " + std::to_string(number);
+  if (number < 0) fail(shown_count, "it cannot be negative");
+  if (number > kMaxIndex) fail(shown_count, "at most 2147483647 are possible");
+  // the last item of a text file may lack its line end
+  if (number > 0 && number > (bytes_left() + 1) / std::max<std::int64_t>(least_bytes, 1)) {
+    fail(shown_count + ", but only " + std::to_string(bytes_left()) + " bytes follow",
+         "the count is wrong or the file is cut short");
+  }
+  return static_cast<Index>(number);
+}
+
+std::string_view Scanner::rest_of_line() {
+  const std::size_t begin = position_;
+  while (!at_break() && (comment_ == '\0' || text_[position_] != comment_)) ++position_;
+  std::string_view result = std::string_view(text_).substr(begin, position_ - begin);
+  while (!at_break()) ++position_;
+  next_line();
+  while (!result.empty() && is_blank(result.back())) result.remove_suffix(1);
+  while (!result.empty() && is_blank(result.front())) result.remove_prefix(1);
+  return result;
+}
+
+std::string_view Scanner::raw_line() {
+  const std::size_t begin = position_;
+  while (!at_break()) ++position_;
+  const std::string_view result = std::string_view(text_).substr(begin, position_ - begin);
+  next_line();
+  return result;
+}
+
+std::string_view Scanner::peek_line() const {
+  std::size_t end = position_;
+  while (end < text_.size() && !is_line_end(text_[end])) ++end;
+  return std::string_view(text_).substr(position_, end - position_);
+}
+
+std::string_view Scanner::binary_block(std::int64_t bytes, std::string_view what) {
+  if (bytes < 0 || bytes > bytes_left()) {
+    fail_at_byte("the file ends within " + std::string(what), "it may be cut short");
+  }
+  const auto result = std::string_view(text_).substr(position_, static_cast<std::size_t>(bytes));
+  position_ += result.size();
+  return result;
+}
+
+template <class T>
+T parse_integer(const Scanner& at, std::string_view text, std::string_view what) {
+  T value{};
+  std::string_view digits = text;
+  if (digits.size() > 1 && digits.front() == '+') digits.remove_prefix(1);
+  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (code == std::errc::result_out_of_range) {
+    at.fail(std::string(what) + " is " + shown(text), "that is too large");
+  }
+  if (code != std::errc{} || end != digits.data() + digits.size()) {
+    at.fail(std::string(what) + " is '" + shown(text) + "'", "a whole number is needed");
+  }
+  return value;
+}
+
+template std::int32_t parse_integer<std::int32_t>(const Scanner&, std::string_view, std::string_view);
+template std::int64_t parse_integer<std::int64_t>(const Scanner&, std::string_view, std::string_view);
+template std::uint64_t parse_integer<std::uint64_t>(const Scanner&, std::string_view, std::string_view);
+
+double parse_real(const Scanner& at, std::string_view text, std::string_view what) {
+  std::string_view digits = text;
+  if (digits.size() > 1 && digits.front() == '+') digits.remove_prefix(1);
+  std::string with_e;
+  if (const auto d = digits.find_first_of("dD"); d != std::string_view::npos && d > 0) {
+    with_e = digits;
+    with_e[d] = 'e';
+    digits = with_e;
+  }
+  double value = 0;
+  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const bool whole = end == digits.data() + digits.size();
+  if (code == std::errc::result_out_of_range && whole) {
+    // too small to matter is 0; too large is not a number that we can carry
+    if (digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos) return 0;
+    at.fail(std::string(what) + " is " + shown(text), "that is too large");
+  }
+  if (code != std::errc{} || !whole) {
+    at.fail(std::string(what) + " is '" + shown(text) + "'", "a number is needed");
+  }
+  return value;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,324 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Wavefront OBJ, as "Object Files (.obj)", appendix B1 of the Advanced Visualizer manual, gives it
+// (https://paulbourke.net/dataformats/obj/): polygons, lines and points with texture coordinates and normals
+// of their corners, groups, materials and other states. Free-form curves and surfaces are not read.
+#include "base/error.hpp"
+#include "io/all_formats.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/surface/obj_parts.hpp"
+#include "io/surface/surface_data.hpp"
+#include "io/unsupported.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <type_traits>
+
+namespace meshorder {
+namespace {
+namespace fs = std::filesystem;
+using obj::kStates;
+using obj::ObjResidue;
+
+bool obj_holds(Shape shape, int vertices) {
+  if (shape == Shape::polygon) return vertices >= 3;
+  if (shape == Shape::polyline) return vertices >= 2;
+  return shape == Shape::poly_vertex || (dimension(shape) <= 2 && vertices == corners(shape, 0));
+}
+
+/// Integers of all cells, whichever type the array has; empty when they do not fit.
+std::vector<std::int32_t> cell_integers(const DataArray& array) {
+  if (!array.covers_all() || array.components != 1) return {};
+  if (const auto* same = std::get_if<std::vector<std::int32_t>>(&array.values)) return *same;
+  const auto* wide = std::get_if<std::vector<std::int64_t>>(&array.values);
+  const auto fits = [](std::int64_t x) { return std::in_range<std::int32_t>(x); };
+  if (!wide || !std::all_of(wide->begin(), wide->end(), fits)) return {};
+  return {wide->begin(), wide->end()};
+}
+
+/// Writes one mesh: lists first, then cells in their order, with each state where it changes.
+class Writer {
+ public:
+  Writer(const Mesh& mesh, const fs::path& path, Notes& notes)
+      : mesh_(mesh),
+        notes_(notes),
+        native_(dynamic_cast<const ObjResidue*>(mesh.residue.get())),
+        out_(path) {}
+
+  void write() {
+    find_vertex_data();
+    find_corner_data();
+    find_states();
+    find_groups();
+    if (native_) out_.write(native_->comments + native_->libraries);
+    write_vertices();
+    write_lists();
+    write_unused_names();
+    for (Index c = 0; c < mesh_.cell_count(); ++c) {
+      write_changes(c);
+      write_cell(c);
+    }
+    out_.commit();
+    note_losses();
+  }
+
+ private:
+  void find_vertex_data() {
+    colors_ = gather(mesh_, kColor, Attached::vertices);
+    if (colors_.width > 0) {
+      written_.insert(colors_.from.begin(), colors_.from.end());
+      if (colors_.width == 4) notes_.emplace_back("the alpha of colours is left out: OBJ cannot hold it");
+    } else {
+      find_partial_colors();
+    }
+    const DataArray* weights = find_array(mesh_, obj::kWeight, Attached::vertices);
+    if (!native_ || !weights || weights->components != 1) return;
+    if (const auto* values = std::get_if<std::vector<double>>(&weights->values)) {
+      weights_ = values;
+      weight_rows_ = rows_of(*weights);
+      written_.insert(weights);
+    }
+  }
+
+  void find_partial_colors() {
+    const DataArray* array = find_array(mesh_, kColor.name, Attached::vertices);
+    if (!array || array->components != 3) return;
+    colors_.values = as_reals(array->values);
+    if (colors_.values.empty()) return;
+    colors_.width = 3;
+    colors_.integers = holds_integers(array->values);
+    color_rows_ = rows_of(*array);
+    written_.insert(array);
+  }
+
+  /// The row of each vertex, −1 for none; empty when each has its own.
+  [[nodiscard]] std::vector<Index> rows_of(const DataArray& array) const {
+    std::vector<Index> rows;
+    if (array.covers_all()) return rows;
+    rows.assign(mesh_.points.size(), -1);
+    for (Index row = 0; row < index_size(array.rows); ++row) rows[array.rows[row]] = row;
+    return rows;
+  }
+
+  /// Indices of corners where the file was OBJ; else normals and texture coordinates of vertices are lists as
+  /// long as that of vertices.
+  void find_corner_data() {
+    texture_.assign(mesh_.cells.shapes.size(), nullptr);
+    normals_.assign(mesh_.cells.shapes.size(), nullptr);
+    if (native_) {
+      for (const DataArray& array : mesh_.data) {
+        if (array.name == obj::corner_array("texture", array.components)) point_to(array, texture_);
+        if (array.name == obj::corner_array("normal", array.components)) point_to(array, normals_);
+      }
+    } else {
+      vertex_texture_ = gather(mesh_, kTexture, Attached::vertices);
+      vertex_normals_ = gather(mesh_, kNormal, Attached::vertices);
+      for (const auto* vector : {&vertex_texture_, &vertex_normals_}) {
+        written_.insert(vector->from.begin(), vector->from.end());
+      }
+    }
+  }
+
+  void point_to(const DataArray& array, std::vector<const std::int32_t*>& corners) {
+    const auto* indices = std::get_if<std::vector<std::int32_t>>(&array.values);
+    if (!indices || array.on != Attached::cells) return;
+    for (Index row = 0; row < row_count(array); ++row) {
+      const Index cell = array.covers_all() ? row : array.rows[row];
+      if (mesh_.cells.vertex_count(cell) == array.components) {
+        corners[cell] = indices->data() + static_cast<Offset>(row) * array.components;
+      }
+    }
+    written_.insert(&array);
+  }
+
+  void find_states() {
+    for (std::size_t i = 0; i < kStates.size(); ++i) {
+      const DataArray* array = find_array(mesh_, kStates[i].array, Attached::cells);
+      if (!array || (!native_ && i != obj::kMaterial)) continue;
+      states_[i] = cell_integers(*array);
+      if (states_[i].empty()) continue;
+      written_.insert(array);
+      if (!native_) notes_.emplace_back("labels of cells are written as materials (usemtl) of their numbers");
+    }
+  }
+
+  /// For each cell the sets that hold it, as positions in the list of sets, rising.
+  void find_groups() {
+    group_offsets_.assign(mesh_.cells.shapes.size() + 1, 0);
+    for (const Set& set : mesh_.sets) {
+      if (set.on != Attached::cells) continue;
+      for (const Index cell : set.members) ++group_offsets_[cell + 1];
+    }
+    for (std::size_t c = 1; c < group_offsets_.size(); ++c) group_offsets_[c] += group_offsets_[c - 1];
+    groups_.resize(group_offsets_.back());
+    std::vector<Offset> next(group_offsets_.begin(), group_offsets_.end() - 1);
+    for (Index s = 0; s < index_size(mesh_.sets); ++s) {
+      if (mesh_.sets[s].on != Attached::cells) continue;
+      for (const Index cell : mesh_.sets[s].members) groups_[next[cell]++] = s;
+    }
+  }
+
+  [[nodiscard]] std::span<const Index> groups_of(Index cell) const {
+    return {groups_.data() + group_offsets_[cell], groups_.data() + group_offsets_[cell + 1]};
+  }
+
+  /// A set's name as one word, which a group's name is.
+  static std::string group_name(const Set& set) {
+    std::string name = set.name.empty() ? "unnamed" : set.name;
+    std::replace_if(
+        name.begin(), name.end(),
+        [](char c) { return std::string_view(" \t\r\n").find(c) != std::string_view::npos; }, '_');
+    return name;
+  }
+
+  void write_vertices() {
+    // whole colours run to 255, those of OBJ to 1
+    const double scale = colors_.integers ? 255 : 1;
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      const Point& p = mesh_.points[v];
+      out_.print("v {} {} {}", p[0], p[1], p[2]);
+      const Index color = color_rows_.empty() ? v : color_rows_[v];
+      const Index weight = weight_rows_.empty() ? v : weight_rows_[v];
+      if (colors_.width > 0 && color >= 0) {
+        for (const double x : colors_[color].first(3)) out_.print(" {}", x / scale);
+      } else if (weights_ && weight >= 0) {
+        out_.print(" {}", (*weights_)[weight]);
+      }
+      out_.write("\n");
+    }
+  }
+
+  void write_lists() {
+    if (native_) {
+      out_.write(native_->texture);
+      out_.write(native_->normals);
+      return;
+    }
+    for (Index v = 0; vertex_texture_.width > 0 && v < mesh_.vertex_count(); ++v) {
+      out_.print("vt {}\n", fmt::join(vertex_texture_[v], " "));
+    }
+    for (Index v = 0; vertex_normals_.width > 0 && v < mesh_.vertex_count(); ++v) {
+      out_.print("vn {}\n", fmt::join(vertex_normals_[v], " "));
+    }
+  }
+
+  [[nodiscard]] std::string state_name(std::size_t i, std::int32_t value) const {
+    if (i == obj::kSmoothing) return value == 0 ? "off" : std::to_string(value);
+    if (native_) {
+      const auto found = native_->names[i].find(value);
+      if (found != native_->names[i].end()) return found->second;
+      if (value == 0) return "";
+    }
+    return std::to_string(value);
+  }
+
+  void write_state(std::size_t i, std::int32_t value) {
+    const std::string name = state_name(i, value);
+    out_.print("{}{}{}\n", kStates[i].keyword, name.empty() ? "" : " ", name);
+    current_[i] = name;
+  }
+
+  /// Names that no cell has are stated once, so that they stay known.
+  void write_unused_names() {
+    for (const Set& set : mesh_.sets) {
+      if (set.on != Attached::cells || !set.members.empty()) continue;
+      out_.print("g {}\n", group_name(set));
+      in_group_ = true;
+    }
+    for (std::size_t i = 0; native_ && i < kStates.size(); ++i) {
+      if (states_[i].empty()) continue;
+      const std::set<std::int32_t> used(states_[i].begin(), states_[i].end());
+      for (const auto& [value, name] : native_->names[i]) {
+        if (!used.contains(value)) write_state(i, value);
+      }
+    }
+  }
+
+  void write_changes(Index cell) {
+    const auto groups = groups_of(cell);
+    const bool same =
+        cell > 0 ? std::ranges::equal(groups, groups_of(cell - 1)) : groups.empty() && !in_group_;
+    if (!same) {
+      out_.write("g");
+      Index previous = -1;  // a set may hold a cell twice
+      for (const Index s : groups) {
+        if (s != previous) out_.print(" {}", group_name(mesh_.sets[s]));
+        previous = s;
+      }
+      out_.write("\n");
+    }
+    for (std::size_t i = 0; i < kStates.size(); ++i) {
+      if (states_[i].empty()) continue;
+      const bool changes =
+          cell == 0 ? state_name(i, states_[i][0]) != current_[i] : states_[i][cell] != states_[i][cell - 1];
+      if (changes) write_state(i, states_[i][cell]);
+    }
+  }
+
+  void write_cell(Index cell) {
+    const int dimensions = dimension(mesh_.cells.shapes[cell]);
+    out_.write(dimensions == 2 ? "f" : dimensions == 1 ? "l" : "p");
+    const auto vertices = mesh_.cells[cell];
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      Index texture = texture_[cell] ? texture_[cell][k] : -1;
+      Index normal = normals_[cell] ? normals_[cell][k] : -1;
+      if (vertex_texture_.width > 0 && dimensions > 0) texture = vertices[k];
+      if (vertex_normals_.width > 0 && dimensions == 2) normal = vertices[k];
+      out_.print(" {}", vertices[k] + 1);
+      if (texture >= 0) {
+        out_.print("/{}", texture + 1);
+      } else if (normal >= 0) {
+        out_.write("/");
+      }
+      if (normal >= 0) out_.print("/{}", normal + 1);
+    }
+    out_.write("\n");
+  }
+
+  void note_losses() {
+    for (const DataArray& array : mesh_.data) {
+      if (!written_.contains(&array)) note_array_left_out(array, "OBJ", notes_);
+    }
+    for (const Set& set : mesh_.sets) {
+      if (set.on == Attached::vertices) {
+        note_set_left_out(set, "OBJ", notes_);
+      } else if (group_name(set) != set.name) {
+        notes_.push_back(fmt::format("the set '{}' is written as the group '{}'", set.name, group_name(set)));
+      }
+    }
+    note_ids_left_out(mesh_, "OBJ", notes_);
+    if (!native_) note_residue_left_out(mesh_, "OBJ", notes_);
+  }
+
+  const Mesh& mesh_;
+  Notes& notes_;
+  const ObjResidue* native_;
+  OutputFile out_;
+  std::set<const DataArray*> written_;
+  GatheredVector colors_;
+  std::vector<Index> color_rows_;
+  const std::vector<double>* weights_ = nullptr;
+  std::vector<Index> weight_rows_;
+  GatheredVector vertex_texture_;
+  GatheredVector vertex_normals_;
+  std::vector<const std::int32_t*> texture_;  // of each cell's corners, or none
+  std::vector<const std::int32_t*> normals_;
+  std::array<std::vector<std::int32_t>, kStates.size()> states_;
+  std::array<std::string, kStates.size()> current_;
+  std::vector<Offset> group_offsets_;
+  std::vector<Index> groups_;
+  bool in_group_ = false;
+};
+
+void write_obj(const Mesh& mesh, const fs::path& path, Notes& notes) {
+  refuse_other_cells(mesh, path, "OBJ", obj_holds, "write .vtu or .msh");
+  Writer(mesh, path, notes).write();
+}
+
+}  // namespace
+
+Format obj_format() { return {"OBJ", {".obj"}, false, obj::read, write_obj}; }
+
+}  // namespace meshorder

@@ -1,0 +1,70 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/format.hpp"
+#include "mesh/mesh.hpp"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What the reader and the writer of OBJ files share.
+namespace meshorder::obj {
+
+/// A statement that holds for the cells after it until the next of its kind, and the array that keeps for
+/// each cell which one held: 0 for none, else a number that the residue gives a name. Smoothing groups are
+/// numbers themselves.
+struct State {
+  std::string_view keyword;
+  std::string_view array;
+};
+inline constexpr std::array<State, 9> kStates{{{"o", "object"},
+                                               {"usemtl", kLabel},
+                                               {"s", "smoothing"},
+                                               {"mg", "obj:mg"},
+                                               {"lod", "obj:lod"},
+                                               {"bevel", "obj:bevel"},
+                                               {"c_interp", "obj:c_interp"},
+                                               {"d_interp", "obj:d_interp"},
+                                               {"usemap", "obj:usemap"}}};
+inline constexpr std::size_t kMaterial = 1;
+inline constexpr std::size_t kSmoothing = 2;
+
+/// The homogeneous coordinate of vertices that have one.
+inline constexpr std::string_view kWeight = "obj:weight";
+
+/// Places in the list of texture coordinates (or normals), from 0, of the corners of all cells that have
+/// `corners` corners: lists that reordering leaves alone.
+inline std::string corner_array(std::string_view what, Index corners) {
+  return "obj:" + std::string(what) + std::to_string(corners);
+}
+
+struct ObjResidue : Residue {
+  std::string comments;   ///< whole lines, all of the file
+  std::string libraries;  ///< whole lines: mtllib, maplib, shadow_obj, trace_obj
+  std::string texture;    ///< the lines vt
+  std::string normals;    ///< the lines vn
+  std::array<std::map<std::int32_t, std::string>, kStates.size()> names;
+
+  [[nodiscard]] std::vector<std::string> contents() const override {
+    std::vector<std::string> result;
+    if (!libraries.empty()) result.emplace_back("the names of material libraries");
+    if (!texture.empty()) result.emplace_back("texture coordinates of corners");
+    if (!normals.empty()) result.emplace_back("normals of corners");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      for (const auto& [number, name] : names[i]) {
+        result.push_back(std::string(kStates[i].keyword) + " " + name + ", which is " +
+                         std::to_string(number) + " in the array '" + std::string(kStates[i].array) + "'");
+      }
+    }
+    return result;
+  }
+};
+
+Mesh read(const std::filesystem::path& path, Notes& notes);
+
+}  // namespace meshorder::obj

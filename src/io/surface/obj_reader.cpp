@@ -1,0 +1,395 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/error.hpp"
+#include "io/stream/scanner.hpp"
+#include "io/surface/obj_parts.hpp"
+#include "io/surface/surface_data.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+namespace meshorder::obj {
+namespace {
+
+/// Which name holds for each cell.
+struct Named {
+  std::vector<std::string> names;  ///< by first appearance; cells count them from 1
+  std::unordered_map<std::string, std::int32_t> number_of;
+  std::int32_t current = 0;
+  std::vector<std::int32_t> of_cell;  ///< empty until the first statement
+
+  void set(const std::string& name, Index cells) {
+    if (of_cell.empty()) of_cell.assign(cells, 0);
+    is_used = true;
+    if (name.empty()) {
+      current = 0;
+      return;
+    }
+    const auto [found, is_new] = number_of.try_emplace(name, static_cast<std::int32_t>(names.size()) + 1);
+    if (is_new) names.push_back(name);
+    current = found->second;
+  }
+
+  void add_cell() {
+    if (is_used) of_cell.push_back(current);
+  }
+
+  bool is_used = false;
+};
+
+std::optional<std::int32_t> as_integer(const std::string& text) {
+  std::int32_t value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc{} || end != text.data() + text.size() || std::to_string(value) != text) return {};
+  return value;
+}
+
+/// The numbers that names get: those that they are, when all are whole numbers, else by the alphabet, so that
+/// they do not depend on the order of cells.
+std::map<std::int32_t, std::string> numbered(const Named& named, bool are_numbers) {
+  std::map<std::int32_t, std::string> result;
+  const bool some_without = std::count(named.of_cell.begin(), named.of_cell.end(), 0) > 0;
+  for (const std::string& name : named.names) {
+    const auto number = as_integer(name);
+    if (!number || (*number == 0 && some_without && !are_numbers)) break;
+    result[*number] = name;
+  }
+  if (result.size() == named.names.size()) return result;
+  result.clear();
+  const std::set<std::string> sorted(named.names.begin(), named.names.end());
+  std::int32_t number = 0;
+  for (const std::string& name : sorted) result[++number] = name;
+  return result;
+}
+
+/// Indices of corners, apart for each number of corners.
+struct CornerIndices {
+  struct OfWidth {
+    std::vector<Index> cells;
+    std::vector<std::int32_t> indices;
+  };
+  std::map<Index, OfWidth> by_width;
+
+  void add(Index cell, const std::vector<std::int32_t>& indices) {
+    if (indices.empty()) return;
+    OfWidth& of_width = by_width[index_size(indices)];
+    of_width.cells.push_back(cell);
+    of_width.indices.insert(of_width.indices.end(), indices.begin(), indices.end());
+  }
+};
+
+/// A list (v, vt or vn) and the highest place named before the file gave it.
+struct List {
+  std::string_view name;
+  Index count = 0;
+  Index highest_ahead = -1;
+  std::int64_t line_ahead = 0;
+};
+
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& path) : scanner_(path) {}
+
+  Mesh read() {
+    while (scanner_.bytes_left() > 0) read_statement();
+    for (const List& list : {vertices_, texture_, normals_}) check_ahead(list);
+    add_vertex_arrays();
+    add_corner_arrays("texture", texture_indices_);
+    add_corner_arrays("normal", normal_indices_);
+    add_states();
+    add_groups();
+    mesh_.residue = residue_;
+    return std::move(mesh_);
+  }
+
+ private:
+  /// One line, or several that end in a backslash; taken when it is done, so that errors name it.
+  void read_statement() {
+    std::string_view line = trimmed(scanner_.peek_line());
+    if (!line.empty() && line.back() == '\\') return read_long_statement();
+    read_line(line);
+    (void)scanner_.raw_line();
+  }
+
+  void read_long_statement() {
+    // collected ahead of the scanner, which stays at the first line until all is read
+    std::string joined;
+    int lines = 0;
+    for (std::string_view left = scanner_.all().substr(scanner_.byte()); !left.empty(); ++lines) {
+      const std::size_t length = std::min(left.find_first_of("\r\n"), left.size());
+      std::string_view line = trimmed(left.substr(0, length));
+      const bool goes_on = !line.empty() && line.back() == '\\';
+      if (goes_on) line.remove_suffix(1);
+      joined.append(line).append(" ");
+      left.remove_prefix(std::min(length + (left.substr(length).starts_with("\r\n") ? 2 : 1), left.size()));
+      if (!goes_on) {
+        ++lines;
+        break;
+      }
+    }
+    read_line(trimmed(joined));
+    for (; lines > 0; --lines) (void)scanner_.raw_line();
+  }
+
+  void read_line(std::string_view line) {
+    if (line.empty()) return;
+    if (line.front() == '#') {
+      residue_->comments.append(line).append("\n");
+      return;
+    }
+    std::string_view rest = line;
+    const std::string_view keyword = next_word(rest);
+    const std::string_view numbers = rest.substr(0, rest.find('#'));
+    if (keyword == "v") return read_vertex(numbers);
+    if (keyword == "vt") return read_listed(line, numbers, 1, 3, texture_, residue_->texture);
+    if (keyword == "vn") return read_listed(line, numbers, 3, 3, normals_, residue_->normals);
+    if (keyword == "f") return read_cell(numbers, 2);
+    if (keyword == "l") return read_cell(numbers, 1);
+    if (keyword == "p") return read_cell(numbers, 0);
+    if (keyword == "g") return read_group(rest);
+    for (std::size_t i = 0; i < kStates.size(); ++i) {
+      if (keyword == kStates[i].keyword) return read_state(i, trimmed(rest));
+    }
+    for (const std::string_view library : {"mtllib", "maplib", "shadow_obj", "trace_obj"}) {
+      if (keyword != library) continue;
+      residue_->libraries.append(line).append("\n");
+      return;
+    }
+    refuse(keyword);
+  }
+
+  [[noreturn]] void refuse(std::string_view keyword) const {
+    for (const std::string_view word :
+         {"vp",   "cstype", "deg", "bmat", "step",  "curv",  "curv2", "surf", "parm", "trim", "hole",
+          "scrv", "sp",     "end", "con",  "ctech", "stech", "bsp",   "bzp",  "cdc",  "cdp",  "res"}) {
+      if (keyword == word) {
+        scanner_.fail("free-form geometry ('" + std::string(keyword) + "') is not read",
+                      "convert it to faces");
+      }
+    }
+    std::string shown;
+    for (const char c : keyword.substr(0, 40)) shown += c >= ' ' && c < 127 ? c : '?';
+    scanner_.fail("the statement '" + shown + "' is unknown",
+                  "v, vt, vn, f, l, p, g, o, s, usemtl … are read");
+  }
+
+  double real(std::string_view word, std::string_view what) const {
+    const double value = parse_real(scanner_, word, what);
+    if (!std::isfinite(value))
+      scanner_.fail(std::string(what) + " is not finite", "a finite number is needed");
+    return value;
+  }
+
+  void read_vertex(std::string_view line) {
+    std::array<double, 6> numbers{};
+    std::size_t count = 0;
+    for (auto word = next_word(line); !word.empty(); word = next_word(line)) {
+      if (count == numbers.size())
+        scanner_.fail("a vertex of more than 6 numbers", "x y z, w or r g b are right");
+      numbers[count++] = real(word, "a coordinate");
+    }
+    if (count < 3 || count == 5) {
+      scanner_.fail("a vertex of " + std::to_string(count) + " numbers",
+                    "x y z, x y z w and x y z r g b are right");
+    }
+    const Index v = vertices_.count++;
+    mesh_.points.push_back({numbers[0], numbers[1], numbers[2]});
+    if (count == 4) {
+      weighted_.push_back(v);
+      weights_.push_back(numbers[3]);
+    } else if (count == 6) {
+      colored_.push_back(v);
+      colors_.insert(colors_.end(), numbers.begin() + 3, numbers.end());
+    }
+  }
+
+  /// A line of vt or vn, kept as it stands.
+  void read_listed(std::string_view line, std::string_view numbers, int least, int most, List& list,
+                   std::string& text) {
+    int count = 0;
+    for (auto word = next_word(numbers); !word.empty(); word = next_word(numbers)) {
+      (void)parse_real(scanner_, word, "a number of " + std::string(list.name));
+      ++count;
+    }
+    if (count < least || count > most) {
+      scanner_.fail(fmt::format("a line {} of {} numbers", list.name, count),
+                    least == most ? fmt::format("{} are needed", least)
+                                  : fmt::format("{} to {} are right", least, most));
+    }
+    text.append(line).append("\n");
+    ++list.count;
+  }
+
+  /// The place, from 0, in the list that a number means: from 1, or from the last one back.
+  Index place(std::string_view text, List& list) {
+    const auto number = parse_integer<Index>(scanner_, text, "a number of " + std::string(list.name));
+    if (number < 0 && -static_cast<std::int64_t>(number) <= list.count) return list.count + number;
+    if (number <= 0) fail_missing(list, number);
+    if (number > list.count && number - 1 > list.highest_ahead) {
+      list.highest_ahead = number - 1;
+      list.line_ahead = scanner_.line();
+    }
+    return number - 1;
+  }
+
+  [[noreturn]] void fail_missing(const List& list, Index number) const {
+    scanner_.fail(fmt::format("{} {} does not exist", list.name, number),
+                  fmt::format("there are {} so far, counted from 1 or back from -1", list.count));
+  }
+
+  /// Numbers may point ahead, but not behind the end of the file.
+  void check_ahead(const List& list) const {
+    if (list.highest_ahead < list.count) return;
+    throw Error(Location{scanner_.file(), list.line_ahead, -1},
+                fmt::format("{} {} does not exist", list.name, list.highest_ahead + 1),
+                fmt::format("there are {}, counted from 1", list.count));
+  }
+
+  /// A corner: v, v/vt, v//vn or v/vt/vn.
+  void read_corner(std::string_view corner) {
+    const auto until_slash = [&] {
+      const std::string_view part = corner.substr(0, corner.find('/'));
+      corner.remove_prefix(std::min(corner.size(), part.size() + 1));
+      return part;
+    };
+    const std::string_view whole = corner;
+    corners_.push_back(place(until_slash(), vertices_));
+    const bool has_slash = !corner.empty();
+    const std::string_view texture = until_slash();
+    if (!texture.empty()) corner_texture_.push_back(place(texture, texture_));
+    if (!corner.empty()) corner_normals_.push_back(place(corner, normals_));
+    if ((whole.back() == '/' && !has_slash) || whole.ends_with("//")) {
+      scanner_.fail("a corner ends in a slash", "v, v/vt, v//vn and v/vt/vn are right");
+    }
+  }
+
+  void read_cell(std::string_view line, int dimension) {
+    corners_.clear();
+    corner_texture_.clear();
+    corner_normals_.clear();
+    for (auto word = next_word(line); !word.empty(); word = next_word(line)) read_corner(word);
+    const std::size_t least = static_cast<std::size_t>(dimension) + 1;
+    if (corners_.size() < least) {
+      scanner_.fail(fmt::format("a cell of {} vertices", corners_.size()),
+                    fmt::format("this kind needs at least {}", least));
+    }
+    for (const auto* indices : {&corner_texture_, &corner_normals_}) {
+      if (!indices->empty() && indices->size() != corners_.size()) {
+        scanner_.fail("corners of one cell have different numbers of indices", "write all alike");
+      }
+    }
+    const Index cell = mesh_.cell_count();
+    mesh_.cells.push_back(shape(dimension, corners_.size()), corners_);
+    texture_indices_.add(cell, corner_texture_);
+    normal_indices_.add(cell, corner_normals_);
+    groups_.add_cell();
+    for (Named& state : states_) state.add_cell();
+  }
+
+  static Shape shape(int dimension, std::size_t vertices) {
+    if (dimension == 0) return vertices == 1 ? Shape::vertex : Shape::poly_vertex;
+    if (dimension == 1) return vertices == 2 ? Shape::line : Shape::polyline;
+    return vertices == 3 ? Shape::triangle : vertices == 4 ? Shape::quad : Shape::polygon;
+  }
+
+  void read_group(std::string_view names) {
+    std::string joined;
+    for (auto name = next_word(names); !name.empty(); name = next_word(names)) {
+      joined.append(joined.empty() ? "" : " ").append(name);
+    }
+    groups_.set(joined, mesh_.cell_count());
+  }
+
+  void read_state(std::size_t i, std::string_view name) {
+    std::string text(name);
+    if (i == kSmoothing) {
+      if (text == "off" || text.empty()) text = "0";
+      if (text == "on") text = "1";
+      if (!as_integer(text))
+        scanner_.fail("the smoothing group '" + text.substr(0, 40) + "'", "a number or off");
+    }
+    states_[i].set(text, mesh_.cell_count());
+  }
+
+  void add_partial(std::string name, Attached on, Index components, Values values, std::vector<Index> rows) {
+    if (rows.empty()) return;
+    const Index all = on == Attached::vertices ? mesh_.vertex_count() : mesh_.cell_count();
+    if (index_size(rows) == all) rows.clear();
+    mesh_.data.push_back({std::move(name), on, components, std::move(values), std::move(rows), {}});
+  }
+
+  void add_vertex_arrays() {
+    add_partial(std::string(kWeight), Attached::vertices, 1, std::move(weights_), std::move(weighted_));
+    add_partial(std::string(kColor.name), Attached::vertices, 3, std::move(colors_), std::move(colored_));
+  }
+
+  void add_corner_arrays(std::string_view what, CornerIndices& indices) {
+    for (auto& [width, part] : indices.by_width) {
+      add_partial(corner_array(what, width), Attached::cells, width, std::move(part.indices),
+                  std::move(part.cells));
+    }
+  }
+
+  void add_states() {
+    for (std::size_t i = 0; i < kStates.size(); ++i) {
+      Named& state = states_[i];
+      if (!state.is_used || (state.names.empty() && i != kSmoothing)) continue;
+      residue_->names[i] = numbered(state, i == kSmoothing);
+      std::unordered_map<std::string, std::int32_t> number_of;
+      for (const auto& [number, name] : residue_->names[i]) number_of[name] = number;
+      std::vector<std::int32_t> numbers(state.names.size() + 1, 0);
+      for (std::size_t k = 0; k < state.names.size(); ++k) numbers[k + 1] = number_of[state.names[k]];
+      for (std::int32_t& value : state.of_cell) value = numbers[value];
+      if (i == kSmoothing) residue_->names[i].clear();  // numbers are their own names
+      mesh_.data.push_back(
+          {std::string(kStates[i].array), Attached::cells, 1, std::move(state.of_cell), {}, {}});
+    }
+  }
+
+  /// Each name of a g statement becomes a set, in alphabetical order.
+  void add_groups() {
+    std::map<std::string, std::vector<Index>> members;
+    std::vector<std::vector<std::vector<Index>*>> of_statement(groups_.names.size() + 1);
+    for (std::size_t k = 0; k < groups_.names.size(); ++k) {
+      std::string_view names = groups_.names[k];
+      std::set<std::string> different;
+      for (auto name = next_word(names); !name.empty(); name = next_word(names)) different.emplace(name);
+      for (const std::string& name : different) of_statement[k + 1].push_back(&members[name]);
+    }
+    for (Index c = 0; c < index_size(groups_.of_cell); ++c) {
+      for (std::vector<Index>* set : of_statement[groups_.of_cell[c]]) set->push_back(c);
+    }
+    for (auto& [name, cells] : members) mesh_.sets.push_back({name, Attached::cells, std::move(cells)});
+  }
+
+  Scanner scanner_;
+  Mesh mesh_;
+  std::shared_ptr<ObjResidue> residue_ = std::make_shared<ObjResidue>();
+  List vertices_{"v"};
+  List texture_{"vt"};
+  List normals_{"vn"};
+  std::vector<Index> weighted_;
+  std::vector<double> weights_;
+  std::vector<Index> colored_;
+  std::vector<double> colors_;
+  CornerIndices texture_indices_;
+  CornerIndices normal_indices_;
+  Named groups_;
+  std::array<Named, kStates.size()> states_;
+  std::vector<Index> corners_;  // of the cell that is being read
+  std::vector<std::int32_t> corner_texture_;
+  std::vector<std::int32_t> corner_normals_;
+};
+
+}  // namespace
+
+Mesh read(const std::filesystem::path& path, Notes&) { return Reader(path).read(); }
+
+}  // namespace meshorder::obj

@@ -1,0 +1,375 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Geomview's OFF, http://www.geomview.org/docs/html/OFF.html: [ST][C][N]OFF as text. A vertex may have a
+// normal, a colour and texture coordinates, a face a colour of 1 (an entry of a colour map), 3 or 4 numbers,
+// whole ones from 0 to 255 or real ones from 0 to 1.
+#include "base/error.hpp"
+#include "io/all_formats.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/stream/scanner.hpp"
+#include "io/surface/surface_data.hpp"
+#include "io/unsupported.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace meshorder {
+namespace {
+namespace fs = std::filesystem;
+
+struct OffResidue : Residue {
+  std::string comments;    ///< whole lines that stood before the counts
+  std::int64_t edges = 0;  ///< a count that readers ignore
+
+  [[nodiscard]] std::vector<std::string> contents() const override { return {}; }
+};
+
+/// Numbers after the coordinates of a vertex.
+struct Layout {
+  bool normals = false;
+  bool colors = false;
+  bool texture = false;
+  int color_width = 0;
+  bool one_line_each = true;  ///< every vertex has a line of its own
+};
+
+// ---- reading
+
+void take_comment_lines(Scanner& scanner, std::string& comments) {
+  while (scanner.bytes_left() > 0) {
+    const std::string_view line = trimmed(scanner.peek_line());
+    if (!line.empty() && line.front() != '#') return;
+    if (!line.empty()) comments += std::string(line) + "\n";
+    (void)scanner.raw_line();
+  }
+}
+
+bool is_count(std::string_view word) {
+  return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Reads the keyword up to the first count, which may follow without a blank. The keyword may be missing.
+Layout read_keyword(Scanner& scanner) {
+  Layout layout;
+  const std::string_view word = scanner.peek_word();
+  if (is_count(word)) return layout;
+  std::string_view rest = word;
+  const auto take = [&](std::string_view prefix) {
+    const bool found = rest.starts_with(prefix);
+    if (found) rest.remove_prefix(prefix.size());
+    return found;
+  };
+  layout.texture = take("ST");
+  layout.colors = take("C");
+  layout.normals = take("N");
+  if (take("4") || take("n")) {
+    scanner.fail("points of more than three coordinates (4OFF, nOFF)", "OFF with x, y and z is read");
+  }
+  if (!take("OFF") || (!rest.empty() && !is_count(rest))) {
+    scanner.fail("the file does not begin with OFF", "[ST][C][N]OFF is right");
+  }
+  scanner.seek(scanner.byte() + static_cast<std::int64_t>(word.size() - rest.size()));
+  std::string_view line = scanner.peek_line();
+  if (same_but_for_case(next_word(line), "BINARY")) scanner.fail("is a binary OFF file", "save it as text");
+  return layout;
+}
+
+int words_on_line(std::string_view line) {
+  int count = 0;
+  line = line.substr(0, line.find('#'));
+  while (!next_word(line).empty()) ++count;
+  return count;
+}
+
+/// Completes the layout by the numbers on the first vertex's line: colours have 3 or 4, also without a C.
+void measure_vertices(Scanner& scanner, Layout& layout) {
+  if (scanner.at_end()) return;
+  const int numbers = words_on_line(scanner.peek_line());
+  const int others = 3 + (layout.normals ? 3 : 0) + (layout.texture ? 2 : 0);
+  if (numbers == others && !layout.colors) return;
+  if (numbers == others + 3 || numbers == others + 4) {
+    layout.color_width = numbers - others;
+  } else if (numbers < 3 || numbers > others + 4) {
+    // lines mean nothing; then a colour has Geomview's four numbers
+    layout.one_line_each = false;
+    layout.color_width = layout.colors ? 4 : 0;
+  } else {
+    scanner.fail(
+        "a vertex of " + std::to_string(numbers) + " numbers",
+        std::to_string(others) + (layout.colors ? " and those of a colour are right" : " are right"));
+  }
+}
+
+/// Numbers of which it is known whether all were written as whole ones.
+struct Numbers {
+  std::vector<double> values;
+  bool integers = true;
+
+  void add(Scanner& scanner, std::string_view what) {
+    const std::string_view word = scanner.word(what);
+    integers = integers && word.find_first_not_of("+-0123456789") == std::string_view::npos;
+    values.push_back(parse_real(scanner, word, what));
+  }
+
+  /// As 32-bit integers if all were whole and fit.
+  [[nodiscard]] Values typed() && {
+    const bool fit = std::all_of(values.begin(), values.end(), [](double x) { return std::abs(x) < 2e9; });
+    if (integers && fit) return std::vector<std::int32_t>(values.begin(), values.end());
+    return std::move(values);
+  }
+};
+
+void read_vertices(Scanner& scanner, Index count, const Layout& layout, Mesh& mesh) {
+  mesh.points.resize(count);
+  std::array<Numbers, 3> columns;  // normals, colours, texture coordinates
+  const std::array<int, 3> widths{layout.normals ? 3 : 0, layout.color_width, layout.texture ? 2 : 0};
+  for (Point& point : mesh.points) {
+    const auto expect_more = [&] {
+      if (layout.one_line_each && scanner.at_line_end() && scanner.bytes_left() > 0) {
+        scanner.fail("a vertex has fewer numbers than the first one", "all need the same");
+      }
+    };
+    scanner.at_end();  // to the next line that holds something
+    for (double& x : point) {
+      expect_more();
+      x = scanner.finite("a coordinate");
+    }
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      for (int i = 0; i < widths[k]; ++i) {
+        expect_more();
+        columns[k].add(scanner, "a number of a vertex");
+      }
+    }
+    if (layout.one_line_each && !scanner.at_line_end()) {
+      scanner.fail("a vertex has more numbers than the first one", "all need the same");
+    }
+  }
+  const std::array names{kNormal.name, kColor.name, kTexture.name};
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (widths[k] == 0 || count == 0) continue;
+    Values values = k == 1 ? std::move(columns[k]).typed() : Values(std::move(columns[k].values));
+    mesh.data.push_back({std::string(names[k]), Attached::vertices, widths[k], std::move(values), {}, {}});
+  }
+}
+
+Shape face_shape(Index vertices) {
+  constexpr std::array kShapesOf{Shape::vertex, Shape::line, Shape::triangle, Shape::quad};
+  return vertices <= 4 ? kShapesOf[vertices - 1] : Shape::polygon;
+}
+
+/// Colours of one width and kind, and the faces that have them.
+struct ColorGroup {
+  std::vector<Index> rows;
+  Numbers numbers;
+};
+
+constexpr int kMostColors = 4;
+using ColorGroups =
+    std::array<ColorGroup, std::size_t{2} * (kMostColors + 1)>;  // by 2 · width + whether whole
+
+void read_color(Scanner& scanner, Index face, ColorGroups& groups) {
+  if (scanner.at_line_end()) return;
+  Numbers color;
+  while (!scanner.at_line_end()) color.add(scanner, "a colour");
+  const std::size_t width = color.values.size();
+  if (width == 2 || width > kMostColors) {
+    scanner.fail("a face is followed by " + std::to_string(width) + " numbers",
+                 "a colour has 1, 3 or 4, and each face a line of its own");
+  }
+  ColorGroup& group = groups[2 * width + (color.integers ? 1 : 0)];
+  group.rows.push_back(face);
+  group.numbers.integers = color.integers;
+  group.numbers.values.insert(group.numbers.values.end(), color.values.begin(), color.values.end());
+}
+
+void add_colors(ColorGroups groups, Mesh& mesh) {
+  const auto used =
+      std::count_if(groups.begin(), groups.end(), [](const auto& g) { return !g.rows.empty(); });
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    ColorGroup& group = groups[i];
+    if (group.rows.empty()) continue;
+    std::string name(kColor.name);
+    if (used > 1) name += fmt::format("_{}{}", i % 2 == 1 ? 'i' : 'f', i / 2);
+    if (index_size(group.rows) == mesh.cell_count()) group.rows.clear();
+    mesh.data.push_back({name,
+                         Attached::cells,
+                         static_cast<Index>(i / 2),
+                         std::move(group.numbers).typed(),
+                         std::move(group.rows),
+                         {}});
+  }
+}
+
+void read_faces(Scanner& scanner, Index count, Mesh& mesh) {
+  mesh.cells.reserve(count, Offset{3} * count);
+  ColorGroups colors;
+  std::vector<Index> face;
+  for (Index f = 0; f < count; ++f) {
+    const Index size = scanner.count("the number of a face's vertices", 2);
+    if (size == 0) scanner.fail("a face without vertices", "at least one is needed");
+    face.resize(size);
+    for (Index& vertex : face) {
+      vertex = scanner.integer<Index>("a vertex of a face");
+      if (vertex < 0 || vertex >= mesh.vertex_count()) {
+        scanner.fail("a face names vertex " + std::to_string(vertex),
+                     "there are " + std::to_string(mesh.vertex_count()) + ", counted from 0");
+      }
+    }
+    mesh.cells.push_back(face_shape(size), face);
+    read_color(scanner, f, colors);
+  }
+  add_colors(std::move(colors), mesh);
+}
+
+Mesh read_off(const fs::path& path, Notes&) {
+  Scanner scanner(path, '#');
+  auto residue = std::make_shared<OffResidue>();
+  take_comment_lines(scanner, residue->comments);
+  Layout layout = read_keyword(scanner);
+  if (scanner.at_line_end()) take_comment_lines(scanner, residue->comments);
+
+  constexpr int kLeastVertex = 6;  // "0 0 0" and a line end
+  constexpr int kLeastFace = 4;    // "1 0" and a line end
+  const Index vertices = scanner.count("the number of vertices", kLeastVertex);
+  const Index faces = scanner.count("the number of faces", kLeastFace);
+  if (!scanner.at_line_end()) residue->edges = scanner.integer<std::int64_t>("the number of edges");
+
+  Mesh mesh;
+  measure_vertices(scanner, layout);
+  read_vertices(scanner, vertices, layout, mesh);
+  read_faces(scanner, faces, mesh);
+  if (!scanner.at_end()) {
+    scanner.fail("more follows after " + std::to_string(faces) + " faces", "the counts may be wrong");
+  }
+  mesh.residue = std::move(residue);
+  return mesh;
+}
+
+// ---- writing
+
+bool off_holds(Shape shape, int vertices) {
+  return shape == Shape::polygon || (dimension(shape) <= 2 && shape != Shape::poly_vertex &&
+                                     shape != Shape::polyline && vertices == corners(shape, 0));
+}
+
+/// What of the mesh's arrays goes into the file.
+struct Content {
+  GatheredVector normals;
+  GatheredVector colors;
+  GatheredVector texture;
+  GatheredVector face_colors;
+  /// Colours of some faces: the array and the row for each face, or none.
+  std::vector<std::pair<const DataArray*, Index>> color_rows;
+  std::vector<const DataArray*> written;
+};
+
+bool is_face_color(const DataArray& array) {
+  const bool width_fits = array.components == 1 || array.components == 3 || array.components == 4;
+  return array.on == Attached::cells && width_fits &&
+         (array.name == kColor.name || array.name.starts_with(std::string(kColor.name) + "_")) &&
+         !std::holds_alternative<std::vector<std::string>>(array.values);
+}
+
+void collect_face_colors(const Mesh& mesh, Content& content) {
+  content.face_colors = gather(mesh, kColor, Attached::cells);
+  if (content.face_colors.width > 0) return;
+  content.color_rows.resize(mesh.cells.shapes.size(), {nullptr, 0});
+  for (const DataArray& array : mesh.data) {
+    if (!is_face_color(array)) continue;
+    content.written.push_back(&array);
+    for (Index row = 0; row < row_count(array); ++row) {
+      content.color_rows[array.covers_all() ? row : array.rows[row]] = {&array, row};
+    }
+  }
+}
+
+Content content_of(const Mesh& mesh) {
+  Content content;
+  content.normals = gather(mesh, kNormal, Attached::vertices);
+  content.colors = gather(mesh, kColor, Attached::vertices);
+  content.texture = gather(mesh, kTexture, Attached::vertices);
+  collect_face_colors(mesh, content);
+  for (const auto* part : {&content.normals, &content.colors, &content.texture, &content.face_colors}) {
+    content.written.insert(content.written.end(), part->from.begin(), part->from.end());
+  }
+  return content;
+}
+
+void note_losses(const Mesh& mesh, const Content& content, Notes& notes) {
+  for (const DataArray& array : mesh.data) {
+    if (std::find(content.written.begin(), content.written.end(), &array) != content.written.end()) continue;
+    note_array_left_out(array, "OFF", notes);
+  }
+  for (const Set& set : mesh.sets) note_set_left_out(set, "OFF", notes);
+  note_ids_left_out(mesh, "OFF", notes);
+  note_residue_left_out(mesh, "OFF", notes);
+}
+
+void write_numbers(OutputFile& out, std::span<const double> numbers) {
+  for (const double x : numbers) out.print(" {}", x);
+}
+
+/// A real colour keeps its point, as 1 and 1.0 differ in OFF.
+void write_color(OutputFile& out, std::span<const double> color, bool integers) {
+  for (const double x : color) {
+    std::string text = fmt::format("{}", x);
+    if (!integers && text.find_first_not_of("+-0123456789") == std::string::npos) text += ".0";
+    out.print(" {}", text);
+  }
+}
+
+void write_face_color(OutputFile& out, const Content& content, Index face) {
+  if (content.face_colors.width > 0) {
+    return write_color(out, content.face_colors[face], content.face_colors.integers);
+  }
+  const DataArray* const array = content.color_rows[face].first;
+  const Offset row = content.color_rows[face].second;
+  if (!array) return;
+  std::visit(
+      [&](const auto& values) {
+        if constexpr (std::is_arithmetic_v<typename std::decay_t<decltype(values)>::value_type>) {
+          for (Index k = 0; k < array->components; ++k) {
+            const auto x = static_cast<double>(values[row * array->components + k]);
+            write_color(out, {&x, 1}, holds_integers(array->values));
+          }
+        }
+      },
+      array->values);
+}
+
+void write_off(const Mesh& mesh, const fs::path& path, Notes& notes) {
+  refuse_other_cells(mesh, path, "OFF", off_holds, "write .vtu or .msh");
+  const Content content = content_of(mesh);
+  const auto* residue = dynamic_cast<const OffResidue*>(mesh.residue.get());
+  OutputFile out(path);
+  out.print("{}{}{}OFF\n", content.texture.width > 0 ? "ST" : "", content.colors.width > 0 ? "C" : "",
+            content.normals.width > 0 ? "N" : "");
+  if (residue) out.write(residue->comments);
+  out.print("{} {} {}\n", mesh.vertex_count(), mesh.cell_count(), residue ? residue->edges : 0);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    const Point& p = mesh.points[v];
+    out.print("{} {} {}", p[0], p[1], p[2]);
+    if (content.normals.width > 0) write_numbers(out, content.normals[v]);
+    if (content.colors.width > 0) write_color(out, content.colors[v], content.colors.integers);
+    if (content.texture.width > 0) write_numbers(out, content.texture[v]);
+    out.write("\n");
+  }
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    out.print("{}", mesh.cells.vertex_count(c));
+    for (const Index v : mesh.cells[c]) out.print(" {}", v);
+    write_face_color(out, content, c);
+    out.write("\n");
+  }
+  out.commit();
+  note_losses(mesh, content, notes);
+}
+
+}  // namespace
+
+Format off_format() { return {"OFF", {".off"}, false, read_off, write_off}; }
+
+}  // namespace meshorder

@@ -1,0 +1,496 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// PLY, the Stanford triangle format: Greg Turk, "The PLY Polygon File Format" (1994),
+// https://paulbourke.net/dataformats/ply/, as text and binary in either byte order. Vertices, faces, edges
+// and tetrahedra are understood with all their properties.
+#include "base/error.hpp"
+#include "io/all_formats.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/surface/ply_parts.hpp"
+#include "io/surface/surface_data.hpp"
+#include "io/unsupported.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+namespace {
+namespace fs = std::filesystem;
+using ply::Element;
+using ply::Encoding;
+using ply::PlyResidue;
+using ply::Property;
+using ply::Role;
+using ply::Type;
+using ply::TypeWord;
+
+/// Where a property's numbers come from.
+struct Source {
+  const DataArray* array = nullptr;
+  Index component = 0;        ///< of a property that is no list
+  std::vector<Index> row_of;  ///< the row of each vertex or cell, −1 for none; empty when it is itself
+};
+
+/// A property to be written; without a source its numbers are coordinates or vertices of cells.
+struct Column {
+  Property property;
+  std::vector<Source> sources;  ///< several for a list whose lengths differ
+};
+
+/// An element to be written.
+struct Table {
+  Element element;
+  std::vector<Index> items;  ///< its vertices or cells
+  std::vector<Column> columns;
+};
+
+TypeWord word_of(const Values& values) {
+  constexpr std::array<std::pair<std::string_view, Type>, 8> kWords{{{"double", Type::float64},
+                                                                     {"float", Type::float32},
+                                                                     {"char", Type::int8},
+                                                                     {"uchar", Type::uint8},
+                                                                     {"short", Type::int16},
+                                                                     {"ushort", Type::uint16},
+                                                                     {"int", Type::int32},
+                                                                     {"uint", Type::uint32}}};
+  const std::size_t i = values.index();  // in the order of Values
+  return i < kWords.size() ? TypeWord{std::string(kWords[i].first), kWords[i].second} : TypeWord{};
+}
+
+/// The type in which 64-bit integers can be written: PLY has none.
+TypeWord word_for_wide(const Values& values) {
+  const std::vector<double> numbers = as_reals(values);
+  const bool fit = std::all_of(numbers.begin(), numbers.end(), [](double x) {
+    return x >= std::numeric_limits<std::int32_t>::min() && x <= std::numeric_limits<std::int32_t>::max();
+  });
+  return fit ? TypeWord{"int", Type::int32} : TypeWord{"double", Type::float64};
+}
+
+TypeWord written_type(const Values& values) {
+  const bool wide = std::holds_alternative<std::vector<std::int64_t>>(values) ||
+                    std::holds_alternative<std::vector<std::uint64_t>>(values);
+  return wide ? word_for_wide(values) : word_of(values);
+}
+
+Index item_count(const Mesh& mesh, Attached on) {
+  return on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
+}
+
+Source source_of(const Mesh& mesh, const DataArray& array, Index component) {
+  Source source{&array, component, {}};
+  if (array.covers_all()) return source;
+  source.row_of.assign(item_count(mesh, array.on), -1);
+  for (Index row = 0; row < index_size(array.rows); ++row) source.row_of[array.rows[row]] = row;
+  return source;
+}
+
+Index row_in(const Source& source, Index item) { return source.row_of.empty() ? item : source.row_of[item]; }
+
+// ---- which elements, with which cells
+
+Role usual_role(Shape shape) {
+  return shape == Shape::tetrahedron ? Role::tetrahedra : shape == Shape::line ? Role::edges : Role::faces;
+}
+
+/// Whether the elements of the file fit the cells of the mesh, block by block.
+bool elements_fit(const PlyResidue& residue, const Mesh& mesh) {
+  Index cell = 0;
+  for (const Element& element : residue.elements) {
+    if (element.role == Role::vertices && element.count != mesh.vertex_count()) return false;
+    if (!ply::holds_cells(element)) continue;
+    if (element.count > mesh.cell_count() - cell) return false;
+    for (const Index end = cell + element.count; cell < end; ++cell) {
+      const Shape shape = mesh.cells.shapes[cell];
+      const bool is_tetrahedron = shape == Shape::tetrahedron;
+      if (is_tetrahedron != (element.role == Role::tetrahedra)) return false;
+      if (element.role == Role::edges && shape != Shape::line) return false;
+    }
+  }
+  return cell == mesh.cell_count();
+}
+
+std::vector<Table> tables_of_file(const PlyResidue& residue) {
+  std::vector<Table> tables;
+  Index cell = 0;
+  for (const Element& element : residue.elements) {
+    Table& table = tables.emplace_back(Table{element, {}, {}});
+    if (element.role == Role::other) continue;
+    table.items.resize(element.count);
+    const bool cells = ply::holds_cells(element);
+    std::iota(table.items.begin(), table.items.end(), cells ? cell : 0);
+    if (cells) cell += element.count;
+  }
+  return tables;
+}
+
+Property scalar(std::string name, TypeWord type) { return {std::move(name), std::move(type), false, {}}; }
+
+std::vector<Property> usual_properties(Role role) {
+  const TypeWord whole{"int", Type::int32};
+  switch (role) {
+    case Role::vertices: {
+      const TypeWord real{"double", Type::float64};
+      return {scalar("x", real), scalar("y", real), scalar("z", real)};
+    }
+    case Role::edges:
+      return {scalar("vertex1", whole), scalar("vertex2", whole)};
+    default:
+      return {{"vertex_indices", whole, true, {"uchar", Type::uint8}}};
+  }
+}
+
+std::vector<Table> usual_tables(const Mesh& mesh) {
+  constexpr std::array<std::pair<Role, std::string_view>, 3> kCellElements{
+      {{Role::faces, "face"}, {Role::edges, "edge"}, {Role::tetrahedra, "tetra"}}};
+  std::vector<Table> tables;
+  Table& vertices = tables.emplace_back();
+  vertices.element = {"vertex", mesh.vertex_count(), usual_properties(Role::vertices), Role::vertices, ""};
+  vertices.items.resize(mesh.points.size());
+  std::iota(vertices.items.begin(), vertices.items.end(), 0);
+  for (const auto& [role, name] : kCellElements) {
+    Table table;
+    for (Index c = 0; c < mesh.cell_count(); ++c) {
+      if (usual_role(mesh.cells.shapes[c]) == role) table.items.push_back(c);
+    }
+    if (table.items.empty()) continue;
+    table.element = {std::string(name), index_size(table.items), usual_properties(role), role, ""};
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+// ---- which properties
+
+/// Gathers the columns of one table, and remembers which arrays went into them.
+class Columns {
+ public:
+  Columns(const Mesh& mesh, Table& table, std::vector<const DataArray*>& written, Notes& notes)
+      : mesh_(mesh),
+        table_(table),
+        written_(written),
+        notes_(notes),
+        on_(table.element.role == Role::vertices ? Attached::vertices : Attached::cells),
+        is_item_(item_count(mesh, on_), false) {
+    for (const Index item : table.items) is_item_[item] = true;
+  }
+
+  void collect() {
+    for (const Property& property : table_.element.properties) add_known(property);
+    for (const SurfaceVector* vector : {&kNormal, &kColor, &kTexture}) add_vector(*vector);
+    for (const DataArray& array : mesh_.data) {
+      if (array.on == on_ && !is_used(array) && rows_inside(array) > 0) add_other(array);
+    }
+  }
+
+ private:
+  /// How many rows of the array belong to things of this table.
+  [[nodiscard]] Index rows_inside(const DataArray& array) const {
+    if (array.covers_all()) return index_size(table_.items);
+    return static_cast<Index>(
+        std::count_if(array.rows.begin(), array.rows.end(), [&](Index row) { return is_item_[row]; }));
+  }
+
+  [[nodiscard]] bool is_used(const DataArray& array) const {
+    return std::find(used_.begin(), used_.end(), &array) != used_.end();
+  }
+
+  void use(const DataArray& array) {
+    used_.push_back(&array);
+    written_.push_back(&array);
+  }
+
+  [[nodiscard]] bool is_taken(const std::string& name) const {
+    return std::any_of(table_.columns.begin(), table_.columns.end(),
+                       [&](const Column& column) { return column.property.name == name; });
+  }
+
+  [[nodiscard]] bool is_geometry(const Property& property) const {
+    switch (table_.element.role) {
+      case Role::vertices:
+        return ply::coordinate_of(property) >= 0;
+      case Role::edges:
+        return ply::end_of(property) >= 0;
+      default:
+        return ply::is_corner_list(property);
+    }
+  }
+
+  /// A property that the file had, with the arrays of its name.
+  void add_known(const Property& property) {
+    Column column{property, {}};
+    if (is_geometry(property)) return table_.columns.push_back(widened(std::move(column)));
+    for (const DataArray& array : mesh_.data) {
+      const bool fits = array.on == on_ && array.name == property.name && rows_inside(array) > 0 &&
+                        word_of(array.values).type == property.type.type && array.values.index() < 8 &&
+                        (property.is_list || covers_table(array));
+      if (!fits || (!property.is_list && !column.sources.empty())) continue;
+      column.sources.push_back(source_of(mesh_, array, 0));
+      use(array);
+    }
+    // a list may be empty everywhere; another property without an array is gone
+    if (property.is_list || !column.sources.empty() || table_.items.empty()) {
+      table_.columns.push_back(std::move(column));
+    }
+  }
+
+  [[nodiscard]] bool covers_table(const DataArray& array) const {
+    return array.components == 1 && rows_inside(array) == index_size(table_.items);
+  }
+
+  /// Vertices of cells need types that hold every vertex's number after reordering, and every cell's length.
+  [[nodiscard]] Column widened(Column column) const {
+    if (table_.element.role == Role::vertices) return column;
+    constexpr std::array<std::int64_t, 6> kLargest{127, 255, 32767, 65535, 2147483647, 4294967295};
+    const auto holds = [&](const TypeWord& type, std::int64_t number) {
+      return number <= kLargest[static_cast<std::size_t>(type.type)];
+    };
+    const TypeWord whole{"int", Type::int32};
+    if (!holds(column.property.type, mesh_.vertex_count() - 1)) column.property.type = whole;
+    if (!column.property.is_list) return column;
+    for (const Index cell : table_.items) {
+      if (!holds(column.property.count_type, mesh_.cells.vertex_count(cell)))
+        column.property.count_type = whole;
+    }
+    return column;
+  }
+
+  /// A normal, colour or texture coordinates of several components, as single properties of the usual names.
+  void add_vector(const SurfaceVector& vector) {
+    const GatheredVector gathered = gather(mesh_, vector, on_);
+    if (gathered.from.size() != 1 || is_used(*gathered.from[0]) || table_.items.empty()) return;
+    const DataArray& array = *gathered.from[0];
+    for (const std::string_view component : vector.components) {
+      if (is_taken(std::string(component))) return;
+    }
+    TypeWord type = written_type(array.values);
+    // whole colours from 0 to 255 are usual as bytes
+    const bool bytes = &vector == &kColor && gathered.integers &&
+                       std::all_of(gathered.values.begin(), gathered.values.end(),
+                                   [](double x) { return x >= 0 && x <= 255; });
+    if (bytes) type = {"uchar", Type::uint8};
+    for (Index k = 0; k < array.components; ++k) {
+      table_.columns.push_back(
+          {scalar(std::string(vector.components[k]), type), {source_of(mesh_, array, k)}});
+    }
+    use(array);
+  }
+
+  /// Any other array: a property of its name, or a list where it has several components or gaps.
+  void add_other(const DataArray& array) {
+    if (std::holds_alternative<std::vector<std::string>>(array.values)) return;
+    std::string name = array.name;
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return c <= ' '; }, '_');
+    const Property as_scalar = scalar(name, {});
+    const bool reserved = is_geometry(as_scalar) || ply::is_corner_list({name, {}, true, {}});
+    if (name.empty() || reserved || is_taken(name)) return;
+    if (name != array.name) note(fmt::format("the array '{}' is written as '{}'", array.name, name));
+    Property property = scalar(name, written_type(array.values));
+    property.is_list = !covers_table(array);
+    if (property.is_list && ply::is_integer(property.type.type) && property.type.type != Type::uint8 &&
+        property.type.type != Type::int8) {
+      property.type = {"double", Type::float64};  // lists of whole numbers are taken for indices
+      note(fmt::format("the array '{}' is written as real numbers", array.name));
+    }
+    property.count_type =
+        array.components <= 255 ? TypeWord{"uchar", Type::uint8} : TypeWord{"int", Type::int32};
+    table_.columns.push_back({property, {source_of(mesh_, array, 0)}});
+    use(array);
+  }
+
+  /// Notes once what concerns several elements.
+  void note(const std::string& text) {
+    if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
+  }
+
+  const Mesh& mesh_;
+  Table& table_;
+  std::vector<const DataArray*>& written_;
+  Notes& notes_;
+  Attached on_;
+  std::vector<bool> is_item_;
+  std::vector<const DataArray*> used_;
+};
+
+// ---- writing
+
+void write_property(OutputFile& out, const Property& property) {
+  out.print("property ");
+  if (property.is_list) out.print("list {} ", property.count_type.word);
+  out.print("{} {}\n", property.type.word, property.name);
+}
+
+void write_header(OutputFile& out, Encoding encoding, const PlyResidue* residue,
+                  const std::vector<Table>& tables) {
+  constexpr std::array<std::string_view, 3> kNames{"ascii", "binary_little_endian", "binary_big_endian"};
+  out.print("ply\nformat {} 1.0\n", kNames[static_cast<std::size_t>(encoding)]);
+  if (residue) {
+    for (const std::string& comment : residue->comments) out.print("{}\n", comment);
+  }
+  for (const Table& table : tables) {
+    out.print("element {} {}\n", table.element.name, table.element.count);
+    if (table.element.role == Role::other) {
+      for (const Property& property : table.element.properties) write_property(out, property);
+    }
+    for (const Column& column : table.columns) write_property(out, column.property);
+  }
+  out.write("end_header\n");
+}
+
+/// Writes the body's numbers in the encoding, each line of text with blanks between them.
+class Body {
+ public:
+  Body(OutputFile& out, Encoding encoding) : out_(out), encoding_(encoding) {}
+
+  template <class T>
+  void number(Type type, T value) {
+    switch (type) {
+      case Type::int8:
+        return put(static_cast<std::int8_t>(value));
+      case Type::uint8:
+        return put(static_cast<std::uint8_t>(value));
+      case Type::int16:
+        return put(static_cast<std::int16_t>(value));
+      case Type::uint16:
+        return put(static_cast<std::uint16_t>(value));
+      case Type::int32:
+        return put(static_cast<std::int32_t>(value));
+      case Type::uint32:
+        return put(static_cast<std::uint32_t>(value));
+      case Type::float32:
+        return put(static_cast<float>(value));
+      case Type::float64:
+        return put(static_cast<double>(value));
+    }
+  }
+
+  /// Text keeps the digits that a coordinate has, whatever its type.
+  void coordinate(Type type, double value) {
+    if (encoding_ == Encoding::ascii) return put(value);
+    if (type == Type::float32) rounded_ = rounded_ || static_cast<double>(static_cast<float>(value)) != value;
+    number(type, value);
+  }
+
+  void end_line() {
+    if (encoding_ == Encoding::ascii) out_.write("\n");
+    at_start_ = true;
+  }
+
+  [[nodiscard]] bool rounded() const { return rounded_; }
+
+ private:
+  template <class T>
+  void put(T value) {
+    if (encoding_ == Encoding::ascii) {
+      if (!at_start_) out_.write(" ");
+      at_start_ = false;
+      out_.print("{}", value);
+    } else {
+      out_.binary(value, encoding_ == Encoding::big_endian ? std::endian::big : std::endian::little);
+    }
+  }
+
+  OutputFile& out_;
+  Encoding encoding_;
+  bool at_start_ = true;
+  bool rounded_ = false;
+};
+
+/// `count` numbers of the array from that entry on.
+void write_values(Body& body, Type type, const DataArray& array, Offset first, Index count) {
+  std::visit(
+      [&](const auto& values) {
+        if constexpr (std::is_arithmetic_v<typename std::decay_t<decltype(values)>::value_type>) {
+          for (Index k = 0; k < count; ++k) body.number(type, values[first + k]);
+        }
+      },
+      array.values);
+}
+
+void write_attached(Body& body, const Column& column, Index item) {
+  const Property& property = column.property;
+  for (const Source& source : column.sources) {
+    const Index row = row_in(source, item);
+    if (row < 0) continue;
+    const Offset first = static_cast<Offset>(row) * source.array->components;
+    if (!property.is_list) {
+      return write_values(body, property.type.type, *source.array, first + source.component, 1);
+    }
+    body.number(property.count_type.type, source.array->components);
+    return write_values(body, property.type.type, *source.array, first, source.array->components);
+  }
+  body.number(property.count_type.type, 0);  // an empty list
+}
+
+void write_corners(Body& body, const Property& property, std::span<const Index> corners) {
+  body.number(property.count_type.type, index_size(corners));
+  for (const Index v : corners) body.number(property.type.type, v);
+}
+
+void write_item(Body& body, const Mesh& mesh, const Table& table, Index item) {
+  for (const Column& column : table.columns) {
+    const Property& property = column.property;
+    const Role role = table.element.role;
+    if (role == Role::vertices && ply::coordinate_of(property) >= 0) {
+      body.coordinate(property.type.type, mesh.points[item][ply::coordinate_of(property)]);
+    } else if (role == Role::edges && ply::end_of(property) >= 0) {
+      body.number(property.type.type, mesh.cells[item][ply::end_of(property)]);
+    } else if (role != Role::vertices && role != Role::edges && ply::is_corner_list(property)) {
+      write_corners(body, property, mesh.cells[item]);
+    } else {
+      write_attached(body, column, item);
+    }
+  }
+  body.end_line();
+}
+
+bool ply_holds(Shape shape, int vertices) {
+  return shape == Shape::polygon ||
+         (vertices == corners(shape, 0) && (dimension(shape) <= 2 || shape == Shape::tetrahedron));
+}
+
+void note_losses(const Mesh& mesh, const std::vector<const DataArray*>& written, Notes& notes) {
+  for (const DataArray& array : mesh.data) {
+    if (std::find(written.begin(), written.end(), &array) == written.end())
+      note_array_left_out(array, "PLY", notes);
+  }
+  for (const Set& set : mesh.sets) note_set_left_out(set, "PLY", notes);
+  note_ids_left_out(mesh, "PLY", notes);
+}
+
+void write_ply(const Mesh& mesh, const fs::path& path, Notes& notes) {
+  refuse_other_cells(mesh, path, "PLY", ply_holds, "write .vtu or .msh");
+  const auto* residue = dynamic_cast<const PlyResidue*>(mesh.residue.get());
+  const bool as_file = residue && elements_fit(*residue, mesh);
+  std::vector<Table> tables = as_file ? tables_of_file(*residue) : usual_tables(mesh);
+  std::vector<const DataArray*> written;
+  for (Table& table : tables) {
+    if (table.element.role != Role::other) Columns(mesh, table, written, notes).collect();
+  }
+
+  const Encoding encoding = residue ? residue->encoding : Encoding::little_endian;
+  OutputFile out(path);
+  write_header(out, encoding, residue, tables);
+  Body body(out, encoding);
+  for (const Table& table : tables) {
+    if (table.element.role == Role::other) out.write(table.element.content);
+    for (const Index item : table.items) write_item(body, mesh, table, item);
+  }
+  out.commit();
+  if (body.rounded()) notes.emplace_back("coordinates are rounded to 32 bits, as the file has them");
+  note_losses(mesh, written, notes);
+  if (!as_file) note_residue_left_out(mesh, "PLY", notes);
+}
+
+}  // namespace
+
+Format ply_format() { return {"PLY", {".ply"}, false, ply::read, write_ply}; }
+
+}  // namespace meshorder

@@ -1,0 +1,84 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/format.hpp"
+#include "mesh/mesh.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What the reader and the writer of PLY files share.
+namespace meshorder::ply {
+
+enum class Encoding : std::uint8_t { ascii, little_endian, big_endian };
+
+enum class Type : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+inline bool is_integer(Type type) { return type < Type::float32; }
+
+/// A number type as a header spells it: "uchar" or "uint8".
+struct TypeWord {
+  std::string word;
+  Type type = Type::int32;
+};
+
+struct Property {
+  std::string name;
+  TypeWord type;
+  bool is_list = false;
+  TypeWord count_type;  ///< of a list
+};
+
+/// What the things of an element are: vertices, cells of some kind, or none of our business.
+enum class Role : std::uint8_t { vertices, faces, edges, tetrahedra, other };
+
+struct Element {
+  std::string name;
+  Index count = 0;
+  std::vector<Property> properties;
+  Role role = Role::other;
+  std::string content;  ///< of others: the lines or bytes as they stand
+};
+
+inline bool holds_cells(const Element& element) {
+  return element.role != Role::vertices && element.role != Role::other;
+}
+
+struct PlyResidue : Residue {
+  Encoding encoding = Encoding::ascii;
+  std::vector<std::string> comments;  ///< whole lines, obj_info as well
+  std::vector<Element> elements;
+
+  [[nodiscard]] std::vector<std::string> contents() const override {
+    std::vector<std::string> result;
+    for (const Element& element : elements) {
+      if (element.role == Role::other) result.push_back("the element '" + element.name + "'");
+    }
+    return result;
+  }
+};
+
+/// Whether the property is the list of a cell's vertices.
+inline bool is_corner_list(const Property& property) {
+  return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+/// 0, 1, 2 for x, y, z; −1 for others.
+inline int coordinate_of(const Property& property) {
+  if (property.is_list || property.name.size() != 1) return -1;
+  const auto place = std::string_view("xyz").find(property.name);
+  return place == std::string_view::npos ? -1 : static_cast<int>(place);
+}
+
+/// 0 or 1 for the ends of an edge; −1 for others.
+inline int end_of(const Property& property) {
+  if (property.is_list) return -1;
+  return property.name == "vertex1" ? 0 : property.name == "vertex2" ? 1 : -1;
+}
+
+Mesh read(const std::filesystem::path& path, Notes& notes);
+
+}  // namespace meshorder::ply

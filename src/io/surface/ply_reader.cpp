@@ -1,0 +1,529 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/error.hpp"
+#include "io/stream/scanner.hpp"
+#include "io/surface/ply_parts.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+
+namespace meshorder::ply {
+namespace {
+
+constexpr std::string_view kRemedy = "see 'element vertex N', 'property float x' …";
+
+// ---- header
+
+struct NamedType {
+  std::string_view word;
+  Type type;
+};
+constexpr std::array kTypes{NamedType{"char", Type::int8},      NamedType{"int8", Type::int8},
+                            NamedType{"uchar", Type::uint8},    NamedType{"uint8", Type::uint8},
+                            NamedType{"short", Type::int16},    NamedType{"int16", Type::int16},
+                            NamedType{"ushort", Type::uint16},  NamedType{"uint16", Type::uint16},
+                            NamedType{"int", Type::int32},      NamedType{"int32", Type::int32},
+                            NamedType{"uint", Type::uint32},    NamedType{"uint32", Type::uint32},
+                            NamedType{"float", Type::float32},  NamedType{"float32", Type::float32},
+                            NamedType{"double", Type::float64}, NamedType{"float64", Type::float64}};
+
+TypeWord parse_type(const Scanner& scanner, std::string_view word) {
+  for (const NamedType& type : kTypes) {
+    if (type.word == word) return {std::string(word), type.type};
+  }
+  scanner.fail("the type '" + std::string(word.substr(0, 40)) + "' is unknown",
+               "char … double, int8 … float64");
+}
+
+Encoding parse_encoding(const Scanner& scanner, std::string_view line) {
+  const std::string_view name = next_word(line);
+  if (next_word(line) != "1.0") scanner.fail("the version of the format is unknown", "1.0 is read");
+  if (name == "ascii") return Encoding::ascii;
+  if (name == "binary_little_endian") return Encoding::little_endian;
+  if (name == "binary_big_endian") return Encoding::big_endian;
+  scanner.fail("the encoding '" + std::string(name.substr(0, 40)) + "' is unknown",
+               "ascii, binary_little_endian and binary_big_endian are read");
+}
+
+Role role_of(std::string_view name) {
+  if (name == "vertex") return Role::vertices;
+  if (name == "face") return Role::faces;
+  if (name == "edge") return Role::edges;
+  for (const std::string_view word : {"tetra", "tet", "tets", "tetrahedra", "tetrahedron"}) {
+    if (name == word) return Role::tetrahedra;
+  }
+  return Role::other;
+}
+
+Element parse_element(const Scanner& scanner, std::string_view line) {
+  Element element;
+  element.name = next_word(line);
+  const auto count = parse_integer<std::int64_t>(scanner, next_word(line), "the number of an element");
+  element.count = scanner.checked_count(count, "the number of " + element.name, 1);
+  element.role = role_of(element.name);
+  if (element.name == "tristrips") {
+    scanner.fail("triangle strips (the element tristrips) are not read", "convert them to faces");
+  }
+  return element;
+}
+
+Property parse_property(const Scanner& scanner, std::string_view line) {
+  Property property;
+  std::string_view word = next_word(line);
+  property.is_list = word == "list";
+  if (property.is_list) {
+    property.count_type = parse_type(scanner, next_word(line));
+    if (!is_integer(property.count_type.type)) {
+      scanner.fail("a list with a count that is no whole number", "uchar or int is usual");
+    }
+    word = next_word(line);
+  }
+  property.type = parse_type(scanner, word);
+  property.name = next_word(line);
+  if (property.name.empty()) scanner.fail("a property without a name", std::string(kRemedy));
+  return property;
+}
+
+/// Numbers as wide as this could be those of vertices or faces.
+bool could_be_indices(const Property& property) {
+  return is_integer(property.type.type) && property.type.type != Type::int8 &&
+         property.type.type != Type::uint8;
+}
+
+bool has(const Element& element, auto&& predicate) {
+  return std::any_of(element.properties.begin(), element.properties.end(), predicate);
+}
+
+void check_cells_element(const Scanner& scanner, const Element& element) {
+  if (element.role == Role::edges) {
+    for (const int end : {0, 1}) {
+      if (!has(element, [&](const Property& p) { return end_of(p) == end && is_integer(p.type.type); })) {
+        scanner.fail("the element edge has no whole numbers vertex1 and vertex2", "edges need both");
+      }
+    }
+  } else if (!has(element, [](const Property& p) { return is_corner_list(p) && is_integer(p.type.type); })) {
+    scanner.fail("the element " + element.name + " has no list vertex_indices of whole numbers",
+                 "'property list uchar int vertex_indices' is usual");
+  }
+}
+
+/// Stops where reordering could falsify what we do not understand, or what we need is missing.
+void check_element(const Scanner& scanner, const Element& element) {
+  for (std::size_t i = 0; i < element.properties.size(); ++i) {
+    const Property& property = element.properties[i];
+    for (std::size_t j = 0; j < i; ++j) {
+      if (element.properties[j].name != property.name) continue;
+      scanner.fail("the element " + element.name + " has two properties '" + property.name + "'",
+                   "names must differ");
+    }
+    const bool may_be_whole = element.role == Role::other ? element.name == "camera"
+                                                          : !property.is_list || is_corner_list(property);
+    if (could_be_indices(property) && !may_be_whole) {
+      scanner.fail("the property '" + property.name + "' of the element " + element.name +
+                       " holds whole numbers, which could be those of vertices or faces",
+                   "remove it from the file");
+    }
+  }
+  if (element.properties.empty() && element.count > 0) {
+    scanner.fail("the element " + element.name + " has no properties", std::string(kRemedy));
+  }
+  if (element.role == Role::vertices) {
+    for (const int k : {0, 1, 2}) {
+      if (!has(element, [&](const Property& p) { return coordinate_of(p) == k; })) {
+        scanner.fail("the element vertex lacks x, y or z", "vertices have three coordinates");
+      }
+    }
+  } else if (element.role != Role::other) {
+    check_cells_element(scanner, element);
+  }
+}
+
+/// Moves behind the line of end_header, in a binary file to the first byte of data.
+void leave_header(Scanner& scanner) {
+  const std::string_view all = scanner.all();
+  const bool only_cr = all.size() > 4 && all[3] == '\r' && all[4] != '\n';
+  const auto end = scanner.byte() + static_cast<std::int64_t>(scanner.peek_line().size());
+  if (only_cr) {  // a line feed that follows is data
+    scanner.seek(end + 1);
+  } else {
+    (void)scanner.raw_line();
+  }
+}
+
+void check_elements(const Scanner& scanner, const PlyResidue& header) {
+  const auto vertices = std::count_if(header.elements.begin(), header.elements.end(),
+                                      [](const Element& e) { return e.role == Role::vertices; });
+  if (vertices != 1) scanner.fail("the header has no element vertex, or several", "one is needed");
+  for (const Element& element : header.elements) check_element(scanner, element);
+}
+
+void read_header(Scanner& scanner, PlyResidue& header) {
+  if (trimmed(scanner.peek_line()) != "ply")
+    scanner.fail("the file does not begin with 'ply'", "PLY files do");
+  (void)scanner.raw_line();
+  bool has_format = false;
+  while (scanner.bytes_left() > 0) {
+    std::string_view line = scanner.peek_line();
+    const std::string whole(trimmed(line));
+    const std::string_view keyword = next_word(line);
+    if (keyword == "end_header") {
+      if (!has_format) scanner.fail("the header has no format", "'format ascii 1.0' is usual");
+      check_elements(scanner, header);
+      return leave_header(scanner);
+    }
+    if (keyword == "format") {
+      header.encoding = parse_encoding(scanner, line);
+      has_format = true;
+    } else if (keyword == "comment" || keyword == "obj_info") {
+      header.comments.push_back(whole);
+    } else if (keyword == "element") {
+      header.elements.push_back(parse_element(scanner, line));
+    } else if (keyword == "property" && !header.elements.empty()) {
+      header.elements.back().properties.push_back(parse_property(scanner, line));
+    } else if (!keyword.empty()) {
+      scanner.fail("'" + whole.substr(0, 40) + "' does not belong into a header", std::string(kRemedy));
+    }
+    (void)scanner.raw_line();
+  }
+  scanner.fail("the file ends within the header", "it may be cut short");
+}
+
+// ---- body
+
+/// The numbers of the body, in whichever encoding.
+class Body {
+ public:
+  Body(Scanner& scanner, Encoding encoding) : scanner_(scanner), encoding_(encoding) {}
+
+  [[nodiscard]] bool is_ascii() const { return encoding_ == Encoding::ascii; }
+  [[nodiscard]] Scanner& scanner() { return scanner_; }
+
+  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
+    if (is_ascii()) scanner_.fail(what, remedy);
+    scanner_.fail_at_byte(what, remedy);
+  }
+
+  template <class T>
+  T number(std::string_view what) {
+    if (is_ascii()) return text_number<T>(what);
+    return scanner_.binary<T>(what,
+                              encoding_ == Encoding::big_endian ? std::endian::big : std::endian::little);
+  }
+
+  /// A number of that type, as T.
+  template <class T>
+  T number_as(Type type, std::string_view what) {
+    switch (type) {
+      case Type::int8:
+        return static_cast<T>(number<std::int8_t>(what));
+      case Type::uint8:
+        return static_cast<T>(number<std::uint8_t>(what));
+      case Type::int16:
+        return static_cast<T>(number<std::int16_t>(what));
+      case Type::uint16:
+        return static_cast<T>(number<std::uint16_t>(what));
+      case Type::int32:
+        return static_cast<T>(number<std::int32_t>(what));
+      case Type::uint32:
+        return static_cast<T>(number<std::uint32_t>(what));
+      case Type::float32:
+        // text keeps more digits than the type has
+        return is_ascii() ? static_cast<T>(number<double>(what)) : static_cast<T>(number<float>(what));
+      case Type::float64:
+        break;
+    }
+    return static_cast<T>(number<double>(what));
+  }
+
+  /// The length of a list; each entry takes at least one byte of what is left.
+  Index list_length(const Property& property) {
+    const auto length = number_as<std::int64_t>(property.count_type.type, "the length of a list");
+    if (length < 0 || length > scanner_.bytes_left()) {
+      fail("the list " + property.name + " has the length " + std::to_string(length),
+           "the file is damaged or cut short");
+    }
+    return static_cast<Index>(length);
+  }
+
+ private:
+  template <class T>
+  T text_number(std::string_view what) {
+    const std::string_view word = scanner_.word(what);
+    if constexpr (std::is_integral_v<T>) {
+      const auto value = parse_integer<std::int64_t>(scanner_, word, what);
+      if (!std::in_range<T>(value)) {
+        scanner_.fail(std::string(what) + " is " + std::to_string(value),
+                      "it does not fit the property's type");
+      }
+      return static_cast<T>(value);
+    } else {
+      T value{};
+      const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+      if (code == std::errc{} && end == word.data() + word.size()) return value;
+      return static_cast<T>(parse_real(scanner_, word, what));
+    }
+  }
+
+  Scanner& scanner_;
+  Encoding encoding_;
+};
+
+Values values_of(Type type) {
+  switch (type) {
+    case Type::int8:
+      return std::vector<std::int8_t>();
+    case Type::uint8:
+      return std::vector<std::uint8_t>();
+    case Type::int16:
+      return std::vector<std::int16_t>();
+    case Type::uint16:
+      return std::vector<std::uint16_t>();
+    case Type::int32:
+      return std::vector<std::int32_t>();
+    case Type::uint32:
+      return std::vector<std::uint32_t>();
+    case Type::float32:
+      return std::vector<float>();
+    case Type::float64:
+      break;
+  }
+  return std::vector<double>();
+}
+
+void append(Values& values, Body& body, Index count, const Property& property) {
+  std::visit(
+      [&](auto& list) {
+        using T = typename std::decay_t<decltype(list)>::value_type;
+        if constexpr (std::is_arithmetic_v<T>) {
+          for (Index i = 0; i < count; ++i) list.push_back(body.number<T>(property.name));
+        }
+      },
+      values);
+}
+
+/// The values of one property: of a list, those of each length apart.
+struct Column {
+  struct OfLength {
+    std::vector<Index> rows;
+    Values values;
+  };
+  std::map<Index, OfLength> by_length;
+
+  void read(Body& body, const Property& property, Index row) {
+    const Index length = property.is_list ? body.list_length(property) : 1;
+    auto found = by_length.find(length);
+    if (found == by_length.end())
+      found = by_length.insert({length, {{}, values_of(property.type.type)}}).first;
+    append(found->second.values, body, length, property);
+    if (property.is_list) found->second.rows.push_back(row);
+  }
+};
+
+/// Bytes, or characters with a blank, that a thing of the element takes at least.
+std::int64_t least_bytes(const Element& element, const Body& body) {
+  constexpr std::array<int, 8> kBytes{1, 1, 2, 2, 4, 4, 4, 8};
+  std::int64_t bytes = 0;
+  for (const Property& property : element.properties) {
+    const TypeWord& first = property.is_list ? property.count_type : property.type;
+    bytes += body.is_ascii() ? 2 : kBytes[static_cast<std::size_t>(first.type)];
+  }
+  return bytes;
+}
+
+class Reader {
+ public:
+  Reader(Scanner& scanner, std::shared_ptr<PlyResidue> header)
+      : header_(std::move(header)), body_(scanner, header_->encoding) {
+    for (const Element& element : header_->elements) {
+      if (element.role == Role::vertices) vertex_count_ = element.count;
+      if (holds_cells(element) && element.count > 0) ++cell_elements_;
+    }
+  }
+
+  Mesh read() {
+    for (Element& element : header_->elements) {
+      (void)body_.scanner().checked_count(element.count, "the number of " + element.name,
+                                          least_bytes(element, body_));
+      if (element.role == Role::other) {
+        read_other(element);
+      } else {
+        read_element(element);
+      }
+    }
+    const bool more = body_.is_ascii() ? !body_.scanner().at_end() : body_.scanner().bytes_left() > 0;
+    if (more) body_.fail("more follows than the header promises", "the numbers of elements may be wrong");
+    join_arrays_of_all_cells();
+    mesh_.residue = header_;
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_element(const Element& element) {
+    const Index first = element.role == Role::vertices ? 0 : mesh_.cell_count();
+    if (element.role == Role::vertices) mesh_.points.resize(element.count);
+    if (holds_cells(element) && cell_elements_ > 1 && element.count > 0) mesh_.cell_blocks.push_back(first);
+    std::vector<Column> columns(element.properties.size());
+    for (Index i = 0; i < element.count; ++i) {
+      ends_ = {-1, -1};
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        const Property& property = element.properties[k];
+        if (!read_geometry(element, property, i)) columns[k].read(body_, property, first + i);
+      }
+      if (element.role == Role::edges) mesh_.cells.push_back(Shape::line, ends_);
+    }
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      add_arrays(element, element.properties[k], std::move(columns[k]), first);
+    }
+  }
+
+  /// Reads a coordinate or vertices of a cell; false for every other property.
+  bool read_geometry(const Element& element, const Property& property, Index i) {
+    if (element.role == Role::vertices) {
+      const int k = coordinate_of(property);
+      if (k < 0) return false;
+      mesh_.points[i][k] = body_.number_as<double>(property.type.type, "a coordinate");
+      if (!std::isfinite(mesh_.points[i][k]))
+        body_.fail("a coordinate is not finite", "a finite number is needed");
+      return true;
+    }
+    if (element.role == Role::edges) {
+      const int end = end_of(property);
+      if (end >= 0) ends_[end] = vertex(property);
+      return end >= 0;
+    }
+    if (!is_corner_list(property)) return false;
+    const Index length = body_.list_length(property);
+    if (length == 0) body_.fail("a " + element.name + " without vertices", "at least one is needed");
+    if (element.role == Role::tetrahedra && length != 4) {
+      body_.fail("a tetrahedron of " + std::to_string(length) + " vertices", "four are needed");
+    }
+    corners_.resize(length);
+    for (Index& corner : corners_) corner = vertex(property);
+    mesh_.cells.push_back(element.role == Role::tetrahedra ? Shape::tetrahedron : face_shape(length),
+                          corners_);
+    return true;
+  }
+
+  static Shape face_shape(Index vertices) {
+    constexpr std::array kShapesOf{Shape::vertex, Shape::line, Shape::triangle, Shape::quad};
+    return vertices <= 4 ? kShapesOf[vertices - 1] : Shape::polygon;
+  }
+
+  Index vertex(const Property& property) {
+    const auto index = body_.number_as<std::int64_t>(property.type.type, "a vertex");
+    if (index < 0 || index >= vertex_count_) {
+      body_.fail("vertex " + std::to_string(index) + " does not exist",
+                 "there are " + std::to_string(vertex_count_) + ", counted from 0");
+    }
+    return static_cast<Index>(index);
+  }
+
+  void add_arrays(const Element& element, const Property& property, Column column, Index first) {
+    const Attached on = element.role == Role::vertices ? Attached::vertices : Attached::cells;
+    const bool all = on == Attached::vertices || cell_elements_ == 1;
+    for (auto& [length, part] : column.by_length) {
+      if (length == 0) continue;  // the writer knows from the header that the list exists
+      std::vector<Index> rows = std::move(part.rows);
+      if (!property.is_list && !all) {
+        for (Index i = 0; i < element.count; ++i) rows.push_back(first + i);
+      }
+      if (all && index_size(rows) == element.count) rows.clear();
+      mesh_.data.push_back({property.name, on, length, std::move(part.values), std::move(rows), {}});
+    }
+  }
+
+  /// A property that all cells have, faces and edges, is one array.
+  void join_arrays_of_all_cells() {
+    if (cell_elements_ < 2) return;
+    for (std::size_t i = 0; i < mesh_.data.size(); ++i) {
+      const auto joins = [&](std::size_t k) {
+        const DataArray& a = mesh_.data[i];
+        const DataArray& b = mesh_.data[k];
+        return b.on == Attached::cells && a.on == b.on && a.name == b.name && a.components == 1 &&
+               b.components == 1 && a.values.index() == b.values.index();
+      };
+      std::vector<std::size_t> parts;
+      Index rows = 0;
+      for (std::size_t k = i; k < mesh_.data.size(); ++k) {
+        if (!joins(k)) continue;
+        parts.push_back(k);
+        rows += row_count(mesh_.data[k]);
+      }
+      if (parts.size() < 2 || rows != mesh_.cell_count() || !are_scalar(mesh_.data[i].name)) continue;
+      join(parts);
+    }
+  }
+
+  [[nodiscard]] bool are_scalar(const std::string& name) const {
+    return std::none_of(header_->elements.begin(), header_->elements.end(), [&](const Element& element) {
+      return holds_cells(element) &&
+             has(element, [&](const Property& p) { return p.is_list && p.name == name; });
+    });
+  }
+
+  /// Appends the later parts to the first; the rows of all follow each other.
+  void join(const std::vector<std::size_t>& parts) {
+    DataArray& whole = mesh_.data[parts[0]];
+    std::visit(
+        [&](auto& list) {
+          for (std::size_t p = 1; p < parts.size(); ++p) {
+            const auto& part = std::get<std::decay_t<decltype(list)>>(mesh_.data[parts[p]].values);
+            list.insert(list.end(), part.begin(), part.end());
+          }
+        },
+        whole.values);
+    whole.rows.clear();
+    for (std::size_t p = parts.size() - 1; p > 0; --p) {
+      mesh_.data.erase(mesh_.data.begin() + static_cast<std::ptrdiff_t>(parts[p]));
+    }
+  }
+
+  /// Passes over an element that is kept as it stands.
+  void read_other(Element& element) {
+    const std::int64_t begin = body_.scanner().byte();
+    for (Index i = 0; i < element.count; ++i) {
+      for (const Property& property : element.properties) {
+        const Index length = property.is_list ? body_.list_length(property) : 1;
+        if (body_.is_ascii() && property.is_list) element.content += std::to_string(length) + " ";
+        for (Index k = 0; k < length; ++k) {
+          if (body_.is_ascii()) {
+            element.content += std::string(body_.scanner().word(property.name)) + " ";
+          } else {
+            (void)body_.number_as<double>(property.type.type, property.name);
+          }
+        }
+      }
+      if (body_.is_ascii()) element.content.back() = '\n';
+    }
+    if (!body_.is_ascii()) {
+      element.content = body_.scanner().all().substr(begin, body_.scanner().byte() - begin);
+    }
+  }
+
+  std::shared_ptr<PlyResidue> header_;
+  Body body_;
+  Mesh mesh_;
+  Index vertex_count_ = 0;
+  int cell_elements_ = 0;
+  std::array<Index, 2> ends_{};
+  std::vector<Index> corners_;
+};
+
+}  // namespace
+
+Mesh read(const std::filesystem::path& path, Notes&) {
+  Scanner scanner(path);
+  auto header = std::make_shared<PlyResidue>();
+  read_header(scanner, *header);
+  return Reader(scanner, header).read();
+}
+
+}  // namespace meshorder::ply

@@ -1,0 +1,380 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// STL, ASCII and binary, as 3D Systems' "StereoLithography Interface Specification" (1989) gives it and
+// https://www.loc.gov/preservation/digital/formats/fdd/fdd000504.shtml describes. Each triangle has its own
+// three points; equal points become one vertex here, numbered by first appearance.
+#include "base/error.hpp"
+#include "io/all_formats.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/stream/scanner.hpp"
+#include "io/unsupported.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace meshorder {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr std::size_t kHeaderBytes = 80;
+constexpr std::int64_t kTriangleBytes = 50;
+constexpr std::string_view kAttribute = "attribute";
+constexpr auto kOrder = std::endian::little;
+
+struct StlResidue : Residue {
+  bool binary = false;
+  std::string header;                ///< the 80 bytes of a binary file
+  std::vector<std::string> names;    ///< of the solids of an ASCII file, also of empty ones
+  std::vector<std::int64_t> labels;  ///< the label of the cells of each solid
+
+  [[nodiscard]] std::vector<std::string> contents() const override {
+    std::vector<std::string> result;
+    for (const std::string& name : names) {
+      if (!name.empty()) result.push_back("the name of the solid '" + name + "'");
+    }
+    return result;
+  }
+};
+
+// ---- reading
+
+/// Gives equal points one number, in order of first appearance: open addressing in a table of point numbers.
+class PointTable {
+ public:
+  explicit PointTable(std::vector<Point>& points) : points_(points), slots_(1024, -1) {}
+
+  Index number_of(const Point& point) {
+    if (points_.size() * 2 > slots_.size()) grow();
+    std::size_t slot = hash(point) & (slots_.size() - 1);
+    while (slots_[slot] >= 0) {
+      if (points_[slots_[slot]] == point) return slots_[slot];  // −0 equals 0
+      slot = (slot + 1) & (slots_.size() - 1);
+    }
+    slots_[slot] = index_size(points_);
+    points_.push_back(point);
+    return slots_[slot];
+  }
+
+ private:
+  static std::size_t hash(const Point& point) {
+    std::uint64_t h = 0;
+    for (const double x : point) {
+      h ^= std::bit_cast<std::uint64_t>(x + 0.0);  // makes −0 to 0
+      h *= 0x9e3779b97f4a7c15U;
+      h ^= h >> 32U;
+    }
+    return h;
+  }
+
+  void grow() {
+    slots_.assign(4 * slots_.size(), -1);
+    for (Index i = 0; i < index_size(points_); ++i) {
+      std::size_t slot = hash(points_[i]) & (slots_.size() - 1);
+      while (slots_[slot] >= 0) slot = (slot + 1) & (slots_.size() - 1);
+      slots_[slot] = i;
+    }
+  }
+
+  std::vector<Point>& points_;
+  std::vector<Index> slots_;
+};
+
+/// The unit normal of a triangle, zero for a degenerate one.
+Point normal_of(const Point& a, const Point& b, const Point& c) {
+  const Point u{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  const Point v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+  Point n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  const double length = std::hypot(n[0], n[1], n[2]);
+  if (!(length > 0) || !std::isfinite(length)) return {0, 0, 0};
+  for (double& x : n) x = x / length + 0.0;  // no −0
+  return n;
+}
+
+/// Builds the mesh triangle by triangle, and counts normals that contradict their triangles.
+struct Builder {
+  Mesh mesh;
+  PointTable table{mesh.points};
+  Index against = 0;
+
+  void add(const Point& normal, const std::array<Point, 3>& corners) {
+    std::array<Index, 3> triangle{};
+    for (int k = 0; k < 3; ++k) triangle[k] = table.number_of(corners[k]);
+    mesh.cells.push_back(Shape::triangle, triangle);
+    const Point n = normal_of(corners[0], corners[1], corners[2]);
+    if (n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2] < 0) ++against;
+  }
+
+  void note(Notes& notes) const {
+    if (against == 0) return;
+    notes.push_back(fmt::format(
+        "the normals of {} triangles point against the order of their corners; they are not kept", against));
+  }
+};
+
+/// The bytes that a binary file has by its own count; −1 for a file that is too short to have one.
+std::int64_t promised_bytes(const Scanner& scanner) {
+  const std::string_view all = scanner.all();
+  if (all.size() < kHeaderBytes + 4) return -1;
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    count |= std::uint32_t{static_cast<unsigned char>(all[kHeaderBytes + i])} << 8 * i;
+  }
+  return static_cast<std::int64_t>(kHeaderBytes) + 4 + kTriangleBytes * std::int64_t{count};
+}
+
+Mesh read_binary(Scanner& scanner, StlResidue& residue, Notes& notes) {
+  residue.binary = true;
+  residue.header = scanner.binary_block(kHeaderBytes, "the header");
+  const auto count = scanner.binary<std::uint32_t>("the number of triangles", kOrder);
+  Builder builder;
+  if (count > static_cast<std::uint32_t>(kMaxIndex) / 3) {
+    scanner.fail_at_byte("more than 715827882 triangles", "split the file");
+  }
+  std::vector<std::uint16_t> attributes(count);
+  builder.mesh.cells.reserve(count, Offset{3} * count);
+  for (std::uint16_t& attribute : attributes) {
+    std::array<Point, 4> points{};  // the normal and the corners
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      for (double& x : points[k]) {
+        x = scanner.binary<float>("a triangle", kOrder);
+        if (k > 0 && !std::isfinite(x))
+          scanner.fail_at_byte("a coordinate is not finite", "a finite number is needed");
+      }
+    }
+    attribute = scanner.binary<std::uint16_t>("a triangle", kOrder);
+    builder.add(points[0], {points[1], points[2], points[3]});
+  }
+  if (std::any_of(attributes.begin(), attributes.end(), [](std::uint16_t a) { return a != 0; })) {
+    builder.mesh.data.push_back({std::string(kAttribute), Attached::cells, 1, std::move(attributes), {}, {}});
+  }
+  builder.note(notes);
+  return std::move(builder.mesh);
+}
+
+void expect_word(Scanner& scanner, std::string_view expected) {
+  const std::string_view word = scanner.peek_word();
+  if (!same_but_for_case(word, expected)) {
+    if (!word.empty()) {
+      scanner.fail("'" + std::string(expected) + "' is missing", "facets follow facet … outer loop … vertex");
+    }
+  }
+  (void)scanner.word("'" + std::string(expected) + "'");
+}
+
+void read_facet(Scanner& scanner, Builder& builder) {
+  expect_word(scanner, "facet");
+  expect_word(scanner, "normal");
+  Point normal;
+  for (double& x : normal) {
+    // programs print what they like for a degenerate triangle; only a sound number is looked at
+    const std::string_view word = scanner.word("a normal");
+    if (std::from_chars(word.data(), word.data() + word.size(), x).ec != std::errc{}) x = 0;
+  }
+  expect_word(scanner, "outer");
+  expect_word(scanner, "loop");
+  std::array<Point, 3> corners;
+  for (Point& corner : corners) {
+    expect_word(scanner, "vertex");
+    for (double& x : corner) x = scanner.finite("a coordinate");
+  }
+  expect_word(scanner, "endloop");
+  expect_word(scanner, "endfacet");
+  builder.add(normal, corners);
+}
+
+/// The labels of solids: their names where all are different whole numbers, else 1, 2, …
+std::vector<std::int64_t> labels_of(const std::vector<std::string>& names) {
+  std::vector<std::int64_t> labels;
+  for (const std::string& name : names) {
+    std::int32_t label = 0;
+    const auto [end, code] = std::from_chars(name.data(), name.data() + name.size(), label);
+    if (code != std::errc{} || end != name.data() + name.size()) break;
+    labels.push_back(label);
+  }
+  const std::set<std::int64_t> different(labels.begin(), labels.end());
+  if (different.size() != names.size()) {
+    labels.resize(names.size());
+    std::iota(labels.begin(), labels.end(), 1);
+  }
+  return labels;
+}
+
+Mesh read_ascii(Scanner& scanner, StlResidue& residue, Notes& notes) {
+  Builder builder;
+  std::vector<Index> first_cells;
+  while (!scanner.at_end()) {
+    expect_word(scanner, "solid");
+    residue.names.emplace_back(scanner.rest_of_line());
+    first_cells.push_back(builder.mesh.cells.size());
+    while (!same_but_for_case(scanner.peek_word(), "endsolid")) read_facet(scanner, builder);
+    expect_word(scanner, "endsolid");
+    (void)scanner.rest_of_line();
+  }
+  Mesh& mesh = builder.mesh;
+  residue.labels = labels_of(residue.names);
+  if (residue.names.size() > 1 || std::to_string(residue.labels[0]) == residue.names[0]) {
+    std::vector<std::int32_t> labels(mesh.cells.shapes.size());
+    for (std::size_t s = 0; s < first_cells.size(); ++s) {
+      std::fill(labels.begin() + first_cells[s], labels.end(), static_cast<std::int32_t>(residue.labels[s]));
+      const Index end = s + 1 < first_cells.size() ? first_cells[s + 1] : mesh.cell_count();
+      if (end > first_cells[s]) mesh.cell_blocks.push_back(first_cells[s]);
+    }
+    if (mesh.cell_blocks.size() == 1) mesh.cell_blocks.clear();
+    mesh.data.push_back({std::string(kLabel), Attached::cells, 1, std::move(labels), {}, {}});
+  }
+  builder.note(notes);
+  return std::move(mesh);
+}
+
+Mesh read_stl(const fs::path& path, Notes& notes) {
+  Scanner scanner(path);
+  auto residue = std::make_shared<StlResidue>();
+  const auto size = static_cast<std::int64_t>(scanner.all().size());
+  const std::int64_t promised = promised_bytes(scanner);
+  Mesh mesh;
+  // a binary header may begin with "solid" as well, so the size decides
+  if (promised == size) {
+    mesh = read_binary(scanner, *residue, notes);
+  } else if (same_but_for_case(scanner.peek_word(), "solid") &&
+             scanner.all().find('\0') == std::string_view::npos) {
+    mesh = read_ascii(scanner, *residue, notes);
+  } else if (promised < 0 || scanner.all().find('\0') == std::string_view::npos) {
+    throw Error(scanner.file(), "is no STL file: it does not begin with 'solid' and is not binary",
+                "give an ASCII or binary STL file");
+  } else {
+    throw Error(Location{scanner.file(), 0, static_cast<std::int64_t>(kHeaderBytes)},
+                fmt::format("a binary STL file of {} triangles has {} bytes, this has {}",
+                            (promised - 84) / kTriangleBytes, promised, size),
+                "the count is wrong or the file is cut short");
+  }
+  mesh.residue = std::move(residue);
+  return mesh;
+}
+
+// ---- writing
+
+bool stl_holds(Shape shape, int vertices) { return shape == Shape::triangle && vertices == 3; }
+
+const DataArray* binary_attribute(const Mesh& mesh, const StlResidue* residue) {
+  if (!residue || !residue->binary) return nullptr;
+  const DataArray* array = find_array(mesh, kAttribute, Attached::cells);
+  const bool fits = array && array->covers_all() && array->components == 1 &&
+                    std::holds_alternative<std::vector<std::uint16_t>>(array->values);
+  return fits ? array : nullptr;
+}
+
+/// The labels of all cells, by which an ASCII file has solids; empty when the mesh has none.
+std::vector<std::int64_t> solid_labels(const Mesh& mesh) {
+  const DataArray* array = find_array(mesh, kLabel, Attached::cells);
+  if (!array || !array->covers_all() || array->components != 1) return {};
+  if (const auto* small = std::get_if<std::vector<std::int32_t>>(&array->values))
+    return {small->begin(), small->end()};
+  if (const auto* large = std::get_if<std::vector<std::int64_t>>(&array->values)) return *large;
+  return {};
+}
+
+void note_losses(const Mesh& mesh, const DataArray* attribute, bool has_solids, Notes& notes) {
+  notes.emplace_back(
+      "STL has no vertex order: readers number vertices by first appearance and take equal points as one");
+  std::vector<bool> used(mesh.points.size(), false);
+  for (const Index v : mesh.cells.vertices) used[v] = true;
+  const auto unused = std::count(used.begin(), used.end(), false);
+  if (unused > 0) notes.push_back(fmt::format("vertices that no cell uses are left out: {}", unused));
+  for (const DataArray& array : mesh.data) {
+    const bool is_label = has_solids && array.on == Attached::cells && array.name == kLabel;
+    if (&array != attribute && !is_label) note_array_left_out(array, "STL", notes);
+  }
+  for (const Set& set : mesh.sets) note_set_left_out(set, "STL", notes);
+  note_ids_left_out(mesh, "STL", notes);
+  if (!dynamic_cast<const StlResidue*>(mesh.residue.get())) note_residue_left_out(mesh, "STL", notes);
+}
+
+void write_binary(const Mesh& mesh, const StlResidue& residue, const DataArray* attribute, OutputFile& out,
+                  Notes& notes) {
+  out.write(residue.header);
+  out.binary(static_cast<std::uint32_t>(mesh.cell_count()), kOrder);
+  bool rounded = false;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const auto t = mesh.cells[c];
+    const std::array<Point, 4> points{normal_of(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]),
+                                      mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      for (const double x : points[k]) {
+        const auto single = static_cast<float>(x);
+        rounded = rounded || (k > 0 && static_cast<double>(single) != x);
+        out.binary(single, kOrder);
+      }
+    }
+    out.binary(attribute ? std::get<std::vector<std::uint16_t>>(attribute->values)[c] : std::uint16_t{0},
+               kOrder);
+  }
+  if (rounded) notes.emplace_back("coordinates are rounded to 32 bits, as binary STL has them");
+}
+
+void write_facet(const Mesh& mesh, Index cell, OutputFile& out) {
+  const auto t = mesh.cells[cell];
+  const Point n = normal_of(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
+  out.print("facet normal {} {} {}\n  outer loop\n", n[0], n[1], n[2]);
+  for (const Index v : t) {
+    const Point& p = mesh.points[v];
+    out.print("    vertex {} {} {}\n", p[0], p[1], p[2]);
+  }
+  out.write("  endloop\nendfacet\n");
+}
+
+void write_solid(const Mesh& mesh, const std::string& name, const std::vector<Index>& cells,
+                 OutputFile& out) {
+  const std::string title = name.empty() ? "" : " " + name;
+  out.print("solid{}\n", title);
+  for (const Index cell : cells) write_facet(mesh, cell, out);
+  out.print("endsolid{}\n", title);
+}
+
+void write_ascii(const Mesh& mesh, const StlResidue* residue, const std::vector<std::int64_t>& labels,
+                 OutputFile& out) {
+  std::map<std::int64_t, std::vector<Index>> by_label;
+  for (Index c = 0; c < mesh.cell_count(); ++c) by_label[labels.empty() ? 0 : labels[c]].push_back(c);
+  // the solids of the file in their order, then those of other labels
+  if (residue && residue->names.size() == 1 && labels.empty()) {
+    return write_solid(mesh, residue->names[0], by_label[0], out);
+  }
+  for (std::size_t s = 0; residue && s < residue->names.size(); ++s) {
+    write_solid(mesh, residue->names[s], by_label[residue->labels[s]], out);
+    by_label.erase(residue->labels[s]);
+  }
+  for (const auto& [label, cells] : by_label) {
+    write_solid(mesh, labels.empty() ? "" : std::to_string(label), cells, out);
+  }
+}
+
+void write_stl(const Mesh& mesh, const fs::path& path, Notes& notes) {
+  refuse_other_cells(mesh, path, "STL", stl_holds, "STL has triangles only; write .off, .vtu or .msh");
+  // what comes from elsewhere is written as text, which keeps every bit
+  const auto* residue = dynamic_cast<const StlResidue*>(mesh.residue.get());
+  const DataArray* attribute = binary_attribute(mesh, residue);
+  const bool binary = residue && residue->binary;
+  const std::vector<std::int64_t> labels = binary ? std::vector<std::int64_t>{} : solid_labels(mesh);
+  OutputFile out(path);
+  if (binary) {
+    write_binary(mesh, *residue, attribute, out, notes);
+  } else {
+    write_ascii(mesh, residue, labels, out);
+  }
+  out.commit();
+  note_losses(mesh, attribute, !labels.empty(), notes);
+}
+
+}  // namespace
+
+Format stl_format() { return {"STL", {".stl"}, false, read_stl, write_stl}; }
+
+}  // namespace meshorder

@@ -1,0 +1,70 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/surface/surface_data.hpp"
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+#include <variant>
+
+namespace meshorder {
+namespace {
+
+bool is_usable(const DataArray* array) {
+  return array && array->covers_all() && !std::holds_alternative<std::vector<std::string>>(array->values);
+}
+
+/// The columns beside each other.
+std::vector<double> interleaved(const std::vector<const DataArray*>& columns, Index rows) {
+  std::vector<double> result(columns.size() * static_cast<std::size_t>(rows));
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const std::vector<double> column = as_reals(columns[k]->values);
+    for (Index i = 0; i < rows; ++i) result[i * columns.size() + k] = column[i];
+  }
+  return result;
+}
+
+}  // namespace
+
+bool holds_integers(const Values& values) {
+  return std::visit(
+      [](const auto& list) { return std::is_integral_v<typename std::decay_t<decltype(list)>::value_type>; },
+      values);
+}
+
+std::vector<double> as_reals(const Values& values) {
+  return std::visit(
+      [](const auto& list) {
+        std::vector<double> result;
+        if constexpr (std::is_arithmetic_v<typename std::decay_t<decltype(list)>::value_type>) {
+          result.reserve(list.size());
+          for (const auto value : list) result.push_back(static_cast<double>(value));
+        }
+        return result;
+      },
+      values);
+}
+
+GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Attached on) {
+  GatheredVector result;
+  const int most = static_cast<int>(vector.components.size());
+  // one array of all components
+  const DataArray* whole = find_array(mesh, vector.name, on);
+  if (is_usable(whole) && whole->components >= vector.least && whole->components <= most) {
+    return {whole->components, holds_integers(whole->values), as_reals(whole->values), {whole}};
+  }
+  // or an array for each, of one type
+  for (const std::string_view component : vector.components) {
+    const DataArray* array = find_array(mesh, component, on);
+    if (!is_usable(array) || array->components != 1) break;
+    if (!result.from.empty() && array->values.index() != result.from[0]->values.index()) break;
+    result.from.push_back(array);
+  }
+  if (static_cast<int>(result.from.size()) < vector.least) return {};
+  result.width = static_cast<int>(result.from.size());
+  result.integers = holds_integers(result.from[0]->values);
+  result.values =
+      interleaved(result.from, on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count());
+  return result;
+}
+
+}  // namespace meshorder

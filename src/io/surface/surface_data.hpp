@@ -1,0 +1,46 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace meshorder {
+
+/// Normals, colours and texture coordinates: the arrays of a surface for which OFF, OBJ and PLY have places
+/// of their own. A mesh holds each as one array of several components ("normal") or, as PLY does, as arrays
+/// of one ("nx", "ny", "nz").
+struct SurfaceVector {
+  std::string_view name;
+  std::vector<std::string_view> components;
+  int least;  ///< components that must be there; the others may be missing
+};
+
+inline const SurfaceVector kNormal{"normal", {"nx", "ny", "nz"}, 3};
+inline const SurfaceVector kColor{"color", {"red", "green", "blue", "alpha"}, 3};
+inline const SurfaceVector kTexture{"texture", {"s", "t"}, 2};
+
+/// The rows of such a vector, gathered from the arrays that hold it.
+struct GatheredVector {
+  int width = 0;          ///< components; 0 when the mesh has no such vector
+  bool integers = false;  ///< whether the arrays are of an integer type
+  std::vector<double> values;
+  std::vector<const DataArray*> from;
+
+  [[nodiscard]] std::span<const double> operator[](Index row) const {
+    return {values.data() + static_cast<Offset>(row) * width, static_cast<std::size_t>(width)};
+  }
+};
+
+/// The vector of all vertices or cells, if the mesh has it for all of them. O(rows).
+GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Attached on);
+
+/// Whether the values are of an integer type.
+bool holds_integers(const Values& values);
+
+/// The values as real numbers; empty for strings.
+std::vector<double> as_reals(const Values& values);
+
+}  // namespace meshorder

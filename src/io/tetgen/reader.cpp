@@ -1,0 +1,429 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/error.hpp"
+#include "io/labels.hpp"
+#include "io/numbering.hpp"
+#include "io/stream/scanner.hpp"
+#include "io/stream/text_ends.hpp"
+#include "io/tetgen/tetgen.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+namespace meshorder::tetgen {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kComment = '#';
+
+/// What one of the files with cells gave.
+struct Part {
+  Index count = 0;
+  Numbering numbering;
+  std::vector<std::int64_t> markers;  // one for each cell, or none
+  std::vector<double> attributes;
+  Index attributes_per_cell = 0;
+};
+
+struct Reading {
+  Mesh mesh;
+  Numbering points;
+  std::array<Part, 4> parts;
+  std::shared_ptr<FilesResidue> residue = std::make_shared<FilesResidue>();
+  bool second_order = false;
+};
+
+// ---- lines of numbers
+
+/// Moves to the next record, which begins on a line of its own.
+void begin_record(Scanner& in, std::string_view what) {
+  if (in.at_end()) {
+    in.fail(fmt::format("the file ends where {} should stand", what),
+            "it may be cut short, or its header promise too much");
+  }
+}
+
+/// The next number of a record, which must stand on the same line.
+std::string_view column(Scanner& in, std::string_view what) {
+  if (in.at_line_end()) {
+    in.fail(fmt::format("the line ends where {} should stand", what),
+            "the header announces more columns, or the file is cut short");
+  }
+  return in.word(what);
+}
+
+void end_record(Scanner& in) {
+  if (!in.at_line_end()) {
+    in.fail("the line goes on after the columns that the header announces",
+            "correct the header or remove the rest");
+  }
+}
+
+/// A whole number; 2.0 is one, as some writers print markers so.
+std::int64_t whole(Scanner& in, std::string_view what) {
+  const std::string_view text = column(in, what);
+  if (text.find_first_of(".eE") == std::string_view::npos) return parse_integer<std::int64_t>(in, text, what);
+  const double value = parse_real(in, text, what);
+  if (value != std::floor(value) || std::abs(value) > 1e15) {
+    in.fail(fmt::format("{} is {}", what, value), "a whole number is needed");
+  }
+  return static_cast<std::int64_t>(value);
+}
+
+/// The numbers of a header line, `standard` where the line leaves some out.
+template <std::size_t N>
+std::array<std::int64_t, N> header(Scanner& in, std::array<std::int64_t, N> standard) {
+  begin_record(in, "the header");
+  for (std::size_t i = 0; i < N && (i == 0 || !in.at_line_end()); ++i) {
+    standard[i] =
+        parse_integer<std::int64_t>(in, column(in, "a number of the header"), "a number of the header");
+  }
+  end_record(in);
+  return standard;
+}
+
+/// The number of records, which must fit what is left of the file.
+Index checked_records(Scanner& in, std::int64_t records, std::string_view what, std::int64_t columns) {
+  return in.checked_count(records, what, 2 * columns);
+}
+
+std::int64_t checked_attributes(Scanner& in, std::int64_t attributes) {
+  if (attributes < 0 || attributes > in.bytes_left()) {
+    in.fail(fmt::format("the header announces {} attributes", attributes),
+            "0 or as many as each line has are possible");
+  }
+  return attributes;
+}
+
+bool checked_markers(Scanner& in, std::int64_t markers) {
+  if (markers != 0 && markers != 1) {
+    in.fail(fmt::format("the header announces {} boundary markers", markers), "0 or 1 are possible");
+  }
+  return markers == 1;
+}
+
+void add_number(Scanner& in, Numbering& numbering, std::string_view what) {
+  const auto number = parse_integer<std::int64_t>(in, column(in, what), what);
+  if (!numbering.add(number)) in.fail(fmt::format("{} {} stands twice", what, number), "each must be unique");
+}
+
+/// The rest of the file must be comments; takes them along.
+void end_file(Scanner& in, FilesResidue::Part& part, Notes& notes) {
+  if (!in.at_end()) in.fail("the file goes on after its last record", "correct the number in the header");
+  part.present = true;
+  part.comments_before = comments_before(in.all(), kComment);
+  part.comments_after = comments_after(in.all(), kComment);
+  note_missing_line_end(in, kComment, notes);
+}
+
+// ---- points
+
+void read_points(Scanner& in, Reading& to) {
+  auto [records, dimension, attributes, has_markers] = header<4>(in, {0, 3, 0, 0});
+  if (dimension != 2 && dimension != 3) {
+    in.fail(fmt::format("the dimension is {}", dimension), "2 or 3 are possible");
+  }
+  attributes = checked_attributes(in, attributes);
+  const bool marked = checked_markers(in, has_markers);
+  if (records == 0) in.fail("the file has no points", "a mesh needs some");
+  const Index count =
+      checked_records(in, records, "the number of points", 1 + dimension + attributes + has_markers);
+
+  Mesh& mesh = to.mesh;
+  mesh.dimension = static_cast<int>(dimension);
+  mesh.points.resize(count, {0, 0, 0});
+  std::vector<double> values;
+  values.reserve(count * attributes);
+  std::vector<std::int64_t> markers;
+  markers.reserve(marked ? count : 0);
+  for (Point& point : mesh.points) {
+    begin_record(in, "a point");
+    add_number(in, to.points, "the point");
+    for (int k = 0; k < mesh.dimension; ++k) {
+      const double x = parse_real(in, column(in, "a coordinate"), "a coordinate");
+      if (!std::isfinite(x)) in.fail("a coordinate is not finite", "a finite number is needed");
+      point[k] = x;
+    }
+    for (std::int64_t k = 0; k < attributes; ++k) {
+      values.push_back(parse_real(in, column(in, "an attribute"), "an attribute"));
+    }
+    if (marked) markers.push_back(whole(in, "the boundary marker"));
+    end_record(in);
+  }
+
+  // as TetGen does, the first number decides whether counting begins at 0 or at 1
+  to.residue->base = to.points.id(0) == 0 ? 0 : 1;
+  mesh.vertex_ids = to.points.ids_unless_from(to.residue->base);
+  if (attributes > 0) {
+    mesh.data.push_back(
+        {"attribute", Attached::vertices, static_cast<Index>(attributes), std::move(values), {}, {}});
+  }
+  if (marked) {
+    mesh.data.push_back(
+        {std::string(kLabel), Attached::vertices, 1, label_values(std::move(markers)), {}, {}});
+  }
+}
+
+// ---- cells
+
+/// The points of a cell, from the file's order into VTK's.
+void read_cell_points(Scanner& in, const Numbering& points, std::span<const int> places,
+                      std::array<Index, 10>& cell) {
+  std::array<Index, 10> as_given{};
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto number =
+        parse_integer<std::int64_t>(in, column(in, "a point of the cell"), "a point of the cell");
+    as_given[k] = points.find(number);
+    if (as_given[k] < 0) {
+      in.fail(fmt::format("the cell names point {}, which .node does not have", number),
+              fmt::format("it has {} points, the first is {}, the last {}", points.size(), points.id(0),
+                          points.id(points.size() - 1)));
+    }
+  }
+  for (std::size_t k = 0; k < places.size(); ++k) cell[k] = as_given[places[k]];
+}
+
+/// Reads all cells of a file behind its header; every line has `nodes` points, attributes and a marker.
+void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, Reading& to) {
+  Part& part = to.parts[file];
+  const std::span<const int> order = places(file, nodes, false);
+  Cells& cells = to.mesh.cells;
+  cells.reserve(Offset{cells.size()} + part.count, cells.offsets.back() + Offset{part.count} * nodes);
+  std::array<Index, 10> cell{};
+  for (Index c = 0; c < part.count; ++c) {
+    begin_record(in, "a cell");
+    add_number(in, part.numbering, "the cell");
+    read_cell_points(in, to.points, order, cell);
+    cells.push_back(shape, {cell.data(), static_cast<std::size_t>(nodes)});
+    for (Index k = 0; k < part.attributes_per_cell; ++k) {
+      part.attributes.push_back(parse_real(in, column(in, "an attribute"), "an attribute"));
+    }
+    if (marked) part.markers.push_back(whole(in, "the boundary marker"));
+    end_record(in);
+  }
+}
+
+/// TetGen's region attribute is one whole number for each cell: a label. Others stay attributes.
+void take_regions_as_markers(Part& part) {
+  using Limits = std::numeric_limits<std::int32_t>;
+  const bool regions = part.attributes_per_cell == 1 &&
+                       std::all_of(part.attributes.begin(), part.attributes.end(), [](double x) {
+                         return x == std::floor(x) && x >= Limits::min() && x <= Limits::max();
+                       });
+  if (!regions) return;
+  part.markers.assign(part.attributes.begin(), part.attributes.end());
+  part.attributes.clear();
+  part.attributes_per_cell = 0;
+}
+
+void read_ele(Scanner& in, Reading& to) {
+  const bool plane = to.mesh.dimension == 2;
+  const auto [records, nodes, attributes] = header<3>(in, {0, plane ? 3 : 4, 0});
+  const bool triangles = nodes == 3 || nodes == 6;
+  if (!triangles && (plane || (nodes != 4 && nodes != 10))) {
+    in.fail(fmt::format("the cells have {} points each", nodes),
+            plane ? "3 or 6 are possible in two dimensions"
+                  : "4 or 10 (tetrahedra) or 3 or 6 (triangles) are possible");
+  }
+  Part& part = to.parts[kEle];
+  part.attributes_per_cell = static_cast<Index>(checked_attributes(in, attributes));
+  part.count = checked_records(in, records, "the number of cells", 1 + nodes + attributes);
+  to.residue->nodes_in_ele = static_cast<int>(nodes);
+  to.second_order = nodes == 6 || nodes == 10;
+  read_cells(in, kEle, triangles ? Shape::triangle : Shape::tetrahedron, static_cast<int>(nodes), false, to);
+  take_regions_as_markers(part);
+}
+
+/// The words of the first record's line, after its number; the scanner stays where it is.
+int columns_of_first_record(Scanner& in) {
+  if (in.at_end()) return 0;
+  std::string_view line = in.peek_line();
+  line = line.substr(0, line.find(kComment));
+  int words = -1;
+  for (; !next_word(line, " \t\f\v").empty(); ++words) {
+  }
+  return words;
+}
+
+[[noreturn]] void fail_neighbours(const Scanner& in) {
+  in.fail(
+      "the last columns are the numbers of neighbouring tetrahedra (TetGen's switch -nn), which reordering "
+      "would falsify",
+      "remove them, or let TetGen write the file without -nn");
+}
+
+/// Faces and edges: their header does not say how many points a cell has, the first line does.
+void read_boundary(Scanner& in, File file, Reading& to) {
+  const auto [records, has_markers] = header<2>(in, {0, 0});
+  const bool marked = checked_markers(in, has_markers);
+  const int least = file == kFace ? 3 : 2;
+  Part& part = to.parts[file];
+  part.count = checked_records(in, records, "the number of cells", 1 + least + has_markers);
+  if (part.count == 0) return;
+
+  const int columns = columns_of_first_record(in) - static_cast<int>(has_markers);
+  int nodes = columns;
+  if (file == kFace) {
+    if (columns == 5 || columns == 8) fail_neighbours(in);
+    to.second_order = to.second_order || columns == 6;
+  } else if (columns == 4 || (columns == 3 && !to.second_order)) {
+    fail_neighbours(in);
+  }
+  const int most = file == kFace ? 6 : 3;
+  if (columns < least) nodes = least;  // the first record's own error says which column is missing
+  if (columns > least && columns != most) {
+    in.fail(fmt::format("a line has {} columns beside its number and marker", columns),
+            fmt::format("{} or {} points are possible", least, most));
+  }
+  read_cells(in, file, file == kFace ? Shape::triangle : Shape::line, nodes, marked, to);
+}
+
+/// The two ends of the edge on which each second-order node of the tetrahedra lies, the lower first.
+std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahedra) {
+  constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+  std::vector<std::array<Index, 2>> result(mesh.points.size(), {-1, -1});
+  for (Index c = 0; c < tetrahedra; ++c) {
+    const auto cell = mesh.cells[c];
+    for (std::size_t e = 0; e < kEdges.size(); ++e) {
+      const Index a = cell[kEdges[e][0]];
+      const Index b = cell[kEdges[e][1]];
+      result[cell[4 + e]] = {std::min(a, b), std::max(a, b)};
+    }
+  }
+  return result;
+}
+
+/// TetGen 1.5 writes the second-order nodes of faces in two orders: with -f that of the opposite edges, else
+/// that of VTK, in which they were read. The tetrahedra, which know the edge of every node, tell which it is.
+void settle_face_order(Reading& to) {
+  const Index tetrahedra = to.parts[kEle].count;
+  const Index end = tetrahedra + to.parts[kFace].count;
+  Cells& cells = to.mesh.cells;
+  if (tetrahedra == 0 || tetrahedra == end) return;
+  if (cells.vertex_count(0) != 10 || cells.vertex_count(tetrahedra) != 6) return;
+
+  const auto edge_of = edges_of_nodes(to.mesh, tetrahedra);
+  Index vtk = 0;
+  Index opposite = 0;
+  for (Index c = tetrahedra; c < end; ++c) {
+    const auto face = cells[c];
+    const auto on_edge = [&](Index a, Index b) {
+      return edge_of[face[3]] == std::array{std::min(a, b), std::max(a, b)};
+    };
+    vtk += on_edge(face[0], face[1]) ? 1 : 0;
+    opposite += on_edge(face[1], face[2]) ? 1 : 0;
+  }
+  if (opposite <= vtk) return;
+
+  to.residue->faces_name_opposite_edges = true;
+  for (Index c = tetrahedra; c < end; ++c) {
+    const auto face = cells[c];
+    std::rotate(face.begin() + 3, face.begin() + 5, face.end());
+  }
+}
+
+// ---- what all files of cells together give
+
+/// Cells are numbered in each file anew; the mesh keeps the numbers when one file's are not consecutive.
+void set_cell_ids(Reading& to) {
+  const int base = to.residue->base;
+  if (std::all_of(to.parts.begin(), to.parts.end(),
+                  [&](const Part& part) { return part.numbering.runs_from(base); })) {
+    return;
+  }
+  for (const File file : kCellFiles) {
+    const Part& part = to.parts[file];
+    for (Index c = 0; c < part.count; ++c) to.mesh.cell_ids.push_back(part.numbering.id(c));
+  }
+}
+
+void set_cell_data(Reading& to) {
+  Mesh& mesh = to.mesh;
+
+  // attributes are those of the first file's cells
+  Part& ele = to.parts[kEle];
+  if (ele.attributes_per_cell > 0 && ele.count > 0) {
+    DataArray array{"attribute", Attached::cells, ele.attributes_per_cell, std::move(ele.attributes), {}, {}};
+    for (Index c = 0; ele.count < mesh.cell_count() && c < ele.count; ++c) array.rows.push_back(c);
+    mesh.data.push_back(std::move(array));
+  }
+
+  // markers and regions of all files are one array of labels
+  std::vector<std::int64_t> labels;
+  std::vector<Index> rows;
+  Index first = 0;
+  for (const File file : kCellFiles) {
+    const Part& part = to.parts[file];
+    labels.insert(labels.end(), part.markers.begin(), part.markers.end());
+    for (Index c = 0; c < index_size(part.markers); ++c) rows.push_back(first + c);
+    first += part.count;
+  }
+  if (labels.empty()) return;
+  if (index_size(rows) == mesh.cell_count()) rows.clear();
+  mesh.data.push_back(
+      {std::string(kLabel), Attached::cells, 1, label_values(std::move(labels)), std::move(rows), {}});
+}
+
+void set_blocks(Reading& to) {
+  Index first = 0;
+  for (const File file : kCellFiles) {
+    if (to.parts[file].count > 0) to.mesh.cell_blocks.push_back(first);
+    first += to.parts[file].count;
+  }
+}
+
+void read_cell_file(const fs::path& path, File file, Reading& to, Notes& notes) {
+  Scanner in(path, kComment);
+  const int nodes_in_ele = to.residue->nodes_in_ele;
+  if (file == kFace && (to.mesh.dimension == 2 || nodes_in_ele == 3 || nodes_in_ele == 6)) {
+    throw Error(path.string(), "holds faces, but the cells of the mesh are triangles themselves",
+                "remove it, if it belongs to another mesh");
+  }
+  if (file == kEle) {
+    read_ele(in, to);
+  } else {
+    read_boundary(in, file, to);
+  }
+  end_file(in, to.residue->parts[file], notes);
+}
+
+}  // namespace
+
+Mesh read(const fs::path& path, Notes& notes) {
+  if (!is_there(path)) throw Error(path.string(), "no such file", "check the path");
+  const fs::path node_path = beside(path, ".node");
+  if (!is_there(node_path)) {
+    throw Error(path.string(), "has no .node file beside it", node_path.filename().string() + " is needed");
+  }
+
+  Reading reading;
+  {
+    Scanner in(node_path, kComment);
+    read_points(in, reading);
+    end_file(in, reading.residue->parts[kNode], notes);
+  }
+  for (const File file : kCellFiles) {
+    const fs::path cell_path = beside(path, kExtensions[file]);
+    if (is_there(cell_path)) read_cell_file(cell_path, file, reading, notes);
+  }
+  if (reading.mesh.cell_count() == 0) {
+    throw Error(path.string(), "has no cells",
+                "an .ele, .face or .edge file with cells must stand beside it");
+  }
+
+  settle_face_order(reading);
+  set_cell_ids(reading);
+  set_cell_data(reading);
+  set_blocks(reading);
+  note_other_companions(path, "is not carried along: its numbers hold for the original order only", notes);
+  reading.mesh.residue = reading.residue;
+  return std::move(reading.mesh);
+}
+
+}  // namespace meshorder::tetgen

@@ -1,0 +1,333 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/tetgen/tetgen.hpp"
+
+#include "base/error.hpp"
+#include "io/all_formats.hpp"
+#include "io/labels.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/unsupported.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <numeric>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder::tetgen {
+namespace fs = std::filesystem;
+
+fs::path beside(const fs::path& path, std::string_view extension) {
+  if (same_but_for_case(path.extension().string(), extension)) return path;
+  fs::path result = path;
+  return result.replace_extension(extension);
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+namespace {
+
+/// Whether a .poly or .smesh file has no points of its own but refers to those of the .node file.
+bool refers_to_points(const fs::path& path) {
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);) {
+    std::string_view rest = line;
+    const std::string_view word = next_word(rest, " \t\r");
+    if (!word.empty() && word.front() != '#') return word == "0";
+  }
+  return false;
+}
+
+}  // namespace
+
+void note_other_companions(const fs::path& path, std::string_view what, Notes& notes) {
+  for (const std::string_view extension :
+       {".neigh", ".t2f", ".t2e", ".f2e", ".f2t", ".p2t", ".mtr", ".vol", ".var", ".area", ".v.node",
+        ".v.edge", ".v.face", ".v.cell", ".poly", ".smesh"}) {
+    const fs::path other = beside(path, extension);
+    if (!is_there(other)) continue;
+    const bool surface = extension == ".poly" || extension == ".smesh";
+    if (!surface || refers_to_points(other)) notes.push_back(fmt::format("{} {}", other.string(), what));
+  }
+}
+
+namespace {
+
+// ---- which cell goes where
+
+/// The cells of each file, in their order, and how many points each has.
+struct Layout {
+  std::array<std::vector<Index>, 4> cells;
+  std::array<int, 4> nodes{0, 0, 0, 0};
+  int dimension = 3;
+};
+
+bool holds(Shape shape, int vertices) {
+  return (shape == Shape::tetrahedron && (vertices == 4 || vertices == 10)) ||
+         (shape == Shape::triangle && (vertices == 3 || vertices == 6)) ||
+         (shape == Shape::line && (vertices == 2 || vertices == 3));
+}
+
+Layout layout_of(const Mesh& mesh, const FilesResidue& residue, const fs::path& path) {
+  const auto& shapes = mesh.cells.shapes;
+  const bool solid = std::find(shapes.begin(), shapes.end(), Shape::tetrahedron) != shapes.end();
+  Layout layout;
+  layout.dimension = solid ? 3 : mesh.dimension;
+  layout.nodes[kEle] = residue.nodes_in_ele;
+  // triangles are the cells of a plane mesh and the boundary of a solid one
+  const bool in_ele =
+      !solid && (layout.dimension == 2 || residue.nodes_in_ele == 3 || residue.nodes_in_ele == 6);
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const Shape shape = mesh.cells.shapes[c];
+    const File file = shape == Shape::line ? kEdge : shape == Shape::triangle && !in_ele ? kFace : kEle;
+    const int nodes = mesh.cells.vertex_count(c);
+    if (layout.cells[file].empty()) layout.nodes[file] = nodes;
+    if (layout.nodes[file] != nodes) {
+      throw Error(
+          path.string(),
+          fmt::format("the mesh has both {} and {}, and a {} file holds one kind", type_name(shape, nodes),
+                      type_name(shape, layout.nodes[file]), kExtensions[file]),
+          "write .msh, .vtu or .mesh instead");
+    }
+    layout.cells[file].push_back(c);
+  }
+  const bool second_order = layout.nodes[kEle] == 10 || layout.nodes[kEle] == 6 || layout.nodes[kFace] == 6;
+  if (layout.nodes[kEdge] == 3 && !second_order) {
+    throw Error(path.string(), "lines of 3 points need cells of second order beside them",
+                "write .msh, .vtu or .mesh instead");
+  }
+  return layout;
+}
+
+/// A file of an earlier mesh would be read as part of this one.
+void refuse_leftovers(const Layout& layout, const FilesResidue& residue, const fs::path& path) {
+  for (const File file : kCellFiles) {
+    const fs::path other = beside(path, kExtensions[file]);
+    if (!layout.cells[file].empty() || residue.parts[file].present || !is_there(other)) continue;
+    throw Error(path.string(),
+                fmt::format("{} stands beside it from another mesh and would be read with this one",
+                            other.filename().string()),
+                "remove that file or choose another name");
+  }
+}
+
+// ---- columns
+
+/// One component of an array as a column of a file; `row_of` leads from a vertex or cell to its row.
+struct Column {
+  const DataArray* array;
+  Index component;
+  std::vector<Index> row_of;  // empty: row i belongs to vertex or cell i
+};
+
+void print_value(OutputFile& out, const Column& column, Index item) {
+  const Offset row = column.row_of.empty() ? item : column.row_of[item];
+  if (row < 0) return out.write("  0");  // a cell without a label
+  std::visit(
+      [&](const auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        if constexpr (std::is_arithmetic_v<Value>) {
+          out.print("  {}", values[row * column.array->components + column.component]);
+        }
+      },
+      column.array->values);
+}
+
+/// Where the array has the row of each vertex or cell; −1 where it has none.
+std::vector<Index> rows_of(const DataArray& array, Index count) {
+  std::vector<Index> result;
+  if (array.covers_all()) return result;
+  result.assign(count, -1);
+  for (Index r = 0; r < index_size(array.rows); ++r) result[array.rows[r]] = r;
+  return result;
+}
+
+void note_missing_labels(std::ptrdiff_t missing, std::string_view file, Notes& notes) {
+  notes.push_back(fmt::format("{} in {} have no label and get 0", missing, file));
+}
+
+/// The columns of attributes that `items` (the points, or the cells of .ele) get. An array called "attribute"
+/// comes first, then the labels of cells, then all else that has numbers for every item; names get lost.
+std::vector<Column> attribute_columns(const Mesh& mesh, Attached on, const std::vector<Index>& items,
+                                      Notes& notes) {
+  const Index count = on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
+  const DataArray* const labels = label_array(mesh, on);
+  std::vector<const DataArray*> arrays;
+  for (const DataArray& array : mesh.data) {
+    // labels of vertices are boundary markers
+    if (array.on == on && (&array != labels || on == Attached::cells)) arrays.push_back(&array);
+  }
+  std::stable_sort(arrays.begin(), arrays.end(), [&](const DataArray* a, const DataArray* b) {
+    const auto rank = [&](const DataArray* x) { return x->name == "attribute" ? 0 : x == labels ? 1 : 2; };
+    return rank(a) < rank(b);
+  });
+
+  std::vector<Column> columns;
+  for (const DataArray* array : arrays) {
+    std::vector<Index> row_of = rows_of(*array, count);
+    const auto has_row = [&](Index item) { return row_of.empty() || row_of[item] >= 0; };
+    const auto given = std::count_if(items.begin(), items.end(), has_row);
+    if (array == labels && given == 0) continue;  // they are markers of other cells
+    const bool text = std::holds_alternative<std::vector<std::string>>(array->values);
+    if (text || items.empty() || (given < index_size(items) && array != labels)) {
+      note_array_left_out(*array, "TetGen", notes);
+      continue;
+    }
+    if (array != labels && row_count(*array) > given) {
+      notes.push_back(
+          fmt::format("the array '{}' is left out on cells that .ele does not hold", array->name));
+    }
+    if (given < index_size(items)) note_missing_labels(index_size(items) - given, ".ele", notes);
+    for (Index k = 0; k < array->components; ++k) columns.push_back({array, k, row_of});
+  }
+  return columns;
+}
+
+/// Says which array became which columns, where the reader could not know.
+void note_lost_names(const std::vector<Column>& columns, std::string_view file, Notes& notes) {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const DataArray& array = *columns[k].array;
+    const bool alone = columns.size() == static_cast<std::size_t>(array.components);
+    if (columns[k].component != 0 || array.name == "attribute" || (alone && array.name == kLabel)) continue;
+    notes.push_back(
+        fmt::format("the array '{}' becomes {} of the attributes in {}, without its name", array.name,
+                    array.components == 1 ? fmt::format("column {}", k + 1)
+                                          : fmt::format("columns {} to {}", k + 1, k + array.components),
+                    file));
+  }
+}
+
+// ---- files
+
+/// Whether the items of a file have markers; those without one get 0.
+bool has_markers(const Labels& labels, const std::vector<Index>& items, std::string_view file, Notes& notes) {
+  if (!labels.any()) return false;
+  const auto given =
+      std::count_if(items.begin(), items.end(), [&](Index item) { return labels.given[item]; });
+  if (given > 0 && given < index_size(items)) note_missing_labels(index_size(items) - given, file, notes);
+  return given > 0;
+}
+
+struct Writing {
+  const Mesh& mesh;
+  const FilesResidue& residue;
+  Layout layout;
+  bool own_ids;  // the numbers came from such files; others than TetGen's own are counted anew
+  Labels vertex_labels;
+  Labels cell_labels;
+
+  [[nodiscard]] std::int64_t vertex_number(Index v) const {
+    return own_ids && !mesh.vertex_ids.empty() ? mesh.vertex_ids[v] : v + std::int64_t{residue.base};
+  }
+  /// Of the cell that stands at `place` in its file.
+  [[nodiscard]] std::int64_t cell_number(Index c, Index place) const {
+    return own_ids && !mesh.cell_ids.empty() ? mesh.cell_ids[c] : place + std::int64_t{residue.base};
+  }
+};
+
+void write_points(OutputFile& out, const Writing& from, Notes& notes) {
+  const Mesh& mesh = from.mesh;
+  std::vector<Index> all(mesh.vertex_count());
+  std::iota(all.begin(), all.end(), Index{0});
+  const auto columns = attribute_columns(mesh, Attached::vertices, all, notes);
+  note_lost_names(columns, ".node", notes);
+  const bool marked = has_markers(from.vertex_labels, all, ".node", notes);
+
+  out.print("{}  {}  {}  {}\n", mesh.vertex_count(), from.layout.dimension, columns.size(), marked ? 1 : 0);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    out.print("{}", from.vertex_number(v));
+    for (int k = 0; k < from.layout.dimension; ++k) out.print("  {}", mesh.points[v][k]);
+    for (const Column& column : columns) print_value(out, column, v);
+    if (marked) out.print("  {}", from.vertex_labels.values[v]);
+    out.write("\n");
+  }
+}
+
+void write_cells(OutputFile& out, File file, const Writing& from, const std::vector<Column>& columns,
+                 bool marked) {
+  const Mesh& mesh = from.mesh;
+  const auto& cells = from.layout.cells[file];
+  const auto order = places(file, from.layout.nodes[file], from.residue.faces_name_opposite_edges);
+  std::array<Index, 10> as_given{};
+  for (Index i = 0; i < index_size(cells); ++i) {
+    const Index c = cells[i];
+    out.print("{}", from.cell_number(c, i));
+    for (std::size_t k = 0; k < order.size(); ++k) as_given[order[k]] = mesh.cells[c][k];
+    for (std::size_t k = 0; k < order.size(); ++k) out.print(" {}", from.vertex_number(as_given[k]));
+    for (const Column& column : columns) print_value(out, column, c);
+    if (marked) out.print("  {}", from.cell_labels.values[c]);
+    out.write("\n");
+  }
+}
+
+void write_ele(OutputFile& out, const Writing& from, Notes& notes) {
+  const auto& cells = from.layout.cells[kEle];
+  const auto columns = attribute_columns(from.mesh, Attached::cells, cells, notes);
+  note_lost_names(columns, ".ele", notes);
+  out.print("{}  {}  {}\n", cells.size(), from.layout.nodes[kEle], columns.size());
+  write_cells(out, kEle, from, columns, false);
+}
+
+void write_boundary(OutputFile& out, File file, const Writing& from, Notes& notes) {
+  const auto& cells = from.layout.cells[file];
+  const bool marked = has_markers(from.cell_labels, cells, kExtensions[file], notes);
+  out.print("{}  {}\n", cells.size(), marked ? 1 : 0);
+  write_cells(out, file, from, {}, marked);
+}
+
+}  // namespace
+
+void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
+  const FilesResidue standard;
+  const auto* own = dynamic_cast<const FilesResidue*>(mesh.residue.get());
+  refuse_other_cells(mesh, path, "TetGen", holds, "write .msh, .vtu or .mesh instead");
+  Writing from{mesh,
+               own ? *own : standard,
+               {},
+               own != nullptr,
+               labels_of(mesh, Attached::vertices),
+               labels_of(mesh, Attached::cells)};
+  from.layout = layout_of(mesh, from.residue, path);
+  refuse_leftovers(from.layout, from.residue, path);
+
+  std::vector<OutputFile> files;
+  files.reserve(kExtensions.size());
+  for (const File file : {kNode, kEle, kFace, kEdge}) {
+    const FilesResidue::Part& part = from.residue.parts[file];
+    if (file != kNode && !part.present && from.layout.cells[file].empty()) continue;
+    OutputFile& out = files.emplace_back(beside(path, kExtensions[file]));
+    out.write(part.comments_before);
+    if (file == kNode) {
+      write_points(out, from, notes);
+    } else if (file == kEle) {
+      write_ele(out, from, notes);
+    } else {
+      write_boundary(out, file, from, notes);
+    }
+    out.write(part.comments_after);
+  }
+  OutputFile::commit_all(files);
+
+  if (!own) {
+    note_ids_left_out(mesh, "TetGen", notes);
+    note_residue_left_out(mesh, "TetGen", notes);
+  }
+  for (const Set& set : mesh.sets) note_set_left_out(set, "TetGen", notes);
+  note_other_companions(path, "does not fit the mesh that was just written beside it", notes);
+}
+
+}  // namespace meshorder::tetgen
+
+namespace meshorder {
+
+Format tetgen_format() {
+  return {"TetGen", {".node", ".ele", ".face", ".edge"}, true, tetgen::read, tetgen::write};
+}
+
+}  // namespace meshorder

@@ -1,0 +1,47 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/unsupported.hpp"
+
+#include "base/error.hpp"
+
+#include <fmt/format.h>
+
+namespace meshorder {
+
+void note_array_left_out(const DataArray& array, std::string_view format, Notes& notes) {
+  notes.push_back(
+      fmt::format("the array '{}' on {} is left out: {} cannot hold it", array.name, name(array.on), format));
+}
+
+void note_set_left_out(const Set& set, std::string_view format, Notes& notes) {
+  notes.push_back(
+      fmt::format("the set '{}' of {} is left out: {} cannot hold it", set.name, name(set.on), format));
+}
+
+void note_ids_left_out(const Mesh& mesh, std::string_view format, Notes& notes) {
+  for (const Attached on : {Attached::vertices, Attached::cells}) {
+    const auto& ids = on == Attached::vertices ? mesh.vertex_ids : mesh.cell_ids;
+    if (ids.empty()) continue;
+    notes.push_back(fmt::format("the numbers of {} are left out: {} counts them by place", name(on), format));
+  }
+}
+
+void note_residue_left_out(const Mesh& mesh, std::string_view format, Notes& notes) {
+  if (!mesh.residue) return;
+  for (const std::string& what : mesh.residue->contents()) {
+    notes.push_back(fmt::format("left out, as {} cannot hold it: {}", format, what));
+  }
+}
+
+void refuse_other_cells(const Mesh& mesh, const std::filesystem::path& path, std::string_view format,
+                        bool (*holds)(Shape shape, int vertices), const std::string& remedy) {
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const int vertices = mesh.cells.vertex_count(c);
+    if (holds(mesh.cells.shapes[c], vertices)) continue;
+    throw Error(
+        path.string(),
+        fmt::format("{} cannot hold a cell of type {}", format, type_name(mesh.cells.shapes[c], vertices)),
+        remedy);
+  }
+}
+
+}  // namespace meshorder

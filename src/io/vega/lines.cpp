@@ -1,0 +1,56 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/vega/lines.hpp"
+
+#include "io/words.hpp"
+
+#include <system_error>
+
+namespace meshorder {
+namespace fs = std::filesystem;
+
+VegaLines::VegaLines(const fs::path& path) : folder_(path.parent_path()) { open(path); }
+
+void VegaLines::open(const fs::path& path) { files_.push_back({path, std::make_unique<Scanner>(path)}); }
+
+bool VegaLines::peek(std::string_view& line) {
+  while (true) {
+    Scanner& file = at();
+    if (file.bytes_left() == 0) {
+      if (files_.size() == 1) return false;
+      files_.pop_back();
+      continue;
+    }
+    line = trimmed(file.peek_line());
+    if (line.empty() || line.front() == '#') {
+      if (!line.empty()) comments_ += std::string(line) + "\n";
+      take();
+      continue;
+    }
+    std::string_view rest = line;
+    if (!same_but_for_case(next_word(rest), "*INCLUDE")) return true;
+    include(std::string(trimmed(rest)));
+  }
+}
+
+void VegaLines::include(const std::string& name) {
+  if (name.empty()) at().fail("*INCLUDE names no file", "write *INCLUDE and a file name");
+  // beside the file that includes it or, as Vega itself looks, beside the main file
+  std::error_code code;
+  fs::path path = files_.back().path.parent_path() / name;
+  if (!fs::exists(path, code)) path = folder_ / name;
+  if (!fs::is_regular_file(path, code)) {
+    at().fail("the included file '" + name + "' does not exist", "put it beside this file");
+  }
+  for (const OpenFile& file : files_) {
+    if (fs::equivalent(file.path, path, code)) {
+      at().fail("the included file '" + name + "' includes itself", "remove the circle");
+    }
+  }
+  constexpr std::size_t kMost = 10000;
+  if (included_.size() == kMost) at().fail("more than 10000 files are included", "join them");
+  included_.push_back(name);
+  take();
+  if (fs::file_size(path, code) > 0) open(path);
+}
+
+}  // namespace meshorder

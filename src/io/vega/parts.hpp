@@ -1,0 +1,61 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/format.hpp"
+#include "mesh/mesh.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What the reader and the writer of Vega files share.
+namespace meshorder::vega {
+
+inline constexpr std::string_view kAllElements = "allElements";
+inline constexpr std::string_view kAttributes = "attributes";
+
+enum class Kind : std::uint8_t { vertices, elements, material, set, region, other };
+
+/// A section of the file, with the comments that stood before it.
+struct Section {
+  Kind kind = Kind::other;
+  std::string comments;            ///< whole lines
+  std::string title;               ///< the keyword's line, where it is kept as it stands
+  std::vector<std::string> lines;  ///< of materials and unknown sections
+  std::size_t set = 0;             ///< its place in Mesh::sets
+  std::string region_set;
+  std::string region_material;
+};
+
+struct VegaResidue : Residue {
+  std::vector<Section> sections;
+  std::string closing_comments;
+  std::string element_word = "TET";
+  int vertex_base = 1;
+  int element_base = 1;
+  int vertex_attributes = 0;  ///< TetGen's columns after the coordinates, which Vega allows
+  bool vertex_markers = false;
+  int element_attributes = 0;
+  std::vector<std::string> included;
+
+  [[nodiscard]] std::vector<std::string> contents() const override {
+    std::vector<std::string> result;
+    for (const Section& section : sections) {
+      if (section.kind == Kind::material) result.push_back("the material '" + section.title + "'");
+      if (section.kind == Kind::region) {
+        result.push_back("the region of '" + section.region_set + "' and '" + section.region_material + "'");
+      }
+      if (section.kind == Kind::other) result.push_back("the section " + section.title);
+    }
+    return result;
+  }
+};
+
+/// For each cell the number, from 1, of the last region that it lies in; 0 for none. Empty without regions.
+std::vector<std::int32_t> region_numbers(const VegaResidue& residue, const Mesh& mesh);
+
+Mesh read(const std::filesystem::path& path, Notes& notes);
+
+}  // namespace meshorder::vega

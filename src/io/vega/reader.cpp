@@ -1,0 +1,380 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/error.hpp"
+#include "io/numbering.hpp"
+#include "io/vega/lines.hpp"
+#include "io/vega/parts.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <set>
+
+namespace meshorder::vega {
+namespace {
+
+constexpr std::string_view kSeparators = " \t,";
+
+std::string_view without_comment(std::string_view line) { return line.substr(0, line.find('#')); }
+
+class Reader {
+ public:
+  Reader(const std::filesystem::path& path, Notes& notes) : lines_(path), notes_(notes) {
+    if (lines_.at().all().find('\0') != std::string_view::npos) {
+      throw Error(path.string(), "is a binary Vega file", "save it as text (.veg)");
+    }
+  }
+
+  Mesh read() {
+    std::string_view line;
+    while (lines_.peek(line)) {
+      if (line.front() != '*') {
+        lines_.at().fail("a section must begin here", "sections begin with *VERTICES, *ELEMENTS, *SET …");
+      }
+      read_section(line);
+    }
+    residue_->closing_comments = lines_.take_comments();
+    if (!has_elements_) {
+      lines_.at().fail(std::string("the file has no ") + (has_vertices_ ? "*ELEMENTS" : "*VERTICES"),
+                       "it may be cut short");
+    }
+    label_by_region();
+    mesh_.vertex_ids = vertices_.ids_unless_from(residue_->vertex_base);
+    mesh_.cell_ids = elements_.ids_unless_from(residue_->element_base);
+    if (!mesh_.vertex_ids.empty() || !mesh_.cell_ids.empty()) {
+      notes_.emplace_back(
+          "vertices or elements have numbers of their own, by which they are named here; Vega itself would "
+          "count lines");
+    }
+    residue_->included = lines_.included();
+    mesh_.residue = residue_;
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_section(std::string_view line) {
+    Section section;
+    section.comments = lines_.take_comments();
+    std::string_view name = line;
+    const std::string keyword(next_word(name, " \t"));
+    const std::string title(trimmed(name));
+    if (same_but_for_case(keyword, "*VERTICES")) {
+      section.kind = Kind::vertices;
+      read_vertices();
+    } else if (same_but_for_case(keyword, "*ELEMENTS")) {
+      section.kind = Kind::elements;
+      read_elements();
+    } else if (same_but_for_case(keyword, "*MATERIAL")) {
+      read_material(section, title);
+    } else if (same_but_for_case(keyword, "*SET")) {
+      read_set(section, title);
+    } else if (same_but_for_case(keyword, "*REGION") || same_but_for_case(keyword, "*REGION,")) {
+      read_region(section);
+    } else {
+      read_other(section, std::string(line));
+    }
+    residue_->sections.push_back(std::move(section));
+  }
+
+  /// The next line that is no keyword, without its comment; Error when there is none.
+  std::string_view data_line(const std::string& what) {
+    std::string_view line;
+    if (!lines_.peek(line)) {
+      lines_.at().fail("the file ends where " + what + " should stand", "it may be cut short");
+    }
+    if (line.front() == '*') {
+      lines_.at().fail(std::string(line.substr(0, 40)) + " stands where " + what + " should be",
+                       "lines are missing");
+    }
+    lines_.take_comments();
+    return without_comment(line);
+  }
+
+  std::string_view data_line(const std::string& what, Index place, Index count) {
+    std::string_view line;
+    const bool is_data = lines_.peek(line) && line.front() != '*';
+    return data_line(is_data ? what : fmt::format("{} {} of {}", what, place + 1, count));
+  }
+
+  std::int64_t integer(std::string_view& line, std::string_view what) {
+    return parse_integer<std::int64_t>(lines_.at(), required_word(line, what), what);
+  }
+
+  double real(std::string_view& line, std::string_view what) {
+    const double value = parse_real(lines_.at(), required_word(line, what), what);
+    if (!std::isfinite(value))
+      lines_.at().fail(std::string(what) + " is not finite", "a finite number is needed");
+    return value;
+  }
+
+  std::string_view required_word(std::string_view& line, std::string_view what) {
+    const std::string_view word = next_word(line, kSeparators);
+    if (word.empty())
+      lines_.at().fail("the line ends where " + std::string(what) + " should stand", "add it");
+    return word;
+  }
+
+  void expect_line_end(std::string_view line, const std::string& what) {
+    const std::string_view word = next_word(line, kSeparators);
+    if (!word.empty()) {
+      lines_.at().fail("'" + std::string(word.substr(0, 40)) + "' follows " + what, "remove it");
+    }
+  }
+
+  /// "n width a b": the number of lines, of values in each, and up to two more numbers.
+  struct Header {
+    Index count = 0;
+    std::array<std::int64_t, 2> columns{};
+  };
+
+  Header read_header(const std::string& what, int width) {
+    std::string_view line = data_line("the number of " + what);
+    Header header;
+    const std::int64_t count = integer(line, "the number of " + what);
+    // lines may come from an included file, so the bytes left here are no bound
+    if (count < 0 || count > kMaxIndex) {
+      lines_.at().fail("the number of " + what + " is " + std::to_string(count),
+                       "0 to 2147483647 are possible");
+    }
+    header.count = static_cast<Index>(count);
+    if (!trimmed_all(line).empty() && integer(line, "the width") != width) {
+      lines_.at().fail("the width of " + what + " is wrong", std::to_string(width) + " is needed");
+    }
+    for (std::int64_t& columns : header.columns) {
+      if (trimmed_all(line).empty()) break;
+      columns = integer(line, "the number of attributes");
+      if (columns < 0 || columns > 1000) {
+        lines_.at().fail("the number of attributes is " + std::to_string(columns), "it is 0 in Vega's files");
+      }
+    }
+    expect_line_end(line, "the header");
+    lines_.take();
+    return header;
+  }
+
+  static std::string_view trimmed_all(std::string_view line) { return next_word(line, kSeparators); }
+
+  /// No more is reserved than the rest of this file could fill; included files grow the rest.
+  std::size_t reservable(Index count) {
+    return static_cast<std::size_t>(std::min<std::int64_t>(count, lines_.at().bytes_left() / 8));
+  }
+
+  void add_id(Numbering& numbering, std::int64_t id, const std::string& what) {
+    if (id < 0) lines_.at().fail(what + " has the number " + std::to_string(id), "numbers are not negative");
+    if (!numbering.add(id)) {
+      lines_.at().fail(what + " " + std::to_string(id) + " is given twice", "numbers must differ");
+    }
+  }
+
+  void read_vertices() {
+    if (has_vertices_) lines_.at().fail("a second *VERTICES", "a file has one");
+    has_vertices_ = true;
+    lines_.take();
+    const Header header = read_header("vertices", 3);
+    if (header.columns[1] > 1) lines_.at().fail("more than one column of markers", "0 or 1 is possible");
+    residue_->vertex_attributes = static_cast<int>(header.columns[0]);
+    residue_->vertex_markers = header.columns[1] == 1;
+    std::vector<double> attributes;
+    std::vector<std::int32_t> markers;
+    mesh_.points.reserve(reservable(header.count));
+    for (Index v = 0; v < header.count; ++v) {
+      std::string_view line = data_line("vertex", v, header.count);
+      add_id(vertices_, integer(line, "the number of a vertex"), "vertex");
+      Point point;
+      for (double& x : point) x = real(line, "a coordinate");
+      mesh_.points.push_back(point);
+      for (int a = 0; a < residue_->vertex_attributes; ++a) attributes.push_back(real(line, "an attribute"));
+      if (residue_->vertex_markers) {
+        markers.push_back(
+            parse_integer<std::int32_t>(lines_.at(), required_word(line, "a marker"), "a marker"));
+      }
+      expect_line_end(line, "the vertex");
+      lines_.take();
+    }
+    residue_->vertex_base = vertices_.find(0) >= 0 ? 0 : 1;
+    if (!attributes.empty()) add_attributes(Attached::vertices, std::move(attributes));
+    if (!markers.empty()) {
+      mesh_.data.push_back({std::string(kLabel), Attached::vertices, 1, std::move(markers), {}, {}});
+    }
+  }
+
+  void add_attributes(Attached on, std::vector<double> values) {
+    const int width = on == Attached::vertices ? residue_->vertex_attributes : residue_->element_attributes;
+    mesh_.data.push_back({std::string(kAttributes), on, width, std::move(values), {}, {}});
+  }
+
+  void read_elements() {
+    if (has_elements_) lines_.at().fail("a second *ELEMENTS", "a file has one");
+    if (!has_vertices_) lines_.at().fail("*ELEMENTS before *VERTICES", "vertices come first");
+    has_elements_ = true;
+    lines_.take();
+    std::string_view word = data_line("the type of the elements");
+    const std::string type(next_word(word, kSeparators));
+    const bool tets = same_but_for_case(std::string_view(type).substr(0, 3), "TET");
+    if (!tets && !same_but_for_case(std::string_view(type).substr(0, 5), "CUBIC")) {
+      lines_.at().fail("elements of type '" + type.substr(0, 40) + "'", "TET and CUBIC are possible");
+    }
+    lines_.take();
+    residue_->element_word = type;
+
+    const int width = tets ? 4 : 8;
+    const Header header = read_header("elements", width);
+    residue_->element_attributes = static_cast<int>(header.columns[0]);
+    std::vector<double> attributes;
+    mesh_.cells.reserve(static_cast<Offset>(reservable(header.count)),
+                        static_cast<Offset>(reservable(header.count)) * width);
+    std::vector<Index> corners(width);
+    for (Index e = 0; e < header.count; ++e) {
+      std::string_view line = data_line("element", e, header.count);
+      add_id(elements_, integer(line, "the number of an element"), "element");
+      for (Index& corner : corners)
+        corner = find(vertices_, integer(line, "a vertex of the element"), "vertex");
+      mesh_.cells.push_back(tets ? Shape::tetrahedron : Shape::hexahedron, corners);
+      for (int a = 0; a < residue_->element_attributes; ++a) attributes.push_back(real(line, "an attribute"));
+      expect_line_end(line, "the element");
+      lines_.take();
+    }
+    residue_->element_base = elements_.find(0) >= 0 ? 0 : 1;
+    if (!attributes.empty()) add_attributes(Attached::cells, std::move(attributes));
+  }
+
+  Index find(const Numbering& numbering, std::int64_t id, const std::string& what) {
+    const Index place = numbering.find(id);
+    if (place < 0) {
+      lines_.at().fail(what + " " + std::to_string(id) + " does not exist",
+                       "there are " + std::to_string(numbering.size()) + " of them");
+    }
+    return place;
+  }
+
+  /// Lines up to the next keyword, as they stand.
+  void read_lines(Section& section) {
+    std::string_view line;
+    while (lines_.peek(line) && line.front() != '*') {
+      section.lines.emplace_back(line);
+      lines_.take();
+    }
+  }
+
+  void read_material(Section& section, const std::string& name) {
+    if (name.empty()) lines_.at().fail("a material without a name", "write *MATERIAL and a name");
+    section.kind = Kind::material;
+    section.title = name;
+    lines_.take();
+    (void)data_line("the properties of material '" + name + "'");
+    read_lines(section);
+    materials_.insert(name);
+  }
+
+  void read_set(Section& section, const std::string& name) {
+    if (name.empty()) lines_.at().fail("a set without a name", "write *SET and a name");
+    if (!has_elements_) lines_.at().fail("*SET before *ELEMENTS", "elements come first");
+    section.kind = Kind::set;
+    section.set = mesh_.sets.size();
+    lines_.take();
+    Set set{name, Attached::cells, {}};
+    std::string_view line;
+    while (lines_.peek(line) && line.front() != '*') {
+      lines_.take_comments();
+      line = without_comment(line);
+      for (std::string_view word = next_word(line, kSeparators); !word.empty();
+           word = next_word(line, kSeparators)) {
+        const auto id = parse_integer<std::int64_t>(lines_.at(), word, "an element of set '" + name + "'");
+        set.members.push_back(find(elements_, id, "element"));
+      }
+      lines_.take();
+    }
+    mesh_.sets.push_back(std::move(set));
+  }
+
+  void read_region(Section& section) {
+    if (!has_elements_) lines_.at().fail("*REGION before *ELEMENTS", "elements come first");
+    section.kind = Kind::region;
+    lines_.take();
+    (void)data_line("the set and material of a region");
+    std::string_view line;
+    lines_.peek(line);  // names may hold what begins a comment elsewhere
+    const std::size_t comma = line.find(',');
+    if (comma == std::string_view::npos) lines_.at().fail("a region without a comma", "write SET, MATERIAL");
+    section.region_set = trimmed(line.substr(0, comma));
+    section.region_material = trimmed(line.substr(comma + 1));
+    if (!materials_.contains(section.region_material)) {
+      lines_.at().fail("material '" + section.region_material + "' does not exist", "define it before");
+    }
+    const auto set = std::find_if(mesh_.sets.begin(), mesh_.sets.end(),
+                                  [&](const Set& s) { return s.name == section.region_set; });
+    if (set == mesh_.sets.end() && section.region_set != kAllElements) {
+      lines_.at().fail("set '" + section.region_set + "' does not exist", "define it before");
+    }
+    lines_.take();
+  }
+
+  /// A section that Vega does not know is kept as it stands, unless it could name elements or vertices.
+  void read_other(Section& section, const std::string& title) {
+    section.title = title;
+    const std::int64_t where = lines_.at().line();
+    const std::string file = lines_.at().file();
+    lines_.take();
+    read_lines(section);
+    for (const std::string& text : section.lines) {
+      std::string_view line = text;
+      for (std::string_view word = next_word(line, kSeparators); !word.empty();
+           word = next_word(line, kSeparators)) {
+        if (word.find_first_not_of("+-0123456789") != std::string_view::npos) continue;
+        throw Error(Location{file, where, -1},
+                    "the section " + title.substr(0, 60) +
+                        " is unknown and holds whole numbers, which "
+                        "could be those of elements",
+                    "remove the section");
+      }
+    }
+  }
+
+  void label_by_region();
+
+  VegaLines lines_;
+  Notes& notes_;
+  Mesh mesh_;
+  std::shared_ptr<VegaResidue> residue_ = std::make_shared<VegaResidue>();
+  Numbering vertices_;
+  Numbering elements_;
+  std::set<std::string> materials_;
+  bool has_vertices_ = false;
+  bool has_elements_ = false;
+};
+
+void Reader::label_by_region() {
+  auto labels = region_numbers(*residue_, mesh_);
+  if (labels.empty()) return;
+  mesh_.data.push_back({std::string(kLabel), Attached::cells, 1, std::move(labels), {}, {}});
+}
+
+}  // namespace
+
+/// For each cell the number, from 1, of the last region that it lies in; 0 for none. Empty without regions.
+std::vector<std::int32_t> region_numbers(const VegaResidue& residue, const Mesh& mesh) {
+  std::vector<std::int32_t> numbers;
+  std::int32_t number = 0;
+  for (const Section& section : residue.sections) {
+    if (section.kind != Kind::region) continue;
+    numbers.resize(mesh.cells.shapes.size(), 0);
+    ++number;
+    if (section.region_set == kAllElements) {
+      std::fill(numbers.begin(), numbers.end(), number);
+      continue;
+    }
+    const auto set = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const Set& s) {
+      return s.on == Attached::cells && s.name == section.region_set;
+    });
+    if (set == mesh.sets.end()) continue;
+    for (const Index member : set->members) numbers[member] = number;
+  }
+  return numbers;
+}
+
+Mesh read(const std::filesystem::path& path, Notes& notes) { return Reader(path, notes).read(); }
+
+}  // namespace meshorder::vega

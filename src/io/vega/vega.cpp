@@ -1,0 +1,265 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Vega FEM's volumetric meshes (.veg), as its library volumetricMesh reads and writes them; the format is
+// described in Vega's user manual, https://viterbi-web.usc.edu/~jbarbic/vega/. The corners of CUBIC elements
+// come in VTK's order.
+#include "base/error.hpp"
+#include "io/all_formats.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/unsupported.hpp"
+#include "io/vega/parts.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <type_traits>
+
+namespace meshorder {
+namespace {
+namespace fs = std::filesystem;
+using vega::Kind;
+using vega::Section;
+using vega::VegaResidue;
+
+bool vega_holds(Shape shape, int vertices) {
+  return (shape == Shape::tetrahedron && vertices == 4) || (shape == Shape::hexahedron && vertices == 8);
+}
+
+/// Writes one mesh; the sections of a Vega file in their order, those of other meshes in the usual one.
+class Writer {
+ public:
+  Writer(const Mesh& mesh, const fs::path& path, Notes& notes)
+      : mesh_(mesh),
+        notes_(notes),
+        native_(dynamic_cast<const VegaResidue*>(mesh.residue.get())),
+        out_(path) {}
+
+  void write() {
+    choose_sections();
+    note_losses();
+    for (const Section& section : sections_) write_section(section);
+    if (native_) out_.write(native_->closing_comments);
+    out_.commit();
+  }
+
+ private:
+  void choose_sections() {
+    std::vector<bool> has_section(mesh_.sets.size(), false);
+    if (native_) {
+      for (const Section& section : native_->sections) {
+        if (section.kind == Kind::set && !is_cell_set(section.set)) continue;
+        if (section.kind == Kind::region && !has_set(section.region_set)) {
+          notes_.push_back("the region of the set '" + section.region_set + "' is left out: the set is gone");
+          continue;
+        }
+        if (section.kind == Kind::set) has_section[section.set] = true;
+        sections_.push_back(section);
+      }
+    } else {
+      add_section(Kind::vertices);
+      add_section(Kind::elements);
+    }
+    for (std::size_t i = 0; i < mesh_.sets.size(); ++i) {
+      if (!has_section[i] && is_cell_set(i)) add_section(Kind::set, i);
+    }
+  }
+
+  void add_section(Kind kind, std::size_t set = 0) {
+    Section& section = sections_.emplace_back();
+    section.kind = kind;
+    section.set = set;
+  }
+
+  [[nodiscard]] bool has_set(const std::string& name) const {
+    return name == vega::kAllElements ||
+           std::any_of(mesh_.sets.begin(), mesh_.sets.end(),
+                       [&](const Set& set) { return set.on == Attached::cells && set.name == name; });
+  }
+
+  [[nodiscard]] bool is_cell_set(std::size_t i) const {
+    return i < mesh_.sets.size() && mesh_.sets[i].on == Attached::cells;
+  }
+
+  void note_losses() {
+    for (const Set& set : mesh_.sets) {
+      if (set.on == Attached::vertices) note_set_left_out(set, "Vega", notes_);
+    }
+    for (const DataArray& array : mesh_.data) {
+      if (&array == vertex_attributes() || &array == element_attributes() || &array == markers()) continue;
+      if (native_ && is_cell_label(array) && array.values == Values(vega::region_numbers(*native_, mesh_)))
+        continue;
+      if (!native_ && is_cell_label(array)) {
+        write_labels_as_sets(array);
+      } else {
+        note_array_left_out(array, "Vega", notes_);
+      }
+    }
+    if (native_) {
+      for (const std::string& name : native_->included) {
+        notes_.push_back("the file '" + name + "', which was included, is written inline");
+      }
+    } else {
+      note_ids_left_out(mesh_, "Vega", notes_);
+      note_residue_left_out(mesh_, "Vega", notes_);
+    }
+  }
+
+  static bool is_cell_label(const DataArray& array) {
+    return array.on == Attached::cells && array.name == kLabel && array.components == 1 &&
+           array.covers_all() &&
+           (std::holds_alternative<std::vector<std::int32_t>>(array.values) ||
+            std::holds_alternative<std::vector<std::int64_t>>(array.values));
+  }
+
+  /// Without materials there are no regions, but a set for each label keeps the cells of one together.
+  void write_labels_as_sets(const DataArray& array) {
+    std::map<std::int64_t, Set> sets;
+    std::visit(
+        [&](const auto& values) {
+          if constexpr (std::is_integral_v<typename std::decay_t<decltype(values)>::value_type>) {
+            for (Index c = 0; c < mesh_.cell_count(); ++c) sets[values[c]].members.push_back(c);
+          }
+        },
+        array.values);
+    for (auto& [label, set] : sets) {
+      set.name = fmt::format("label_{}", label);
+      add_section(Kind::set, mesh_.sets.size() + label_sets_.size());
+      label_sets_.push_back(std::move(set));
+    }
+    notes_.push_back("labels of cells are written as sets of the names label_N");
+  }
+
+  [[nodiscard]] const DataArray* attributes(Attached on, int width) const {
+    if (!native_ || width == 0) return nullptr;
+    const DataArray* array = find_array(mesh_, vega::kAttributes, on);
+    const bool fits = array && array->covers_all() && array->components == width &&
+                      std::holds_alternative<std::vector<double>>(array->values);
+    return fits ? array : nullptr;
+  }
+  [[nodiscard]] const DataArray* vertex_attributes() const {
+    return attributes(Attached::vertices, native_ ? native_->vertex_attributes : 0);
+  }
+  [[nodiscard]] const DataArray* element_attributes() const {
+    return attributes(Attached::cells, native_ ? native_->element_attributes : 0);
+  }
+  [[nodiscard]] const DataArray* markers() const {
+    if (!native_ || !native_->vertex_markers) return nullptr;
+    const DataArray* array = find_array(mesh_, kLabel, Attached::vertices);
+    const bool fits = array && array->covers_all() && array->components == 1 &&
+                      std::holds_alternative<std::vector<std::int32_t>>(array->values);
+    return fits ? array : nullptr;
+  }
+
+  // numbers are those of the file where it was Vega's, which counts lines itself when it reads
+  [[nodiscard]] std::int64_t vertex_number(Index v) const {
+    if (!native_) return v + std::int64_t{1};
+    return mesh_.vertex_ids.empty() ? v + std::int64_t{native_->vertex_base} : mesh_.vertex_ids[v];
+  }
+  [[nodiscard]] std::int64_t element_number(Index c) const {
+    if (!native_) return c + std::int64_t{1};
+    return mesh_.cell_ids.empty() ? c + std::int64_t{native_->element_base} : mesh_.cell_ids[c];
+  }
+
+  void write_section(const Section& section) {
+    out_.write(section.comments);
+    switch (section.kind) {
+      case Kind::vertices:
+        return write_vertices();
+      case Kind::elements:
+        return write_elements();
+      case Kind::set:
+        return write_set(section.set < mesh_.sets.size() ? mesh_.sets[section.set]
+                                                         : label_sets_[section.set - mesh_.sets.size()]);
+      case Kind::region:
+        return out_.print("*REGION\n{}, {}\n\n", section.region_set, section.region_material);
+      case Kind::material:
+        out_.print("*MATERIAL {}\n", section.title);
+        break;
+      case Kind::other:
+        out_.print("{}\n", section.title);
+        break;
+    }
+    for (const std::string& line : section.lines) out_.print("{}\n", line);
+    out_.write("\n");
+  }
+
+  void write_row(const DataArray* array, Index row) {
+    if (!array) return;
+    const auto& values = std::get<std::vector<double>>(array->values);
+    for (Index k = 0; k < array->components; ++k) {
+      out_.print(" {}", values[static_cast<Offset>(row) * array->components + k]);
+    }
+  }
+
+  void write_vertices() {
+    const DataArray* extra = vertex_attributes();
+    const DataArray* marker = markers();
+    out_.print("*VERTICES\n{} 3 {} {}\n", mesh_.vertex_count(), extra ? extra->components : 0,
+               marker ? 1 : 0);
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      const Point& p = mesh_.points[v];
+      out_.print("{} {} {} {}", vertex_number(v), p[0], p[1], p[2]);
+      write_row(extra, v);
+      if (marker) out_.print(" {}", std::get<std::vector<std::int32_t>>(marker->values)[v]);
+      out_.write("\n");
+    }
+    out_.write("\n");
+  }
+
+  void write_elements() {
+    const DataArray* extra = element_attributes();
+    const int width = mesh_.cell_count() == 0 ? 4 : mesh_.cells.vertex_count(0);
+    out_.print("*ELEMENTS\n{}\n{} {} {}\n", word_of(width), mesh_.cell_count(), width,
+               extra ? extra->components : 0);
+    for (Index c = 0; c < mesh_.cell_count(); ++c) {
+      out_.print("{}", element_number(c));
+      for (const Index v : mesh_.cells[c]) out_.print(" {}", vertex_number(v));
+      write_row(extra, c);
+      out_.write("\n");
+    }
+    out_.write("\n");
+  }
+
+  /// The word of the file (TET or TETS) when it still fits.
+  [[nodiscard]] std::string word_of(int width) const {
+    const std::string usual = width == 4 ? "TET" : "CUBIC";
+    const bool fits = native_ && same_but_for_case(native_->element_word.substr(0, usual.size()), usual);
+    return fits ? native_->element_word : usual;
+  }
+
+  void write_set(const Set& set) {
+    constexpr std::size_t kPerLine = 8;
+    out_.print("*SET {}\n", set.name);
+    for (std::size_t i = 0; i < set.members.size(); ++i) {
+      const bool last = i + 1 == set.members.size();
+      const bool full = (i + 1) % kPerLine == 0;
+      out_.print("{}{}", element_number(set.members[i]), last ? "\n" : full ? ",\n" : ", ");
+    }
+    out_.write("\n");
+  }
+
+  const Mesh& mesh_;
+  Notes& notes_;
+  const VegaResidue* native_;
+  OutputFile out_;
+  std::vector<Section> sections_;
+  std::vector<Set> label_sets_;
+};
+
+void write_vega(const Mesh& mesh, const fs::path& path, Notes& notes) {
+  const std::string remedy = "write .vtu or .msh";
+  refuse_other_cells(mesh, path, "Vega", vega_holds, remedy);
+  for (Index c = 1; c < mesh.cell_count(); ++c) {
+    if (mesh.cells.shapes[c] == mesh.cells.shapes[0]) continue;
+    throw Error(path.string(), "a Vega file cannot hold both tetrahedra and hexahedra", remedy);
+  }
+  Writer(mesh, path, notes).write();
+}
+
+}  // namespace
+
+Format vega_format() { return {"Vega", {".veg"}, false, vega::read, write_vega}; }
+
+}  // namespace meshorder

@@ -1,0 +1,242 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Cell types of VTK's file formats: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html and
+// vtkCellType.h.
+#include "io/vtk/cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+struct VtkType {
+  int number;
+  std::string_view name;
+  Shape shape;
+  int vertices;  // exactly so many, or at least −vertices
+};
+
+constexpr int kPixel = 8;
+constexpr int kVoxel = 11;
+
+// in the order in which a type is chosen for a shape and its vertices
+constexpr std::array kTypes{
+    VtkType{1, "VTK_VERTEX", Shape::vertex, 1},
+    VtkType{2, "VTK_POLY_VERTEX", Shape::poly_vertex, -1},
+    VtkType{3, "VTK_LINE", Shape::line, 2},
+    VtkType{4, "VTK_POLY_LINE", Shape::polyline, -1},
+    VtkType{5, "VTK_TRIANGLE", Shape::triangle, 3},
+    VtkType{6, "VTK_TRIANGLE_STRIP", Shape::triangle_strip, -3},
+    VtkType{7, "VTK_POLYGON", Shape::polygon, -1},
+    VtkType{9, "VTK_QUAD", Shape::quad, 4},
+    VtkType{10, "VTK_TETRA", Shape::tetrahedron, 4},
+    VtkType{12, "VTK_HEXAHEDRON", Shape::hexahedron, 8},
+    VtkType{13, "VTK_WEDGE", Shape::wedge, 6},
+    VtkType{14, "VTK_PYRAMID", Shape::pyramid, 5},
+    VtkType{21, "VTK_QUADRATIC_EDGE", Shape::line, 3},
+    VtkType{22, "VTK_QUADRATIC_TRIANGLE", Shape::triangle, 6},
+    VtkType{23, "VTK_QUADRATIC_QUAD", Shape::quad, 8},
+    VtkType{24, "VTK_QUADRATIC_TETRA", Shape::tetrahedron, 10},
+    VtkType{25, "VTK_QUADRATIC_HEXAHEDRON", Shape::hexahedron, 20},
+    VtkType{26, "VTK_QUADRATIC_WEDGE", Shape::wedge, 15},
+    VtkType{27, "VTK_QUADRATIC_PYRAMID", Shape::pyramid, 13},
+    VtkType{28, "VTK_BIQUADRATIC_QUAD", Shape::quad, 9},
+    VtkType{29, "VTK_TRIQUADRATIC_HEXAHEDRON", Shape::hexahedron, 27},
+    VtkType{30, "VTK_QUADRATIC_LINEAR_QUAD", Shape::quad, 6},
+    VtkType{31, "VTK_QUADRATIC_LINEAR_WEDGE", Shape::wedge, 12},
+    VtkType{32, "VTK_BIQUADRATIC_QUADRATIC_WEDGE", Shape::wedge, 18},
+    VtkType{33, "VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON", Shape::hexahedron, 24},
+    VtkType{34, "VTK_BIQUADRATIC_TRIANGLE", Shape::triangle, 7},
+    VtkType{35, "VTK_CUBIC_LINE", Shape::line, 4},
+    VtkType{37, "VTK_TRIQUADRATIC_PYRAMID", Shape::pyramid, 19},
+    VtkType{68, "VTK_LAGRANGE_CURVE", Shape::line, -2},
+    VtkType{69, "VTK_LAGRANGE_TRIANGLE", Shape::triangle, -3},
+    VtkType{70, "VTK_LAGRANGE_QUADRILATERAL", Shape::quad, -4},
+    VtkType{71, "VTK_LAGRANGE_TETRAHEDRON", Shape::tetrahedron, -4},
+    VtkType{72, "VTK_LAGRANGE_HEXAHEDRON", Shape::hexahedron, -8},
+    VtkType{73, "VTK_LAGRANGE_WEDGE", Shape::wedge, -6},
+    VtkType{74, "VTK_LAGRANGE_PYRAMID", Shape::pyramid, -5},
+    VtkType{8, "VTK_PIXEL", Shape::quad, 4},
+    VtkType{11, "VTK_VOXEL", Shape::hexahedron, 8},
+    VtkType{36, "VTK_QUADRATIC_POLYGON", Shape::polygon, -3},
+    VtkType{60, "VTK_HIGHER_ORDER_EDGE", Shape::line, -2},
+    VtkType{61, "VTK_HIGHER_ORDER_TRIANGLE", Shape::triangle, -3},
+    VtkType{62, "VTK_HIGHER_ORDER_QUAD", Shape::quad, -4},
+    VtkType{64, "VTK_HIGHER_ORDER_TETRAHEDRON", Shape::tetrahedron, -4},
+    VtkType{65, "VTK_HIGHER_ORDER_WEDGE", Shape::wedge, -6},
+    VtkType{66, "VTK_HIGHER_ORDER_PYRAMID", Shape::pyramid, -5},
+    VtkType{67, "VTK_HIGHER_ORDER_HEXAHEDRON", Shape::hexahedron, -8},
+    VtkType{75, "VTK_BEZIER_CURVE", Shape::line, -2},
+    VtkType{76, "VTK_BEZIER_TRIANGLE", Shape::triangle, -3},
+    VtkType{77, "VTK_BEZIER_QUADRILATERAL", Shape::quad, -4},
+    VtkType{78, "VTK_BEZIER_TETRAHEDRON", Shape::tetrahedron, -4},
+    VtkType{79, "VTK_BEZIER_HEXAHEDRON", Shape::hexahedron, -8},
+    VtkType{80, "VTK_BEZIER_WEDGE", Shape::wedge, -6},
+    VtkType{81, "VTK_BEZIER_PYRAMID", Shape::pyramid, -5},
+};
+
+constexpr int kFirstLagrange = 68;
+constexpr int kLastLagrange = 74;
+
+const VtkType* type_of(int number) {
+  const auto found =
+      std::find_if(kTypes.begin(), kTypes.end(), [&](const VtkType& t) { return t.number == number; });
+  return found == kTypes.end() ? nullptr : &*found;
+}
+
+bool fits(const VtkType& type, Offset vertices) {
+  return type.vertices > 0 ? vertices == type.vertices : vertices >= -type.vertices;
+}
+
+/// The type that a shape with so many vertices has, when nothing else is known; nullptr when there is none.
+const VtkType* default_type(Shape shape, int vertices) {
+  const auto found = std::find_if(kTypes.begin(), kTypes.end(), [&](const VtkType& type) {
+    return type.shape == shape && fits(type, vertices);
+  });
+  return found == kTypes.end() ? nullptr : &*found;
+}
+
+/// Types of all pairs met so far, since a mesh asks for the same few again and again.
+class DefaultTypes {
+ public:
+  const VtkType* operator()(Shape shape, int vertices) {
+    if (vertices >= kRemembered) return default_type(shape, vertices);
+    auto& [known, type] = types_[static_cast<std::size_t>(shape)][static_cast<std::size_t>(vertices)];
+    if (!known) type = default_type(shape, vertices);
+    known = true;
+    return type;
+  }
+
+ private:
+  static constexpr int kRemembered = 32;
+  std::array<std::array<std::pair<bool, const VtkType*>, kRemembered>, kShapes> types_{};
+};
+
+Error unknown_type(int number, Index cell, const VtkError& error) {
+  std::string what = "cell " + std::to_string(cell) + " (counted from 0) ";
+  if (number == 42) {
+    what += "is a polyhedron (VTK_POLYHEDRON)";
+  } else if (number == 0) {
+    what += "is empty (VTK_EMPTY_CELL)";
+  } else {
+    what += "has the type " + std::to_string(number);
+  }
+  return error(what, "the types with fixed nodes are understood, from VTK_VERTEX to VTK_BEZIER_PYRAMID");
+}
+
+}  // namespace
+
+void take_vtk_cells(Mesh& mesh, VtkCells cells, const VtkError& error, Notes& notes) {
+  std::array<const VtkType*, 256> known{};
+  for (const VtkType& type : kTypes) known[static_cast<std::size_t>(type.number)] = &type;
+
+  DefaultTypes defaults;
+  Index converted = 0;
+  bool plain = true;  // shapes and vertices tell all types
+  const Index count = index_size(cells.types);
+  mesh.cells.shapes.resize(count);
+  for (Index c = 0; c < count; ++c) {
+    const VtkType* type = known[cells.types[c]];
+    if (type == nullptr) throw unknown_type(cells.types[c], c, error);
+    const Offset vertices = cells.offsets[c + 1] - cells.offsets[c];
+    if (!fits(*type, vertices) || vertices > kMaxIndex) {
+      throw error(
+          "cell " + std::to_string(c) + " (counted from 0) is a " + std::string(type->name) + " of " +
+              std::to_string(vertices) + " vertices",
+          (type->vertices > 0 ? "it has " : "it has at least ") + std::to_string(std::abs(type->vertices)));
+    }
+    mesh.cells.shapes[c] = type->shape;
+
+    // the ways in which an image's cells run differ from those of all others
+    Index* const v = cells.vertices.data() + cells.offsets[c];
+    if (type->number == kPixel || type->number == kVoxel) {
+      ++converted;
+      std::swap(v[2], v[3]);
+      if (type->number == kVoxel) std::swap(v[6], v[7]);
+    } else {
+      plain = plain && defaults(type->shape, static_cast<int>(vertices))->number == type->number;
+    }
+  }
+  mesh.cells.offsets = std::move(cells.offsets);
+  mesh.cells.vertices = std::move(cells.vertices);
+  if (converted > 0) {
+    notes.push_back(std::to_string(converted) +
+                    " cells of type VTK_PIXEL or VTK_VOXEL became quads and hexahedra");
+  }
+  if (plain) return;
+  for (Index c = 0; c < count; ++c) {
+    if (cells.types[c] == kPixel) cells.types[c] = 9;
+    if (cells.types[c] == kVoxel) cells.types[c] = 12;
+  }
+  std::erase_if(mesh.data, [](const DataArray& a) { return a.on == Attached::cells && a.name == kVtkTypes; });
+  mesh.data.push_back({std::string(kVtkTypes), Attached::cells, 1, std::move(cells.types), {}, {}});
+}
+
+std::vector<std::uint8_t> vtk_types(const Mesh& mesh, const std::string& file, bool higher_orders) {
+  const DataArray* kept = find_array(mesh, kVtkTypes, Attached::cells);
+  const auto* numbers = kept != nullptr ? std::get_if<std::vector<std::uint8_t>>(&kept->values) : nullptr;
+  if (numbers != nullptr && (!kept->covers_all() || kept->components != 1)) numbers = nullptr;
+
+  DefaultTypes defaults;
+  std::vector<std::uint8_t> types(mesh.cells.shapes.size());
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const Shape shape = mesh.cells.shapes[c];
+    const int vertices = mesh.cells.vertex_count(c);
+    const VtkType* type = defaults(shape, vertices);
+    if (numbers != nullptr) {
+      const VtkType* own = type_of((*numbers)[c]);
+      if (own != nullptr && own->shape == shape && fits(*own, vertices)) {
+        types[c] = static_cast<std::uint8_t>(own->number);
+        continue;
+      }
+    }
+    const bool lagrange = type != nullptr && type->number >= kFirstLagrange && type->number <= kLastLagrange;
+    if (type == nullptr || (lagrange && !higher_orders)) {
+      throw Error(file,
+                  "cell " + std::to_string(c) + " (counted from 0) is a " + type_name(shape, vertices) +
+                      ", which VTK's formats " +
+                      (type == nullptr ? "do not have" : "number in another order"),
+                  "write the format that the mesh came from, .msh for example");
+    }
+    types[c] = static_cast<std::uint8_t>(type->number);
+  }
+  return types;
+}
+
+bool is_higher_order_hexahedron(std::uint8_t type) { return type == 67 || type == 72 || type == 79; }
+
+void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& types, Cells& cells) {
+  const DataArray* array = find_array(mesh, "HigherOrderDegrees", Attached::cells);
+  const bool usable = array != nullptr && array->components == 3 && array->covers_all();
+  for (Index c = 0; c < cells.size(); ++c) {
+    if (!is_higher_order_hexahedron(types[c])) continue;
+    const int n = cells.vertex_count(c);
+    const Offset same = std::lround(std::cbrt(n)) - 1;
+    std::array<Offset, 3> degrees{same, same, same};
+    if (usable) {
+      std::visit(
+          [&](const auto& values) {
+            using Number = typename std::decay_t<decltype(values)>::value_type;
+            if constexpr (!std::is_same_v<Number, std::string>) {
+              for (int i = 0; i < 3; ++i) {
+                const auto degree = static_cast<double>(values[3 * Offset{c} + i]);
+                degrees[i] = degree >= 1 && degree <= n ? static_cast<Offset>(degree) : same;
+              }
+            }
+          },
+          array->values);
+    }
+    // 8 corners, the edges along x and y, two of those along z; then the two that change places
+    const Offset along_z = degrees[2] - 1;
+    const Offset first = 8 + 4 * (degrees[0] - 1 + degrees[1] - 1) + 2 * along_z;
+    if (along_z <= 0 || first + 2 * along_z > n) continue;
+    Index* const edge = cells[c].data() + first;
+    std::swap_ranges(edge, edge + along_z, edge + along_z);
+  }
+}
+
+}  // namespace meshorder

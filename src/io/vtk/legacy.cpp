@@ -1,0 +1,429 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// VTK's legacy files: https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
+//
+// VTK's own writer is not used: in text it keeps 11 digits of a double, and it cuts ids to 32 bits.
+#include "io/vtk/legacy.hpp"
+
+#include "io/all_formats.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/vtk/cells.hpp"
+#include "io/vtk/numbers.hpp"
+#include "io/vtk/vtu.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// Unusual characters of names and texts as %XX, as VTK writes them.
+std::string encoded(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 33 || code > 126 || c == '"' || c == '%') {
+      result += fmt::format("%{:02X}", code);
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+/// The section of a POLYDATA file that holds cells of this type, or −1.
+int polydata_section(std::uint8_t type) {
+  switch (type) {
+    case 1:
+    case 2:
+      return 0;
+    case 3:
+    case 4:
+      return 1;
+    case 5:
+    case 7:
+    case 9:
+      return 2;
+    case 6:
+      return 3;
+    default:
+      return -1;
+  }
+}
+
+/// Whether the cells stand in the order of the sections of a POLYDATA file, which also tell their types.
+bool fits_polydata(const Cells& cells, const std::vector<std::uint8_t>& types) {
+  int last = 0;
+  for (Index c = 0; c < cells.size(); ++c) {
+    const int section = polydata_section(types[c]);
+    const int vertices = cells.vertex_count(c);
+    const bool ambiguous = (types[c] == 2 && vertices == 1) || (types[c] == 4 && vertices == 2) ||
+                           (types[c] == 7 && (vertices == 3 || vertices == 4));
+    if (section < last || ambiguous) return false;
+    last = section;
+  }
+  return true;
+}
+
+class Writer {
+ public:
+  Writer(const Mesh& mesh, const std::filesystem::path& path, Notes& notes)
+      : mesh_(mesh),
+        notes_(notes),
+        residue_(vtk_residue(mesh, notes)),
+        layout_(residue_.legacy.value_or(VtkLegacyLayout{})),
+        types_(
+            vtk_types(mesh, path.string(), dynamic_cast<const VtkResidue*>(mesh.residue.get()) != nullptr)),
+        arrays_(vtk_arrays(mesh, notes)),
+        out_(path) {}
+
+  void write() {
+    choose_layout();
+    out_.print("# vtk DataFile Version {}\n{}\n{}\nDATASET {}\n", layout_.version,
+               layout_.title.substr(0, 255), layout_.binary ? "BINARY" : "ASCII",
+               layout_.polydata ? "POLYDATA" : "UNSTRUCTURED_GRID");
+    if (!residue_.fields.empty()) {
+      out_.print("FIELD FieldData {}\n", residue_.fields.size());
+      for (const DataArray& field : residue_.fields) write_field_array(field, {});
+    }
+    write_points();
+    write_cells();
+    write_data();
+    out_.commit();
+  }
+
+ private:
+  void choose_layout() {
+    const std::int64_t numbers = mesh_.cell_count() + static_cast<std::int64_t>(mesh_.cells.vertices.size());
+    if (numbers > kMaxIndex) layout_.version = "5.1";  // older versions count with 32 bits
+    offsets_ = layout_.version.front() == '5';
+    layout_.polydata = layout_.polydata && fits_polydata(mesh_.cells, types_);
+    if (residue_.legacy && residue_.legacy->polydata && !layout_.polydata) {
+      notes_.push_back(
+          "the file becomes an UNSTRUCTURED_GRID: POLYDATA cannot hold these cells in this order");
+    }
+    note_xml_parts();
+  }
+
+  void note_xml_parts() {
+    for (const VtkRoleOfArray& role : residue_.roles) {
+      const bool known = std::any_of(kVtkLegacyAttributes.begin(), kVtkLegacyAttributes.end(),
+                                     [&](const VtkLegacyAttribute& a) { return a.role == role.role; });
+      if (known) continue;
+      notes_.push_back(fmt::format("the array '{}' loses its role: legacy files have no {}", role.array,
+                                   kVtuRoles[static_cast<std::size_t>(role.role)]));
+    }
+    for (const VtkArrayFacts& fact : residue_.facts) {
+      if (fact.xml_information.empty()) continue;
+      notes_.push_back(fmt::format(
+          "left out, as VTK has it in another form: the information of the array '{}'", fact.array));
+    }
+  }
+
+  // ---- numbers
+
+  template <class Stored, class Number>
+  void write_binary(std::span<const Number> numbers) {
+    constexpr std::size_t kAtOnce = 1 << 16;
+    std::string bytes;
+    for (std::size_t begin = 0; begin < numbers.size(); begin += kAtOnce) {
+      const auto part = numbers.subspan(begin, std::min(kAtOnce, numbers.size() - begin));
+      bytes.resize(part.size() * sizeof(Stored));
+      char* place = bytes.data();
+      for (const Number number : part) {
+        const auto stored = static_cast<Stored>(number);
+        std::memcpy(place, &stored, sizeof(Stored));
+        if constexpr (std::endian::native != std::endian::big) std::reverse(place, place + sizeof(Stored));
+        place += sizeof(Stored);
+      }
+      out_.write(bytes);
+    }
+    out_.write("\n");
+  }
+
+  template <class Number>
+  void write_text(std::span<const Number> numbers, std::size_t in_line) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      out_.print("{}{}", numbers[i], (i + 1) % in_line == 0 || i + 1 == numbers.size() ? '\n' : ' ');
+    }
+  }
+
+  template <class Stored, class Number>
+  void write_numbers(std::span<const Number> numbers, std::size_t in_line) {
+    if (layout_.binary) {
+      write_binary<Stored>(numbers);
+    } else {
+      write_text(numbers, in_line);
+    }
+  }
+
+  void write_text_value(const std::string& text) {
+    if (!layout_.binary) {
+      out_.print("{}\n", encoded(text));
+      return;
+    }
+    // the length's first two bits tell its bytes
+    const std::uint64_t length = text.size();
+    if (length < 1U << 6U) {
+      out_.binary(static_cast<std::uint8_t>(0xC0U | length));
+    } else if (length < 1U << 14U) {
+      out_.binary(static_cast<std::uint16_t>(0x8000U | length), std::endian::big);
+    } else if (length < 1U << 30U) {
+      out_.binary(static_cast<std::uint32_t>(0x40000000U | length), std::endian::big);
+    } else {
+      out_.binary(length, std::endian::big);
+    }
+    out_.write(text);
+  }
+
+  // ---- arrays
+
+  /// The number type under which an array is written: the file's own, while it can hold the values.
+  std::string type_of(const DataArray& array, std::optional<Attached> on) const {
+    const VtkArrayFacts* facts = find_facts(residue_, on, array.name);
+    std::string usual(kVtkTypeNames[array.values.index()]);
+    if (facts == nullptr || facts->type.empty()) return usual;
+    const auto is = [&](std::string_view name) { return same_but_for_case(facts->type, name); };
+    if (const auto* wide = std::get_if<std::vector<std::int64_t>>(&array.values)) {
+      const bool narrow = std::all_of(wide->begin(), wide->end(),
+                                      [](std::int64_t n) { return std::in_range<std::int32_t>(n); });
+      return is("long") || is("long_long") || (is("vtkIdType") && narrow) ? facts->type : usual;
+    }
+    const bool kept =
+        (is("unsigned_long") && std::holds_alternative<std::vector<std::uint64_t>>(array.values)) ||
+        (is("utf8_string") && std::holds_alternative<std::vector<std::string>>(array.values)) ||
+        (is("signed_char") && std::holds_alternative<std::vector<std::int8_t>>(array.values));
+    return kept ? facts->type : usual;
+  }
+
+  void write_values(const DataArray& array, const std::string& type, std::optional<Attached> on) {
+    std::visit(
+        [&](const auto& values) {
+          using Number = typename std::decay_t<decltype(values)>::value_type;
+          if constexpr (std::is_same_v<Number, std::string>) {
+            for (const std::string& text : values) write_text_value(text);
+            out_.write("\n");
+          } else if (same_but_for_case(type, "vtkIdType")) {
+            write_numbers<std::int32_t>(std::span(values), 9);
+          } else {
+            write_numbers<Number>(std::span(values), 9);
+          }
+        },
+        array.values);
+    write_metadata(array, on, array.name);
+  }
+
+  void write_metadata(const DataArray& array, std::optional<Attached> on, std::string_view name) {
+    const VtkArrayFacts* facts = find_facts(residue_, on, name);
+    const bool information = facts != nullptr && !facts->information.empty();
+    if (array.component_names.empty() && !information) return;
+    out_.write("METADATA\n");
+    if (!array.component_names.empty()) {
+      out_.write("COMPONENT_NAMES\n");
+      for (Index i = 0; i < array.components; ++i) {
+        out_.print("{}\n", i < index_size(array.component_names) ? encoded(array.component_names[i]) : "");
+      }
+    }
+    if (information) {
+      const std::string begun = "\n" + facts->information;
+      std::size_t keys = 0;
+      for (auto at = begun.find("\nNAME "); at != std::string::npos; at = begun.find("\nNAME ", at + 1))
+        ++keys;
+      out_.print("INFORMATION {}\n{}", keys, facts->information);
+    }
+    out_.write("\n");
+  }
+
+  void write_field_array(const DataArray& array, std::optional<Attached> on) {
+    const std::string type = type_of(array, on);
+    out_.print("{} {} {} {}\n", encoded(array.name), array.components, row_count(array), type);
+    write_values(array, type, on);
+  }
+
+  // ---- points and cells
+
+  void write_points() {
+    const bool floats = points_are_floats(mesh_, residue_);
+    out_.print("POINTS {} {}\n", mesh_.vertex_count(), floats ? "float" : "double");
+    const std::span<const double> numbers(mesh_.points.empty() ? nullptr : mesh_.points.front().data(),
+                                          3 * mesh_.points.size());
+    if (floats && layout_.binary) {
+      write_binary<float>(numbers);
+    } else if (floats) {
+      for (const Point& p : mesh_.points)
+        out_.print("{} {} {}\n", static_cast<float>(p[0]), static_cast<float>(p[1]),
+                   static_cast<float>(p[2]));
+    } else {
+      write_numbers<double>(numbers, 3);
+    }
+    write_metadata({}, {}, kVtkPoints);
+  }
+
+  void write_cells() {
+    // VTK numbered the nodes of some hexahedra differently before version 5.1
+    Cells changed;
+    const Cells* cells = &mesh_.cells;
+    if (layout_.version != "5.1" && std::any_of(types_.begin(), types_.end(), is_higher_order_hexahedron)) {
+      changed = mesh_.cells;
+      swap_hexahedron_edges(mesh_, types_, changed);
+      cells = &changed;
+    }
+    if (!layout_.polydata) {
+      write_section("CELLS", *cells, 0, cells->size());
+      out_.print("CELL_TYPES {}\n", types_.size());
+      write_numbers<std::int32_t>(std::span<const std::uint8_t>(types_), 1);
+      return;
+    }
+    Index begin = 0;
+    for (int section = 0; section < 4; ++section) {
+      Index end = begin;
+      while (end < cells->size() && polydata_section(types_[end]) == section) ++end;
+      if (end > begin)
+        write_section(kVtkPolydataSections[static_cast<std::size_t>(section)], *cells, begin, end);
+      begin = end;
+    }
+  }
+
+  void write_section(std::string_view name, const Cells& cells, Index begin, Index end) {
+    const Offset first = cells.offsets[begin];
+    const Offset size = cells.offsets[end] - first;
+    const std::span<const Index> vertices(cells.vertices.data() + first, static_cast<std::size_t>(size));
+    if (offsets_) {
+      std::vector<Offset> offsets(cells.offsets.begin() + begin, cells.offsets.begin() + end + 1);
+      for (Offset& offset : offsets) offset -= first;
+      out_.print("{} {} {}\nOFFSETS vtktypeint64\n", name, offsets.size(), size);
+      write_numbers<std::int64_t>(std::span<const Offset>(offsets), 9);
+      out_.write("CONNECTIVITY vtktypeint64\n");
+      write_numbers<std::int64_t>(vertices, 9);
+      return;
+    }
+    out_.print("{} {} {}\n", name, end - begin, size + end - begin);
+    if (!layout_.binary) {
+      for (Index c = begin; c < end; ++c)
+        out_.print("{} {}\n", cells.vertex_count(c), fmt::join(cells[c], " "));
+      return;
+    }
+    for (Index c = begin; c < end; ++c) {
+      out_.binary<std::int32_t>(cells.vertex_count(c), std::endian::big);
+      for (const Index v : cells[c]) out_.binary<std::int32_t>(v, std::endian::big);
+    }
+    out_.write("\n");
+  }
+
+  // ---- data
+
+  void write_data() {
+    // points first, unless the arrays say otherwise
+    std::array order{Attached::vertices, Attached::cells};
+    if (!arrays_.all.empty() && arrays_.all.front()->on == Attached::cells) std::swap(order[0], order[1]);
+    for (const Attached on : order) {
+      std::vector<const DataArray*> own;
+      std::copy_if(arrays_.all.begin(), arrays_.all.end(), std::back_inserter(own),
+                   [&](const DataArray* array) { return array->on == on; });
+      const bool tables = std::any_of(layout_.lookup_tables.begin(), layout_.lookup_tables.end(),
+                                      [&](const auto& table) { return table.on == on; });
+      if (own.empty() && !tables) continue;
+      out_.print("{} {}\n", on == Attached::vertices ? "POINT_DATA" : "CELL_DATA",
+                 on == Attached::vertices ? mesh_.vertex_count() : mesh_.cell_count());
+      write_arrays(own, on);
+      for (const auto& table : layout_.lookup_tables) {
+        if (table.on == on)
+          out_.print("LOOKUP_TABLE {} {}\n{}{}", table.name, table.size, table.content,
+                     layout_.binary ? "\n" : "");
+      }
+    }
+  }
+
+  /// Arrays in a role by its keyword, runs of others as a FIELD.
+  void write_arrays(const std::vector<const DataArray*>& arrays, Attached on) {
+    for (std::size_t i = 0; i < arrays.size();) {
+      if (write_attribute(*arrays[i])) {
+        ++i;
+        continue;
+      }
+      std::size_t end = i + 1;
+      while (end < arrays.size() && attribute_of(*arrays[end]).first == nullptr) ++end;
+      out_.print("FIELD FieldData {}\n", end - i);
+      for (; i < end; ++i) write_field_array(*arrays[i], on);
+    }
+  }
+
+  /// The keyword of an array's role, where it fits, and the role.
+  [[nodiscard]] std::pair<const VtkLegacyAttribute*, const VtkRoleOfArray*> attribute_of(
+      const DataArray& array) const {
+    if (array.name.empty()) return {};
+    const auto role =
+        std::find_if(residue_.roles.begin(), residue_.roles.end(),
+                     [&](const VtkRoleOfArray& r) { return r.on == array.on && r.array == array.name; });
+    if (role == residue_.roles.end()) return {};
+    const bool text = std::holds_alternative<std::vector<std::string>>(array.values);
+    if (text && role->role != VtkRole::pedigree_ids) return {};
+    if (role->role == VtkRole::texture_coordinates && array.components > 3) return {};
+    if (role->role == VtkRole::color_scalars) {
+      const bool fits = layout_.binary ? std::holds_alternative<std::vector<std::uint8_t>>(array.values)
+                                       : std::holds_alternative<std::vector<float>>(array.values);
+      if (!fits) return {};
+    }
+    const auto attribute = std::find_if(
+        kVtkLegacyAttributes.begin(), kVtkLegacyAttributes.end(), [&](const VtkLegacyAttribute& a) {
+          return a.role == role->role && (a.components == 0 || a.components == array.components);
+        });
+    if (attribute == kVtkLegacyAttributes.end()) return {};
+    return {&*attribute, &*role};
+  }
+
+  bool write_attribute(const DataArray& array) {
+    const auto [attribute, role] = attribute_of(array);
+    if (attribute == nullptr) return false;
+    const std::string type = type_of(array, array.on);
+    out_.print("{} {}", attribute->keyword, encoded(array.name));
+    switch (attribute->role) {
+      case VtkRole::scalars:
+        out_.print(" {} {}\nLOOKUP_TABLE {}\n", type, array.components,
+                   role->lookup_table.empty() ? "default" : role->lookup_table);
+        break;
+      case VtkRole::color_scalars:
+        out_.print(" {}\n", array.components);
+        break;
+      case VtkRole::texture_coordinates:
+        out_.print(" {} {}\n", array.components, type);
+        break;
+      default:
+        out_.print(" {}\n", type);
+    }
+    write_values(array, type, array.on);
+    return true;
+  }
+
+  const Mesh& mesh_;
+  Notes& notes_;
+  const VtkResidue& residue_;
+  VtkLegacyLayout layout_;
+  std::vector<std::uint8_t> types_;
+  VtkArrays arrays_;
+  OutputFile out_;
+  bool offsets_ = false;  // cells by their offsets, as from version 5 on
+};
+
+}  // namespace
+
+Format vtk_format() {
+  return {"VTK",
+          {".vtk"},
+          false,
+          read_vtk_legacy,
+          [](const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
+            Writer(mesh, path, notes).write();
+          }};
+}
+
+}  // namespace meshorder

@@ -1,0 +1,307 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/vtk/legacy_input.hpp"
+
+#include "io/vtk/numbers.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// A number type as files name it.
+struct TypeName {
+  std::string_view name;
+  std::size_t alternative;  // of Values
+};
+
+// without those of kVtkTypeNames
+constexpr std::array kOtherTypeNames{TypeName{"signed_char", 2},   TypeName{"long", 8},
+                                     TypeName{"unsigned_long", 9}, TypeName{"vtkidtype", 8},
+                                     TypeName{"long_long", 8},     TypeName{"unsigned_long_long", 9},
+                                     TypeName{"bit", 3},           TypeName{"utf8_string", 10}};
+
+}  // namespace
+
+std::string upper_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = (c >= 'a' && c <= 'z') ? static_cast<char>(c - 'a' + 'A') : c;
+  return result;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
+}
+
+std::string shown(std::string_view text) {
+  std::string result;
+  for (const char c : text.substr(0, 40)) result += (c >= ' ' && c < 127) ? c : '?';
+  return result;
+}
+
+std::string percent_decoded(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned int code = 0;
+    if (text[i] == '%' && i + 2 < text.size() &&
+        std::from_chars(text.data() + i + 1, text.data() + i + 3, code, 16).ptr == text.data() + i + 3) {
+      result += static_cast<char>(code);
+      i += 2;
+    } else {
+      result += text[i];
+    }
+  }
+  return result;
+}
+
+void VtkLegacyInput::fail(const std::string& what, const std::string& remedy) const {
+  if (binary) scanner.fail_at_byte(what, remedy);
+  scanner.fail(what, remedy);
+}
+
+Error VtkLegacyInput::section_error(std::int64_t line, const std::string& what,
+                                    const std::string& remedy) const {
+  return {Location{scanner.file(), binary ? 0 : line, -1}, what, remedy};
+}
+
+std::string_view VtkLegacyInput::word(std::string_view what) {
+  if (binary && scanner.at_end())
+    fail(fmt::format("the file ends where {} should stand", what), "it may be cut short");
+  return scanner.word(what);
+}
+
+std::int64_t VtkLegacyInput::integer(std::string_view what) { return parsed(word(what), what); }
+
+std::int64_t VtkLegacyInput::parsed(std::string_view text, std::string_view what) const {
+  if (!binary) return parse_integer<std::int64_t>(scanner, text, what);
+  std::int64_t value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc{} || end != text.data() + text.size())
+    fail(fmt::format("{} is '{}'", what, shown(text)), "a whole number is needed");
+  return value;
+}
+
+std::int64_t VtkLegacyInput::count(std::string_view what) {
+  const std::int64_t value = integer(what);
+  if (value < 0) fail(fmt::format("{} is {}", what, value), "it cannot be negative");
+  if (value > kMaxIndex) fail(fmt::format("{} is {}", what, value), "at most 2147483647 are possible");
+  return value;
+}
+
+void VtkLegacyInput::check_room(std::int64_t entries, std::int64_t bytes, const std::string& what) const {
+  const std::int64_t least = binary ? bytes : 2;
+  if (entries > (scanner.bytes_left() + 1) / least) {
+    fail(fmt::format("{} of {} numbers cannot be in the {} bytes that follow", what, entries,
+                     scanner.bytes_left()),
+         "the count is wrong or the file is cut short");
+  }
+}
+
+void VtkLegacyInput::end_heading() {
+  if (binary) scanner.raw_line();
+}
+
+std::int32_t VtkLegacyInput::list_entry(const std::string& what) {
+  return binary ? scanner.binary<std::int32_t>(what, std::endian::big) : scanner.integer<std::int32_t>(what);
+}
+
+// ---- numbers
+
+template <class Number>
+Number VtkLegacyInput::number(const std::string& what) {
+  if constexpr (std::is_same_v<Number, double>) {
+    return finite_only ? scanner.finite(what) : scanner.real(what);
+  } else if constexpr (std::is_same_v<Number, float>) {
+    // a float in its own digits: a detour over double would round twice
+    const std::string_view digits = scanner.peek_word();
+    float value = 0;
+    const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    const bool whole = code == std::errc{} && end == digits.data() + digits.size();
+    if (!whole || (finite_only && !std::isfinite(value))) {
+      const double real = finite_only ? scanner.finite(what) : scanner.real(what);
+      if (std::isfinite(real) && std::abs(real) > std::numeric_limits<float>::max())
+        fail(what + " is too large for a float", "double is needed");
+      return static_cast<float>(real);
+    }
+    scanner.word(what);
+    return value;
+  } else {
+    using Wide = std::conditional_t<std::is_same_v<Number, std::uint64_t>, std::uint64_t, std::int64_t>;
+    const Wide value = scanner.integer<Wide>(what);
+    if (!std::in_range<Number>(value))
+      fail(what + " is " + std::to_string(value), "its type cannot hold that");
+    return static_cast<Number>(value);
+  }
+}
+
+template <class Number, class Stored>
+void VtkLegacyInput::numbers(std::vector<Number>& values, std::int64_t count, const std::string& what) {
+  check_room(count, sizeof(Stored), what);
+  values.resize(static_cast<std::size_t>(count));
+  if (!binary) {
+    for (Number& value : values) value = static_cast<Number>(number<Stored>(what));
+    return;
+  }
+  if (count == 0) return;
+  const std::string_view bytes =
+      scanner.binary_block(count * static_cast<std::int64_t>(sizeof(Stored)), what);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::array<char, sizeof(Stored)> raw{};
+    std::memcpy(raw.data(), bytes.data() + i * sizeof(Stored), sizeof(Stored));
+    if constexpr (std::endian::native != std::endian::big) std::reverse(raw.begin(), raw.end());
+    values[i] = static_cast<Number>(std::bit_cast<Stored>(raw));
+  }
+}
+
+void VtkLegacyInput::bits(std::vector<std::uint8_t>& values, std::int64_t count, const std::string& what) {
+  if (!binary) return numbers(values, count, what);
+  if (count == 0) return;
+  const std::string_view bytes = scanner.binary_block((count + 7) / 8, what);
+  values.resize(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = (static_cast<unsigned char>(bytes[i / 8]) >> (7 - i % 8)) & 1U;
+  }
+}
+
+void VtkLegacyInput::texts(std::vector<std::string>& values, std::int64_t count, const std::string& what) {
+  if (count > scanner.bytes_left() + 1)
+    fail(what + " of " + std::to_string(count) + " texts cannot be in what follows",
+         "the count is wrong or the file is cut short");
+  values.reserve(static_cast<std::size_t>(count));
+  for (std::int64_t i = 0; i < count; ++i) {
+    if (binary) {
+      values.emplace_back(scanner.binary_block(text_length(what), what));
+    } else {
+      if (scanner.bytes_left() == 0) fail("the file ends within " + what, "it may be cut short");
+      values.push_back(percent_decoded(scanner.raw_line()));
+    }
+  }
+}
+
+/// The first two bits of a length tell its bytes.
+std::int64_t VtkLegacyInput::text_length(const std::string& what) {
+  std::uint64_t length = scanner.binary<std::uint8_t>(what);
+  constexpr std::array kFollowing{7, 3, 1, 0};
+  const int following = kFollowing[length >> 6U];
+  length &= following == 7 ? 0xFFU : 0x3FU;
+  for (int i = 0; i < following; ++i) length = (length << 8U) | scanner.binary<std::uint8_t>(what);
+  return std::in_range<std::int64_t>(length) ? static_cast<std::int64_t>(length) : -1;
+}
+
+// ---- arrays
+
+DataArray VtkLegacyInput::array(const std::string& name, std::optional<Attached> on, std::int64_t tuples,
+                                std::int64_t components, const std::string& given_type) {
+  DataArray result;
+  result.name = name;
+  result.on = on.value_or(Attached::vertices);
+  const std::string what = "the array '" + shown(name) + "'";
+  if (components < 1 || components > kMaxIndex)
+    fail(what + " has " + std::to_string(components) + " components", "at least 1 is needed");
+  result.components = static_cast<Index>(components);
+
+  const std::string type = lower_case(given_type);
+  const auto usual = std::find(kVtkTypeNames.begin(), kVtkTypeNames.end(), type);
+  const auto other = std::find_if(kOtherTypeNames.begin(), kOtherTypeNames.end(),
+                                  [&](const TypeName& t) { return t.name == type; });
+  if (usual == kVtkTypeNames.end() && other == kOtherTypeNames.end()) {
+    fail(what + " is of type '" + shown(given_type) + "'",
+         "a number type such as float, double or int is needed");
+  }
+  result.values =
+      values_of_type(usual != kVtkTypeNames.end() ? static_cast<std::size_t>(usual - kVtkTypeNames.begin())
+                                                  : other->alternative);
+
+  // the tuples begin in the next line, those of a binary file with its very first byte
+  const bool text = std::holds_alternative<std::vector<std::string>>(result.values);
+  const std::int64_t count = tuples * components;
+  if (count > 0 && (binary || text)) scanner.raw_line();
+  if (type == "bit") {
+    bits(std::get<std::vector<std::uint8_t>>(result.values), count, what);
+    notes.push_back(what + " holds bits, which are carried as bytes");
+  } else if (type == "vtkidtype") {
+    numbers<std::int64_t, std::int32_t>(std::get<std::vector<std::int64_t>>(result.values), count, what);
+  } else {
+    std::visit(
+        [&](auto& values) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<std::string>>) {
+            texts(values, count, what);
+          } else {
+            numbers(values, count, what);
+          }
+        },
+        result.values);
+  }
+  if (usual == kVtkTypeNames.end() && type != "bit") facts_of(on, name).type = given_type;
+  if (upper_case(scanner.peek_word()) == "METADATA") {
+    word("METADATA");
+    metadata(result, on);
+  }
+  return result;
+}
+
+VtkArrayFacts& VtkLegacyInput::facts_of(std::optional<Attached> on, const std::string& name) {
+  const auto found = std::find_if(facts.begin(), facts.end(), [&](const VtkArrayFacts& fact) {
+    return fact.on == on && fact.array == name;
+  });
+  if (found != facts.end()) return *found;
+  return facts.emplace_back(VtkArrayFacts{on, name, {}, {}, {}});
+}
+
+void VtkLegacyInput::metadata(DataArray& array, std::optional<Attached> on) {
+  scanner.raw_line();
+  while (scanner.bytes_left() > 0) {
+    std::string_view line = scanner.raw_line();
+    const std::string key = upper_case(next_word(line));
+    if (key.empty()) return;
+    if (key == "COMPONENT_NAMES") {
+      array.component_names.clear();
+      for (Index i = 0; i < array.components; ++i) {
+        if (scanner.bytes_left() == 0) fail("the file ends within COMPONENT_NAMES", "it may be cut short");
+        array.component_names.push_back(percent_decoded(scanner.raw_line()));
+      }
+    } else if (key == "INFORMATION") {
+      information(parsed(next_word(line), "the number of keys"), array, on);
+      return;
+    } else {
+      fail("METADATA has '" + shown(key) + "'", "COMPONENT_NAMES or INFORMATION is needed");
+    }
+  }
+}
+
+/// Keys are kept as they stand but for the norms, which VTK finds itself.
+void VtkLegacyInput::information(std::int64_t keys, const DataArray& array, std::optional<Attached> on) {
+  std::string kept;
+  bool keep = false;
+  while (true) {
+    if (scanner.bytes_left() == 0) {
+      if (keys > 0) fail("the file ends within INFORMATION", "it may be cut short");
+      break;
+    }
+    const std::string_view line = scanner.raw_line();
+    if (trimmed(line).empty()) {
+      if (keys <= 0) break;
+      continue;
+    }
+    if (line.starts_with("NAME ")) {
+      --keys;
+      keep = !line.starts_with("NAME L2_NORM");
+    }
+    if (keep) kept += std::string(line) + "\n";
+  }
+  if (!kept.empty() && !array.name.empty()) facts_of(on, array.name).information = kept;
+}
+
+}  // namespace meshorder

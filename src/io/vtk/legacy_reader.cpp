@@ -1,0 +1,426 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Reader of VTK's legacy files, versions 1.0 to 5.1, UNSTRUCTURED_GRID and POLYDATA, text and binary:
+// https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
+//
+// VTK's own reader is not used: it reads past the end of cell lists that promise too many vertices, allocates
+// what a header promises, cannot read `nan`, and changes the locale of the whole program.
+#include "io/vtk/cells.hpp"
+#include "io/vtk/legacy.hpp"
+#include "io/vtk/legacy_input.hpp"
+#include "io/vtk/numbers.hpp"
+#include "io/words.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+constexpr int kFirstVersionWithOffsets = 50;  // ten times the version
+constexpr int kLastVersion = 51;
+
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& path) : in_(path) {}
+
+  Mesh read(Notes& notes) {
+    read_header();
+    while (!in_.scanner.at_end()) read_section(in_.word("a keyword"));
+    finish();
+    notes.insert(notes.end(), in_.notes.begin(), in_.notes.end());
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_header() {
+    constexpr std::string_view kMagic = "# vtk DataFile Version ";
+    const std::string_view first = in_.scanner.raw_line();
+    const std::string_view version = first.starts_with(kMagic) ? trimmed(first.substr(kMagic.size())) : "";
+    int major = 0;
+    int minor = 0;
+    const char* const end = version.data() + version.size();
+    const auto dot = std::from_chars(version.data(), end, major).ptr;
+    if (version.empty() || dot == end || *dot != '.' || std::from_chars(dot + 1, end, minor).ptr != end) {
+      throw Error(Location{in_.scanner.file(), 1, -1}, "this is no legacy file of VTK",
+                  "'# vtk DataFile Version 4.2' stands in the first line of one");
+    }
+    version_ = major > 9 || minor > 9 || minor < 0 ? kLastVersion + 1 : 10 * major + minor;
+    if (version_ > kLastVersion || version_ < 10) {
+      throw Error(Location{in_.scanner.file(), 1, -1},
+                  "the version " + std::to_string(major) + "." + std::to_string(minor) + " is unknown",
+                  "versions 1.0 to 5.1 are read");
+    }
+    layout_.version = std::to_string(major) + "." + std::to_string(minor);
+    layout_.title = in_.scanner.raw_line();
+
+    const std::string mode = lower_case(in_.word("ASCII or BINARY"));
+    if (mode != "ascii" && mode != "binary")
+      in_.fail("the third line is '" + shown(mode) + "'", "ASCII or BINARY is needed");
+    const std::string dataset = lower_case(in_.word("DATASET"));
+    const std::string kind = dataset == "dataset" ? lower_case(in_.word("the kind of the dataset")) : "";
+    if (kind == "structured_points" || kind == "structured_grid" || kind == "rectilinear_grid" ||
+        kind == "image_data") {
+      in_.fail("the dataset " + upper_case(kind) + " is structured: its order is its grid's",
+               "UNSTRUCTURED_GRID and POLYDATA can be ordered");
+    }
+    if (kind != "unstructured_grid" && kind != "polydata") {
+      in_.fail("no mesh is here but '" + shown(kind.empty() ? dataset : kind) + "'",
+               "DATASET UNSTRUCTURED_GRID or DATASET POLYDATA is needed");
+    }
+    layout_.polydata = kind == "polydata";
+    in_.binary = mode == "binary";
+  }
+
+  void read_section(std::string_view name) {
+    const std::string key = upper_case(name);
+    const auto section = std::find(kVtkPolydataSections.begin(), kVtkPolydataSections.end(), key);
+    if (key == "POINTS") {
+      read_points();
+    } else if (layout_.polydata && section != kVtkPolydataSections.end()) {
+      read_cells(static_cast<std::size_t>(section - kVtkPolydataSections.begin()), key);
+    } else if (!layout_.polydata && key == "CELLS") {
+      read_cells(0, key);
+    } else if (!layout_.polydata && key == "CELL_TYPES") {
+      read_cell_types();
+    } else if (key == "POINT_DATA" || key == "CELL_DATA") {
+      begin_data(key);
+    } else if (key == "FIELD") {
+      read_field();
+    } else if (key == "LOOKUP_TABLE" && on_) {
+      read_lookup_table();
+    } else if (key == "METADATA") {
+      DataArray nobody;
+      in_.metadata(nobody, {});
+    } else if (on_ && read_attribute(key)) {
+      return;
+    } else {
+      in_.fail("the section '" + shown(name) + "' is unknown",
+               "the keywords of VTK's legacy files are needed");
+    }
+  }
+
+  void read_points() {
+    if (has_points_ || on_) in_.fail("POINTS stands here late", "there is one, before the data");
+    has_points_ = true;
+    const std::int64_t count = in_.count("the number of points");
+    const std::string type(in_.word("the type of the points"));
+    if (lower_case(type) == "string" || lower_case(type) == "utf8_string")
+      in_.fail("the points are of type " + type, "numbers are needed");
+    const std::int64_t start = in_.scanner.line();
+    in_.finite_only = true;
+    const DataArray array = in_.array(std::string(kVtkPoints), {}, count, 3, type);
+    in_.finite_only = false;
+    residue_->float_points = std::holds_alternative<std::vector<float>>(array.values);
+    if (!residue_->float_points && !std::holds_alternative<std::vector<double>>(array.values)) {
+      in_.notes.push_back("the points are of type " + type + " and are carried as double");
+    }
+    mesh_.points.resize(static_cast<std::size_t>(count));
+    std::visit(
+        [&](const auto& values) {
+          using Number = typename std::decay_t<decltype(values)>::value_type;
+          if constexpr (!std::is_same_v<Number, std::string>) {
+            for (std::size_t i = 0; i < values.size(); ++i) {
+              const auto x = static_cast<double>(values[i]);
+              if (!std::isfinite(x))
+                throw in_.section_error(start,
+                                        "point " + std::to_string(i / 3) +
+                                            " (counted from 0) has a coordinate that is not finite",
+                                        "finite numbers are needed");
+              mesh_.points[i / 3][i % 3] = x;
+            }
+          }
+        },
+        array.values);
+  }
+
+  // ---- cells
+
+  void read_cells(std::size_t section, const std::string& key) {
+    VtkCells& cells = sections_[section];
+    if (on_) in_.fail(key + " stands after the data", "points and cells come first");
+    if (!cells.vertices.empty()) in_.fail(key + " stands here a second time", "one is needed");
+    cells_line_ = in_.scanner.line();
+    const std::int64_t count = in_.count("the number of " + key);
+    const std::int64_t size = in_.count("the size of " + key);
+    if (version_ >= kFirstVersionWithOffsets) {
+      read_offsets_and_vertices(cells, count, size, key);
+    } else {
+      read_counted_cells(cells, count, size, key);
+    }
+  }
+
+  /// Before version 5: the number of vertices before those of each cell.
+  void read_counted_cells(VtkCells& cells, std::int64_t count, std::int64_t size, const std::string& key) {
+    in_.check_room(size, 4, key);
+    if (count > size)
+      in_.fail(key + " has " + std::to_string(count) + " cells in " + std::to_string(size) + " numbers",
+               "each cell takes 2 at least");
+    if (size > 0) in_.end_heading();
+    cells.offsets.reserve(static_cast<std::size_t>(count) + 1);
+    cells.vertices.reserve(static_cast<std::size_t>(size - count));
+    std::int64_t left = size;
+    for (std::int64_t c = 0; c < count; ++c) {
+      const std::int32_t vertices = left > 0 ? in_.list_entry(key) : 0;
+      if (left == 0 || vertices < 0 || vertices > --left) {
+        in_.fail("cell " + std::to_string(c) + " (counted from 0) of " + key + " has " +
+                     std::to_string(vertices) + " vertices where " + std::to_string(left) +
+                     " numbers are left",
+                 "the size of " + key + " counts all numbers that follow");
+      }
+      left -= vertices;
+      for (std::int32_t i = 0; i < vertices; ++i)
+        cells.vertices.push_back(checked_vertex(in_.list_entry(key), c));
+      cells.offsets.push_back(static_cast<Offset>(cells.vertices.size()));
+    }
+    if (left != 0)
+      in_.fail(key + " has " + std::to_string(left) + " numbers more than its cells take",
+               "its size counts all numbers that follow");
+  }
+
+  [[nodiscard]] Index checked_vertex(std::int64_t vertex, std::int64_t cell) const {
+    const std::int64_t points = has_points_ ? mesh_.vertex_count() : std::int64_t{kMaxIndex};
+    if (vertex < 0 || vertex >= points) {
+      in_.fail("cell " + std::to_string(cell) + " (counted from 0) names the point " + std::to_string(vertex),
+               "points run from 0 to " + std::to_string(points - 1));
+    }
+    return static_cast<Index>(vertex);
+  }
+
+  /// From version 5 on: where each cell begins, then all vertices.
+  void read_offsets_and_vertices(VtkCells& cells, std::int64_t count, std::int64_t size,
+                                 const std::string& key) {
+    if (count == 0) return;
+    const auto read_part = [&](const char* name, std::int64_t entries) {
+      if (upper_case(in_.word(name)) != name)
+        in_.fail(std::string(name) + " is missing in " + key, "it stands before its numbers");
+      const std::string type(in_.word("the type of the numbers"));
+      DataArray part = in_.array(name, {}, entries, 1, type);
+      std::erase_if(in_.facts, [&](const VtkArrayFacts& fact) { return !fact.on && fact.array == name; });
+      return part;
+    };
+    in_.check_room(count, 1, key);
+    cells.offsets = integers_of<Offset>(read_part("OFFSETS", count).values);
+    if (cells.offsets.empty() || cells.offsets.front() != 0 || cells.offsets.back() != size ||
+        !std::is_sorted(cells.offsets.begin(), cells.offsets.end())) {
+      throw in_.section_error(cells_line_,
+                              "the OFFSETS of " + key + " do not rise from 0 to " + std::to_string(size),
+                              "each is where a cell begins, the last is the size of CONNECTIVITY");
+    }
+    const DataArray vertices = read_part("CONNECTIVITY", size);
+    std::visit(
+        [&](const auto& numbers) {
+          using Number = typename std::decay_t<decltype(numbers)>::value_type;
+          if constexpr (std::is_integral_v<Number>) {
+            cells.vertices.reserve(numbers.size());
+            for (std::size_t c = 0; c + 1 < cells.offsets.size(); ++c) {
+              for (Offset i = cells.offsets[c]; i < cells.offsets[c + 1]; ++i) {
+                const Number vertex = numbers[i];
+                cells.vertices.push_back(
+                    checked_vertex(std::in_range<Index>(vertex) ? static_cast<Index>(vertex) : -1,
+                                   static_cast<std::int64_t>(c)));
+              }
+            }
+          } else {
+            throw in_.section_error(cells_line_, "the CONNECTIVITY of " + key + " is no list of integers",
+                                    "an integer type is needed");
+          }
+        },
+        vertices.values);
+  }
+
+  void read_cell_types() {
+    types_line_ = in_.scanner.line();
+    const std::int64_t count = in_.count("the number of CELL_TYPES");
+    in_.check_room(count, 4, "CELL_TYPES");
+    if (count > 0) in_.end_heading();
+    std::vector<std::uint8_t>& types = sections_[0].types;
+    types.clear();
+    types.reserve(static_cast<std::size_t>(count));
+    for (std::int64_t c = 0; c < count; ++c) {
+      const std::int32_t type = in_.list_entry("CELL_TYPES");
+      if (type < 0 || type > 255)
+        in_.fail("cell " + std::to_string(c) + " (counted from 0) has the type " + std::to_string(type),
+                 "VTK's types run from 0 to 81");
+      types.push_back(static_cast<std::uint8_t>(type));
+    }
+  }
+
+  // ---- data
+
+  void begin_data(const std::string& key) {
+    on_ = key == "POINT_DATA" ? Attached::vertices : Attached::cells;
+    const std::int64_t count = in_.count("the number of " + key);
+    if (count != owner_count())
+      in_.fail(key + " is for " + std::to_string(count) + (on_ == Attached::vertices ? " points" : " cells"),
+               "the file has " + std::to_string(owner_count()));
+  }
+
+  [[nodiscard]] std::int64_t owner_count() const {
+    if (on_ == Attached::vertices) return mesh_.vertex_count();
+    std::int64_t cells = 0;
+    for (const VtkCells& section : sections_) cells += static_cast<std::int64_t>(section.offsets.size()) - 1;
+    return cells;
+  }
+
+  void keep(DataArray array) {
+    for (const DataArray& other : mesh_.data) {
+      if (other.on == array.on && other.name == array.name)
+        in_.fail("the array '" + shown(array.name) + "' stands here a second time", "names must differ");
+    }
+    add_vtk_array(mesh_, std::move(array));
+  }
+
+  /// SCALARS, VECTORS and their like; false for another keyword.
+  bool read_attribute(const std::string& key) {
+    const auto attribute = std::find_if(kVtkLegacyAttributes.begin(), kVtkLegacyAttributes.end(),
+                                        [&](const VtkLegacyAttribute& a) { return a.keyword == key; });
+    if (attribute == kVtkLegacyAttributes.end()) return false;
+    const std::string name = percent_decoded(in_.word("the name of " + key));
+    std::int64_t components = attribute->components;
+    if (attribute->role == VtkRole::texture_coordinates || attribute->role == VtkRole::color_scalars)
+      components = in_.integer("the components of " + key);
+
+    VtkRoleOfArray role{attribute->role, *on_, name, {}};
+    std::string type = in_.binary ? "unsigned_char" : "float";
+    if (attribute->role != VtkRole::color_scalars) type = in_.word("the type of " + key);
+    if (attribute->role == VtkRole::scalars) {
+      components = in_.scanner.at_line_end() ? 1 : in_.integer("the components of SCALARS");
+      if (upper_case(in_.word("LOOKUP_TABLE")) != "LOOKUP_TABLE")
+        in_.fail("SCALARS '" + shown(name) + "' has no LOOKUP_TABLE",
+                 "'LOOKUP_TABLE default' follows its name and type");
+      role.lookup_table = in_.word("the name of the lookup table");
+    }
+    residue_->roles.push_back(std::move(role));
+    keep(in_.array(name, on_, owner_count(), components, type));
+    return true;
+  }
+
+  /// Arrays of points or cells, or of the whole mesh before both.
+  void read_field() {
+    in_.word("the name of the FIELD");
+    const std::int64_t arrays = in_.count("the number of arrays of the FIELD");
+    for (std::int64_t i = 0; i < arrays; ++i) {
+      const std::string name = percent_decoded(in_.word("the name of an array"));
+      if (name == "NULL_ARRAY") continue;
+      const std::int64_t components = in_.count("the components of '" + shown(name) + "'");
+      const std::int64_t tuples = in_.count("the tuples of '" + shown(name) + "'");
+      const std::string type(in_.word("the type of '" + shown(name) + "'"));
+      if (on_ && tuples != owner_count()) {
+        in_.fail("the array '" + shown(name) + "' has " + std::to_string(tuples) + " tuples",
+                 std::to_string(owner_count()) + " are needed");
+      }
+      DataArray array = in_.array(name, on_, tuples, components, type);
+      if (on_) {
+        keep(std::move(array));
+      } else {
+        residue_->fields.push_back(std::move(array));
+      }
+    }
+  }
+
+  void read_lookup_table() {
+    const std::string name(in_.word("the name of the lookup table"));
+    const std::int64_t size = in_.count("the size of the lookup table");
+    std::string content;
+    if (in_.binary) {
+      in_.end_heading();
+      content = in_.scanner.binary_block(4 * size, "the lookup table");
+    } else {
+      in_.check_room(4 * size, 1, "the lookup table");
+      for (std::int64_t i = 0; i < 4 * size; ++i) {
+        const std::string_view word = in_.word("the lookup table");
+        (void)parse_real(in_.scanner, word, "a colour");
+        content += std::string(word) + (i % 4 == 3 ? "\n" : " ");
+      }
+    }
+    layout_.lookup_tables.push_back({*on_, name, static_cast<Index>(size), std::move(content)});
+  }
+
+  // ---- the whole
+
+  void finish() {
+    if (!has_points_) in_.fail("there are no POINTS", "the file may be cut short");
+    VtkCells all = layout_.polydata ? polydata_cells() : std::move(sections_[0]);
+    if (all.types.size() + 1 != all.offsets.size()) {
+      throw in_.section_error(types_line_,
+                              "there are " + std::to_string(all.types.size()) + " CELL_TYPES for " +
+                                  std::to_string(all.offsets.size() - 1) + " cells",
+                              "each cell has one");
+    }
+    for (const Index vertex : all.vertices) {
+      if (vertex >= mesh_.vertex_count())
+        throw in_.section_error(cells_line_, "a cell names the point " + std::to_string(vertex),
+                                "points run from 0 to " + std::to_string(mesh_.vertex_count() - 1));
+    }
+    const bool old_order = version_ < kLastVersion &&
+                           std::any_of(all.types.begin(), all.types.end(), is_higher_order_hexahedron);
+    const std::vector<std::uint8_t> types = old_order ? all.types : std::vector<std::uint8_t>{};
+    take_vtk_cells(
+        mesh_, std::move(all),
+        [&](const std::string& what, const std::string& remedy) {
+          return in_.section_error(types_line_, what, remedy);
+        },
+        in_.notes);
+    if (old_order) swap_hexahedron_edges(mesh_, types, mesh_.cells);
+
+    layout_.binary = in_.binary;
+    residue_->facts = std::move(in_.facts);
+    residue_->legacy = std::move(layout_);
+    mesh_.residue = residue_;
+  }
+
+  /// The cells of all sections of a POLYDATA file; each section is a block.
+  VtkCells polydata_cells() {
+    VtkCells all;
+    std::vector<Index> blocks;
+    for (std::size_t s = 0; s < sections_.size(); ++s) {
+      VtkCells& section = sections_[s];
+      const std::size_t count = section.offsets.size() - 1;
+      if (count > 0) blocks.push_back(index_size(all.types));
+      const auto shift = static_cast<Offset>(all.vertices.size());
+      for (std::size_t c = 0; c < count; ++c) {
+        all.types.push_back(polydata_type(s, section.offsets[c + 1] - section.offsets[c]));
+        all.offsets.push_back(shift + section.offsets[c + 1]);
+      }
+      all.vertices.insert(all.vertices.end(), section.vertices.begin(), section.vertices.end());
+      section = {};
+    }
+    if (blocks.size() > 1) mesh_.cell_blocks = std::move(blocks);
+    return all;
+  }
+
+  static std::uint8_t polydata_type(std::size_t section, Offset vertices) {
+    switch (section) {
+      case 0:
+        return vertices == 1 ? 1 : 2;  // vertex or several
+      case 1:
+        return vertices == 2 ? 3 : 4;  // line or polyline
+      case 2:
+        return vertices == 3 ? 5 : vertices == 4 ? 9 : 7;  // triangle, quad or polygon
+      default:
+        return 6;
+    }
+  }
+
+  VtkLegacyInput in_;
+  Mesh mesh_;
+  std::shared_ptr<VtkResidue> residue_ = std::make_shared<VtkResidue>();
+  VtkLegacyLayout layout_;
+  int version_ = 0;
+  bool has_points_ = false;
+  std::array<VtkCells, 4> sections_;  // an unstructured grid has the first alone
+  std::int64_t cells_line_ = 0;
+  std::int64_t types_line_ = 0;
+  std::optional<Attached> on_;  // what the arrays that follow belong to
+};
+
+}  // namespace
+
+Mesh read_vtk_legacy(const std::filesystem::path& path, Notes& notes) { return Reader(path).read(notes); }
+
+}  // namespace meshorder

@@ -1,0 +1,208 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/vtk/metadata.hpp"
+
+#include "io/labels.hpp"
+#include "io/unsupported.hpp"
+#include "io/vtk/cells.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+constexpr std::string_view kSetPrefix = "set:";
+
+Index owner_count(const Mesh& mesh, Attached on) {
+  return on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
+}
+
+/// The members that an array of marks or ranks names, or nothing when it is neither.
+template <class Number>
+std::optional<std::vector<Index>> members_of(const std::vector<Number>& marks) {
+  Index count = 0;
+  bool ranks = false;
+  for (const Number mark : marks) {
+    if (std::cmp_less(mark, 0) || std::cmp_greater(mark, marks.size())) return {};
+    count += mark != 0 ? 1 : 0;
+    ranks = ranks || mark > 1;
+  }
+  std::vector<Index> members(count, -1);
+  Index next = 0;
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (marks[i] == 0) continue;
+    const Index place = ranks ? static_cast<Index>(marks[i]) - 1 : next++;
+    if (place >= count || members[place] >= 0) return {};
+    members[place] = static_cast<Index>(i);
+  }
+  return members;
+}
+
+/// Membership as an array: 1 for a member when they rise, else the rank of each, so that their order stays.
+Values marks_of(const Set& set, Index count) {
+  if (std::adjacent_find(set.members.begin(), set.members.end(), std::greater_equal<>()) ==
+      set.members.end()) {
+    std::vector<std::uint8_t> marks(count, 0);
+    for (const Index member : set.members) marks[member] = 1;
+    return marks;
+  }
+  std::vector<std::int32_t> ranks(count, 0);
+  std::int32_t rank = 0;
+  for (const Index member : set.members) {
+    if (ranks[member] == 0) ranks[member] = ++rank;
+  }
+  return ranks;
+}
+
+template <class Number>
+std::vector<Number> filled(const DataArray& array, const std::vector<Number>& values, Index count) {
+  Number nothing{};
+  if constexpr (std::is_floating_point_v<Number>) nothing = std::numeric_limits<Number>::quiet_NaN();
+  const auto width = static_cast<std::size_t>(array.components);
+  std::vector<Number> result(static_cast<std::size_t>(count) * width, nothing);
+  for (std::size_t i = 0; i < array.rows.size(); ++i) {
+    const auto from = values.begin() + static_cast<Offset>(i * width);
+    std::copy(from, from + array.components, result.begin() + Offset{array.rows[i]} * array.components);
+  }
+  return result;
+}
+
+/// Hands out names that no other array of the same owner has; VTK keeps arrays by name.
+class Names {
+ public:
+  std::string unused(const std::string& wanted, Attached on, Notes& notes) {
+    std::string name = wanted.empty() ? "array" : wanted;
+    for (char& c : name) {
+      if (static_cast<unsigned char>(c) < ' ') c = '_';  // XML has no such characters
+    }
+    for (int i = 2; !taken_.emplace(on, name).second; ++i) name = wanted + "_" + std::to_string(i);
+    if (name != wanted)
+      notes.push_back("the array '" + wanted + "' on " + std::string(meshorder::name(on)) +
+                      " is written as '" + name + "'");
+    return name;
+  }
+
+ private:
+  std::set<std::pair<Attached, std::string>> taken_;
+};
+
+DataArray full_copy(const DataArray& array, Index count) {
+  DataArray copy{array.name, array.on, array.components, {}, {}, array.component_names};
+  copy.values = array.covers_all()
+                    ? array.values
+                    : std::visit([&](const auto& values) { return Values(filled(array, values, count)); },
+                                 array.values);
+  return copy;
+}
+
+bool filled_with_nan(const DataArray& array) {
+  return std::holds_alternative<std::vector<double>>(array.values) ||
+         std::holds_alternative<std::vector<float>>(array.values);
+}
+
+}  // namespace
+
+std::vector<std::string> VtkResidue::contents() const {
+  std::vector<std::string> result;
+  for (const DataArray& field : fields) result.push_back("the field '" + field.name + "' of the whole mesh");
+  if (legacy) {
+    for (const auto& table : legacy->lookup_tables) result.push_back("the lookup table '" + table.name + "'");
+  }
+  for (const VtkArrayFacts& fact : facts) {
+    if (!fact.information.empty() || !fact.xml_information.empty())
+      result.push_back("the information of the array '" + fact.array + "'");
+  }
+  return result;
+}
+
+const VtkArrayFacts* find_facts(const VtkResidue& residue, std::optional<Attached> on,
+                                std::string_view array) {
+  const auto found = std::find_if(residue.facts.begin(), residue.facts.end(), [&](const VtkArrayFacts& fact) {
+    return fact.on == on && fact.array == array;
+  });
+  return found == residue.facts.end() ? nullptr : &*found;
+}
+
+void add_vtk_array(Mesh& mesh, DataArray array) {
+  if (array.name == kVtkTypes && find_array(mesh, kVtkTypes, array.on) != nullptr) return;  // known already
+  if (array.name.starts_with(kSetPrefix) && array.components == 1 && array.covers_all()) {
+    auto members = std::visit(
+        [](const auto& values) -> std::optional<std::vector<Index>> {
+          using Number = typename std::decay_t<decltype(values)>::value_type;
+          if constexpr (std::is_integral_v<Number>) return members_of(values);
+          return {};
+        },
+        array.values);
+    if (members) {
+      mesh.sets.push_back({array.name.substr(kSetPrefix.size()), array.on, std::move(*members)});
+      return;
+    }
+  }
+  mesh.data.push_back(std::move(array));
+}
+
+VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes) {
+  VtkArrays result;
+  Names names;
+  const auto make = [&](DataArray array) {
+    result.made.push_back(std::make_shared<DataArray>(std::move(array)));
+    result.all.push_back(result.made.back().get());
+  };
+
+  for (const DataArray& array : mesh.data) {
+    if (array.on == Attached::cells && array.name == kVtkTypes) continue;  // the types say it
+    const std::string name = names.unused(array.name, array.on, notes);
+    if (array.covers_all() && name == array.name) {
+      result.all.push_back(&array);
+      continue;
+    }
+    if (!array.covers_all()) {
+      notes.push_back("the array '" + array.name + "' is given for some " +
+                      std::string(meshorder::name(array.on)) + "; the others get " +
+                      (filled_with_nan(array) ? "NaN" : "0"));
+    }
+    make(full_copy(array, owner_count(mesh, array.on)));
+    result.made.back()->name = name;
+  }
+
+  const bool from_vtk = dynamic_cast<const VtkResidue*>(mesh.residue.get()) != nullptr;
+  for (const Set& set : mesh.sets) {
+    const std::string name = names.unused(std::string(kSetPrefix) + set.name, set.on, notes);
+    if (!from_vtk) {
+      notes.push_back("the set '" + set.name + "' of " + std::string(meshorder::name(set.on)) +
+                      " is written as the array '" + name + "'");
+    }
+    make({name, set.on, 1, marks_of(set, owner_count(mesh, set.on)), {}, {}});
+  }
+
+  const auto add_ids = [&](const std::vector<std::int64_t>& ids, const char* wanted, Attached on) {
+    if (ids.empty()) return;
+    const std::string name = names.unused(wanted, on, notes);
+    notes.push_back("the ids of " + std::string(meshorder::name(on)) + " are written as the array '" + name +
+                    "'");
+    make({name, on, 1, label_values(ids), {}, {}});
+  };
+  add_ids(mesh.vertex_ids, "vertex_id", Attached::vertices);
+  add_ids(mesh.cell_ids, "cell_id", Attached::cells);
+  return result;
+}
+
+const VtkResidue& vtk_residue(const Mesh& mesh, Notes& notes) {
+  static const VtkResidue none;
+  if (!mesh.residue) return none;
+  if (const auto* own = dynamic_cast<const VtkResidue*>(mesh.residue.get())) return *own;
+  note_residue_left_out(mesh, "VTK", notes);
+  return none;
+}
+
+bool points_are_floats(const Mesh& mesh, const VtkResidue& residue) {
+  return residue.float_points && std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& point) {
+           return std::all_of(point.begin(), point.end(),
+                              [](double x) { return double{static_cast<float>(x)} == x; });
+         });
+}
+
+}  // namespace meshorder

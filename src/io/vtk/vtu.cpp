@@ -1,0 +1,427 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Writer of VTK's XML files of unstructured grids:
+// https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
+//
+// VTK's own writer (9.1) is not used: it writes names with & or < as they are, which is no XML, crashes over
+// pedigree ids that are texts, and does not notice that a disk is full when it closes a file.
+#include "io/vtk/vtu.hpp"
+
+#include "io/all_formats.hpp"
+#include "io/stream/base64.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/vtk/cells.hpp"
+#include "io/vtk/metadata.hpp"
+#include "io/vtk/numbers.hpp"
+#include "io/vtk/vtu_compressor.hpp"
+#include "io/vtk/xml_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace meshorder {
+namespace {
+
+constexpr std::size_t kBlock = std::size_t{1} << 20;  // bytes that are swapped and compressed at once
+
+using Mode = VtuEncoding::Mode;
+using Compressor = VtuEncoding::Compressor;
+
+using Numbers =
+    std::variant<std::span<const double>, std::span<const float>, std::span<const std::int8_t>,
+                 std::span<const std::uint8_t>, std::span<const std::int16_t>, std::span<const std::uint16_t>,
+                 std::span<const std::int32_t>, std::span<const std::uint32_t>, std::span<const std::int64_t>,
+                 std::span<const std::uint64_t>, std::span<const char>>;
+
+/// An array of the file: its tag and its numbers; texts as their characters.
+struct Array {
+  std::string tag;  // without format and end
+  Numbers numbers;
+  std::string information;
+  std::vector<std::string> compressed;  // blocks of appended arrays
+  std::uint64_t offset = 0;
+};
+
+/// The part of the file that an array stands in, and its attributes.
+struct Section {
+  std::string begin;
+  std::string end;
+  std::vector<Array> arrays;
+};
+
+class Writer {
+ public:
+  Writer(const Mesh& mesh, const std::filesystem::path& path, Notes& notes)
+      : mesh_(mesh),
+        notes_(notes),
+        residue_(vtk_residue(mesh, notes)),
+        encoding_(residue_.vtu.value_or(VtuEncoding{})),
+        types_(
+            vtk_types(mesh, path.string(), dynamic_cast<const VtkResidue*>(mesh.residue.get()) != nullptr)),
+        data_(vtk_arrays(mesh, notes)),
+        out_(path) {}
+
+  void write() {
+    note_legacy_parts();
+    collect();
+    choose_headers();
+    if (appended()) place();
+    write_header();
+    for (const Section& section : sections_) write_section(section);
+    out_.write("    </Piece>\n  </UnstructuredGrid>\n");
+    if (appended()) write_appended();
+    out_.write("</VTKFile>\n");
+    out_.commit();
+  }
+
+ private:
+  [[nodiscard]] bool appended() const {
+    return encoding_.mode == Mode::appended_base64 || encoding_.mode == Mode::appended_raw;
+  }
+  [[nodiscard]] bool coded() const { return encoding_.mode != Mode::appended_raw; }
+  [[nodiscard]] std::size_t header_size() const { return encoding_.wide_headers ? 8 : 4; }
+
+  void note_legacy_parts() {
+    if (residue_.legacy) {
+      for (const auto& table : residue_.legacy->lookup_tables)
+        notes_.push_back("left out, as VTU cannot hold it: the lookup table '" + table.name + "'");
+    }
+    for (const VtkArrayFacts& fact : residue_.facts) {
+      if (!fact.information.empty())
+        notes_.push_back("left out, as VTU has it in another form: the information of the array '" +
+                         fact.array + "'");
+    }
+  }
+
+  // ---- what is written
+
+  void collect() {
+    if (!residue_.fields.empty()) {
+      Section& fields = sections_.emplace_back(Section{"    <FieldData>\n", "    </FieldData>\n", {}});
+      for (const DataArray& field : residue_.fields) fields.arrays.push_back(array_of(field, {}));
+    }
+    collect_data(Attached::vertices);
+    collect_data(Attached::cells);
+    sections_.push_back({"      <Points>\n", "      </Points>\n", {points()}});
+    sections_.push_back({"      <Cells>\n", "      </Cells>\n", cells()});
+  }
+
+  void collect_data(Attached on) {
+    Section section;
+    const std::string_view name = on == Attached::vertices ? "PointData" : "CellData";
+    section.begin = fmt::format("      <{}{}>\n", name, roles(on));
+    section.end = fmt::format("      </{}>\n", name);
+    for (const DataArray* array : data_.all) {
+      if (array->on == on) section.arrays.push_back(array_of(*array, on));
+    }
+    sections_.push_back(std::move(section));
+  }
+
+  /// The attributes that name the arrays in roles.
+  [[nodiscard]] std::string roles(Attached on) const {
+    std::string result;
+    for (std::size_t role = 0; role < kVtuRoles.size(); ++role) {
+      const auto found =
+          std::find_if(residue_.roles.begin(), residue_.roles.end(), [&](const VtkRoleOfArray& r) {
+            const VtkRole kind = r.role == VtkRole::color_scalars ? VtkRole::scalars : r.role;
+            const bool there = std::any_of(data_.all.begin(), data_.all.end(), [&](const DataArray* array) {
+              return array->on == on && array->name == r.array;
+            });
+            return r.on == on && kind == static_cast<VtkRole>(role) && there;
+          });
+      if (found != residue_.roles.end())
+        result += fmt::format(" {}=\"{}\"", kVtuRoles[role], xml_escaped(found->array));
+    }
+    return result;
+  }
+
+  Array array_of(const DataArray& array, std::optional<Attached> on) {
+    Array result;
+    const bool text = std::holds_alternative<std::vector<std::string>>(array.values);
+    const VtkArrayFacts* facts = find_facts(residue_, on, array.name);
+    result.tag =
+        fmt::format("<{} type=\"{}\"", text ? "Array" : "DataArray", kVtuTypeNames[array.values.index()]);
+    if (facts != nullptr && facts->type == "vtkIdType" &&
+        std::holds_alternative<std::vector<std::int64_t>>(array.values))
+      result.tag += " IdType=\"1\"";
+    result.tag += fmt::format(" Name=\"{}\"", xml_escaped(array.name));
+    if (array.components != 1) result.tag += fmt::format(" NumberOfComponents=\"{}\"", array.components);
+    for (std::size_t i = 0; i < array.component_names.size(); ++i) {
+      if (!array.component_names[i].empty())
+        result.tag += fmt::format(" ComponentName{}=\"{}\"", i, xml_escaped(array.component_names[i]));
+    }
+    if (!on) result.tag += fmt::format(" NumberOfTuples=\"{}\"", row_count(array));
+    if (facts != nullptr) result.information = facts->xml_information;
+    std::visit(
+        [&](const auto& values) {
+          using Number = typename std::decay_t<decltype(values)>::value_type;
+          if constexpr (std::is_same_v<Number, std::string>) {
+            // each text ends with a zero
+            auto characters = std::make_shared<std::string>();
+            for (const std::string& value : values)
+              characters->append(value.substr(0, value.find('\0'))).push_back('\0');
+            texts_.push_back(characters);
+            result.numbers = std::span<const char>(*characters);
+          } else {
+            result.numbers = std::span<const Number>(values);
+          }
+        },
+        array.values);
+    return result;
+  }
+
+  Array points() {
+    Array result;
+    const bool floats = points_are_floats(mesh_, residue_);
+    const std::span<const double> numbers(mesh_.points.empty() ? nullptr : mesh_.points.front().data(),
+                                          3 * mesh_.points.size());
+    result.numbers = numbers;
+    if (floats) {
+      for (const double x : numbers) float_points_.push_back(static_cast<float>(x));
+      result.numbers = std::span<const float>(float_points_);
+    }
+    result.tag = fmt::format("<DataArray type=\"{}\" Name=\"Points\" NumberOfComponents=\"3\"",
+                             floats ? "Float32" : "Float64");
+    return result;
+  }
+
+  /// Vertices, ends and types of the cells; VTK wants the first two in one type.
+  std::vector<Array> cells() {
+    const Cells& cells = mesh_.cells;
+    const bool narrow = cells.offsets.back() <= kMaxIndex;
+    std::vector<Array> result(3);
+    if (narrow) {
+      ends_.assign(cells.offsets.begin() + 1, cells.offsets.end());
+      result[0].numbers = std::span<const std::int32_t>(cells.vertices);
+      result[1].numbers = std::span<const std::int32_t>(ends_);
+    } else {
+      wide_vertices_.assign(cells.vertices.begin(), cells.vertices.end());
+      result[0].numbers = std::span<const std::int64_t>(wide_vertices_);
+      result[1].numbers = std::span<const std::int64_t>(cells.offsets).subspan(1);
+    }
+    result[2].numbers = std::span<const std::uint8_t>(types_);
+    const char* const type = narrow ? "Int32" : "Int64";
+    result[0].tag = fmt::format("<DataArray type=\"{}\" Name=\"connectivity\"", type);
+    result[1].tag = fmt::format("<DataArray type=\"{}\" Name=\"offsets\"", type);
+    result[2].tag = "<DataArray type=\"UInt8\" Name=\"types\"";
+    return result;
+  }
+
+  // ---- bytes
+
+  static std::uint64_t byte_count(const Array& array) {
+    return std::visit([](const auto& numbers) { return std::uint64_t{numbers.size_bytes()}; }, array.numbers);
+  }
+
+  /// Hands out the bytes of an array, in the byte order of the file, block by block.
+  template <class Take>
+  void for_blocks(const Array& array, const Take& take) const {
+    std::visit(
+        [&](const auto& numbers) {
+          using Number = typename std::decay_t<decltype(numbers)>::value_type;
+          constexpr std::size_t kAtOnce = kBlock / sizeof(Number);
+          std::vector<char> swapped;
+          for (std::size_t begin = 0; begin < numbers.size(); begin += kAtOnce) {
+            const auto part = numbers.subspan(begin, std::min(kAtOnce, numbers.size() - begin));
+            const auto* bytes = reinterpret_cast<const char*>(part.data());
+            if (encoding_.order != std::endian::native && sizeof(Number) > 1) {
+              swapped.assign(bytes, bytes + part.size_bytes());
+              for (std::size_t i = 0; i < swapped.size(); i += sizeof(Number))
+                std::reverse(swapped.begin() + static_cast<Offset>(i),
+                             swapped.begin() + static_cast<Offset>(i + sizeof(Number)));
+              bytes = swapped.data();
+            }
+            take(std::span<const char>(bytes, part.size_bytes()));
+          }
+        },
+        array.numbers);
+  }
+
+  [[nodiscard]] std::vector<std::string> compressed(const Array& array) const {
+    std::vector<std::string> blocks;
+    const VtuCompressor compressor(encoding_.compressor);
+    for_blocks(array, [&](std::span<const char> block) { blocks.push_back(compressor.compress(block)); });
+    return blocks;
+  }
+
+  /// Words of a header, in the byte order of the file.
+  [[nodiscard]] std::string words(const std::vector<std::uint64_t>& values) const {
+    std::string result;
+    for (const std::uint64_t value : values) {
+      for (std::size_t i = 0; i < header_size(); ++i) {
+        const std::size_t place = encoding_.order == std::endian::big ? header_size() - 1 - i : i;
+        result += static_cast<char>((value >> (8 * place)) & 0xFFU);
+      }
+    }
+    return result;
+  }
+
+  /// The header of compressed blocks: how many, the bytes of each, of the last where it has fewer, and the
+  /// compressed bytes.
+  [[nodiscard]] std::string block_header(const Array& array, const std::vector<std::string>& blocks) const {
+    std::vector<std::uint64_t> values{blocks.size(), kBlock, byte_count(array) % kBlock};
+    for (const std::string& block : blocks) values.push_back(block.size());
+    return words(values);
+  }
+
+  void write_bytes(const Array& array) {
+    if (encoding_.compressor != Compressor::none) {
+      const std::vector<std::string> blocks = appended() ? array.compressed : compressed(array);
+      write_coded([&](const auto& put) { put(block_header(array, blocks)); });
+      write_coded([&](const auto& put) {
+        for (const std::string& block : blocks) put(block);
+      });
+    } else {
+      write_coded([&](const auto& put) {
+        put(words({byte_count(array)}));
+        for_blocks(array, put);
+      });
+    }
+  }
+
+  /// What `produce` puts, as it is or as base64 with an end of its own.
+  template <class Produce>
+  void write_coded(const Produce& produce) {
+    if (!coded()) {
+      produce([&](std::span<const char> bytes) { out_.write({bytes.data(), bytes.size()}); });
+      return;
+    }
+    Base64Encoder base64;
+    produce([&](std::span<const char> bytes) { out_.write(base64.put(bytes)); });
+    out_.write(base64.finish());
+  }
+
+  /// Numbers as text, six in a line.
+  void write_text(const Array& array) {
+    std::visit(
+        [&](const auto& numbers) {
+          for (std::size_t i = 0; i < numbers.size(); ++i) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(numbers)>, std::span<const char>>) {
+              out_.print("{}", static_cast<unsigned char>(numbers[i]));
+            } else {
+              out_.print("{}", numbers[i]);
+            }
+            out_.write((i + 1) % 6 == 0 || i + 1 == numbers.size() ? "\n" : " ");
+          }
+        },
+        array.numbers);
+  }
+
+  // ---- the file
+
+  void choose_headers() {
+    for (const Section& section : sections_) {
+      for (const Array& array : section.arrays) {
+        if (byte_count(array) > 0xFFFFFFFFU) encoding_.wide_headers = true;
+      }
+    }
+  }
+
+  /// Finds where appended arrays begin.
+  void place() {
+    std::uint64_t offset = 0;
+    for (Section& section : sections_) {
+      for (Array& array : section.arrays) {
+        array.offset = offset;
+        const auto length = [&](std::uint64_t bytes) { return coded() ? base64_length(bytes) : bytes; };
+        if (encoding_.compressor == Compressor::none) {
+          offset += length(header_size() + byte_count(array));
+          continue;
+        }
+        array.compressed = compressed(array);
+        std::uint64_t bytes = 0;
+        for (const std::string& block : array.compressed) bytes += block.size();
+        offset += length((3 + array.compressed.size()) * header_size()) + length(bytes);
+      }
+    }
+  }
+
+  void write_header() {
+    // 2.1 and later tell of the order of nodes of VTK 9, 1.0 of wide headers
+    const bool order = std::any_of(types_.begin(), types_.end(), is_higher_order_hexahedron);
+    out_.print(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"{}\" byte_order=\"{}\" "
+        "header_type=\"{}\"",
+        order                    ? "2.2"
+        : encoding_.wide_headers ? "1.0"
+                                 : "0.1",
+        encoding_.order == std::endian::big ? "BigEndian" : "LittleEndian",
+        encoding_.wide_headers ? "UInt64" : "UInt32");
+    if (encoding_.compressor != Compressor::none)
+      out_.print(" compressor=\"{}\"", kVtuCompressors[static_cast<std::size_t>(encoding_.compressor)]);
+    out_.write(">\n  <UnstructuredGrid>\n");
+    if (residue_.fields.empty()) begin_piece();
+  }
+
+  void begin_piece() {
+    out_.print("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", mesh_.vertex_count(),
+               mesh_.cell_count());
+  }
+
+  void write_section(const Section& section) {
+    out_.write(section.begin);
+    for (const Array& array : section.arrays) {
+      out_.print("        {} format=\"", array.tag);
+      if (appended()) {
+        out_.print("appended\" offset=\"{}\"", array.offset);
+        if (array.information.empty()) {
+          out_.write("/>\n");
+          continue;
+        }
+        out_.write(">\n");
+      } else if (encoding_.mode == Mode::ascii) {
+        out_.write("ascii\">\n");
+        write_text(array);
+      } else {
+        out_.write("binary\">\n");
+        write_bytes(array);
+        out_.write("\n");
+      }
+      out_.print("{}        </{}>\n", array.information,
+                 array.tag.starts_with("<Array") ? "Array" : "DataArray");
+    }
+    out_.write(section.end);
+    if (section.begin.find("<FieldData") != std::string::npos) begin_piece();
+  }
+
+  void write_appended() {
+    out_.print("  <AppendedData encoding=\"{}\">\n_", coded() ? "base64" : "raw");
+    for (const Section& section : sections_) {
+      for (const Array& array : section.arrays) write_bytes(array);
+    }
+    out_.write("\n  </AppendedData>\n");
+  }
+
+  const Mesh& mesh_;
+  Notes& notes_;
+  const VtkResidue& residue_;
+  VtuEncoding encoding_;
+  std::vector<std::uint8_t> types_;
+  VtkArrays data_;
+  OutputFile out_;
+  std::vector<Section> sections_;
+
+  // what arrays show that the mesh does not have
+  std::vector<std::shared_ptr<std::string>> texts_;
+  std::vector<float> float_points_;
+  std::vector<std::int32_t> ends_;
+  std::vector<std::int64_t> wide_vertices_;
+};
+
+}  // namespace
+
+void write_vtu(const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
+  Writer(mesh, path, notes).write();
+}
+
+Format vtu_format() { return {"VTU", {".vtu"}, false, read_vtu, write_vtu}; }
+
+}  // namespace meshorder

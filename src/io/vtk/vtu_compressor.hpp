@@ -1,0 +1,31 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/vtk/metadata.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace meshorder {
+
+/// One of the compressors of .vtu files: zlib, LZ4 blocks, or xz streams, as VTK's vtkZLibDataCompressor,
+/// vtkLZ4DataCompressor and vtkLZMADataCompressor write them.
+class VtuCompressor {
+ public:
+  /// `kind` is not `none`.
+  explicit VtuCompressor(VtuEncoding::Compressor kind) : kind_(kind) {}
+
+  /// More bytes than that cannot come out of one compressed byte.
+  static std::uint64_t greatest_ratio(VtuEncoding::Compressor kind);
+
+  [[nodiscard]] std::string compress(std::span<const char> bytes) const;
+
+  /// Fills `target` to its end; false when that is not what `bytes` hold.
+  [[nodiscard]] bool uncompress(std::span<const char> bytes, std::span<char> target) const;
+
+ private:
+  VtuEncoding::Compressor kind_;
+};
+
+}  // namespace meshorder

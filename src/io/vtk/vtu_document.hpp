@@ -1,0 +1,93 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/stream/scanner.hpp"
+#include "io/vtk/metadata.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshorder {
+
+/// An element of a .vtu file.
+struct VtuElement {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>> attributes;
+  std::size_t at = 0;     ///< byte of its <
+  std::size_t end = 0;    ///< byte after it
+  std::string_view text;  ///< what stands before the first element in it
+  std::vector<VtuElement> children;
+
+  /// The value of an attribute, or nullptr.
+  [[nodiscard]] const std::string* attribute(std::string_view wanted) const;
+  /// The first child of that name, or nullptr.
+  [[nodiscard]] const VtuElement* child(std::string_view wanted) const;
+};
+
+/// A .vtu file taken apart: its elements, and where its arrays' bytes are.
+class VtuDocument {
+ public:
+  /// Throws Error for a file that is no XML, ends early or is not of the type UnstructuredGrid.
+  explicit VtuDocument(const std::filesystem::path& path);
+
+  [[nodiscard]] const VtuElement& root() const noexcept { return root_; }
+  [[nodiscard]] const VtuEncoding& encoding() const noexcept { return encoding_; }
+  /// Ten times the version.
+  [[nodiscard]] int version() const noexcept { return version_; }
+
+  /// An Error at the line of that element.
+  [[nodiscard]] Error error(const VtuElement& at, const std::string& what, const std::string& remedy) const {
+    return error_at(at.at, what, remedy);
+  }
+
+  /// An element as it stands in the file.
+  [[nodiscard]] std::string source(const VtuElement& element) const {
+    return std::string(scanner_.all().substr(element.at, element.end - element.at));
+  }
+
+  /// An attribute that must be there.
+  [[nodiscard]] const std::string& required(const VtuElement& element, std::string_view name) const;
+  /// A number of things in an attribute, 0 … kMaxIndex.
+  [[nodiscard]] std::int64_t count(const VtuElement& element, std::string_view name) const;
+
+  /// The values of an array, `count` in all, in the number type that it names. Nothing is allocated beyond
+  /// what the file's size allows. Throws Error when there are more or fewer.
+  [[nodiscard]] Values values(const VtuElement& array, std::int64_t count) const;
+  /// How that array is stored.
+  [[nodiscard]] VtuEncoding::Mode mode(const VtuElement& array) const;
+
+ private:
+  struct Stored;
+  [[nodiscard]] Error error_at(std::size_t byte, const std::string& what, const std::string& remedy) const;
+  void parse();
+  void read_root();
+  std::size_t parse_tag(std::size_t at, VtuElement& element, bool& closed) const;
+  void begin_appended(const VtuElement& element, std::size_t end);
+  template <class Number>
+  std::vector<Number> numbers(const VtuElement& array, std::int64_t count) const;
+  template <class Number>
+  std::vector<Number> words(const VtuElement& array, std::int64_t count) const;
+  [[nodiscard]] std::vector<std::uint8_t> bits(const VtuElement& array, std::int64_t count) const;
+  [[nodiscard]] std::vector<std::string> strings(const VtuElement& array, std::int64_t count) const;
+  [[nodiscard]] Stored locate(const VtuElement& array) const;
+  void locate_blocks(const VtuElement& array, std::string_view data, bool coded, Stored& stored) const;
+  void copy(const VtuElement& array, const Stored& stored, char* target) const;
+  [[nodiscard]] std::string base64(const VtuElement& array, std::string_view text, std::uint64_t bytes) const;
+  [[nodiscard]] std::uint64_t header_word(std::string_view bytes, std::size_t index) const;
+  [[nodiscard]] std::size_t header_size() const noexcept { return encoding_.wide_headers ? 8 : 4; }
+
+  Scanner scanner_;
+  VtuElement root_;
+  VtuEncoding encoding_;
+  int version_ = 0;
+  std::optional<std::string_view> appended_;  // all that follows the underscore
+  bool appended_base64_ = false;
+};
+
+}  // namespace meshorder

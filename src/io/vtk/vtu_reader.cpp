@@ -1,0 +1,328 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Reader of VTK's XML files of unstructured grids:
+// https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
+//
+// VTK's own reader is not used: it allocates what a header promises, reads past the end of damaged arrays,
+// cannot read the NaN that VTK writes as text, and tells of faults on the standard error output.
+#include "io/vtk/cells.hpp"
+#include "io/vtk/metadata.hpp"
+#include "io/vtk/vtu.hpp"
+#include "io/vtk/vtu_document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// Appends what one piece has to what others had, of the same type.
+void append(Values& values, Values more) {
+  std::visit(
+      [&](auto& all) {
+        auto& part = std::get<std::decay_t<decltype(all)>>(more);
+        all.insert(all.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
+      },
+      values);
+}
+
+class Reader {
+ public:
+  Reader(const std::filesystem::path& path, Notes& notes) : file_(path), notes_(notes) {}
+
+  Mesh read() {
+    const VtuElement* grid = file_.root().child("UnstructuredGrid");
+    if (grid == nullptr)
+      throw file_.error(file_.root(), "there is no <UnstructuredGrid>", "the file may be cut short");
+    residue_->vtu = file_.encoding();
+    int pieces = 0;
+    for (const VtuElement& element : grid->children) {
+      if (element.name == "FieldData") {
+        read_fields(element);
+      } else if (element.name == "Piece") {
+        pieces += read_piece(element) ? 1 : 0;
+      } else {
+        note_unknown(element);
+      }
+    }
+    if (pieces > 1) notes_.push_back(fmt::format("the {} pieces of the file became one", pieces));
+    finish(*grid);
+    return std::move(mesh_);
+  }
+
+ private:
+  void note_unknown(const VtuElement& element) {
+    notes_.push_back("the element <" + element.name + "> is left out");
+  }
+
+  static bool is_array(const VtuElement& element) {
+    return element.name == "DataArray" || element.name == "Array";
+  }
+
+  /// False for a piece without anything.
+  bool read_piece(const VtuElement& piece) {
+    const std::int64_t points = file_.count(piece, "NumberOfPoints");
+    const std::int64_t cells = file_.count(piece, "NumberOfCells");
+    if (points == 0 && cells == 0) return false;
+    if (points + mesh_.vertex_count() > kMaxIndex || cells + index_size(cells_.types) > kMaxIndex) {
+      throw file_.error(piece, "the pieces have too many points or cells", "at most 2147483647 are possible");
+    }
+    const Index first_point = mesh_.vertex_count();
+    for (const VtuElement& element : piece.children) {
+      if (element.name == "PointData" || element.name == "CellData") {
+        const Attached on = element.name == "PointData" ? Attached::vertices : Attached::cells;
+        read_data(element, on, on == Attached::vertices ? points : cells);
+      } else if (element.name != "Points" && element.name != "Cells") {
+        note_unknown(element);
+      }
+    }
+    read_points(piece, points);
+    read_cells(piece, cells, first_point);
+    return true;
+  }
+
+  void read_points(const VtuElement& piece, std::int64_t count) {
+    if (count == 0) return;
+    const VtuElement* element = piece.child("Points");
+    const bool one = element != nullptr &&
+                     std::count_if(element->children.begin(), element->children.end(), is_array) == 1;
+    if (!one)
+      throw file_.error(element != nullptr ? *element : piece, "<Points> with one array is missing",
+                        "each piece has its points");
+    const VtuElement& array = *std::find_if(element->children.begin(), element->children.end(), is_array);
+    if (components_of(array) != 3)
+      throw file_.error(array, "the points have " + std::to_string(components_of(array)) + " components",
+                        "3 are needed");
+    const Values values = file_.values(array, 3 * count);
+    if (mesh_.points.empty()) {
+      residue_->float_points = std::holds_alternative<std::vector<float>>(values);
+      residue_->vtu->mode = file_.mode(array);
+    }
+    const std::size_t first = mesh_.points.size();
+    mesh_.points.resize(first + static_cast<std::size_t>(count));
+    std::visit(
+        [&](const auto& numbers) {
+          using Number = typename std::decay_t<decltype(numbers)>::value_type;
+          if constexpr (std::is_same_v<Number, std::string>) {
+            throw file_.error(array, "the points are texts", "Float32 or Float64 is needed");
+          } else {
+            if constexpr (!std::is_floating_point_v<Number>)
+              notes_.push_back("the points are integers and are carried as Float64");
+            for (std::size_t i = 0; i < numbers.size(); ++i) {
+              const auto x = static_cast<double>(numbers[i]);
+              if (!std::isfinite(x))
+                throw file_.error(
+                    array,
+                    fmt::format("point {} (counted from 0) has a coordinate that is not finite", i / 3),
+                    "finite numbers are needed");
+              mesh_.points[first + i / 3][i % 3] = x;
+            }
+          }
+        },
+        values);
+  }
+
+  [[nodiscard]] std::int64_t components_of(const VtuElement& array) const {
+    return array.attribute("NumberOfComponents") == nullptr ? 1 : file_.count(array, "NumberOfComponents");
+  }
+
+  [[nodiscard]] const VtuElement& cell_array(const VtuElement& cells, std::string_view name) const {
+    const auto found =
+        std::find_if(cells.children.begin(), cells.children.end(), [&](const VtuElement& element) {
+          const std::string* own = element.attribute("Name");
+          return is_array(element) && own != nullptr && *own == name;
+        });
+    if (found == cells.children.end())
+      throw file_.error(cells, fmt::format("the array {} is missing in <Cells>", name),
+                        "connectivity, offsets and types are needed");
+    refuse_time_steps(*found);
+    return *found;
+  }
+
+  void read_cells(const VtuElement& piece, std::int64_t count, Index first_point) {
+    if (count == 0) return;
+    const VtuElement* cells = piece.child("Cells");
+    if (cells == nullptr) throw file_.error(piece, "<Cells> is missing", "each piece has its cells");
+    types_ = &cell_array(*cells, "types");
+
+    // where each cell ends
+    const VtuElement& offsets = cell_array(*cells, "offsets");
+    const Offset first_entry = cells_.offsets.back();
+    Offset last = 0;
+    append_integers(offsets, count, cells_.offsets, [&](std::int64_t c, auto end) {
+      if (!std::in_range<Offset>(end) || std::cmp_less(end, last)) {
+        throw file_.error(
+            offsets, fmt::format("cell {} (counted from 0) ends at {}, before it begins at {}", c, end, last),
+            "offsets rise");
+      }
+      last = static_cast<Offset>(end);
+      return first_entry + last;
+    });
+
+    const VtuElement& connectivity = cell_array(*cells, "connectivity");
+    const Index points = mesh_.vertex_count() - first_point;
+    append_integers(connectivity, last, cells_.vertices, [&](std::int64_t, auto point) {
+      if (std::cmp_less(point, 0) || std::cmp_greater_equal(point, points)) {
+        throw file_.error(connectivity, fmt::format("a cell names the point {}", point),
+                          fmt::format("the piece has points 0 to {}", points - 1));
+      }
+      return first_point + static_cast<Index>(point);
+    });
+
+    append_integers(*types_, count, cells_.types, [&](std::int64_t c, auto type) {
+      if (std::cmp_less(type, 0) || std::cmp_greater(type, 255)) {
+        throw file_.error(*types_, fmt::format("cell {} (counted from 0) has the type {}", c, type),
+                          "VTK's types run from 0 to 81");
+      }
+      return static_cast<std::uint8_t>(type);
+    });
+  }
+
+  /// Appends `checked(i, number)` of every number of an array.
+  template <class Number, class Checked>
+  void append_integers(const VtuElement& array, std::int64_t count, std::vector<Number>& target,
+                       const Checked& checked) {
+    if (components_of(array) != 1)
+      throw file_.error(array, "the array has several components", "1 is needed");
+    const Values values = file_.values(array, count);
+    std::visit(
+        [&](const auto& numbers) {
+          using Stored = typename std::decay_t<decltype(numbers)>::value_type;
+          if constexpr (std::is_integral_v<Stored>) {
+            target.reserve(target.size() + numbers.size());
+            std::int64_t i = 0;
+            for (const Stored number : numbers) target.push_back(checked(i++, number));
+          } else {
+            throw file_.error(array, "the array holds no integers", "Int32 or Int64 is usual");
+          }
+        },
+        values);
+  }
+
+  void refuse_time_steps(const VtuElement& array) const {
+    if (array.attribute("TimeStep") != nullptr)
+      throw file_.error(array, "the file holds several time steps", "save each step as a file of its own");
+  }
+
+  /// An array of PointData, CellData or FieldData with what belongs to it.
+  DataArray read_array(const VtuElement& element, std::optional<Attached> on, std::int64_t tuples) {
+    refuse_time_steps(element);
+    DataArray array;
+    array.name = file_.required(element, "Name");
+    array.on = on.value_or(Attached::vertices);
+    const std::int64_t components = components_of(element);
+    if (components < 1) throw file_.error(element, "the array has no components", "at least 1 is needed");
+    array.components = static_cast<Index>(components);
+    array.values = file_.values(element, tuples * components);
+    if (*element.attribute("type") == "Bit")
+      notes_.push_back("the array '" + array.name + "' holds bits, which are carried as bytes");
+    for (std::int64_t i = 0; i < components && i < 64; ++i) {
+      const std::string* name = element.attribute("ComponentName" + std::to_string(i));
+      if (name == nullptr) continue;
+      array.component_names.resize(static_cast<std::size_t>(components));
+      array.component_names[static_cast<std::size_t>(i)] = *name;
+    }
+    read_facts(element, on, array);
+    return array;
+  }
+
+  void read_facts(const VtuElement& element, std::optional<Attached> on, const DataArray& array) {
+    VtkArrayFacts facts{on, array.name, {}, {}, {}};
+    const std::string* id = element.attribute("IdType");
+    if (id != nullptr && *id == "1" && std::holds_alternative<std::vector<std::int64_t>>(array.values))
+      facts.type = "vtkIdType";
+    for (const VtuElement& key : element.children) {
+      const std::string* name = key.attribute("name");
+      if (name != nullptr && name->starts_with("L2_NORM")) continue;  // VTK finds it
+      facts.xml_information += file_.source(key) + "\n";
+    }
+    if ((!facts.type.empty() || !facts.xml_information.empty()) &&
+        find_facts(*residue_, on, array.name) == nullptr)
+      residue_->facts.push_back(std::move(facts));
+  }
+
+  void read_fields(const VtuElement& fields) {
+    for (const VtuElement& element : fields.children) {
+      if (!is_array(element)) {
+        note_unknown(element);
+        continue;
+      }
+      residue_->fields.push_back(read_array(element, {}, file_.count(element, "NumberOfTuples")));
+    }
+  }
+
+  void read_data(const VtuElement& section, Attached on, std::int64_t tuples) {
+    for (std::size_t role = 0; role < kVtuRoles.size(); ++role) {
+      const std::string* name = section.attribute(kVtuRoles[role]);
+      if (name == nullptr || name->empty()) continue;
+      const auto kind = static_cast<VtkRole>(role);
+      const bool known =
+          std::any_of(residue_->roles.begin(), residue_->roles.end(),
+                      [&](const VtkRoleOfArray& other) { return other.role == kind && other.on == on; });
+      if (!known) residue_->roles.push_back({kind, on, *name, {}});
+    }
+    std::vector<std::string> names;
+    for (const VtuElement& element : section.children) {
+      if (!is_array(element)) {
+        note_unknown(element);
+        continue;
+      }
+      DataArray array = read_array(element, on, tuples);
+      if (std::find(names.begin(), names.end(), array.name) != names.end())
+        throw file_.error(element, "the array '" + array.name + "' stands here a second time",
+                          "names must differ");
+      names.push_back(array.name);
+      const auto before = std::find_if(arrays_.begin(), arrays_.end(), [&](const DataArray& other) {
+        return other.on == on && other.name == array.name;
+      });
+      if (before == arrays_.end()) {
+        arrays_.push_back(std::move(array));
+      } else if (before->components != array.components || before->values.index() != array.values.index()) {
+        throw file_.error(element,
+                          "the array '" + array.name + "' is of another type than in the piece before",
+                          "all pieces have the same arrays");
+      } else {
+        append(before->values, std::move(array.values));
+      }
+    }
+  }
+
+  void finish(const VtuElement& grid) {
+    const bool old_order = file_.version() < 21 &&
+                           std::any_of(cells_.types.begin(), cells_.types.end(), is_higher_order_hexahedron);
+    const std::vector<std::uint8_t> types = old_order ? cells_.types : std::vector<std::uint8_t>{};
+    const VtuElement& at = types_ != nullptr ? *types_ : grid;
+    take_vtk_cells(
+        mesh_, std::move(cells_),
+        [&](const std::string& what, const std::string& remedy) { return file_.error(at, what, remedy); },
+        notes_);
+    for (DataArray& array : arrays_) {
+      const Index needed = array.on == Attached::vertices ? mesh_.vertex_count() : mesh_.cell_count();
+      if (row_count(array) != needed)
+        throw file_.error(grid, "the array '" + array.name + "' is missing in a piece",
+                          "all pieces have the same arrays");
+      add_vtk_array(mesh_, std::move(array));
+    }
+    if (old_order) swap_hexahedron_edges(mesh_, types, mesh_.cells);
+    mesh_.residue = residue_;
+  }
+
+  VtuDocument file_;
+  Notes& notes_;
+  Mesh mesh_;
+  std::shared_ptr<VtkResidue> residue_ = std::make_shared<VtkResidue>();
+  std::vector<DataArray> arrays_;
+  VtkCells cells_;
+  const VtuElement* types_ = nullptr;
+};
+
+}  // namespace
+
+Mesh read_vtu(const std::filesystem::path& path, Notes& notes) { return Reader(path, notes).read(); }
+
+}  // namespace meshorder

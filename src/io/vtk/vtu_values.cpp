@@ -1,0 +1,309 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Arrays of .vtu files: text, base64 and raw bytes, plain or in compressed blocks.
+#include "io/stream/base64.hpp"
+#include "io/vtk/numbers.hpp"
+#include "io/vtk/vtu_compressor.hpp"
+#include "io/vtk/vtu_document.hpp"
+#include "io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+namespace meshorder {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\n";
+
+/// The value of a character of base64; 64 for all others.
+constexpr std::array<std::uint8_t, 256> kBase64 = [] {
+  std::array<std::uint8_t, 256> values{};
+  values.fill(64);
+  for (std::size_t i = 0; i < kBase64Alphabet.size(); ++i)
+    values[static_cast<unsigned char>(kBase64Alphabet[i])] = static_cast<std::uint8_t>(i);
+  return values;
+}();
+
+}  // namespace
+
+/// Where the bytes of an array are.
+struct VtuDocument::Stored {
+  std::uint64_t size = 0;                 // when uncompressed
+  std::string decoded;                    // of base64
+  std::string_view bytes;                 // plain, or all blocks
+  std::vector<std::uint64_t> compressed;  // bytes of each block
+  std::vector<std::uint64_t> uncompressed;
+};
+
+VtuEncoding::Mode VtuDocument::mode(const VtuElement& array) const {
+  const std::string* format = array.attribute("format");
+  if (format == nullptr || *format == "ascii") return VtuEncoding::Mode::ascii;
+  if (*format == "binary") return VtuEncoding::Mode::base64;
+  if (*format != "appended")
+    throw error(array, "the format is '" + format->substr(0, 40) + "'",
+                "ascii, binary or appended is needed");
+  if (!appended_)
+    throw error(array, "the array is appended, but <AppendedData> is missing", "the file may be cut short");
+  return appended_base64_ ? VtuEncoding::Mode::appended_base64 : VtuEncoding::Mode::appended_raw;
+}
+
+/// `bytes` bytes out of the characters that `text` begins with.
+std::string VtuDocument::base64(const VtuElement& array, std::string_view text, std::uint64_t bytes) const {
+  if (base64_length(bytes) > text.size())
+    throw error(array, "the array's bytes end early", "the file may be cut short");
+  std::string result(bytes, '\0');
+  for (std::size_t group = 0; 3 * group < bytes; ++group) {
+    std::uint32_t packed = 0;
+    const std::size_t used = std::min<std::size_t>(3, bytes - 3 * group);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const char c = text[4 * group + i];
+      const std::uint32_t value = kBase64[static_cast<unsigned char>(c)];
+      // padding fills the last group alone
+      if (value == 64 && (c != '=' || i <= used))
+        throw error(array, "the array is no base64", "letters, digits, + and / are needed");
+      packed = (packed << 6U) | (value & 63U);
+    }
+    for (std::size_t i = 0; i < used; ++i)
+      result[3 * group + i] = static_cast<char>((packed >> (16U - 8U * i)) & 0xFFU);
+  }
+  return result;
+}
+
+std::uint64_t VtuDocument::header_word(std::string_view bytes, std::size_t index) const {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < header_size(); ++i) {
+    const std::size_t place = encoding_.order == std::endian::big ? i : header_size() - 1 - i;
+    value = (value << 8U) | static_cast<unsigned char>(bytes[index * header_size() + place]);
+  }
+  return value;
+}
+
+VtuDocument::Stored VtuDocument::locate(const VtuElement& array) const {
+  const VtuEncoding::Mode how = mode(array);
+  std::string_view data = array.text;
+  if (how == VtuEncoding::Mode::base64) {
+    data.remove_prefix(std::min(data.find_first_not_of(kBlanks), data.size()));
+  } else {
+    const std::string& text = required(array, "offset");
+    std::uint64_t offset = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), offset);
+    if (code != std::errc{} || end != text.data() + text.size() || offset > appended_->size()) {
+      throw error(array, "the offset '" + text.substr(0, 40) + "' lies beyond the file",
+                  "the file may be cut short");
+    }
+    data = appended_->substr(offset);
+  }
+
+  Stored stored;
+  const bool coded = how != VtuEncoding::Mode::appended_raw;
+  if (encoding_.compressor != VtuEncoding::Compressor::none) {
+    locate_blocks(array, data, coded, stored);
+    return stored;
+  }
+  // a word that tells the bytes, and the bytes
+  const std::string head =
+      coded ? base64(array, data, header_size()) : std::string(data.substr(0, header_size()));
+  if (head.size() < header_size())
+    throw error(array, "the array's bytes end early", "the file may be cut short");
+  stored.size = header_word(head, 0);
+  if (stored.size > data.size())
+    throw error(array,
+                fmt::format("the array has {} bytes, but the file ends after {}", stored.size, data.size()),
+                "the file may be cut short");
+  if (coded) {
+    stored.decoded = base64(array, data, header_size() + stored.size);
+    stored.bytes = std::string_view(stored.decoded).substr(header_size());
+  } else {
+    stored.bytes = data.substr(header_size(), stored.size);
+    if (stored.bytes.size() < stored.size)
+      throw error(array, "the array's bytes end early", "the file may be cut short");
+  }
+  return stored;
+}
+
+/// Words that tell the number of blocks, the bytes of each and of the last, and the compressed bytes of each;
+/// then the blocks.
+void VtuDocument::locate_blocks(const VtuElement& array, std::string_view data, bool coded,
+                                Stored& stored) const {
+  const auto early = [&] { return error(array, "the array's bytes end early", "the file may be cut short"); };
+  const auto take = [&](std::uint64_t bytes) {
+    if (!coded && bytes > data.size()) throw early();
+    return coded ? base64(array, data, bytes) : std::string(data.substr(0, bytes));
+  };
+  const std::string head = take(3 * header_size());
+  const std::uint64_t blocks = header_word(head, 0);
+  const std::uint64_t block_size = header_word(head, 1);
+  const std::uint64_t last_size = header_word(head, 2);
+  if (blocks == 0) return;
+  if (blocks > data.size() / header_size()) throw early();
+  const std::string sizes = take((3 + blocks) * header_size());
+  data.remove_prefix(
+      std::min<std::uint64_t>(coded ? base64_length(sizes.size()) : sizes.size(), data.size()));
+
+  std::uint64_t compressed = 0;
+  for (std::uint64_t b = 0; b < blocks; ++b) {
+    stored.compressed.push_back(header_word(sizes, 3 + b));
+    stored.uncompressed.push_back(b + 1 == blocks && last_size > 0 ? last_size : block_size);
+    if (stored.compressed.back() > data.size() - compressed) throw early();
+    compressed += stored.compressed.back();
+    const std::uint64_t most =
+        stored.compressed.back() * VtuCompressor::greatest_ratio(encoding_.compressor) + 1024;
+    if (stored.uncompressed.back() > most) {
+      throw error(array,
+                  fmt::format("a block of {} bytes promises {}", stored.compressed.back(),
+                              stored.uncompressed.back()),
+                  "the array is damaged");
+    }
+    stored.size += stored.uncompressed.back();
+  }
+  if (coded) {
+    stored.decoded = base64(array, data, compressed);
+    stored.bytes = stored.decoded;
+  } else {
+    stored.bytes = data.substr(0, compressed);
+  }
+}
+
+/// Puts the bytes, uncompressed, where they are wanted.
+void VtuDocument::copy(const VtuElement& array, const Stored& stored, char* target) const {
+  if (stored.compressed.empty()) {
+    if (!stored.bytes.empty()) std::memcpy(target, stored.bytes.data(), stored.bytes.size());
+    return;
+  }
+  const VtuCompressor compressor(encoding_.compressor);
+  const char* from = stored.bytes.data();
+  for (std::size_t b = 0; b < stored.compressed.size(); ++b) {
+    const std::size_t size = stored.uncompressed[b];
+    if (!compressor.uncompress({from, stored.compressed[b]}, {target, size}))
+      throw error(array, fmt::format("block {} cannot be uncompressed", b), "the array is damaged");
+    from += stored.compressed[b];
+    target += size;
+  }
+}
+
+template <class Number>
+std::vector<Number> VtuDocument::words(const VtuElement& array, std::int64_t count) const {
+  std::string_view text = array.text;
+  std::vector<Number> result;
+  result.reserve(std::min<std::size_t>(static_cast<std::size_t>(count), text.size() / 2 + 1));
+  while (true) {
+    std::string_view word = next_word(text, kBlanks);
+    if (word.empty()) break;
+    const auto broken = [&] {
+      const auto byte = static_cast<std::size_t>(word.data() - scanner_.all().data());
+      return error_at(byte, "a value is '" + std::string(word.substr(0, 40)) + "'",
+                      fmt::format("the array's type is {}", required(array, "type")));
+    };
+    if (word.size() > 1 && word.front() == '+') word.remove_prefix(1);
+    Number value{};
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool whole = end == word.data() + word.size();
+    // a real number that is too small to matter is 0
+    const bool tiny = std::is_floating_point_v<Number> && code == std::errc::result_out_of_range && whole &&
+                      word.find_first_of("eE") != std::string_view::npos &&
+                      word[word.find_first_of("eE") + 1] == '-';
+    if (!whole || (code != std::errc{} && !tiny)) throw broken();
+    if (std::cmp_equal(result.size(), count)) {
+      throw error_at(static_cast<std::size_t>(word.data() - scanner_.all().data()),
+                     fmt::format("the array has more than {} values", count),
+                     "the counts of its piece say how many there are");
+    }
+    result.push_back(value);
+  }
+  if (std::cmp_not_equal(result.size(), count))
+    throw error(array, fmt::format("the array has {} values", result.size()),
+                fmt::format("{} are needed", count));
+  return result;
+}
+
+template <class Number>
+std::vector<Number> VtuDocument::numbers(const VtuElement& array, std::int64_t count) const {
+  if (mode(array) == VtuEncoding::Mode::ascii) return words<Number>(array, count);
+  const Stored stored = locate(array);
+  if (stored.size % sizeof(Number) != 0 || std::cmp_not_equal(stored.size / sizeof(Number), count)) {
+    throw error(array, fmt::format("the array has {} bytes", stored.size),
+                fmt::format("{} values of {} bytes are needed", count, sizeof(Number)));
+  }
+  std::vector<Number> result(static_cast<std::size_t>(count));
+  copy(array, stored, reinterpret_cast<char*>(result.data()));
+  if (encoding_.order != std::endian::native) {
+    for (Number& number : result) {
+      auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
+      std::reverse(raw.begin(), raw.end());
+      number = std::bit_cast<Number>(raw);
+    }
+  }
+  return result;
+}
+
+/// Bits of an array of type Bit, eight in a byte, the first the highest; in text as numbers.
+std::vector<std::uint8_t> VtuDocument::bits(const VtuElement& array, std::int64_t count) const {
+  if (mode(array) == VtuEncoding::Mode::ascii) return words<std::uint8_t>(array, count);
+  const std::vector<std::uint8_t> packed = numbers<std::uint8_t>(array, (count + 7) / 8);
+  std::vector<std::uint8_t> result(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = (packed[i / 8] >> (7 - i % 8)) & 1U;
+  return result;
+}
+
+/// Texts that end with a zero byte.
+std::vector<std::string> VtuDocument::strings(const VtuElement& array, std::int64_t count) const {
+  std::string bytes;
+  if (mode(array) == VtuEncoding::Mode::ascii) {
+    // as the numbers of their characters
+    std::string_view text = array.text;
+    for (std::string_view word = next_word(text, kBlanks); !word.empty(); word = next_word(text, kBlanks)) {
+      int code = 0;
+      const auto [end, failed] = std::from_chars(word.data(), word.data() + word.size(), code);
+      if (failed != std::errc{} || end != word.data() + word.size() || code < -128 || code > 255)
+        throw error(array, "a text holds '" + std::string(word.substr(0, 40)) + "'",
+                    "texts are numbers of characters, each text ends with 0");
+      bytes += static_cast<char>(code);
+    }
+  } else {
+    const Stored stored = locate(array);
+    bytes.resize(stored.size);
+    copy(array, stored, bytes.data());
+  }
+  if (std::cmp_not_equal(std::count(bytes.begin(), bytes.end(), '\0'), count) ||
+      (!bytes.empty() && bytes.back() != '\0')) {
+    throw error(array, fmt::format("the array has {} texts", std::count(bytes.begin(), bytes.end(), '\0')),
+                fmt::format("{} are needed, each ends with 0", count));
+  }
+  std::vector<std::string> result;
+  for (std::size_t begin = 0; begin < bytes.size();) {
+    const std::size_t end = bytes.find('\0', begin);
+    result.push_back(bytes.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return result;
+}
+
+Values VtuDocument::values(const VtuElement& array, std::int64_t count) const {
+  const std::string& type = required(array, "type");
+  if (type == "Bit") return bits(array, count);
+  const auto found = std::find(kVtuTypeNames.begin(), kVtuTypeNames.end(), type);
+  if (found == kVtuTypeNames.end())
+    throw error(array, "the type is '" + type.substr(0, 40) + "'",
+                "Int8 … UInt64, Float32, Float64 or String is needed");
+  Values values = values_of_type(static_cast<std::size_t>(found - kVtuTypeNames.begin()));
+  std::visit(
+      [&](auto& result) {
+        using Number = typename std::decay_t<decltype(result)>::value_type;
+        if constexpr (std::is_same_v<Number, std::string>) {
+          result = strings(array, count);
+        } else {
+          result = numbers<Number>(array, count);
+        }
+      },
+      values);
+  return values;
+}
+
+}  // namespace meshorder

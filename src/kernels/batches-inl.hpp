@@ -1,0 +1,141 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// Included once for each instruction set, as lanes-inl.hpp is.
+#if defined(MESHORDER_BATCHES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MESHORDER_BATCHES_INL
+#undef MESHORDER_BATCHES_INL
+#else
+#define MESHORDER_BATCHES_INL
+#endif
+
+#include "kernels/deformation-inl.hpp"
+#include "kernels/element_blocks-inl.hpp"
+#include "kernels/pass.hpp"
+
+#include <algorithm>
+#include <type_traits>
+
+HWY_BEFORE_NAMESPACE();
+namespace meshorder::HWY_NAMESPACE {
+
+/// Forces alone.
+struct NoTangent {};
+
+template <int D>
+HWY_INLINE const double* geometry_of(const RestShapes& rest, Offset batch) {
+  return rest.geometry.data() + batch * kBatch * (D * (D + 1) / 2 + 1);
+}
+
+template <int D>
+HWY_INLINE const Index* vertices_of(const RestShapes& rest, Offset batch) {
+  return rest.vertices.data() + batch * kBatch * (D + 1);
+}
+
+template <class Lanes>
+HWY_INLINE LameLanes<Lanes> load_lame(const ElasticPass& pass, Offset batch, Index lane) {
+  const Offset place = pass.lame_stride * batch + lane;
+  return {Lanes::load(pass.mu + place), Lanes::load(pass.lambda + place)};
+}
+
+/// Where a batch of a pass goes in the matrix, and where the next one will.
+struct BatchBlocks {
+  const Index* blocks = nullptr;
+  const Index* next = nullptr;
+  Index count = 0;  ///< simplices of the batch
+  Index next_count = 0;
+};
+
+/// Those of number i of the pass's `batches`.
+template <int D>
+HWY_INLINE BatchBlocks blocks_of(const ElasticPass& pass, Offset i, Offset batches) {
+  constexpr Offset kBlocks = kBatch * (D + 1) * (D + 1);
+  BatchBlocks result;
+  for (Offset k = i; k < std::min(i + 2, batches); ++k) {
+    const Offset batch = pass.share ? pass.share->batches[k] : k;
+    const Offset boundary = pass.share ? pass.share->boundary[k] : -1;
+    (k == i ? result.blocks : result.next) =
+        boundary < 0 ? pass.blocks + kBlocks * batch : pass.boundary_blocks + kBlocks * boundary;
+    (k == i ? result.count : result.next_count) =
+        static_cast<Index>(std::min<Offset>(kBatch, pass.rest.count - batch * kBatch));
+  }
+  return result;
+}
+
+/// A batch of simplices, which adds its forces to `targets`: its vertices, or spare ones in place of them.
+///
+/// A Law is made of a deformation and its parameters, and gives stress(P) and energy(). A Tangent is made of
+/// a deformation, its law, parameters and a weight, and gives block(a, b, K), weight · gₐ·∂P/∂F·g_b for the
+/// corners a ≤ b of 1 … D, counted from 0; where a = b, symmetric to the last bit.
+template <int D, class Lanes, class Law, class Tangent>
+HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* targets,
+                          const BatchBlocks& blocks) {
+  const double* const geometry = geometry_of<D>(pass.rest, batch);
+  const Index* const vertices = vertices_of<D>(pass.rest, batch);
+  constexpr bool kStiffness = !std::is_same_v<Tangent, NoTangent>;
+  [[maybe_unused]] std::conditional_t<kStiffness, ElementBlocks<D>, NoTangent> element;
+  for (Index lane = 0; lane < kBatch; lane += Lanes::kCount) {
+    Deformation<D, Lanes> deformation;
+    deformation.load(geometry + lane, vertices + lane, pass.positions);
+    const LameLanes<Lanes> lame = load_lame<Lanes>(pass, batch, lane);
+    Law law;
+    law.load(deformation, lame);
+    if (!kStiffness || pass.forces) {
+      typename Lanes::Value stress[3][D];
+      law.stress(deformation, lame, stress);
+      deformation.add_forces(stress, targets + lane, pass.forces);
+    }
+    if constexpr (kStiffness) {
+      Tangent tangent;
+      tangent.load(deformation, law, lame, deformation.volume * Lanes::set(pass.scale));
+      compute_blocks<D, Lanes>(tangent, lane, element);
+    }
+  }
+  if constexpr (kStiffness) {
+    constexpr Offset kBlocks = ElementBlocks<D>::kBlocks;
+    for (Index lane = 0; lane < blocks.count; ++lane) {
+      if (lane < blocks.next_count) ElementBlocks<D>::fetch(blocks.next + kBlocks * lane, pass.values);
+      element.add(lane, blocks.blocks + kBlocks * lane, pass.values);
+    }
+  }
+}
+
+/// All batches, or those of a share, whose boundary batches have targets and blocks of their own.
+template <int D, class Lanes, class Law, class Tangent>
+HWY_INLINE void add_batches(const ElasticPass& pass) {
+  const OwnedBatches* const share = pass.share;
+  const Offset count = share ? static_cast<Offset>(share->batches.size()) : pass.rest.batches();
+  for (Offset i = 0; i < count; ++i) {
+    const Offset batch = share ? share->batches[i] : i;
+    const Index* const vertices = vertices_of<D>(pass.rest, batch);
+    BatchBlocks blocks;
+    if constexpr (!std::is_same_v<Tangent, NoTangent>) blocks = blocks_of<D>(pass, i, count);
+    add_batch<D, Lanes, Law, Tangent>(pass, batch, share ? share->targets_of(i, vertices, D + 1) : vertices,
+                                      blocks);
+  }
+}
+
+/// Σ V Ψ of some batches.
+template <int D, class Lanes, class Law>
+HWY_INLINE double energy_of_batches(const ElasticPass& pass, Index begin, Index end) {
+  typename Lanes::Value sum = Lanes::set(0.0);
+  for (Offset batch = begin; batch < end; ++batch) {
+    for (Index lane = 0; lane < kBatch; lane += Lanes::kCount) {
+      Deformation<D, Lanes> deformation;
+      deformation.load(geometry_of<D>(pass.rest, batch) + lane, vertices_of<D>(pass.rest, batch) + lane,
+                       pass.positions);
+      const LameLanes<Lanes> lame = load_lame<Lanes>(pass, batch, lane);
+      Law law;
+      law.load(deformation, lame);
+      sum = Lanes::mul_add(deformation.volume, law.energy(deformation, lame), sum);
+    }
+  }
+  alignas(64) double lanes[Lanes::kCount];
+  Lanes::store(sum, lanes);
+  double total = 0.0;
+  for (const double lane : lanes) total += lane;
+  return total;
+}
+
+}  // namespace meshorder::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,47 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/aligned.hpp"
+
+#include <cstdint>
+
+namespace meshorder {
+
+/// Isotropic energies per rest volume, with σ the signed singular values of the deformation gradient F.
+enum class MaterialModel : std::uint8_t {
+  corotational,  ///< μ‖F − R‖² + ½λ tr²(RᵀF − I), R the rotation closest to F (Müller, Gross 2004)
+  stvk,          ///< Saint Venant–Kirchhoff: μ E:E + ½λ tr(E)², E = ½(FᵀF − I)
+  /// Stable Neo-Hookean (Smith, De Goes, Kim 2018) with its logarithm, which lets a collapsed element rise
+  /// again, and without its energy at rest: ½μ'(‖F‖² − 3) + ½λ'(det F − α)² − ½μ' log(‖F‖² + 1),
+  /// α = 1 + ¾ μ'/λ'. μ' = 4/3 μ and λ' = λ + 5/6 μ make it Hooke's law of Lamé's μ and λ at rest.
+  neo_hookean,
+};
+
+/// What stands for the Hessian.
+enum class Tangent : std::uint8_t {
+  exact,        ///< the Hessian; indefinite under compression
+  approximate,  ///< corotational alone: R held, so that it is semi-definite (Müller, Gross 2004)
+  projected,    ///< the semi-definite part of ∂²Ψ/∂F², simplex by simplex; tetrahedra only
+};
+
+/// Lamé's parameters of an isotropic material, in units of stress.
+struct Lame {
+  double mu = 0.0;
+  double lambda = 0.0;
+
+  /// μ = E / 2(1 + ν), λ = E ν / ((1 + ν)(1 − 2ν)).
+  static Lame from_young(double young, double poisson) {
+    return {young / (2.0 * (1.0 + poisson)), young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))};
+  }
+};
+
+/// The elastic law of all simplices of a mesh.
+struct Elasticity {
+  MaterialModel model = MaterialModel::corotational;
+  Tangent tangent = Tangent::exact;
+  Lame lame;  ///< of all simplices, where the two below are empty
+  /// Where parameters differ: those of simplex s at [s], filled up to whole batches (see RestShapes).
+  AlignedVector<double> mu, lambda;
+};
+
+}  // namespace meshorder

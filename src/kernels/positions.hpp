@@ -1,0 +1,42 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+#include "base/point.hpp"
+#include "kernels/aligned.hpp"
+
+#include <cmath>
+#include <optional>
+#include <span>
+
+namespace meshorder {
+
+/// Doubles from one vertex to the next in the positions and forces of the element and spring kernels: x, y, z
+/// and one that stays 0, so that a vertex never straddles a cache line and is read by aligned vector loads.
+inline constexpr Index kPaddedStride = 4;
+
+/// The points in that layout. O(n).
+AlignedVector<double> padded_positions(std::span<const Point> points);
+
+/// n vertices at zero in that layout. O(n).
+AlignedVector<double> padded_zeros(Index n);
+
+/// Throws InvalidArgument, naming `function`, unless positions and forces have the same size.
+void check_same_size(std::span<const double> positions, std::span<const double> forces, const char* function);
+
+/// Vertex v of padded positions.
+inline Point point_of(std::span<const double> positions, Index v) {
+  const double* const x = positions.data() + Offset{kPaddedStride} * v;
+  return {x[0], x[1], x[2]};
+}
+
+/// The direction that a triangle of moved vertices faces, of length 1; none where it has no area.
+inline std::optional<Point> triangle_normal(std::span<const double> positions, Index a, Index b, Index c) {
+  const Point origin = point_of(positions, a);
+  const Point normal = cross(minus(point_of(positions, b), origin), minus(point_of(positions, c), origin));
+  const double length = norm(normal);
+  if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
+  return scaled(1.0 / length, normal);
+}
+
+}  // namespace meshorder

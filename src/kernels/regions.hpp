@@ -1,0 +1,47 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/material.hpp"
+#include "kernels/simplices.hpp"
+#include "mesh/groups.hpp"
+
+#include <string>
+#include <vector>
+
+namespace meshorder {
+
+/// What a part of a body is made of.
+struct Material {
+  double young = 1e6;       ///< Young's modulus E > 0, Pa
+  double poisson = 0.45;    ///< Poisson's ratio, −1 < ν < ½
+  double density = 1000.0;  ///< ρ > 0, kg/m³
+};
+
+/// The material of one region: of the set of cells of that name, or of the cells of that value ("7").
+struct RegionMaterial {
+  std::string region;
+  Material material;
+};
+
+/// The materials of all simplices, as Elasticity has them.
+struct SimplexMaterials {
+  Lame lame;                         ///< of all, where the two below are empty
+  AlignedVector<double> mu, lambda;  ///< of each, filled up to whole batches
+  std::vector<double> densities;     ///< one, or one for each simplex
+};
+
+/// The material that is the same everywhere. Throws InvalidArgument, which says what would be right, for
+/// numbers that are out of range or not finite.
+SimplexMaterials uniform_material(const Material& material);
+
+/// The materials of simplices whose cells are grouped: `regions` where they say so, `elsewhere` in all other
+/// cells. Throws InvalidArgument for numbers out of range, for a grouping of vertices or of another mesh, for
+/// a region given twice and for one without simplices; it lists those that have some.
+/// O(simplices + regions · groups).
+SimplexMaterials materials_by_region(const Simplices& simplices, const Grouping& grouping,
+                                     const Material& elsewhere, const std::vector<RegionMaterial>& regions);
+
+/// The law of a body of those materials.
+Elasticity elasticity_of(SimplexMaterials materials, MaterialModel model, Tangent tangent);
+
+}  // namespace meshorder

@@ -1,0 +1,136 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "kernels/springs.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/springs.cpp"
+#include <hwy/foreach_target.h>
+// from here on once for each instruction set
+#include "kernels/lanes-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace meshorder::HWY_NAMESPACE {
+namespace {
+
+/// A batch of springs, which adds to `targets`: its ends, or spare vertices in place of them.
+template <class Lanes>
+HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const Index* targets,
+                          double stiffness, const double* positions, double* forces) {
+  using Value = typename Lanes::Value;
+  const Value k = Lanes::set(stiffness);
+  for (Index lane = 0; lane < kBatch; lane += Lanes::kCount) {
+    Value a[3];
+    Value b[3];
+    Lanes::gather(positions, ends + lane, a);
+    Lanes::gather(positions, ends + kBatch + lane, b);
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c) b[c] = b[c] - a[c];
+    const Value length =
+        Lanes::square_root(Lanes::mul_add(b[2], b[2], Lanes::mul_add(b[1], b[1], b[0] * b[0])));
+    const Value scale = Lanes::if_positive(length, k - k * Lanes::load(rest_length + lane) / length);
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c) {
+      a[c] = scale * b[c];
+      b[c] = Lanes::set(0.0) - a[c];
+    }
+    Lanes::scatter_add(a, targets + lane, forces);
+    Lanes::scatter_add(b, targets + kBatch + lane, forces);
+  }
+}
+
+/// All batches, or those of a share.
+template <class Lanes>
+HWY_INLINE void add_forces(const Springs& springs, double stiffness, const double* positions, double* forces,
+                           const OwnedBatches* share) {
+  const Offset count =
+      share ? static_cast<Offset>(share->batches.size()) : (springs.count + kBatch - 1) / kBatch;
+  for (Offset i = 0; i < count; ++i) {
+    const Offset batch = share ? share->batches[i] : i;
+    const Index* const ends = springs.ends.data() + 2 * kBatch * batch;
+    add_batch<Lanes>(springs.rest_lengths.data() + kBatch * batch, ends,
+                     share ? share->targets_of(i, ends, 2) : ends, stiffness, positions, forces);
+  }
+}
+
+void add_forces_in_batches(const Springs& springs, double stiffness, const double* positions, double* forces,
+                           const OwnedBatches* share) {
+  add_forces<ManyLanes>(springs, stiffness, positions, forces, share);
+}
+
+#if HWY_ONCE
+void add_forces_one_by_one(const Springs& springs, double stiffness, const double* positions,
+                           double* forces) {
+  add_forces<OneLane>(springs, stiffness, positions, forces, nullptr);
+}
+#endif
+
+}  // namespace
+}  // namespace meshorder::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <cmath>
+
+namespace meshorder {
+namespace {
+
+HWY_EXPORT(add_forces_in_batches);
+
+double distance(const double* a, const double* b) {
+  return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+}
+
+}  // namespace
+
+Springs springs_on_edges(const CsrGraph& graph, std::span<const Point> points) {
+  Springs springs;
+  springs.count = graph.edge_count();
+  const Offset batches = (springs.count + kBatch - 1) / kBatch;
+  springs.ends.assign(2 * batches * kBatch, 0);
+  springs.rest_lengths.assign(batches * kBatch, 0.0);
+  Offset s = 0;
+  for (Index b = 0; b < graph.size(); ++b) {
+    for (const Index a : graph[b]) {
+      if (a > b) break;  // rows rise
+      Index* const ends = springs.ends.data() + 2 * (s / kBatch) * kBatch + s % kBatch;
+      ends[0] = a;
+      ends[kBatch] = b;
+      springs.rest_lengths[s++] = distance(points[a].data(), points[b].data());
+    }
+  }
+  return springs;
+}
+
+double spring_energy(const Springs& springs, double stiffness, std::span<const double> positions) {
+  double sum = 0.0;
+  for (Offset s = 0; s < springs.count; ++s) {
+    const Index* const ends = springs.ends.data() + 2 * (s / kBatch) * kBatch + s % kBatch;
+    const double stretch = distance(positions.data() + Offset{kPaddedStride} * ends[0],
+                                    positions.data() + Offset{kPaddedStride} * ends[kBatch]) -
+                           springs.rest_lengths[s];
+    sum += 0.5 * stiffness * stretch * stretch;
+  }
+  return sum;
+}
+
+void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
+                       std::span<double> forces) {
+  check_same_size(positions, forces, "add_spring_forces");
+  HWY_DYNAMIC_DISPATCH(add_forces_in_batches)
+  (springs, stiffness, positions.data(), forces.data(), nullptr);
+}
+
+void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
+                       std::span<double> forces, const OwnedBatches& share) {
+  check_room(forces, share, "add_spring_forces");
+  HWY_DYNAMIC_DISPATCH(add_forces_in_batches)
+  (springs, stiffness, positions.data(), forces.data(), &share);
+}
+
+void add_spring_forces_scalar(const Springs& springs, double stiffness, std::span<const double> positions,
+                              std::span<double> forces) {
+  check_same_size(positions, forces, "add_spring_forces");
+  HWY_STATIC_DISPATCH(add_forces_one_by_one)(springs, stiffness, positions.data(), forces.data());
+}
+
+}  // namespace meshorder
+#endif

@@ -1,0 +1,42 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "graph/csr_graph.hpp"
+#include "kernels/owned_batches.hpp"
+
+#include <span>
+
+namespace meshorder {
+
+/// A spring on every edge of a mesh, in batches of kBatch: end a of spring s is
+/// `ends[(2 (s / kBatch) + a) · kBatch + s % kBatch]`, its rest length `rest_lengths[s]`. The last batch is
+/// filled up with springs of a vertex to itself, which have no force.
+struct Springs {
+  Offset count = 0;
+  AlignedVector<Index> ends;
+  AlignedVector<double> rest_lengths;
+};
+
+/// Every edge of the graph once, from its smaller end to its larger one, at rest at the given points. Sorted
+/// by the larger end and then the smaller, as `lexmax` sorts elements: whatever the order of the vertices,
+/// each is then met for the first time in the order in which they lie in memory. O(n + edges).
+Springs springs_on_edges(const CsrGraph& graph, std::span<const Point> points);
+
+/// The energy Σ ½ k (‖d‖ − ℓ₀)² of springs of stiffness k, d = x_b − x_a. O(springs).
+double spring_energy(const Springs& springs, double stiffness, std::span<const double> positions);
+
+/// forces += −∂/∂x of that energy: k (‖d‖ − ℓ₀) d/‖d‖ on end a and its opposite on end b. A spring whose ends
+/// coincide has no direction and no force. Positions and forces have the layout of padded_positions. Throws
+/// InvalidArgument when the sizes differ. Spring after spring, in batches, as add_elasticity. O(springs).
+void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
+                       std::span<double> forces);
+
+/// The forces on the vertices of one share of `owned_batches` (of springs.ends), as add_elasticity has them.
+void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
+                       std::span<double> forces, const OwnedBatches& share);
+
+/// The same from the same source, one spring at a time and without vector instructions: the reference.
+void add_spring_forces_scalar(const Springs& springs, double stiffness, std::span<const double> positions,
+                              std::span<double> forces);
+
+}  // namespace meshorder

@@ -1,0 +1,165 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "mesh/groups.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// The value as a whole number, or none where it is not one that 64 bits hold.
+template <class Value>
+std::optional<std::int64_t> whole(const Value& value) {
+  if constexpr (std::is_integral_v<Value>) {
+    if (std::in_range<std::int64_t>(value)) return static_cast<std::int64_t>(value);
+  } else if constexpr (std::is_floating_point_v<Value>) {
+    if (std::abs(value) < Value(0x1p62) && value == std::floor(value)) {
+      return static_cast<std::int64_t>(value);
+    }
+  }
+  return std::nullopt;
+}
+
+/// The array's values, or nothing where they are not whole numbers, one in each row.
+std::optional<std::vector<std::int64_t>> whole_numbers(const DataArray& array) {
+  if (array.components != 1) return std::nullopt;
+  return std::visit(
+      [](const auto& values) -> std::optional<std::vector<std::int64_t>> {
+        std::vector<std::int64_t> result;
+        result.reserve(values.size());
+        for (const auto& value : values) {
+          const std::optional<std::int64_t> number = whole(value);
+          if (!number) return std::nullopt;
+          result.push_back(*number);
+        }
+        return result;
+      },
+      array.values);
+}
+
+bool has_cell_sets(const Mesh& mesh) {
+  return std::any_of(mesh.sets.begin(), mesh.sets.end(),
+                     [](const Set& set) { return set.on == Attached::cells; });
+}
+
+/// "label on cells, part on vertices, sets"
+std::string usable_names(const Mesh& mesh) {
+  std::string list;
+  for (const DataArray& array : mesh.data) {
+    if (!whole_numbers(array)) continue;
+    list += (list.empty() ? "" : ", ") + array.name + " on " + std::string(meshorder::name(array.on));
+  }
+  if (has_cell_sets(mesh)) list += list.empty() ? "sets" : ", sets";
+  return list.empty() ? "none" : list;
+}
+
+/// The array that is meant: of that very name, or behind a prefix.
+const DataArray* array_meant(const Mesh& mesh, std::string_view name) {
+  for (const Attached on : {Attached::cells, Attached::vertices}) {
+    if (const DataArray* array = find_array(mesh, name, on)) return array;
+  }
+  for (const Attached on : {Attached::cells, Attached::vertices}) {
+    const std::string prefix = std::string(meshorder::name(on)) + ":";
+    if (name.starts_with(prefix)) return find_array(mesh, name.substr(prefix.size()), on);
+  }
+  return nullptr;
+}
+
+/// Numbers the values that occur, and gives every vertex or cell the number of its own.
+std::vector<Index> numbered(const DataArray& array, const std::vector<std::int64_t>& numbers, Index count,
+                            std::vector<std::int64_t>& values) {
+  values = numbers;
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  std::vector<Index> groups(static_cast<std::size_t>(count), index_size(values));
+  for (std::size_t row = 0; row < numbers.size(); ++row) {
+    const auto owner = array.covers_all() ? row : static_cast<std::size_t>(array.rows[row]);
+    groups[owner] =
+        static_cast<Index>(std::lower_bound(values.begin(), values.end(), numbers[row]) - values.begin());
+  }
+  return groups;
+}
+
+/// The smallest group among the elements of each vertex, `none` where it has none.
+std::vector<Index> smallest_at_vertices(const Mesh& mesh, const std::vector<Index>& of_cells, Index none) {
+  std::vector<Index> groups(mesh.points.size(), none);
+  const int highest = mesh.cells.highest_dimension();
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (dimension(mesh.cells.shapes[c]) != highest) continue;
+    for (const Index v : mesh.cells[c]) groups[v] = std::min(groups[v], of_cells[c]);
+  }
+  return groups;
+}
+
+/// A group for each set of cells that is the smallest one of some cell.
+Grouping grouping_by_sets(const Mesh& mesh) {
+  std::vector<const Set*> set_of(mesh.cells.shapes.size(), nullptr);
+  for (const Set& set : mesh.sets) {
+    if (set.on != Attached::cells) continue;
+    for (const Index c : set.members) {
+      if (!set_of[c] || set.members.size() < set_of[c]->members.size()) set_of[c] = &set;
+    }
+  }
+  Grouping result;
+  result.name = "sets";
+  DataArray numbers{"sets", Attached::cells, 1, {}, {}, {}};
+  std::vector<std::int64_t> values;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (!set_of[c]) continue;
+    numbers.rows.push_back(c);
+    values.push_back(set_of[c] - mesh.sets.data());
+  }
+  result.of_cells = numbered(numbers, values, mesh.cell_count(), result.values);
+  for (const std::int64_t s : result.values) result.names.push_back(mesh.sets[s].name);
+  return result;
+}
+
+}  // namespace
+
+Grouping grouping_by(const Mesh& mesh, std::string_view name) {
+  const DataArray* array = array_meant(mesh, name);
+  Grouping result;
+  if (!array && name == "sets" && has_cell_sets(mesh)) {
+    result = grouping_by_sets(mesh);
+    result.of_vertices = smallest_at_vertices(mesh, result.of_cells, index_size(result.values));
+    return result;
+  }
+  if (!array) {
+    throw InvalidArgument("group by: the mesh has no array '" + std::string(name) +
+                          "'; what can group is: " + usable_names(mesh));
+  }
+  const std::optional<std::vector<std::int64_t>> numbers = whole_numbers(*array);
+  if (!numbers) {
+    throw InvalidArgument("group by: the array '" + array->name + "' on " +
+                          std::string(meshorder::name(array->on)) +
+                          " does not hold one whole number each; what can group is: " + usable_names(mesh));
+  }
+  result.name = array->name;
+  result.on = array->on;
+  if (array->on == Attached::vertices) {
+    result.of_vertices = numbered(*array, *numbers, mesh.vertex_count(), result.values);
+  } else {
+    result.of_cells = numbered(*array, *numbers, mesh.cell_count(), result.values);
+    result.of_vertices = smallest_at_vertices(mesh, result.of_cells, index_size(result.values));
+  }
+  return result;
+}
+
+std::vector<GroupSize> group_sizes(const Grouping& grouping) {
+  std::vector<GroupSize> sizes(grouping.values.size() + 1);
+  for (std::size_t g = 0; g < grouping.values.size(); ++g) {
+    sizes[g].value = grouping.values[g];
+    if (!grouping.names.empty()) sizes[g].name = grouping.names[g];
+  }
+  for (const Index group : grouping.of_vertices) ++sizes[group].vertices;
+  for (const Index group : grouping.of_cells) ++sizes[group].cells;
+  if (sizes.back().vertices == 0 && sizes.back().cells == 0) sizes.pop_back();
+  return sizes;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,150 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "mesh/reorder.hpp"
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// Cells that may change places with each other have the same slot class: block × dimension.
+std::vector<Index> slot_classes(const Mesh& mesh) {
+  std::vector<Index> classes(mesh.cells.shapes.size());
+  Index block = 0;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    while (block + 1 < index_size(mesh.cell_blocks) && mesh.cell_blocks[block + 1] <= c) ++block;
+    classes[c] = 4 * block + dimension(mesh.cells.shapes[c]);
+  }
+  return classes;
+}
+
+Index class_count(const Mesh& mesh) { return 4 * std::max<Index>(1, index_size(mesh.cell_blocks)); }
+
+/// Whether all cells may change places with each other, as in most meshes.
+bool is_one_class(const std::vector<Index>& classes) {
+  return std::all_of(classes.begin(), classes.end(), [&](Index k) { return k == classes.front(); });
+}
+
+Cells reordered(const Cells& cells, const Permutation& vertices, const Permutation& order) {
+  constexpr Index kCellsAtOnce = 65536;
+  const auto for_cells = [&](auto work) {
+    for_each_chunk(cells.size(), kCellsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
+      for (Index c = begin; c < end; ++c) work(c, order.new_to_old()[c]);
+    });
+  };
+  Cells result;
+  result.shapes = order.moved(cells.shapes);
+  result.offsets.resize(cells.offsets.size());
+  for_cells([&](Index c, Index old) { result.offsets[c + 1] = cells.vertex_count(old); });
+  std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
+  result.vertices.resize(cells.vertices.size());
+  for_cells([&](Index c, Index old) {
+    std::transform(cells[old].begin(), cells[old].end(), result[c].begin(),
+                   [&](Index v) { return vertices.old_to_new()[v]; });
+  });
+  return result;
+}
+
+void reorder_data(DataArray& array, const Permutation& order) {
+  if (array.covers_all()) {
+    const auto width = static_cast<std::size_t>(array.components);
+    std::visit([&](auto& values) { values = order.moved(values, width); }, array.values);
+  } else {
+    for (Index& row : array.rows) row = order.old_to_new()[row];
+  }
+}
+
+/// Sorts the ids of each class, so that they rise along the places of that class.
+void sort_ids_within_classes(std::vector<std::int64_t>& ids, const std::vector<Index>& classes, Index count) {
+  std::vector<std::vector<std::int64_t>> by_class(count);
+  for (std::size_t c = 0; c < ids.size(); ++c) by_class[classes[c]].push_back(ids[c]);
+  for (auto& of_class : by_class) std::sort(of_class.begin(), of_class.end());
+  std::vector<std::size_t> next(count, 0);
+  for (std::size_t c = 0; c < ids.size(); ++c) ids[c] = by_class[classes[c]][next[classes[c]]++];
+}
+
+/// Moves vertices and cells and all that is attached to them but ids and blocks.
+void move_all(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
+  mesh.points = vertices.moved(mesh.points);
+  mesh.cells = reordered(mesh.cells, vertices, cells);
+  for (DataArray& array : mesh.data) reorder_data(array, array.on == Attached::vertices ? vertices : cells);
+  for (Set& set : mesh.sets) {
+    const Permutation& order = set.on == Attached::vertices ? vertices : cells;
+    for (Index& member : set.members) member = order.old_to_new()[member];
+  }
+}
+
+void check_fits(const Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
+  if (vertices.size() != mesh.vertex_count() || cells.size() != mesh.cell_count()) {
+    throw InvalidArgument("reorder: permutations of " + std::to_string(vertices.size()) + " vertices and " +
+                          std::to_string(cells.size()) + " cells for a mesh of " +
+                          std::to_string(mesh.vertex_count()) + " and " + std::to_string(mesh.cell_count()));
+  }
+}
+
+}  // namespace
+
+void reorder(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
+  check_fits(mesh, vertices, cells);
+  const std::vector<Index> classes = slot_classes(mesh);
+  const Index to_check = is_one_class(classes) ? 0 : mesh.cell_count();
+  for (Index c = 0; c < to_check; ++c) {
+    if (classes[cells.old_to_new()[c]] != classes[c]) {
+      throw InvalidArgument("reorder: cell " + std::to_string(c) +
+                            " would leave its block or take the place of a cell of another dimension");
+    }
+  }
+  move_all(mesh, vertices, cells);
+  std::sort(mesh.vertex_ids.begin(), mesh.vertex_ids.end());
+  if (!mesh.cell_ids.empty()) sort_ids_within_classes(mesh.cell_ids, classes, class_count(mesh));
+}
+
+Permutation permutation_within_blocks(const Mesh& mesh, const std::vector<Index>& cells_in_order) {
+  if (cells_in_order.size() != mesh.cells.shapes.size()) {
+    throw InvalidArgument("cells: an order of " + std::to_string(cells_in_order.size()) + " for " +
+                          std::to_string(mesh.cell_count()) + " cells");
+  }
+  const std::vector<Index> classes = slot_classes(mesh);
+  if (is_one_class(classes)) return Permutation::from_new_to_old(cells_in_order);
+
+  // places of each class, in their order, one class after another
+  std::vector<Index> start(class_count(mesh) + 1, 0);
+  for (const Index k : classes) ++start[k + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<Index> places(classes.size());
+  std::vector<Index> next(start.begin(), start.end() - 1);
+  for (Index c = 0; c < mesh.cell_count(); ++c) places[next[classes[c]]++] = c;
+
+  // hand them out
+  std::copy(start.begin(), start.end() - 1, next.begin());
+  std::vector<Index> old_to_new(classes.size(), -1);
+  for (const Index c : cells_in_order) old_to_new[c] = places[next[classes[c]]++];
+  return Permutation::from_old_to_new(std::move(old_to_new));
+}
+
+Permutation group_cells_by_type(Mesh& mesh) {
+  const Cells& cells = mesh.cells;
+  const auto type = [&](Index c) {
+    const Shape shape = cells.shapes[c];
+    return std::array<int, 3>{-dimension(shape), static_cast<int>(shape), cells.vertex_count(c)};
+  };
+  std::vector<Index> new_to_old(cells.shapes.size());
+  std::iota(new_to_old.begin(), new_to_old.end(), Index{0});
+  std::stable_sort(new_to_old.begin(), new_to_old.end(), [&](Index a, Index b) { return type(a) < type(b); });
+  Permutation order = Permutation::from_new_to_old(std::move(new_to_old));
+  move_all(mesh, Permutation::identity(mesh.vertex_count()), order);
+  if (!mesh.cell_ids.empty()) mesh.cell_ids = order.moved(mesh.cell_ids);
+  mesh.cell_blocks.clear();
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (c == 0 || type(c) != type(c - 1)) mesh.cell_blocks.push_back(c);
+  }
+  return order;
+}
+
+}  // namespace meshorder

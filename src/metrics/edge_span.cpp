@@ -1,0 +1,80 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "metrics/edge_span.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
+namespace meshorder {
+namespace {
+
+/// Calls `visit(span)` for every edge once.
+template <class Visit>
+void for_each_span(const CsrGraph& graph, const Permutation& order, Visit visit) {
+  for (Index v = 0; v < graph.size(); ++v) {
+    for (const Index u : graph[v]) {
+      if (u < v) visit(std::abs(order.old_to_new()[u] - order.old_to_new()[v]));
+    }
+  }
+}
+
+/// How many edges fall into each bin, to the last one that has any.
+template <class BinOf>
+std::vector<Offset> histogram(const CsrGraph& graph, const Permutation& order, BinOf bin_of) {
+  std::vector<Offset> bins;
+  for_each_span(graph, order, [&](Index span) {
+    const auto bin = static_cast<std::size_t>(bin_of(span));
+    if (bins.size() <= bin) bins.resize(bin + 1, 0);
+    ++bins[bin];
+  });
+  return bins;
+}
+
+}  // namespace
+
+EdgeSpan edge_span(const CsrGraph& graph, const Permutation& order) {
+  EdgeSpan result;
+  if (graph.neighbours.empty()) return result;
+  // sums over spans, not over edges, do not depend on how the vertices are numbered
+  std::vector<Offset> edges_of_span(graph.size(), 0);
+  for_each_span(graph, order, [&](Index span) { ++edges_of_span[span]; });
+  double sum = 0;
+  double log_sum = 0;
+  for (Index span = 1; span < graph.size(); ++span) {
+    if (edges_of_span[span] == 0) continue;
+    const auto edges = static_cast<double>(edges_of_span[span]);
+    sum += edges * span;
+    log_sum += edges * std::log2(span);
+    result.max = span;
+  }
+  const auto edges = static_cast<double>(graph.edge_count());
+  result.mean = sum / edges;
+  result.mean_log2 = log_sum / edges;
+  return result;
+}
+
+Offset profile(const CsrGraph& graph, const Permutation& order) {
+  Offset sum = 0;
+  for (Index v = 0; v < graph.size(); ++v) {
+    Index first = order.old_to_new()[v];
+    for (const Index u : graph[v]) first = std::min(first, order.old_to_new()[u]);
+    sum += order.old_to_new()[v] - first;
+  }
+  return sum;
+}
+
+std::vector<Offset> span_histogram_log2(const CsrGraph& graph, const Permutation& order) {
+  return histogram(graph, order,
+                   [](Index span) { return std::bit_width(static_cast<std::uint32_t>(span)) - 1; });
+}
+
+std::vector<Offset> span_histogram(const CsrGraph& graph, const Permutation& order, Index width) {
+  if (width < 1) throw InvalidArgument("span histogram: bins without width");
+  return histogram(graph, order, [width](Index span) { return span / width; });
+}
+
+}  // namespace meshorder

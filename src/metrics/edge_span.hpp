@@ -1,0 +1,35 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "graph/csr_graph.hpp"
+#include "ordering/permutation.hpp"
+
+#include <vector>
+
+namespace meshorder {
+
+/// How far apart the ends of edges stand in an order: the span of edge ij is |rank i − rank j| (the paper,
+/// section 4.3). All 0 for a graph without edges.
+struct EdgeSpan {
+  double mean = 0;       ///< 1 at best; n/3 for a random order
+  Index max = 0;         ///< the bandwidth of the matrix with this pattern
+  double mean_log2 = 0;  ///< mean of log₂ span: counts what stays near, where the mean counts what is far
+
+  bool operator==(const EdgeSpan&) const = default;
+};
+
+/// Spans of the graph's vertices in the given order. O(n + edges).
+EdgeSpan edge_span(const CsrGraph& graph, const Permutation& order);
+
+/// Σ over vertices of the distance to the first neighbour before them in the order: the size of the envelope
+/// of a matrix with this pattern (diagonal not counted). O(n + edges).
+Offset profile(const CsrGraph& graph, const Permutation& order);
+
+/// The number of edges whose span is in [2^k, 2^(k+1)), for k from 0 to that of the largest. O(n + edges).
+std::vector<Offset> span_histogram_log2(const CsrGraph& graph, const Permutation& order);
+
+/// The number of edges whose span is in [k·width, (k + 1)·width), for k from 0 to that of the largest (the
+/// paper's Figure 10 has a width of 50). Throws InvalidArgument unless `width` ≥ 1. O(n + edges).
+std::vector<Offset> span_histogram(const CsrGraph& graph, const Permutation& order, Index width);
+
+}  // namespace meshorder

@@ -1,0 +1,136 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace meshorder {
+
+/// How often each reuse distance occurs in a stream of accesses to cache lines: the number of other lines
+/// accessed since a line's last access. A fully associative cache of c lines that drops the least recently
+/// used one misses the accesses of distance c and more, and the cold ones, the first to a line (Mattson,
+/// Gecsei, Slutz and Traiger 1970: Evaluation techniques for storage hierarchies).
+///
+/// Distances below 256 are counted one by one, larger ones in 128 bins to each power of two.
+class ReuseHistogram {
+ public:
+  /// `distance` ≥ 0. O(1).
+  void add(Index distance) { ++bins_[bin_of(distance)]; }
+  void add_cold() noexcept { ++cold_; }
+  void forget_cold() noexcept { cold_ = 0; }
+
+  /// As if every distance were 2^`halvings` times as long and had occurred `times` times. O(bins).
+  [[nodiscard]] ReuseHistogram scaled(int halvings, double times) const;
+
+  /// All accesses, cold ones among them. O(bins).
+  [[nodiscard]] Offset accesses() const;
+  [[nodiscard]] Offset cold() const noexcept { return cold_; }
+
+  /// The misses of a cache of that many lines, ≥ 0: exact where the number has at most 8 significant bits, as
+  /// those of caches have; else it is rounded down to such a number, by less than 1 %. O(bins).
+  [[nodiscard]] Offset misses(Offset lines) const;
+
+  /// The mean of log₂(distance + 1) over the accesses that are not cold; 0 when there is none. Every factor
+  /// of two in distance counts the same, whatever the caches. O(bins).
+  [[nodiscard]] double mean_log2() const;
+
+  bool operator==(const ReuseHistogram&) const = default;
+
+ private:
+  static std::size_t bin_of(Index distance);
+  static double middle_of(std::size_t bin);
+
+  std::vector<Offset> bins_ = std::vector<Offset>(3200, 0);
+  Offset cold_ = 0;
+};
+
+/// What a processor's caches see of a stream of accesses.
+struct Reuse {
+  ReuseHistogram all;
+  /// Those of distance 512 (an L1 cache of 32 KB) and more that no stream leads to: neither of the two lines
+  /// before was among the last 64 accesses of such a distance. Processors fetch ahead what follows such
+  /// accesses, line after line; a jump waits for the memory.
+  ReuseHistogram jumps;
+
+  bool operator==(const Reuse&) const = default;
+};
+
+/// Measures the reuse distances of a stream that is fed access after access and not kept.
+///
+/// Time is a row of slots, each marked while it is the last access of some line, so that a distance is the
+/// number of marks after a line's own (Bennett and Kruskal 1975, LRU stack processing). The marks are bits,
+/// counted by a tree of 16 children a node; an access goes up the tree only until its line's old and new
+/// slots meet, and so costs O(log distance) steps. When the slots run out, the marks are moved together.
+/// Memory: 13 bytes for each line.
+class ReuseDistance {
+ public:
+  /// For accesses to lines 0 … lines − 1. With `halvings` > 0 these are told to be a sample of 2^-halvings of
+  /// the lines, as ReuseSample draws it: the last three of five lines count, and what is far is nearer by
+  /// that.
+  explicit ReuseDistance(Index lines, int halvings = 0);
+
+  /// Returns the distance, −1 for a cold access. Amortised O(1 + log distance).
+  Index access(Index line);
+
+  /// The accesses so far. Every line's first one is cold.
+  [[nodiscard]] const Reuse& reuse() const noexcept { return reuse_; }
+
+  /// Lines accessed so far.
+  [[nodiscard]] Index distinct() const noexcept { return index_size(first_accesses_); }
+
+  /// The accesses of every run but the first, when the stream so far is repeated for ever: nothing is cold,
+  /// since the first access to a line in a run is a reuse from the run before. Whether it is a jump is taken
+  /// from the first run, where all before it are far accesses too. Ends the measurement.
+  /// O(distinct lines · log distance).
+  [[nodiscard]] Reuse repeated() &&;
+
+ private:
+  using Slot = std::uint32_t;
+  static constexpr Slot kNever = ~Slot{0};
+  static constexpr Index kFar = 512;
+  static constexpr std::uint32_t kFollowing = 64;
+  static constexpr Index kSampledBlock = 5;
+  static constexpr Index kUncounted = 2;  ///< the first of a block
+
+  /// Side by side, since both are wanted together and lie far from what is in this machine's caches.
+  struct LastAccess {
+    Slot slot = kNever;
+    std::uint32_t far = 0;  ///< number of the last access from afar, cold ones among them
+  };
+
+  /// For each of 16 sister nodes the marks in those after it.
+  struct alignas(64) Sisters {
+    std::array<std::uint32_t, 16> marks_after{};
+  };
+
+  Index move_to_front(Index line);
+  void mark_first(Slot slot);
+  Index move_mark(Slot from, Slot to);
+  void close_word(std::size_t word);
+  void close_gaps();
+  bool is_jump(Index line);
+
+  [[nodiscard]] bool counts(Index line) const noexcept {
+    return halvings_ == 0 || line % kSampledBlock >= kUncounted;
+  }
+
+  int halvings_;
+  std::vector<LastAccess> last_access_of_line_;
+  std::vector<Index> first_accesses_;  ///< lines in the order of their first accesses
+  std::vector<std::uint64_t> marks_;   ///< a bit for each slot
+  /// From the words of marks_ up; the nodes that hold the next slot count as empty here.
+  std::vector<std::vector<Sisters>> levels_;
+  std::vector<std::uint32_t> marks_in_open_;  ///< at each level those in the node that holds the next slot
+  Slot slot_count_ = 0;
+  Slot next_ = 0;
+  std::uint32_t far_accesses_ = kFollowing;
+  std::vector<bool> first_access_jumps_;  ///< as first_accesses_
+  Reuse reuse_;
+  friend class ReuseSample;
+};
+
+}  // namespace meshorder

@@ -1,0 +1,42 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+
+#include <vector>
+
+namespace meshorder {
+
+/// A graph whose vertices may stand for several vertices of a finer one, and its edges for several edges:
+/// what a multilevel search for a linear arrangement works on.
+struct ArrangementGraph {
+  std::vector<Offset> offsets{0};  ///< n + 1, of rows as in CsrGraph but that these need not rise
+  std::vector<Index> neighbours;
+  std::vector<Offset> weights;  ///< one for each neighbour, above 0; empty when all are 1
+  std::vector<Index> volumes;   ///< n: the places on the line that each vertex takes up, above 0
+
+  [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
+  [[nodiscard]] Offset weight(Offset k) const { return weights.empty() ? 1 : weights[k]; }
+};
+
+/// Where the middle of each vertex stands on the line, in half places, when the vertices stand in `order` (a
+/// list of all of them) side by side. O(n).
+std::vector<Offset> middles(const ArrangementGraph& graph, const std::vector<Index>& order);
+
+/// Σ weight · distance of the middles over all edges, in half places: twice the sum of edge spans where all
+/// volumes are 1. O(n + edges).
+Offset total_span(const ArrangementGraph& graph, const std::vector<Index>& order);
+
+/// A graph with fewer vertices, each of them a group of a finer graph's.
+struct CoarseArrangement {
+  ArrangementGraph graph;       ///< vertices numbered in the order of the first members of their groups
+  std::vector<Index> group_of;  ///< for each vertex of the finer graph
+};
+
+/// Puts each vertex, in the given order, into one group with the neighbour that draws it most, by weight over
+/// distance on the line, up to eight in one: groups hold what stands and belongs together, so that the order
+/// of the groups says most of the order of the vertices. The edges between two groups become one that weighs
+/// as much as all of them. O(n + edges), deterministic.
+CoarseArrangement coarsen(const ArrangementGraph& graph, const std::vector<Index>& order);
+
+}  // namespace meshorder

@@ -1,0 +1,92 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "ordering/grouped.hpp"
+
+#include "base/error.hpp"
+#include "ordering/auto.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// The vertices group after group, in old order within each.
+struct Sorted {
+  std::vector<Index> vertices;
+  std::vector<Index> starts;  ///< groups + 1
+  std::vector<Index> places;  ///< of each vertex in `vertices`
+};
+
+Sorted sorted_into_groups(std::span<const Index> group_of, Index groups) {
+  Sorted sorted;
+  sorted.starts.assign(static_cast<std::size_t>(groups) + 1, 0);
+  for (const Index group : group_of) ++sorted.starts[group + 1];
+  std::partial_sum(sorted.starts.begin(), sorted.starts.end(), sorted.starts.begin());
+  std::vector<Index> next(sorted.starts.begin(), sorted.starts.end() - 1);
+  sorted.vertices.resize(group_of.size());
+  sorted.places.resize(group_of.size());
+  for (Index v = 0; v < index_size(group_of); ++v) {
+    const Index place = next[group_of[v]]++;
+    sorted.places[v] = place;
+    sorted.vertices[place] = v;
+  }
+  return sorted;
+}
+
+/// The graph of one group's vertices among themselves. Unlike induced_subgraph it takes time for the group
+/// alone, since there may be as many groups as vertices.
+CsrGraph graph_of_group(const CsrGraph& graph, const Sorted& sorted, Index group) {
+  const Index begin = sorted.starts[group];
+  const Index end = sorted.starts[group + 1];
+  CsrGraph result;
+  for (Index place = begin; place < end; ++place) {
+    for (const Index neighbour : graph[sorted.vertices[place]]) {
+      const Index there = sorted.places[neighbour];
+      if (there >= begin && there < end) result.neighbours.push_back(there - begin);
+    }
+    result.offsets.push_back(static_cast<Offset>(result.neighbours.size()));
+  }
+  return result;
+}
+
+void check_groups(const CsrGraph& graph, std::span<const Index> group_of, Index groups) {
+  const bool known =
+      std::all_of(group_of.begin(), group_of.end(), [&](Index g) { return g >= 0 && g < groups; });
+  if (index_size(group_of) != graph.size() || !known) {
+    throw InvalidArgument("groups: " + std::to_string(graph.size()) + " vertices need a group of 0 … " +
+                          std::to_string(groups - 1) + " each");
+  }
+}
+
+}  // namespace
+
+Ordering order_vertices_in_groups(std::string_view method, const VertexProblem& problem,
+                                  std::span<const Index> group_of, Index groups,
+                                  const OrderingOptions& options) {
+  check_groups(problem.graph, group_of, groups);
+  Ordering result;
+  result.method =
+      method == "auto" ? choose_vertex_method(problem, options.use) : MethodChoice{std::string(method), ""};
+  const Sorted sorted = sorted_into_groups(group_of, groups);
+  std::vector<Index> new_to_old;
+  new_to_old.reserve(sorted.vertices.size());
+  std::vector<Point> points;
+  for (Index group = 0; group < groups; ++group) {
+    const std::span<const Index> members(sorted.vertices.data() + sorted.starts[group],
+                                         sorted.vertices.data() + sorted.starts[group + 1]);
+    points.clear();
+    if (!problem.points.empty()) {
+      for (const Index v : members) points.push_back(problem.points[v]);
+    }
+    const CsrGraph graph = graph_of_group(problem.graph, sorted, group);
+    const Ordering ordering = order_vertices(result.method.name, {graph, points}, options);
+    for (const Index k : ordering.permutation.new_to_old()) new_to_old.push_back(members[k]);
+    result.fiedler.insert(result.fiedler.end(), ordering.fiedler.begin(), ordering.fiedler.end());
+  }
+  result.permutation = Permutation::from_new_to_old(std::move(new_to_old));
+  return result;
+}
+
+}  // namespace meshorder

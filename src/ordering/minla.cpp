@@ -1,0 +1,105 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// Minimum linear arrangement, to which the Fiedler vector is a relaxation: Juvan, Mohar, Optimal Linear
+// Labelings and Eigenvalues of Graphs (1992). Multilevel search: Safro, Ron, Brandt, Graph Minimum Linear
+// Arrangement by Multilevel Weighted Edge Contractions (2006).
+#include "ordering/all_methods.hpp"
+#include "ordering/arrangement_graph.hpp"
+#include "ordering/insertions.hpp"
+
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+constexpr Index kCoarsest = 40;  // graphs up to this size are not coarsened
+constexpr int kPasses = 2;
+constexpr int kVisits = 2;
+
+/// The part of the graph that stands at the places first … first + count − 1, a union of components; its
+/// vertices are numbered in their order.
+ArrangementGraph local_graph(const CsrGraph& graph, const Permutation& order, Index first, Index count) {
+  ArrangementGraph local;
+  local.offsets.reserve(Offset{count} + 1);
+  local.volumes.assign(count, 1);
+  for (Index k = first; k < first + count; ++k) {
+    for (const Index u : graph[order.new_to_old()[k]]) {
+      local.neighbours.push_back(order.old_to_new()[u] - first);
+    }
+    local.offsets.push_back(static_cast<Offset>(local.neighbours.size()));
+  }
+  return local;
+}
+
+std::vector<Index> identity(Index n) {
+  std::vector<Index> order(n);
+  std::iota(order.begin(), order.end(), Index{0});
+  return order;
+}
+
+/// Groups in `coarse_order`, the members of each as they stand in `order`.
+std::vector<Index> expanded(const std::vector<Index>& coarse_order, const std::vector<Index>& group_of,
+                            const std::vector<Index>& order) {
+  std::vector<Index> next(coarse_order.size(), 0);  // first the sizes of groups, then their next free places
+  for (const Index g : group_of) ++next[g];
+  Index place = 0;
+  for (const Index g : coarse_order) place += std::exchange(next[g], place);
+  std::vector<Index> result(order.size());
+  for (const Index v : order) result[next[group_of[v]]++] = v;
+  return result;
+}
+
+/// Replaces the order by a better one, found on the coarser graph, where large parts move at once, and then
+/// by moving single vertices. What is better on the coarser graph need not be so here; so this goes twice,
+/// the second time with groups that follow the new order, and keeps the better outcome, which may have a
+/// larger span than what it began with.
+void search(const ArrangementGraph& graph, std::vector<Index>& order) {
+  Offset least = std::numeric_limits<Offset>::max();
+  for (int visit = 0; visit < kVisits; ++visit) {
+    std::vector<Index> candidate = order;
+    bool twice = false;
+    if (graph.size() > kCoarsest) {
+      const CoarseArrangement coarse = coarsen(graph, order);
+      const bool shrinks = Offset{10} * coarse.graph.size() <= Offset{9} * graph.size();
+      if (shrinks) {
+        std::vector<Index> coarse_order = identity(coarse.graph.size());
+        search(coarse.graph, coarse_order);
+        candidate = expanded(coarse_order, coarse.group_of, order);
+      }
+      // else the visits would take more than O(edges · log n) in all
+      twice = 2 * coarse.graph.neighbours.size() <= graph.neighbours.size();
+    }
+    const Offset span = improve_by_insertions(graph, candidate, kPasses);
+    if (span < least) {
+      least = span;
+      order = std::move(candidate);
+    }
+    if (!twice) return;
+  }
+}
+
+}  // namespace
+
+Ordering minla_vertices(const VertexProblem& problem, const OrderingOptions& options) {
+  Ordering result = fiedler_vertices(problem, options);
+  const std::vector<Index>& start = result.permutation.new_to_old();
+  std::vector<Index> new_to_old = start;
+  Index first = 0;
+  for (const FiedlerComponent& component : result.fiedler) {
+    if (component.size > 2) {
+      const ArrangementGraph graph = local_graph(problem.graph, result.permutation, first, component.size);
+      std::vector<Index> order = identity(component.size);
+      const Offset before = total_span(graph, order);
+      search(graph, order);
+      if (total_span(graph, order) < before) {
+        for (Index k = 0; k < component.size; ++k) new_to_old[first + k] = start[first + order[k]];
+      }
+    }
+    first += component.size;
+  }
+  result.permutation = Permutation::from_new_to_old(std::move(new_to_old));
+  return result;
+}
+
+}  // namespace meshorder

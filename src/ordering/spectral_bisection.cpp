@@ -1,0 +1,164 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// Recursive spectral bisection (Pothen, Simon, Liou: Partitioning Sparse Matrices with Eigenvectors of
+// Graphs, 1990) as a linear order. Of the two directions of each cut the one is taken that suits the
+// neighbours outside the piece (terminal propagation: Dunlop and Kernighan 1985).
+#include "base/parallel.hpp"
+#include "graph/components.hpp"
+#include "ordering/all_methods.hpp"
+#include "ordering/smoothed_bisection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+constexpr Index kSmall = 4000;  // up to here smoothed distances cut as well as Fiedler vectors, in less time
+constexpr double kTolerance = 1;  // the place of a cut is known long before the vector is
+constexpr int kMaxIterations = 30;
+constexpr double kThickness = 0.8;  // of slabs: thinner ones cost less time and lengthen spans
+
+/// A part of a component, to be ordered by itself.
+struct Piece {
+  CsrGraph graph;
+  std::vector<Index> names;  ///< of its vertices in the whole graph
+  std::vector<float> pull;   ///< neighbours of each in earlier pieces, less those in later ones
+};
+
+/// A component of the graph, its vertices rising. `number` has an entry for each vertex of the graph; those
+/// of the component are changed. O(component).
+Piece whole_component(const CsrGraph& graph, std::vector<Index> component, std::vector<Index>& number) {
+  Piece piece;
+  for (Index k = 0; k < index_size(component); ++k) number[component[k]] = k;
+  piece.graph.offsets.reserve(component.size() + 1);
+  for (const Index v : component) {
+    for (const Index u : graph[v]) piece.graph.neighbours.push_back(number[u]);
+    piece.graph.offsets.push_back(static_cast<Offset>(piece.graph.neighbours.size()));
+  }
+  piece.pull.assign(component.size(), 0);
+  piece.names = std::move(component);
+  return piece;
+}
+
+/// The piece's vertices along its Fiedler vector; where it has come apart, component by component, first the
+/// one that is pulled forward most.
+std::vector<Index> along_fiedler_vector(const Piece& piece, std::uint64_t seed) {
+  const FiedlerResult fiedler =
+      fiedler_vector(piece.graph, {.tolerance = kTolerance, .max_iterations = kMaxIterations, .seed = seed});
+  std::vector<std::pair<double, Index>> components;
+  for (Index c = 0; c < index_size(fiedler.components); ++c) {
+    double pull = 0;
+    for (const Index v : fiedler.component_vertices[c]) pull += piece.pull[v];
+    components.emplace_back(-pull / fiedler.components[c].size, c);
+  }
+  std::sort(components.begin(), components.end());
+  std::vector<Index> sequence;
+  sequence.reserve(piece.names.size());
+  std::vector<std::pair<double, Index>> sorted;
+  for (const auto& component : components) {
+    const std::vector<Index>& vertices = fiedler.component_vertices[component.second];
+    double along = 0;
+    for (const Index v : vertices) along += piece.pull[v] * fiedler.values[v];
+    const double sign = along > 0 ? -1 : 1;
+    sorted.clear();
+    for (const Index v : vertices) sorted.emplace_back(sign * fiedler.values[v], v);
+    std::sort(sorted.begin(), sorted.end());
+    for (const auto& entry : sorted) sequence.push_back(entry.second);
+  }
+  return sequence;
+}
+
+/// The mean over all places of the sequence of how many vertices before it have neighbours behind it: the
+/// size of the piece's cross-section. At least 1.
+double mean_front(const CsrGraph& graph, const std::vector<Index>& sequence) {
+  std::vector<Index> place(sequence.size());
+  for (Index k = 0; k < graph.size(); ++k) place[sequence[k]] = k;
+  double sum = 0;
+  for (Index v = 0; v < graph.size(); ++v) {
+    Index last = place[v];
+    for (const Index u : graph[v]) last = std::max(last, place[u]);
+    sum += last - place[v];
+  }
+  return std::max(1.0, sum / graph.size());
+}
+
+/// A sequence cut into slabs of equal size, but for one vertex.
+struct Slabs {
+  std::vector<Index> sequence;
+  Index count = 2;
+  std::vector<Index> slab_of;  ///< by vertex
+
+  [[nodiscard]] Index begin_of(Index slab) const {
+    return static_cast<Index>(Offset{index_size(sequence)} * slab / count);
+  }
+};
+
+/// Two halves, or as many slabs as keep them thicker than they are wide and high: one vector then does what
+/// several cuts in a row would do.
+Slabs cut(const CsrGraph& graph, std::vector<Index> sequence) {
+  Slabs slabs;
+  const double least = std::pow(kThickness * mean_front(graph, sequence), 1.5);
+  slabs.count = std::max(Index{2}, static_cast<Index>(graph.size() / std::max<double>(kSmall, least)));
+  slabs.sequence = std::move(sequence);
+  slabs.slab_of.resize(slabs.sequence.size());
+  for (Index s = 0; s < slabs.count; ++s) {
+    for (Index k = slabs.begin_of(s); k < slabs.begin_of(s + 1); ++k) slabs.slab_of[slabs.sequence[k]] = s;
+  }
+  return slabs;
+}
+
+/// A slab as a piece of its own, numbered along the sequence, which puts neighbours near each other.
+Piece piece_of(const Piece& whole, const Slabs& slabs, Index slab) {
+  const std::span<const Index> vertices(slabs.sequence.data() + slabs.begin_of(slab),
+                                        slabs.sequence.data() + slabs.begin_of(slab + 1));
+  Piece piece;
+  piece.names.reserve(vertices.size());
+  piece.pull.reserve(vertices.size());
+  for (const Index v : vertices) {
+    Index pull = 0;
+    for (const Index u : whole.graph[v]) {
+      if (slabs.slab_of[u] < slab) ++pull;
+      if (slabs.slab_of[u] > slab) --pull;
+    }
+    piece.names.push_back(whole.names[v]);
+    piece.pull.push_back(whole.pull[v] + static_cast<float>(pull));
+  }
+  piece.graph = induced_subgraph(whole.graph, vertices);
+  return piece;
+}
+
+/// Writes the names of the piece's vertices in their new order to `out`.
+void write_in_order(Piece piece, std::uint64_t seed, Index* out) {
+  if (piece.graph.neighbours.empty()) {
+    std::copy(piece.names.begin(), piece.names.end(), out);
+    return;
+  }
+  if (piece.graph.size() <= kSmall) {
+    for (const Index v : smoothed_bisection(std::move(piece.graph), std::move(piece.pull))) {
+      *out++ = piece.names[v];
+    }
+    return;
+  }
+  const Slabs slabs = cut(piece.graph, along_fiedler_vector(piece, seed));
+  for_each_chunk(slabs.count, 1, [&](Index slab, Index, Index) {
+    write_in_order(piece_of(piece, slabs, slab), seed, out + slabs.begin_of(slab));
+  });
+}
+
+}  // namespace
+
+Ordering spectral_vertices(const VertexProblem& problem, const OrderingOptions& options) {
+  std::vector<Index> new_to_old(problem.graph.size());
+  std::vector<Index> number(problem.graph.size());
+  Index* out = new_to_old.data();
+  for (std::vector<Index>& component : connected_components(problem.graph)) {
+    const Index size = index_size(component);
+    write_in_order(whole_component(problem.graph, std::move(component), number), options.seed, out);
+    out += size;
+  }
+  return {Permutation::from_new_to_old(std::move(new_to_old)), {}};
+}
+
+}  // namespace meshorder

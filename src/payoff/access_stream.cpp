@@ -1,0 +1,82 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/access_stream.hpp"
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "mesh/reorder.hpp"
+#include "metrics/reuse_sample.hpp"
+
+#include <string>
+#include <utility>
+
+namespace meshorder {
+
+AccessStream::AccessStream(Kernel kernel, const CsrGraph& graph, const Simplices& simplices)
+    : kernel_(kernel), graph_(graph), simplices_(simplices) {
+  const Offset n = graph.size();
+  const Offset blocks = n + static_cast<Offset>(graph.neighbours.size());
+  const Offset corners = simplices.dimension + 1;
+  const Offset elements = corners == 1 ? 0 : simplices.size();
+  const Offset batches = (elements + kBatch - 1) / kBatch;
+  if (kernel == Kernel::spmv || kernel == Kernel::assembly) values_ = place(kBlockBytes * blocks);
+  if (kernel == Kernel::spmv) {
+    offsets_ = place(static_cast<Offset>(sizeof(Offset)) * (n + 1));
+    columns_ = place(static_cast<Offset>(sizeof(Index)) * blocks);
+    x_ = place(static_cast<Offset>(3 * sizeof(double)) * n);
+    y_ = place(static_cast<Offset>(3 * sizeof(double)) * n);
+  } else {
+    positions_ = place(kPaddedBytes * n);
+  }
+  if (kernel == Kernel::element || kernel == Kernel::springs) forces_ = place(kPaddedBytes * n);
+  if (kernel == Kernel::element || kernel == Kernel::assembly) {
+    const int d = simplices.dimension;
+    vertices_of_batch_ = static_cast<Offset>(sizeof(Index)) * kBatch * corners;
+    geometry_of_batch_ = static_cast<Offset>(sizeof(double)) * kBatch * (d * (d + 1) / 2 + 1);
+    vertices_ = place(batches * vertices_of_batch_);
+    geometry_ = place(batches * geometry_of_batch_);
+  }
+  if (kernel == Kernel::assembly) {
+    map_ = place(static_cast<Offset>(sizeof(Index)) * elements * corners * corners);
+  }
+  if (kernel == Kernel::springs) {
+    const Offset springs = (graph.edge_count() + kBatch - 1) / kBatch * kBatch;
+    ends_ = place(static_cast<Offset>(2 * sizeof(Index)) * springs);
+    rest_lengths_ = place(static_cast<Offset>(sizeof(double)) * springs);
+  }
+  if (lines_ > kMaxIndex) {
+    throw InvalidArgument("access stream: " + std::to_string(lines_) +
+                          " cache lines; at most 2,147,483,647 can be numbered");
+  }
+}
+
+AccessStream::Array AccessStream::place(Offset bytes) {
+  const Array array{lines_, bytes};
+  lines_ += (bytes + kLineBytes - 1) / kLineBytes;
+  return array;
+}
+
+Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings) {
+  const AccessStream stream(kernel, graph, simplices);
+  ReuseSample reuse(stream.line_count(), halvings);
+  stream.visit([&](Index line) { reuse.access(line); });
+  return std::move(reuse).repeated();
+}
+
+KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings) {
+  KernelReuse result;
+  for_each_chunk(index_size(kKernels), 1, [&](Index k, Index /*begin*/, Index /*end*/) {
+    result[k] = reuse_of(kKernels[k], graph, simplices, halvings);
+  });
+  return result;
+}
+
+KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
+                             const Permutation& cells, int halvings) {
+  Mesh ordered;
+  ordered.points = mesh.points;
+  ordered.cells = mesh.cells;
+  reorder(ordered, vertices, cells);
+  return reuse_of_kernels(renumbered(graph, vertices.old_to_new()), cut_into_simplices(ordered), halvings);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,224 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/positions.hpp"
+#include "kernels/simplices.hpp"
+#include "mesh/mesh.hpp"
+#include "metrics/cache.hpp"
+#include "ordering/permutation.hpp"
+#include "payoff/kernel_bench.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+namespace meshorder {
+
+/// The cache lines that one run of a kernel touches, in its order, told from the mesh alone: neither matrix
+/// nor rest shapes nor maps are built. Every array of the kernel begins a line, and lines are numbered array
+/// by array from 0. An access is
+/// - the first touch of a line of what is read or cleared from end to end: matrix values and columns, rest
+///   shapes, maps, springs, results being cleared;
+/// - each line of each vertex that is gathered, or has something added to it, and of each matrix block that
+///   an element adds to.
+///
+/// Left out are the stack, the code, and what lies within a few accesses of one that is told: the last entry
+/// of a block, added after the eight others.
+class AccessStream {
+ public:
+  /// `graph` is the vertex graph and `simplices` what `cut_into_simplices` makes of a mesh, both in the order
+  /// to be judged; they must outlive the stream. Throws InvalidArgument when the kernel needs 2^31 lines or
+  /// more. O(1).
+  AccessStream(Kernel kernel, const CsrGraph& graph, const Simplices& simplices);
+
+  [[nodiscard]] Index line_count() const noexcept { return static_cast<Index>(lines_); }
+
+  /// Calls `touch(line)` for every access. O(accesses), for assembly times the logarithm of a row's length.
+  template <class Touch>
+  void visit(Touch touch) const {
+    switch (kernel_) {
+      case Kernel::spmv:
+        return visit_spmv(touch);
+      case Kernel::element:
+        return visit_elements(touch, false);
+      case Kernel::assembly:
+        return visit_elements(touch, true);
+      case Kernel::springs:
+        return visit_springs(touch);
+    }
+  }
+
+ private:
+  /// An array in memory.
+  struct Array {
+    Offset first_line = 0;
+    Offset bytes = 0;
+
+    template <class Touch>
+    void touch(Offset byte, Offset count, Touch& touch) const {
+      for (Offset line = byte / kLineBytes; kLineBytes * line < byte + count; ++line) {
+        touch(static_cast<Index>(first_line + line));
+      }
+    }
+  };
+
+  /// An array that is read from its beginning on: each line is touched when its first byte is reached.
+  class Reader {
+   public:
+    explicit Reader(const Array& array) : next_line_(array.first_line) {}
+
+    template <class Touch>
+    void read(Offset count, Touch& touch) {
+      left_ -= count;
+      for (; left_ < 0; left_ += kLineBytes) touch(static_cast<Index>(next_line_++));
+    }
+
+   private:
+    Offset next_line_;
+    Offset left_ = 0;  ///< bytes of the line touched last that have not been read
+  };
+
+  static constexpr Offset kBlockBytes = 9 * sizeof(double);
+  static constexpr Offset kPaddedBytes = kPaddedStride * sizeof(double);
+
+  Array place(Offset bytes);
+
+  /// The number of the block in row a and column b of the matrix on the graph: each row has a block for each
+  /// neighbour and one for the diagonal.
+  [[nodiscard]] Offset block(Index a, Index b) const {
+    // std::lower_bound without branches, which would be mispredicted half the time
+    const Index* row = graph_.neighbours.data() + graph_.offsets[a];
+    Index left = graph_.degree(a);
+    Offset before = 0;
+    while (left > 0) {
+      const Index half = (left + 1) / 2;
+      before += row[before + half - 1] < b ? half : 0;
+      left -= half;
+    }
+    return graph_.offsets[a] + a + before + (b > a ? 1 : 0);
+  }
+
+  template <class Touch>
+  void visit_vertices(const Array& array, std::span<const Index> vertices, Touch& touch) const {
+    for (const Index v : vertices) array.touch(kPaddedBytes * v, kPaddedBytes, touch);
+  }
+
+  template <class Touch>
+  void visit_spmv(Touch& touch) const {
+    Reader offsets(offsets_), columns(columns_), values(values_), y(y_);
+    const auto multiply = [&](Index column) {
+      columns.read(sizeof(Index), touch);
+      values.read(kBlockBytes, touch);
+      x_.touch(Offset{3} * sizeof(double) * column, 3 * sizeof(double), touch);
+    };
+    offsets.read(sizeof(Offset), touch);
+    for (Index v = 0; v < graph_.size(); ++v) {
+      offsets.read(sizeof(Offset), touch);
+      const std::span<const Index> row = graph_[v];
+      const auto after_diagonal = std::lower_bound(row.begin(), row.end(), v);
+      std::for_each(row.begin(), after_diagonal, multiply);
+      multiply(v);
+      std::for_each(after_diagonal, row.end(), multiply);
+      y.read(3 * sizeof(double), touch);
+    }
+  }
+
+  template <class Touch>
+  void visit_elements(Touch& touch, bool assembly) const {
+    const int corners = simplices_.dimension + 1;
+    if (corners == 1) return;
+    const Array& result = assembly ? values_ : forces_;
+    result.touch(0, result.bytes, touch);
+    Reader vertices(vertices_), geometry(geometry_), map(map_);
+    std::array<Index, Offset{4} * kBatch> batch;
+    for (Offset first = 0; first < simplices_.size(); first += kBatch) {
+      for (int a = 0; a < corners; ++a) {
+        for (Offset lane = 0; lane < kBatch; ++lane) {
+          const Offset simplex = std::min(first + lane, simplices_.size() - 1);
+          batch[a * kBatch + lane] = simplices_.vertices[corners * simplex + a];
+        }
+      }
+      const std::span<const Index> of_batch(batch.data(), Offset{corners} * kBatch);
+      geometry.read(geometry_of_batch_, touch);
+      vertices.read(vertices_of_batch_, touch);
+      visit_vertices(positions_, of_batch, touch);
+      if (!assembly) {
+        visit_vertices(forces_, of_batch, touch);
+        continue;
+      }
+      const auto lanes = static_cast<Index>(std::min<Offset>(kBatch, simplices_.size() - first));
+      for (Index lane = 0; lane < lanes; ++lane) {
+        map.read(Offset{corners} * corners * sizeof(Index), touch);
+        visit_blocks(batch.data() + lane, touch);
+      }
+    }
+  }
+
+  /// The blocks of the element of corners v[0], v[kBatch] …
+  template <class Touch>
+  void visit_blocks(const Index* v, Touch& touch) const {
+    for (int a = 0; a <= simplices_.dimension; ++a) {
+      for (int b = a; b <= simplices_.dimension; ++b) {
+        const Index i = v[a * kBatch], j = v[b * kBatch];
+        values_.touch(kBlockBytes * block(i, j), kBlockBytes, touch);
+        if (a != b) values_.touch(kBlockBytes * block(j, i), kBlockBytes, touch);
+      }
+    }
+  }
+
+  template <class Touch>
+  void visit_springs(Touch& touch) const {
+    forces_.touch(0, forces_.bytes, touch);
+    Reader ends(ends_), rest_lengths(rest_lengths_);
+    // what fills up the last batch are springs from vertex 0 to itself
+    std::array<Index, 2 * kBatch> batch{};
+    Index lane = 0;
+    const auto visit_batch = [&] {
+      ends.read(sizeof(batch), touch);
+      visit_vertices(positions_, batch, touch);
+      rest_lengths.read(kBatch * sizeof(double), touch);
+      visit_vertices(forces_, batch, touch);
+      batch.fill(0);
+      lane = 0;
+    };
+    for (Index b = 0; b < graph_.size(); ++b) {
+      for (const Index a : graph_[b]) {
+        if (a > b) break;
+        batch[lane] = a;
+        batch[kBatch + lane] = b;
+        if (++lane == kBatch) visit_batch();
+      }
+    }
+    if (lane > 0) visit_batch();
+  }
+
+  Kernel kernel_;
+  const CsrGraph& graph_;
+  const Simplices& simplices_;
+  Offset lines_ = 0;
+  Offset vertices_of_batch_ = 0;  ///< bytes
+  Offset geometry_of_batch_ = 0;
+  // those that the kernel has
+  Array offsets_, columns_, values_, x_, y_;
+  Array positions_, forces_, vertices_, geometry_, map_;
+  Array ends_, rest_lengths_;
+};
+
+/// The reuse distances of a kernel that a solver repeats: of every run but the first. O(accesses · log
+/// distance) time, about 13 bytes of memory for each line, so a fifth of what the kernel itself needs. With
+/// `halvings` > 0 estimated from 2^-halvings of the lines (see ReuseSample), whose accesses alone cost more
+/// than telling them.
+Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings = 0);
+
+/// By kernel, as kKernels lists them.
+using KernelReuse = std::array<Reuse, kKernels.size()>;
+
+/// Those of all kernels, each on a thread of its own.
+KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings = 0);
+
+/// Those that a mesh of that vertex graph has once `reorder` has moved its vertices and cells to these
+/// places.
+KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
+                             const Permutation& cells, int halvings = 0);
+
+}  // namespace meshorder

@@ -1,0 +1,140 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/advice.hpp"
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "base/stopwatch.hpp"
+#include "mesh/reorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// A mesh in one of the orders.
+struct Ordered {
+  Mesh mesh;  ///< points and cells
+  CsrGraph graph;
+};
+
+/// The predictions for all orders, every kernel of every order on a thread of its own.
+std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
+                                            const AdviceOptions& options) {
+  std::vector<Simplices> simplices;
+  simplices.reserve(orders.size());
+  for (const Ordered& order : orders) simplices.push_back(cut_into_simplices(order.mesh));
+  const int halvings = simplices.front().size() < options.sample_from ? 0 : options.halvings;
+  std::vector<KernelMilliseconds> result(orders.size());
+  const Index kernels = index_size(kKernels);
+  for_each_chunk(kernels * index_size(orders), 1, [&](Index task, Index /*begin*/, Index /*end*/) {
+    const Index i = task % index_size(orders);
+    const Index k = task / index_size(orders);
+    const Reuse reuse = reuse_of(kKernels[k], orders[i].graph, simplices[i], halvings);
+    result[i][k] = predicted_ms(kKernels[k], reuse, options.caches);
+  });
+  return result;
+}
+
+/// In rounds that end by `seconds` on the stopwatch.
+std::vector<KernelMilliseconds> measurements(const std::vector<Ordered>& orders, const Stopwatch& stopwatch,
+                                             double seconds) {
+  std::vector<std::optional<KernelBench>> benches(orders.size());
+  for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
+    benches[i].emplace(orders[i].mesh, orders[i].graph);
+  });
+  std::vector<KernelBench*> pointers;
+  pointers.reserve(benches.size());
+  for (std::optional<KernelBench>& bench : benches) pointers.push_back(&bench.value());
+  const std::vector<OrderTimes> times =
+      time_interleaved(pointers, {.budget_seconds = std::max(0.0, seconds - stopwatch.seconds()),
+                                  .least_rounds = 2,
+                                  .sample_seconds = 0.01});
+  std::vector<KernelMilliseconds> result(orders.size());
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    for (std::size_t k = 0; k < kKernels.size(); ++k) result[i][k] = times[i][kKernels[k]].best_ms;
+  }
+  return result;
+}
+
+}  // namespace
+
+Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options) {
+  if (!options.predict && !options.measure_within) {
+    throw InvalidArgument("advice: neither predicted nor measured");
+  }
+  const Stopwatch since_call;
+  Advice advice;
+  std::vector<Ordered> orders(1);
+  orders.front().mesh.points = mesh.points;
+  orders.front().mesh.cells = mesh.cells;
+  orders.front().graph = graph;
+  for (const Use use : {Use::all, Use::springs}) {
+    if (use == Use::springs && !options.for_springs_too) continue;
+    ReorderingOptions reordering{.ordering = options.ordering};
+    reordering.ordering.use = use;
+    const Stopwatch stopwatch;
+    const Reordering order = compute_reordering(mesh, graph, reordering);
+    Ordered ordered = orders.front();
+    reorder(ordered.mesh, order.vertices, order.cells);
+    const double seconds = options.graph_seconds + stopwatch.seconds();
+    if (!advice.candidates.empty() &&
+        advice.candidates.front().vertex_method.name == order.vertex_method.name)
+      continue;
+    ordered.graph = renumbered(graph, order.vertices.old_to_new());
+    orders.push_back(std::move(ordered));
+    advice.candidates.push_back({use, order.vertex_method, order.element_method, seconds, {}});
+  }
+  const auto costs_of = [&](std::size_t i) -> OrderCosts& {
+    return i == 0 ? advice.as_is : advice.candidates[i - 1].costs;
+  };
+  if (options.predict) {
+    const std::vector<KernelMilliseconds> predicted = predictions(orders, options);
+    for (std::size_t i = 0; i < orders.size(); ++i) costs_of(i).predicted = predicted[i];
+  }
+  if (options.measure_within) {
+    const std::vector<KernelMilliseconds> measured =
+        measurements(orders, since_call, *options.measure_within);
+    for (std::size_t i = 0; i < orders.size(); ++i) costs_of(i).measured = measured[i];
+  }
+  return advice;
+}
+
+double same_time(Kernel kernel, bool predicted) {
+  if (!predicted) return 1.05;
+  return kernel == Kernel::spmv ? 1.25 : 1.1;
+}
+
+std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice) {
+  std::array<KernelAdvice, kKernels.size()> result;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    KernelAdvice& of_kernel = result[k];
+    const double as_is = advice.as_is.best_known()[k];
+    double best = as_is;
+    for (std::size_t i = 0; i < advice.candidates.size(); ++i) {
+      const double ms = advice.candidates[i].costs.best_known()[k];
+      if (ms >= best) continue;
+      best = ms;
+      of_kernel.candidate = i;
+    }
+    if (best <= 0.0 || as_is < same_time(kKernels[k], !advice.as_is.measured) * best) continue;
+    of_kernel.factor = as_is / best;
+    of_kernel.runs_to_pay = std::ceil(1e3 * advice.candidates[of_kernel.candidate].seconds / (as_is - best));
+  }
+  return result;
+}
+
+double saved_in_time_step(const Advice& advice, std::size_t candidate) {
+  double saved = 0;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    const double as_is = advice.as_is.best_known()[k];
+    const double ordered = advice.candidates[candidate].costs.best_known()[k];
+    const double same = same_time(kKernels[k], !advice.as_is.measured);
+    if (std::max(as_is, ordered) < same * std::min(as_is, ordered)) continue;
+    saved += kRunsInTimeStep[k] * (as_is - ordered);
+  }
+  return saved;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,142 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/band.hpp"
+
+#include "base/error.hpp"
+#include "kernels/simplices.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+/// How many of the next vertices each vertex is joined to.
+using Reaches = std::vector<Index>;
+
+Index joined_vertices(const CsrGraph& graph) {
+  Index count = 0;
+  for (Index v = 0; v < graph.size(); ++v) count += graph.degree(v) > 0 ? 1 : 0;
+  return count;
+}
+
+/// The number of different vertices that the simplices stand on.
+Index corner_vertices(const Simplices& simplices, Index vertices) {
+  std::vector<bool> seen(static_cast<std::size_t>(vertices), false);
+  for (const Index v : simplices.vertices) seen[v] = true;
+  return static_cast<Index>(std::count(seen.begin(), seen.end(), true));
+}
+
+/// The corners' distances from the first one, in every way that D of 1 … k can be chosen.
+std::vector<std::array<Index, 4>> stencils(int dimension, Index k) {
+  std::vector<std::array<Index, 4>> result;
+  std::array<Index, 4> offsets{0, 1, 2, 3};
+  for (;;) {
+    result.push_back(offsets);
+    int a = dimension;
+    while (a > 0 && offsets[a] == k - (dimension - a)) --a;
+    if (a == 0) return result;
+    ++offsets[a];
+    for (int b = a + 1; b <= dimension; ++b) offsets[b] = offsets[b - 1] + 1;
+  }
+}
+
+/// Simplices of that dimension, each within k + 1 consecutive vertices, spread evenly over the first
+/// `corners` ones.
+Cells streamed_simplices(int dimension, Offset count, Index corners, Index k) {
+  constexpr std::array kShape{Shape::vertex, Shape::line, Shape::triangle, Shape::tetrahedron};
+  Cells cells;
+  if (dimension == 0) return cells;
+  const auto ways = stencils(dimension, k);
+  const Offset starts = std::max<Offset>(1, Offset{corners} - k);
+  cells.reserve(count, count * (dimension + 1));
+  std::array<Index, 4> vertices{};
+  for (Offset s = 0; s < count; ++s) {
+    const std::array<Index, 4>& offsets = ways[s % static_cast<Offset>(ways.size())];
+    for (int a = 0; a <= dimension; ++a) {
+      vertices[a] = static_cast<Index>(std::min<Offset>(starts * s / count + offsets[a], corners - 1));
+    }
+    cells.push_back(kShape[dimension], std::span(vertices).first(dimension + 1));
+  }
+  return cells;
+}
+
+/// The reaches that the simplices need.
+Reaches needed(const Cells& cells, Index vertices) {
+  Reaches reaches(static_cast<std::size_t>(vertices), 0);
+  for (Index c = 0; c < cells.size(); ++c) {
+    for (const Index v : cells[c]) reaches[v] = std::max(reaches[v], cells[c].back() - v);
+  }
+  return reaches;
+}
+
+/// Raises the reaches of the first `joined` vertices to one level, as far as there are vertices, until there
+/// are `edges` in all: the last ones evenly among the vertices that have not yet the next level.
+void fill(Reaches& reaches, Index joined, Offset edges) {
+  Offset missing = edges;
+  for (const Index reach : reaches) missing -= reach;
+  for (Index level = 1; missing > 0 && level < joined; ++level) {
+    Offset below = 0;
+    for (Index v = 0; v + level < joined; ++v) below += reaches[v] < level ? 1 : 0;
+    const Offset raised = std::min(missing, below);
+    Offset place = 0;
+    for (Index v = 0; v + level < joined; ++v) {
+      if (reaches[v] >= level) continue;
+      // of `below` places the ones at which place · raised / below rises
+      if ((place + 1) * raised / below > place * raised / below) reaches[v] = level;
+      ++place;
+    }
+    missing -= raised;
+  }
+}
+
+CsrGraph joined_to_next(const Reaches& reaches) {
+  const Index n = index_size(reaches);
+  Index widest = 0;
+  for (const Index reach : reaches) widest = std::max(widest, reach);
+  CsrGraph graph;
+  graph.offsets.reserve(reaches.size() + 1);
+  for (Index v = 0; v < n; ++v) {
+    for (Index u = std::max<Index>(0, v - widest); u < v; ++u) {
+      if (u + reaches[u] >= v) graph.neighbours.push_back(u);
+    }
+    for (Index u = v + 1; u <= v + reaches[v]; ++u) graph.neighbours.push_back(u);
+    graph.offsets.push_back(static_cast<Offset>(graph.neighbours.size()));
+  }
+  return graph;
+}
+
+/// Points one apart or so, no four in a row of which lie in a plane.
+std::vector<Point> helix(Index n) {
+  std::vector<Point> points(static_cast<std::size_t>(n));
+  for (Index v = 0; v < n; ++v) points[v] = {std::cos(1.0 * v), std::sin(1.0 * v), 0.25 * v};
+  return points;
+}
+
+}  // namespace
+
+Band ideal_band(const Mesh& mesh, const CsrGraph& graph) {
+  const Index n = mesh.vertex_count();
+  if (graph.size() != n) {
+    throw InvalidArgument("ideal_band: a graph of " + std::to_string(graph.size()) +
+                          " vertices for a mesh of " + std::to_string(n));
+  }
+  const Simplices simplices = cut_into_simplices(mesh);
+  const int d = simplices.dimension;
+  const Index corners = corner_vertices(simplices, n);
+  Band band;
+  band.mesh.points = helix(n);
+  const Index joined = joined_vertices(graph);
+  // as many edges for a vertex as a lattice cut into simplices has; more join nodes of no simplex
+  const auto per_vertex = static_cast<Index>(graph.edge_count() / std::max<Index>(1, joined));
+  const Index k = std::clamp<Index>(per_vertex, d, std::max<Index>(d, (Index{1} << d) - 1));
+  band.mesh.cells = streamed_simplices(d, d == 0 ? 0 : simplices.size(), corners, k);
+  Reaches reaches = needed(band.mesh.cells, n);
+  fill(reaches, joined, graph.edge_count());
+  band.graph = joined_to_next(reaches);
+  return band;
+}
+
+}  // namespace meshorder

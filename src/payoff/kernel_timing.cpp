@@ -1,0 +1,129 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/kernel_timing.hpp"
+
+#include "base/stopwatch.hpp"
+#include "payoff/memory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// Seconds of each run, by kernel.
+using Samples = std::array<std::vector<double>, kKernels.size()>;
+
+std::vector<double>& of(Samples& samples, Kernel kernel) { return samples[static_cast<std::size_t>(kernel)]; }
+
+double seconds_per_run(KernelBench& bench, Kernel kernel, int repeats) {
+  const Stopwatch stopwatch;
+  for (int i = 0; i < repeats; ++i) bench.run(kernel);
+  return stopwatch.seconds() / repeats;
+}
+
+/// How a sample of a kernel is taken.
+struct Plan {
+  int repeats = 1;
+  bool warm = false;  ///< after a run that does not count
+};
+
+Plan plan_samples(KernelBench& bench, Kernel kernel, double sample_seconds) {
+  constexpr double kMostRepeats = 1e5;
+  // a kernel that runs longer than this many samples streams far more than caches keep
+  constexpr double kLong = 5.0;
+  bench.run(kernel);
+  const double once = std::max(seconds_per_run(bench, kernel, 1), 1e-9);
+  return {.repeats = static_cast<int>(std::clamp(std::ceil(sample_seconds / once), 1.0, kMostRepeats)),
+          .warm = once < kLong * sample_seconds};
+}
+
+std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options,
+                                        double budget_seconds) {
+  const std::size_t orders = benches.size();
+  std::vector<std::array<Plan, kKernels.size()>> plans(orders);
+  for (std::size_t i = 0; i < orders; ++i) {
+    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+      plans[i][k] = plan_samples(*benches[i], kKernels[k], options.sample_seconds);
+    }
+  }
+  std::vector<Samples> samples(orders);
+  const Stopwatch stopwatch;
+  for (int round = 0; round < options.most_rounds; ++round) {
+    const double seconds = stopwatch.seconds();
+    if (round >= options.least_rounds && seconds + seconds / round > budget_seconds) break;
+    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+      for (std::size_t i = 0; i < orders; ++i) {
+        const std::size_t order = (i + static_cast<std::size_t>(round)) % orders;
+        const Plan& plan = plans[order][k];
+        if (plan.warm) benches[order]->run(kKernels[k]);
+        samples[order][k].push_back(seconds_per_run(*benches[order], kKernels[k], plan.repeats));
+      }
+    }
+  }
+  return samples;
+}
+
+KernelTimes summary(std::vector<double> samples, double reference_seconds) {
+  KernelTimes times;
+  times.samples = static_cast<int>(samples.size());
+  if (samples.empty()) return times;
+  std::sort(samples.begin(), samples.end());
+  const double best = samples.front();
+  times.best_ms = 1e3 * best;
+  times.median_ms = 500.0 * (samples[(samples.size() - 1) / 2] + samples[samples.size() / 2]);
+  times.speedup = best > 0.0 ? reference_seconds / best : 1.0;
+  return times;
+}
+
+std::vector<OrderTimes> summaries(std::vector<Samples> samples) {
+  std::vector<OrderTimes> result(samples.size());
+  for (const Kernel kernel : kKernels) {
+    if (samples.empty() || of(samples.front(), kernel).empty()) continue;
+    const double reference =
+        *std::min_element(of(samples.front(), kernel).begin(), of(samples.front(), kernel).end());
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      result[i][kernel] = summary(of(samples[i], kernel), reference);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<OrderTimes> time_interleaved(std::span<KernelBench* const> benches,
+                                         const TimingOptions& options) {
+  return summaries(sample_interleaved(benches, options, options.budget_seconds));
+}
+
+std::vector<OrderTimes> time_orders(Index orders, const std::function<KernelBench(Index)>& prepare,
+                                    const TimingOptions& options) {
+  if (orders <= 0) return {};
+  KernelBench reference = prepare(0);
+  const std::size_t memory = options.memory_bytes > 0 ? options.memory_bytes : memory_of_this_machine() / 2;
+  const std::size_t fitting = memory / std::max<std::size_t>(1, reference.bytes());
+  // beside the reference
+  const Index group = static_cast<Index>(std::clamp<std::size_t>(fitting, 2, kMaxIndex)) - 1;
+  const Index groups = std::max<Index>(1, (orders - 1 + group - 1) / group);
+
+  std::vector<OrderTimes> result(1);
+  Samples of_reference;
+  for (Index first = 1; first == 1 || first < orders; first += group) {
+    std::vector<KernelBench> others;
+    for (Index i = first; i < std::min(orders, first + group); ++i) others.push_back(prepare(i));
+    std::vector<KernelBench*> benches{&reference};
+    for (KernelBench& bench : others) benches.push_back(&bench);
+    std::vector<Samples> samples = sample_interleaved(benches, options, options.budget_seconds / groups);
+    for (const Kernel kernel : kKernels) {
+      std::vector<double>& all = of(of_reference, kernel);
+      all.insert(all.end(), of(samples.front(), kernel).begin(), of(samples.front(), kernel).end());
+    }
+    const std::vector<OrderTimes> times = summaries(std::move(samples));
+    result.insert(result.end(), times.begin() + 1, times.end());
+  }
+  std::vector<Samples> pooled;
+  pooled.push_back(std::move(of_reference));
+  result.front() = summaries(std::move(pooled)).front();
+  return result;
+}
+
+}  // namespace meshorder

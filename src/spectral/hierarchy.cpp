@@ -1,0 +1,235 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "spectral/hierarchy.hpp"
+
+#include "spectral/coarsening.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshorder {
+namespace {
+
+constexpr Index kDenseSize = 60;       // a dense eigensolver takes half a millisecond there
+constexpr double kStrength = 0.1;      // of the strongest neighbour, on coarse levels
+constexpr double kWorthwhile = 0.8;    // coarsening that keeps more vertices than this is given up
+constexpr double kOverCorrection = 2;  // of plain coarsening; 1.5 to 3 serve as well
+
+/// Makes the next coarser level of `fine`, and in `fine` the way to it; false when that is not worth it.
+bool coarsen(Level& fine, bool smoothed, Level& coarse) {
+  constexpr Index kFewAlone = 50;  // one in so many
+  const Index n = fine.laplacian.size();
+  Aggregation aggregation = aggregate(fine.laplacian, fine.chunks, kStrength);
+  if (aggregation.alone > n / kFewAlone && fine.chunks.count() > 1) {
+    fine.chunks = RowChunks::whole(n);
+    aggregation = aggregate(fine.laplacian, fine.chunks, kStrength);
+  }
+  if (aggregation.count() > kWorthwhile * n) return false;
+  if (smoothed) {
+    fine.prolongation = smoothed_prolongation(fine.laplacian, aggregation);
+    coarse.laplacian = galerkin_product(fine.laplacian, fine.prolongation);
+    // where smoothing fills the coarse graph it is left out
+    smoothed = coarse.laplacian.neighbours.size() <= 2 * fine.laplacian.neighbours.size();
+  }
+  coarse.masses.assign(aggregation.count(), 0);
+  if (smoothed) {
+    const SparseRows& p = fine.prolongation;
+    for (Index v = 0; v < n; ++v) {
+      for (Offset k = p.offsets[v]; k < p.offsets[v + 1]; ++k) {
+        coarse.masses[p.columns[k]] += p.values[k] * fine.mass(v);
+      }
+    }
+  } else {
+    fine.prolongation = {};
+    coarse.laplacian = collapsed(fine.laplacian, fine.chunks, aggregation);
+    for (Index v = 0; v < n; ++v) coarse.masses[aggregation.aggregate_of[v]] += fine.mass(v);
+    fine.aggregate_of = std::move(aggregation.aggregate_of);
+  }
+  coarse.chunks = RowChunks(coarse.laplacian);
+  return true;
+}
+
+Eigen::MatrixXd dense(const Laplacian& laplacian) {
+  const Index n = laplacian.size();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+  for (Index v = 0; v < n; ++v) {
+    matrix(v, v) = laplacian.diagonal[v];
+    for (Offset k = laplacian.offsets[v]; k < laplacian.offsets[v + 1]; ++k) {
+      matrix(v, laplacian.neighbours[k]) -= laplacian.is_weighted() ? laplacian.weights[k] : 1.0;
+    }
+  }
+  return 0.5 * (matrix + matrix.transpose());
+}
+
+/// The inverse of L on the vectors that sum to 0.
+Eigen::MatrixXd dense_inverse(const Laplacian& laplacian) {
+  const Index n = laplacian.size();
+  Eigen::MatrixXd shifted = dense(laplacian);
+  const double scale = shifted.diagonal().maxCoeff();
+  if (!(scale > 0)) return Eigen::MatrixXd::Zero(n, n);  // one vertex
+  shifted.array() += scale / n;                          // lifts the constant vector out of the null space
+  return shifted.llt().solve(Eigen::MatrixXd::Identity(n, n));
+}
+
+/// x in row v so that the row of L x = b holds.
+template <int M, class RightSide>
+void relax_row(const Laplacian& laplacian, Index v, RightSide b, VectorBlock<M>& x) {
+  const auto sum = laplacian.neighbour_sum<M>(v, x);
+  const double inverse = 1 / laplacian.diagonal[v];
+  for (int m = 0; m < M; ++m) x[v][m] = (b(v, m) + sum[m]) * inverse;
+}
+
+template <int M, class RightSide>
+void forward_gauss_seidel(const Level& level, RightSide b, VectorBlock<M>& x) {
+  level.chunks.for_each_forwards([&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) relax_row<M>(level.laplacian, v, b, x);
+  });
+}
+
+/// Every row in the opposite order, so that the cycle is symmetric.
+template <int M, class RightSide>
+void backward_gauss_seidel(const Level& level, RightSide b, VectorBlock<M>& x) {
+  level.chunks.for_each_backwards([&](Index begin, Index end) {
+    for (Index v = end; v-- > begin;) relax_row<M>(level.laplacian, v, b, x);
+  });
+}
+
+template <int M>
+std::array<double, M> residual_of_row(const Laplacian& laplacian, Index v, const VectorBlock<M>& b,
+                                      const VectorBlock<M>& x) {
+  std::array<double, M> residual = laplacian.neighbour_sum<M>(v, x);
+  for (int m = 0; m < M; ++m) residual[m] += b[v][m] - laplacian.diagonal[v] * x[v][m];
+  return residual;
+}
+
+/// result = Pᵀ (b − L x)
+template <int M>
+void restrict_residual(const Level& level, const VectorBlock<M>& b, const VectorBlock<M>& x,
+                       VectorBlock<M>& result) {
+  std::fill(result.begin(), result.end(), std::array<double, M>{});
+  if (!level.aggregate_of.empty()) {
+    level.chunks.for_each([&](Index, Index begin, Index end) {  // aggregates keep to their chunks
+      for (Index v = begin; v < end; ++v) {
+        const auto residual = residual_of_row<M>(level.laplacian, v, b, x);
+        for (int m = 0; m < M; ++m) result[level.aggregate_of[v]][m] += residual[m];
+      }
+    });
+    return;
+  }
+  const SparseRows& p = level.prolongation;
+  for (Index v = 0; v < level.laplacian.size(); ++v) {
+    const auto residual = residual_of_row<M>(level.laplacian, v, b, x);
+    for (Offset k = p.offsets[v]; k < p.offsets[v + 1]; ++k) {
+      for (int m = 0; m < M; ++m) result[p.columns[k]][m] += p.values[k] * residual[m];
+    }
+  }
+}
+
+}  // namespace
+
+Hierarchy::Hierarchy(Laplacian finest) {
+  Level level;
+  level.chunks = RowChunks(finest);
+  level.laplacian = std::move(finest);
+  levels_.push_back(std::move(level));
+  while (levels_.back().laplacian.size() > kDenseSize) {
+    Level coarse;
+    if (!coarsen(levels_.back(), levels_.size() > 1, coarse)) break;
+    levels_.push_back(std::move(coarse));
+  }
+  const Laplacian& coarsest = levels_.back().laplacian;
+  if (coarsest.size() <= kDenseSize) coarsest_inverse_ = dense_inverse(coarsest);
+}
+
+template <int M>
+void Hierarchy::smooth(int level, VectorBlock<M>& x) const {
+  const auto zero = [](Index, int) { return 0.0; };
+  forward_gauss_seidel<M>(levels_[level], zero, x);
+  backward_gauss_seidel<M>(levels_[level], zero, x);
+}
+
+template <int M>
+void Hierarchy::add_prolonged(int level, double scale, const VectorBlock<M>& coarse,
+                              VectorBlock<M>& fine) const {
+  const Level& here = levels_[level];
+  const SparseRows& p = here.prolongation;
+  here.chunks.for_each([&](Index, Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) {
+      if (!here.aggregate_of.empty()) {
+        for (int m = 0; m < M; ++m) fine[v][m] += scale * coarse[here.aggregate_of[v]][m];
+        continue;
+      }
+      for (Offset k = p.offsets[v]; k < p.offsets[v + 1]; ++k) {
+        for (int m = 0; m < M; ++m) fine[v][m] += scale * p.values[k] * coarse[p.columns[k]][m];
+      }
+    }
+  });
+}
+
+template <int M>
+void Hierarchy::cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x,
+                      CycleWorkspace<M>& workspace) const {
+  const Level& here = levels_[level];
+  const auto size = static_cast<std::size_t>(here.laplacian.size());
+  const int coarsest = static_cast<int>(levels_.size()) - 1;
+  if (level == coarsest && has_exact_coarsest()) {
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, M, M == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+    x.resize(size);
+    Eigen::Map<Rows>(x.front().data(), here.laplacian.size(), M).noalias() =
+        coarsest_inverse_ * Eigen::Map<const Rows>(b.front().data(), here.laplacian.size(), M);
+    return;
+  }
+  x.assign(size, std::array<double, M>{});
+  const auto entry_of_b = [&](Index v, int m) { return b[v][m]; };
+  forward_gauss_seidel<M>(here, entry_of_b, x);
+  if (level < coarsest) {
+    workspace.levels.resize(levels_.size());
+    VectorBlock<M>& coarse_b = workspace.levels[level + 1].right_side;
+    VectorBlock<M>& coarse_x = workspace.levels[level + 1].correction;
+    VectorBlock<M>& second_x = workspace.levels[level + 1].second_correction;
+    const Level& coarse = levels_[level + 1];
+    coarse_b.resize(coarse.laplacian.size());
+    restrict_residual<M>(here, b, x, coarse_b);
+    cycle<M>(level + 1, coarse_b, coarse_x, workspace);
+    if (level + 1 < coarsest) {
+      coarse.chunks.for_each([&](Index, Index begin, Index end) {
+        for (Index v = begin; v < end; ++v) {
+          coarse_b[v] = residual_of_row<M>(coarse.laplacian, v, coarse_b, coarse_x);
+        }
+      });
+      cycle<M>(level + 1, coarse_b, second_x, workspace);
+      for (std::size_t v = 0; v < coarse_x.size(); ++v) {
+        for (int m = 0; m < M; ++m) coarse_x[v][m] += second_x[v][m];
+      }
+    }
+    add_prolonged<M>(level, here.aggregate_of.empty() ? 1 : kOverCorrection, coarse_x, x);
+  }
+  backward_gauss_seidel<M>(here, entry_of_b, x);
+}
+
+template <int M>
+VectorBlock<M> Hierarchy::coarsest_eigenvectors() const {
+  const Level& coarsest = levels_.back();
+  const Index n = coarsest.laplacian.size();
+  const Eigen::VectorXd scale = Eigen::VectorXd::NullaryExpr(
+      n, [&](Eigen::Index v) { return 1 / std::sqrt(coarsest.mass(static_cast<Index>(v))); });
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * dense(coarsest.laplacian) * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
+  VectorBlock<M> result(n, std::array<double, M>{});
+  for (int m = 0; m < std::min<int>(M, n - 1); ++m) {
+    for (Index v = 0; v < n; ++v) result[v][m] = scale[v] * solver.eigenvectors()(v, m + 1);
+  }
+  return result;
+}
+
+template void Hierarchy::add_prolonged<1>(int, double, const VectorBlock<1>&, VectorBlock<1>&) const;
+template void Hierarchy::cycle<1>(int, const VectorBlock<1>&, VectorBlock<1>&, CycleWorkspace<1>&) const;
+template void Hierarchy::smooth<1>(int, VectorBlock<1>&) const;
+template VectorBlock<1> Hierarchy::coarsest_eigenvectors<1>() const;
+template void Hierarchy::add_prolonged<2>(int, double, const VectorBlock<2>&, VectorBlock<2>&) const;
+template void Hierarchy::cycle<2>(int, const VectorBlock<2>&, VectorBlock<2>&, CycleWorkspace<2>&) const;
+template void Hierarchy::smooth<2>(int, VectorBlock<2>&) const;
+template VectorBlock<2> Hierarchy::coarsest_eigenvectors<2>() const;
+
+}  // namespace meshorder

@@ -1,0 +1,269 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "spectral/lobpcg.hpp"
+
+#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+constexpr Index kRows = 2048;  // in a chunk for threads; what a pass touches stays in the L2 cache
+
+/// Numbers that are added up entry by entry.
+template <std::size_t N>
+struct Sums {
+  std::array<double, N> values{};
+  double& operator[](std::size_t i) { return values[i]; }
+  Sums& operator+=(const Sums& other) {
+    for (std::size_t i = 0; i < N; ++i) values[i] += other.values[i];
+    return *this;
+  }
+};
+
+/// A block of vectors and L times it.
+template <int M>
+struct WithImage {
+  VectorBlock<M> vectors;
+  VectorBlock<M> images;
+
+  explicit WithImage(std::size_t n) : WithImage(VectorBlock<M>(n, std::array<double, M>{})) {}
+  explicit WithImage(VectorBlock<M> block) : vectors(std::move(block)), images(vectors.size()) {}
+};
+
+/// The blocks whose span an iteration searches: iterates, preconditioned residuals, last directions, and C
+/// companions that stay.
+template <int M, int C>
+struct SearchSpace {
+  static constexpr int kSize = 3 * M + C;
+
+  WithImage<M> x, w, p;
+  WithImage<C> companions;
+
+  SearchSpace(VectorBlock<M> start, VectorBlock<C> fixed)
+      : x(std::move(start)), w(x.vectors.size()), p(x.vectors.size()), companions(std::move(fixed)) {}
+};
+
+/// Row v of all vectors of the space (or of their images) side by side.
+template <int M, int C, class Part>
+std::array<double, SearchSpace<M, C>::kSize> row(const SearchSpace<M, C>& s, Index v, Part part) {
+  std::array<double, SearchSpace<M, C>::kSize> result;
+  for (int m = 0; m < M; ++m) {
+    result[m] = part(s.x)[v][m];
+    result[M + m] = part(s.w)[v][m];
+    result[2 * M + m] = part(s.p)[v][m];
+  }
+  if constexpr (C > 0) {
+    for (int c = 0; c < C; ++c) result[3 * M + c] = part(s.companions)[v][c];
+  }
+  return result;
+}
+
+constexpr auto kVectors = [](auto& block) -> auto& { return block.vectors; };
+constexpr auto kImages = [](auto& block) -> auto& { return block.images; };
+
+template <int N>
+using Square = Eigen::Matrix<double, N, N>;
+
+/// Sᵀ B S and Sᵀ L S of the search space S.
+template <int M, int C, int N = SearchSpace<M, C>::kSize>
+void gram_matrices(const SearchSpace<M, C>& s, const Level& level, Square<N>& gram, Square<N>& energy) {
+  using Squares = Sums<std::size_t{2} * N * N>;
+  auto sums = sum_over_chunks<Squares>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+    Squares part;
+    // one after the other: the sums of both at once do not fit in registers
+    for (Index v = begin; v < end; ++v) {
+      const auto vectors = row(s, v, kVectors);
+      for (int i = 0; i < N; ++i) {
+        const double weighted = level.mass(v) * vectors[i];
+        for (int j = i; j < N; ++j) part[N * i + j] += weighted * vectors[j];
+      }
+    }
+    for (Index v = begin; v < end; ++v) {
+      const auto vectors = row(s, v, kVectors);
+      const auto images = row(s, v, kImages);
+      for (int i = 0; i < N; ++i) {
+        for (int j = i; j < N; ++j) part[N * (N + i) + j] += vectors[i] * images[j];
+      }
+    }
+    return part;
+  });
+  for (int i = 0; i < N; ++i) {
+    for (int j = i; j < N; ++j) {
+      gram(i, j) = gram(j, i) = sums[N * i + j];
+      energy(i, j) = energy(j, i) = sums[N * (N + i) + j];
+    }
+  }
+}
+
+/// The coefficients of the M Ritz vectors with the smallest Ritz values, and those values. Directions of the
+/// basis that nearly depend on the others are left out.
+template <int M, int N>
+void rayleigh_ritz(const Square<N>& gram, const Square<N>& energy, Eigen::Matrix<double, N, M>& coefficients,
+                   Eigen::Matrix<double, M, 1>& values) {
+  constexpr double kDependent = 1e-12;
+  Eigen::Matrix<double, N, 1> scale = gram.diagonal();
+  for (int i = 0; i < N; ++i) scale[i] = scale[i] > 0 ? 1 / std::sqrt(scale[i]) : 0;
+  const Eigen::SelfAdjointEigenSolver<Square<N>> independent(
+      Square<N>(scale.asDiagonal() * gram * scale.asDiagonal()));
+  int kept = 0;
+  Eigen::Matrix<double, N, Eigen::Dynamic> basis(N, N);
+  for (int i = N - 1; i >= 0; --i) {
+    const double eigenvalue = independent.eigenvalues()[i];
+    if (eigenvalue < kDependent) break;
+    basis.col(kept++) = scale.asDiagonal() * independent.eigenvectors().col(i) / std::sqrt(eigenvalue);
+  }
+  basis.conservativeResize(Eigen::NoChange, kept);
+  const Eigen::MatrixXd projected = basis.transpose() * energy * basis;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(projected);
+  coefficients.setZero();
+  values.setZero();
+  for (int m = 0; m < std::min(M, kept); ++m) {
+    coefficients.col(m) = basis * solver.eigenvectors().col(m);
+    values[m] = solver.eigenvalues()[m];
+  }
+}
+
+/// ‖r‖² and ‖x‖² of the first column.
+using Norms = Sums<2>;
+
+/// r = L x − λ B x in row v, and its part in the norms.
+template <int M>
+void residual_of_row(const WithImage<M>& x, const Eigen::Matrix<double, M, 1>& values, double mass, Index v,
+                     VectorBlock<M>& r, Norms& norms) {
+  for (int m = 0; m < M; ++m) r[v][m] = x.images[v][m] - values[m] * mass * x.vectors[v][m];
+  norms[0] += r[v][0] * r[v][0];
+  norms[1] += x.vectors[v][0] * x.vectors[v][0];
+}
+
+/// x ← S c, p ← the part of that which is not from x, the same for the images, and r = L x − λ B x. Returns
+/// ‖r‖ / ‖x‖ of the first column.
+template <int M, int C, int N = SearchSpace<M, C>::kSize>
+double update(SearchSpace<M, C>& s, const Eigen::Matrix<double, N, M>& coefficients,
+              const Eigen::Matrix<double, M, 1>& values, const Level& level, VectorBlock<M>& r) {
+  std::array<std::array<double, M>, N> c;
+  for (int i = 0; i < N; ++i) {
+    for (int m = 0; m < M; ++m) c[i][m] = coefficients(i, m);
+  }
+  const auto combine = [&](Index v, auto part) {
+    const auto old = row(s, v, part);
+    for (int m = 0; m < M; ++m) {
+      double from_x = 0;
+      double direction = 0;
+      for (int i = 0; i < M; ++i) from_x += old[i] * c[i][m];
+      for (int i = M; i < N; ++i) direction += old[i] * c[i][m];
+      part(s.x)[v][m] = from_x + direction;
+      part(s.p)[v][m] = direction;
+    }
+  };
+  auto norms = sum_over_chunks<Norms>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+    Norms part;
+    for (Index v = begin; v < end; ++v) {
+      combine(v, kVectors);
+      combine(v, kImages);
+      residual_of_row<M>(s.x, values, level.mass(v), v, r, part);
+    }
+    return part;
+  });
+  return std::sqrt(norms[0] / norms[1]);
+}
+
+/// Computes L x afresh, since images that follow x by recurrence drift by rounding, and with it the Rayleigh
+/// quotients and r. Returns what `update` does.
+template <int M>
+double refresh(WithImage<M>& x, const Level& level, Eigen::Matrix<double, M, 1>& values, VectorBlock<M>& r) {
+  level.laplacian.apply<M>(x.vectors, x.images);
+  using Quotients = Sums<std::size_t{2} * M>;
+  auto quotients = sum_over_chunks<Quotients>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+    Quotients part;
+    for (Index v = begin; v < end; ++v) {
+      for (int m = 0; m < M; ++m) {
+        part[m] += x.vectors[v][m] * x.images[v][m];
+        part[M + m] += level.mass(v) * x.vectors[v][m] * x.vectors[v][m];
+      }
+    }
+    return part;
+  });
+  for (int m = 0; m < M; ++m) values[m] = quotients[M + m] > 0 ? quotients[m] / quotients[M + m] : 0;
+  auto norms = sum_over_chunks<Norms>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+    Norms part;
+    for (Index v = begin; v < end; ++v) residual_of_row<M>(x, values, level.mass(v), v, r, part);
+    return part;
+  });
+  return std::sqrt(norms[0] / norms[1]);
+}
+
+/// Makes the vectors B-orthogonal to constants, and their images.
+template <int M>
+void prepare(const Level& level, double total_mass, WithImage<M>& block) {
+  VectorBlock<M>& x = block.vectors;
+  auto mean = sum_over_chunks<Sums<M>>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+    Sums<M> part;
+    for (Index v = begin; v < end; ++v) {
+      for (int m = 0; m < M; ++m) part[m] += level.mass(v) * x[v][m];
+    }
+    return part;
+  });
+  for (int m = 0; m < M; ++m) mean[m] /= total_mass;
+  for_each_chunk(level.laplacian.size(), kRows, [&](Index, Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) {
+      for (int m = 0; m < M; ++m) x[v][m] -= mean[m];
+    }
+  });
+  level.laplacian.apply<M>(x, block.images);
+}
+
+}  // namespace
+
+template <int M, int Companions>
+LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
+                    VectorBlock<Companions> companions) {
+  constexpr int kSize = SearchSpace<M, Companions>::kSize;
+  const Level& here = hierarchy.levels()[level];
+  const Index n = here.laplacian.size();
+  double total_mass = 0;
+  for (Index v = 0; v < n; ++v) total_mass += here.mass(v);
+
+  SearchSpace<M, Companions> s(std::move(x), std::move(companions));
+  VectorBlock<M> r(n);
+  CycleWorkspace<M> workspace;
+  Square<kSize> gram, energy;
+  Eigen::Matrix<double, kSize, M> coefficients;
+  Eigen::Matrix<double, M, 1> values;
+  const auto search = [&] {
+    gram_matrices<M, Companions>(s, here, gram, energy);
+    rayleigh_ritz<M, kSize>(gram, energy, coefficients, values);
+    return update<M, Companions>(s, coefficients, values, here, r);
+  };
+
+  prepare(here, total_mass, s.x);
+  if constexpr (Companions > 0) prepare(here, total_mass, s.companions);
+  LobpcgResult result;
+  result.residual = search();
+  const auto converged = [&] { return result.residual <= options.tolerance * values[0]; };
+  for (;; ++result.iterations) {
+    const bool last = result.iterations >= options.max_iterations;
+    if (last || converged()) {
+      result.residual = refresh<M>(s.x, here, values, r);
+      if (last || converged()) break;
+    }
+    hierarchy.cycle<M>(level, r, s.w.vectors, workspace);
+    prepare(here, total_mass, s.w);
+    result.residual = search();
+  }
+  result.eigenvalue = values[0];
+  result.converged = converged();
+  x = std::move(s.x.vectors);
+  return result;
+}
+
+template LobpcgResult lobpcg<1, 0>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<1>&,
+                                   VectorBlock<0>);
+template LobpcgResult lobpcg<1, 1>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<1>&,
+                                   VectorBlock<1>);
+template LobpcgResult lobpcg<2, 0>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<2>&,
+                                   VectorBlock<0>);
+
+}  // namespace meshorder

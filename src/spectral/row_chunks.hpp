@@ -1,0 +1,67 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/parallel.hpp"
+#include "graph/laplacian.hpp"
+
+#include <vector>
+
+namespace meshorder {
+
+/// The rows of a Laplacian in contiguous chunks for threads, coloured so that no edge joins two chunks of one
+/// colour: a sweep that goes colour by colour gives the same numbers on any number of threads. Of a graph
+/// numbered breadth first, chunks touch only the next ones, and two colours do.
+class RowChunks {
+ public:
+  static constexpr Index kLeastRows = 8192;  ///< a chunk should outweigh the start of a thread's task
+
+  RowChunks() = default;
+
+  /// Chunks the rows of a graph: up to 16 chunks of at least `least_rows` rows, whatever the number of
+  /// threads; one chunk of all rows where too many would touch one another to gain by threads. O(edges).
+  explicit RowChunks(const Laplacian& laplacian, Index least_rows = kLeastRows);
+
+  /// One chunk of all rows.
+  static RowChunks whole(Index rows);
+
+  /// Rows in a chunk, a power of two; the last chunk may have fewer.
+  [[nodiscard]] Index size() const noexcept { return Index{1} << shift_; }
+  [[nodiscard]] Index count() const noexcept { return chunk_count(rows_, size()); }
+  [[nodiscard]] Index chunk_of(Index row) const noexcept { return row >> shift_; }
+
+  /// The chunks of each colour, rising.
+  [[nodiscard]] const std::vector<std::vector<Index>>& colours() const noexcept { return colours_; }
+
+  /// Calls `work(chunk, begin, end)` for every chunk, on all threads.
+  template <class Work>
+  void for_each(Work work) const {
+    for_each_chunk(rows_, size(), work);
+  }
+
+  /// Calls `work(begin, end)` for every chunk, those of a colour at the same time, colour after colour.
+  template <class Work>
+  void for_each_forwards(Work work) const {
+    for (const std::vector<Index>& chunks : colours_) run(chunks, work);
+  }
+
+  /// The same, last colour first.
+  template <class Work>
+  void for_each_backwards(Work work) const {
+    for (std::size_t colour = colours_.size(); colour-- > 0;) run(colours_[colour], work);
+  }
+
+ private:
+  template <class Work>
+  void run(const std::vector<Index>& chunks, Work work) const {
+    for_each_chunk(index_size(chunks), 1, [&](Index k, Index, Index) {
+      const Index begin = chunks[k] << shift_;
+      work(begin, std::min(rows_ - begin, size()) + begin);
+    });
+  }
+
+  Index rows_ = 0;
+  int shift_ = 0;
+  std::vector<std::vector<Index>> colours_;
+};
+
+}  // namespace meshorder

@@ -1,0 +1,108 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "ordering/auto.hpp"
+
+#include "base/error.hpp"
+#include "support/sample_graphs.hpp"
+#include "support/sample_meshes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace meshorder {
+namespace {
+
+/// A grid graph on the points of its lattice.
+struct Lattice {
+  CsrGraph graph = test::grid(12, 9);
+  std::vector<Point> points;
+
+  Lattice() {
+    for (Index v = 0; v < graph.size(); ++v) points.push_back({1.0 * (v % 12), 0.1 * v, 0.0});
+  }
+};
+
+OrderingOptions options_for(Use use) {
+  OrderingOptions options;
+  options.use = use;
+  return options;
+}
+
+bool is_known(const std::string& name) {
+  const auto methods = vertex_methods();
+  return std::any_of(methods.begin(), methods.end(), [&](const VertexMethod& m) { return m.name == name; });
+}
+
+TEST(Auto, GivesTheOrderOfTheMethodThatItSaysItTook) {
+  const Lattice lattice;
+  for (const Use use : kUses) {
+    SCOPED_TRACE(name(use));
+    for (const std::span<const Point> points :
+         {std::span<const Point>(lattice.points), std::span<const Point>()}) {
+      const VertexProblem problem{lattice.graph, points};
+      const Ordering order = order_vertices("auto", problem, options_for(use));
+      EXPECT_TRUE(is_known(order.method.name)) << order.method.name;
+      EXPECT_NE(order.method.name, "auto");
+      EXPECT_FALSE(order.method.because.empty());
+      EXPECT_EQ(order.method, choose_vertex_method(problem, use));
+      EXPECT_EQ(order.permutation, order_vertices(order.method.name, problem).permutation);
+    }
+  }
+}
+
+TEST(Auto, OrdersElementsByLexmax) {
+  const Incidence elements{4, {0, 2, 4, 6}, {0, 3, 0, 1, 1, 2}};
+  const Permutation vertices = Permutation::identity(4);
+  const ElementProblem problem{elements, vertices, {}, {}};
+  const Ordering order = order_elements("auto", problem);
+  EXPECT_EQ(order.method.name, "lexmax");
+  EXPECT_FALSE(order.method.because.empty());
+  EXPECT_EQ(order.permutation.new_to_old(), (std::vector<Index>{1, 2, 0}));
+}
+
+TEST(Auto, TakesNoGeometricMethodWhereCoordinatesTellNothing) {
+  const Lattice lattice;
+  const std::vector<Point> all_the_same(lattice.points.size(), Point{1, 2, 3});
+  for (const Use use : kUses) {
+    const std::string without = choose_vertex_method({lattice.graph, {}}, use).name;
+    EXPECT_EQ(choose_vertex_method({lattice.graph, all_the_same}, use).name, without);
+    EXPECT_NO_THROW(order_vertices(without, {lattice.graph, {}}));
+  }
+}
+
+TEST(Auto, LooksAtTheUse) {
+  CsrGraph large;
+  large.offsets.assign(2'000'001, 0);
+  const auto taken = [&](Use use) { return choose_vertex_method({large, {}}, use).name; };
+  EXPECT_EQ(taken(Use::all), taken(Use::element));
+  EXPECT_NE(taken(Use::springs), taken(Use::element));
+}
+
+TEST(Auto, LooksAtTheSize) {
+  CsrGraph large;
+  large.offsets.assign(2'000'001, 0);
+  const std::string small = choose_vertex_method({test::path(3), {}}, Use::springs).name;
+  EXPECT_NE(choose_vertex_method({large, {}}, Use::springs).name, small);
+}
+
+TEST(Auto, MethodsAskedForByNameGiveNoReason) {
+  const Lattice lattice;
+  const Ordering order = order_vertices("bfs", {lattice.graph, lattice.points});
+  EXPECT_EQ(order.method, (MethodChoice{"bfs", ""}));
+}
+
+TEST(Use, HasANameThatFindsIt) {
+  for (const Use use : kUses) EXPECT_EQ(use_of(name(use)), use);
+  try {
+    use_of("everything");
+    FAIL();
+  } catch (const InvalidArgument& error) {
+    for (const Use use : kUses) {
+      EXPECT_NE(std::string(error.what()).find(name(use)), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshorder

@@ -1,0 +1,90 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "graph/breadth_first.hpp"
+
+#include "base/stopwatch.hpp"
+#include "graph/components.hpp"
+#include "support/sample_graphs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace meshorder {
+namespace {
+
+/// Distances from `start` by relaxing all edges until nothing changes; −1 where there is no way.
+std::vector<Index> distances(const CsrGraph& graph, Index start) {
+  std::vector<Index> result(graph.size(), -1);
+  result[start] = 0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (Index v = 0; v < graph.size(); ++v) {
+      for (const Index u : graph[v]) {
+        if (result[u] >= 0 && (result[v] < 0 || result[u] + 1 < result[v])) {
+          result[v] = result[u] + 1;
+          changed = true;
+        }
+      }
+    }
+  }
+  return result;
+}
+
+TEST(BreadthFirst, LevelsAreTheDistances) {
+  const CsrGraph graph = test::disjoint_union({test::random_connected(200, 60, 1), test::path(5)});
+  for (const Index start : {0, 57, 199, 202}) {
+    std::vector<Index> marks(graph.size(), -1);
+    const BreadthFirst search = breadth_first(graph, start, marks, 3);
+    const std::vector<Index> expected = distances(graph, start);
+    EXPECT_EQ(search.order.front(), start);
+    EXPECT_EQ(index_size(search.order), graph.size() - std::count(expected.begin(), expected.end(), -1));
+    for (Index level = 0; level <= search.depth(); ++level) {
+      for (Index k = search.level_start[level]; k < search.level_start[level + 1]; ++k) {
+        EXPECT_EQ(expected[search.order[k]], level);
+      }
+    }
+    for (Index v = 0; v < graph.size(); ++v) EXPECT_EQ(marks[v], expected[v] >= 0 ? 3 : -1);
+  }
+}
+
+TEST(BreadthFirst, SearchesShareMarks) {
+  const CsrGraph graph = test::grid(6, 5);
+  std::vector<Index> marks(graph.size(), -1);
+  for (Index mark = 0; mark < 4; ++mark) {
+    EXPECT_EQ(index_size(breadth_first(graph, mark, marks, mark).order), graph.size());
+  }
+}
+
+TEST(PseudoPeripheralVertex, IsAnEndOfAPathAndACornerOfAGrid) {
+  std::vector<Index> marks(1000, -1);
+  EXPECT_EQ(pseudo_peripheral_vertex(test::path(1000), 400, marks) % 999, 0);
+  marks.assign(63, -1);
+  const Index corner = pseudo_peripheral_vertex(test::grid(9, 7), 31, marks);
+  EXPECT_TRUE(corner == 0 || corner == 8 || corner == 54 || corner == 62) << corner;
+  marks.assign(1, -1);
+  EXPECT_EQ(pseudo_peripheral_vertex(test::path(1), 0, marks), 0);
+}
+
+TEST(PseudoPeripheralVertex, SeesAtLeastAsFarAsItsStart) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const CsrGraph graph = test::random_connected(150, 20, seed);
+    std::vector<Index> marks(graph.size(), -1);
+    const Index start = 75;
+    const std::vector<Index> from_start = distances(graph, start);
+    const std::vector<Index> from_found = distances(graph, pseudo_peripheral_vertex(graph, start, marks));
+    EXPECT_GE(*std::max_element(from_found.begin(), from_found.end()),
+              *std::max_element(from_start.begin(), from_start.end()));
+  }
+}
+
+TEST(PseudoPeripheralVertex, CostsNoMoreThanItsComponent) {
+  const Index n = 200000;
+  const CsrGraph isolated = graph_from_edges(n, {});
+  std::vector<Index> marks(n, -1);
+  const Stopwatch watch;
+  for (Index v = 0; v < n; ++v) ASSERT_EQ(pseudo_peripheral_vertex(isolated, v, marks), v);
+  EXPECT_LT(watch.seconds(), 5) << "work that grows with the whole graph would take minutes";
+}
+
+}  // namespace
+}  // namespace meshorder

@@ -1,0 +1,98 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "graph/csr_graph.hpp"
+
+#include "base/error.hpp"
+#include "graph/components.hpp"
+#include "graph/incidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+Incidence random_elements(Index vertices, Index elements, int size, unsigned seed) {
+  std::mt19937 random(seed);
+  Incidence result;
+  result.vertex_count = vertices;
+  for (Index e = 0; e < elements; ++e) {
+    for (int k = 0; k < size; ++k) result.vertices.push_back(static_cast<Index>(random() % vertices));
+    result.offsets.push_back(static_cast<Offset>(result.vertices.size()));
+  }
+  return result;
+}
+
+TEST(CsrGraph, FromEdgesDropsLoopsAndRepeats) {
+  const std::vector<Edge> edges{{0, 1}, {1, 0}, {2, 2}, {3, 1}};
+  const CsrGraph graph = graph_from_edges(4, edges);
+  check(graph);
+  EXPECT_EQ(graph.neighbours, (std::vector<Index>{1, 0, 3, 1}));
+  EXPECT_EQ(graph.edge_count(), 2);
+  EXPECT_THROW(graph_from_edges(2, edges), InvalidArgument);
+}
+
+TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
+  const Incidence elements = random_elements(50, 60, 4, 1);
+  std::set<std::pair<Index, Index>> pairs;
+  for (Index e = 0; e < elements.size(); ++e) {
+    for (const Index a : elements[e]) {
+      for (const Index b : elements[e]) {
+        if (a != b) pairs.emplace(a, b);
+      }
+    }
+  }
+  const CsrGraph graph = vertex_graph(elements);
+  check(graph);
+  std::set<std::pair<Index, Index>> found;
+  for (Index v = 0; v < graph.size(); ++v) {
+    for (const Index u : graph[v]) found.emplace(v, u);
+  }
+  EXPECT_EQ(found, pairs);
+}
+
+TEST(DualGraphByVertex, JoinsExactlyTheElementsThatShareAVertex) {
+  const Incidence elements = random_elements(80, 40, 3, 2);
+  const CsrGraph dual = dual_graph_by_vertex(elements);
+  check(dual);
+  for (Index e = 0; e < elements.size(); ++e) {
+    for (Index f = 0; f < elements.size(); ++f) {
+      const std::set<Index> mine(elements[e].begin(), elements[e].end());
+      bool share = false;
+      for (const Index v : elements[f]) share = share || mine.contains(v);
+      const auto row = dual[e];
+      EXPECT_EQ(std::find(row.begin(), row.end(), f) != row.end(), share && e != f);
+    }
+  }
+}
+
+TEST(Renumbered, KeepsEveryEdge) {
+  const CsrGraph graph = vertex_graph(random_elements(30, 30, 3, 3));
+  std::vector<Index> reversed(30);
+  for (Index v = 0; v < 30; ++v) reversed[v] = 29 - v;
+  const CsrGraph renamed = renumbered(graph, reversed);
+  check(renamed);
+  EXPECT_NE(renamed, graph);
+  EXPECT_EQ(renumbered(renamed, reversed), graph);
+}
+
+TEST(Components, LargestFirstThenBySmallestVertex) {
+  const std::vector<Edge> edges{{1, 2}, {5, 6}, {6, 7}, {3, 4}};
+  const auto components = connected_components(graph_from_edges(9, edges));
+  const std::vector<std::vector<Index>> expected{{5, 6, 7}, {1, 2}, {3, 4}, {0}, {8}};
+  EXPECT_EQ(components, expected);
+}
+
+TEST(InducedSubgraph, DropsEdgesThatLeave) {
+  const std::vector<Edge> edges{{0, 1}, {1, 2}, {2, 3}};
+  const CsrGraph path = graph_from_edges(4, edges);
+  const std::vector<Index> some{3, 2, 0};
+  const CsrGraph part = induced_subgraph(path, some);
+  check(part);
+  EXPECT_EQ(part.neighbours, (std::vector<Index>{1, 0}));
+}
+
+}  // namespace
+}  // namespace meshorder

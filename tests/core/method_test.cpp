@@ -1,0 +1,216 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "ordering/method.hpp"
+
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
+#include "mesh/graphs.hpp"
+#include "support/sample_graphs.hpp"
+#include "support/sample_meshes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <set>
+#include <string>
+
+namespace meshorder {
+namespace {
+
+std::vector<Point> random_points(Index n) {
+  std::mt19937_64 random(9);
+  std::vector<Point> points(n);
+  for (Point& point : points) {
+    for (double& x : point) x = static_cast<double>(random() % 1000U) / 7;
+  }
+  return points;
+}
+
+void expect_bijection(const Permutation& order, Index n) {
+  ASSERT_EQ(order.size(), n);
+  std::vector<Index> sorted = order.new_to_old();
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<Index> all(n);
+  std::iota(all.begin(), all.end(), Index{0});
+  EXPECT_EQ(sorted, all);
+  for (Index v = 0; v < n; ++v) EXPECT_EQ(order.new_to_old()[order.old_to_new()[v]], v);
+}
+
+struct NamedGraph {
+  std::string name;
+  CsrGraph graph;
+};
+
+std::vector<NamedGraph> vertex_graphs() {
+  return {{"nothing", CsrGraph{}},
+          {"one vertex", test::path(1)},
+          {"one edge", test::path(2)},
+          {"isolated vertices", graph_from_edges(40, {})},
+          {"one edge among isolated vertices", graph_from_edges(300, std::vector<Edge>{{40, 200}})},
+          {"components", test::disjoint_union({test::path(1), test::grid(7, 6), test::path(2), test::path(1),
+                                               test::grid(7, 6), test::star(30), test::cycle(5)})},
+          {"many components", test::disjoint_union(std::vector<CsrGraph>(200, test::complete(4)))},
+          {"grid", test::grid(30, 20)},
+          {"star", test::star(500)},
+          {"complete graph", test::complete(150)},
+          {"power law", test::preferential_attachment(600, 2, 1)},
+          {"mixed mesh", vertex_graph(test::mixed_mesh())},
+          {"bar", vertex_graph(test::tetrahedral_bar(12))}};
+}
+
+TEST(VertexMethods, YieldABijectionAndKeepQuiet) {
+  for (const VertexMethod& method : vertex_methods()) {
+    for (const auto& [name, graph] : vertex_graphs()) {
+      SCOPED_TRACE(std::string(method.name) + " on " + name);
+      const std::vector<Point> points = random_points(graph.size());
+      testing::internal::CaptureStdout();
+      const Ordering order = order_vertices(method.name, {graph, points});
+      EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+      expect_bijection(order.permutation, graph.size());
+      EXPECT_EQ(order_vertices(method.name, {graph, points}).permutation, order.permutation) << "run again";
+      const bool spectral = method.name == "fiedler" || method.name == "minla";
+      EXPECT_EQ(!order.fiedler.empty(), spectral && graph.size() > 0);
+    }
+  }
+}
+
+TEST(VertexMethods, PutIsolatedVerticesLastInOldOrderButForOriginal) {
+  const CsrGraph graph =
+      test::disjoint_union({test::path(1), test::grid(5, 4), test::path(1), test::path(3), test::path(1)});
+  const std::vector<Point> points = random_points(graph.size());
+  for (const VertexMethod& method : vertex_methods()) {
+    const Permutation order = order_vertices(method.name, {graph, points}).permutation;
+    if (method.name == "original") {
+      EXPECT_TRUE(order.is_identity());
+      continue;
+    }
+    const std::vector<Index> last(order.new_to_old().end() - 3, order.new_to_old().end());
+    EXPECT_EQ(last, (std::vector<Index>{0, 21, 25})) << method.name;
+  }
+}
+
+TEST(VertexMethods, TakeTimeInProportionToManyIsolatedVertices) {
+  const CsrGraph graph =
+      test::disjoint_union({graph_from_edges(test::large(400000), {}),
+                            test::disjoint_union(std::vector<CsrGraph>(2000, test::path(3)))});
+  const std::vector<Point> points = random_points(graph.size());
+  for (const VertexMethod& method : vertex_methods()) {
+    if (method.name.starts_with("metis")) continue;  // METIS takes what time it takes
+    const Stopwatch watch;
+    EXPECT_EQ(order_vertices(method.name, {graph, points}).permutation.size(), graph.size());
+    EXPECT_LT(watch.seconds(), 10) << method.name;
+  }
+}
+
+TEST(VertexMethods, OfGeometryNeedCoordinatesAndOthersDoNot) {
+  const CsrGraph graph = test::grid(5, 4);
+  const std::vector<Point> too_few = random_points(19);
+  for (const VertexMethod& method : vertex_methods()) {
+    if (method.name == "morton" || method.name == "hilbert") {
+      EXPECT_THROW(order_vertices(method.name, {graph, {}}), InvalidArgument) << method.name;
+      EXPECT_THROW(order_vertices(method.name, {graph, too_few}), InvalidArgument) << method.name;
+    } else {
+      EXPECT_NO_THROW(order_vertices(method.name, {graph, {}})) << method.name;
+    }
+  }
+}
+
+/// The message of the InvalidArgument that `call` throws.
+template <class Call>
+std::string refusal(Call call) {
+  try {
+    call();
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Methods, OfUnknownNamesAreRefusedWithTheKnownOnes) {
+  const CsrGraph graph = test::path(3);
+  const std::string of_vertices = refusal([&] { order_vertices("fielder", {graph, {}}); });
+  EXPECT_NE(of_vertices.find("'fielder'"), std::string::npos) << of_vertices;
+  for (const VertexMethod& method : vertex_methods()) {
+    EXPECT_NE(of_vertices.find(method.name), std::string::npos) << of_vertices;
+  }
+  const Permutation vertices = Permutation::identity(0);
+  const std::string of_elements = refusal([&] { order_elements("", {Incidence{}, vertices, {}, {}}); });
+  for (const ElementMethod& method : element_methods()) {
+    EXPECT_NE(of_elements.find(method.name), std::string::npos) << of_elements;
+  }
+}
+
+TEST(Methods, HaveDistinctNamesAndASentenceEach) {
+  std::set<std::string_view> names;
+  for (const VertexMethod& method : vertex_methods()) {
+    EXPECT_TRUE(names.insert(method.name).second) << method.name;
+    EXPECT_FALSE(method.sentence.empty());
+  }
+  names.clear();
+  for (const ElementMethod& method : element_methods()) {
+    EXPECT_TRUE(names.insert(method.name).second) << method.name;
+    EXPECT_FALSE(method.sentence.empty());
+  }
+}
+
+struct NamedMesh {
+  std::string name;
+  Mesh mesh;
+};
+
+std::vector<NamedMesh> meshes() {
+  Mesh points_only;
+  points_only.points = random_points(5);
+  Mesh one;
+  one.points = random_points(3);
+  one.cells.push_back(Shape::triangle, std::vector<Index>{0, 1, 2});
+  Mesh twice = one;
+  twice.cells.push_back(Shape::triangle, std::vector<Index>{2, 1, 0});
+  Mesh degenerate = one;
+  degenerate.cells.push_back(Shape::triangle, std::vector<Index>{1, 1, 1});
+  return {{"nothing", Mesh{}},
+          {"points only", points_only},
+          {"one triangle", one},
+          {"a triangle twice", twice},
+          {"a degenerate triangle", degenerate},
+          {"disjoint hexahedra", test::cells_of_type(Shape::hexahedron, 8, 20)},
+          {"mixed mesh", test::mixed_mesh()},
+          {"bar", test::tetrahedral_bar(12)}};
+}
+
+TEST(ElementMethods, YieldABijection) {
+  for (const ElementMethod& method : element_methods()) {
+    for (const auto& [name, mesh] : meshes()) {
+      SCOPED_TRACE(std::string(method.name) + " on " + name);
+      const CellIncidence top = elements(mesh);
+      const Permutation vertices = test::shuffled(mesh.vertex_count(), 3);
+      const ElementProblem problem{top.incidence, vertices, mesh.points,
+                                   [&m = mesh] { return facet_graph(m); }};
+      const Ordering order = order_elements(method.name, problem);
+      expect_bijection(order.permutation, index_size(top.cells));
+      EXPECT_EQ(order_elements(method.name, problem).permutation, order.permutation) << "run again";
+      EXPECT_EQ(!order.fiedler.empty(), method.name.starts_with("fiedler") && !top.cells.empty());
+    }
+  }
+}
+
+TEST(ElementMethods, OfGeometryNeedCoordinatesAndOthersDoNot) {
+  const Mesh mesh = test::tetrahedral_bar(3);
+  const CellIncidence top = elements(mesh);
+  const Permutation vertices = Permutation::identity(mesh.vertex_count());
+  const ElementProblem problem{top.incidence, vertices, {}, [&] { return facet_graph(mesh); }};
+  for (const ElementMethod& method : element_methods()) {
+    if (method.name == "hilbert") {
+      const std::string message = refusal([&] { order_elements(method.name, problem); });
+      EXPECT_NE(message.find("'hilbert'"), std::string::npos) << message;
+      EXPECT_NE(message.find(std::to_string(mesh.vertex_count()) + " vertices"), std::string::npos)
+          << message;
+    } else {
+      EXPECT_NO_THROW(order_elements(method.name, problem)) << method.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshorder

@@ -1,0 +1,70 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "metrics/reuse_sample.hpp"
+
+#include "base/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+constexpr Index kLines = 40'000;
+
+/// Random accesses to a window of lines that wanders, with streams of two and nine lines between.
+std::vector<Index> wandering_stream() {
+  Random random(7);
+  std::vector<Index> stream;
+  for (Index i = 0; i < 400'000; ++i) {
+    const Index window = i / 20 % (kLines / 2);
+    stream.push_back(window + static_cast<Index>(random.below(3000)));
+    stream.push_back(kLines / 2 + i / 4 % (kLines / 2));
+  }
+  return stream;
+}
+
+Reuse sampled(const std::vector<Index>& stream, int halvings) {
+  ReuseSample sample(kLines, halvings);
+  for (const Index line : stream) sample.access(line);
+  return std::move(sample).repeated();
+}
+
+TEST(ReuseSample, OfAllLinesIsTheMeasurement) {
+  const std::vector<Index> stream = wandering_stream();
+  ReuseDistance distance(kLines);
+  for (const Index line : stream) distance.access(line);
+  EXPECT_EQ(sampled(stream, 0), std::move(distance).repeated());
+}
+
+TEST(ReuseSample, EstimatesMissesAndJumps) {
+  const std::vector<Index> stream = wandering_stream();
+  const Reuse exact = sampled(stream, 0);
+  for (const int halvings : {1, 3}) {
+    const Reuse estimate = sampled(stream, halvings);
+    const auto all = static_cast<double>(exact.all.accesses());
+    EXPECT_NEAR(static_cast<double>(estimate.all.accesses()) / all, 1, 0.04);
+    for (const Offset lines : {768, 2048, 16'384, 30'000}) {
+      EXPECT_NEAR(static_cast<double>(estimate.all.misses(lines)) / all,
+                  static_cast<double>(exact.all.misses(lines)) / all, 0.03)
+          << halvings << " halvings, " << lines << " lines";
+      EXPECT_NEAR(static_cast<double>(estimate.jumps.misses(lines)) / all,
+                  static_cast<double>(exact.jumps.misses(lines)) / all, 0.03)
+          << halvings << " halvings, " << lines << " lines";
+    }
+  }
+  EXPECT_GT(exact.jumps.misses(768), exact.all.accesses() / 10);
+}
+
+TEST(ReuseSample, AStreamHasNoJumps) {
+  std::vector<Index> stream(kLines);
+  std::iota(stream.begin(), stream.end(), Index{0});
+  const Reuse estimate = sampled(stream, 3);
+  EXPECT_NEAR(static_cast<double>(estimate.all.misses(768)), kLines, 0.05 * kLines);
+  EXPECT_EQ(estimate.jumps.misses(768), 0);
+}
+
+}  // namespace
+}  // namespace meshorder

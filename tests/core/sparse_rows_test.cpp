@@ -1,0 +1,58 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "spectral/sparse_rows.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+namespace meshorder {
+namespace {
+
+SparseRows random_rows(Index rows, Index columns, Index entries_per_row, unsigned seed) {
+  std::mt19937 random(seed);
+  SparseRows result;
+  result.columns_count = columns;
+  for (Index row = 0; row < rows; ++row) {
+    std::set<Index> used;
+    for (Index k = 0; k < static_cast<Index>(random() % (entries_per_row + 1U)); ++k) {
+      const auto column = static_cast<Index>(random() % static_cast<unsigned>(columns));
+      if (!used.insert(column).second) continue;
+      result.columns.push_back(column);
+      result.values.push_back(static_cast<double>(random() % 19U) - 9);
+    }
+    result.offsets.push_back(static_cast<Offset>(result.columns.size()));
+  }
+  return result;
+}
+
+/// Every entry; EXPECTs that none stands twice.
+Eigen::MatrixXd dense(const SparseRows& a) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(a.rows(), a.columns_count);
+  for (Index row = 0; row < a.rows(); ++row) {
+    std::set<Index> used;
+    for (Offset k = a.offsets[row]; k < a.offsets[row + 1]; ++k) {
+      EXPECT_TRUE(used.insert(a.columns[k]).second)
+          << "row " << row << " has column " << a.columns[k] << " twice";
+      matrix(row, a.columns[k]) += a.values[k];
+    }
+  }
+  return matrix;
+}
+
+// whole numbers, so that every result is exact
+
+TEST(SparseRows, TransposedSwapsRowsAndColumns) {
+  for (const auto& [rows, columns] :
+       {std::pair(40, 25), std::pair(7, 60), std::pair(0, 5), std::pair(5, 1)}) {
+    const SparseRows a = random_rows(rows, columns, 6, 1);
+    const SparseRows t = transposed(a);
+    EXPECT_EQ(t.rows(), columns);
+    EXPECT_EQ(t.columns_count, rows);
+    EXPECT_EQ(dense(t), dense(a).transpose());
+  }
+}
+
+}  // namespace
+}  // namespace meshorder

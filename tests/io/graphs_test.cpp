@@ -1,0 +1,248 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "mesh/graphs.hpp"
+
+#include "mesh/cells.hpp"
+#include "mesh/procedural.hpp"
+#include "support/sample_meshes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+using Pairs = std::set<std::pair<Index, Index>>;
+
+struct Cell {
+  Shape shape;
+  std::vector<Index> vertices;
+};
+
+Mesh mesh_of(const std::vector<Cell>& cells) {
+  Mesh mesh;
+  Index last = -1;
+  for (const Cell& cell : cells) {
+    mesh.cells.push_back(cell.shape, cell.vertices);
+    for (const Index v : cell.vertices) last = std::max(last, v);
+  }
+  mesh.points.resize(static_cast<std::size_t>(last) + 1);
+  return mesh;
+}
+
+/// The edges of a graph, smaller end first.
+Pairs edges_of(const CsrGraph& graph) {
+  check(graph);
+  Pairs result;
+  for (Index v = 0; v < graph.size(); ++v) {
+    for (const Index u : graph[v]) result.insert(std::minmax(u, v));
+  }
+  return result;
+}
+
+Pairs facet_neighbours(const std::vector<Cell>& cells) { return edges_of(facet_graph(mesh_of(cells))); }
+
+/// Pairs of elements that share a facet, by comparing every facet of every pair as sets of vertices.
+Pairs sharing_a_facet(const Mesh& mesh) {
+  const CellIncidence top = elements(mesh);
+  std::vector<std::set<std::set<Index>>> facet_sets(top.cells.size());
+  for (std::size_t e = 0; e < top.cells.size(); ++e) {
+    const Index c = top.cells[e];
+    for (const auto& positions : facets(mesh.cells.shapes[c], mesh.cells.vertex_count(c))) {
+      std::set<Index> corners;
+      for (const int k : positions) corners.insert(mesh.cells[c][k]);
+      facet_sets[e].insert(corners);
+    }
+  }
+  Pairs result;
+  for (std::size_t e = 0; e < top.cells.size(); ++e) {
+    for (std::size_t f = e + 1; f < top.cells.size(); ++f) {
+      const bool share = std::any_of(facet_sets[e].begin(), facet_sets[e].end(),
+                                     [&](const auto& facet) { return facet_sets[f].contains(facet); });
+      if (share) result.emplace(static_cast<Index>(e), static_cast<Index>(f));
+    }
+  }
+  return result;
+}
+
+TEST(MeshVertexGraph, JoinsExactlyThePairsOfACommonElement) {
+  const Mesh mesh = test::mixed_mesh();
+  Pairs expected;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (dimension(mesh.cells.shapes[c]) != 3) continue;
+    for (const Index a : mesh.cells[c]) {
+      for (const Index b : mesh.cells[c]) {
+        if (a < b) expected.emplace(a, b);
+      }
+    }
+  }
+  const CsrGraph graph = vertex_graph(mesh);
+  EXPECT_EQ(graph.size(), mesh.vertex_count());
+  EXPECT_EQ(edges_of(graph), expected);
+}
+
+TEST(MeshVertexGraph, LeavesVerticesOfLowerCellsAlone) {
+  const Mesh mesh =
+      mesh_of({{Shape::tetrahedron, {0, 1, 2, 3}}, {Shape::triangle, {3, 4, 5}}, {Shape::line, {5, 0}}});
+  EXPECT_EQ(edges_of(vertex_graph(mesh)), (Pairs{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}));
+  EXPECT_EQ(vertex_graph(mesh).degree(4), 0);
+}
+
+TEST(MeshVertexGraph, OfNoCellsHasNoEdges) {
+  Mesh mesh;
+  mesh.points.resize(3);
+  EXPECT_EQ(vertex_graph(mesh).size(), 3);
+  EXPECT_EQ(vertex_graph(mesh).edge_count(), 0);
+  EXPECT_EQ(facet_graph(mesh).size(), 0);
+  EXPECT_EQ(vertex_graph(Mesh{}).size(), 0);
+}
+
+TEST(Elements, AreTheCellsOfTheHighestDimensionAndLowerCellsTheRest) {
+  const Mesh mesh = test::mixed_mesh();
+  const CellIncidence top = elements(mesh);
+  const CellIncidence lower = lower_cells(mesh);
+  std::vector<Index> all = top.cells;
+  all.insert(all.end(), lower.cells.begin(), lower.cells.end());
+  std::sort(all.begin(), all.end());
+  EXPECT_EQ(index_size(all), mesh.cell_count());
+  EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
+  for (const auto& [part, is_top] : {std::pair(&top, true), std::pair(&lower, false)}) {
+    EXPECT_TRUE(std::is_sorted(part->cells.begin(), part->cells.end()));
+    ASSERT_EQ(part->incidence.size(), index_size(part->cells));
+    for (Index e = 0; e < part->incidence.size(); ++e) {
+      const Index c = part->cells[e];
+      EXPECT_EQ(dimension(mesh.cells.shapes[c]) == 3, is_top);
+      EXPECT_TRUE(std::equal(part->incidence[e].begin(), part->incidence[e].end(), mesh.cells[c].begin(),
+                             mesh.cells[c].end()));
+    }
+  }
+}
+
+TEST(FacetGraph, JoinsTetrahedraThatShareAFaceInAnyOrder) {
+  EXPECT_EQ(facet_neighbours({{Shape::tetrahedron, {0, 1, 2, 3}}, {Shape::tetrahedron, {4, 3, 1, 2}}}),
+            (Pairs{{0, 1}}));
+  // an edge or a vertex in common is not enough
+  EXPECT_EQ(facet_neighbours({{Shape::tetrahedron, {0, 1, 2, 3}},
+                              {Shape::tetrahedron, {0, 1, 4, 5}},
+                              {Shape::tetrahedron, {0, 6, 7, 8}}}),
+            Pairs{});
+}
+
+TEST(FacetGraph, JoinsVolumesOfDifferentShapes) {
+  // a hexahedron, a wedge on its side, a pyramid on its top, a tetrahedron on a side of the pyramid and one
+  // on the end of the wedge
+  const std::vector<Cell> cells{{Shape::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}},
+                                {Shape::wedge, {1, 8, 2, 5, 9, 6}},
+                                {Shape::pyramid, {4, 5, 6, 7, 10}},
+                                {Shape::tetrahedron, {5, 6, 10, 11}},
+                                {Shape::tetrahedron, {5, 9, 6, 12}}};
+  EXPECT_EQ(facet_neighbours(cells), (Pairs{{0, 1}, {0, 2}, {1, 4}, {2, 3}}));
+}
+
+TEST(FacetGraph, DoesNotTakeATriangleForPartOfAQuad) {
+  // three of the four corners of the hexahedron's top
+  EXPECT_EQ(
+      facet_neighbours({{Shape::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}}, {Shape::tetrahedron, {4, 5, 6, 8}}}),
+      Pairs{});
+}
+
+TEST(FacetGraph, JoinsSurfacesAlongEdges) {
+  EXPECT_EQ(facet_neighbours({{Shape::triangle, {0, 1, 2}},
+                              {Shape::quad, {1, 3, 4, 2}},
+                              {Shape::polygon, {3, 5, 6, 7, 4}},
+                              {Shape::triangle, {0, 8, 9}},
+                              {Shape::triangle_strip, {5, 3, 10, 11}}}),
+            (Pairs{{0, 1}, {1, 2}, {2, 4}}));
+}
+
+TEST(FacetGraph, JoinsLinesAtTheirEnds) {
+  EXPECT_EQ(facet_neighbours({{Shape::line, {0, 1}},
+                              {Shape::line, {2, 1}},
+                              {Shape::polyline, {2, 3, 4}},
+                              {Shape::line, {3, 5}}}),
+            (Pairs{{0, 1}, {1, 2}}));
+}
+
+TEST(FacetGraph, ChainsTheElementsOfANonManifoldFacet) {
+  // four triangles around one edge: each joined to the next, so that they stay together
+  EXPECT_EQ(facet_neighbours({{Shape::triangle, {0, 1, 2}},
+                              {Shape::triangle, {1, 0, 3}},
+                              {Shape::triangle, {4, 1, 0}},
+                              {Shape::triangle, {0, 5, 1}}}),
+            (Pairs{{0, 1}, {1, 2}, {2, 3}}));
+}
+
+TEST(FacetGraph, ComparesCornersOfSecondOrderCells) {
+  EXPECT_EQ(facet_neighbours({{Shape::tetrahedron, {0, 1, 2, 3, 10, 11, 12, 13, 14, 15}},
+                              {Shape::tetrahedron, {1, 2, 3, 4}}}),
+            (Pairs{{0, 1}}));
+  EXPECT_EQ(
+      facet_neighbours({{Shape::triangle, {0, 1, 2, 5, 6, 7}}, {Shape::quad, {1, 0, 3, 4, 8, 9, 10, 11}}}),
+      (Pairs{{0, 1}}));
+  // midpoints are no corners
+  EXPECT_EQ(facet_neighbours({{Shape::triangle, {0, 1, 2, 5, 6, 7}}, {Shape::triangle, {5, 6, 3}}}), Pairs{});
+}
+
+TEST(FacetGraph, LeavesOutLowerCells) {
+  const Mesh mesh = mesh_of({{Shape::triangle, {0, 1, 2}},
+                             {Shape::tetrahedron, {0, 1, 2, 3}},
+                             {Shape::triangle, {1, 2, 3}},
+                             {Shape::tetrahedron, {1, 2, 3, 4}}});
+  EXPECT_EQ(facet_graph(mesh).size(), 2);
+  EXPECT_EQ(edges_of(facet_graph(mesh)), (Pairs{{0, 1}}));
+}
+
+TEST(FacetGraph, OfDegenerateAndRepeatedCellsHasNoLoops) {
+  EXPECT_EQ(facet_neighbours(
+                {{Shape::triangle, {0, 0, 0}}, {Shape::triangle, {1, 1, 2}}, {Shape::triangle, {2, 1, 1}}}),
+            (Pairs{{1, 2}}));
+  EXPECT_EQ(facet_neighbours({{Shape::triangle_strip, {0}}}), Pairs{});
+  EXPECT_EQ(facet_neighbours({{Shape::polyline, {0}}, {Shape::polyline, {0, 1, 0}}}), (Pairs{{0, 1}}));
+}
+
+TEST(FacetGraph, IsThatOfAllPairsOnWholeMeshes) {
+  for (const Mesh& mesh : {test::tetrahedral_bar(6), test::mixed_mesh(), make_torus({1, 0.1, 0})}) {
+    EXPECT_EQ(edges_of(facet_graph(mesh)), sharing_a_facet(mesh));
+  }
+}
+
+TEST(Facets, BoundEveryVolumeOnceOnEachSide) {
+  // in a closed surface each edge is walked once in each direction
+  for (const auto& [shape, corners] : test::linear_types()) {
+    if (dimension(shape) != 3) continue;
+    std::multiset<std::pair<int, int>> walked;
+    for (const auto& facet : facets(shape, corners)) {
+      for (std::size_t k = 0; k < facet.size(); ++k) walked.emplace(facet[k], facet[(k + 1) % facet.size()]);
+    }
+    for (const auto& [from, to] : walked) {
+      EXPECT_EQ(walked.count({from, to}), 1U) << name(shape);
+      EXPECT_EQ(walked.count({to, from}), 1U) << name(shape);
+    }
+  }
+}
+
+TEST(Facets, OfATriangleStripAreItsOutline) {
+  for (int n = 3; n <= 8; ++n) {
+    // edges that only one of the strip's triangles has
+    std::multiset<std::set<int>> of_triangles;
+    for (int i = 0; i + 2 < n; ++i) {
+      of_triangles.insert({i, i + 1});
+      of_triangles.insert({i + 1, i + 2});
+      of_triangles.insert({i, i + 2});
+    }
+    std::set<std::set<int>> expected;
+    for (const auto& edge : of_triangles) {
+      if (of_triangles.count(edge) == 1) expected.insert(edge);
+    }
+    const auto outline = facets(Shape::triangle_strip, n);
+    std::set<std::set<int>> found;
+    for (const auto& edge : outline) found.emplace(edge.begin(), edge.end());
+    EXPECT_EQ(found, expected) << n;
+    EXPECT_EQ(found.size(), outline.size()) << n;
+  }
+}
+
+}  // namespace
+}  // namespace meshorder

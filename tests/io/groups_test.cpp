@@ -1,0 +1,251 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "mesh/groups.hpp"
+
+#include "base/error.hpp"
+#include "mesh/mesh_ordering.hpp"
+#include "mesh/reorder.hpp"
+#include "support/sample_meshes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// A bar of cubes with faces at its side, scrambled; "part" gives the cubes 30, −4 and 7 in turns of three
+/// cubes, and every face −100.
+Mesh bar_of_parts() {
+  Mesh mesh = test::tetrahedral_bar(9);
+  mesh.data.clear();
+  mesh.sets.clear();
+  std::vector<std::int64_t> parts;
+  parts.reserve(mesh.cells.shapes.size() + 9);
+  for (Index c = 0; c < mesh.cell_count(); ++c) parts.push_back(std::array{30, -4, 7}[c / 6 / 3]);
+  for (Index i = 0; i < 9; ++i) {
+    mesh.cells.push_back(Shape::triangle, std::vector<Index>{4 * i, 4 * i + 4, 4 * i + 5});
+    parts.push_back(-100);
+  }
+  mesh.points.resize(mesh.points.size() + 3, Point{});  // that nothing uses
+  mesh.data.push_back({"part", Attached::cells, 1, parts, {}, {}});
+  mesh.cell_blocks.clear();
+  reorder(mesh, test::shuffled(mesh.vertex_count(), 1), test::shuffled_cells(mesh, 2));
+  return mesh;
+}
+
+const std::vector<std::int64_t>& values_of(const Mesh& mesh, std::string_view name, Attached on) {
+  return std::get<std::vector<std::int64_t>>(find_array(mesh, name, on)->values);
+}
+
+/// The smallest part among the tetrahedra at a vertex; the largest number where there is none.
+std::int64_t smallest_part_at(const Mesh& mesh, Index vertex) {
+  std::int64_t smallest = std::numeric_limits<std::int64_t>::max();
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const auto vertices = mesh.cells[c];
+    if (mesh.cells.shapes[c] != Shape::tetrahedron) continue;
+    if (std::find(vertices.begin(), vertices.end(), vertex) == vertices.end()) continue;
+    smallest = std::min(smallest, values_of(mesh, "part", Attached::cells)[c]);
+  }
+  return smallest;
+}
+
+ReorderingOptions grouped(std::string name, std::string vertices = "rcm") {
+  ReorderingOptions options;
+  options.vertices = std::move(vertices);
+  options.group_by = std::move(name);
+  return options;
+}
+
+std::string refusal(const Mesh& mesh, std::string_view name) {
+  try {
+    grouping_by(mesh, name);
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(GroupBy, KeepsCellsOfOneValueTogetherByRisingValue) {
+  for (const char* elements : {"lexmax", "hilbert", "original", "scrambled"}) {
+    Mesh mesh = bar_of_parts();
+    ReorderingOptions options = grouped("part");
+    options.elements = elements;
+    reorder(mesh, options);
+    std::vector<std::int64_t> of_tetrahedra;
+    for (Index c = 0; c < mesh.cell_count(); ++c) {
+      if (mesh.cells.shapes[c] != Shape::tetrahedron) continue;
+      of_tetrahedra.push_back(values_of(mesh, "part", Attached::cells)[c]);
+    }
+    EXPECT_TRUE(std::is_sorted(of_tetrahedra.begin(), of_tetrahedra.end())) << elements;
+  }
+}
+
+TEST(GroupBy, PutsEachVertexWithTheSmallestValueAmongItsElements) {
+  for (const char* vertices : {"rcm", "fiedler", "hilbert", "original", "auto"}) {
+    Mesh mesh = bar_of_parts();
+    const Reordering result = reorder(mesh, grouped("part", vertices));
+    std::vector<std::int64_t> at_vertices;
+    at_vertices.reserve(mesh.points.size());
+    for (Index v = 0; v < mesh.vertex_count(); ++v) at_vertices.push_back(smallest_part_at(mesh, v));
+    EXPECT_TRUE(std::is_sorted(at_vertices.begin(), at_vertices.end())) << vertices;
+    // −4 takes both interfaces: 4 layers of 4; the others keep 3; then what no element uses
+    ASSERT_TRUE(result.groups);
+    const std::vector<GroupSize> sizes = group_sizes(*result.groups);
+    ASSERT_EQ(sizes.size(), 5U);
+    const std::vector<std::pair<Index, Index>> expected{{0, 9}, {16, 18}, {12, 18}, {12, 18}, {3, 0}};
+    for (std::size_t g = 0; g < sizes.size(); ++g) {
+      EXPECT_EQ(std::pair(sizes[g].vertices, sizes[g].cells), expected[g]) << g;
+      EXPECT_EQ(sizes[g].value.has_value(), g < 4);
+    }
+  }
+}
+
+TEST(GroupBy, OrdersElementsWithinTheirGroupsByTheMethod) {
+  Mesh mesh = bar_of_parts();
+  reorder(mesh, grouped("part"));
+  std::vector<std::pair<std::int64_t, std::vector<Index>>> keys;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (mesh.cells.shapes[c] != Shape::tetrahedron) continue;
+    std::vector<Index> falling(mesh.cells[c].begin(), mesh.cells[c].end());
+    std::sort(falling.rbegin(), falling.rend());
+    keys.emplace_back(values_of(mesh, "part", Attached::cells)[c], falling);
+  }
+  EXPECT_TRUE(std::is_sorted(keys.begin(), keys.end()));
+}
+
+TEST(GroupBy, StaysWithinBlocks) {
+  Mesh mesh = bar_of_parts();
+  mesh.cell_blocks = {0, 20};
+  reorder(mesh, grouped("part"));
+  for (const auto& [begin, end] : {std::pair(0, 20), std::pair(20, mesh.cell_count())}) {
+    std::vector<std::int64_t> of_block;
+    for (Index c = begin; c < end; ++c) {
+      if (mesh.cells.shapes[c] != Shape::tetrahedron) continue;
+      of_block.push_back(values_of(mesh, "part", Attached::cells)[c]);
+    }
+    EXPECT_TRUE(std::is_sorted(of_block.begin(), of_block.end()));
+  }
+}
+
+TEST(GroupBy, AnArrayOnVerticesGroupsThemAndLeavesElementsToTheirMethod) {
+  Mesh mesh = bar_of_parts();
+  std::vector<std::int64_t> zones;
+  zones.reserve(mesh.points.size());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) zones.push_back(v % 3);
+  mesh.data.push_back({"zone", Attached::vertices, 1, zones, {}, {}});
+  const Reordering result = reorder(mesh, grouped("zone"));
+  const std::vector<std::int64_t>& after = values_of(mesh, "zone", Attached::vertices);
+  EXPECT_TRUE(std::is_sorted(after.begin(), after.end()));
+  EXPECT_TRUE(result.groups->of_cells.empty());
+  std::vector<std::vector<Index>> tuples;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (mesh.cells.shapes[c] != Shape::tetrahedron) continue;
+    tuples.emplace_back(mesh.cells[c].begin(), mesh.cells[c].end());
+    std::sort(tuples.back().rbegin(), tuples.back().rend());
+  }
+  EXPECT_TRUE(std::is_sorted(tuples.begin(), tuples.end()));
+}
+
+TEST(GroupBy, PutsWhatHasNoValueLast) {
+  Mesh mesh = test::tetrahedral_bar(2);
+  mesh.data = {{"some", Attached::cells, 1, std::vector<std::int32_t>{5, 5, 3}, {4, 7, 11}, {}}};
+  const Grouping grouping = grouping_by(mesh, "some");
+  EXPECT_EQ(grouping.values, (std::vector<std::int64_t>{3, 5}));
+  EXPECT_EQ(grouping.of_cells, (std::vector<Index>{2, 2, 2, 2, 1, 2, 2, 1, 2, 2, 2, 0}));
+  const Reordering result = reorder(mesh, grouped("some"));
+  const auto& rows = mesh.data[0].rows;
+  EXPECT_EQ(std::vector<Index>(rows.begin() + 2, rows.end()), std::vector<Index>{0});
+  EXPECT_LT(std::max(rows[0], rows[1]), 3);
+  EXPECT_EQ(group_sizes(*result.groups).back().value, std::nullopt);
+}
+
+TEST(GroupBy, TakesEveryTypeThatHoldsWholeNumbers) {
+  Mesh mesh = test::tetrahedral_bar(1);
+  const std::vector<Values> types{
+      std::vector<std::int8_t>{2, -1, 2, -1, 2, 2},  std::vector<std::uint8_t>{9, 1, 9, 1, 9, 9},
+      std::vector<std::int32_t>{2, -1, 2, -1, 2, 2}, std::vector<std::uint64_t>{9, 1, 9, 1, 9, 9},
+      std::vector<float>{2.0F, -1.0F, 2, -1, 2, 2},  std::vector<double>{2e9, -1e15, 2e9, -1e15, 2e9, 2e9}};
+  for (const Values& values : types) {
+    mesh.data = {{"region", Attached::cells, 1, values, {}, {}}};
+    EXPECT_EQ(grouping_by(mesh, "region").of_cells, (std::vector<Index>{1, 0, 1, 0, 1, 1}));
+  }
+}
+
+TEST(GroupBy, RefusesWhatHoldsNoWholeNumbers) {
+  Mesh mesh = test::tetrahedral_bar(1);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<Values> types{std::vector<double>{1, 1, 1, 1, 1, 1.5},
+                                  std::vector<double>{1, 1, 1, 1, 1, nan},
+                                  std::vector<double>{1, 1, infinity, 1, 1, 1},
+                                  std::vector<float>{1, 1, 1, 1, 1, 1e30F},
+                                  std::vector<std::uint64_t>{1, 1, 1, 1, 1, ~std::uint64_t{0}},
+                                  std::vector<std::string>{"1", "1", "1", "1", "1", "1"}};
+  for (const Values& values : types) {
+    mesh.data = {{"region", Attached::cells, 1, values, {}, {}},
+                 {"good", Attached::vertices, 1, std::vector<int>(8, 1), {}, {}}};
+    const std::string message = refusal(mesh, "region");
+    EXPECT_NE(message.find("'region' on cells"), std::string::npos) << message;
+    EXPECT_NE(message.find("good on vertices"), std::string::npos) << message;
+  }
+  mesh.sets.clear();
+  mesh.data = {{"pairs", Attached::cells, 2, std::vector<std::int32_t>(12, 1), {}, {}}};
+  EXPECT_NE(refusal(mesh, "pairs").find("is: none"), std::string::npos);
+}
+
+TEST(GroupBy, FindsArraysByNameCellsFirstOrByPrefix) {
+  Mesh mesh = test::tetrahedral_bar(1);
+  mesh.data = {{"tag", Attached::vertices, 1, std::vector<std::int32_t>(8, 4), {}, {}},
+               {"tag", Attached::cells, 1, std::vector<std::int32_t>(6, 5), {}, {}},
+               {"zone", Attached::vertices, 1, std::vector<std::int32_t>(8, 6), {}, {}},
+               {"cells:tag", Attached::vertices, 1, std::vector<std::int32_t>(8, 7), {}, {}}};
+  const auto value = [&](std::string_view name) { return grouping_by(mesh, name).values.front(); };
+  EXPECT_EQ(value("tag"), 5);
+  EXPECT_EQ(value("vertices:tag"), 4);
+  EXPECT_EQ(value("zone"), 6);
+  EXPECT_EQ(value("cells:tag"), 7);
+  for (const char* unknown : {"nothing", "cells:zone", "vertices:", ""}) {
+    const std::string message = refusal(mesh, unknown);
+    EXPECT_NE(message.find("tag on cells"), std::string::npos) << message;
+    EXPECT_NE(message.find("zone on vertices"), std::string::npos) << message;
+  }
+}
+
+TEST(GroupBy, SetsOfCellsGroupByTheSmallestThatHoldsACell) {
+  Mesh mesh = test::tetrahedral_bar(2);
+  mesh.data.clear();
+  mesh.sets = {{"fixed", Attached::vertices, {0, 1}},
+               {"all", Attached::cells, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}},
+               {"left", Attached::cells, {5, 4, 3, 2}},
+               {"unused", Attached::cells, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}},
+               {"right", Attached::cells, {9, 8, 5}}};
+  const Grouping grouping = grouping_by(mesh, "sets");
+  EXPECT_EQ(grouping.names, (std::vector<std::string>{"all", "left", "right"}));
+  EXPECT_EQ(grouping.values, (std::vector<std::int64_t>{1, 2, 4}));
+  EXPECT_EQ(grouping.of_cells, (std::vector<Index>{0, 0, 1, 1, 1, 2, 0, 0, 2, 2, 0, 3}));
+  EXPECT_EQ(group_sizes(grouping)[2].name, "right");
+  const Reordering result = reorder(mesh, grouped("sets"));
+  std::vector<Index> after(12);
+  for (Index c = 0; c < 12; ++c) after[result.cells.old_to_new()[c]] = result.groups->of_cells[c];
+  EXPECT_TRUE(std::is_sorted(after.begin(), after.end()));
+  EXPECT_NE(refusal(mesh, "set").find("is: sets"), std::string::npos);
+  mesh.sets.resize(1);
+  EXPECT_NE(refusal(mesh, "sets").find("is: none"), std::string::npos);
+}
+
+TEST(GroupBy, OfOneGroupIsTheOrderWithoutGroups) {
+  Mesh mesh = test::tetrahedral_bar(7);
+  mesh.data = {{"tag", Attached::cells, 1, std::vector<std::int32_t>(42, 5), {}, {}}};
+  Mesh other = mesh;
+  const Reordering with = reorder(mesh, grouped("tag", "fiedler"));
+  const Reordering without = reorder(other, grouped("", "fiedler"));
+  EXPECT_EQ(with.vertices, without.vertices);
+  EXPECT_EQ(with.cells, without.cells);
+  EXPECT_FALSE(without.groups);
+}
+
+}  // namespace
+}  // namespace meshorder

@@ -1,0 +1,181 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "mesh/mesh_ordering.hpp"
+
+#include "base/error.hpp"
+#include "mesh/check.hpp"
+#include "mesh/graphs.hpp"
+#include "mesh/reorder.hpp"
+#include "metrics/edge_span.hpp"
+#include "support/sample_meshes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace meshorder {
+namespace {
+
+ReorderingOptions methods(std::string vertices, std::string elements) {
+  ReorderingOptions options;
+  options.vertices = std::move(vertices);
+  options.elements = std::move(elements);
+  return options;
+}
+
+/// The vertices of a cell, falling: what lexmax compares in a mesh whose vertices are already reordered.
+std::vector<Index> falling(const Mesh& mesh, Index cell) {
+  std::vector<Index> result(mesh.cells[cell].begin(), mesh.cells[cell].end());
+  std::sort(result.rbegin(), result.rend());
+  return result;
+}
+
+/// Whether the cells of that dimension from `first` to `end` stand in lexmax order.
+bool in_lexmax_order(const Mesh& mesh, int of_dimension, Index first, Index end) {
+  std::vector<std::vector<Index>> tuples;
+  for (Index c = first; c < end; ++c) {
+    if (dimension(mesh.cells.shapes[c]) == of_dimension) tuples.push_back(falling(mesh, c));
+  }
+  return std::is_sorted(tuples.begin(), tuples.end());
+}
+
+/// A bar of tetrahedra with the boundary's faces, some edges and points, all mixed and scrambled.
+Mesh bar_with_boundary() {
+  Mesh mesh = test::tetrahedral_bar(8);
+  mesh.data.clear();
+  mesh.sets.clear();
+  for (Index i = 0; i < 8; ++i) {
+    mesh.cells.push_back(Shape::triangle, std::vector<Index>{4 * i, 4 * i + 4, 4 * i + 5});
+    mesh.cells.push_back(Shape::line, std::vector<Index>{4 * i + 1, 4 * i + 5});
+    mesh.cells.push_back(Shape::triangle, std::vector<Index>{4 * i, 4 * i + 5, 4 * i + 1});
+    mesh.cells.push_back(Shape::vertex, std::vector<Index>{4 * i + 2});
+  }
+  mesh.cell_blocks.clear();
+  reorder(mesh, test::shuffled(mesh.vertex_count(), 1), test::shuffled_cells(mesh, 2));
+  return mesh;
+}
+
+TEST(MeshOrdering, LowerCellsFollowLexmaxWhateverTheElementsDo) {
+  for (const char* of_elements : {"lexmax", "mean", "fiedler-facet", "hilbert", "scrambled"}) {
+    Mesh mesh = bar_with_boundary();
+    reorder(mesh, methods("rcm", of_elements));
+    for (int d = 0; d < 3; ++d) EXPECT_TRUE(in_lexmax_order(mesh, d, 0, mesh.cell_count())) << of_elements;
+    const bool elements_too = in_lexmax_order(mesh, 3, 0, mesh.cell_count());
+    EXPECT_TRUE(elements_too || std::string(of_elements) != "lexmax");
+    EXPECT_FALSE(elements_too && std::string(of_elements) == "scrambled");
+  }
+}
+
+TEST(MeshOrdering, CellsKeepToTheirBlocksAndDimensions) {
+  Mesh mesh = test::mixed_mesh();
+  mesh.cell_blocks = {0, 5, 5, 22, 40};
+  const Mesh before = mesh;
+  const Reordering result = reorder(mesh, methods("fiedler", "lexmax"));
+  EXPECT_FALSE(result.cells.is_identity());
+  const std::vector<Index> ends{5, 5, 22, 40, mesh.cell_count()};
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const auto block = [&](Index cell) {
+      return std::upper_bound(ends.begin(), ends.end(), cell) - ends.begin();
+    };
+    EXPECT_EQ(block(result.cells.old_to_new()[c]), block(c));
+    EXPECT_EQ(dimension(mesh.cells.shapes[c]), dimension(before.cells.shapes[c]));
+  }
+  for (std::size_t b = 0; b < ends.size(); ++b) {
+    for (int d = 0; d <= 3; ++d) EXPECT_TRUE(in_lexmax_order(mesh, d, before.cell_blocks[b], ends[b]));
+  }
+  EXPECT_EQ(mesh.cell_blocks, before.cell_blocks);
+}
+
+TEST(MeshOrdering, OriginalAndOriginalIsTheIdentity) {
+  Mesh mesh = bar_with_boundary();
+  const Mesh before = mesh;
+  const Reordering result = reorder(mesh, methods("original", "original"));
+  EXPECT_TRUE(result.vertices.is_identity());
+  EXPECT_TRUE(result.cells.is_identity());
+  test::expect_same(mesh, before);
+}
+
+TEST(MeshOrdering, UnusedVerticesComeLastInOldOrder) {
+  Mesh mesh;
+  mesh.points.resize(12);
+  for (Index v = 0; v < 12; ++v) mesh.points[v] = {1.0 * v, 0.5 * (v % 3), 0.25 * (v % 5)};
+  mesh.cells.push_back(Shape::tetrahedron, std::vector<Index>{1, 3, 4, 6});
+  mesh.cells.push_back(Shape::tetrahedron, std::vector<Index>{3, 4, 6, 9});
+  mesh.cells.push_back(Shape::triangle, std::vector<Index>{0, 2, 9});  // lower: does not keep 0 and 2 in use
+  for (const VertexMethod& method : vertex_methods()) {
+    if (method.name == "original") continue;
+    const CsrGraph graph = vertex_graph(mesh);
+    const Reordering result = compute_reordering(mesh, graph, methods(std::string(method.name), "lexmax"));
+    const std::vector<Index> last(result.vertices.new_to_old().begin() + 5,
+                                  result.vertices.new_to_old().end());
+    EXPECT_EQ(last, (std::vector<Index>{0, 2, 5, 7, 8, 10, 11})) << method.name;
+  }
+}
+
+TEST(MeshOrdering, IsTheSameTwice) {
+  const Mesh mesh = bar_with_boundary();
+  const CsrGraph graph = vertex_graph(mesh);
+  for (const VertexMethod& method : vertex_methods()) {
+    const ReorderingOptions options = methods(std::string(method.name), "fiedler");
+    const Reordering once = compute_reordering(mesh, graph, options);
+    const Reordering again = compute_reordering(mesh, graph, options);
+    EXPECT_EQ(once.vertices, again.vertices) << method.name;
+    EXPECT_EQ(once.cells, again.cells) << method.name;
+  }
+}
+
+TEST(MeshOrdering, EveryPairOfMethodsGivesASoundMeshThatTheInverseRestores) {
+  for (const Mesh& original : {test::mixed_mesh(), bar_with_boundary(), Mesh{}}) {
+    const CsrGraph graph = vertex_graph(original);
+    for (const VertexMethod& of_vertices : vertex_methods()) {
+      for (const ElementMethod& of_elements : element_methods()) {
+        SCOPED_TRACE(std::string(of_vertices.name) + " and " + std::string(of_elements.name));
+        const ReorderingOptions options =
+            methods(std::string(of_vertices.name), std::string(of_elements.name));
+        Mesh mesh = original;
+        const Reordering applied = reorder(mesh, options);
+        check(mesh);
+        const Reordering computed = compute_reordering(original, graph, options);
+        EXPECT_EQ(computed.vertices, applied.vertices);
+        EXPECT_EQ(computed.cells, applied.cells);
+        reorder(mesh, applied.vertices.inverse(), applied.cells.inverse());
+        test::expect_same(mesh, original);
+      }
+    }
+  }
+}
+
+TEST(MeshOrdering, ReportsHowTheEigensolverFared) {
+  Mesh mesh = bar_with_boundary();
+  const Reordering both = reorder(mesh, methods("fiedler", "fiedler"));
+  ASSERT_EQ(both.vertex_fiedler.size(), 1U);
+  ASSERT_EQ(both.element_fiedler.size(), 1U);
+  EXPECT_EQ(both.vertex_fiedler[0].size, mesh.vertex_count());
+  EXPECT_EQ(both.element_fiedler[0].size, 48);
+  EXPECT_TRUE(both.vertex_fiedler[0].converged && both.element_fiedler[0].converged);
+  const Reordering neither = reorder(mesh, methods("rcm", "lexmax"));
+  EXPECT_TRUE(neither.vertex_fiedler.empty());
+  EXPECT_TRUE(neither.element_fiedler.empty());
+}
+
+TEST(MeshOrdering, ShortensTheSpansOfAScrambledBar) {
+  Mesh mesh = bar_with_boundary();
+  const auto mean_span = [&] {
+    return edge_span(vertex_graph(mesh), Permutation::identity(mesh.vertex_count())).mean;
+  };
+  const double scrambled = mean_span();
+  reorder(mesh);
+  EXPECT_LT(mean_span(), 4.5);
+  EXPECT_GT(scrambled, 8);
+}
+
+TEST(MeshOrdering, RefusesUnknownMethodsAndLeavesTheMesh) {
+  Mesh mesh = bar_with_boundary();
+  const Mesh before = mesh;
+  EXPECT_THROW(reorder(mesh, methods("alphabetical", "lexmax")), InvalidArgument);
+  EXPECT_THROW(reorder(mesh, methods("fiedler", "alphabetical")), InvalidArgument);
+  test::expect_same(mesh, before);
+}
+
+}  // namespace
+}  // namespace meshorder

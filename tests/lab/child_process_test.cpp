@@ -1,0 +1,78 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/support/child_process.hpp"
+
+#include "base/error.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/personality.h>
+
+#include <csignal>
+#include <string>
+
+namespace meshorder {
+namespace {
+
+TEST(ChildProcess, AnswersLineByLine) {
+  ChildProcess cat("/bin/cat", {});
+  cat.send("first");
+  EXPECT_EQ(cat.receive(), "first");
+  const std::string long_line(1 << 18, 'x');
+  cat.send(long_line.substr(0, 1 << 15));
+  cat.send("");
+  EXPECT_EQ(cat.receive().size(), std::size_t{1} << 15);
+  EXPECT_EQ(cat.receive(), "");
+}
+
+TEST(ChildProcess, TellsHowItEnded) {
+  const auto complaint = [](const std::string& script) {
+    ChildProcess shell("/bin/sh", {"-c", script});
+    try {
+      return shell.receive();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(complaint("exit 3"), "/bin/sh: a process of it ended with status 3; is there enough memory?");
+  EXPECT_EQ(complaint("kill -9 $$"),
+            "/bin/sh: a process of it was ended by a signal: Killed; is there enough memory?");
+  EXPECT_EQ(complaint("echo done; exit 1"), "done");
+}
+
+TEST(ChildProcess, RefusesAProgramThatIsNotThere) {
+  ChildProcess none("/no/such/program", {});
+  EXPECT_THROW(none.receive(), Error);
+}
+
+TEST(ChildProcess, IsNotReachedByCtrlC) {
+  ChildProcess shell("/bin/sh", {"-c", "kill -INT $$; echo alive"});
+  EXPECT_EQ(shell.receive(), "alive");
+}
+
+TEST(ChildProcess, EndsWithItsOwner) {
+  std::string id;
+  {
+    ChildProcess shell("/bin/sh", {"-c", "echo $$; exec sleep 1000"});
+    id = shell.receive();
+  }
+  EXPECT_NE(::kill(std::stoi(id), 0), 0);
+}
+
+/// Containers may forbid it.
+bool addresses_can_be_fixed() {
+  const int before = ::personality(0xffffffff);
+  const bool allowed = before != -1 && ::personality(static_cast<unsigned>(before) | ADDR_NO_RANDOMIZE) != -1;
+  if (allowed) ::personality(static_cast<unsigned>(before));
+  return allowed;
+}
+
+TEST(ChildProcess, HasItsMemoryAtTheSameAddressesWhereAskedFor) {
+  if (!addresses_can_be_fixed()) GTEST_SKIP() << "the system does not allow it";
+  const auto stack = [] {
+    ChildProcess shell("/bin/sh", {"-c", "grep stack /proc/self/maps"}, true);
+    return shell.receive();
+  };
+  EXPECT_EQ(stack(), stack());
+}
+
+}  // namespace
+}  // namespace meshorder

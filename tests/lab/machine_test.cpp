@@ -1,0 +1,55 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/support/machine.hpp"
+
+#include "lab/study/results_json.hpp"
+#include "support/files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+#include <thread>
+
+namespace meshorder {
+namespace {
+
+std::string name_in(const std::string& cpuinfo) {
+  std::istringstream stream(cpuinfo);
+  return processor_name(stream, "aarch64");
+}
+
+TEST(Machine, ProcessorsAreCalledWhatTheyCallThemselves) {
+  EXPECT_EQ(name_in("processor\t: 0\nmodel\t\t: 2\nmodel name\t: AMD EPYC 9R45 \n\nmodel name\t: other\n"),
+            "AMD EPYC 9R45");
+}
+
+TEST(Machine, ProcessorsWithoutANameAreCalledByTheirNumbers) {
+  EXPECT_EQ(name_in("processor\t: 0\nCPU implementer\t: 0x41\nCPU part\t: 0xd0c\n"),
+            "aarch64 processor, implementer 0x41, part 0xd0c");
+  EXPECT_EQ(name_in("processor\t: 0\nCPU part\t: 0xd0c\n"), "aarch64 processor");
+  EXPECT_EQ(name_in(""), "aarch64 processor");
+}
+
+TEST(Machine, IsDescribedInFull) {
+  const MachineRecord machine = describe_machine();
+  EXPECT_EQ(machine.cores, static_cast<int>(std::thread::hardware_concurrency()));
+  EXPECT_EQ(machine.caches, caches_of_this_machine());
+  EXPECT_GT(machine.memory_bytes, std::uint64_t{64} << 20);
+  EXPECT_GT(machine.read_bandwidth, 0.05);
+  EXPECT_GT(machine.read_bandwidth_all, 0.05);
+  EXPECT_NE(machine.compiler.find('.'), std::string::npos) << machine.compiler;
+  EXPECT_NE(machine.flags.find("-std=c++20"), std::string::npos) << machine.flags;
+  EXPECT_EQ(std::count(machine.system.begin(), machine.system.end(), ' '), 2) << machine.system;
+  // as a study keeps it, which refuses what is empty
+  const test::TemporaryFolder folder;
+  StudyResults results;
+  results.began = "2026-11-20T17:30:00Z";
+  results.reference = "original";
+  results.orderings = {{"original", "Original", "original", "original"}};
+  results.machine = machine;
+  write_results(results, folder.path() / "results.json");
+  EXPECT_EQ(read_results(folder.path() / "results.json").machine, machine);
+}
+
+}  // namespace
+}  // namespace meshorder

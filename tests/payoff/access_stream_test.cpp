@@ -1,0 +1,231 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/access_stream.hpp"
+
+#include "mesh/graphs.hpp"
+#include "mesh/reorder.hpp"
+#include "support/sample_meshes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+/// What a kernel works on, prepared as KernelBench does.
+struct Prepared {
+  explicit Prepared(const Mesh& mesh)
+      : graph(vertex_graph(mesh)),
+        matrix(zero_block_csr(graph)),
+        simplices(cut_into_simplices(mesh)),
+        rest(rest_shapes(simplices, mesh.points)),
+        map(assembly_map(rest, matrix)),
+        springs(springs_on_edges(graph, mesh.points)) {}
+
+  CsrGraph graph;
+  BlockCsr matrix;
+  Simplices simplices;
+  RestShapes rest;
+  AssemblyMap map;
+  Springs springs;
+};
+
+enum class Memory {
+  offsets,
+  columns,
+  values,
+  x,
+  y,
+  positions,
+  forces,
+  vertices,
+  geometry,
+  map,
+  ends,
+  lengths
+};
+
+/// Accesses as the kernels' sources read, to the data that they are given.
+class Recorder {
+ public:
+  using Line = std::pair<Memory, Offset>;
+
+  void touch(Memory array, Offset byte, Offset bytes) {
+    for (Offset line = byte / 64; line <= (byte + bytes - 1) / 64; ++line) lines.emplace_back(array, line);
+  }
+  /// The same, but only what has not been touched so.
+  void read(Memory array, Offset byte, Offset bytes) {
+    for (Offset line = byte / 64; line <= (byte + bytes - 1) / 64; ++line) {
+      if (read_.insert({array, line}).second) lines.emplace_back(array, line);
+    }
+  }
+  void clear(Memory array, Offset bytes) {
+    for (Offset line = 0; line < (bytes + 63) / 64; ++line) lines.emplace_back(array, line);
+  }
+  template <class Vertices>
+  void vertex_data(Memory array, const Vertices& vertices, Offset first, Offset count) {
+    for (Offset k = first; k < first + count; ++k) touch(array, Offset{32} * vertices[k], 32);
+  }
+
+  std::vector<Line> lines;
+
+ private:
+  std::set<Line> read_;
+};
+
+void multiply(const Prepared& p, Recorder& to) {
+  to.read(Memory::offsets, 0, 8);
+  for (Index v = 0; v < p.matrix.size(); ++v) {
+    to.read(Memory::offsets, 8 * (v + 1), 8);
+    for (Offset k = p.matrix.offsets[v]; k < p.matrix.offsets[v + 1]; ++k) {
+      to.read(Memory::columns, 4 * k, 4);
+      to.read(Memory::values, 72 * k, 72);
+      to.touch(Memory::x, Offset{24} * p.matrix.columns[k], 24);
+    }
+    to.read(Memory::y, Offset{24} * v, 24);
+  }
+}
+
+void add_elements(const Prepared& p, bool assembly, Recorder& to) {
+  const Offset corners = p.rest.dimension + 1;
+  if (p.rest.count == 0) return;
+  if (assembly) {
+    to.clear(Memory::values, 72 * p.matrix.block_count());
+  } else {
+    to.clear(Memory::forces, Offset{32} * p.graph.size());
+  }
+  Offset simplex = 0;
+  for (Offset batch = 0; batch < p.rest.batches(); ++batch) {
+    const Offset doubles = Offset{8} * p.rest.quantities();
+    to.read(Memory::geometry, 8 * batch * doubles, 8 * doubles);
+    to.read(Memory::vertices, 4 * batch * 8 * corners, 4 * 8 * corners);
+    to.vertex_data(Memory::positions, p.rest.vertices, batch * 8 * corners, 8 * corners);
+    if (!assembly) to.vertex_data(Memory::forces, p.rest.vertices, batch * 8 * corners, 8 * corners);
+    for (Offset lane = 0; assembly && lane < 8 && simplex < p.rest.count; ++lane, ++simplex) {
+      const Offset first = simplex * corners * corners;
+      to.read(Memory::map, 4 * first, 4 * corners * corners);
+      for (Offset a = 0; a < corners; ++a) {
+        for (Offset b = a; b < corners; ++b) {
+          to.touch(Memory::values, Offset{72} * p.map.blocks[first + a * corners + b], 72);
+          if (a != b) to.touch(Memory::values, Offset{72} * p.map.blocks[first + b * corners + a], 72);
+        }
+      }
+    }
+  }
+}
+
+void add_springs(const Prepared& p, Recorder& to) {
+  to.clear(Memory::forces, Offset{32} * p.graph.size());
+  for (Offset first = 0; first < p.springs.count; first += 8) {
+    to.read(Memory::ends, 8 * first, 64);
+    to.vertex_data(Memory::positions, p.springs.ends, 2 * first, 16);
+    to.read(Memory::lengths, 8 * first, 64);
+    to.vertex_data(Memory::forces, p.springs.ends, 2 * first, 16);
+  }
+}
+
+std::vector<Recorder::Line> recorded(Kernel kernel, const Prepared& p) {
+  Recorder to;
+  if (kernel == Kernel::spmv) multiply(p, to);
+  if (kernel == Kernel::element || kernel == Kernel::assembly)
+    add_elements(p, kernel == Kernel::assembly, to);
+  if (kernel == Kernel::springs) add_springs(p, to);
+  return std::move(to.lines);
+}
+
+std::vector<Mesh> meshes() {
+  std::vector<Mesh> result{Mesh{},
+                           test::tetrahedral_bar(37),
+                           test::mixed_mesh(),
+                           test::cells_of_type(Shape::quad, 4, 13),
+                           test::cells_of_type(Shape::line, 2, 21),
+                           test::cells_of_type(Shape::vertex, 1, 4)};
+  Mesh shuffled = result[1];
+  reorder(shuffled, test::shuffled(shuffled.vertex_count(), 3), test::shuffled_cells(shuffled, 4));
+  result.push_back(shuffled);
+  // a flat element that names a vertex twice
+  Mesh degenerate = test::cells_of_type(Shape::tetrahedron, 4, 9);
+  degenerate.cells.vertices[5] = degenerate.cells.vertices[4];
+  result.push_back(degenerate);
+  return result;
+}
+
+TEST(AccessStream, TouchesTheLinesThatTheKernelTouches) {
+  for (const Mesh& mesh : meshes()) {
+    const Prepared prepared(mesh);
+    for (const Kernel kernel : kKernels) {
+      SCOPED_TRACE(std::string(name(kernel)) + ", " + std::to_string(mesh.vertex_count()) + " vertices");
+      const AccessStream stream(kernel, prepared.graph, prepared.simplices);
+      std::vector<Index> lines;
+      stream.visit([&](Index line) { lines.push_back(line); });
+      const std::vector<Recorder::Line> expected = recorded(kernel, prepared);
+      ASSERT_EQ(lines.size(), expected.size());
+      std::map<Index, Recorder::Line> names;
+      std::set<Recorder::Line> distinct;
+      for (std::size_t k = 0; k < lines.size(); ++k) {
+        ASSERT_GE(lines[k], 0);
+        ASSERT_LT(lines[k], stream.line_count());
+        ASSERT_EQ(names.insert({lines[k], expected[k]}).first->second, expected[k]) << "access " << k;
+        distinct.insert(expected[k]);
+      }
+      EXPECT_EQ(names.size(), distinct.size());
+    }
+  }
+}
+
+TEST(ReuseOf, HasNoColdAccessesAndMissesTheLeastWithTheLargestCache) {
+  const Prepared prepared(test::tetrahedral_bar(200));
+  for (const Kernel kernel : kKernels) {
+    SCOPED_TRACE(name(kernel));
+    const ReuseHistogram histogram = reuse_of(kernel, prepared.graph, prepared.simplices).all;
+    const Index lines = AccessStream(kernel, prepared.graph, prepared.simplices).line_count();
+    EXPECT_EQ(histogram.cold(), 0);
+    EXPECT_EQ(histogram.accesses(), static_cast<Offset>(recorded(kernel, prepared).size()));
+    EXPECT_EQ(histogram.misses(2 * lines), 0);
+    EXPECT_EQ(histogram.misses(0), histogram.accesses());
+    // the bar in order: whoever keeps a few cubes misses each line once, and each cleared line twice
+    EXPECT_LE(histogram.misses(200), 2 * lines);
+    EXPECT_GT(histogram.misses(200), lines / 2);
+  }
+}
+
+TEST(ReuseOfKernels, IsThatOfEachByItself) {
+  const Prepared prepared(test::mixed_mesh());
+  const KernelReuse reuse = reuse_of_kernels(prepared.graph, prepared.simplices);
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    EXPECT_EQ(reuse[k], reuse_of(kKernels[k], prepared.graph, prepared.simplices)) << name(kKernels[k]);
+  }
+}
+
+TEST(ReuseOfKernels, OfAnOrderIsThatOfTheReorderedMesh) {
+  for (const Mesh& mesh : {test::tetrahedral_bar(30), test::mixed_mesh()}) {
+    const Permutation vertices = test::shuffled(mesh.vertex_count(), 3);
+    const Permutation cells = test::shuffled_cells(mesh, 4);
+    Mesh ordered = mesh;
+    reorder(ordered, vertices, cells);
+    const Prepared prepared(ordered);
+    EXPECT_EQ(reuse_of_kernels(mesh, vertex_graph(mesh), vertices, cells),
+              reuse_of_kernels(prepared.graph, prepared.simplices));
+  }
+}
+
+TEST(ReuseOf, IsFartherInAScrambledOrder) {
+  const Mesh ordered = test::tetrahedral_bar(400);
+  Mesh scrambled = ordered;
+  reorder(scrambled, test::shuffled(ordered.vertex_count(), 3), test::shuffled_cells(ordered, 4));
+  const Prepared good(ordered);
+  const Prepared bad(scrambled);
+  for (const Kernel kernel : kKernels) {
+    SCOPED_TRACE(name(kernel));
+    const ReuseHistogram few = reuse_of(kernel, good.graph, good.simplices).all;
+    const ReuseHistogram many = reuse_of(kernel, bad.graph, bad.simplices).all;
+    EXPECT_LT(few.misses(128), many.misses(128));
+    EXPECT_LT(few.mean_log2() + 0.2, many.mean_log2());
+  }
+}
+
+}  // namespace
+}  // namespace meshorder

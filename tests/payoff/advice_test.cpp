@@ -1,0 +1,120 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/advice.hpp"
+
+#include "base/error.hpp"
+#include "mesh/graphs.hpp"
+#include "mesh/procedural.hpp"
+#include "mesh/reorder.hpp"
+
+#include <gtest/gtest.h>
+
+namespace meshorder {
+namespace {
+
+constexpr std::size_t kSpmv = 0;
+constexpr std::size_t kElement = 1;
+constexpr std::size_t kAssembly = 2;
+
+Mesh grid_in_order(const std::string& vertices, const std::string& elements) {
+  Mesh mesh = make_grid({.size = 24});
+  reorder(mesh, {.vertices = vertices, .elements = elements});
+  return mesh;
+}
+
+AdviceOptions quick() { return {.caches = parse_caches("48K,1M,32M")}; }
+
+Advice advice_on(const Mesh& mesh, AdviceOptions options = quick()) {
+  return advise(mesh, vertex_graph(mesh), options);
+}
+
+/// Milliseconds a kernel, made up, as it is and in two candidates that cost 20 ms each.
+Advice made_up(const KernelMilliseconds& as_is, const KernelMilliseconds& first,
+               const KernelMilliseconds& second) {
+  Advice advice;
+  advice.as_is.predicted = as_is;
+  for (const KernelMilliseconds& predicted : {first, second}) {
+    Candidate candidate;
+    candidate.seconds = 0.02;
+    candidate.costs.predicted = predicted;
+    advice.candidates.push_back(candidate);
+  }
+  return advice;
+}
+
+TEST(Advice, AScrambledGridHasMuchToGain) {
+  const Advice advice = advice_on(grid_in_order("scrambled", "scrambled"));
+  const auto kernels = kernel_advice(advice);
+  EXPECT_GT(kernels[kElement].factor, 1.2);
+  EXPECT_GT(kernels[kAssembly].factor, 1.5);
+  EXPECT_GE(kernels[kAssembly].runs_to_pay, 1);
+  EXPECT_GT(saved_in_time_step(advice, 0), 0);
+}
+
+TEST(Advice, AMeshInTheOrderThatIsAdvisedHasNothingToGain) {
+  const Advice advice = advice_on(grid_in_order("auto", "auto"));
+  ASSERT_FALSE(advice.candidates.empty());
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    EXPECT_EQ(kernel_advice(advice)[k].runs_to_pay, 0) << name(kKernels[k]);
+    EXPECT_NEAR((*advice.candidates[0].costs.predicted)[k] / (*advice.as_is.predicted)[k], 1, 0.01);
+  }
+  EXPECT_EQ(saved_in_time_step(advice, 0), 0);
+}
+
+TEST(Advice, SamplingChangesPredictedRatiosLittle) {
+  const Mesh mesh = grid_in_order("scrambled", "scrambled");
+  AdviceOptions exact = quick();
+  exact.sample_from = 1'000'000'000;
+  const Advice sampled = advice_on(mesh);
+  const Advice measured = advice_on(mesh, exact);
+  EXPECT_NE(*sampled.as_is.predicted, *measured.as_is.predicted);
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    // not the advice's factors, which are 1 below a threshold
+    const auto ratio = [&](const Advice& advice) {
+      return (*advice.as_is.predicted)[k] / (*advice.candidates.front().costs.predicted)[k];
+    };
+    EXPECT_NEAR(ratio(sampled) / ratio(measured), 1, 0.06) << name(kKernels[k]);
+  }
+}
+
+TEST(Advice, MeasuresWhereItIsAskedTo) {
+  AdviceOptions options = quick();
+  options.predict = false;
+  EXPECT_THROW((void)advice_on(make_grid({.size = 4}), options), InvalidArgument);
+  options.measure_within = 0.0;
+  const Advice advice = advice_on(make_grid({.size = 8}), options);
+  EXPECT_FALSE(advice.as_is.predicted);
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    EXPECT_GT((*advice.as_is.measured)[k], 0);
+    EXPECT_GT((*advice.candidates.front().costs.measured)[k], 0);
+  }
+}
+
+TEST(KernelAdvice, TakesTheFastestCandidateAndTellsWhenItHasPaid) {
+  const auto kernels = kernel_advice(made_up({2, 4, 30, 1}, {2, 2, 10, 2}, {1, 3, 15, 0.99}));
+  EXPECT_EQ(kernels[kSpmv].candidate, 1U);
+  EXPECT_DOUBLE_EQ(kernels[kSpmv].factor, 2);
+  EXPECT_EQ(kernels[kSpmv].runs_to_pay, 20);
+  EXPECT_EQ(kernels[kElement].candidate, 0U);
+  EXPECT_DOUBLE_EQ(kernels[kAssembly].factor, 3);
+  EXPECT_EQ(kernels[kAssembly].runs_to_pay, 1);
+  // a difference of one per cent is none
+  EXPECT_DOUBLE_EQ(kernels[3].factor, 1);
+  EXPECT_EQ(kernels[3].runs_to_pay, 0);
+}
+
+TEST(KernelAdvice, TrustsMeasurementsMoreThanPredictions) {
+  Advice advice = made_up({2, 2, 2, 2}, {1, 1, 1, 1}, {1, 1, 1, 1});
+  advice.as_is.measured = {3, 2, 2, 2};
+  for (Candidate& candidate : advice.candidates) candidate.costs.measured = {1, 2, 2, 2};
+  EXPECT_DOUBLE_EQ(kernel_advice(advice)[kSpmv].factor, 3);
+  EXPECT_DOUBLE_EQ(kernel_advice(advice)[kElement].factor, 1);
+}
+
+TEST(SavedInTimeStep, CountsRunsLossesAndNoNoise) {
+  const Advice advice = made_up({2, 4, 30, 1}, {2.1, 2, 10, 2}, {3, 4, 30, 1});
+  EXPECT_DOUBLE_EQ(saved_in_time_step(advice, 0), 2 + 20);
+  EXPECT_DOUBLE_EQ(saved_in_time_step(advice, 1), -100);
+}
+
+}  // namespace
+}  // namespace meshorder

@@ -1,0 +1,195 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/kernel_timing.hpp"
+
+#include "kernels/positions.hpp"
+#include "mesh/reorder.hpp"
+#include "support/sample_meshes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace meshorder {
+namespace {
+
+TimingOptions quick() {
+  return {.budget_seconds = 0.0, .least_rounds = 4, .most_rounds = 9, .sample_seconds = 1e-5};
+}
+
+double largest(std::span<const double> values) {
+  double result = 0.0;
+  for (const double value : values) result = std::max(result, std::abs(value));
+  return result;
+}
+
+/// Row v of `actual` at its new place is row v of `expected`.
+void expect_same_rows(std::span<const double> actual, std::span<const double> expected, Index width,
+                      const Permutation& vertices) {
+  ASSERT_EQ(actual.size(), expected.size());
+  const double scale = largest(expected);
+  EXPECT_GT(scale, 0.0);
+  for (Index v = 0; v < vertices.size(); ++v) {
+    for (Index c = 0; c < width; ++c) {
+      ASSERT_NEAR(actual[Offset{width} * vertices.old_to_new()[v] + c], expected[Offset{width} * v + c],
+                  1e-9 * scale);
+    }
+  }
+}
+
+TEST(KernelBench, ComputesTheSamePhysicsInEveryOrder) {
+  for (const Mesh& before : {test::tetrahedral_bar(9), test::mixed_mesh()}) {
+    Mesh after = before;
+    const Permutation vertices = test::shuffled(before.vertex_count(), 3);
+    reorder(after, vertices, test::shuffled_cells(before, 4));
+    KernelBench a(before);
+    KernelBench b(after);
+    for (const Kernel kernel : {Kernel::spmv, Kernel::element, Kernel::springs}) {
+      SCOPED_TRACE(name(kernel));
+      a.run(kernel);
+      b.run(kernel);
+      expect_same_rows(b.result(kernel), a.result(kernel), kernel == Kernel::spmv ? 3 : kPaddedStride,
+                       vertices);
+    }
+    a.run(Kernel::assembly);
+    b.run(Kernel::assembly);
+    const double scale = largest(a.result(Kernel::assembly));
+    for (Index row = 0; row < before.vertex_count(); ++row) {
+      for (Offset k = a.matrix().offsets[row]; k < a.matrix().offsets[row + 1]; ++k) {
+        const Offset l =
+            b.matrix().find(vertices.old_to_new()[row], vertices.old_to_new()[a.matrix().columns[k]]);
+        ASSERT_GE(l, 0);
+        for (int i = 0; i < 9; ++i) {
+          ASSERT_NEAR(b.matrix().values[9 * l + i], a.matrix().values[9 * k + i], 1e-9 * scale);
+        }
+      }
+    }
+  }
+}
+
+TEST(KernelBench, ComputesTheSameBitsOnAnyNumberOfThreads) {
+  std::vector<Mesh> meshes{test::tetrahedral_bar(30), test::mixed_mesh(),
+                           test::cells_of_type(Shape::quad, 4, 50), test::cells_of_type(Shape::line, 2, 50)};
+  meshes.push_back(meshes.front());  // scrambled: most elements touch several shares
+  reorder(meshes.back(), test::shuffled(meshes.back().vertex_count(), 3),
+          test::shuffled_cells(meshes.back(), 4));
+  for (const Mesh& mesh : meshes) {
+    KernelBench serial(mesh);
+    EXPECT_EQ(serial.redundancy(), 0.0);
+    for (const int threads : {2, 3, 8}) {
+      KernelBench shared(mesh, threads);
+      for (const Kernel kernel : kKernels) {
+        SCOPED_TRACE(std::string(name(kernel)) + " on " + std::to_string(threads));
+        serial.run(kernel);
+        shared.run(kernel);
+        shared.run(kernel);  // what the first run left must be cleared
+        const auto expected = serial.result(kernel);
+        const auto actual = shared.result(kernel);
+        ASSERT_EQ(actual.size(), expected.size());
+        EXPECT_TRUE(std::equal(actual.begin(), actual.end(), expected.begin()));
+        EXPECT_GT(largest(expected), 0.0);
+      }
+    }
+  }
+  EXPECT_LT(KernelBench(meshes.front(), 2).redundancy(), 0.15);
+  EXPECT_GT(KernelBench(meshes.back(), 2).redundancy(), 0.9);
+  KernelBench empty(Mesh{}, 2);
+  for (const Kernel kernel : kKernels) empty.run(kernel);
+}
+
+TEST(KernelBench, RunsOnCellsOfEveryType) {
+  std::vector<std::pair<Shape, int>> types = test::linear_types();
+  const auto quadratic = test::quadratic_types();
+  types.insert(types.end(), quadratic.begin(), quadratic.end());
+  types.insert(
+      types.end(),
+      {{Shape::polygon, 5}, {Shape::polyline, 4}, {Shape::triangle_strip, 6}, {Shape::poly_vertex, 3}});
+  for (const auto& [shape, vertices] : types) {
+    SCOPED_TRACE(type_name(shape, vertices));
+    KernelBench bench(test::cells_of_type(shape, vertices, 5));
+    for (const Kernel kernel : kKernels) {
+      bench.run(kernel);
+      for (const double value : bench.result(kernel)) EXPECT_TRUE(std::isfinite(value));
+    }
+  }
+  KernelBench empty{Mesh{}};
+  for (const Kernel kernel : kKernels) empty.run(kernel);
+}
+
+TEST(KernelBench, KnowsTheMemoryThatItHoldsAndMoves) {
+  const KernelBench small(test::tetrahedral_bar(10));
+  const KernelBench large(test::tetrahedral_bar(100));
+  EXPECT_GT(large.bytes(), 9 * small.bytes());
+  EXPECT_LT(large.bytes(), 11 * small.bytes());
+  for (const Kernel kernel : kKernels) {
+    EXPECT_GT(small.streamed_bytes(kernel), 0.0);
+    EXPECT_LT(large.streamed_bytes(kernel), 3.0 * static_cast<double>(large.bytes()));
+  }
+}
+
+TEST(TimeInterleaved, TimesEveryKernelInEveryOrder) {
+  KernelBench a(test::tetrahedral_bar(5));
+  KernelBench b(test::tetrahedral_bar(50));
+  const std::vector<KernelBench*> benches{&a, &b};
+  const std::vector<OrderTimes> times = time_interleaved(benches, quick());
+  ASSERT_EQ(times.size(), 2U);
+  for (const Kernel kernel : kKernels) {
+    SCOPED_TRACE(name(kernel));
+    for (const OrderTimes& order : times) {
+      EXPECT_GT(order[kernel].best_ms, 0.0);
+      EXPECT_LE(order[kernel].best_ms, order[kernel].median_ms);
+      EXPECT_EQ(order[kernel].samples, 4);  // the budget allows no more
+    }
+    EXPECT_EQ(times[0][kernel].speedup, 1.0);
+    EXPECT_DOUBLE_EQ(times[1][kernel].speedup, times[0][kernel].best_ms / times[1][kernel].best_ms);
+    // ten times the work: slower, whatever else the machine does
+    EXPECT_LT(times[1][kernel].speedup, 0.6);
+  }
+}
+
+TEST(TimeInterleaved, StopsAtTheMostRounds) {
+  KernelBench bench(test::tetrahedral_bar(2));
+  TimingOptions options = quick();
+  options.budget_seconds = 60.0;
+  const std::vector<KernelBench*> benches{&bench};
+  EXPECT_EQ(time_interleaved(benches, options)[0][Kernel::spmv].samples, 9);
+  EXPECT_TRUE(time_interleaved({}, options).empty());
+}
+
+TEST(TimeOrders, PreparesEachOrderOnceAndAsManyAtATimeAsFit) {
+  const Mesh mesh = test::tetrahedral_bar(20);
+  const std::size_t bytes = KernelBench(mesh).bytes();
+  for (const std::size_t fitting : {std::size_t{1}, std::size_t{3}, std::size_t{100}}) {
+    SCOPED_TRACE(fitting);
+    TimingOptions options = quick();
+    options.memory_bytes = fitting * bytes;
+    std::vector<Index> prepared;
+    const auto times = time_orders(
+        6,
+        [&](Index order) {
+          prepared.push_back(order);
+          return KernelBench(mesh);
+        },
+        options);
+    EXPECT_EQ(prepared, (std::vector<Index>{0, 1, 2, 3, 4, 5}));
+    ASSERT_EQ(times.size(), 6U);
+    for (const OrderTimes& order : times) EXPECT_GT(order[Kernel::element].best_ms, 0.0);
+    // the reference is timed with every group: one other at a time, two, or all
+    const int groups = fitting == 1 ? 5 : fitting == 3 ? 3 : 1;
+    EXPECT_EQ(times[0][Kernel::spmv].samples, 4 * groups);
+    EXPECT_EQ(times[5][Kernel::spmv].samples, 4);
+  }
+}
+
+TEST(TimeOrders, NeedsNoOtherOrderThanTheReference) {
+  const auto prepare = [](Index) { return KernelBench(test::tetrahedral_bar(3)); };
+  EXPECT_TRUE(time_orders(0, prepare, quick()).empty());
+  const auto times = time_orders(1, prepare, quick());
+  ASSERT_EQ(times.size(), 1U);
+  EXPECT_EQ(times[0][Kernel::spmv].samples, 4);
+  EXPECT_EQ(times[0][Kernel::spmv].speedup, 1.0);
+}
+
+}  // namespace
+}  // namespace meshorder
