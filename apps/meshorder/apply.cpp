@@ -39,7 +39,7 @@ void run(const ApplyArguments& arguments) {
     maps.elements = maps.elements.inverse();
   }
   try {
-    reorder(mesh, maps.vertices, maps.elements);
+    apply_reordering(mesh, maps.vertices, maps.elements);
   } catch (const InvalidArgument& error) {
     throw Error(arguments.input, error.what(), "give the maps that were written with this mesh");
   }

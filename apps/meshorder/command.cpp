@@ -30,10 +30,10 @@ void add_common(CLI::App& subcommand, Common& common) {
 
 void add_ordering_options(CLI::App& subcommand, OrderingOptions& options) {
   std::string uses;
-  for (const Use use : kUses) uses += (uses.empty() ? "" : "|") + std::string(name(use));
+  for (const Workload use : kWorkloads) uses += (uses.empty() ? "" : "|") + std::string(name(use));
   subcommand
       .add_option_function<std::string>(
-          "--for", [&options](const std::string& use) { options.use = use_of(use); },
+          "--for", [&options](const std::string& use) { options.use = parse_workload(use); },
           "The hot loop that `auto` shall choose the order for: " + uses)
       ->type_name("USE")
       ->default_str(std::string(name(options.use)));

@@ -69,7 +69,7 @@ KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<Com
   const auto prepare = [&](Index i) {
     if (i == index_size(orders)) return KernelBench(band.mesh, band.graph, threads);
     Mesh ordered = mesh;
-    reorder(ordered, orders[i].order.vertices, orders[i].order.cells);
+    apply_reordering(ordered, orders[i].order.vertices, orders[i].order.cells);
     KernelBench bench(ordered, renumbered(graph, orders[i].order.vertices.old_to_new()), threads);
     table.redundancy.push_back(bench.redundancy());
     return bench;

@@ -27,7 +27,7 @@ void print_quality(const Console& console, const Comparison& comparison) {
   print_row(kFloor, kFloor, "-", comparison.floor_span);
   for (const ComparedOrder& c : comparison.orders) {
     const MethodChoice& taken = c.order.vertex_method;
-    if (!taken.because.empty()) console.print("auto takes {}: {}", taken.name, taken.because);
+    if (!taken.reason.empty()) console.print("auto takes {}: {}", taken.name, taken.reason);
   }
 }
 

@@ -84,32 +84,32 @@ nlohmann::ordered_json attachments(const Mesh& mesh) {
   auto data = nlohmann::ordered_json::array();
   for (const DataArray& array : mesh.data) {
     data.push_back({{"name", array.name},
-                    {"on", name(array.on)},
+                    {"on", name(array.association)},
                     {"components", array.components},
                     {"rows", row_count(array)}});
   }
   auto sets = nlohmann::ordered_json::array();
-  for (const Set& set : mesh.sets) {
-    sets.push_back({{"name", set.name}, {"on", name(set.on)}, {"members", set.members.size()}});
+  for (const EntitySet& set : mesh.sets) {
+    sets.push_back({{"name", set.name}, {"on", name(set.association)}, {"members", set.members.size()}});
   }
   return {{"data", data}, {"sets", sets}};
 }
 
 void print_attachments(const Console& console, const Mesh& mesh) {
-  const auto list = [&](Attached on) {
+  const auto list = [&](Association association) {
     std::string names;
     const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
     for (const DataArray& array : mesh.data) {
-      if (array.on == on) add(array.name);
+      if (array.association == association) add(array.name);
     }
-    for (const Set& set : mesh.sets) {
-      if (set.on == on) add("set " + set.name);
+    for (const EntitySet& set : mesh.sets) {
+      if (set.association == association) add("set " + set.name);
     }
     return names;
   };
-  for (const auto& [on, title] :
-       {std::pair(Attached::vertices, "on vertices"), std::pair(Attached::cells, "on cells")}) {
-    const std::string names = list(on);
+  for (const auto& [association, title] :
+       {std::pair(Association::vertices, "on vertices"), std::pair(Association::cells, "on cells")}) {
+    const std::string names = list(association);
     if (!names.empty()) console.print("{:<12} {}", title, names);
   }
 }

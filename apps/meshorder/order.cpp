@@ -29,7 +29,7 @@ void print_result(const Console& console, const Reordering& order, const EdgeSpa
                   const EdgeSpan& after) {
   const auto print_method = [&](const char* of, const MethodChoice& method, double seconds) {
     console.print("{:<10} {:<14} {}", of, method_in_words(method), duration(seconds));
-    if (!method.because.empty()) console.print("{:<10} {}", "", method.because);
+    if (!method.reason.empty()) console.print("{:<10} {}", "", method.reason);
   };
   print_method("vertices", order.vertex_method, order.vertex_seconds);
   print_method("elements", order.element_method, order.element_seconds);
@@ -67,7 +67,7 @@ void run(const OrderArguments& arguments) {
   const Permutation arranged = arrange_cells(mesh, format_of(arguments.input), target);
   const CsrGraph graph = vertex_graph(mesh);
   const Reordering order = compute_reordering(mesh, graph, arguments.reordering);
-  reorder(mesh, order.vertices, order.cells);
+  apply_reordering(mesh, order.vertices, order.cells);
   const double order_seconds = ordering.seconds();
   maps.vertices = order.vertices;
   maps.elements = arranged.then(order.cells);

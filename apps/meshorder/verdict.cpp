@@ -12,8 +12,8 @@ namespace {
 constexpr std::array kTitles{"SpMV", "element force", "assembly", "springs"};
 
 std::string command_for(const Candidate& candidate) {
-  return candidate.use == Use::all ? "meshorder order"
-                                   : fmt::format("meshorder order --for {}", name(candidate.use));
+  return candidate.use == Workload::all ? "meshorder order"
+                                        : fmt::format("meshorder order --for {}", name(candidate.use));
 }
 
 std::string methods_of(const Candidate& candidate) {

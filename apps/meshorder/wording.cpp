@@ -53,10 +53,10 @@ nlohmann::ordered_json to_json(const std::vector<FiedlerComponent>& components) 
 }
 
 nlohmann::ordered_json to_json(const MethodChoice& choice) {
-  const bool by_auto = !choice.because.empty();
+  const bool by_auto = !choice.reason.empty();
   return {{"method", choice.name},
           {"chosen_by", by_auto ? "auto" : "user"},
-          {"because", by_auto ? nlohmann::ordered_json(choice.because) : nullptr}};
+          {"because", by_auto ? nlohmann::ordered_json(choice.reason) : nullptr}};
 }
 
 nlohmann::ordered_json to_json(const Grouping& grouping) {
@@ -72,7 +72,7 @@ nlohmann::ordered_json to_json(const Grouping& grouping) {
                     {"cells", grouping.of_cells.empty() ? nullptr : nlohmann::ordered_json(group.cells)}});
     first_vertex += group.vertices;
   }
-  return {{"name", grouping.name}, {"on", name(grouping.on)}, {"groups", list}};
+  return {{"name", grouping.name}, {"on", name(grouping.association)}, {"groups", list}};
 }
 
 nlohmann::ordered_json cells_by_type(const Mesh& mesh) {
@@ -90,14 +90,14 @@ std::string cells_in_words(const Mesh& mesh) {
 }
 
 std::string method_in_words(const MethodChoice& choice) {
-  return choice.name + (choice.because.empty() ? "" : " (auto)");
+  return choice.name + (choice.reason.empty() ? "" : " (auto)");
 }
 
 std::string groups_in_words(const Grouping& grouping) {
   constexpr std::size_t kShown = 8;
   const std::size_t count = grouping.values.size();
   std::string words = fmt::format("{} group{} by {} on {}:", with_commas(static_cast<long long>(count)),
-                                  count == 1 ? "" : "s", grouping.name, name(grouping.on));
+                                  count == 1 ? "" : "s", grouping.name, name(grouping.association));
   for (std::size_t g = 0; g < std::min(count, kShown); ++g) {
     words += (g == 0 ? " " : ", ") +
              (grouping.names.empty() ? std::to_string(grouping.values[g]) : grouping.names[g]);

@@ -120,7 +120,7 @@ void time(const std::string& name, double budget, const std::string& folder,
   const auto prepare = [&](mo::Index i) {
     const mo::Permutation vertices = kept(file_of(folder, orders[i], "vertices"));
     mo::Mesh ordered = mesh;
-    mo::reorder(ordered, vertices, kept(file_of(folder, orders[i], "cells")));
+    mo::apply_reordering(ordered, vertices, kept(file_of(folder, orders[i], "cells")));
     return mo::KernelBench(ordered, mo::renumbered(graph, vertices.old_to_new()));
   };
   const std::vector<mo::OrderTimes> times = mo::time_orders(

@@ -24,7 +24,7 @@ constexpr int kLastRounds = 8;
 constexpr double kAllowedDepth = 1e-2;
 
 const ProjectiveOptions& checked(const ProjectiveOptions& options, Index vertex_count) {
-  check(options, vertex_count);
+  check_options(options, vertex_count);
   require(options.iterations >= 1, "the number of ADMM iterations", options.iterations, "1 or more");
   require(options.tolerance >= 0.0 && options.tolerance < 1.0, "the tolerance of ADMM", options.tolerance,
           "0 or more, and below 1");
@@ -93,7 +93,7 @@ MotionState ProjectiveDynamics<Real>::state() const {
 
 template <class Real>
 void ProjectiveDynamics<Real>::set_state(const MotionState& state) {
-  check(state, index_size(masses_));
+  check_state(state, index_size(masses_));
   if (state.memory.empty() || !options_.keep_duals) {
     local_.reset_duals();
   } else {

@@ -29,8 +29,8 @@ double dot(std::span<const double> a, std::span<const double> b) {
 
 double norm(std::span<const double> a) { return std::sqrt(dot(a, a)); }
 
-void check(const ImplicitOptions& options, Index vertex_count) {
-  check(static_cast<const MotionOptions&>(options), vertex_count);
+void check_options(const ImplicitOptions& options, Index vertex_count) {
+  check_options(static_cast<const MotionOptions&>(options), vertex_count);
   require(options.mass_damping >= 0.0 && std::isfinite(options.mass_damping), "Rayleigh's alpha",
           options.mass_damping, "0 or more");
   require(options.stiffness_damping >= 0.0 && std::isfinite(options.stiffness_damping), "Rayleigh's beta",
@@ -59,7 +59,7 @@ BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, Im
       loads_(velocities_.size()),
       moved_(positions_),
       scratch_(velocities_.size()) {
-  check(options_, index_size(points));
+  check_options(options_, index_size(points));
   preconditioner_ = make_preconditioner(options_.preconditioner, system_.matrix(), points);
   const bool moves = std::any_of(options_.prescribed.begin(), options_.prescribed.end(),
                                  [](const PrescribedMotion& p) { return p.velocity != Point{}; });
@@ -87,7 +87,7 @@ MotionState BackwardEuler::state() const {
 }
 
 void BackwardEuler::set_state(const MotionState& state) {
-  check(state, system_.vertex_count());
+  check_state(state, system_.vertex_count());
   steps_ = state.step;
   positions_ = padded_positions(state.positions);
   for (Index v = 0; v < system_.vertex_count(); ++v)

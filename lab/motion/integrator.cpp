@@ -17,7 +17,7 @@ bool is_finite(const Point& point) {
 
 }  // namespace
 
-void check(const MotionState& state, Index n) {
+void check_state(const MotionState& state, Index n) {
   if (!std::cmp_equal(state.positions.size(), n) || !std::cmp_equal(state.velocities.size(), n) ||
       state.step < 0) {
     throw InvalidArgument("a state of " + std::to_string(state.positions.size()) +

@@ -87,7 +87,7 @@ class Integrator {
 };
 
 /// Throws InvalidArgument unless the state is one of n vertices and finite.
-void check(const MotionState& state, Index n);
+void check_state(const MotionState& state, Index n);
 
 /// The balance of a body whose vertices have these masses, places (kPaddedStride numbers for each vertex, see
 /// padded_positions), velocities and momenta (3 numbers), but for its elastic energy. O(vertices).

@@ -13,7 +13,7 @@ void require(bool good, const char* name, double value, const char* remedy) {
   if (!good) throw InvalidArgument(fmt::format("{} is {}; it must be {}", name, value, remedy));
 }
 
-void check(const MotionOptions& options, Index vertex_count) {
+void check_options(const MotionOptions& options, Index vertex_count) {
   require(options.time_step > 0.0 && std::isfinite(options.time_step), "the time step", options.time_step,
           "positive");
   for (const double c : options.gravity) require(std::isfinite(c), "gravity", c, "finite");

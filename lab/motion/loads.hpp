@@ -36,7 +36,7 @@ struct MotionOptions {
 
 /// Throws InvalidArgument, which names it, for a number that is out of range or not finite and for a vertex
 /// that is none of the mesh's.
-void check(const MotionOptions& options, Index vertex_count);
+void check_options(const MotionOptions& options, Index vertex_count);
 /// Throws InvalidArgument that tells what `value` `name` has, unless it is `good`.
 void require(bool good, const char* name, double value, const char* remedy);
 

@@ -24,23 +24,24 @@ enum OwnArray : std::uint8_t { kDisplacement, kVelocity, kOriginalVertex, kOrigi
 std::vector<DataArray> own_arrays(const Mesh& mesh, const Reordering& order) {
   std::vector<float> zeros(3 * mesh.points.size(), 0.0F);
   std::vector<DataArray> arrays(4);
-  arrays[kDisplacement] = {"displacement", Attached::vertices, 3, zeros, {}, {}};
-  arrays[kVelocity] = {"velocity", Attached::vertices, 3, std::move(zeros), {}, {}};
-  arrays[kOriginalVertex] = {"original_vertex", Attached::vertices, 1, order.vertices.new_to_old(), {}, {}};
-  arrays[kOriginalCell] = {"original_cell", Attached::cells, 1, order.cells.new_to_old(), {}, {}};
+  arrays[kDisplacement] = {"displacement", Association::vertices, 3, zeros, {}, {}};
+  arrays[kVelocity] = {"velocity", Association::vertices, 3, std::move(zeros), {}, {}};
+  arrays[kOriginalVertex] = {
+      "original_vertex", Association::vertices, 1, order.vertices.new_to_old(), {}, {}};
+  arrays[kOriginalCell] = {"original_cell", Association::cells, 1, order.cells.new_to_old(), {}, {}};
   return arrays;
 }
 
 /// What a .vtu file says beyond the mesh: of one that came from VTK what it had; compressed.
-std::shared_ptr<VtkResidue> residue_of(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const VtkResidue*>(mesh.residue.get());
-  auto residue = own != nullptr ? std::make_shared<VtkResidue>(*own) : std::make_shared<VtkResidue>();
-  residue->legacy.reset();
-  residue->float_points = true;
+std::shared_ptr<VtkMetadata> metadata_of(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get());
+  auto metadata = own != nullptr ? std::make_shared<VtkMetadata>(*own) : std::make_shared<VtkMetadata>();
+  metadata->legacy.reset();
+  metadata->float_points = true;
   // raw bytes would be a quarter less, but no XML: meshio 5.0 takes one file in some hundreds apart wrongly
-  residue->vtu =
+  metadata->vtu =
       VtuEncoding{.mode = VtuEncoding::Mode::appended_base64, .compressor = VtuEncoding::Compressor::zlib};
-  return residue;
+  return metadata;
 }
 
 }  // namespace
@@ -66,7 +67,7 @@ FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index ev
   frame_.data = std::move(arrays);
   frame_.vertex_ids.clear();  // they would run along the order
   frame_.cell_ids.clear();
-  frame_.residue = residue_of(simulation.mesh);
+  frame_.format_metadata = metadata_of(simulation.mesh);
   write_obstacles(simulation);
 }
 

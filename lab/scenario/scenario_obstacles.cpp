@@ -149,7 +149,7 @@ Mesh surfaces_of(std::span<const ScenarioObstacle> obstacles, double extent) {
     }
     numbers.resize(mesh.cells.shapes.size(), static_cast<std::int32_t>(i));
   }
-  mesh.data.push_back({"obstacle", Attached::cells, 1, std::move(numbers), {}, {}});
+  mesh.data.push_back({"obstacle", Association::cells, 1, std::move(numbers), {}, {}});
   return mesh;
 }
 

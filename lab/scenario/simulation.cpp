@@ -191,7 +191,7 @@ Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, Reorder
 
   const Stopwatch moving_time;
   mesh.cell_blocks.clear();
-  reorder(mesh, order.vertices, order.cells);
+  apply_reordering(mesh, order.vertices, order.cells);
   result.order_seconds = moving_time.seconds();
   result.order = std::move(order);
   result.fingerprint.order = checksum_of(result.order);

@@ -39,12 +39,12 @@ std::vector<Index> in_set(const Mesh& mesh, std::span<const Index> candidates, c
   Marks marks(mesh);
   bool found = false;
   std::string known;
-  for (const Set& set : mesh.sets) {
+  for (const EntitySet& set : mesh.sets) {
     known += (known.empty() ? "" : ", ") + set.name;
     if (set.name != name) continue;
     found = true;
     for (const Index member : set.members) {
-      set.on == Attached::vertices ? marks.mark(member) : marks.mark_cell(member);
+      set.association == Association::vertices ? marks.mark(member) : marks.mark_cell(member);
     }
   }
   if (!found) {
@@ -57,7 +57,7 @@ std::vector<Index> in_set(const Mesh& mesh, std::span<const Index> candidates, c
 std::vector<Index> in_group(const Mesh& mesh, std::span<const Index> candidates, const Grouping& groups,
                             Index group) {
   Marks marks(mesh);
-  if (groups.on == Attached::vertices) {
+  if (groups.association == Association::vertices) {
     for (const Index v : candidates) {
       if (groups.of_vertices[v] == group) marks.mark(v);
     }
@@ -73,9 +73,9 @@ std::vector<Index> in_group(const Mesh& mesh, std::span<const Index> candidates,
 /// then that of the cells.
 std::vector<std::string> arrays_of_labels(const Mesh& mesh, const VertexChoice& choice) {
   std::vector<std::string> names;
-  for (const Attached on : {Attached::vertices, Attached::cells}) {
-    if (choice.name.empty() && find_array(mesh, kLabel, on) != nullptr)
-      names.push_back(fmt::format("{}:{}", name(on), kLabel));
+  for (const Association association : {Association::vertices, Association::cells}) {
+    if (choice.name.empty() && find_array(mesh, kLabel, association) != nullptr)
+      names.push_back(fmt::format("{}:{}", name(association), kLabel));
   }
   if (names.empty()) names.push_back(choice.name.empty() ? std::string(kLabel) : choice.name);
   return names;
@@ -89,7 +89,7 @@ std::vector<Index> with_label(const Mesh& mesh, std::span<const Index> candidate
     const auto found = std::lower_bound(groups.values.begin(), groups.values.end(), choice.label);
     if (found == groups.values.end() || *found != choice.label) {
       constexpr std::size_t kShown = 8;
-      known += fmt::format("{}those of {} are ", known.empty() ? "" : "; ", name(groups.on));
+      known += fmt::format("{}those of {} are ", known.empty() ? "" : "; ", name(groups.association));
       for (std::size_t i = 0; i < std::min(kShown, groups.values.size()); ++i)
         known += fmt::format("{}{}", i == 0 ? "" : ", ", groups.values[i]);
       if (groups.values.size() > kShown) known += ", …";

@@ -42,7 +42,7 @@ double best_seconds(tbb::task_arena& threads, Prepare prepare, Call call) {
 /// The mesh's kernels in one order.
 KernelBench bench_of(const Mesh& mesh, const CsrGraph& graph, const Reordering& order) {
   Mesh ordered = mesh;
-  reorder(ordered, order.vertices, order.cells);
+  apply_reordering(ordered, order.vertices, order.cells);
   return {ordered, renumbered(graph, order.vertices.old_to_new())};
 }
 
@@ -103,7 +103,7 @@ class MeshStudy {
         [&] {
           order = compute_reordering(mesh_, graph_,
                                      {ordering.vertices, ordering.elements, options_.ordering, {}});
-          reorder(moved, order.vertices, order.cells);
+          apply_reordering(moved, order.vertices, order.cells);
         });
     const bool moves_nothing =
         order.vertex_method.name == "original" && order.element_method.name == "original";

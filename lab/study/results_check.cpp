@@ -51,7 +51,7 @@ void expect_misses(const std::vector<NamedCaches>& hierarchies, const JsonValue&
 
 }  // namespace
 
-void check(const Caches& caches, const JsonValue& value) {
+void check_record(const Caches& caches, const JsonValue& value) {
   Offset before = 0;
   for (const Offset bytes : caches.level_bytes) {
     if (bytes <= before || bytes % kLineBytes != 0)
@@ -61,13 +61,13 @@ void check(const Caches& caches, const JsonValue& value) {
   }
 }
 
-void check(const MeshRecord& mesh, const JsonValue& value) {
+void check_record(const MeshRecord& mesh, const JsonValue& value) {
   expect_positive(mesh.span_bin, value, "span_bin");
   names_of(mesh.orders, &OrderOfMesh::ordering, value, "orders", "ordering");
   for (const JsonValue& order : value["orders"].items()) expect_misses(mesh.hierarchies, order);
 }
 
-void check(const ScenarioRecord& scenario, const JsonValue& value) {
+void check_record(const ScenarioRecord& scenario, const JsonValue& value) {
   expect_positive(scenario.steps, value, "steps");
   expect_positive(scenario.turn, value, "turn");
   names_of(scenario.orders, &OrderOfScenario::ordering, value, "orders", "ordering");
@@ -80,7 +80,7 @@ void check(const ScenarioRecord& scenario, const JsonValue& value) {
   }
 }
 
-void check(const StudyResults& results, const JsonValue& value) {
+void check_record(const StudyResults& results, const JsonValue& value) {
   expect_positive(results.runs, value, "runs");
   expect_positive(results.threads, value, "threads");
   const auto orderings = names_of(results.orderings, &StudyOrdering::name, value, "orderings", "name");

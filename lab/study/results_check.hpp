@@ -10,19 +10,19 @@ namespace meshorder {
 // place.
 
 /// Levels rise and hold whole lines.
-void check(const Caches& caches, const JsonValue& value);
+void check_record(const Caches& caches, const JsonValue& value);
 
 /// Misses are those of every hierarchy and level, or none; bins are counted; no order comes twice.
-void check(const MeshRecord& mesh, const JsonValue& value);
+void check_record(const MeshRecord& mesh, const JsonValue& value);
 
 /// Every run has the scenario's steps; every frame its difference, where there are any; no order comes twice.
-void check(const ScenarioRecord& scenario, const JsonValue& value);
+void check_record(const ScenarioRecord& scenario, const JsonValue& value);
 
 /// Names are unique, and what is referred to is there.
-void check(const StudyResults& results, const JsonValue& value);
+void check_record(const StudyResults& results, const JsonValue& value);
 
 /// Others need no more.
 template <class Record>
-void check(const Record& /*record*/, const JsonValue& /*value*/) {}
+void check_record(const Record& /*record*/, const JsonValue& /*value*/) {}
 
 }  // namespace meshorder

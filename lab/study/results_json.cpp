@@ -82,7 +82,7 @@ class Reader {
       (read(value[field.key], record.*field.member, field.free), ...);
     };
     std::apply(take, kFields<Record>);
-    check(record, value);
+    check_record(record, value);
   }
 
  private:
@@ -100,7 +100,7 @@ class Reader {
   }
   static void read(const JsonValue& value, Caches& caches, bool free) {
     read(value, caches.level_bytes, free);
-    check(caches, value);
+    check_record(caches, value);
   }
   template <class Value>
   static void read(const JsonValue& value, std::vector<Value>& values, bool free) {

@@ -82,7 +82,7 @@ CsrGraph induced_subgraph(const CsrGraph& graph, std::span<const Index> vertices
   return result;
 }
 
-void check(const CsrGraph& graph) {
+void check_graph(const CsrGraph& graph) {
   if (graph.offsets.empty() || graph.offsets.front() != 0 ||
       graph.offsets.back() != static_cast<Offset>(graph.neighbours.size()) ||
       !std::is_sorted(graph.offsets.begin(), graph.offsets.end())) {

@@ -42,6 +42,6 @@ CsrGraph renumbered(const CsrGraph& graph, std::span<const Index> old_to_new);
 CsrGraph induced_subgraph(const CsrGraph& graph, std::span<const Index> vertices);
 
 /// Throws InvalidArgument unless the graph keeps the promises of its type. O(n + edges · log degree).
-void check(const CsrGraph& graph);
+void check_graph(const CsrGraph& graph);
 
 }  // namespace meshorder

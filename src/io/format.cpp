@@ -54,7 +54,7 @@ Mesh read_mesh(const std::filesystem::path& path, Notes* notes) {
 
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, Notes* notes) {
   Notes ignored;
-  check(mesh);
+  check_mesh(mesh);
   format_of(path).write(mesh, path, notes ? *notes : ignored);
 }
 

@@ -8,8 +8,8 @@
 
 namespace meshorder {
 
-const DataArray* label_array(const Mesh& mesh, Attached on) {
-  const DataArray* array = find_array(mesh, kLabel, on);
+const DataArray* label_array(const Mesh& mesh, Association association) {
+  const DataArray* array = find_array(mesh, kLabel, association);
   if (!array || array->components != 1) return nullptr;
   const bool whole = std::visit(
       [](const auto& values) {
@@ -19,19 +19,19 @@ const DataArray* label_array(const Mesh& mesh, Attached on) {
   return whole ? array : nullptr;
 }
 
-Labels labels_of(const Mesh& mesh, Attached on) {
+Labels labels_of(const Mesh& mesh, Association association) {
   Labels result;
-  const DataArray* array = label_array(mesh, on);
+  const DataArray* array = label_array(mesh, association);
   if (!array) return result;
-  const Index count = on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
+  const Index count = association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
   result.values.assign(count, 0);
-  result.given.assign(count, array->covers_all());
+  result.given.assign(count, array->is_dense());
   std::visit(
       [&](const auto& values) {
         using Value = typename std::decay_t<decltype(values)>::value_type;
         if constexpr (std::is_integral_v<Value>) {
           for (std::size_t i = 0; i < values.size(); ++i) {
-            const std::size_t item = array->covers_all() ? i : static_cast<std::size_t>(array->rows[i]);
+            const std::size_t item = array->is_dense() ? i : static_cast<std::size_t>(array->indices[i]);
             result.values[item] = static_cast<std::int64_t>(values[i]);
             result.given[item] = true;
           }

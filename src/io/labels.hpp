@@ -17,10 +17,10 @@ struct Labels {
 };
 
 /// Labels of a mesh. An array of that name that does not hold one whole number for each is no label.
-Labels labels_of(const Mesh& mesh, Attached on);
+Labels labels_of(const Mesh& mesh, Association association);
 
 /// The array that `labels_of` takes, or nullptr.
-const DataArray* label_array(const Mesh& mesh, Attached on);
+const DataArray* label_array(const Mesh& mesh, Association association);
 
 /// The values of a label array: in 32 bits when all fit.
 Values label_values(std::vector<std::int64_t> labels);

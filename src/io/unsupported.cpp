@@ -8,26 +8,27 @@
 namespace meshorder {
 
 void note_array_left_out(const DataArray& array, std::string_view format, Notes& notes) {
-  notes.push_back(
-      fmt::format("the array '{}' on {} is left out: {} cannot hold it", array.name, name(array.on), format));
+  notes.push_back(fmt::format("the array '{}' on {} is left out: {} cannot hold it", array.name,
+                              name(array.association), format));
 }
 
-void note_set_left_out(const Set& set, std::string_view format, Notes& notes) {
-  notes.push_back(
-      fmt::format("the set '{}' of {} is left out: {} cannot hold it", set.name, name(set.on), format));
+void note_set_left_out(const EntitySet& set, std::string_view format, Notes& notes) {
+  notes.push_back(fmt::format("the set '{}' of {} is left out: {} cannot hold it", set.name,
+                              name(set.association), format));
 }
 
 void note_ids_left_out(const Mesh& mesh, std::string_view format, Notes& notes) {
-  for (const Attached on : {Attached::vertices, Attached::cells}) {
-    const auto& ids = on == Attached::vertices ? mesh.vertex_ids : mesh.cell_ids;
+  for (const Association association : {Association::vertices, Association::cells}) {
+    const auto& ids = association == Association::vertices ? mesh.vertex_ids : mesh.cell_ids;
     if (ids.empty()) continue;
-    notes.push_back(fmt::format("the numbers of {} are left out: {} counts them by place", name(on), format));
+    notes.push_back(
+        fmt::format("the numbers of {} are left out: {} counts them by place", name(association), format));
   }
 }
 
 void note_residue_left_out(const Mesh& mesh, std::string_view format, Notes& notes) {
-  if (!mesh.residue) return;
-  for (const std::string& what : mesh.residue->contents()) {
+  if (!mesh.format_metadata) return;
+  for (const std::string& what : mesh.format_metadata->contents()) {
     notes.push_back(fmt::format("left out, as {} cannot hold it: {}", format, what));
   }
 }

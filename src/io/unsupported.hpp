@@ -15,7 +15,7 @@ namespace meshorder {
 void note_array_left_out(const DataArray& array, std::string_view format, Notes& notes);
 
 /// "the set 'fixed' of vertices is left out: OFF cannot hold it".
-void note_set_left_out(const Set& set, std::string_view format, Notes& notes);
+void note_set_left_out(const EntitySet& set, std::string_view format, Notes& notes);
 
 /// Notes the mesh's numbers of vertices and cells, where it has any.
 void note_ids_left_out(const Mesh& mesh, std::string_view format, Notes& notes);

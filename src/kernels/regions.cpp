@@ -65,7 +65,7 @@ std::string list_of_regions(const Grouping& grouping, const std::vector<bool>& h
 }
 
 void check(const Simplices& simplices, const Grouping& grouping) {
-  if (grouping.on != Attached::cells) {
+  if (grouping.association != Association::cells) {
     throw InvalidArgument("materials: '" + grouping.name +
                           "' groups vertices; an array or sets on cells would do");
   }

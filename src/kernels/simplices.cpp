@@ -46,12 +46,6 @@ std::vector<int> pieces(Shape shape, int vertices) {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 /// Dₘ in an orthonormal frame of the edges (Gram–Schmidt), right-handed in space: upper triangular, D×D. Its
 /// determinant is D! times the volume, for a tetrahedron with its sign. `longest` is the length of the
 /// longest edge.

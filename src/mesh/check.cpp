@@ -37,16 +37,17 @@ void check_cells(const Mesh& mesh) {
 
 void check_data(const Mesh& mesh) {
   for (const DataArray& array : mesh.data) {
-    const Index count = array.on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
+    const Index count = array.association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
     const std::string owner = "array '" + array.name + "'";
-    const Index expected = array.covers_all() ? count : index_size(array.rows);
+    const Index expected = array.is_dense() ? count : index_size(array.indices);
     if (array.components < 1 || row_count(array) != expected) {
       fail(owner + " has " + std::to_string(row_count(array)) + " rows for " + std::to_string(expected));
     }
-    check_members(array.rows, count, owner);
+    check_members(array.indices, count, owner);
   }
-  for (const Set& set : mesh.sets) {
-    check_members(set.members, set.on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count(),
+  for (const EntitySet& set : mesh.sets) {
+    check_members(set.members,
+                  set.association == Association::vertices ? mesh.vertex_count() : mesh.cell_count(),
                   "set '" + set.name + "'");
   }
 }
@@ -66,7 +67,7 @@ void check_numbering(const Mesh& mesh) {
 
 }  // namespace
 
-void check(const Mesh& mesh) {
+void check_mesh(const Mesh& mesh) {
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     for (const double x : mesh.points[v]) {
       if (!std::isfinite(x)) fail("vertex " + std::to_string(v) + " has a coordinate that is not finite");

@@ -77,7 +77,7 @@ CellIncidence elements(const Mesh& mesh) {
   return cells_that(mesh, [&](Shape shape) { return dimension(shape) == highest; });
 }
 
-CellIncidence lower_cells(const Mesh& mesh) {
+CellIncidence lower_dimensional_cells(const Mesh& mesh) {
   const int highest = mesh.cells.highest_dimension();
   return cells_that(mesh, [&](Shape shape) { return dimension(shape) < highest; });
 }

@@ -19,7 +19,7 @@ struct CellIncidence {
 CellIncidence elements(const Mesh& mesh);
 
 /// The cells of lower dimension: boundary faces, edges, points. O(vertex entries).
-CellIncidence lower_cells(const Mesh& mesh);
+CellIncidence lower_dimensional_cells(const Mesh& mesh);
 
 /// Joins any two vertices of a common element (the paper, section 3). Vertices that only cells of lower
 /// dimension use, or none, have no neighbours. O(sum of element sizes squared · log degree).

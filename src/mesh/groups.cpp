@@ -44,7 +44,7 @@ std::optional<std::vector<std::int64_t>> whole_numbers(const DataArray& array) {
 
 bool has_cell_sets(const Mesh& mesh) {
   return std::any_of(mesh.sets.begin(), mesh.sets.end(),
-                     [](const Set& set) { return set.on == Attached::cells; });
+                     [](const EntitySet& set) { return set.association == Association::cells; });
 }
 
 /// "label on cells, part on vertices, sets"
@@ -52,7 +52,8 @@ std::string usable_names(const Mesh& mesh) {
   std::string list;
   for (const DataArray& array : mesh.data) {
     if (!whole_numbers(array)) continue;
-    list += (list.empty() ? "" : ", ") + array.name + " on " + std::string(meshorder::name(array.on));
+    list +=
+        (list.empty() ? "" : ", ") + array.name + " on " + std::string(meshorder::name(array.association));
   }
   if (has_cell_sets(mesh)) list += list.empty() ? "sets" : ", sets";
   return list.empty() ? "none" : list;
@@ -60,12 +61,12 @@ std::string usable_names(const Mesh& mesh) {
 
 /// The array that is meant: of that very name, or behind a prefix.
 const DataArray* array_meant(const Mesh& mesh, std::string_view name) {
-  for (const Attached on : {Attached::cells, Attached::vertices}) {
-    if (const DataArray* array = find_array(mesh, name, on)) return array;
+  for (const Association association : {Association::cells, Association::vertices}) {
+    if (const DataArray* array = find_array(mesh, name, association)) return array;
   }
-  for (const Attached on : {Attached::cells, Attached::vertices}) {
-    const std::string prefix = std::string(meshorder::name(on)) + ":";
-    if (name.starts_with(prefix)) return find_array(mesh, name.substr(prefix.size()), on);
+  for (const Association association : {Association::cells, Association::vertices}) {
+    const std::string prefix = std::string(meshorder::name(association)) + ":";
+    if (name.starts_with(prefix)) return find_array(mesh, name.substr(prefix.size()), association);
   }
   return nullptr;
 }
@@ -78,7 +79,7 @@ std::vector<Index> numbered(const DataArray& array, const std::vector<std::int64
   values.erase(std::unique(values.begin(), values.end()), values.end());
   std::vector<Index> groups(static_cast<std::size_t>(count), index_size(values));
   for (std::size_t row = 0; row < numbers.size(); ++row) {
-    const auto owner = array.covers_all() ? row : static_cast<std::size_t>(array.rows[row]);
+    const auto owner = array.is_dense() ? row : static_cast<std::size_t>(array.indices[row]);
     groups[owner] =
         static_cast<Index>(std::lower_bound(values.begin(), values.end(), numbers[row]) - values.begin());
   }
@@ -98,20 +99,20 @@ std::vector<Index> smallest_at_vertices(const Mesh& mesh, const std::vector<Inde
 
 /// A group for each set of cells that is the smallest one of some cell.
 Grouping grouping_by_sets(const Mesh& mesh) {
-  std::vector<const Set*> set_of(mesh.cells.shapes.size(), nullptr);
-  for (const Set& set : mesh.sets) {
-    if (set.on != Attached::cells) continue;
+  std::vector<const EntitySet*> set_of(mesh.cells.shapes.size(), nullptr);
+  for (const EntitySet& set : mesh.sets) {
+    if (set.association != Association::cells) continue;
     for (const Index c : set.members) {
       if (!set_of[c] || set.members.size() < set_of[c]->members.size()) set_of[c] = &set;
     }
   }
   Grouping result;
   result.name = "sets";
-  DataArray numbers{"sets", Attached::cells, 1, {}, {}, {}};
+  DataArray numbers{"sets", Association::cells, 1, {}, {}, {}};
   std::vector<std::int64_t> values;
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     if (!set_of[c]) continue;
-    numbers.rows.push_back(c);
+    numbers.indices.push_back(c);
     values.push_back(set_of[c] - mesh.sets.data());
   }
   result.of_cells = numbered(numbers, values, mesh.cell_count(), result.values);
@@ -136,12 +137,12 @@ Grouping grouping_by(const Mesh& mesh, std::string_view name) {
   const std::optional<std::vector<std::int64_t>> numbers = whole_numbers(*array);
   if (!numbers) {
     throw InvalidArgument("group by: the array '" + array->name + "' on " +
-                          std::string(meshorder::name(array->on)) +
+                          std::string(meshorder::name(array->association)) +
                           " does not hold one whole number each; what can group is: " + usable_names(mesh));
   }
   result.name = array->name;
-  result.on = array->on;
-  if (array->on == Attached::vertices) {
+  result.association = array->association;
+  if (array->association == Association::vertices) {
     result.of_vertices = numbered(*array, *numbers, mesh.vertex_count(), result.values);
   } else {
     result.of_cells = numbered(*array, *numbers, mesh.cell_count(), result.values);

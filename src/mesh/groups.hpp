@@ -13,12 +13,12 @@ namespace meshorder {
 
 /// Which group each vertex and each cell of a mesh belongs to: materials, regions, physical groups.
 struct Grouping {
-  std::string name;                  ///< of the array that says so, or "sets"
-  Attached on = Attached::cells;     ///< what that array belongs to
-  std::vector<std::int64_t> values;  ///< those that occur, rising: group g has values[g]
-  std::vector<std::string> names;    ///< by sets: the name of each group's set; else empty
-  std::vector<Index> of_vertices;    ///< a group for each vertex; values.size() where there is none
-  std::vector<Index> of_cells;       ///< likewise for each cell; empty where the array is on vertices
+  std::string name;                              ///< of the array that says so, or "sets"
+  Association association = Association::cells;  ///< what that array belongs to
+  std::vector<std::int64_t> values;              ///< those that occur, rising: group g has values[g]
+  std::vector<std::string> names;                ///< by sets: the name of each group's set; else empty
+  std::vector<Index> of_vertices;  ///< a group for each vertex; values.size() where there is none
+  std::vector<Index> of_cells;     ///< likewise for each cell; empty where the array is on vertices
 
   /// Groups, counted with the one of what has no value.
   [[nodiscard]] Index count() const noexcept { return index_size(values) + 1; }

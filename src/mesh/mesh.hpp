@@ -15,10 +15,10 @@
 namespace meshorder {
 
 /// What an array or a set belongs to.
-enum class Attached : std::uint8_t { vertices, cells };
+enum class Association : std::uint8_t { vertices, cells };
 
 /// "vertices", "cells".
-std::string_view name(Attached on);
+std::string_view name(Association association);
 
 /// The values of an array in the number type that the file gave them.
 using Values = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int8_t>,
@@ -33,51 +33,51 @@ inline constexpr std::string_view kLabel = "label";
 /// Numbers that belong to vertices or cells, `components` for each, row after row.
 struct DataArray {
   std::string name;
-  Attached on = Attached::vertices;
+  Association association = Association::vertices;
   Index components = 1;
   Values values;
   /// The vertices or cells that the rows belong to, for arrays that cover only some of them (in any order,
   /// none twice); empty when row i belongs to vertex or cell i.
-  std::vector<Index> rows;
+  std::vector<Index> indices;
   /// Names of the components, where the file gave them; else empty.
   std::vector<std::string> component_names;
 
-  [[nodiscard]] bool covers_all() const noexcept { return rows.empty(); }
+  [[nodiscard]] bool is_dense() const noexcept { return indices.empty(); }
   bool operator==(const DataArray&) const = default;
 };
 
 /// A named list of vertices or cells, in the order of the file.
-struct Set {
+struct EntitySet {
   std::string name;
-  Attached on = Attached::cells;
+  Association association = Association::cells;
   std::vector<Index> members;
 
-  bool operator==(const Set&) const = default;
+  bool operator==(const EntitySet&) const = default;
 };
 
 /// What a format's reader keeps for its own writer and no other format can hold: materials, names, encodings,
 /// whole sections of text. Nothing in it may depend on the order of vertices or cells.
-struct Residue {
-  Residue() = default;
-  Residue(const Residue&) = default;
-  Residue(Residue&&) = default;
-  Residue& operator=(const Residue&) = default;
-  Residue& operator=(Residue&&) = default;
-  virtual ~Residue() = default;
+struct FormatMetadata {
+  FormatMetadata() = default;
+  FormatMetadata(const FormatMetadata&) = default;
+  FormatMetadata(FormatMetadata&&) = default;
+  FormatMetadata& operator=(const FormatMetadata&) = default;
+  FormatMetadata& operator=(FormatMetadata&&) = default;
+  virtual ~FormatMetadata() = default;
   /// What is lost when another format is written, in a user's words: {"2 materials", "the section
   /// $Periodic"}.
   [[nodiscard]] virtual std::vector<std::string> contents() const = 0;
 };
 
 /// A simulation mesh with all that its file attached to it. Plain data: whoever changes one member keeps the
-/// others in step; `check` (mesh/check.hpp) tells whether they are.
+/// others in step; `check_mesh` (mesh/check.hpp) tells whether they are.
 struct Mesh {
   std::vector<Point> points;  ///< coordinates; the third is 0 where the file has two
   int dimension = 3;          ///< coordinates that the file gives to a point: 2 or 3
   Cells cells;
 
   std::vector<DataArray> data;
-  std::vector<Set> sets;
+  std::vector<EntitySet> sets;
 
   /// The number that the file gives to each vertex and cell, where it is not simply its position (counted
   /// from 0 or 1); else empty. Ids of cells are unique among cells of one type at least.
@@ -88,7 +88,7 @@ struct Mesh {
   /// 0; empty for one block. Reordering keeps every cell in its block.
   std::vector<Index> cell_blocks;
 
-  std::shared_ptr<const Residue> residue;
+  std::shared_ptr<const FormatMetadata> format_metadata;
 
   [[nodiscard]] Index vertex_count() const noexcept { return index_size(points); }
   [[nodiscard]] Index cell_count() const noexcept { return cells.size(); }
@@ -98,6 +98,6 @@ struct Mesh {
 Index row_count(const DataArray& array);
 
 /// The array of that name, or nullptr. O(arrays).
-const DataArray* find_array(const Mesh& mesh, std::string_view name, Attached on);
+const DataArray* find_array(const Mesh& mesh, std::string_view name, Association association);
 
 }  // namespace meshorder

@@ -24,12 +24,12 @@ std::vector<Index> cells_in_order(const Mesh& mesh, const ReorderingOptions& opt
   std::vector<Index> order;
   order.reserve(mesh.cells.shapes.size());
   for (const Index e : by_method.permutation.new_to_old()) order.push_back(top.cells[e]);
-  const CellIncidence lower = lower_cells(mesh);
+  const CellIncidence lower = lower_dimensional_cells(mesh);
   const std::string_view lower_method = options.elements == "original" ? "original" : "lexmax";
   const Ordering of_lower = order_elements(
       lower_method, {lower.incidence, result.vertices, mesh.points, facets_of_mesh}, options.ordering);
   for (const Index e : of_lower.permutation.new_to_old()) order.push_back(lower.cells[e]);
-  if (result.groups && result.groups->on == Attached::cells) {
+  if (result.groups && result.groups->association == Association::cells) {
     const std::vector<Index>& group_of = result.groups->of_cells;
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return group_of[a] < group_of[b]; });
   }
@@ -60,7 +60,7 @@ Reordering compute_reordering(const Mesh& mesh, const CsrGraph& graph, const Reo
 
 Reordering reorder(Mesh& mesh, const ReorderingOptions& options) {
   Reordering result = compute_reordering(mesh, vertex_graph(mesh), options);
-  reorder(mesh, result.vertices, result.cells);
+  apply_reordering(mesh, result.vertices, result.cells);
   return result;
 }
 

@@ -52,11 +52,11 @@ Cells reordered(const Cells& cells, const Permutation& vertices, const Permutati
 }
 
 void reorder_data(DataArray& array, const Permutation& order) {
-  if (array.covers_all()) {
+  if (array.is_dense()) {
     const auto width = static_cast<std::size_t>(array.components);
     std::visit([&](auto& values) { values = order.moved(values, width); }, array.values);
   } else {
-    for (Index& row : array.rows) row = order.old_to_new()[row];
+    for (Index& row : array.indices) row = order.old_to_new()[row];
   }
 }
 
@@ -73,9 +73,10 @@ void sort_ids_within_classes(std::vector<std::int64_t>& ids, const std::vector<I
 void move_all(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
   mesh.points = vertices.moved(mesh.points);
   mesh.cells = reordered(mesh.cells, vertices, cells);
-  for (DataArray& array : mesh.data) reorder_data(array, array.on == Attached::vertices ? vertices : cells);
-  for (Set& set : mesh.sets) {
-    const Permutation& order = set.on == Attached::vertices ? vertices : cells;
+  for (DataArray& array : mesh.data)
+    reorder_data(array, array.association == Association::vertices ? vertices : cells);
+  for (EntitySet& set : mesh.sets) {
+    const Permutation& order = set.association == Association::vertices ? vertices : cells;
     for (Index& member : set.members) member = order.old_to_new()[member];
   }
 }
@@ -90,7 +91,7 @@ void check_fits(const Mesh& mesh, const Permutation& vertices, const Permutation
 
 }  // namespace
 
-void reorder(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
+void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
   check_fits(mesh, vertices, cells);
   const std::vector<Index> classes = slot_classes(mesh);
   const Index to_check = is_one_class(classes) ? 0 : mesh.cell_count();

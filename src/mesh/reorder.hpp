@@ -13,7 +13,7 @@ namespace meshorder {
 /// places (cells: within each dimension of each block). Throws InvalidArgument when a size does not fit or
 /// `cells` takes a cell out of its block or to the place of a cell of another dimension; the mesh is then
 /// unchanged. O(size of the mesh) time; in memory a copy of its largest part at a time.
-void reorder(Mesh& mesh, const Permutation& vertices, const Permutation& cells);
+void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells);
 
 /// The permutation that puts the cells of every dimension, within every block, into the given order and
 /// leaves each (block, dimension) the places that it had. `cells_in_order` lists all cells, each once.

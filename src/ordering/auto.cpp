@@ -14,29 +14,29 @@ namespace {
 
 /// When a method is taken: the first rule that fits decides.
 struct Rule {
-  std::optional<Use> use = {};  ///< none: any
-  Index least_vertices = 0;     ///< from so many on
-  bool geometric = false;       ///< only where there are coordinates
+  std::optional<Workload> use = {};  ///< none: any
+  Index least_vertices = 0;          ///< from so many on
+  bool geometric = false;            ///< only where there are coordinates
   std::string_view method;
-  std::string_view because;
+  std::string_view reason;
 };
 
 // Evidence: `meshorder compare` on one thread of a 2-core Zen 5 machine (48 KB L1, 1 MB L2, 32 MB L3); the
 // tables stand in docs/auto.md.
 constexpr std::array kVertexRules{
-    Rule{.use = Use::springs,
+    Rule{.use = Workload::springs,
          .least_vertices = 1'000'000,
          .method = "rcm",
-         .because = "springs of a mesh this large run fastest on the few forward streams of its levels"},
+         .reason = "springs of a mesh this large run fastest on the few forward streams of its levels"},
     Rule{.geometric = true,
          .method = "hilbert",
-         .because =
+         .reason =
              "within a few per cent of the best order measured, at the cost of one sort of the coordinates"},
     Rule{.method = "spectral",
-         .because = "the best order measured that needs no coordinates, of which there are none"},
+         .reason = "the best order measured that needs no coordinates, of which there are none"},
 };
 
-bool fits(const Rule& rule, Index vertices, bool coordinates, Use use) {
+bool fits(const Rule& rule, Index vertices, bool coordinates, Workload use) {
   return (!rule.use || *rule.use == use) && vertices >= rule.least_vertices &&
          (coordinates || !rule.geometric);
 }
@@ -50,15 +50,15 @@ bool has_coordinates(const VertexProblem& problem) {
 
 }  // namespace
 
-MethodChoice choose_vertex_method(const VertexProblem& problem, Use use) {
+MethodChoice choose_vertex_method(const VertexProblem& problem, Workload use) {
   const bool coordinates = has_coordinates(problem);
   const auto rule = std::find_if(kVertexRules.begin(), kVertexRules.end(), [&](const Rule& r) {
     return fits(r, problem.graph.size(), coordinates, use);
   });
-  return {std::string(rule->method), std::string(rule->because)};
+  return {std::string(rule->method), std::string(rule->reason)};
 }
 
-MethodChoice choose_element_method(const ElementProblem& /*problem*/, Use /*use*/) {
+MethodChoice choose_element_method(const ElementProblem& /*problem*/, Workload /*use*/) {
   return {"lexmax",
           "one sort by the new numbers of their vertices, and no order measured computes faster on it"};
 }

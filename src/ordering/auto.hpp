@@ -8,9 +8,9 @@ namespace meshorder {
 /// The vertex method that measurements favour for that graph and use: never `auto` itself, and none that
 /// needs coordinates where there are none that tell vertices apart. The rules stand in auto.cpp, one line and
 /// its evidence each. O(n).
-MethodChoice choose_vertex_method(const VertexProblem& problem, Use use);
+MethodChoice choose_vertex_method(const VertexProblem& problem, Workload use);
 
 /// The element method that measurements favour for that use. O(1).
-MethodChoice choose_element_method(const ElementProblem& problem, Use use);
+MethodChoice choose_element_method(const ElementProblem& problem, Workload use);
 
 }  // namespace meshorder

@@ -18,15 +18,15 @@
 namespace meshorder {
 
 struct OrderingOptions {
-  std::uint64_t seed = 0;  ///< of `scrambled`, of METIS and of eigensolvers' start vectors
-  double tolerance = 0.1;  ///< of Fiedler vectors, relative to λ₂
-  Use use = Use::all;      ///< what `auto` chooses a method for
+  std::uint64_t seed = 0;        ///< of `scrambled`, of METIS and of eigensolvers' start vectors
+  double tolerance = 0.1;        ///< of Fiedler vectors, relative to λ₂
+  Workload use = Workload::all;  ///< what `auto` chooses a method for
 };
 
 /// Which method made an order.
 struct MethodChoice {
   std::string name;
-  std::string because;  ///< why `auto` took it; empty where it was asked for by its name
+  std::string reason;  ///< why `auto` took it; empty where it was asked for by its name
 
   bool operator==(const MethodChoice&) const = default;
 };

@@ -7,25 +7,25 @@
 
 namespace meshorder {
 
-std::string_view name(Use use) {
+std::string_view name(Workload use) {
   switch (use) {
-    case Use::all:
+    case Workload::all:
       return "all";
-    case Use::element:
+    case Workload::element:
       return "element";
-    case Use::spmv:
+    case Workload::spmv:
       return "spmv";
-    case Use::assembly:
+    case Workload::assembly:
       return "assembly";
-    case Use::springs:
+    case Workload::springs:
       return "springs";
   }
   return "";
 }
 
-Use use_of(std::string_view wanted) {
+Workload parse_workload(std::string_view wanted) {
   std::string known;
-  for (const Use use : kUses) {
+  for (const Workload use : kWorkloads) {
     if (name(use) == wanted) return use;
     known += (known.empty() ? "" : ", ") + std::string(name(use));
   }

@@ -8,7 +8,7 @@
 namespace meshorder {
 
 /// What a mesh is ordered for: the hot loop that shall run fast, or all of them alike.
-enum class Use : std::uint8_t {
+enum class Workload : std::uint8_t {
   all,
   element,   ///< element forces: gather from and scatter to the vertices of each element
   spmv,      ///< products with the stiffness matrix, which iterative solvers repeat
@@ -16,12 +16,13 @@ enum class Use : std::uint8_t {
   springs,   ///< a force along every edge
 };
 
-inline constexpr std::array kUses{Use::all, Use::element, Use::spmv, Use::assembly, Use::springs};
+inline constexpr std::array kWorkloads{Workload::all, Workload::element, Workload::spmv, Workload::assembly,
+                                       Workload::springs};
 
 /// "all", "element", "spmv", "assembly", "springs".
-std::string_view name(Use use);
+std::string_view name(Workload use);
 
 /// The use of that name. Throws InvalidArgument, which lists the known ones.
-Use use_of(std::string_view wanted);
+Workload parse_workload(std::string_view wanted);
 
 }  // namespace meshorder

@@ -75,7 +75,7 @@ KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Perm
   Mesh ordered;
   ordered.points = mesh.points;
   ordered.cells = mesh.cells;
-  reorder(ordered, vertices, cells);
+  apply_reordering(ordered, vertices, cells);
   return reuse_of_kernels(renumbered(graph, vertices.old_to_new()), cut_into_simplices(ordered), halvings);
 }
 

@@ -70,14 +70,14 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   orders.front().mesh.points = mesh.points;
   orders.front().mesh.cells = mesh.cells;
   orders.front().graph = graph;
-  for (const Use use : {Use::all, Use::springs}) {
-    if (use == Use::springs && !options.for_springs_too) continue;
+  for (const Workload use : {Workload::all, Workload::springs}) {
+    if (use == Workload::springs && !options.for_springs_too) continue;
     ReorderingOptions reordering{.ordering = options.ordering};
     reordering.ordering.use = use;
     const Stopwatch stopwatch;
     const Reordering order = compute_reordering(mesh, graph, reordering);
     Ordered ordered = orders.front();
-    reorder(ordered.mesh, order.vertices, order.cells);
+    apply_reordering(ordered.mesh, order.vertices, order.cells);
     const double seconds = options.graph_seconds + stopwatch.seconds();
     if (!advice.candidates.empty() &&
         advice.candidates.front().vertex_method.name == order.vertex_method.name)

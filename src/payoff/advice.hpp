@@ -28,7 +28,7 @@ struct OrderCosts {
 
 /// An order that the mesh could be given.
 struct Candidate {
-  Use use = Use::all;  ///< what `auto` chose it for
+  Workload use = Workload::all;  ///< what `auto` chose it for
   MethodChoice vertex_method;
   MethodChoice element_method;
   double seconds = 0;  ///< what it costs: the graph, both orders, moving the mesh

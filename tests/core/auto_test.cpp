@@ -23,7 +23,7 @@ struct Lattice {
   }
 };
 
-OrderingOptions options_for(Use use) {
+OrderingOptions options_for(Workload use) {
   OrderingOptions options;
   options.use = use;
   return options;
@@ -36,7 +36,7 @@ bool is_known(const std::string& name) {
 
 TEST(Auto, GivesTheOrderOfTheMethodThatItSaysItTook) {
   const Lattice lattice;
-  for (const Use use : kUses) {
+  for (const Workload use : kWorkloads) {
     SCOPED_TRACE(name(use));
     for (const std::span<const Point> points :
          {std::span<const Point>(lattice.points), std::span<const Point>()}) {
@@ -44,7 +44,7 @@ TEST(Auto, GivesTheOrderOfTheMethodThatItSaysItTook) {
       const Ordering order = order_vertices("auto", problem, options_for(use));
       EXPECT_TRUE(is_known(order.method.name)) << order.method.name;
       EXPECT_NE(order.method.name, "auto");
-      EXPECT_FALSE(order.method.because.empty());
+      EXPECT_FALSE(order.method.reason.empty());
       EXPECT_EQ(order.method, choose_vertex_method(problem, use));
       EXPECT_EQ(order.permutation, order_vertices(order.method.name, problem).permutation);
     }
@@ -57,14 +57,14 @@ TEST(Auto, OrdersElementsByLexmax) {
   const ElementProblem problem{elements, vertices, {}, {}};
   const Ordering order = order_elements("auto", problem);
   EXPECT_EQ(order.method.name, "lexmax");
-  EXPECT_FALSE(order.method.because.empty());
+  EXPECT_FALSE(order.method.reason.empty());
   EXPECT_EQ(order.permutation.new_to_old(), (std::vector<Index>{1, 2, 0}));
 }
 
 TEST(Auto, TakesNoGeometricMethodWhereCoordinatesTellNothing) {
   const Lattice lattice;
   const std::vector<Point> all_the_same(lattice.points.size(), Point{1, 2, 3});
-  for (const Use use : kUses) {
+  for (const Workload use : kWorkloads) {
     const std::string without = choose_vertex_method({lattice.graph, {}}, use).name;
     EXPECT_EQ(choose_vertex_method({lattice.graph, all_the_same}, use).name, without);
     EXPECT_NO_THROW(order_vertices(without, {lattice.graph, {}}));
@@ -74,16 +74,16 @@ TEST(Auto, TakesNoGeometricMethodWhereCoordinatesTellNothing) {
 TEST(Auto, LooksAtTheUse) {
   CsrGraph large;
   large.offsets.assign(2'000'001, 0);
-  const auto taken = [&](Use use) { return choose_vertex_method({large, {}}, use).name; };
-  EXPECT_EQ(taken(Use::all), taken(Use::element));
-  EXPECT_NE(taken(Use::springs), taken(Use::element));
+  const auto taken = [&](Workload use) { return choose_vertex_method({large, {}}, use).name; };
+  EXPECT_EQ(taken(Workload::all), taken(Workload::element));
+  EXPECT_NE(taken(Workload::springs), taken(Workload::element));
 }
 
 TEST(Auto, LooksAtTheSize) {
   CsrGraph large;
   large.offsets.assign(2'000'001, 0);
-  const std::string small = choose_vertex_method({test::path(3), {}}, Use::springs).name;
-  EXPECT_NE(choose_vertex_method({large, {}}, Use::springs).name, small);
+  const std::string small = choose_vertex_method({test::path(3), {}}, Workload::springs).name;
+  EXPECT_NE(choose_vertex_method({large, {}}, Workload::springs).name, small);
 }
 
 TEST(Auto, MethodsAskedForByNameGiveNoReason) {
@@ -92,13 +92,13 @@ TEST(Auto, MethodsAskedForByNameGiveNoReason) {
   EXPECT_EQ(order.method, (MethodChoice{"bfs", ""}));
 }
 
-TEST(Use, HasANameThatFindsIt) {
-  for (const Use use : kUses) EXPECT_EQ(use_of(name(use)), use);
+TEST(Workload, HasANameThatFindsIt) {
+  for (const Workload use : kWorkloads) EXPECT_EQ(parse_workload(name(use)), use);
   try {
-    use_of("everything");
+    parse_workload("everything");
     FAIL();
   } catch (const InvalidArgument& error) {
-    for (const Use use : kUses) {
+    for (const Workload use : kWorkloads) {
       EXPECT_NE(std::string(error.what()).find(name(use)), std::string::npos) << error.what();
     }
   }

@@ -28,7 +28,7 @@ Incidence random_elements(Index vertices, Index elements, int size, unsigned see
 TEST(CsrGraph, FromEdgesDropsLoopsAndRepeats) {
   const std::vector<Edge> edges{{0, 1}, {1, 0}, {2, 2}, {3, 1}};
   const CsrGraph graph = graph_from_edges(4, edges);
-  check(graph);
+  check_graph(graph);
   EXPECT_EQ(graph.neighbours, (std::vector<Index>{1, 0, 3, 1}));
   EXPECT_EQ(graph.edge_count(), 2);
   EXPECT_THROW(graph_from_edges(2, edges), InvalidArgument);
@@ -45,7 +45,7 @@ TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
     }
   }
   const CsrGraph graph = vertex_graph(elements);
-  check(graph);
+  check_graph(graph);
   std::set<std::pair<Index, Index>> found;
   for (Index v = 0; v < graph.size(); ++v) {
     for (const Index u : graph[v]) found.emplace(v, u);
@@ -56,7 +56,7 @@ TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
 TEST(DualGraphByVertex, JoinsExactlyTheElementsThatShareAVertex) {
   const Incidence elements = random_elements(80, 40, 3, 2);
   const CsrGraph dual = dual_graph_by_vertex(elements);
-  check(dual);
+  check_graph(dual);
   for (Index e = 0; e < elements.size(); ++e) {
     for (Index f = 0; f < elements.size(); ++f) {
       const std::set<Index> mine(elements[e].begin(), elements[e].end());
@@ -73,7 +73,7 @@ TEST(Renumbered, KeepsEveryEdge) {
   std::vector<Index> reversed(30);
   for (Index v = 0; v < 30; ++v) reversed[v] = 29 - v;
   const CsrGraph renamed = renumbered(graph, reversed);
-  check(renamed);
+  check_graph(renamed);
   EXPECT_NE(renamed, graph);
   EXPECT_EQ(renumbered(renamed, reversed), graph);
 }
@@ -90,7 +90,7 @@ TEST(InducedSubgraph, DropsEdgesThatLeave) {
   const CsrGraph path = graph_from_edges(4, edges);
   const std::vector<Index> some{3, 2, 0};
   const CsrGraph part = induced_subgraph(path, some);
-  check(part);
+  check_graph(part);
   EXPECT_EQ(part.neighbours, (std::vector<Index>{1, 0}));
 }
 

@@ -57,7 +57,7 @@ TEST(OrderInGroups, ChoosesOneMethodForAllGroups) {
   std::vector<Index> group_of(graph.size(), 0);
   for (Index v = 0; v < 100; ++v) group_of[v] = 1;
   const Ordering order = order_vertices_in_groups("auto", {graph, {}}, group_of, 2);
-  EXPECT_EQ(order.method, choose_vertex_method({graph, {}}, Use::all));
+  EXPECT_EQ(order.method, choose_vertex_method({graph, {}}, Workload::all));
   EXPECT_EQ(order.permutation,
             order_vertices_in_groups(order.method.name, {graph, {}}, group_of, 2).permutation);
 }

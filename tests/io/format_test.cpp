@@ -70,7 +70,7 @@ TEST(ArrangeCells, MakesAConvertedFileHoldTheOrderThatWasComputed) {
     for (Index c = 0; c < original.cell_count(); ++c) {
       EXPECT_EQ(mesh.cells.shapes[arranged.old_to_new()[c]], original.cells.shapes[c]);
     }
-    reorder(mesh, test::shuffled(mesh.vertex_count(), 1), test::shuffled_cells(mesh, 2));
+    apply_reordering(mesh, test::shuffled(mesh.vertex_count(), 1), test::shuffled_cells(mesh, 2));
     const auto path = folder.path() / ("a" + extension);
     write_mesh(mesh, path);
     const Mesh read = read_mesh(path);

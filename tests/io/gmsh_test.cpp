@@ -36,8 +36,8 @@ std::string written(const Mesh& mesh, Notes* notes = nullptr) {
 
 /// The array's values, which must be of type T.
 template <class T>
-std::vector<T> values(const Mesh& mesh, std::string_view name, Attached on) {
-  const DataArray* array = find_array(mesh, name, on);
+std::vector<T> values(const Mesh& mesh, std::string_view name, Association association) {
+  const DataArray* array = find_array(mesh, name, association);
   if (!array || !std::holds_alternative<std::vector<T>>(array->values)) {
     ADD_FAILURE() << "no such array: " << name;
     return {};
@@ -45,9 +45,9 @@ std::vector<T> values(const Mesh& mesh, std::string_view name, Attached on) {
   return std::get<std::vector<T>>(array->values);
 }
 
-const Set& set_of(const Mesh& mesh, std::string_view name) {
-  static const Set none{};
-  for (const Set& set : mesh.sets) {
+const EntitySet& set_of(const Mesh& mesh, std::string_view name) {
+  static const EntitySet none{};
+  for (const EntitySet& set : mesh.sets) {
     if (set.name == name) return set;
   }
   ADD_FAILURE() << "no such set: " << name;
@@ -79,11 +79,11 @@ TEST(Gmsh, ReadsAllOfVersion41) {
   EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::triangle, Shape::tetrahedron, Shape::tetrahedron}));
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 0, 1, 2, 3, 0, 2, 1, 5}));
   EXPECT_EQ(mesh.cell_blocks, (std::vector<Index>{0, 1, 2}));
-  EXPECT_EQ(values<std::int32_t>(mesh, kLabel, Attached::cells), (Ints{7, 4, 9}));
-  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:geometrical", Attached::cells), (Ints{3, 5, 6}));
-  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:dim_tags", Attached::vertices),
+  EXPECT_EQ(values<std::int32_t>(mesh, kLabel, Association::cells), (Ints{7, 4, 9}));
+  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:geometrical", Association::cells), (Ints{3, 5, 6}));
+  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:dim_tags", Association::vertices),
             (Ints{0, 1, 2, 3, 2, 3, 3, 5, 3, 5, 3, 5}));
-  EXPECT_EQ(values<double>(mesh, "gmsh:parametric", Attached::vertices),
+  EXPECT_EQ(values<double>(mesh, "gmsh:parametric", Association::vertices),
             (Reals{0, 0, 0, 0, 1, 0.5, 0.25, 0, 1, 0.75, 0.125, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
 }
 
@@ -98,16 +98,17 @@ TEST(Gmsh, GivesNamedGroupsAndPeriodicNodesAsSets) {
 
 TEST(Gmsh, KeepsStepsOfDataApartAndKnowsPartialData) {
   const Mesh mesh = read_text(kGmsh41);
-  EXPECT_EQ(values<double>(mesh, "heat step 0", Attached::vertices), (Reals{1.5, 2.5, 3.5, 4.5, 5.5, 6.5}));
-  const DataArray* second = find_array(mesh, "heat step 1", Attached::vertices);
+  EXPECT_EQ(values<double>(mesh, "heat step 0", Association::vertices),
+            (Reals{1.5, 2.5, 3.5, 4.5, 5.5, 6.5}));
+  const DataArray* second = find_array(mesh, "heat step 1", Association::vertices);
   ASSERT_TRUE(second);
   EXPECT_EQ(second->components, 3);
   EXPECT_EQ(second->rows, (std::vector<Index>{5, 1}));
-  EXPECT_EQ(find_array(mesh, "stress", Attached::cells)->rows, (std::vector<Index>{2}));
+  EXPECT_EQ(find_array(mesh, "stress", Association::cells)->rows, (std::vector<Index>{2}));
   // one value for each node of a cell, filled up with 0
-  EXPECT_EQ(values<double>(mesh, "jump", Attached::cells), (Reals{1, 2, 3, 0, 4, 5, 6, 7}));
-  EXPECT_THAT(mesh.residue->contents(), Contains("the times and steps of data"));
-  EXPECT_THAT(mesh.residue->contents(), Contains("the section $Entities"));
+  EXPECT_EQ(values<double>(mesh, "jump", Association::cells), (Reals{1, 2, 3, 0, 4, 5, 6, 7}));
+  EXPECT_THAT(mesh.format_metadata->contents(), Contains("the times and steps of data"));
+  EXPECT_THAT(mesh.format_metadata->contents(), Contains("the section $Entities"));
 }
 
 TEST(Gmsh, ReadsAllOfVersion22) {
@@ -117,11 +118,11 @@ TEST(Gmsh, ReadsAllOfVersion22) {
   EXPECT_THAT(mesh.cell_blocks, IsEmpty());
   EXPECT_EQ(mesh.cells.shapes,
             (std::vector{Shape::vertex, Shape::tetrahedron, Shape::triangle, Shape::tetrahedron}));
-  EXPECT_EQ(values<std::int32_t>(mesh, kLabel, Attached::cells), (Ints{0, 4, 7, 9}));
-  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:geometrical", Attached::cells), (Ints{1, 5, 3, 6}));
-  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:partitions", Attached::cells),
+  EXPECT_EQ(values<std::int32_t>(mesh, kLabel, Association::cells), (Ints{0, 4, 7, 9}));
+  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:geometrical", Association::cells), (Ints{1, 5, 3, 6}));
+  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:partitions", Association::cells),
             (Ints{0, 0, 0, 1, 2, 0, 0, 0, 0, 2, 1, -2}));
-  EXPECT_EQ(values<double>(mesh, "stress", Attached::cells), (Reals{0.5, 1.5, 2.5, 3.5}));
+  EXPECT_EQ(values<double>(mesh, "stress", Association::cells), (Reals{0.5, 1.5, 2.5, 3.5}));
   EXPECT_THAT(set_of(mesh, "rock").members, ElementsAre(1));
 }
 
@@ -131,7 +132,7 @@ TEST(Gmsh, ReadsBinaryFilesOfBothByteOrdersAlike) {
   EXPECT_EQ(read_text(gmsh_41_binary(std::endian::big)).points, read_text(kGmsh41).points);
   EXPECT_EQ(read_text(gmsh_22_binary(std::endian::big)).points, read_text(kGmsh22).points);
   EXPECT_EQ(read_text(gmsh_41_binary(std::endian::big)).cells, read_text(kGmsh41).cells);
-  EXPECT_EQ(values<double>(read_text(gmsh_22_binary(std::endian::big)), "heat", Attached::vertices),
+  EXPECT_EQ(values<double>(read_text(gmsh_22_binary(std::endian::big)), "heat", Association::vertices),
             (Reals{0.1}));
 }
 
@@ -154,7 +155,7 @@ TEST(Gmsh, TakesFilesWithoutEntitiesAndGroups) {
       "0\n$EndNodes\n"
       "$Elements\n1 1 1 1\n2 0 2 1\n1 1 2 3\n$EndElements\n");
   EXPECT_EQ(mesh.cell_count(), 1);
-  EXPECT_FALSE(find_array(mesh, kLabel, Attached::cells));
+  EXPECT_FALSE(find_array(mesh, kLabel, Association::cells));
 }
 
 // ---- writing what was read
@@ -191,7 +192,7 @@ TEST(Gmsh, OrdersRealFilesAndBack) {
 TEST(Gmsh, SplitsNodeBlocksSoThatFileAndNumbersFollowTheOrder) {
   Mesh mesh = read_text(kGmsh41);
   const Permutation vertices = Permutation::from_new_to_old({1, 0, 2, 5, 4, 3});
-  reorder(mesh, vertices, Permutation::identity(3));
+  apply_reordering(mesh, vertices, Permutation::identity(3));
   EXPECT_EQ(section(written(mesh), "Nodes"),
             "4 6 2 40\n"
             "2 3 1 1\n2\n1 0 0 0.5 0.25\n"
@@ -200,13 +201,13 @@ TEST(Gmsh, SplitsNodeBlocksSoThatFileAndNumbersFollowTheOrder) {
             "3 5 0 3\n30\n35\n40\n0 0 -1\n0.5 0.5 0.5\n0 0 1\n");
   EXPECT_EQ(section(written(mesh), "Periodic"),
             "1\n2 3 8\n16 1 0 0 0 0 1 0 0 0 0 1 0.5 0 0 0 1\n2\n2 10\n20 40\n");
-  reorder(mesh, vertices.inverse(), Permutation::identity(3));
+  apply_reordering(mesh, vertices.inverse(), Permutation::identity(3));
   EXPECT_EQ(written(mesh), kGmsh41);
 }
 
 TEST(Gmsh, DataFollowTheirCells) {
   Mesh mesh = read_text(kGmsh22);
-  reorder(mesh, Permutation::identity(5), Permutation::from_new_to_old({0, 3, 2, 1}));
+  apply_reordering(mesh, Permutation::identity(5), Permutation::from_new_to_old({0, 3, 2, 1}));
   const std::string content = written(mesh);
   EXPECT_EQ(section(content, "Elements"),
             "4\n1 15 2 0 1 1\n2 4 5 9 6 2 1 -2 1 3 2 5\n3 2 2 7 3 1 2 3\n4 4 4 4 5 1 2 1 2 3 4\n");
@@ -219,7 +220,7 @@ TEST(Gmsh, KeepsParametricNodesOfVersion2) {
       "3 0 1 0 2 6 0.25 0.75\n$EndParametricNodes\n$Elements\n1\n1 2 2 0 6 1 2 3\n$EndElements\n";
   Mesh mesh = read_text(content);
   EXPECT_EQ(written(mesh), content);
-  reorder(mesh, Permutation::from_new_to_old({2, 1, 0}), Permutation::identity(1));
+  apply_reordering(mesh, Permutation::from_new_to_old({2, 1, 0}), Permutation::identity(1));
   EXPECT_EQ(section(written(mesh), "ParametricNodes"),
             "3\n1 0 1 0 2 6 0.25 0.75\n2 1 0 0 1 4 0.5\n3 0 0 0 0 1\n");
 }
@@ -234,7 +235,7 @@ TEST(Gmsh, WritesLabelsThatWereChangedAsData) {
 
 TEST(Gmsh, NotesSetsAddedToAGmshFile) {
   Mesh mesh = read_text(kGmsh41);
-  mesh.sets.push_back({"mine", Attached::cells, {0}});
+  mesh.sets.push_back({"mine", Association::cells, {0}});
   Notes notes;
   written(mesh, &notes);
   EXPECT_THAT(notes, ElementsAre("the set 'mine' of cells is left out: Gmsh cannot hold it"));
@@ -427,13 +428,13 @@ void expect_converted(const Mesh& actual, const Mesh& expected) {
   EXPECT_EQ(actual.points, expected.points);
   EXPECT_EQ(actual.cells, expected.cells);
   for (const DataArray& array : expected.data) {
-    const DataArray* found = find_array(actual, array.name, array.on);
+    const DataArray* found = find_array(actual, array.name, array.association);
     ASSERT_TRUE(found) << array.name;
     EXPECT_EQ(found->values, array.values) << array.name;
     EXPECT_EQ(found->components, array.components) << array.name;
   }
-  for (const Set& set : expected.sets) {
-    if (set.on == Attached::cells) {
+  for (const EntitySet& set : expected.sets) {
+    if (set.association == Association::cells) {
       EXPECT_EQ(set_of(actual, set.name).members, set.members);
     }
   }
@@ -458,10 +459,10 @@ TEST(Gmsh, WritesAMeshFromElsewhereInVersion41) {
   mesh.cells.push_back(Shape::tetrahedron, std::array<Index, 4>{0, 1, 2, 3});
   mesh.cells.push_back(Shape::tetrahedron, std::array<Index, 4>{1, 2, 3, 4});
   mesh.cells.push_back(Shape::triangle, std::array<Index, 3>{0, 2, 1});
-  mesh.data.push_back({std::string(kLabel), Attached::cells, 1, Ints{5, 2, 0}, {}, {}});
+  mesh.data.push_back({std::string(kLabel), Association::cells, 1, Ints{5, 2, 0}, {}, {}});
   mesh.data.push_back(
-      {"uv", Attached::vertices, 2, std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10.5F}, {}, {}});
-  mesh.sets.push_back({"a \"set\"", Attached::cells, {2, 1}});
+      {"uv", Association::vertices, 2, std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10.5F}, {}, {}});
+  mesh.sets.push_back({"a \"set\"", Association::cells, {2, 1}});
   mesh.vertex_ids = {0, 1, 2, 3, 4};
   Notes notes;
   EXPECT_EQ(
@@ -481,31 +482,31 @@ TEST(Gmsh, NotesWhatItCannotHold) {
   Mesh mesh = tetrahedral_bar(1);
   mesh.data.clear();
   mesh.sets.clear();
-  mesh.data.push_back({std::string(kLabel), Attached::cells, 1, Ints{-1, 1, 1, 1, 1, 1}, {}, {}});
-  mesh.data.push_back({"names", Attached::cells, 1, std::vector<std::string>(6, "a"), {}, {}});
-  mesh.data.push_back({"wide", Attached::cells, 10, Reals(60), {}, {}});
+  mesh.data.push_back({std::string(kLabel), Association::cells, 1, Ints{-1, 1, 1, 1, 1, 1}, {}, {}});
+  mesh.data.push_back({"names", Association::cells, 1, std::vector<std::string>(6, "a"), {}, {}});
+  mesh.data.push_back({"wide", Association::cells, 10, Reals(60), {}, {}});
   mesh.data.push_back(
-      {"big", Attached::cells, 1, std::vector<std::int64_t>(6, (std::int64_t{1} << 60) + 1), {}, {}});
+      {"big", Association::cells, 1, std::vector<std::int64_t>(6, (std::int64_t{1} << 60) + 1), {}, {}});
   Notes notes;
   const Mesh again = read_text(written(mesh, &notes));
   EXPECT_THAT(notes, ElementsAre(HasSubstr("labels of cells are written as data"), HasSubstr("'names'"),
                                  HasSubstr("'wide'"), HasSubstr("'big' loses digits")));
-  EXPECT_EQ(values<std::int32_t>(again, kLabel, Attached::cells), (Ints{-1, 1, 1, 1, 1, 1}));
+  EXPECT_EQ(values<std::int32_t>(again, kLabel, Association::cells), (Ints{-1, 1, 1, 1, 1, 1}));
 }
 
 TEST(Gmsh, FindsItsEntitiesAgainAfterADetour) {
   // another format keeps arrays and sets, but not the residue
   Mesh mesh = read_text(kGmsh41);
-  mesh.residue.reset();
+  mesh.format_metadata.reset();
   mesh.cell_blocks.clear();
-  std::erase_if(mesh.sets, [](const Set& set) { return set.on == Attached::vertices; });
+  std::erase_if(mesh.sets, [](const EntitySet& set) { return set.association == Association::vertices; });
   const Mesh again = read_text(written(mesh));
-  EXPECT_EQ(values<std::int32_t>(again, "gmsh:geometrical", Attached::cells), (Ints{3, 5, 6}));
-  EXPECT_EQ(values<std::int32_t>(again, "gmsh:dim_tags", Attached::vertices),
-            values<std::int32_t>(mesh, "gmsh:dim_tags", Attached::vertices));
-  EXPECT_EQ(*find_array(again, "gmsh:parametric", Attached::vertices),
-            *find_array(mesh, "gmsh:parametric", Attached::vertices));
-  EXPECT_EQ(values<std::int32_t>(again, kLabel, Attached::cells), (Ints{7, 4, 9}));
+  EXPECT_EQ(values<std::int32_t>(again, "gmsh:geometrical", Association::cells), (Ints{3, 5, 6}));
+  EXPECT_EQ(values<std::int32_t>(again, "gmsh:dim_tags", Association::vertices),
+            values<std::int32_t>(mesh, "gmsh:dim_tags", Association::vertices));
+  EXPECT_EQ(*find_array(again, "gmsh:parametric", Association::vertices),
+            *find_array(mesh, "gmsh:parametric", Association::vertices));
+  EXPECT_EQ(values<std::int32_t>(again, kLabel, Association::cells), (Ints{7, 4, 9}));
   EXPECT_EQ(set_of(again, "all of it").members, set_of(mesh, "all of it").members);
 }
 

@@ -34,7 +34,7 @@ Mesh mesh_of(const std::vector<Cell>& cells) {
 
 /// The edges of a graph, smaller end first.
 Pairs edges_of(const CsrGraph& graph) {
-  check(graph);
+  check_graph(graph);
   Pairs result;
   for (Index v = 0; v < graph.size(); ++v) {
     for (const Index u : graph[v]) result.insert(std::minmax(u, v));
@@ -102,7 +102,7 @@ TEST(MeshVertexGraph, OfNoCellsHasNoEdges) {
 TEST(Elements, AreTheCellsOfTheHighestDimensionAndLowerCellsTheRest) {
   const Mesh mesh = test::mixed_mesh();
   const CellIncidence top = elements(mesh);
-  const CellIncidence lower = lower_cells(mesh);
+  const CellIncidence lower = lower_dimensional_cells(mesh);
   std::vector<Index> all = top.cells;
   all.insert(all.end(), lower.cells.begin(), lower.cells.end());
   std::sort(all.begin(), all.end());

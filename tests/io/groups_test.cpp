@@ -30,14 +30,14 @@ Mesh bar_of_parts() {
     parts.push_back(-100);
   }
   mesh.points.resize(mesh.points.size() + 3, Point{});  // that nothing uses
-  mesh.data.push_back({"part", Attached::cells, 1, parts, {}, {}});
+  mesh.data.push_back({"part", Association::cells, 1, parts, {}, {}});
   mesh.cell_blocks.clear();
-  reorder(mesh, test::shuffled(mesh.vertex_count(), 1), test::shuffled_cells(mesh, 2));
+  apply_reordering(mesh, test::shuffled(mesh.vertex_count(), 1), test::shuffled_cells(mesh, 2));
   return mesh;
 }
 
-const std::vector<std::int64_t>& values_of(const Mesh& mesh, std::string_view name, Attached on) {
-  return std::get<std::vector<std::int64_t>>(find_array(mesh, name, on)->values);
+const std::vector<std::int64_t>& values_of(const Mesh& mesh, std::string_view name, Association association) {
+  return std::get<std::vector<std::int64_t>>(find_array(mesh, name, association)->values);
 }
 
 /// The smallest part among the tetrahedra at a vertex; the largest number where there is none.
@@ -47,7 +47,7 @@ std::int64_t smallest_part_at(const Mesh& mesh, Index vertex) {
     const auto vertices = mesh.cells[c];
     if (mesh.cells.shapes[c] != Shape::tetrahedron) continue;
     if (std::find(vertices.begin(), vertices.end(), vertex) == vertices.end()) continue;
-    smallest = std::min(smallest, values_of(mesh, "part", Attached::cells)[c]);
+    smallest = std::min(smallest, values_of(mesh, "part", Association::cells)[c]);
   }
   return smallest;
 }
@@ -77,7 +77,7 @@ TEST(GroupBy, KeepsCellsOfOneValueTogetherByRisingValue) {
     std::vector<std::int64_t> of_tetrahedra;
     for (Index c = 0; c < mesh.cell_count(); ++c) {
       if (mesh.cells.shapes[c] != Shape::tetrahedron) continue;
-      of_tetrahedra.push_back(values_of(mesh, "part", Attached::cells)[c]);
+      of_tetrahedra.push_back(values_of(mesh, "part", Association::cells)[c]);
     }
     EXPECT_TRUE(std::is_sorted(of_tetrahedra.begin(), of_tetrahedra.end())) << elements;
   }
@@ -111,7 +111,7 @@ TEST(GroupBy, OrdersElementsWithinTheirGroupsByTheMethod) {
     if (mesh.cells.shapes[c] != Shape::tetrahedron) continue;
     std::vector<Index> falling(mesh.cells[c].begin(), mesh.cells[c].end());
     std::sort(falling.rbegin(), falling.rend());
-    keys.emplace_back(values_of(mesh, "part", Attached::cells)[c], falling);
+    keys.emplace_back(values_of(mesh, "part", Association::cells)[c], falling);
   }
   EXPECT_TRUE(std::is_sorted(keys.begin(), keys.end()));
 }
@@ -124,7 +124,7 @@ TEST(GroupBy, StaysWithinBlocks) {
     std::vector<std::int64_t> of_block;
     for (Index c = begin; c < end; ++c) {
       if (mesh.cells.shapes[c] != Shape::tetrahedron) continue;
-      of_block.push_back(values_of(mesh, "part", Attached::cells)[c]);
+      of_block.push_back(values_of(mesh, "part", Association::cells)[c]);
     }
     EXPECT_TRUE(std::is_sorted(of_block.begin(), of_block.end()));
   }
@@ -135,9 +135,9 @@ TEST(GroupBy, AnArrayOnVerticesGroupsThemAndLeavesElementsToTheirMethod) {
   std::vector<std::int64_t> zones;
   zones.reserve(mesh.points.size());
   for (Index v = 0; v < mesh.vertex_count(); ++v) zones.push_back(v % 3);
-  mesh.data.push_back({"zone", Attached::vertices, 1, zones, {}, {}});
+  mesh.data.push_back({"zone", Association::vertices, 1, zones, {}, {}});
   const Reordering result = reorder(mesh, grouped("zone"));
-  const std::vector<std::int64_t>& after = values_of(mesh, "zone", Attached::vertices);
+  const std::vector<std::int64_t>& after = values_of(mesh, "zone", Association::vertices);
   EXPECT_TRUE(std::is_sorted(after.begin(), after.end()));
   EXPECT_TRUE(result.groups->of_cells.empty());
   std::vector<std::vector<Index>> tuples;
@@ -151,7 +151,7 @@ TEST(GroupBy, AnArrayOnVerticesGroupsThemAndLeavesElementsToTheirMethod) {
 
 TEST(GroupBy, PutsWhatHasNoValueLast) {
   Mesh mesh = test::tetrahedral_bar(2);
-  mesh.data = {{"some", Attached::cells, 1, std::vector<std::int32_t>{5, 5, 3}, {4, 7, 11}, {}}};
+  mesh.data = {{"some", Association::cells, 1, std::vector<std::int32_t>{5, 5, 3}, {4, 7, 11}, {}}};
   const Grouping grouping = grouping_by(mesh, "some");
   EXPECT_EQ(grouping.values, (std::vector<std::int64_t>{3, 5}));
   EXPECT_EQ(grouping.of_cells, (std::vector<Index>{2, 2, 2, 2, 1, 2, 2, 1, 2, 2, 2, 0}));
@@ -169,7 +169,7 @@ TEST(GroupBy, TakesEveryTypeThatHoldsWholeNumbers) {
       std::vector<std::int32_t>{2, -1, 2, -1, 2, 2}, std::vector<std::uint64_t>{9, 1, 9, 1, 9, 9},
       std::vector<float>{2.0F, -1.0F, 2, -1, 2, 2},  std::vector<double>{2e9, -1e15, 2e9, -1e15, 2e9, 2e9}};
   for (const Values& values : types) {
-    mesh.data = {{"region", Attached::cells, 1, values, {}, {}}};
+    mesh.data = {{"region", Association::cells, 1, values, {}, {}}};
     EXPECT_EQ(grouping_by(mesh, "region").of_cells, (std::vector<Index>{1, 0, 1, 0, 1, 1}));
   }
 }
@@ -185,23 +185,23 @@ TEST(GroupBy, RefusesWhatHoldsNoWholeNumbers) {
                                   std::vector<std::uint64_t>{1, 1, 1, 1, 1, ~std::uint64_t{0}},
                                   std::vector<std::string>{"1", "1", "1", "1", "1", "1"}};
   for (const Values& values : types) {
-    mesh.data = {{"region", Attached::cells, 1, values, {}, {}},
-                 {"good", Attached::vertices, 1, std::vector<int>(8, 1), {}, {}}};
+    mesh.data = {{"region", Association::cells, 1, values, {}, {}},
+                 {"good", Association::vertices, 1, std::vector<int>(8, 1), {}, {}}};
     const std::string message = refusal(mesh, "region");
     EXPECT_NE(message.find("'region' on cells"), std::string::npos) << message;
     EXPECT_NE(message.find("good on vertices"), std::string::npos) << message;
   }
   mesh.sets.clear();
-  mesh.data = {{"pairs", Attached::cells, 2, std::vector<std::int32_t>(12, 1), {}, {}}};
+  mesh.data = {{"pairs", Association::cells, 2, std::vector<std::int32_t>(12, 1), {}, {}}};
   EXPECT_NE(refusal(mesh, "pairs").find("is: none"), std::string::npos);
 }
 
 TEST(GroupBy, FindsArraysByNameCellsFirstOrByPrefix) {
   Mesh mesh = test::tetrahedral_bar(1);
-  mesh.data = {{"tag", Attached::vertices, 1, std::vector<std::int32_t>(8, 4), {}, {}},
-               {"tag", Attached::cells, 1, std::vector<std::int32_t>(6, 5), {}, {}},
-               {"zone", Attached::vertices, 1, std::vector<std::int32_t>(8, 6), {}, {}},
-               {"cells:tag", Attached::vertices, 1, std::vector<std::int32_t>(8, 7), {}, {}}};
+  mesh.data = {{"tag", Association::vertices, 1, std::vector<std::int32_t>(8, 4), {}, {}},
+               {"tag", Association::cells, 1, std::vector<std::int32_t>(6, 5), {}, {}},
+               {"zone", Association::vertices, 1, std::vector<std::int32_t>(8, 6), {}, {}},
+               {"cells:tag", Association::vertices, 1, std::vector<std::int32_t>(8, 7), {}, {}}};
   const auto value = [&](std::string_view name) { return grouping_by(mesh, name).values.front(); };
   EXPECT_EQ(value("tag"), 5);
   EXPECT_EQ(value("vertices:tag"), 4);
@@ -217,11 +217,11 @@ TEST(GroupBy, FindsArraysByNameCellsFirstOrByPrefix) {
 TEST(GroupBy, SetsOfCellsGroupByTheSmallestThatHoldsACell) {
   Mesh mesh = test::tetrahedral_bar(2);
   mesh.data.clear();
-  mesh.sets = {{"fixed", Attached::vertices, {0, 1}},
-               {"all", Attached::cells, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}},
-               {"left", Attached::cells, {5, 4, 3, 2}},
-               {"unused", Attached::cells, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}},
-               {"right", Attached::cells, {9, 8, 5}}};
+  mesh.sets = {{"fixed", Association::vertices, {0, 1}},
+               {"all", Association::cells, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}},
+               {"left", Association::cells, {5, 4, 3, 2}},
+               {"unused", Association::cells, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}},
+               {"right", Association::cells, {9, 8, 5}}};
   const Grouping grouping = grouping_by(mesh, "sets");
   EXPECT_EQ(grouping.names, (std::vector<std::string>{"all", "left", "right"}));
   EXPECT_EQ(grouping.values, (std::vector<std::int64_t>{1, 2, 4}));
@@ -238,7 +238,7 @@ TEST(GroupBy, SetsOfCellsGroupByTheSmallestThatHoldsACell) {
 
 TEST(GroupBy, OfOneGroupIsTheOrderWithoutGroups) {
   Mesh mesh = test::tetrahedral_bar(7);
-  mesh.data = {{"tag", Attached::cells, 1, std::vector<std::int32_t>(42, 5), {}, {}}};
+  mesh.data = {{"tag", Association::cells, 1, std::vector<std::int32_t>(42, 5), {}, {}}};
   Mesh other = mesh;
   const Reordering with = reorder(mesh, grouped("tag", "fiedler"));
   const Reordering without = reorder(other, grouped("", "fiedler"));

@@ -48,8 +48,8 @@ constexpr std::string_view kFile =
     "# fin\n";
 
 template <class T>
-const std::vector<T>& values(const Mesh& mesh, std::string_view name, Attached on) {
-  return std::get<std::vector<T>>(find_array(mesh, name, on)->values);
+const std::vector<T>& values(const Mesh& mesh, std::string_view name, Association association) {
+  return std::get<std::vector<T>>(find_array(mesh, name, association)->values);
 }
 
 Mesh read(std::string_view content, Notes* notes = nullptr) {
@@ -79,17 +79,17 @@ TEST(Medit, ReadsEverySectionOfAFile) {
                                              Shape::tetrahedron, Shape::tetrahedron));
   EXPECT_THAT(mesh.cells.vertices, ElementsAre(0, 1, 1, 2, 0, 1, 2, 2, 3, 4, 0, 1, 2, 3, 1, 2, 3, 4));
   EXPECT_THAT(mesh.cell_blocks, ElementsAre(0, 2, 4));
-  EXPECT_THAT(values<std::int32_t>(mesh, kLabel, Attached::vertices), ElementsAre(1, 2, 3, 4, -5));
-  EXPECT_THAT(values<std::int32_t>(mesh, kLabel, Attached::cells), ElementsAre(8, 9, 6, 7, 10, 20));
+  EXPECT_THAT(values<std::int32_t>(mesh, kLabel, Association::vertices), ElementsAre(1, 2, 3, 4, -5));
+  EXPECT_THAT(values<std::int32_t>(mesh, kLabel, Association::cells), ElementsAre(8, 9, 6, 7, 10, 20));
 
   ASSERT_EQ(mesh.sets.size(), 3U);
-  EXPECT_EQ(mesh.sets[0], (Set{"Corners", Attached::vertices, {4, 0}}));
-  EXPECT_EQ(mesh.sets[1], (Set{"Ridges", Attached::cells, {1}}));
-  EXPECT_EQ(mesh.sets[2], (Set{"RequiredTriangles", Attached::cells, {3, 2}}));
+  EXPECT_EQ(mesh.sets[0], (EntitySet{"Corners", Association::vertices, {4, 0}}));
+  EXPECT_EQ(mesh.sets[1], (EntitySet{"Ridges", Association::cells, {1}}));
+  EXPECT_EQ(mesh.sets[2], (EntitySet{"RequiredTriangles", Association::cells, {3, 2}}));
 
-  EXPECT_THAT(find_array(mesh, "NormalAtVertices", Attached::vertices)->rows, ElementsAre(3, 1, 4));
-  EXPECT_THAT(values<double>(mesh, "NormalAtVertices", Attached::vertices), ElementsAre(1, 2, 1));
-  EXPECT_THAT(values<double>(mesh, "VertexOnGeometricEdge", Attached::vertices), ElementsAre(7, 0.25));
+  EXPECT_THAT(find_array(mesh, "NormalAtVertices", Association::vertices)->rows, ElementsAre(3, 1, 4));
+  EXPECT_THAT(values<double>(mesh, "NormalAtVertices", Association::vertices), ElementsAre(1, 2, 1));
+  EXPECT_THAT(values<double>(mesh, "VertexOnGeometricEdge", Association::vertices), ElementsAre(7, 0.25));
 }
 
 TEST(Medit, WritesAFileAsItWas) {
@@ -121,8 +121,8 @@ TEST(Medit, PositionsFollowTheNewOrder) {
   const TemporaryFolder folder;
   test::expect_order_and_back(folder.file("m.mesh", kFile));
   Mesh mesh = read(kFile);
-  reorder(mesh, Permutation::from_old_to_new({4, 3, 2, 1, 0}),
-          Permutation::from_old_to_new({1, 0, 3, 2, 4, 5}));
+  apply_reordering(mesh, Permutation::from_old_to_new({4, 3, 2, 1, 0}),
+                   Permutation::from_old_to_new({1, 0, 3, 2, 4, 5}));
   const std::string text = written(mesh);
   EXPECT_THAT(text, HasSubstr("\nTriangles\n2\n3 2 1 7\n5 4 3 6\n"));
   EXPECT_THAT(text, HasSubstr("\nCorners\n2\n1\n5\n"));
@@ -143,8 +143,8 @@ TEST(Medit, ReadsSectionsInAnyOrderAndKeywordsInAnyCase) {
   EXPECT_EQ(mesh.dimension, 2);
   EXPECT_THAT(mesh.cells.shapes, ElementsAre(Shape::triangle, Shape::line, Shape::line));
   EXPECT_EQ(mesh.points[2], (Point{0, 1, 0}));
-  EXPECT_EQ(mesh.sets[0], (Set{"RequiredEdges", Attached::cells, {2}}));
-  EXPECT_EQ(mesh.sets[1], (Set{"RequiredVertices", Attached::vertices, {2}}));
+  EXPECT_EQ(mesh.sets[0], (EntitySet{"RequiredEdges", Association::cells, {2}}));
+  EXPECT_EQ(mesh.sets[1], (EntitySet{"RequiredVertices", Association::vertices, {2}}));
 }
 
 TEST(Medit, ReadsOldNamesOfSections) {
@@ -157,7 +157,7 @@ TEST(Medit, ReadsOldNamesOfSections) {
 TEST(Medit, KeepsReferencesOf64Bits) {
   const Mesh mesh =
       read("MeshVersionFormatted 4\nDimension 2\nVertices 2\n0 0 5000000000\n1 0 0\nEdges 1\n1 2 7\nEnd\n");
-  EXPECT_THAT(values<std::int64_t>(mesh, kLabel, Attached::vertices), ElementsAre(5000000000, 0));
+  EXPECT_THAT(values<std::int64_t>(mesh, kLabel, Association::vertices), ElementsAre(5000000000, 0));
   test::expect_write_and_read(mesh, "m.mesh");
 }
 
@@ -278,9 +278,10 @@ Mesh interleaved() {
     mesh.cells.push_back(shape, all.cells[c]);
     labels.push_back(c);
   }
-  std::erase_if(mesh.data,
-                [](const DataArray& array) { return array.on == Attached::cells || array.name != kLabel; });
-  mesh.data.push_back({std::string(kLabel), Attached::cells, 1, labels, {}, {}});
+  std::erase_if(mesh.data, [](const DataArray& array) {
+    return array.association == Association::cells || array.name != kLabel;
+  });
+  mesh.data.push_back({std::string(kLabel), Association::cells, 1, labels, {}, {}});
   mesh.sets.clear();
   return mesh;
 }
@@ -299,11 +300,11 @@ TEST(Medit, GroupsInterleavedCells) {
 
 TEST(Medit, KeepsSetsThatItKnowsAndNamesWhatIsLost) {
   Mesh mesh = test::tetrahedral_bar(2);
-  mesh.sets.push_back({"RequiredVertices", Attached::vertices, {3, 1}});
-  mesh.sets.push_back({"RequiredTriangles", Attached::cells, {0}});  // which is a tetrahedron
+  mesh.sets.push_back({"RequiredVertices", Association::vertices, {3, 1}});
+  mesh.sets.push_back({"RequiredTriangles", Association::cells, {0}});  // which is a tetrahedron
   mesh.cell_ids.resize(mesh.cell_count(), 0);
-  mesh.data.push_back({"NormalAtVertices", Attached::vertices, 1, std::vector<double>{1}, {0}, {}});
-  mesh.data.push_back({"names", Attached::cells, 1, std::vector<std::string>(mesh.cell_count()), {}, {}});
+  mesh.data.push_back({"NormalAtVertices", Association::vertices, 1, std::vector<double>{1}, {0}, {}});
+  mesh.data.push_back({"names", Association::cells, 1, std::vector<std::string>(mesh.cell_count()), {}, {}});
   Notes notes;
   const std::string text = written(mesh, &notes);
   EXPECT_THAT(text, HasSubstr("\nRequiredVertices\n2\n4\n2\n"));
@@ -319,7 +320,7 @@ TEST(Medit, KeepsSetsThatItKnowsAndNamesWhatIsLost) {
 TEST(Medit, CellsWithoutALabelGetZero) {
   Mesh mesh = test::cells_of_type(Shape::tetrahedron, 4, 2);
   mesh.sets.clear();
-  mesh.data = {{std::string(kLabel), Attached::cells, 1, std::vector<std::int32_t>{8}, {1}, {}}};
+  mesh.data = {{std::string(kLabel), Association::cells, 1, std::vector<std::int32_t>{8}, {1}, {}}};
   Notes notes;
   EXPECT_THAT(written(mesh, &notes), HasSubstr("\nTetrahedra\n2\n1 2 3 4 0\n5 6 7 8 8\n"));
   EXPECT_THAT(notes, ElementsAre(HasSubstr("1 cells have no label")));

@@ -53,19 +53,20 @@ TEST(Obj, ReadsCellsWithTheirStates) {
   EXPECT_EQ(mesh.cells.vertices,
             (std::vector<Index>{0, 1, 2, 3, 2, 4, 3, 0, 2, 3, 0, 1, 2, 3, 4, 0, 1, 0, 1, 2, 5}));
   using Ints = std::vector<std::int32_t>;
-  const std::vector<DataArray> expected{{"obj:weight", Attached::vertices, 1, std::vector{0.5}, {3}, {}},
-                                        {"obj:texture2", Attached::cells, 2, Ints{0, 1}, {4}, {}},
-                                        {"obj:texture3", Attached::cells, 3, Ints{0, 1, 2}, {1}, {}},
-                                        {"obj:texture4", Attached::cells, 4, Ints{0, 1, 2, 0}, {0}, {}},
-                                        {"obj:normal3", Attached::cells, 3, Ints{0, 1, 0}, {2}, {}},
-                                        {"obj:normal4", Attached::cells, 4, Ints{0, 0, 1, 1}, {0}, {}},
-                                        {"object", Attached::cells, 1, Ints{1, 1, 0, 0, 0, 0, 0}, {}, {}},
-                                        {"label", Attached::cells, 1, Ints{1, 2, 0, 0, 0, 0, 0}, {}, {}},
-                                        {"smoothing", Attached::cells, 1, Ints{1, 0, 0, 0, 0, 0, 0}, {}, {}}};
+  const std::vector<DataArray> expected{
+      {"obj:weight", Association::vertices, 1, std::vector{0.5}, {3}, {}},
+      {"obj:texture2", Association::cells, 2, Ints{0, 1}, {4}, {}},
+      {"obj:texture3", Association::cells, 3, Ints{0, 1, 2}, {1}, {}},
+      {"obj:texture4", Association::cells, 4, Ints{0, 1, 2, 0}, {0}, {}},
+      {"obj:normal3", Association::cells, 3, Ints{0, 1, 0}, {2}, {}},
+      {"obj:normal4", Association::cells, 4, Ints{0, 0, 1, 1}, {0}, {}},
+      {"object", Association::cells, 1, Ints{1, 1, 0, 0, 0, 0, 0}, {}, {}},
+      {"label", Association::cells, 1, Ints{1, 2, 0, 0, 0, 0, 0}, {}, {}},
+      {"smoothing", Association::cells, 1, Ints{1, 0, 0, 0, 0, 0, 0}, {}, {}}};
   EXPECT_EQ(mesh.data, expected);
-  EXPECT_EQ(mesh.sets, (std::vector<Set>{{"roof", Attached::cells, {1}},
-                                         {"top", Attached::cells, {1}},
-                                         {"walls", Attached::cells, {0}}}));
+  EXPECT_EQ(mesh.sets, (std::vector<EntitySet>{{"roof", Association::cells, {1}},
+                                               {"top", Association::cells, {1}},
+                                               {"walls", Association::cells, {0}}}));
 }
 
 TEST(Obj, OrdersAndPutsBackEverything) {
@@ -82,7 +83,7 @@ TEST(Obj, StatesChangeWhereTheyChangeInTheNewOrder) {
       read_mesh(folder.file("a.obj",
                             "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 1\nusemtl b\nf 1/1 2/1 3/2\nusemtl a\n"
                             "f 2 3 1\nusemtl b\nf 3/2 1/2 2/1\n"));
-  reorder(mesh, Permutation::from_old_to_new({2, 1, 0}), Permutation::from_new_to_old({0, 2, 1}));
+  apply_reordering(mesh, Permutation::from_old_to_new({2, 1, 0}), Permutation::from_new_to_old({0, 2, 1}));
   write_mesh(mesh, folder.path() / "b.obj");
   EXPECT_EQ(content_of(folder.path() / "b.obj"),
             "v 0 1 0\nv 1 0 0\nv 0 0 0\nvt 0 0\nvt 1 1\nusemtl b\nf 3/1 2/1 1/2\nf 1/2 3/2 2/1\nusemtl a\nf "
@@ -118,7 +119,7 @@ TEST(Obj, NumbersMaterialsByTheirNamesWhereThoseAreNumbers) {
   using Ints = std::vector<std::int32_t>;
   const auto labels = [&](const std::string& cells) {
     const Mesh mesh = read_mesh(folder.file("a.obj", lists + cells));
-    return find_array(mesh, kLabel, Attached::cells)->values;
+    return find_array(mesh, kLabel, Association::cells)->values;
   };
   EXPECT_EQ(labels("usemtl 7\nf 1 2 3\nusemtl -2\nf 1 2 3\n"), Values(Ints{7, -2}));
   EXPECT_EQ(labels("usemtl z\nf 1 2 3\nusemtl 5\nf 1 2 3\n"), Values(Ints{2, 1}));
@@ -180,9 +181,10 @@ TEST(Obj, WritesAndReadsItsTypes) {
                                                                        {Shape::quad, 4},
                                                                        {Shape::polygon, 7}}) {
     Mesh mesh = cells_of_type(shape, width, 5);
-    std::erase_if(mesh.data,
-                  [](const DataArray& a) { return a.on == Attached::vertices || a.name != kLabel; });
-    std::erase_if(mesh.sets, [](const Set& set) { return set.on == Attached::vertices; });
+    std::erase_if(mesh.data, [](const DataArray& a) {
+      return a.association == Association::vertices || a.name != kLabel;
+    });
+    std::erase_if(mesh.sets, [](const EntitySet& set) { return set.association == Association::vertices; });
     expect_write_and_read(mesh, "a.obj");
   }
 }
@@ -192,13 +194,13 @@ TEST(Obj, WritesOtherMeshesExactlySoAndNotesWhatItCannotHold) {
   Mesh mesh = cells_of_type(Shape::triangle, 3, 1);
   mesh.points = {{0.1, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.cell_ids = {77};
-  mesh.sets.push_back({"two words", Attached::cells, {0}});
+  mesh.sets.push_back({"two words", Association::cells, {0}});
   for (const char* component : {"nx", "ny", "nz"}) {
-    mesh.data.push_back({component, Attached::vertices, 1, std::vector<float>{0, 0.5F, 1}, {}, {}});
+    mesh.data.push_back({component, Association::vertices, 1, std::vector<float>{0, 0.5F, 1}, {}, {}});
   }
-  mesh.data.push_back({"texture", Attached::vertices, 2, std::vector<double>{0, 0, 1, 0, 0, 1}, {}, {}});
+  mesh.data.push_back({"texture", Association::vertices, 2, std::vector<double>{0, 0, 1, 0, 0, 1}, {}, {}});
   mesh.data.push_back(
-      {"color", Attached::vertices, 3, std::vector<std::uint8_t>{255, 0, 0, 0, 51, 0, 0, 0, 0}, {}, {}});
+      {"color", Association::vertices, 3, std::vector<std::uint8_t>{255, 0, 0, 0, 51, 0, 0, 0, 0}, {}, {}});
   Notes notes;
   write_mesh(mesh, folder.path() / "a.obj", &notes);
   EXPECT_EQ(

@@ -32,15 +32,17 @@ TEST(Off, ReadsFacesAndTheirColors) {
   EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::quad, Shape::triangle, Shape::line}));
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 3, 2, 4, 3, 0, 4}));
   ASSERT_EQ(mesh.data.size(), 2U);
-  EXPECT_EQ(mesh.data[0], (DataArray{"color_f3", Attached::cells, 3, std::vector{0.5, 1.0, 0.25}, {1}, {}}));
+  EXPECT_EQ(mesh.data[0],
+            (DataArray{"color_f3", Association::cells, 3, std::vector{0.5, 1.0, 0.25}, {1}, {}}));
   EXPECT_EQ(mesh.data[1],
-            (DataArray{"color_i3", Attached::cells, 3, std::vector<std::int32_t>{255, 0, 0}, {0}, {}}));
+            (DataArray{"color_i3", Association::cells, 3, std::vector<std::int32_t>{255, 0, 0}, {0}, {}}));
 }
 
 TEST(Off, WritesColorsInTheirNumberTypeAndKeepsComments) {
   const TemporaryFolder folder;
   Mesh mesh = read_mesh(folder.file("a.off", kHouse));
-  reorder(mesh, Permutation::from_old_to_new({4, 3, 2, 1, 0}), Permutation::from_old_to_new({1, 0, 2}));
+  apply_reordering(mesh, Permutation::from_old_to_new({4, 3, 2, 1, 0}),
+                   Permutation::from_old_to_new({1, 0, 2}));
   Notes notes;
   write_mesh(mesh, folder.path() / "b.off", &notes);
   EXPECT_EQ(content_of(folder.path() / "b.off"),
@@ -149,9 +151,9 @@ TEST(Off, NotesWhatItCannotHold) {
   const TemporaryFolder folder;
   Mesh mesh = cells_of_type(Shape::triangle, 3, 1);
   mesh.vertex_ids = {2, 3, 4};
-  mesh.data.push_back({"red", Attached::vertices, 1, std::vector<std::uint8_t>{1, 2, 3}, {}, {}});
-  mesh.data.push_back({"green", Attached::vertices, 1, std::vector<std::uint8_t>{4, 5, 6}, {}, {}});
-  mesh.data.push_back({"blue", Attached::vertices, 1, std::vector<std::uint8_t>{7, 8, 9}, {}, {}});
+  mesh.data.push_back({"red", Association::vertices, 1, std::vector<std::uint8_t>{1, 2, 3}, {}, {}});
+  mesh.data.push_back({"green", Association::vertices, 1, std::vector<std::uint8_t>{4, 5, 6}, {}, {}});
+  mesh.data.push_back({"blue", Association::vertices, 1, std::vector<std::uint8_t>{7, 8, 9}, {}, {}});
   Notes notes;
   write_mesh(mesh, folder.path() / "a.off", &notes);
   EXPECT_EQ(notes, (Notes{"the array 'label' on vertices is left out: OFF cannot hold it",
@@ -165,7 +167,7 @@ TEST(Off, NotesWhatItCannotHold) {
                           "the numbers of vertices are left out: OFF counts them by place"}));
   const Mesh back = read_mesh(folder.path() / "a.off");
   EXPECT_EQ(back.points, mesh.points);
-  EXPECT_EQ(find_array(back, "color", Attached::vertices)->values,
+  EXPECT_EQ(find_array(back, "color", Association::vertices)->values,
             Values(std::vector<std::int32_t>{1, 4, 7, 2, 5, 8, 3, 6, 9}));
 }
 

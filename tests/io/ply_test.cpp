@@ -60,13 +60,13 @@ TEST(Ply, ReadsElementsAndTheirProperties) {
             (std::vector{Shape::quad, Shape::triangle, Shape::triangle, Shape::line, Shape::line}));
   EXPECT_EQ(mesh.cell_blocks, (std::vector<Index>{0, 3}));
   const std::vector<DataArray> expected{
-      {"nx", Attached::vertices, 1, std::vector<float>{0.5F, 0.25F, 0.125F, -1, 1e-9F}, {}, {}},
-      {"red", Attached::vertices, 1, std::vector<std::uint8_t>{1, 2, 3, 4, 5}, {}, {}},
-      {"weights", Attached::vertices, 1, std::vector<float>{0.5F, 0.125F}, {1, 4}, {}},
-      {"weights", Attached::vertices, 2, std::vector<float>{0.5F, 0.75F}, {2}, {}},
-      {"texcoord", Attached::cells, 2, std::vector<float>{0, 1, 0.5F, 0.25F}, {0, 2}, {}},
-      {"red", Attached::cells, 1, std::vector<std::uint8_t>{10, 20, 30, 40, 50}, {}, {}},
-      {"part", Attached::cells, 1, std::vector<std::int32_t>{-1, 2, 3}, {0, 1, 2}, {}}};
+      {"nx", Association::vertices, 1, std::vector<float>{0.5F, 0.25F, 0.125F, -1, 1e-9F}, {}, {}},
+      {"red", Association::vertices, 1, std::vector<std::uint8_t>{1, 2, 3, 4, 5}, {}, {}},
+      {"weights", Association::vertices, 1, std::vector<float>{0.5F, 0.125F}, {1, 4}, {}},
+      {"weights", Association::vertices, 2, std::vector<float>{0.5F, 0.75F}, {2}, {}},
+      {"texcoord", Association::cells, 2, std::vector<float>{0, 1, 0.5F, 0.25F}, {0, 2}, {}},
+      {"red", Association::cells, 1, std::vector<std::uint8_t>{10, 20, 30, 40, 50}, {}, {}},
+      {"part", Association::cells, 1, std::vector<std::int32_t>{-1, 2, 3}, {0, 1, 2}, {}}};
   EXPECT_EQ(mesh.data, expected);
 }
 
@@ -154,7 +154,7 @@ TEST(Ply, WidensIndicesThatReorderingMakesTooLarge) {
   Mesh mesh = read_mesh(folder.file("a.ply", text + "3 0 1 2\n"));
   std::vector<Index> reverse(300);
   for (Index v = 0; v < 300; ++v) reverse[v] = 299 - v;
-  reorder(mesh, Permutation::from_old_to_new(reverse), Permutation::identity(1));
+  apply_reordering(mesh, Permutation::from_old_to_new(reverse), Permutation::identity(1));
   write_mesh(mesh, folder.path() / "b.ply");
   expect_same(read_mesh(folder.path() / "b.ply"), mesh);
 }
@@ -273,11 +273,11 @@ TEST(Ply, WritesOtherMeshesExactlySo) {
   mesh.cells.push_back(Shape::line, std::vector<Index>{0, 1});
   mesh.cells.push_back(Shape::triangle, std::vector<Index>{0, 1, 2});
   mesh.data.push_back(
-      {"color", Attached::vertices, 3, std::vector<std::int32_t>{1, 2, 3, 4, 5, 6, 7, 8, 255}, {}, {}});
-  mesh.data.push_back({"my label", Attached::cells, 1, std::vector<std::int64_t>{-7, 8}, {}, {}});
-  mesh.data.push_back({"words", Attached::cells, 1, std::vector<std::string>{"a", "b"}, {}, {}});
-  mesh.data.push_back({"pair", Attached::cells, 2, std::vector<double>{0.5, 1}, {1}, {}});
-  mesh.sets.push_back({"part", Attached::cells, {0}});
+      {"color", Association::vertices, 3, std::vector<std::int32_t>{1, 2, 3, 4, 5, 6, 7, 8, 255}, {}, {}});
+  mesh.data.push_back({"my label", Association::cells, 1, std::vector<std::int64_t>{-7, 8}, {}, {}});
+  mesh.data.push_back({"words", Association::cells, 1, std::vector<std::string>{"a", "b"}, {}, {}});
+  mesh.data.push_back({"pair", Association::cells, 2, std::vector<double>{0.5, 1}, {1}, {}});
+  mesh.sets.push_back({"part", Association::cells, {0}});
   Notes notes;
   write_mesh(mesh, folder.path() / "a.ply", &notes);
   const std::string text = content_of(folder.path() / "a.ply");
@@ -293,11 +293,12 @@ TEST(Ply, WritesOtherMeshesExactlySo) {
   const Mesh back = read_mesh(folder.path() / "a.ply");
   EXPECT_EQ(back.points, mesh.points);
   EXPECT_EQ(back.cells.vertices, (std::vector<Index>{0, 1, 2, 0, 1}));
-  EXPECT_EQ(find_array(back, "green", Attached::vertices)->values,
+  EXPECT_EQ(find_array(back, "green", Association::vertices)->values,
             Values(std::vector<std::uint8_t>{2, 5, 8}));
-  EXPECT_EQ(find_array(back, "my_label", Attached::cells)->values, Values(std::vector<std::int32_t>{8, -7}));
-  EXPECT_EQ(*find_array(back, "pair", Attached::cells),
-            (DataArray{"pair", Attached::cells, 2, std::vector<double>{0.5, 1}, {0}, {}}));
+  EXPECT_EQ(find_array(back, "my_label", Association::cells)->values,
+            Values(std::vector<std::int32_t>{8, -7}));
+  EXPECT_EQ(*find_array(back, "pair", Association::cells),
+            (DataArray{"pair", Association::cells, 2, std::vector<double>{0.5, 1}, {0}, {}}));
 }
 
 TEST(Ply, RefusesOtherCells) {

@@ -91,12 +91,12 @@ Index euler_characteristic(const std::vector<std::vector<Index>>& surface) {
 TEST(ProceduralModels, HaveTheCountsThatTheyPromise) {
   for (const Index n : {1, 2, 5}) {
     for (const Mesh& mesh : {make_grid({n, 0.1, 0}), make_ball({n, 0.1, 0})}) {
-      check(mesh);
+      check_mesh(mesh);
       EXPECT_EQ(mesh.vertex_count(), (n + 1) * (n + 1) * (n + 1));
       EXPECT_EQ(mesh.cell_count(), 6 * n * n * n);
     }
     const Mesh torus = make_torus({n, 0.1, 0});
-    check(torus);
+    check_mesh(torus);
     EXPECT_EQ(torus.vertex_count(), 8 * n * (n + 1) * (n + 1));
     EXPECT_EQ(torus.cell_count(), 6 * 8 * n * n * n);
   }

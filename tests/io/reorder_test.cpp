@@ -16,15 +16,15 @@ void expect_everything_moves(const Mesh& before) {
   Mesh after = before;
   const Permutation vertices = test::shuffled(before.vertex_count(), 7);
   const Permutation cells = test::shuffled_cells(before, 8);
-  reorder(after, vertices, cells);
-  check(after);
-  const auto temperature = [](const Mesh& mesh, Attached on) -> const std::vector<double>& {
-    return std::get<std::vector<double>>(find_array(mesh, "temperature", on)->values);
+  apply_reordering(after, vertices, cells);
+  check_mesh(after);
+  const auto temperature = [](const Mesh& mesh, Association association) -> const std::vector<double>& {
+    return std::get<std::vector<double>>(find_array(mesh, "temperature", association)->values);
   };
   for (Index v = 0; v < before.vertex_count(); ++v) {
     const Index w = vertices.old_to_new()[v];
     EXPECT_EQ(after.points[w], before.points[v]);
-    EXPECT_EQ(temperature(after, Attached::vertices)[w], temperature(before, Attached::vertices)[v]);
+    EXPECT_EQ(temperature(after, Association::vertices)[w], temperature(before, Association::vertices)[v]);
   }
   for (Index c = 0; c < before.cell_count(); ++c) {
     const Index d = cells.old_to_new()[c];
@@ -33,10 +33,10 @@ void expect_everything_moves(const Mesh& before) {
     for (int k = 0; k < before.cells.vertex_count(c); ++k) {
       EXPECT_EQ(after.cells[d][k], vertices.old_to_new()[before.cells[c][k]]);
     }
-    EXPECT_EQ(temperature(after, Attached::cells)[d], temperature(before, Attached::cells)[c]);
+    EXPECT_EQ(temperature(after, Association::cells)[d], temperature(before, Association::cells)[c]);
   }
   for (std::size_t s = 0; s < before.sets.size(); ++s) {
-    const auto& map = (before.sets[s].on == Attached::vertices ? vertices : cells).old_to_new();
+    const auto& map = (before.sets[s].association == Association::vertices ? vertices : cells).old_to_new();
     EXPECT_EQ(after.sets[s].members[0], map[before.sets[s].members[0]]);
   }
 }
@@ -53,18 +53,18 @@ TEST(Reorder, ThereAndBackIsTheSameMesh) {
   const Mesh before = mesh;
   const Permutation vertices = test::shuffled(mesh.vertex_count(), 1);
   const Permutation cells = test::shuffled_cells(mesh, 2);
-  reorder(mesh, vertices, cells);
+  apply_reordering(mesh, vertices, cells);
   EXPECT_NE(mesh.cells, before.cells);
-  reorder(mesh, vertices.inverse(), cells.inverse());
+  apply_reordering(mesh, vertices.inverse(), cells.inverse());
   test::expect_same(mesh, before);
 }
 
 TEST(Reorder, RowsOfPartialArraysFollow) {
   Mesh mesh = test::tetrahedral_bar(2);
-  mesh.data.push_back({"partial", Attached::vertices, 1, std::vector<double>{0.5, 0.25}, {3, 5}, {}});
+  mesh.data.push_back({"partial", Association::vertices, 1, std::vector<double>{0.5, 0.25}, {3, 5}, {}});
   std::vector<Index> reversed(mesh.points.size());
   for (Index v = 0; v < mesh.vertex_count(); ++v) reversed[v] = mesh.vertex_count() - 1 - v;
-  reorder(mesh, Permutation::from_old_to_new(reversed), Permutation::identity(mesh.cell_count()));
+  apply_reordering(mesh, Permutation::from_old_to_new(reversed), Permutation::identity(mesh.cell_count()));
   EXPECT_EQ(mesh.data.back().rows, (std::vector<Index>{8, 6}));
 }
 
@@ -73,7 +73,7 @@ TEST(Reorder, IdsRunInTheNewOrder) {
   mesh.vertex_ids = {40, 10, 20, 30, 5, 60, 70, 80};
   mesh.cell_ids = {3, 1, 2, 9, 8, 7};
   mesh.cell_blocks = {0, 3};
-  reorder(mesh, test::shuffled(8, 3), test::shuffled_cells(mesh, 4));
+  apply_reordering(mesh, test::shuffled(8, 3), test::shuffled_cells(mesh, 4));
   EXPECT_EQ(mesh.vertex_ids, (std::vector<std::int64_t>{5, 10, 20, 30, 40, 60, 70, 80}));
   EXPECT_EQ(mesh.cell_ids, (std::vector<std::int64_t>{1, 2, 3, 7, 8, 9}));
 }
@@ -83,8 +83,8 @@ TEST(Reorder, RefusesToMoveACellOutOfItsBlock) {
   mesh.cell_blocks = {0, 3};
   const Mesh before = mesh;
   const auto swap_blocks = Permutation::from_old_to_new({3, 1, 2, 0, 4, 5});
-  EXPECT_THROW(reorder(mesh, Permutation::identity(8), swap_blocks), InvalidArgument);
-  EXPECT_THROW(reorder(mesh, Permutation::identity(7), Permutation::identity(6)), InvalidArgument);
+  EXPECT_THROW(apply_reordering(mesh, Permutation::identity(8), swap_blocks), InvalidArgument);
+  EXPECT_THROW(apply_reordering(mesh, Permutation::identity(7), Permutation::identity(6)), InvalidArgument);
   test::expect_same(mesh, before);
 }
 
@@ -99,14 +99,14 @@ TEST(GroupCellsByType, PutsTypesTogetherHighestDimensionFirst) {
   Mesh mesh = test::mixed_mesh();
   const Mesh before = mesh;
   const Permutation order = group_cells_by_type(mesh);
-  check(mesh);
+  check_mesh(mesh);
   for (Index c = 1; c < mesh.cell_count(); ++c) {
     EXPECT_GE(dimension(mesh.cells.shapes[c - 1]), dimension(mesh.cells.shapes[c]));
   }
   EXPECT_EQ(mesh.cell_blocks.size(), 18U);
   mesh.cell_blocks.clear();
-  reorder(mesh, Permutation::identity(mesh.vertex_count()),
-          permutation_within_blocks(mesh, test::shuffled(mesh.cell_count(), 1).new_to_old()));
+  apply_reordering(mesh, Permutation::identity(mesh.vertex_count()),
+                   permutation_within_blocks(mesh, test::shuffled(mesh.cell_count(), 1).new_to_old()));
   EXPECT_EQ(order.size(), before.cell_count());
 }
 
@@ -126,7 +126,7 @@ TEST(DegenerateCells, RiseWhenSeveralThreadsFindThem) {
 TEST(CheckMesh, NamesTheFirstFault) {
   Mesh mesh = test::tetrahedral_bar(1);
   mesh.cells[1][0] = 99;
-  EXPECT_THROW(check(mesh), InvalidArgument);
+  EXPECT_THROW(check_mesh(mesh), InvalidArgument);
 }
 
 }  // namespace

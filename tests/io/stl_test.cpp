@@ -77,7 +77,7 @@ TEST(Stl, JoinsEqualPointsByFirstAppearance) {
   EXPECT_EQ(mesh.points, (std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.1, 0, 0}}));
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 1, 3, 2, 0, 1, 4}));
   EXPECT_EQ(mesh.cell_blocks, (std::vector<Index>{0, 2}));
-  EXPECT_EQ(find_array(mesh, kLabel, Attached::cells)->values, Values(std::vector<std::int32_t>{1, 1, 2}));
+  EXPECT_EQ(find_array(mesh, kLabel, Association::cells)->values, Values(std::vector<std::int32_t>{1, 1, 2}));
 }
 
 TEST(Stl, TakesMinusZeroAsZeroButNothingElseAsEqual) {
@@ -114,13 +114,13 @@ TEST(Stl, OrdersTrianglesAndPutsThemBack) {
     Mesh mesh = original;
     const Permutation cells = mesh.cell_blocks.empty() ? Permutation::from_old_to_new({1, 0})
                                                        : Permutation::from_old_to_new({1, 0, 2});
-    reorder(mesh, shuffled(mesh.vertex_count(), 1), cells);
+    apply_reordering(mesh, shuffled(mesh.vertex_count(), 1), cells);
     write_mesh(mesh, folder.path() / "b.stl");
     Mesh ordered = read_mesh(folder.path() / "b.stl");
     EXPECT_EQ(corners_of(ordered), corners_of(mesh));
     EXPECT_NE(corners_of(ordered), corners_of(original));
     EXPECT_EQ(ordered.data, mesh.data);
-    reorder(ordered, Permutation::identity(ordered.vertex_count()), cells.inverse());
+    apply_reordering(ordered, Permutation::identity(ordered.vertex_count()), cells.inverse());
     write_mesh(ordered, folder.path() / "c.stl");
     expect_same(read_mesh(folder.path() / "c.stl"), original);
   }
@@ -135,7 +135,7 @@ TEST(Stl, ReadsAndWritesBinaryWithItsHeaderAndAttributes) {
     EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 1, 3, 4}));
     ASSERT_EQ(mesh.data.size(), 1U);
     EXPECT_EQ(mesh.data[0],
-              (DataArray{"attribute", Attached::cells, 1, std::vector<std::uint16_t>{0, 0x8102}, {}, {}}));
+              (DataArray{"attribute", Association::cells, 1, std::vector<std::uint16_t>{0, 0x8102}, {}, {}}));
     write_mesh(mesh, folder.path() / "b.stl");
     EXPECT_EQ(content_of(folder.path() / "b.stl"), text);
   }
@@ -227,10 +227,10 @@ TEST(Stl, WritesOtherMeshesAsTextWithASolidForEachLabel) {
                           "the numbers of cells are left out: STL counts them by place"}));
   const Mesh back = read_mesh(folder.path() / "a.stl");
   const Permutation by_label = Permutation::from_new_to_old({0, 3, 1, 2});  // labels 1 2 3 1
-  reorder(mesh, Permutation::identity(mesh.vertex_count()), by_label);
+  apply_reordering(mesh, Permutation::identity(mesh.vertex_count()), by_label);
   EXPECT_EQ(corners_of(back), corners_of(mesh));
-  EXPECT_EQ(find_array(back, kLabel, Attached::cells)->values,
-            find_array(mesh, kLabel, Attached::cells)->values);
+  EXPECT_EQ(find_array(back, kLabel, Association::cells)->values,
+            find_array(mesh, kLabel, Association::cells)->values);
 }
 
 TEST(Stl, RefusesOtherCells) {

@@ -94,14 +94,14 @@ TEST(TetGen, ReadsPointsCellsAttributesAndMarkers) {
   EXPECT_THAT(mesh.vertex_ids, IsEmpty());
   EXPECT_THAT(mesh.cell_ids, IsEmpty());
 
-  EXPECT_THAT(values<double>(find_array(mesh, "attribute", Attached::vertices)),
+  EXPECT_THAT(values<double>(find_array(mesh, "attribute", Association::vertices)),
               ElementsAre(0.25, 0.5, 0.75, 1.5, 2.5));
-  EXPECT_THAT(values<std::int32_t>(find_array(mesh, kLabel, Attached::vertices)),
+  EXPECT_THAT(values<std::int32_t>(find_array(mesh, kLabel, Association::vertices)),
               ElementsAre(7, 7, 0, 0, -1));
   // regions of tetrahedra and markers of faces and edges are one array
-  const DataArray* labels = find_array(mesh, kLabel, Attached::cells);
+  const DataArray* labels = find_array(mesh, kLabel, Association::cells);
   EXPECT_THAT(values<std::int32_t>(labels), ElementsAre(10, 20, 4, 5, 6));
-  EXPECT_TRUE(labels->covers_all());
+  EXPECT_TRUE(labels->is_dense());
   EXPECT_EQ(mesh.data.size(), 3U);
 }
 
@@ -170,7 +170,7 @@ TEST(TetGen, NumbersWithGapsInAnyOrderRunInTheNewOrder) {
   write_mesh(mesh, folder.path() / "same.node");
   test::expect_same(read_mesh(folder.path() / "same.node"), mesh);
 
-  reorder(mesh, Permutation::from_new_to_old({1, 0, 2, 3}), Permutation::from_new_to_old({1, 0, 2}));
+  apply_reordering(mesh, Permutation::from_new_to_old({1, 0, 2, 3}), Permutation::from_new_to_old({1, 0, 2}));
   write_mesh(mesh, folder.path() / "out.node");
   EXPECT_EQ(test::content_of(folder.path() / "out.node"),
             "4  3  0  0\n10  1  0  0\n20  0  0  0\n30  0  1  0\n4000000000  0  0  1\n");
@@ -180,10 +180,10 @@ TEST(TetGen, NumbersWithGapsInAnyOrderRunInTheNewOrder) {
 
 TEST(TetGen, AttributesThatAreNotRegionsStayReal) {
   const Mesh mesh = read({.ele = "2 4 2\n1 1 2 3 4  10 0.5\n2 2 3 4 5  20 1e-3\n"});
-  const DataArray* attribute = find_array(mesh, "attribute", Attached::cells);
+  const DataArray* attribute = find_array(mesh, "attribute", Association::cells);
   EXPECT_THAT(values<double>(attribute), ElementsAre(10, 0.5, 20, 1e-3));
   EXPECT_THAT(attribute->rows, ElementsAre(0, 1));
-  EXPECT_THAT(find_array(mesh, kLabel, Attached::cells)->rows, ElementsAre(2, 3, 4));
+  EXPECT_THAT(find_array(mesh, kLabel, Association::cells)->rows, ElementsAre(2, 3, 4));
   const TemporaryFolder folder;
   write_mesh(mesh, folder.path() / "out.node");
   test::expect_same(read_mesh(folder.path() / "out.node"), mesh);
@@ -192,7 +192,7 @@ TEST(TetGen, AttributesThatAreNotRegionsStayReal) {
 /// The mesh with the rows of partial arrays rising, which is how a file gives them.
 Mesh with_sorted_rows(Mesh mesh) {
   for (DataArray& array : mesh.data) {
-    if (array.covers_all()) continue;
+    if (array.is_dense()) continue;
     std::vector<std::pair<Index, std::int32_t>> pairs;
     auto& labels = std::get<std::vector<std::int32_t>>(array.values);
     for (std::size_t i = 0; i < labels.size(); ++i) pairs.emplace_back(array.rows[i], labels[i]);
@@ -205,8 +205,8 @@ Mesh with_sorted_rows(Mesh mesh) {
 TEST(TetGen, MarkersOfFacesAloneMoveWithThem) {
   const TemporaryFolder folder;
   Mesh mesh = read_mesh(put(folder, {.ele = "2 4 0\n1 1 2 3 4\n2 2 3 4 5\n", .edge = "1 0\n1 1 2\n"}));
-  EXPECT_THAT(find_array(mesh, kLabel, Attached::cells)->rows, ElementsAre(2, 3));
-  reorder(mesh, test::shuffled(5, 1), Permutation::from_new_to_old({1, 0, 3, 2, 4}));
+  EXPECT_THAT(find_array(mesh, kLabel, Association::cells)->rows, ElementsAre(2, 3));
+  apply_reordering(mesh, test::shuffled(5, 1), Permutation::from_new_to_old({1, 0, 3, 2, 4}));
   write_mesh(mesh, folder.path() / "out.node");
   test::expect_same(read_mesh(folder.path() / "out.node"), with_sorted_rows(mesh));
 }
@@ -267,7 +267,7 @@ TEST(TetGen, ReadsTrianglesOfTwoDimensions) {
   EXPECT_EQ(mesh.dimension, 2);
   EXPECT_THAT(mesh.cells.shapes, ElementsAre(Shape::triangle, Shape::line));
   expect_middles(mesh);
-  EXPECT_THAT(values<std::int32_t>(find_array(mesh, kLabel, Attached::cells)), ElementsAre(3, 5));
+  EXPECT_THAT(values<std::int32_t>(find_array(mesh, kLabel, Association::cells)), ElementsAre(3, 5));
   write_mesh(mesh, folder.path() / "out.node");
   EXPECT_EQ(test::content_of(folder.path() / "out.ele"), "1  6  1\n1 1 2 3 4 5 6  3\n");
   test::expect_same(read_mesh(folder.path() / "out.node"), mesh);
@@ -313,8 +313,12 @@ TEST(TetGen, SortsInterleavedCellsIntoTheirFiles) {
     kept.push_back(c);
   }
   ASSERT_EQ(mesh.cell_count(), 9);
-  mesh.data = {
-      {std::string(kLabel), Attached::cells, 1, std::vector<std::int32_t>(kept.begin(), kept.end()), {}, {}}};
+  mesh.data = {{std::string(kLabel),
+                Association::cells,
+                1,
+                std::vector<std::int32_t>(kept.begin(), kept.end()),
+                {},
+                {}}};
   mesh.sets.clear();
 
   const TemporaryFolder folder;
@@ -328,7 +332,7 @@ TEST(TetGen, KeepsNumbersAsAttributesAndNamesWhatIsLost) {
   mesh.vertex_ids.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) mesh.vertex_ids[v] = 10 * v;
   mesh.data.push_back(
-      {"names", Attached::vertices, 1, std::vector<std::string>(mesh.vertex_count(), "x"), {}, {}});
+      {"names", Association::vertices, 1, std::vector<std::string>(mesh.vertex_count(), "x"), {}, {}});
   Notes notes;
   write_mesh(mesh, folder.path() / "m.node", &notes);
   EXPECT_THAT(notes,
@@ -342,28 +346,29 @@ TEST(TetGen, KeepsNumbersAsAttributesAndNamesWhatIsLost) {
 
   const Mesh back = read_mesh(folder.path() / "m.node");
   EXPECT_THAT(back.vertex_ids, IsEmpty());
-  const auto& of_points = values<double>(find_array(back, "attribute", Attached::vertices));
-  const auto& temperature = values<double>(find_array(mesh, "temperature", Attached::vertices));
-  const auto& stress = values<double>(find_array(mesh, "stress", Attached::vertices));
+  const auto& of_points = values<double>(find_array(back, "attribute", Association::vertices));
+  const auto& temperature = values<double>(find_array(mesh, "temperature", Association::vertices));
+  const auto& stress = values<double>(find_array(mesh, "stress", Association::vertices));
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     EXPECT_EQ(of_points[4 * v], temperature[v]);
     for (int k = 0; k < 3; ++k) EXPECT_EQ(of_points[4 * v + 1 + k], stress[3 * v + k]);
   }
-  EXPECT_EQ(find_array(back, "attribute", Attached::cells)->components, 5);
-  EXPECT_EQ(find_array(back, kLabel, Attached::vertices)->values,
-            find_array(mesh, kLabel, Attached::vertices)->values);
+  EXPECT_EQ(find_array(back, "attribute", Association::cells)->components, 5);
+  EXPECT_EQ(find_array(back, kLabel, Association::vertices)->values,
+            find_array(mesh, kLabel, Association::vertices)->values);
 }
 
 TEST(TetGen, CellsWithoutALabelGetZero) {
   const TemporaryFolder folder;
   Mesh mesh = test::cells_of_type(Shape::tetrahedron, 4, 3);
-  mesh.data = {{std::string(kLabel), Attached::cells, 1, std::vector<std::int32_t>{8}, {1}, {}}};
+  mesh.data = {{std::string(kLabel), Association::cells, 1, std::vector<std::int32_t>{8}, {1}, {}}};
   mesh.sets.clear();
   Notes notes;
   write_mesh(mesh, folder.path() / "m.node", &notes);
   EXPECT_THAT(notes, ElementsAre(HasSubstr("2 in .ele have no label and get 0")));
-  EXPECT_THAT(values<std::int32_t>(find_array(read_mesh(folder.path() / "m.node"), kLabel, Attached::cells)),
-              ElementsAre(0, 8, 0));
+  EXPECT_THAT(
+      values<std::int32_t>(find_array(read_mesh(folder.path() / "m.node"), kLabel, Association::cells)),
+      ElementsAre(0, 8, 0));
 }
 
 std::string write_error(const Mesh& mesh, const fs::path& path) {
@@ -431,7 +436,8 @@ TEST(TetGen, NotesALastLineWithoutEnd) {
 TEST(TetGen, ReadsMixedLineEndsAndMarkersWithAPoint) {
   const Mesh mesh =
       read({.ele = "2\t4 1\r\n1 1 2 3 4 10\r2  2 3 4 5 20.0\n", .edge = "1 1\r\n1 1 2 6.0\r\n"});
-  EXPECT_THAT(values<std::int32_t>(find_array(mesh, kLabel, Attached::cells)), ElementsAre(10, 20, 4, 5, 6));
+  EXPECT_THAT(values<std::int32_t>(find_array(mesh, kLabel, Association::cells)),
+              ElementsAre(10, 20, 4, 5, 6));
 }
 
 // ---- broken files

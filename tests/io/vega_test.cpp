@@ -58,9 +58,9 @@ TEST(Vega, ReadsElementsSetsAndRegions) {
   EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::tetrahedron, Shape::tetrahedron}));
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 3, 4, 2, 1, 3}));
   ASSERT_EQ(mesh.sets.size(), 2U);
-  EXPECT_EQ(mesh.sets[0], (Set{"upper", Attached::cells, {1}}));
-  EXPECT_EQ(mesh.sets[1], (Set{"none", Attached::cells, {}}));
-  EXPECT_EQ(find_array(mesh, kLabel, Attached::cells)->values, Values(std::vector<std::int32_t>{1, 2}));
+  EXPECT_EQ(mesh.sets[0], (EntitySet{"upper", Association::cells, {1}}));
+  EXPECT_EQ(mesh.sets[1], (EntitySet{"none", Association::cells, {}}));
+  EXPECT_EQ(find_array(mesh, kLabel, Association::cells)->values, Values(std::vector<std::int32_t>{1, 2}));
   EXPECT_TRUE(mesh.vertex_ids.empty());
   EXPECT_TRUE(mesh.cell_ids.empty());
 }
@@ -78,7 +78,7 @@ TEST(Vega, WritesEverySectionBackAsItStood) {
 TEST(Vega, MovesSetsWithTheirElements) {
   const TemporaryFolder folder;
   Mesh mesh = read_mesh(folder.file("a.veg", kTwoTets));
-  reorder(mesh, Permutation::from_old_to_new({4, 3, 2, 1, 0}), Permutation::from_old_to_new({1, 0}));
+  apply_reordering(mesh, Permutation::from_old_to_new({4, 3, 2, 1, 0}), Permutation::from_old_to_new({1, 0}));
   write_mesh(mesh, folder.path() / "b.veg");
   const std::string text = content_of(folder.path() / "b.veg");
   EXPECT_NE(text.find("*SET upper\n1\n"), std::string::npos) << text;
@@ -110,7 +110,7 @@ TEST(Vega, NumbersWithGapsAndInAnyOrderRunInTheNewOrder) {
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 3, 1, 0, 2, 3}));
   EXPECT_EQ(mesh.sets[0].members, std::vector<Index>{0});
   EXPECT_EQ(notes.size(), 1U);
-  reorder(mesh, Permutation::from_old_to_new({1, 0, 2, 3}), Permutation::identity(2));
+  apply_reordering(mesh, Permutation::from_old_to_new({1, 0, 2, 3}), Permutation::identity(2));
   write_mesh(mesh, folder.path() / "b.veg");
   EXPECT_EQ(content_of(folder.path() / "b.veg"),
             "*VERTICES\n4 3 0 0\n3 1 0 0\n7 0 0 0\n20 0 1 0\n9000000000 0 0 1\n\n"
@@ -124,11 +124,11 @@ TEST(Vega, KeepsAttributesAndMarkersOfIncludedTetgenFiles) {
   (void)folder.file("a.ele", "1 4 1\n1 1 2 3 4 17\n");
   const Mesh mesh =
       read_mesh(folder.file("a.veg", "*VERTICES\n*INCLUDE a.node\n*ELEMENTS\nTET\n*INCLUDE a.ele\n"));
-  EXPECT_EQ(find_array(mesh, "attributes", Attached::vertices)->values,
+  EXPECT_EQ(find_array(mesh, "attributes", Association::vertices)->values,
             Values(std::vector{0.5, 1.5, 2.5, 3.5}));
-  EXPECT_EQ(find_array(mesh, kLabel, Attached::vertices)->values,
+  EXPECT_EQ(find_array(mesh, kLabel, Association::vertices)->values,
             Values(std::vector<std::int32_t>{7, 8, 9, 10}));
-  EXPECT_EQ(find_array(mesh, "attributes", Attached::cells)->values, Values(std::vector{17.0}));
+  EXPECT_EQ(find_array(mesh, "attributes", Association::cells)->values, Values(std::vector{17.0}));
   Notes notes;
   write_mesh(mesh, folder.path() / "b.veg", &notes);
   EXPECT_EQ(notes, (Notes{"the file 'a.node', which was included, is written inline",
@@ -237,7 +237,7 @@ TEST(Vega, WritesAndReadsBothTypes) {
   for (const auto& [shape, width] : {std::pair{Shape::tetrahedron, 4}, std::pair{Shape::hexahedron, 8}}) {
     Mesh mesh = cells_of_type(shape, width, 5);
     mesh.data.clear();
-    std::erase_if(mesh.sets, [](const Set& set) { return set.on == Attached::vertices; });
+    std::erase_if(mesh.sets, [](const EntitySet& set) { return set.association == Association::vertices; });
     expect_write_and_read(mesh, "a.veg");
   }
 }
@@ -260,8 +260,8 @@ TEST(Vega, NotesWhatItCannotHold) {
   EXPECT_EQ(back.points, mesh.points);
   EXPECT_EQ(back.cells, mesh.cells);
   ASSERT_EQ(back.sets.size(), 4U);
-  EXPECT_EQ(back.sets[0], (Set{"part", Attached::cells, {0, 5}}));
-  EXPECT_EQ(back.sets[3], (Set{"label_3", Attached::cells, {2, 5}}));
+  EXPECT_EQ(back.sets[0], (EntitySet{"part", Association::cells, {0, 5}}));
+  EXPECT_EQ(back.sets[3], (EntitySet{"label_3", Association::cells, {2, 5}}));
 }
 
 TEST(Vega, RefusesOtherCellsAndMixtures) {
@@ -318,7 +318,8 @@ TEST(Vega, ARealMeshWithoutItsIncludesStopsAndWithThemOrdersAndBack) {
   ASSERT_EQ(mesh.sets.size(), 2U);
   EXPECT_EQ(mesh.sets[0].members.size(), 296U);
   EXPECT_EQ(mesh.sets[1].members.size(), 889U);
-  const auto& labels = std::get<std::vector<std::int32_t>>(find_array(mesh, kLabel, Attached::cells)->values);
+  const auto& labels =
+      std::get<std::vector<std::int32_t>>(find_array(mesh, kLabel, Association::cells)->values);
   EXPECT_EQ(std::count(labels.begin(), labels.end(), 1), 296);
   EXPECT_EQ(std::count(labels.begin(), labels.end(), 2), 889);
   expect_order_and_back(copy);

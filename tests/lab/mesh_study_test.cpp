@@ -55,7 +55,7 @@ Offset lru_misses(const AccessStream& stream, Offset bytes) {
 
 /// A mesh in one of its orders.
 Mesh moved(Mesh mesh, const Reordering& order) {
-  reorder(mesh, order.vertices, order.cells);
+  apply_reordering(mesh, order.vertices, order.cells);
   return mesh;
 }
 

@@ -57,7 +57,7 @@ TEST(Obstacles, WhatIsShownIsTheirSurface) {
 TEST(Obstacles, AreNumberedAsInTheScenario) {
   const Mesh mesh = surfaces_of(one_of_each(), 1.0);
   const auto& numbers =
-      std::get<std::vector<std::int32_t>>(find_array(mesh, "obstacle", Attached::cells)->values);
+      std::get<std::vector<std::int32_t>>(find_array(mesh, "obstacle", Association::cells)->values);
   ASSERT_EQ(numbers.size(), mesh.cells.shapes.size());
   EXPECT_TRUE(std::is_sorted(numbers.begin(), numbers.end()));
   EXPECT_EQ(numbers.front(), 0);

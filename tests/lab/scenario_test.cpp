@@ -383,11 +383,11 @@ VertexChoice choice_of(By by, std::string name = "", std::int64_t label = 0, Poi
 
 TEST(VertexChoice, MeansTheSameVerticesHoweverTheyAreNumbered) {
   Mesh mesh = test::tetrahedral_bar(5);
-  mesh.sets.push_back({"end", Attached::cells, {0, 3}});
+  mesh.sets.push_back({"end", Association::cells, {0, 3}});
   Mesh other = mesh;
-  reorder(other, test::shuffled(mesh.vertex_count(), 3), test::shuffled_cells(mesh, 4));
+  apply_reordering(other, test::shuffled(mesh.vertex_count(), 3), test::shuffled_cells(mesh, 4));
   const std::int64_t label =
-      std::get<std::vector<std::int32_t>>(find_array(mesh, kLabel, Attached::vertices)->values)[2];
+      std::get<std::vector<std::int32_t>>(find_array(mesh, kLabel, Association::vertices)->values)[2];
   for (const VertexChoice& choice :
        {choice_of(By::all), choice_of(By::set, "fixed"), choice_of(By::set, "end"),
         choice_of(By::label, "vertices:label", label), choice_of(By::box, "", 0, {0, 0, 0}, {0.5, 1, 1}),
@@ -402,19 +402,20 @@ TEST(VertexChoice, SetsLabelsBoxesAndNearestAreWhatBruteForceFinds) {
   const auto find = [&](const VertexChoice& choice) {
     return choose_vertices(mesh, all_vertices(mesh), choice, "my.json");
   };
-  mesh.sets = {{"some", Attached::vertices, {7, 2, 5}}, {"cells", Attached::cells, {1}}};
+  mesh.sets = {{"some", Association::vertices, {7, 2, 5}}, {"cells", Association::cells, {1}}};
   EXPECT_EQ(find(choice_of(By::set, "some")), (std::vector<Index>{2, 5, 7}));
   std::vector<Index> corners(mesh.cells[1].begin(), mesh.cells[1].end());
   std::sort(corners.begin(), corners.end());
   EXPECT_EQ(find(choice_of(By::set, "cells")), corners);
 
-  mesh.data = {{"label", Attached::cells, 1, std::vector<std::int32_t>(mesh.cells.shapes.size(), 6), {}, {}}};
+  mesh.data = {
+      {"label", Association::cells, 1, std::vector<std::int32_t>(mesh.cells.shapes.size(), 6), {}, {}}};
   std::get<std::vector<std::int32_t>>(mesh.data[0].values)[1] = 9;
   EXPECT_EQ(find(choice_of(By::label, "label", 9)), corners);
   EXPECT_EQ(find(choice_of(By::label, "", 9)), corners);
   // vertices' own labels count before those of cells
   mesh.data.push_back(mesh.data[0]);
-  mesh.data[1].on = Attached::vertices;
+  mesh.data[1].association = Association::vertices;
   mesh.data[1].values = std::vector<std::int32_t>(mesh.points.size(), 3);
   std::get<std::vector<std::int32_t>>(mesh.data[1].values)[4] = 6;
   EXPECT_EQ(find(choice_of(By::label, "", 6)), std::vector<Index>{4});

@@ -144,7 +144,7 @@ std::vector<Mesh> meshes() {
                            test::cells_of_type(Shape::line, 2, 21),
                            test::cells_of_type(Shape::vertex, 1, 4)};
   Mesh shuffled = result[1];
-  reorder(shuffled, test::shuffled(shuffled.vertex_count(), 3), test::shuffled_cells(shuffled, 4));
+  apply_reordering(shuffled, test::shuffled(shuffled.vertex_count(), 3), test::shuffled_cells(shuffled, 4));
   result.push_back(shuffled);
   // a flat element that names a vertex twice
   Mesh degenerate = test::cells_of_type(Shape::tetrahedron, 4, 9);
@@ -205,7 +205,7 @@ TEST(ReuseOfKernels, OfAnOrderIsThatOfTheReorderedMesh) {
     const Permutation vertices = test::shuffled(mesh.vertex_count(), 3);
     const Permutation cells = test::shuffled_cells(mesh, 4);
     Mesh ordered = mesh;
-    reorder(ordered, vertices, cells);
+    apply_reordering(ordered, vertices, cells);
     const Prepared prepared(ordered);
     EXPECT_EQ(reuse_of_kernels(mesh, vertex_graph(mesh), vertices, cells),
               reuse_of_kernels(prepared.graph, prepared.simplices));
@@ -215,7 +215,7 @@ TEST(ReuseOfKernels, OfAnOrderIsThatOfTheReorderedMesh) {
 TEST(ReuseOf, IsFartherInAScrambledOrder) {
   const Mesh ordered = test::tetrahedral_bar(400);
   Mesh scrambled = ordered;
-  reorder(scrambled, test::shuffled(ordered.vertex_count(), 3), test::shuffled_cells(ordered, 4));
+  apply_reordering(scrambled, test::shuffled(ordered.vertex_count(), 3), test::shuffled_cells(ordered, 4));
   const Prepared good(ordered);
   const Prepared bad(scrambled);
   for (const Kernel kernel : kKernels) {

@@ -39,8 +39,8 @@ TEST(IdealBand, HasTheVerticesEdgesAndSimplicesOfTheMesh) {
   for (const Mesh& mesh : some_meshes()) {
     const CsrGraph graph = vertex_graph(mesh);
     const Band band = ideal_band(mesh, graph);
-    check(band.mesh);
-    check(band.graph);
+    check_mesh(band.mesh);
+    check_graph(band.graph);
     EXPECT_EQ(band.mesh.vertex_count(), mesh.vertex_count());
     EXPECT_EQ(band.graph.size(), mesh.vertex_count());
     EXPECT_EQ(band.graph.edge_count(), graph.edge_count());
@@ -119,7 +119,7 @@ TEST(IdealBand, TakesDegenerateMeshes) {
   point.points.resize(3);
   point.cells.push_back(Shape::triangle, std::vector<Index>{1, 1, 1});
   const Band band = ideal_band(point, vertex_graph(point));
-  check(band.mesh);
+  check_mesh(band.mesh);
   EXPECT_EQ(band.mesh.cell_count(), 1);
   KernelBench bench(band.mesh, band.graph);
   for (const Kernel kernel : kKernels) bench.run(kernel);

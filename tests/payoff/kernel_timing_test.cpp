@@ -42,7 +42,7 @@ TEST(KernelBench, ComputesTheSamePhysicsInEveryOrder) {
   for (const Mesh& before : {test::tetrahedral_bar(9), test::mixed_mesh()}) {
     Mesh after = before;
     const Permutation vertices = test::shuffled(before.vertex_count(), 3);
-    reorder(after, vertices, test::shuffled_cells(before, 4));
+    apply_reordering(after, vertices, test::shuffled_cells(before, 4));
     KernelBench a(before);
     KernelBench b(after);
     for (const Kernel kernel : {Kernel::spmv, Kernel::element, Kernel::springs}) {
@@ -72,8 +72,8 @@ TEST(KernelBench, ComputesTheSameBitsOnAnyNumberOfThreads) {
   std::vector<Mesh> meshes{test::tetrahedral_bar(30), test::mixed_mesh(),
                            test::cells_of_type(Shape::quad, 4, 50), test::cells_of_type(Shape::line, 2, 50)};
   meshes.push_back(meshes.front());  // scrambled: most elements touch several shares
-  reorder(meshes.back(), test::shuffled(meshes.back().vertex_count(), 3),
-          test::shuffled_cells(meshes.back(), 4));
+  apply_reordering(meshes.back(), test::shuffled(meshes.back().vertex_count(), 3),
+                   test::shuffled_cells(meshes.back(), 4));
   for (const Mesh& mesh : meshes) {
     KernelBench serial(mesh);
     EXPECT_EQ(serial.redundancy(), 0.0);

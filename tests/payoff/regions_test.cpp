@@ -26,9 +26,10 @@ Mesh bar_of_regions() {
   mesh.sets.clear();
   for (Index i = 0; i < 5; ++i)
     mesh.cells.push_back(Shape::triangle, std::vector<Index>{4 * i, 4 * i + 4, 4 * i + 5});
-  DataArray regions{"region", Attached::cells, 1, {}, {}, {}};
+  DataArray regions{"region", Association::cells, 1, {}, {}, {}};
   std::vector<std::int32_t> values;
-  mesh.sets = {{"axle", Attached::cells, {}}, {"tyre", Attached::cells, {}}, {"faces", Attached::cells, {}}};
+  mesh.sets = {
+      {"axle", Association::cells, {}}, {"tyre", Association::cells, {}}, {"faces", Association::cells, {}}};
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const bool face = mesh.cells.shapes[c] == Shape::triangle;
     if (!face && c / 6 == 4) continue;
@@ -144,7 +145,7 @@ TEST(MaterialsByRegion, RefuseWhatMakesNoSense) {
   EXPECT_THROW(materials_by_region(cut_into_simplices(test::tetrahedral_bar(50)), grouping, kRubber, {}),
                InvalidArgument);
   mesh.data.push_back(
-      {"part", Attached::vertices, 1, std::vector<std::int32_t>(mesh.points.size(), 1), {}, {}});
+      {"part", Association::vertices, 1, std::vector<std::int32_t>(mesh.points.size(), 1), {}, {}});
   EXPECT_THROW(materials_by_region(simplices, grouping_by(mesh, "part"), kRubber, {}), InvalidArgument);
 }
 

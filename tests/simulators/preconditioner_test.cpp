@@ -239,7 +239,7 @@ TEST(IncompleteCholesky, TakesFewerIterationsThanBlocksAndTheseThanTheDiagonal) 
   for (const bool scrambled : {false, true}) {
     Mesh mesh = make_grid({.size = 26});
     if (scrambled)
-      reorder(mesh, test::shuffled(mesh.vertex_count(), 5), test::shuffled(mesh.cell_count(), 0));
+      apply_reordering(mesh, test::shuffled(mesh.vertex_count(), 5), test::shuffled(mesh.cell_count(), 0));
     const BlockCsr matrix = test::elastic_system(mesh, 1.0);
     const std::vector<double> b(3 * static_cast<std::size_t>(matrix.size()), -0.5);
     std::array<int, kKinds.size()> iterations{};

@@ -108,7 +108,7 @@ void expect_order_and_back(const fs::path& path) {
   Mesh mesh = original;
   const Permutation vertices = shuffled(mesh.vertex_count(), 1);
   const Permutation cells = shuffled_cells(mesh, 2);
-  reorder(mesh, vertices, cells);
+  apply_reordering(mesh, vertices, cells);
   const fs::path ordered_path = folder.path() / path.filename();
   write_mesh(mesh, ordered_path);
 
@@ -117,7 +117,7 @@ void expect_order_and_back(const fs::path& path) {
     SCOPED_TRACE("ordered, written and read");
     expect_same(ordered, mesh);
   }
-  reorder(ordered, vertices.inverse(), cells.inverse());
+  apply_reordering(ordered, vertices.inverse(), cells.inverse());
   const fs::path back_path = folder.path() / ("back-" + path.filename().string());
   write_mesh(ordered, back_path);
   SCOPED_TRACE("put back, written and read");
@@ -129,12 +129,12 @@ void expect_order_and_back_to(const std::string& name, std::string_view content)
   Mesh mesh = read_mesh(folder.file(name, content));
   const Permutation vertices = shuffled(mesh.vertex_count(), 1);
   const Permutation cells = shuffled_cells(mesh, 2);
-  reorder(mesh, vertices, cells);
+  apply_reordering(mesh, vertices, cells);
   write_mesh(mesh, folder.path() / ("ordered-" + name));
   Mesh ordered = read_mesh(folder.path() / ("ordered-" + name));
   expect_same(sorted_members(ordered), sorted_members(mesh));
 
-  reorder(ordered, vertices.inverse(), cells.inverse());
+  apply_reordering(ordered, vertices.inverse(), cells.inverse());
   write_mesh(ordered, folder.path() / ("back-" + name));
   EXPECT_EQ(content_of(folder.path() / ("back-" + name)), content);
 }

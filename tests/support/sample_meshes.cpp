@@ -16,8 +16,8 @@ namespace {
 Point irregular_point(Index v) { return {v + 0.1, std::sin(v * 12.9898) / 3, std::cos(v * 78.233) * 1e-3}; }
 
 void attach_everything(Mesh& mesh) {
-  for (const Attached on : {Attached::vertices, Attached::cells}) {
-    const Index n = on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
+  for (const Association association : {Association::vertices, Association::cells}) {
+    const Index n = association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
     std::vector<std::int32_t> labels(n);
     std::vector<double> temperatures(n);
     std::vector<double> stresses(3 * static_cast<std::size_t>(n));
@@ -26,10 +26,10 @@ void attach_everything(Mesh& mesh) {
       temperatures[i] = std::sqrt(i + 2.0);
     }
     for (std::size_t i = 0; i < stresses.size(); ++i) stresses[i] = 1.0 / (static_cast<double>(i) + 3.0);
-    mesh.data.push_back({std::string(kLabel), on, 1, labels, {}, {}});
-    mesh.data.push_back({"temperature", on, 1, temperatures, {}, {}});
-    mesh.data.push_back({"stress", on, 3, stresses, {}, {}});
-    mesh.sets.push_back({on == Attached::vertices ? "fixed" : "part", on, {0, n - 1}});
+    mesh.data.push_back({std::string(kLabel), association, 1, labels, {}, {}});
+    mesh.data.push_back({"temperature", association, 1, temperatures, {}, {}});
+    mesh.data.push_back({"stress", association, 3, stresses, {}, {}});
+    mesh.sets.push_back({association == Association::vertices ? "fixed" : "part", association, {0, n - 1}});
   }
 }
 
@@ -111,7 +111,7 @@ Permutation shuffled_cells(const Mesh& mesh, std::uint64_t seed) {
 }
 
 Mesh sorted_members(Mesh mesh) {
-  for (Set& set : mesh.sets) std::sort(set.members.begin(), set.members.end());
+  for (EntitySet& set : mesh.sets) std::sort(set.members.begin(), set.members.end());
   for (DataArray& array : mesh.data) {
     std::vector<Index> order(array.rows.size());
     std::iota(order.begin(), order.end(), Index{0});

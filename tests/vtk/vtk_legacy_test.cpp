@@ -160,7 +160,7 @@ vtkSmartPointer<vtkUnstructuredGrid> grid_with_everything() {
   tensors->SetNumberOfComponents(9);
   tensors->SetComponentName(8, "z z");
   add(tensors, "tensors");
-  tensors->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), "MPa");
+  tensors->GetInformation()->EntitySet(vtkDataArray::UNITS_LABEL(), "MPa");
   const vtkNew<vtkDoubleArray> normals;
   normals->SetNumberOfComponents(3);
   add(normals, "normals");
@@ -193,16 +193,16 @@ TEST(VtkLegacy, ReadsPointsCellsAndAllArrays) {
   EXPECT_EQ(mesh.points[4], (Point{0.1, 0.2, 0.3}));
   EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::tetrahedron, Shape::triangle}));
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 3, 1, 2, 4}));
-  const auto& heat = std::get<std::vector<float>>(find_array(mesh, "heat", Attached::vertices)->values);
+  const auto& heat = std::get<std::vector<float>>(find_array(mesh, "heat", Association::vertices)->values);
   EXPECT_EQ(heat[1], 2.5F);
   EXPECT_TRUE(std::isnan(heat[2]));
   EXPECT_TRUE(std::isinf(heat[3]));
-  EXPECT_EQ(std::get<std::vector<double>>(find_array(mesh, "wind", Attached::vertices)->values)[14], 0.1);
-  EXPECT_EQ(std::get<std::vector<std::int32_t>>(find_array(mesh, "part one", Attached::cells)->values),
+  EXPECT_EQ(std::get<std::vector<double>>(find_array(mesh, "wind", Association::vertices)->values)[14], 0.1);
+  EXPECT_EQ(std::get<std::vector<std::int32_t>>(find_array(mesh, "part one", Association::cells)->values),
             (std::vector<std::int32_t>{7, -8}));
-  EXPECT_EQ(std::get<std::vector<std::string>>(find_array(mesh, "who", Attached::cells)->values),
+  EXPECT_EQ(std::get<std::vector<std::string>>(find_array(mesh, "who", Association::cells)->values),
             (std::vector<std::string>{"a b", ""}));
-  EXPECT_EQ(mesh.residue->contents(),
+  EXPECT_EQ(mesh.format_metadata->contents(),
             (std::vector<std::string>{"the field 'TimeValue' of the whole mesh", "the lookup table 'warm'"}));
   EXPECT_TRUE(notes.empty());
 }
@@ -598,7 +598,7 @@ TEST(VtkLegacy, DamagedFilesGiveAMeshOrAnError) {
             static_cast<char>(round % 2 == 0 ? random() % 256 : '0' + random() % 10);
       }
       try {
-        check(read_mesh(folder.file("damaged.vtk", damaged)));
+        check_mesh(read_mesh(folder.file("damaged.vtk", damaged)));
       } catch (const Error&) {  // that is right, too
       }
     }

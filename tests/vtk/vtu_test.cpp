@@ -140,7 +140,7 @@ void expect_same_grid(vtkUnstructuredGrid* grid, const Mesh& mesh) {
   }
   for (const DataArray& array : mesh.data) {
     SCOPED_TRACE(array.name);
-    vtkDataSetAttributes* data = array.on == Attached::vertices
+    vtkDataSetAttributes* data = array.association == Association::vertices
                                      ? static_cast<vtkDataSetAttributes*>(grid->GetPointData())
                                      : grid->GetCellData();
     vtkDataArray* own = data->GetArray(array.name.c_str());
@@ -170,15 +170,16 @@ TEST(Vtu, ReadsPointsCellsAndAllArrays) {
   EXPECT_EQ(mesh.points[4], (Point{0.1, 0.2, 0.3}));
   EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::tetrahedron, Shape::triangle}));
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 3, 1, 2, 4}));
-  const auto& heat = std::get<std::vector<float>>(find_array(mesh, "heat", Attached::vertices)->values);
+  const auto& heat = std::get<std::vector<float>>(find_array(mesh, "heat", Association::vertices)->values);
   EXPECT_EQ(heat[1], 2.5F);
   EXPECT_TRUE(std::isnan(heat[2]));
   EXPECT_EQ(heat[3], -std::numeric_limits<float>::infinity());
-  EXPECT_EQ(std::get<std::vector<std::int64_t>>(find_array(mesh, "part", Attached::cells)->values),
+  EXPECT_EQ(std::get<std::vector<std::int64_t>>(find_array(mesh, "part", Association::cells)->values),
             (std::vector<std::int64_t>{7, -8}));
-  EXPECT_EQ(std::get<std::vector<std::string>>(find_array(mesh, "who", Attached::cells)->values),
+  EXPECT_EQ(std::get<std::vector<std::string>>(find_array(mesh, "who", Association::cells)->values),
             (std::vector<std::string>{"ab", ""}));
-  EXPECT_EQ(mesh.residue->contents(), (std::vector<std::string>{"the field 'TimeValue' of the whole mesh"}));
+  EXPECT_EQ(mesh.format_metadata->contents(),
+            (std::vector<std::string>{"the field 'TimeValue' of the whole mesh"}));
   EXPECT_TRUE(notes.empty());
 }
 
@@ -342,7 +343,7 @@ TEST(Vtu, RolesFieldsIdsUnitsAndComponentNamesSurvive) {
   const TemporaryFolder folder;
   const auto small = folder.file("small.vtu", with(kSmall, "NaN -inf", "3 4"));
   const auto grid = read_with_vtk(small);
-  grid->GetPointData()->GetArray("heat")->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), "K");
+  grid->GetPointData()->GetArray("heat")->GetInformation()->EntitySet(vtkDataArray::UNITS_LABEL(), "K");
   const vtkNew<vtkDoubleArray> velocity;
   velocity->SetName("speed &amp; &lt;course>");  // VTK 9.1 writes names as they are
   velocity->SetNumberOfComponents(3);
@@ -354,7 +355,7 @@ TEST(Vtu, RolesFieldsIdsUnitsAndComponentNamesSurvive) {
   write_with_vtk(grid, folder.path() / "a.vtu", {"", 0, false, 0, false, false});
 
   Mesh mesh = read_mesh(folder.path() / "a.vtu");
-  reorder(mesh, shuffled(5, 3), Permutation::identity(2));
+  apply_reordering(mesh, shuffled(5, 3), Permutation::identity(2));
   write_mesh(mesh, folder.path() / "b.vtu");
   const auto back = read_with_vtk(folder.path() / "b.vtu");
   EXPECT_STREQ(back->GetPointData()->GetScalars()->GetName(), "heat");
@@ -386,7 +387,7 @@ TEST(Vtu, FloatPointsStayFloats) {
 TEST(Vtu, LagrangeCellsStayLagrange) {
   const TemporaryFolder folder;
   Mesh mesh = cells_of_type(Shape::tetrahedron, 10, 2);
-  mesh.data.push_back({"vtk:type", Attached::cells, 1, std::vector<std::uint8_t>{71, 24}, {}, {}});
+  mesh.data.push_back({"vtk:type", Association::cells, 1, std::vector<std::uint8_t>{71, 24}, {}, {}});
   write_mesh(mesh, folder.path() / "a.vtu");
   const auto grid = read_with_vtk(folder.path() / "a.vtu");
   EXPECT_EQ(grid->GetCellType(0), VTK_LAGRANGE_TETRAHEDRON);
@@ -394,7 +395,7 @@ TEST(Vtu, LagrangeCellsStayLagrange) {
   EXPECT_EQ(grid->GetCellData()->GetArray("vtk:type"), nullptr);
 
   Mesh back = read_mesh(folder.path() / "a.vtu");
-  reorder(back, Permutation::identity(back.vertex_count()), Permutation::from_old_to_new({1, 0}));
+  apply_reordering(back, Permutation::identity(back.vertex_count()), Permutation::from_old_to_new({1, 0}));
   write_mesh(back, folder.path() / "b.vtu");
   EXPECT_EQ(read_with_vtk(folder.path() / "b.vtu")->GetCellType(1), VTK_LAGRANGE_TETRAHEDRON);
 }
@@ -463,7 +464,7 @@ TEST(Vtu, PiecesBecomeOne) {
   const Mesh mesh = read_mesh(folder.file("a.vtu", with(kSmall, piece, piece + empty + piece)), &notes);
   EXPECT_EQ(mesh.vertex_count(), 10);
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 3, 1, 2, 4, 5, 6, 7, 8, 6, 7, 9}));
-  EXPECT_EQ(std::get<std::vector<std::int64_t>>(find_array(mesh, "part", Attached::cells)->values),
+  EXPECT_EQ(std::get<std::vector<std::int64_t>>(find_array(mesh, "part", Association::cells)->values),
             (std::vector<std::int64_t>{7, -8, 7, -8}));
   EXPECT_EQ(notes, (Notes{"the 2 pieces of the file became one"}));
   expect_broken("b.vtu", {{"an array that one piece lacks",
@@ -505,7 +506,7 @@ TEST(Vtu, DamagedFilesGiveAMeshOrAnError) {
             static_cast<char>(round % 2 == 0 ? random() % 256 : '0' + random() % 10);
       }
       try {
-        check(read_mesh(folder.file("damaged.vtu", damaged)));
+        check_mesh(read_mesh(folder.file("damaged.vtu", damaged)));
       } catch (const Error&) {  // that is right, too
       }
     }
@@ -514,29 +515,29 @@ TEST(Vtu, DamagedFilesGiveAMeshOrAnError) {
 
 TEST(Vtu, PartialArraysSetsAndIdsAreKeptAsArrays) {
   Mesh mesh = tetrahedral_bar(1);
-  mesh.data.push_back({"load", Attached::vertices, 2, std::vector<double>{1, 2, 3, 4}, {5, 1}, {}});
-  mesh.data.push_back({"mark", Attached::cells, 1, std::vector<std::int16_t>{9}, {2}, {}});
-  mesh.data.push_back({"mark", Attached::cells, 1, std::vector<double>(6, 0.5), {}, {}});
-  mesh.sets.push_back({"path", Attached::vertices, {7, 0, 3}});
-  mesh.sets.push_back({"nothing", Attached::cells, {}});
+  mesh.data.push_back({"load", Association::vertices, 2, std::vector<double>{1, 2, 3, 4}, {5, 1}, {}});
+  mesh.data.push_back({"mark", Association::cells, 1, std::vector<std::int16_t>{9}, {2}, {}});
+  mesh.data.push_back({"mark", Association::cells, 1, std::vector<double>(6, 0.5), {}, {}});
+  mesh.sets.push_back({"path", Association::vertices, {7, 0, 3}});
+  mesh.sets.push_back({"nothing", Association::cells, {}});
   mesh.vertex_ids = {2, 4, 6, 8, 10, 12, 14, 16};
   const TemporaryFolder folder;
   Notes notes;
   write_mesh(mesh, folder.path() / "a.vtu", &notes);
   const Mesh back = read_mesh(folder.path() / "a.vtu");
-  const auto& load = std::get<std::vector<double>>(find_array(back, "load", Attached::vertices)->values);
+  const auto& load = std::get<std::vector<double>>(find_array(back, "load", Association::vertices)->values);
   EXPECT_EQ(load[2], 3);
   EXPECT_EQ(load[11], 2);
   EXPECT_TRUE(std::isnan(load[0]));
-  EXPECT_EQ(std::get<std::vector<std::int16_t>>(find_array(back, "mark", Attached::cells)->values),
+  EXPECT_EQ(std::get<std::vector<std::int16_t>>(find_array(back, "mark", Association::cells)->values),
             (std::vector<std::int16_t>{0, 0, 9, 0, 0, 0}));
-  EXPECT_EQ(std::get<std::vector<double>>(find_array(back, "mark_2", Attached::cells)->values),
+  EXPECT_EQ(std::get<std::vector<double>>(find_array(back, "mark_2", Association::cells)->values),
             std::vector<double>(6, 0.5));
-  EXPECT_EQ(std::get<std::vector<std::int32_t>>(find_array(back, "vertex_id", Attached::vertices)->values),
+  EXPECT_EQ(std::get<std::vector<std::int32_t>>(find_array(back, "vertex_id", Association::vertices)->values),
             (std::vector<std::int32_t>{2, 4, 6, 8, 10, 12, 14, 16}));
   ASSERT_EQ(back.sets.size(), 4U);
-  EXPECT_EQ(back.sets[1], (Set{"path", Attached::vertices, {7, 0, 3}}));
-  EXPECT_EQ(back.sets[3], (Set{"nothing", Attached::cells, {}}));
+  EXPECT_EQ(back.sets[1], (EntitySet{"path", Association::vertices, {7, 0, 3}}));
+  EXPECT_EQ(back.sets[3], (EntitySet{"nothing", Association::cells, {}}));
   const std::string all = fmt::format("{}", fmt::join(notes, "\n"));
   for (const char* part :
        {"'load' is given for some vertices; the others get NaN",
@@ -550,7 +551,7 @@ TEST(Vtu, PartialArraysSetsAndIdsAreKeptAsArrays) {
 TEST(Vtu, RealMeshesComeBackFromAnyOrder) {
   const TemporaryFolder folder;
   Mesh mesh = mixed_mesh();
-  mesh.sets.push_back({"path", Attached::vertices, {7, 0, 3}});
+  mesh.sets.push_back({"path", Association::vertices, {7, 0, 3}});
   write_mesh(mesh, folder.path() / "mixed.vtu");
   expect_order_and_back(folder.path() / "mixed.vtu");
   const auto torus = shared_mesh("torus.node");

@@ -53,8 +53,6 @@ Point weighted_sum(const std::array<Index, 4>& vertices, const std::array<double
   return sum;
 }
 
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 /// The rows of C times what `place_of` says of each contact.
 template <class PlaceOf>
 void multiply_places(const ContactRows& rows, PlaceOf place_of, std::span<double> result) {

@@ -13,8 +13,6 @@ constexpr int kMaxRounds = 50;
 // a round that moves a node less than this part of what it has moved at all ends the projection
 constexpr double kStill = 1e-12;
 
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 void add(double factor, const Point& b, Point& a) {
   for (std::size_t c = 0; c < 3; ++c) a[c] += factor * b[c];
 }

@@ -25,7 +25,7 @@ std::string unquoted(std::string_view text) {
 View read_view_head(Source& source, std::string_view section) {
   View view;
   view.section = section;
-  view.on = section == "NodeData" ? Attached::vertices : Attached::cells;
+  view.association = section == "NodeData" ? Association::vertices : Association::cells;
   const Index strings = source.checked(source.text_integer("the number of string tags"), "string tags", 1);
   (void)source.in.raw_line();
   for (Index i = 0; i < strings; ++i) view.strings.emplace_back(source.in.rest_of_line());
@@ -99,14 +99,15 @@ Entries read_entries(Reading& reading, const View& view) {
   const Index count = source.checked(view.integers[2], "the number of entries",
                                      source.binary ? 4 * fields + (per_node ? 0 : 8 * components)
                                                    : 2 * (fields + (per_node ? 0 : components)));
-  const Places& places = view.on == Attached::vertices ? reading.nodes : reading.elements;
+  const Places& places = view.association == Association::vertices ? reading.nodes : reading.elements;
   Entries entries;
   entries.rows.reserve(count);
   for (Index i = 0; i < count; ++i) {
     const std::int64_t id = source.binary ? source.int32("the number of an entry") : source.size("an entry");
     const Index place = places.find(id);
     if (place < 0) {
-      source.fail("$" + view.section + " names " + (view.on == Attached::vertices ? "node " : "element ") +
+      source.fail("$" + view.section + " names " +
+                      (view.association == Association::vertices ? "node " : "element ") +
                       std::to_string(id) + ", which the file does not have",
                   "give values for what exists");
     }
@@ -151,15 +152,15 @@ std::vector<double> even_rows(const Reading& reading, Entries& entries, const Vi
 
 /// Rows that cover everything go into the mesh's order.
 void sort_full(DataArray& array, std::vector<double>& values, Index count) {
-  if (index_size(array.rows) != count) return;
+  if (index_size(array.indices) != count) return;
   std::vector<double> sorted(values.size());
   const auto width = static_cast<std::size_t>(array.components);
-  for (std::size_t i = 0; i < array.rows.size(); ++i) {
+  for (std::size_t i = 0; i < array.indices.size(); ++i) {
     std::copy_n(values.begin() + static_cast<Offset>(i * width), width,
-                sorted.begin() + static_cast<Offset>(array.rows[i] * width));
+                sorted.begin() + static_cast<Offset>(array.indices[i] * width));
   }
   values = std::move(sorted);
-  array.rows.clear();
+  array.indices.clear();
 }
 
 /// Labels that were converted to real numbers become integers again, for those who look for labels.
@@ -181,7 +182,7 @@ void restore_labels(DataArray& array) {
 /// Whether another array has the same name.
 bool is_taken(const Mesh& mesh, const DataArray& array) {
   return std::any_of(mesh.data.begin(), mesh.data.end(), [&](const DataArray& other) {
-    return &other != &array && other.on == array.on && other.name == array.name;
+    return &other != &array && other.association == array.association && other.name == array.name;
   });
 }
 
@@ -214,30 +215,30 @@ void check_distinct(const Source& source, std::vector<Index> rows, std::string_v
 
 void read_view(Reading& reading, std::string_view section) {
   View view = read_view_head(reading.source, section);
-  const bool on_vertices = view.on == Attached::vertices;
+  const bool on_vertices = view.association == Association::vertices;
   Entries entries = read_entries(reading, view);
   check_distinct(reading.source, entries.rows, section);
   find_rule(reading, entries, view);
   DataArray array;
   array.name = view.array;
-  array.on = view.on;
+  array.association = view.association;
   std::vector<double> values = even_rows(reading, entries, view, array.components);
   reading.source.expect_end(section);
-  reading.residue.sections.push_back({SectionKind::view, view.section, "", reading.residue.views.size()});
+  reading.metadata.sections.push_back({SectionKind::view, view.section, "", reading.metadata.views.size()});
   reading.view_arrays.push_back(reading.mesh.data.size());
   if (entries.rows.empty()) {  // an array without rows would mean all
     view.array.clear();
   } else {
-    array.rows = std::move(entries.rows);
+    array.indices = std::move(entries.rows);
     sort_full(array, values, on_vertices ? reading.mesh.vertex_count() : reading.mesh.cell_count());
     array.values = std::move(values);
     reading.mesh.data.push_back(std::move(array));
   }
-  reading.residue.views.push_back(std::move(view));
+  reading.metadata.views.push_back(std::move(view));
 }
 
 void name_views(Reading& reading) {
-  auto& views = reading.residue.views;
+  auto& views = reading.metadata.views;
   std::map<std::pair<std::string, std::string>, int> steps;
   for (const View& view : views) ++steps[{view.section, view.array}];
   const std::map<std::pair<std::string, std::string>, int> counts = std::move(steps);
@@ -254,7 +255,7 @@ void name_views(Reading& reading) {
   }
 }
 
-bool add_view(GmshResidue& layout, const DataArray& array, Notes& notes) {
+bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes) {
   const Index components = gmsh_components(array.components);
   if (std::holds_alternative<std::vector<std::string>>(array.values) || components == 0) {
     note_array_left_out(array, "Gmsh", notes);
@@ -278,8 +279,8 @@ bool add_view(GmshResidue& layout, const DataArray& array, Notes& notes) {
     notes.push_back("the array '" + array.name + "' loses digits: Gmsh's data are real numbers of 53 bits");
   }
   View view;
-  view.section = array.on == Attached::vertices ? "NodeData" : "ElementData";
-  view.on = array.on;
+  view.section = array.association == Association::vertices ? "NodeData" : "ElementData";
+  view.association = array.association;
   view.array = array.name;
   view.strings = {'"' + array.name + '"'};
   std::replace(view.strings[0].begin() + 1, view.strings[0].end() - 1, '"', '\'');
@@ -293,7 +294,7 @@ bool add_view(GmshResidue& layout, const DataArray& array, Notes& notes) {
 
 void write_view(Sink& sink, const Output& output, const View& view) {
   const Mesh& mesh = output.mesh;
-  const DataArray* array = find_array(mesh, view.array, view.on);
+  const DataArray* array = find_array(mesh, view.array, view.association);
   const Index rows = array ? row_count(*array) : 0;
   const Index components = view.integers[1];
 
@@ -309,9 +310,9 @@ void write_view(Sink& sink, const Output& output, const View& view) {
       [&](const auto& values) {
         const auto width = static_cast<std::size_t>(array->components);
         for (Index row = 0; row < rows; ++row) {
-          const Index place = array->covers_all() ? row : array->rows[row];
+          const Index place = array->is_dense() ? row : array->indices[row];
           const std::int64_t id =
-              view.on == Attached::vertices ? output.node_id(place) : output.cell_id(place);
+              view.association == Association::vertices ? output.node_id(place) : output.cell_id(place);
           sink.int32(id);
           int nodes = 1;
           if (view.per != PerElement::one) {

@@ -54,8 +54,8 @@ void check_version(const Source& source, double version) {
 void read_format(Reading& reading) {
   Source& source = reading.source;
   const std::int64_t begin = source.in.byte();
-  reading.residue.version = source.in.real("the version");
-  check_version(source, reading.residue.version);
+  reading.metadata.version = source.in.real("the version");
+  check_version(source, reading.metadata.version);
   const auto file_type = source.in.integer<std::int32_t>("the file type");
   const auto data_size = source.in.integer<std::int32_t>("the data size");
   if (file_type != 0 && file_type != 1) {
@@ -65,26 +65,26 @@ void read_format(Reading& reading) {
     source.fail("the data size is " + std::to_string(data_size),
                 "only binary files with 8 are read; convert the file with gmsh -save");
   }
-  reading.residue.header = source.in.all().substr(begin, source.in.byte() - begin);
+  reading.metadata.header = source.in.all().substr(begin, source.in.byte() - begin);
   (void)source.in.raw_line();
-  source.binary = reading.residue.binary = file_type == 1;
+  source.binary = reading.metadata.binary = file_type == 1;
   if (source.binary) {
     const auto one = source.int32("the number 1 that shows the byte order");
     if (one != 1 && one != 0x01000000) {
       source.fail("the number that shows the byte order is " + std::to_string(one), "it must be 1");
     }
     const auto other = std::endian::native == std::endian::little ? std::endian::big : std::endian::little;
-    source.order = reading.residue.order = one == 1 ? std::endian::native : other;
+    source.order = reading.metadata.order = one == 1 ? std::endian::native : other;
   }
   source.expect_end("MeshFormat");
-  reading.residue.sections.push_back({SectionKind::format, "MeshFormat", "", 0});
+  reading.metadata.sections.push_back({SectionKind::format, "MeshFormat", "", 0});
 }
 
 /// Names of physical groups stay as they stand, and are understood where that is possible: version 2.0 does
 /// not tell dimensions.
 void read_names(Reading& reading) {
   Source& source = reading.source;
-  if (reading.residue.version > 2.05) {
+  if (reading.metadata.version > 2.05) {
     const std::int64_t begin = source.in.byte();
     const Index count = source.checked(source.text_integer("the number of names"), "the number of names", 4);
     for (Index i = 0; i < count; ++i) {
@@ -97,14 +97,14 @@ void read_names(Reading& reading) {
                     "write it as \"name\"");
       }
       name.name = text.substr(1, text.size() - 2);
-      reading.residue.names.push_back(std::move(name));
+      reading.metadata.names.push_back(std::move(name));
     }
     source.expect_end("PhysicalNames");
     source.in.seek(begin);
   }
   const std::string_view text = body(source, "PhysicalNames");
   source.expect_end("PhysicalNames");
-  reading.residue.sections.push_back({SectionKind::verbatim, "PhysicalNames", std::string(text), 0});
+  reading.metadata.sections.push_back({SectionKind::verbatim, "PhysicalNames", std::string(text), 0});
 }
 
 /// Entities stay as they stand; what is taken from them are their physical groups.
@@ -115,7 +115,7 @@ void read_entities(Reading& reading, const std::string& section) {
   (void)source.in.at_end();
   const std::string_view text = source.in.all().substr(begin, source.in.byte() - begin);
   source.expect_end(section);
-  reading.residue.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
+  reading.metadata.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
 }
 
 /// Whether a word of the text is a number.
@@ -148,30 +148,30 @@ void read_verbatim(Reading& reading, const std::string& section) {
                 "take it out of the file, or keep it as $Comments");
   }
   source.expect_end(section);
-  reading.residue.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
+  reading.metadata.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
 }
 
 void read_nodes(Reading& reading) {
-  reading.residue.is_version_2() ? read_nodes_2(reading, "Nodes") : read_nodes_4(reading);
+  reading.metadata.is_version_2() ? read_nodes_2(reading, "Nodes") : read_nodes_4(reading);
 }
 
 void read_parametric_nodes(Reading& reading) {
-  if (!reading.residue.is_version_2()) {
+  if (!reading.metadata.is_version_2()) {
     reading.source.fail("a section $ParametricNodes", "in version 4.1 it is called $Nodes");
   }
   read_nodes_2(reading, "ParametricNodes");
 }
 
 void read_elements(Reading& reading) {
-  reading.residue.is_version_2() ? read_elements_2(reading) : read_elements_4(reading);
+  reading.metadata.is_version_2() ? read_elements_2(reading) : read_elements_4(reading);
 }
 
 void read_periodic_or_ghosts(Reading& reading, SectionKind kind) {
   kind == SectionKind::periodic ? read_periodic(reading) : read_ghosts(reading);
 }
 
-bool has_section(const GmshResidue& residue, SectionKind kind) {
-  return std::any_of(residue.sections.begin(), residue.sections.end(),
+bool has_section(const GmshMetadata& metadata, SectionKind kind) {
+  return std::any_of(metadata.sections.begin(), metadata.sections.end(),
                      [kind](const Section& section) { return section.kind == kind; });
 }
 
@@ -195,20 +195,20 @@ constexpr std::array kSingles{
 
 void read_single(Reading& reading, const Single& single) {
   const std::string name(single.name);
-  if (has_section(reading.residue, single.kind)) {
+  if (has_section(reading.metadata, single.kind)) {
     reading.source.fail("a second section $" + name, "a file has one of them");
   }
-  if (!has_section(reading.residue, single.after)) {
+  if (!has_section(reading.metadata, single.after)) {
     reading.source.fail("$" + name + " stands before what it names", "put $Nodes and $Elements first");
   }
   single.read(reading);
-  reading.residue.sections.push_back({single.kind, name, "", 0});
+  reading.metadata.sections.push_back({single.kind, name, "", 0});
 }
 
 /// Reads the section of that name, whose first line was read.
 void read_section(Reading& reading, const std::string& name) {
   Source& source = reading.source;
-  const bool has_format = has_section(reading.residue, SectionKind::format);
+  const bool has_format = has_section(reading.metadata, SectionKind::format);
   if (name == "NOD") {
     source.fail("version 1 of Gmsh's format is not supported",
                 "convert the file with gmsh -save -format msh41");
@@ -222,9 +222,9 @@ void read_section(Reading& reading, const std::string& name) {
   }
   if (name == "PhysicalNames") return read_names(reading);
   const bool entities = name == "Entities" || name == "PartitionedEntities";
-  if (entities && !reading.residue.is_version_2()) return read_entities(reading, name);
+  if (entities && !reading.metadata.is_version_2()) return read_entities(reading, name);
   if (kDataSections.contains(name)) {
-    if (!has_section(reading.residue, SectionKind::elements)) {
+    if (!has_section(reading.metadata, SectionKind::elements)) {
       source.fail("$" + name + " stands before $Elements", "put $Nodes and $Elements first");
     }
     return read_view(reading, name);
@@ -241,19 +241,19 @@ void finish(Reading& reading) {
   for (const auto& [kind, name] : {std::pair{SectionKind::format, "$MeshFormat"},
                                    {SectionKind::nodes, "$Nodes"},
                                    {SectionKind::elements, "$Elements"}}) {
-    if (!has_section(reading.residue, kind)) {
+    if (!has_section(reading.metadata, kind)) {
       reading.source.fail("the file has no section " + std::string(name), "it may be cut short");
     }
   }
-  if (!reading.residue.is_version_2()) {
-    std::vector<std::int32_t> labels = labels_of_entities(mesh, reading.residue);
+  if (!reading.metadata.is_version_2()) {
+    std::vector<std::int32_t> labels = labels_of_entities(mesh, reading.metadata);
     if (!labels.empty())
-      mesh.data.push_back({std::string(kLabel), Attached::cells, 1, std::move(labels), {}, {}});
+      mesh.data.push_back({std::string(kLabel), Association::cells, 1, std::move(labels), {}, {}});
   }
   name_views(reading);
-  std::vector<Set> sets = physical_sets(mesh, reading.residue);
+  std::vector<EntitySet> sets = physical_sets(mesh, reading.metadata);
   std::move(sets.begin(), sets.end(), std::back_inserter(mesh.sets));
-  mesh.residue = std::make_shared<GmshResidue>(std::move(reading.residue));
+  mesh.format_metadata = std::make_shared<GmshMetadata>(std::move(reading.metadata));
 }
 
 Mesh read(const std::filesystem::path& path, Notes& notes) {
@@ -279,7 +279,7 @@ std::vector<const ElementType*> types_of_cells(const Mesh& mesh, const std::file
   refuse_other_cells(
       mesh, path, "Gmsh", [](Shape shape, int nodes) { return find_type(shape, nodes) != nullptr; },
       "write another format, or split such cells into triangles and quads");
-  const std::vector<std::int32_t> numbers = integers_of(mesh, kCellType, Attached::cells);
+  const std::vector<std::int32_t> numbers = integers_of(mesh, kCellType, Association::cells);
   std::vector<const ElementType*> types;
   types.reserve(mesh.cells.shapes.size());
   for (Index c = 0; c < mesh.cell_count(); ++c) {
@@ -308,77 +308,78 @@ std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::
   return {};
 }
 
-bool is_parametric_2(const GmshResidue& layout) {
+bool is_parametric_2(const GmshMetadata& layout) {
   return layout.is_version_2() &&
          std::any_of(layout.sections.begin(), layout.sections.end(),
                      [](const Section& section) { return section.name == "ParametricNodes"; });
 }
 
 /// Whether the arrays that a file of this layout needs are still there.
-bool still_fits(const Mesh& mesh, const GmshResidue& layout) {
-  const DataArray* entities = find_array(mesh, kNodeEntity, Attached::vertices);
+bool still_fits(const Mesh& mesh, const GmshMetadata& layout) {
+  const DataArray* entities = find_array(mesh, kNodeEntity, Association::vertices);
   const bool has_node_entities =
-      entities && entities->components == 2 && !integers_of(mesh, kNodeEntity, Attached::vertices).empty();
+      entities && entities->components == 2 && !integers_of(mesh, kNodeEntity, Association::vertices).empty();
   if (layout.is_version_2()) return !is_parametric_2(layout) || (has_node_entities && parameters_of(mesh));
   return has_node_entities &&
-         integers_of(mesh, kCellEntity, Attached::cells).size() == mesh.cells.shapes.size();
+         integers_of(mesh, kCellEntity, Association::cells).size() == mesh.cells.shapes.size();
 }
 
 /// Fills in what the mesh has kept from its Gmsh file.
-void take_layout(const GmshResidue& layout, Output& output) {
+void take_layout(const GmshMetadata& layout, Output& output) {
   const Mesh& mesh = output.mesh;
-  const auto place = [&](std::string_view name, Attached on) {
-    output.placed.push_back(find_array(mesh, name, on));
+  const auto place = [&](std::string_view name, Association association) {
+    output.placed.push_back(find_array(mesh, name, association));
   };
   output.node_ids = mesh.vertex_ids;
   output.cell_ids = mesh.cell_ids;
-  place(kCellEntity, Attached::cells);
+  place(kCellEntity, Association::cells);
   if (layout.is_version_2()) {
-    if (!integers_of(mesh, kLabel, Attached::cells).empty()) place(kLabel, Attached::cells);
-    place(kCellPartitions, Attached::cells);
-    place(kCellTagCount, Attached::cells);
+    if (!integers_of(mesh, kLabel, Association::cells).empty()) place(kLabel, Association::cells);
+    place(kCellPartitions, Association::cells);
+    place(kCellTagCount, Association::cells);
     if (!is_parametric_2(layout)) return;
-    output.node_entities = integers_of(mesh, kNodeEntity, Attached::vertices);
-    place(kNodeEntity, Attached::vertices);
-    place(kNodeParameters, Attached::vertices);
+    output.node_entities = integers_of(mesh, kNodeEntity, Association::vertices);
+    place(kNodeEntity, Association::vertices);
+    place(kNodeParameters, Association::vertices);
     return;
   }
-  output.cell_tags = integers_of(mesh, kCellEntity, Attached::cells);
-  output.cell_dimensions = integers_of(mesh, kCellDimension, Attached::cells);
+  output.cell_tags = integers_of(mesh, kCellEntity, Association::cells);
+  output.cell_dimensions = integers_of(mesh, kCellDimension, Association::cells);
   if (output.cell_dimensions.empty()) {
     for (const Shape shape : mesh.cells.shapes) output.cell_dimensions.push_back(dimension(shape));
   }
-  output.node_entities = integers_of(mesh, kNodeEntity, Attached::vertices);
-  place(kCellDimension, Attached::cells);
-  place(kNodeEntity, Attached::vertices);
-  place(kNodeParameters, Attached::vertices);
-  if (has_section(layout, SectionKind::ghosts)) place(kCellGhosts, Attached::cells);
+  output.node_entities = integers_of(mesh, kNodeEntity, Association::vertices);
+  place(kCellDimension, Association::cells);
+  place(kNodeEntity, Association::vertices);
+  place(kNodeParameters, Association::vertices);
+  if (has_section(layout, SectionKind::ghosts)) place(kCellGhosts, Association::cells);
   // labels that were changed after reading are no longer those of the entities: they become data
-  const std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Attached::cells);
-  if (!labels.empty() && labels == labels_of_entities(mesh, layout)) place(kLabel, Attached::cells);
+  const std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Association::cells);
+  if (!labels.empty() && labels == labels_of_entities(mesh, layout)) place(kLabel, Association::cells);
 }
 
 /// Notes the sets that the layout does not hold as they are.
-void note_sets(const Mesh& mesh, const GmshResidue& layout, Notes& notes) {
-  const std::vector<Set> physical = physical_sets(mesh, layout);
+void note_sets(const Mesh& mesh, const GmshMetadata& layout, Notes& notes) {
+  const std::vector<EntitySet> physical = physical_sets(mesh, layout);
   std::set<std::string> periodic;
   for (const PeriodicLink& link : layout.periodic) periodic.insert({link.nodes, link.master_nodes});
-  for (const Set& set : mesh.sets) {
-    if (set.on == Attached::vertices && periodic.contains(set.name)) continue;
+  for (const EntitySet& set : mesh.sets) {
+    if (set.association == Association::vertices && periodic.contains(set.name)) continue;
     std::vector<Index> members = set.members;
     std::sort(members.begin(), members.end());
-    const bool held = std::any_of(physical.begin(), physical.end(), [&](const Set& other) {
-      return set.on == other.on && set.name == other.name && members == other.members;
+    const bool held = std::any_of(physical.begin(), physical.end(), [&](const EntitySet& other) {
+      return set.association == other.association && set.name == other.name && members == other.members;
     });
     if (!held) note_set_left_out(set, "Gmsh", notes);
   }
 }
 
 /// Gives a data section to every array that is neither placed elsewhere nor in a section already.
-void add_views(GmshResidue& layout, const Output& output, Notes& notes) {
+void add_views(GmshMetadata& layout, const Output& output, Notes& notes) {
   const auto has_view = [&](const DataArray& array) {
-    return std::any_of(layout.views.begin(), layout.views.end(),
-                       [&](const View& view) { return view.on == array.on && view.array == array.name; });
+    return std::any_of(layout.views.begin(), layout.views.end(), [&](const View& view) {
+      return view.association == array.association && view.array == array.name;
+    });
   };
   for (const DataArray& array : output.mesh.data) {
     const auto& placed = output.placed;
@@ -387,7 +388,7 @@ void add_views(GmshResidue& layout, const Output& output, Notes& notes) {
   }
 }
 
-void write_format(Sink& sink, const GmshResidue& layout) {
+void write_format(Sink& sink, const GmshMetadata& layout) {
   sink.out.print("{}\n", layout.header);
   if (!layout.binary) return;
   sink.int32(1);
@@ -427,11 +428,11 @@ void write_section(Sink& sink, const Output& output, const Section& section) {
 }
 
 void write(const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
-  const auto* own = dynamic_cast<const GmshResidue*>(mesh.residue.get());
+  const auto* own = dynamic_cast<const GmshMetadata*>(mesh.format_metadata.get());
   const bool keeps_layout = own && still_fits(mesh, *own);
-  GmshResidue layout = keeps_layout ? *own : GmshResidue{};
+  GmshMetadata layout = keeps_layout ? *own : GmshMetadata{};
   Output output{mesh, layout, types_of_cells(mesh, path), {}, {}, {}, {}, {}, {}};
-  output.placed.push_back(find_array(mesh, kCellType, Attached::cells));
+  output.placed.push_back(find_array(mesh, kCellType, Association::cells));
   if (keeps_layout) {
     take_layout(layout, output);
     note_sets(mesh, layout, notes);
@@ -451,7 +452,7 @@ void write(const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
 
 }  // namespace
 
-std::vector<std::string> GmshResidue::contents() const {
+std::vector<std::string> GmshMetadata::contents() const {
   std::vector<std::string> result;
   const auto add = [&](std::string what) {
     if (std::find(result.begin(), result.end(), what) == result.end()) result.push_back(std::move(what));
@@ -513,26 +514,30 @@ void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers) {
     if (last && last->number == number) continue;
     last = find_type(number);
     if (find_type(last->shape, last->nodes) == last) continue;
-    mesh.data.push_back({std::string(kCellType), Attached::cells, 1, numbers, {}, {}});
+    mesh.data.push_back({std::string(kCellType), Association::cells, 1, numbers, {}, {}});
     return;
   }
 }
 
 void keep_parameters(Mesh& mesh, std::vector<double> values) {
   values.resize(4 * mesh.points.size(), 0.0);
-  mesh.data.push_back(
-      {std::string(kNodeParameters), Attached::vertices, 4, std::move(values), {}, {"given", "u", "v", "w"}});
+  mesh.data.push_back({std::string(kNodeParameters),
+                       Association::vertices,
+                       4,
+                       std::move(values),
+                       {},
+                       {"given", "u", "v", "w"}});
 }
 
 const std::vector<double>* parameters_of(const Mesh& mesh) {
-  const DataArray* array = find_array(mesh, kNodeParameters, Attached::vertices);
-  if (!array || array->components != 4 || !array->covers_all()) return nullptr;
+  const DataArray* array = find_array(mesh, kNodeParameters, Association::vertices);
+  if (!array || array->components != 4 || !array->is_dense()) return nullptr;
   return std::get_if<std::vector<double>>(&array->values);
 }
 
-std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Attached on) {
-  const DataArray* array = find_array(mesh, name, on);
-  if (!array || !array->covers_all()) return {};
+std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association) {
+  const DataArray* array = find_array(mesh, name, association);
+  if (!array || !array->is_dense()) return {};
   return std::visit(
       [](const auto& values) {
         using T = typename std::decay_t<decltype(values)>::value_type;

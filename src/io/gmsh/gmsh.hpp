@@ -62,7 +62,7 @@ enum class PerElement : std::uint8_t { one, each_node, each_corner, fixed };
 /// A section $NodeData, $ElementData or $ElementNodeData without its values, which are an array of the mesh.
 struct View {
   std::string section;
-  Attached on = Attached::vertices;
+  Association association = Association::vertices;
   std::string array;                   ///< name of the array in the mesh
   std::vector<std::string> strings;    ///< as they stand, quotes included
   std::vector<double> reals;           ///< the time first
@@ -102,7 +102,7 @@ struct Section {
 using Entity = std::pair<std::int32_t, std::int32_t>;  ///< dimension and tag
 
 /// Everything about a Gmsh file that does not depend on the order of its nodes and elements.
-struct GmshResidue : Residue {
+struct GmshMetadata : FormatMetadata {
   double version = 4.1;
   bool binary = false;
   std::endian order = std::endian::native;  ///< of the file's numbers; kept, as verbatim sections hold some
@@ -169,7 +169,7 @@ struct Source {
 struct Reading {
   Source source;
   Mesh mesh;
-  GmshResidue residue;
+  GmshMetadata metadata;
   Places nodes;
   Places elements;
   std::vector<std::size_t> view_arrays;  ///< place of each view's array in `mesh.data`, where it has one
@@ -207,10 +207,10 @@ void read_ghosts(Reading& reading);
 void name_views(Reading& reading);
 
 /// The cells of every named physical group that has any, as sets.
-std::vector<Set> physical_sets(const Mesh& mesh, const GmshResidue& residue);
+std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metadata);
 
 /// The first physical group of each cell's entity, 0 for none; empty when no cell has any.
-std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshResidue& residue);
+std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadata& metadata);
 
 // ---- writing
 
@@ -237,7 +237,7 @@ struct Sink {
 /// All that the writer needs besides the mesh: read with it, or made for a mesh from elsewhere.
 struct Output {
   const Mesh& mesh;
-  const GmshResidue& layout;
+  const GmshMetadata& layout;
   std::vector<const ElementType*> types;      ///< of each cell
   std::vector<std::int64_t> node_ids;         ///< empty: 1, 2, 3 …
   std::vector<std::int64_t> cell_ids;         ///< empty: 1, 2, 3 …
@@ -251,17 +251,17 @@ struct Output {
 };
 
 /// The values of an array of integers that covers everything; empty where it is none.
-std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Attached on);
+std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association);
 
 /// The values of the array kNodeParameters, or nullptr where there is none as it should be.
 const std::vector<double>* parameters_of(const Mesh& mesh);
 
 /// Makes entities, physical groups and their names for a mesh that has no Gmsh layout of its own, from its
 /// labels, its sets of cells and the entities that it may have kept from an earlier conversion.
-void classify(GmshResidue& layout, Output& output, Notes& notes);
+void classify(GmshMetadata& layout, Output& output, Notes& notes);
 
 /// Adds a view for an array that has none yet; false, with a note, where Gmsh cannot hold it.
-bool add_view(GmshResidue& layout, const DataArray& array, Notes& notes);
+bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes);
 
 /// The numbers of a cell's nodes in Gmsh's order; `wide` as size_t (4.1), else as int.
 void write_cell_nodes(Sink& sink, const Output& output, Index c, bool wide);

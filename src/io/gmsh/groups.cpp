@@ -19,8 +19,8 @@ namespace {
 /// Dimension and tag of each cell's entity, as the mesh's arrays tell.
 struct CellEntities {
   explicit CellEntities(const Mesh& mesh)
-      : tags(integers_of(mesh, kCellEntity, Attached::cells)),
-        dimensions(integers_of(mesh, kCellDimension, Attached::cells)),
+      : tags(integers_of(mesh, kCellEntity, Association::cells)),
+        dimensions(integers_of(mesh, kCellDimension, Association::cells)),
         cells(mesh.cells) {}
 
   [[nodiscard]] Entity operator()(Index c) const {
@@ -85,8 +85,8 @@ struct Groups {
 
 /// Labels that can be numbers of physical groups; empty, with a note, where they cannot.
 std::vector<std::int32_t> labels_for_groups(const Mesh& mesh, Notes& notes) {
-  const DataArray* array = find_array(mesh, kLabel, Attached::cells);
-  std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Attached::cells);
+  const DataArray* array = find_array(mesh, kLabel, Association::cells);
+  std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Association::cells);
   const bool usable =
       array && array->components == 1 && !labels.empty() &&
       std::all_of(labels.begin(), labels.end(), [](std::int32_t label) { return label >= 0; });
@@ -119,7 +119,7 @@ Groups groups_by_label(const Mesh& mesh, const std::vector<std::int32_t>& labels
 }
 
 /// Splits every group into the cells that are in the set and the others.
-void split_by_set(Groups& groups, const Set& set, std::int32_t physical) {
+void split_by_set(Groups& groups, const EntitySet& set, std::int32_t physical) {
   std::map<Index, Index> inside;  // group, the part of it that is in the set
   std::set<Index> parts;
   for (const Index c : set.members) {
@@ -160,15 +160,16 @@ void assign_tags(const Mesh& mesh, Groups& groups) {
 /// Entities of the nodes: those that they had in Gmsh, or the first entity of the highest dimension.
 std::vector<std::int32_t> entities_of_nodes(const Mesh& mesh, std::map<Entity, Group>& entities,
                                             Output& output) {
-  std::vector<std::int32_t> kept = integers_of(mesh, kNodeEntity, Attached::vertices);
-  const DataArray* array = find_array(mesh, kNodeEntity, Attached::vertices);
+  std::vector<std::int32_t> kept = integers_of(mesh, kNodeEntity, Association::vertices);
+  const DataArray* array = find_array(mesh, kNodeEntity, Association::vertices);
   bool usable = !kept.empty() && array->components == 2;
   for (std::size_t i = 0; usable && i < kept.size(); i += 2) {
     usable = kept[i] >= 0 && kept[i] <= 3 && kept[i + 1] > 0;
   }
   if (usable) {
     output.placed.push_back(array);
-    if (parameters_of(mesh)) output.placed.push_back(find_array(mesh, kNodeParameters, Attached::vertices));
+    if (parameters_of(mesh))
+      output.placed.push_back(find_array(mesh, kNodeParameters, Association::vertices));
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
       const Entity entity{kept[2 * static_cast<std::size_t>(v)], kept[2 * static_cast<std::size_t>(v) + 1]};
       const auto [found, is_new] =
@@ -214,8 +215,8 @@ std::string names_text(const std::vector<PhysicalName>& names) {
 /// Turns the sets of cells into named physical groups.
 std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups, std::int64_t next, Notes& notes) {
   std::vector<PhysicalName> names;
-  for (const Set& set : mesh.sets) {
-    if (set.on == Attached::vertices || set.members.empty() ||
+  for (const EntitySet& set : mesh.sets) {
+    if (set.association == Association::vertices || set.members.empty() ||
         next > std::numeric_limits<std::int32_t>::max()) {
       note_set_left_out(set, "Gmsh", notes);
       continue;
@@ -231,20 +232,20 @@ std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups, std::
 
 }  // namespace
 
-std::vector<Set> physical_sets(const Mesh& mesh, const GmshResidue& residue) {
+std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metadata) {
   // a name may stand for groups of several dimensions: they are one set
-  std::vector<Set> sets;
+  std::vector<EntitySet> sets;
   std::map<std::string, Index> set_of_name;
   std::map<Entity, std::vector<Index>> sets_of_group;
-  for (const PhysicalName& name : residue.names) {
+  for (const PhysicalName& name : metadata.names) {
     const auto [found, is_new] = set_of_name.try_emplace(name.name, index_size(sets));
-    if (is_new) sets.push_back({name.name, Attached::cells, {}});
+    if (is_new) sets.push_back({name.name, Association::cells, {}});
     sets_of_group[{name.dimension, name.tag}].push_back(found->second);
   }
 
   // in version 2 the cells have groups, in version 4 their entities
   std::map<Entity, std::vector<Index>> sets_of_entity;
-  for (const auto& [entity, physicals] : residue.physicals) {
+  for (const auto& [entity, physicals] : metadata.physicals) {
     std::set<Index> of_entity;
     for (const std::int32_t physical : physicals) {
       const auto found = sets_of_group.find({entity.first, physical});
@@ -254,22 +255,22 @@ std::vector<Set> physical_sets(const Mesh& mesh, const GmshResidue& residue) {
   }
   const CellEntities entities(mesh);
   const std::vector<std::int32_t> labels =
-      residue.is_version_2() ? integers_of(mesh, kLabel, Attached::cells) : std::vector<std::int32_t>{};
-  EntityTable<std::vector<Index>> table(residue.is_version_2() ? sets_of_group : sets_of_entity);
+      metadata.is_version_2() ? integers_of(mesh, kLabel, Association::cells) : std::vector<std::int32_t>{};
+  EntityTable<std::vector<Index>> table(metadata.is_version_2() ? sets_of_group : sets_of_entity);
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     Entity entity = entities(c);
-    if (residue.is_version_2()) entity = {dimension(mesh.cells.shapes[c]), labels.empty() ? 0 : labels[c]};
+    if (metadata.is_version_2()) entity = {dimension(mesh.cells.shapes[c]), labels.empty() ? 0 : labels[c]};
     const std::vector<Index>* of_cell = table.find(entity);
     if (!of_cell) continue;
     for (const Index s : *of_cell) sets[s].members.push_back(c);
   }
-  std::erase_if(sets, [](const Set& set) { return set.members.empty(); });
+  std::erase_if(sets, [](const EntitySet& set) { return set.members.empty(); });
   return sets;
 }
 
-std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshResidue& residue) {
+std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadata& metadata) {
   const CellEntities entities(mesh);
-  EntityTable<std::vector<std::int32_t>> table(residue.physicals);
+  EntityTable<std::vector<std::int32_t>> table(metadata.physicals);
   std::vector<std::int32_t> labels(mesh.cells.shapes.size(), 0);
   bool any = false;
   for (Index c = 0; c < mesh.cell_count(); ++c) {
@@ -282,12 +283,12 @@ std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshResidue
   return labels;
 }
 
-void classify(GmshResidue& layout, Output& output, Notes& notes) {
+void classify(GmshMetadata& layout, Output& output, Notes& notes) {
   const Mesh& mesh = output.mesh;
   const std::vector<std::int32_t> labels = labels_for_groups(mesh, notes);
-  if (!labels.empty()) output.placed.push_back(find_array(mesh, kLabel, Attached::cells));
-  const std::vector<std::int32_t> kept = integers_of(mesh, kCellEntity, Attached::cells);
-  if (!kept.empty()) output.placed.push_back(find_array(mesh, kCellEntity, Attached::cells));
+  if (!labels.empty()) output.placed.push_back(find_array(mesh, kLabel, Association::cells));
+  const std::vector<std::int32_t> kept = integers_of(mesh, kCellEntity, Association::cells);
+  if (!kept.empty()) output.placed.push_back(find_array(mesh, kCellEntity, Association::cells));
 
   // groups of cells become entities
   Groups groups = groups_by_label(mesh, labels, kept);

@@ -8,9 +8,9 @@
 namespace meshorder::gmsh {
 namespace {
 
-const Set* find_set(const Mesh& mesh, const std::string& name) {
-  const auto found = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const Set& set) {
-    return set.on == Attached::vertices && set.name == name;
+const EntitySet* find_set(const Mesh& mesh, const std::string& name) {
+  const auto found = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& set) {
+    return set.association == Association::vertices && set.name == name;
   });
   return found == mesh.sets.end() ? nullptr : &*found;
 }
@@ -18,7 +18,7 @@ const Set* find_set(const Mesh& mesh, const std::string& name) {
 /// Version 2.2 has a line "Affine …" of 16 numbers, or none; 4.1 a count and so many numbers.
 void read_affine(Reading& reading, PeriodicLink& link) {
   Source& source = reading.source;
-  if (!reading.residue.is_version_2()) {
+  if (!reading.metadata.is_version_2()) {
     link.affine.resize(source.count("the number of affine coefficients", 2, 8));
   } else if (source.in.peek_word() == "Affine") {
     (void)source.in.word("Affine");
@@ -32,8 +32,8 @@ Index read_pairs(Reading& reading, PeriodicLink& link) {
   Source& source = reading.source;
   const Index count = source.count("the number of periodic nodes", 4, 16);
   const std::string name = "gmsh:periodic " + std::to_string(link.dimension) + " " + std::to_string(link.tag);
-  Set nodes{name, Attached::vertices, {}};
-  Set masters{name + " master", Attached::vertices, {}};
+  EntitySet nodes{name, Association::vertices, {}};
+  EntitySet masters{name + " master", Association::vertices, {}};
   Index missing = 0;
   for (Index i = 0; i < count; ++i) {
     const Index node = reading.nodes.find(source.size("a periodic node"));
@@ -58,7 +58,7 @@ void read_periodic(Reading& reading) {
   Source& source = reading.source;
   // version 2.2 writes this section as text in binary files, too
   const bool binary = source.binary;
-  if (reading.residue.is_version_2()) source.binary = false;
+  if (reading.metadata.is_version_2()) source.binary = false;
   const Index links = source.count("the number of periodic entities", 8, 28);
   Index missing = 0;
   for (Index i = 0; i < links; ++i) {
@@ -66,7 +66,7 @@ void read_periodic(Reading& reading) {
     link.dimension = source.int32("the dimension of a periodic entity");
     link.tag = source.int32("the tag of a periodic entity");
     link.master = source.int32("the tag of a master entity");
-    for (const PeriodicLink& other : reading.residue.periodic) {
+    for (const PeriodicLink& other : reading.metadata.periodic) {
       if (other.dimension == link.dimension && other.tag == link.tag) {
         source.fail("the periodic entity " + std::to_string(link.tag) + " of dimension " +
                         std::to_string(link.dimension) + " is given twice",
@@ -75,7 +75,7 @@ void read_periodic(Reading& reading) {
     }
     read_affine(reading, link);
     missing += read_pairs(reading, link);
-    reading.residue.periodic.push_back(std::move(link));
+    reading.metadata.periodic.push_back(std::move(link));
   }
   source.expect_end("Periodic");
   source.binary = binary;
@@ -102,8 +102,8 @@ void write_periodic(Sink& sink, const Output& output) {
     for (const double value : link.affine) to.real(value);
     if (!version_2 || !link.affine.empty()) to.end_line();
     // the sets may have been taken out of the mesh
-    const Set* nodes = find_set(output.mesh, link.nodes);
-    const Set* masters = find_set(output.mesh, link.master_nodes);
+    const EntitySet* nodes = find_set(output.mesh, link.nodes);
+    const EntitySet* masters = find_set(output.mesh, link.master_nodes);
     const Index count =
         nodes && masters ? std::min(index_size(nodes->members), index_size(masters->members)) : 0;
     to.size(count);
@@ -123,7 +123,7 @@ void read_ghosts(Reading& reading) {
   const Index count = source.count("the number of ghost elements", 6, 20);
   DataArray array;
   array.name = kCellGhosts;
-  array.on = Attached::cells;
+  array.association = Association::cells;
   std::vector<std::int32_t> owners;
   std::vector<std::vector<std::int32_t>> ghosts;
   std::size_t most = 0;
@@ -135,7 +135,7 @@ void read_ghosts(Reading& reading) {
       source.fail("$GhostElements names element " + std::to_string(id) + ", which $Elements does not have",
                   "name elements that exist");
     }
-    array.rows.push_back(place);
+    array.indices.push_back(place);
     owners.push_back(source.int32("a partition"));
     auto& partitions = ghosts.emplace_back(source.count("the number of ghost partitions", 2, 4));
     for (std::int32_t& partition : partitions) partition = source.int32("a ghost partition");
@@ -143,7 +143,7 @@ void read_ghosts(Reading& reading) {
     total += partitions.size();
   }
   source.expect_end("GhostElements");
-  check_distinct(source, array.rows, "GhostElements");
+  check_distinct(source, array.indices, "GhostElements");
   if (count == 0) return;
   const std::size_t width = 2 + most;
   if (width * owners.size() > 64 * (total + owners.size()) + 4096) {
@@ -162,7 +162,7 @@ void read_ghosts(Reading& reading) {
 }
 
 void write_ghosts(Sink& sink, const Output& output) {
-  const DataArray* array = find_array(output.mesh, kCellGhosts, Attached::cells);
+  const DataArray* array = find_array(output.mesh, kCellGhosts, Association::cells);
   const auto* values = array ? std::get_if<std::vector<std::int32_t>>(&array->values) : nullptr;
   const Index rows = values ? row_count(*array) : 0;
   sink.size(rows);
@@ -171,7 +171,7 @@ void write_ghosts(Sink& sink, const Output& output) {
     const auto width = static_cast<std::size_t>(array->components);
     const auto* of_row = values->data() + row * width;
     const auto count = std::clamp<std::int64_t>(of_row[1], 0, static_cast<std::int64_t>(width) - 2);
-    sink.size(output.cell_id(array->covers_all() ? row : array->rows[row]));
+    sink.size(output.cell_id(array->is_dense() ? row : array->indices[row]));
     sink.int32(of_row[0]);
     sink.size(count);
     for (std::int64_t k = 0; k < count; ++k) sink.int32(of_row[2 + k]);

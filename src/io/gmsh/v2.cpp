@@ -41,7 +41,7 @@ void read_element_body(Reading& reading, const Element& element, Tags& tags, std
   Source& source = reading.source;
   for (Index t = 0; t < element.tag_count; ++t) tags.values.push_back(source.int32("a tag"));
   tags.offsets.push_back(static_cast<Offset>(tags.values.size()));
-  refuse_element_tags(source, reading.residue.version, tags[tags.size() - 1]);
+  refuse_element_tags(source, reading.metadata.version, tags[tags.size() - 1]);
   nodes.clear();
   for (int k = 0; k < element.type->nodes; ++k) {
     nodes.push_back(place_of_node(reading, source.int32("a node of an element"), "element", element.id));
@@ -62,7 +62,7 @@ DataArray tags_as_array(const Tags& tags, std::string_view name, std::size_t fir
       values[c * components + k] = of_cell[first + k];
     }
   }
-  return {std::string(name), Attached::cells, static_cast<Index>(components), std::move(values), {}, {}};
+  return {std::string(name), Association::cells, static_cast<Index>(components), std::move(values), {}, {}};
 }
 
 void keep_tags(const Source& source, Mesh& mesh, const Tags& tags) {
@@ -83,7 +83,7 @@ void keep_tags(const Source& source, Mesh& mesh, const Tags& tags) {
   if (!even) {
     std::vector<std::int32_t> counts(tags.size());
     for (Index c = 0; c < tags.size(); ++c) counts[c] = static_cast<std::int32_t>(tags[c].size());
-    mesh.data.push_back({std::string(kCellTagCount), Attached::cells, 1, std::move(counts), {}, {}});
+    mesh.data.push_back({std::string(kCellTagCount), Association::cells, 1, std::move(counts), {}, {}});
   }
 }
 
@@ -94,10 +94,11 @@ int parameters_2(std::int32_t dimension) { return dimension == 1 || dimension ==
 class TagsOfMesh {
  public:
   explicit TagsOfMesh(const Mesh& mesh, bool labels_are_tags)
-      : labels_(labels_are_tags ? integers_of(mesh, kLabel, Attached::cells) : std::vector<std::int32_t>{}),
-        entities_(integers_of(mesh, kCellEntity, Attached::cells)),
-        partitions_(integers_of(mesh, kCellPartitions, Attached::cells)),
-        counts_(integers_of(mesh, kCellTagCount, Attached::cells)),
+      : labels_(labels_are_tags ? integers_of(mesh, kLabel, Association::cells)
+                                : std::vector<std::int32_t>{}),
+        entities_(integers_of(mesh, kCellEntity, Association::cells)),
+        partitions_(integers_of(mesh, kCellPartitions, Association::cells)),
+        counts_(integers_of(mesh, kCellTagCount, Association::cells)),
         width_(partitions_.empty() ? 0 : partitions_.size() / mesh.cells.shapes.size()) {}
 
   [[nodiscard]] std::size_t count(Index c) const {
@@ -144,7 +145,8 @@ void read_nodes_2(Reading& reading, std::string_view section) {
   reading.nodes = Places(source, ids, "node");
   if (!reading.nodes.consecutive()) reading.mesh.vertex_ids = std::move(ids);
   if (!parametric) return;
-  reading.mesh.data.push_back({std::string(kNodeEntity), Attached::vertices, 2, std::move(entities), {}, {}});
+  reading.mesh.data.push_back(
+      {std::string(kNodeEntity), Association::vertices, 2, std::move(entities), {}, {}});
   keep_parameters(reading.mesh, std::move(parameters));
 }
 
@@ -206,7 +208,7 @@ void write_nodes_2(Sink& sink, const Output& output) {
 
 void write_elements_2(Sink& sink, const Output& output) {
   const Mesh& mesh = output.mesh;
-  const DataArray* labels = find_array(mesh, kLabel, Attached::cells);
+  const DataArray* labels = find_array(mesh, kLabel, Association::cells);
   const TagsOfMesh tags(mesh,
                         std::find(output.placed.begin(), output.placed.end(), labels) != output.placed.end());
   sink.text_line(mesh.cell_count());

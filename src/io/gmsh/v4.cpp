@@ -136,7 +136,7 @@ void read_entities_4(Reading& reading, bool partitioned) {
       for (std::int32_t& physical : physicals) {
         if (physical < 0 && physical > std::numeric_limits<std::int32_t>::min()) physical = -physical;
       }
-      if (!physicals.empty()) reading.residue.physicals[{dimension, tag}] = std::move(physicals);
+      if (!physicals.empty()) reading.metadata.physicals[{dimension, tag}] = std::move(physicals);
     }
   }
 }
@@ -163,7 +163,7 @@ void read_nodes_4(Reading& reading) {
     if (count > head.count - index_size(ids)) {
       fail_count(source, "Nodes", Offset{count} + index_size(ids), head.count);
     }
-    if (count == 0) reading.residue.empty_node_blocks.push_back(block);
+    if (count == 0) reading.metadata.empty_node_blocks.push_back(block);
     for (Index i = 0; i < count; ++i) entities.insert(entities.end(), {block[0], block[1]});
     read_node_block(reading, block, count, ids, parameters);
   }
@@ -171,7 +171,7 @@ void read_nodes_4(Reading& reading) {
   source.expect_end("Nodes");
   reading.nodes = Places(source, ids, "node");
   if (!reading.nodes.consecutive()) mesh.vertex_ids = std::move(ids);
-  mesh.data.push_back({std::string(kNodeEntity), Attached::vertices, 2, std::move(entities), {}, {}});
+  mesh.data.push_back({std::string(kNodeEntity), Association::vertices, 2, std::move(entities), {}, {}});
   if (!parameters.empty()) keep_parameters(mesh, std::move(parameters));
 }
 
@@ -198,7 +198,7 @@ void read_elements_4(Reading& reading) {
       fail_count(source, "Elements", Offset{count} + index_size(ids), head.count);
     }
     if (count == 0) {
-      reading.residue.empty_element_blocks.push_back({dimension, tag, type.number});
+      reading.metadata.empty_element_blocks.push_back({dimension, tag, type.number});
       continue;
     }
     starts.push_back(index_size(ids));
@@ -225,9 +225,9 @@ void read_elements_4(Reading& reading) {
   if (!repeated && starts.size() > 1) mesh.cell_blocks = std::move(starts);
   bool own = true;
   for (Index c = 0; c < mesh.cell_count(); ++c) own = own && dimensions[c] == dimension(mesh.cells.shapes[c]);
-  mesh.data.push_back({std::string(kCellEntity), Attached::cells, 1, std::move(tags), {}, {}});
+  mesh.data.push_back({std::string(kCellEntity), Association::cells, 1, std::move(tags), {}, {}});
   if (!own)
-    mesh.data.push_back({std::string(kCellDimension), Attached::cells, 1, std::move(dimensions), {}, {}});
+    mesh.data.push_back({std::string(kCellDimension), Association::cells, 1, std::move(dimensions), {}, {}});
   keep_unusual_types(mesh, types);
 }
 

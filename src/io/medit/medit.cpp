@@ -57,7 +57,7 @@ Layout layout_of(const Mesh& mesh) {
 
 struct Writing {
   const Mesh& mesh;
-  const MeshResidue* own;  ///< nullptr when the mesh comes from another format
+  const MeshMetadata* own;  ///< nullptr when the mesh comes from another format
   Layout layout;
   Labels vertex_labels;
   Labels cell_labels;
@@ -123,9 +123,9 @@ Index position_in(const Writing& from, const Target& target, Index item) {
 /// The kind of section with that name that all `items` fit, or nullptr.
 template <std::size_t N>
 const ListKind* fitting_kind(const std::array<ListKind, N>& kinds, const Writing& from, std::string_view name,
-                             Attached on, const std::vector<Index>& items) {
+                             Association association, const std::vector<Index>& items) {
   const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const ListKind& kind) {
-    return kind.keyword == name && (kind.target ? Attached::cells : Attached::vertices) == on;
+    return kind.keyword == name && (kind.target ? Association::cells : Association::vertices) == association;
   });
   if (found == kinds.end()) return nullptr;
   const bool fit = std::all_of(items.begin(), items.end(),
@@ -133,8 +133,8 @@ const ListKind* fitting_kind(const std::array<ListKind, N>& kinds, const Writing
   return fit ? &*found : nullptr;
 }
 
-void write_set(OutputFile& out, const Writing& from, const Set& set, Notes& notes) {
-  const ListKind* kind = fitting_kind(kListKinds, from, set.name, set.on, set.members);
+void write_set(OutputFile& out, const Writing& from, const EntitySet& set, Notes& notes) {
+  const ListKind* kind = fitting_kind(kListKinds, from, set.name, set.association, set.members);
   if (!kind) return note_set_left_out(set, "Medit", notes);
   out.print("\n{}\n{}\n", set.name, set.members.size());
   for (const Index member : set.members) out.print("{}\n", position_in(from, kind->target, member) + 1);
@@ -153,13 +153,13 @@ void print_value(OutputFile& out, const Values& values, Offset at) {
 void write_array(OutputFile& out, const Writing& from, const DataArray& array, Notes& notes) {
   const ListKind* kind = nullptr;
   const bool numbers = !std::holds_alternative<std::vector<std::string>>(array.values);
-  if (from.own && numbers && !array.covers_all()) {
-    kind = fitting_kind(kTableKinds, from, array.name, array.on, array.rows);
+  if (from.own && numbers && !array.is_dense()) {
+    kind = fitting_kind(kTableKinds, from, array.name, array.association, array.indices);
   }
   if (!kind) return note_array_left_out(array, "Medit", notes);
-  out.print("\n{}\n{}\n", array.name, array.rows.size());
-  for (Index row = 0; row < index_size(array.rows); ++row) {
-    out.print("{}", position_in(from, kind->target, array.rows[row]) + 1);
+  out.print("\n{}\n{}\n", array.name, array.indices.size());
+  for (Index row = 0; row < index_size(array.indices); ++row) {
+    out.print("{}", position_in(from, kind->target, array.indices[row]) + 1);
     for (Index k = 0; k < array.components; ++k) {
       print_value(out, array.values, Offset{row} * array.components + k);
     }
@@ -171,7 +171,7 @@ void write_array(OutputFile& out, const Writing& from, const DataArray& array, N
 
 void write_sections(OutputFile& out, const Writing& from, bool before_vertices) {
   if (!from.own) return;
-  for (const MeshResidue::Section& section : from.own->sections) {
+  for (const MeshMetadata::Section& section : from.own->sections) {
     if (section.before_vertices == before_vertices) out.print("\n{}\n", section.text);
   }
 }
@@ -198,17 +198,17 @@ bool holds(Shape shape, int vertices) { return kind_of(shape, vertices) < kCellK
 
 void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
   refuse_other_cells(mesh, path, "Medit", holds, "write .msh, .vtu or .vtk instead");
-  const Writing from{mesh, dynamic_cast<const MeshResidue*>(mesh.residue.get()), layout_of(mesh),
-                     labels_of(mesh, Attached::vertices), labels_of(mesh, Attached::cells)};
+  const Writing from{mesh, dynamic_cast<const MeshMetadata*>(mesh.format_metadata.get()), layout_of(mesh),
+                     labels_of(mesh, Association::vertices), labels_of(mesh, Association::cells)};
   OutputFile out(path);
   if (from.own) out.write(from.own->comments_before);
   out.print("MeshVersionFormatted {}\nDimension {}\n", version(from), mesh.dimension);
   write_sections(out, from, true);
   write_vertices(out, from);
   write_all_cells(out, from);
-  for (const Set& set : mesh.sets) write_set(out, from, set, notes);
+  for (const EntitySet& set : mesh.sets) write_set(out, from, set, notes);
   for (const DataArray& array : mesh.data) {
-    if (&array != label_array(mesh, array.on)) write_array(out, from, array, notes);
+    if (&array != label_array(mesh, array.association)) write_array(out, from, array, notes);
   }
   write_sections(out, from, false);
   out.print("\nEnd{}\n", from.own ? from.own->after_end : "");

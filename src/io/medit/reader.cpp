@@ -84,7 +84,7 @@ class Reader {
     read_pending();
     arrange_nodes();
     set_labels();
-    mesh_.residue = residue_;
+    mesh_.format_metadata = residue_;
     return std::move(mesh_);
   }
 
@@ -238,7 +238,7 @@ class Reader {
     }
     has_vertices_ = true;
     mesh_.data.push_back(
-        {std::string(kLabel), Attached::vertices, 1, label_values(std::move(references)), {}, {}});
+        {std::string(kLabel), Association::vertices, 1, label_values(std::move(references)), {}, {}});
   }
 
   /// A position from 1 to `count`, counted from 0.
@@ -328,7 +328,7 @@ class Reader {
   }
 
   void read_list(const ListKind& kind) {
-    Set set{std::string(kind.keyword), kind.target ? Attached::cells : Attached::vertices, {}};
+    EntitySet set{std::string(kind.keyword), kind.target ? Association::cells : Association::vertices, {}};
     const Index members = in_.count(what_count(), 2);
     const auto [first, count] = range_of(kind.target, members);
     const std::string what = what_number();
@@ -338,7 +338,7 @@ class Reader {
 
   void read_table(const ListKind& kind) {
     DataArray array{
-        std::string(kind.keyword), kind.target ? Attached::cells : Attached::vertices, 1, {}, {}, {}};
+        std::string(kind.keyword), kind.target ? Association::cells : Association::vertices, 1, {}, {}, {}};
     const Index rows = in_.count(what_count(), 2);
     if (rows == 0) {
       residue_->sections.push_back({array.name, array.name + "\n0", false});
@@ -359,7 +359,7 @@ class Reader {
                  "remove the section or one of the lines");
       }
       seen[item] = true;
-      array.rows.push_back(first + item);
+      array.indices.push_back(first + item);
       for (Index k = 0; k < array.components; ++k) values.push_back(in_.real(what));
     }
     array.values = std::move(values);
@@ -409,7 +409,7 @@ class Reader {
     if (references_.empty()) return;
     mesh_.data.insert(
         mesh_.data.begin() + 1,
-        {std::string(kLabel), Attached::cells, 1, label_values(std::move(references_)), {}, {}});
+        {std::string(kLabel), Association::cells, 1, label_values(std::move(references_)), {}, {}});
   }
 
   [[nodiscard]] std::string what_count() const { return "the count of " + last_keyword_; }
@@ -418,7 +418,7 @@ class Reader {
   Scanner in_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<MeshResidue> residue_ = std::make_shared<MeshResidue>();
+  std::shared_ptr<MeshMetadata> residue_ = std::make_shared<MeshMetadata>();
   std::int64_t begin_ = 0;  // of the section
   std::string last_keyword_;
   std::unordered_set<std::string> kinds_seen_;

@@ -20,7 +20,7 @@ namespace meshorder {
 namespace {
 namespace fs = std::filesystem;
 using obj::kStates;
-using obj::ObjResidue;
+using obj::ObjMetadata;
 
 bool obj_holds(Shape shape, int vertices) {
   if (shape == Shape::polygon) return vertices >= 3;
@@ -30,7 +30,7 @@ bool obj_holds(Shape shape, int vertices) {
 
 /// Integers of all cells, whichever type the array has; empty when they do not fit.
 std::vector<std::int32_t> cell_integers(const DataArray& array) {
-  if (!array.covers_all() || array.components != 1) return {};
+  if (!array.is_dense() || array.components != 1) return {};
   if (const auto* same = std::get_if<std::vector<std::int32_t>>(&array.values)) return *same;
   const auto* wide = std::get_if<std::vector<std::int64_t>>(&array.values);
   const auto fits = [](std::int64_t x) { return std::in_range<std::int32_t>(x); };
@@ -44,7 +44,7 @@ class Writer {
   Writer(const Mesh& mesh, const fs::path& path, Notes& notes)
       : mesh_(mesh),
         notes_(notes),
-        native_(dynamic_cast<const ObjResidue*>(mesh.residue.get())),
+        native_(dynamic_cast<const ObjMetadata*>(mesh.format_metadata.get())),
         out_(path) {}
 
   void write() {
@@ -66,14 +66,14 @@ class Writer {
 
  private:
   void find_vertex_data() {
-    colors_ = gather(mesh_, kColor, Attached::vertices);
+    colors_ = gather(mesh_, kColor, Association::vertices);
     if (colors_.width > 0) {
       written_.insert(colors_.from.begin(), colors_.from.end());
       if (colors_.width == 4) notes_.emplace_back("the alpha of colours is left out: OBJ cannot hold it");
     } else {
       find_partial_colors();
     }
-    const DataArray* weights = find_array(mesh_, obj::kWeight, Attached::vertices);
+    const DataArray* weights = find_array(mesh_, obj::kWeight, Association::vertices);
     if (!native_ || !weights || weights->components != 1) return;
     if (const auto* values = std::get_if<std::vector<double>>(&weights->values)) {
       weights_ = values;
@@ -83,7 +83,7 @@ class Writer {
   }
 
   void find_partial_colors() {
-    const DataArray* array = find_array(mesh_, kColor.name, Attached::vertices);
+    const DataArray* array = find_array(mesh_, kColor.name, Association::vertices);
     if (!array || array->components != 3) return;
     colors_.values = as_reals(array->values);
     if (colors_.values.empty()) return;
@@ -96,9 +96,9 @@ class Writer {
   /// The row of each vertex, −1 for none; empty when each has its own.
   [[nodiscard]] std::vector<Index> rows_of(const DataArray& array) const {
     std::vector<Index> rows;
-    if (array.covers_all()) return rows;
+    if (array.is_dense()) return rows;
     rows.assign(mesh_.points.size(), -1);
-    for (Index row = 0; row < index_size(array.rows); ++row) rows[array.rows[row]] = row;
+    for (Index row = 0; row < index_size(array.indices); ++row) rows[array.indices[row]] = row;
     return rows;
   }
 
@@ -113,8 +113,8 @@ class Writer {
         if (array.name == obj::corner_array("normal", array.components)) point_to(array, normals_);
       }
     } else {
-      vertex_texture_ = gather(mesh_, kTexture, Attached::vertices);
-      vertex_normals_ = gather(mesh_, kNormal, Attached::vertices);
+      vertex_texture_ = gather(mesh_, kTexture, Association::vertices);
+      vertex_normals_ = gather(mesh_, kNormal, Association::vertices);
       for (const auto* vector : {&vertex_texture_, &vertex_normals_}) {
         written_.insert(vector->from.begin(), vector->from.end());
       }
@@ -123,9 +123,9 @@ class Writer {
 
   void point_to(const DataArray& array, std::vector<const std::int32_t*>& corners) {
     const auto* indices = std::get_if<std::vector<std::int32_t>>(&array.values);
-    if (!indices || array.on != Attached::cells) return;
+    if (!indices || array.association != Association::cells) return;
     for (Index row = 0; row < row_count(array); ++row) {
-      const Index cell = array.covers_all() ? row : array.rows[row];
+      const Index cell = array.is_dense() ? row : array.indices[row];
       if (mesh_.cells.vertex_count(cell) == array.components) {
         corners[cell] = indices->data() + static_cast<Offset>(row) * array.components;
       }
@@ -135,7 +135,7 @@ class Writer {
 
   void find_states() {
     for (std::size_t i = 0; i < kStates.size(); ++i) {
-      const DataArray* array = find_array(mesh_, kStates[i].array, Attached::cells);
+      const DataArray* array = find_array(mesh_, kStates[i].array, Association::cells);
       if (!array || (!native_ && i != obj::kMaterial)) continue;
       states_[i] = cell_integers(*array);
       if (states_[i].empty()) continue;
@@ -147,15 +147,15 @@ class Writer {
   /// For each cell the sets that hold it, as positions in the list of sets, rising.
   void find_groups() {
     group_offsets_.assign(mesh_.cells.shapes.size() + 1, 0);
-    for (const Set& set : mesh_.sets) {
-      if (set.on != Attached::cells) continue;
+    for (const EntitySet& set : mesh_.sets) {
+      if (set.association != Association::cells) continue;
       for (const Index cell : set.members) ++group_offsets_[cell + 1];
     }
     for (std::size_t c = 1; c < group_offsets_.size(); ++c) group_offsets_[c] += group_offsets_[c - 1];
     groups_.resize(group_offsets_.back());
     std::vector<Offset> next(group_offsets_.begin(), group_offsets_.end() - 1);
     for (Index s = 0; s < index_size(mesh_.sets); ++s) {
-      if (mesh_.sets[s].on != Attached::cells) continue;
+      if (mesh_.sets[s].association != Association::cells) continue;
       for (const Index cell : mesh_.sets[s].members) groups_[next[cell]++] = s;
     }
   }
@@ -165,7 +165,7 @@ class Writer {
   }
 
   /// A set's name as one word, which a group's name is.
-  static std::string group_name(const Set& set) {
+  static std::string group_name(const EntitySet& set) {
     std::string name = set.name.empty() ? "unnamed" : set.name;
     std::replace_if(
         name.begin(), name.end(),
@@ -222,8 +222,8 @@ class Writer {
 
   /// Names that no cell has are stated once, so that they stay known.
   void write_unused_names() {
-    for (const Set& set : mesh_.sets) {
-      if (set.on != Attached::cells || !set.members.empty()) continue;
+    for (const EntitySet& set : mesh_.sets) {
+      if (set.association != Association::cells || !set.members.empty()) continue;
       out_.print("g {}\n", group_name(set));
       in_group_ = true;
     }
@@ -281,8 +281,8 @@ class Writer {
     for (const DataArray& array : mesh_.data) {
       if (!written_.contains(&array)) note_array_left_out(array, "OBJ", notes_);
     }
-    for (const Set& set : mesh_.sets) {
-      if (set.on == Attached::vertices) {
+    for (const EntitySet& set : mesh_.sets) {
+      if (set.association == Association::vertices) {
         note_set_left_out(set, "OBJ", notes_);
       } else if (group_name(set) != set.name) {
         notes_.push_back(fmt::format("the set '{}' is written as the group '{}'", set.name, group_name(set)));
@@ -294,7 +294,7 @@ class Writer {
 
   const Mesh& mesh_;
   Notes& notes_;
-  const ObjResidue* native_;
+  const ObjMetadata* native_;
   OutputFile out_;
   std::set<const DataArray*> written_;
   GatheredVector colors_;

@@ -105,7 +105,7 @@ class Reader {
     add_corner_arrays("normal", normal_indices_);
     add_states();
     add_groups();
-    mesh_.residue = residue_;
+    mesh_.format_metadata = residue_;
     return std::move(mesh_);
   }
 
@@ -318,21 +318,22 @@ class Reader {
     states_[i].set(text, mesh_.cell_count());
   }
 
-  void add_partial(std::string name, Attached on, Index components, Values values, std::vector<Index> rows) {
+  void add_partial(std::string name, Association association, Index components, Values values,
+                   std::vector<Index> rows) {
     if (rows.empty()) return;
-    const Index all = on == Attached::vertices ? mesh_.vertex_count() : mesh_.cell_count();
+    const Index all = association == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count();
     if (index_size(rows) == all) rows.clear();
-    mesh_.data.push_back({std::move(name), on, components, std::move(values), std::move(rows), {}});
+    mesh_.data.push_back({std::move(name), association, components, std::move(values), std::move(rows), {}});
   }
 
   void add_vertex_arrays() {
-    add_partial(std::string(kWeight), Attached::vertices, 1, std::move(weights_), std::move(weighted_));
-    add_partial(std::string(kColor.name), Attached::vertices, 3, std::move(colors_), std::move(colored_));
+    add_partial(std::string(kWeight), Association::vertices, 1, std::move(weights_), std::move(weighted_));
+    add_partial(std::string(kColor.name), Association::vertices, 3, std::move(colors_), std::move(colored_));
   }
 
   void add_corner_arrays(std::string_view what, CornerIndices& indices) {
     for (auto& [width, part] : indices.by_width) {
-      add_partial(corner_array(what, width), Attached::cells, width, std::move(part.indices),
+      add_partial(corner_array(what, width), Association::cells, width, std::move(part.indices),
                   std::move(part.cells));
     }
   }
@@ -349,7 +350,7 @@ class Reader {
       for (std::int32_t& value : state.of_cell) value = numbers[value];
       if (i == kSmoothing) residue_->names[i].clear();  // numbers are their own names
       mesh_.data.push_back(
-          {std::string(kStates[i].array), Attached::cells, 1, std::move(state.of_cell), {}, {}});
+          {std::string(kStates[i].array), Association::cells, 1, std::move(state.of_cell), {}, {}});
     }
   }
 
@@ -366,12 +367,12 @@ class Reader {
     for (Index c = 0; c < index_size(groups_.of_cell); ++c) {
       for (std::vector<Index>* set : of_statement[groups_.of_cell[c]]) set->push_back(c);
     }
-    for (auto& [name, cells] : members) mesh_.sets.push_back({name, Attached::cells, std::move(cells)});
+    for (auto& [name, cells] : members) mesh_.sets.push_back({name, Association::cells, std::move(cells)});
   }
 
   Scanner scanner_;
   Mesh mesh_;
-  std::shared_ptr<ObjResidue> residue_ = std::make_shared<ObjResidue>();
+  std::shared_ptr<ObjMetadata> residue_ = std::make_shared<ObjMetadata>();
   List vertices_{"v"};
   List texture_{"vt"};
   List normals_{"vn"};

@@ -21,7 +21,7 @@ namespace meshorder {
 namespace {
 namespace fs = std::filesystem;
 
-struct OffResidue : Residue {
+struct OffMetadata : FormatMetadata {
   std::string comments;    ///< whole lines that stood before the counts
   std::int64_t edges = 0;  ///< a count that readers ignore
 
@@ -152,7 +152,7 @@ void read_vertices(Scanner& scanner, Index count, const Layout& layout, Mesh& me
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (widths[k] == 0 || count == 0) continue;
     Values values = k == 1 ? std::move(columns[k]).typed() : Values(std::move(columns[k].values));
-    mesh.data.push_back({std::string(names[k]), Attached::vertices, widths[k], std::move(values), {}, {}});
+    mesh.data.push_back({std::string(names[k]), Association::vertices, widths[k], std::move(values), {}, {}});
   }
 }
 
@@ -196,7 +196,7 @@ void add_colors(ColorGroups groups, Mesh& mesh) {
     if (used > 1) name += fmt::format("_{}{}", i % 2 == 1 ? 'i' : 'f', i / 2);
     if (index_size(group.rows) == mesh.cell_count()) group.rows.clear();
     mesh.data.push_back({name,
-                         Attached::cells,
+                         Association::cells,
                          static_cast<Index>(i / 2),
                          std::move(group.numbers).typed(),
                          std::move(group.rows),
@@ -227,16 +227,16 @@ void read_faces(Scanner& scanner, Index count, Mesh& mesh) {
 
 Mesh read_off(const fs::path& path, Notes&) {
   Scanner scanner(path, '#');
-  auto residue = std::make_shared<OffResidue>();
-  take_comment_lines(scanner, residue->comments);
+  auto metadata = std::make_shared<OffMetadata>();
+  take_comment_lines(scanner, metadata->comments);
   Layout layout = read_keyword(scanner);
-  if (scanner.at_line_end()) take_comment_lines(scanner, residue->comments);
+  if (scanner.at_line_end()) take_comment_lines(scanner, metadata->comments);
 
   constexpr int kLeastVertex = 6;  // "0 0 0" and a line end
   constexpr int kLeastFace = 4;    // "1 0" and a line end
   const Index vertices = scanner.count("the number of vertices", kLeastVertex);
   const Index faces = scanner.count("the number of faces", kLeastFace);
-  if (!scanner.at_line_end()) residue->edges = scanner.integer<std::int64_t>("the number of edges");
+  if (!scanner.at_line_end()) metadata->edges = scanner.integer<std::int64_t>("the number of edges");
 
   Mesh mesh;
   measure_vertices(scanner, layout);
@@ -245,7 +245,7 @@ Mesh read_off(const fs::path& path, Notes&) {
   if (!scanner.at_end()) {
     scanner.fail("more follows after " + std::to_string(faces) + " faces", "the counts may be wrong");
   }
-  mesh.residue = std::move(residue);
+  mesh.format_metadata = std::move(metadata);
   return mesh;
 }
 
@@ -269,29 +269,29 @@ struct Content {
 
 bool is_face_color(const DataArray& array) {
   const bool width_fits = array.components == 1 || array.components == 3 || array.components == 4;
-  return array.on == Attached::cells && width_fits &&
+  return array.association == Association::cells && width_fits &&
          (array.name == kColor.name || array.name.starts_with(std::string(kColor.name) + "_")) &&
          !std::holds_alternative<std::vector<std::string>>(array.values);
 }
 
 void collect_face_colors(const Mesh& mesh, Content& content) {
-  content.face_colors = gather(mesh, kColor, Attached::cells);
+  content.face_colors = gather(mesh, kColor, Association::cells);
   if (content.face_colors.width > 0) return;
   content.color_rows.resize(mesh.cells.shapes.size(), {nullptr, 0});
   for (const DataArray& array : mesh.data) {
     if (!is_face_color(array)) continue;
     content.written.push_back(&array);
     for (Index row = 0; row < row_count(array); ++row) {
-      content.color_rows[array.covers_all() ? row : array.rows[row]] = {&array, row};
+      content.color_rows[array.is_dense() ? row : array.indices[row]] = {&array, row};
     }
   }
 }
 
 Content content_of(const Mesh& mesh) {
   Content content;
-  content.normals = gather(mesh, kNormal, Attached::vertices);
-  content.colors = gather(mesh, kColor, Attached::vertices);
-  content.texture = gather(mesh, kTexture, Attached::vertices);
+  content.normals = gather(mesh, kNormal, Association::vertices);
+  content.colors = gather(mesh, kColor, Association::vertices);
+  content.texture = gather(mesh, kTexture, Association::vertices);
   collect_face_colors(mesh, content);
   for (const auto* part : {&content.normals, &content.colors, &content.texture, &content.face_colors}) {
     content.written.insert(content.written.end(), part->from.begin(), part->from.end());
@@ -304,7 +304,7 @@ void note_losses(const Mesh& mesh, const Content& content, Notes& notes) {
     if (std::find(content.written.begin(), content.written.end(), &array) != content.written.end()) continue;
     note_array_left_out(array, "OFF", notes);
   }
-  for (const Set& set : mesh.sets) note_set_left_out(set, "OFF", notes);
+  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "OFF", notes);
   note_ids_left_out(mesh, "OFF", notes);
   note_residue_left_out(mesh, "OFF", notes);
 }
@@ -344,12 +344,12 @@ void write_face_color(OutputFile& out, const Content& content, Index face) {
 void write_off(const Mesh& mesh, const fs::path& path, Notes& notes) {
   refuse_other_cells(mesh, path, "OFF", off_holds, "write .vtu or .msh");
   const Content content = content_of(mesh);
-  const auto* residue = dynamic_cast<const OffResidue*>(mesh.residue.get());
+  const auto* metadata = dynamic_cast<const OffMetadata*>(mesh.format_metadata.get());
   OutputFile out(path);
   out.print("{}{}{}OFF\n", content.texture.width > 0 ? "ST" : "", content.colors.width > 0 ? "C" : "",
             content.normals.width > 0 ? "N" : "");
-  if (residue) out.write(residue->comments);
-  out.print("{} {} {}\n", mesh.vertex_count(), mesh.cell_count(), residue ? residue->edges : 0);
+  if (metadata) out.write(metadata->comments);
+  out.print("{} {} {}\n", mesh.vertex_count(), mesh.cell_count(), metadata ? metadata->edges : 0);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     const Point& p = mesh.points[v];
     out.print("{} {} {}", p[0], p[1], p[2]);

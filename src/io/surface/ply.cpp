@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using ply::Element;
 using ply::Encoding;
-using ply::PlyResidue;
+using ply::PlyMetadata;
 using ply::Property;
 using ply::Role;
 using ply::Type;
@@ -79,15 +79,15 @@ TypeWord written_type(const Values& values) {
   return wide ? word_for_wide(values) : word_of(values);
 }
 
-Index item_count(const Mesh& mesh, Attached on) {
-  return on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
+Index item_count(const Mesh& mesh, Association association) {
+  return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
 }
 
 Source source_of(const Mesh& mesh, const DataArray& array, Index component) {
   Source source{&array, component, {}};
-  if (array.covers_all()) return source;
-  source.row_of.assign(item_count(mesh, array.on), -1);
-  for (Index row = 0; row < index_size(array.rows); ++row) source.row_of[array.rows[row]] = row;
+  if (array.is_dense()) return source;
+  source.row_of.assign(item_count(mesh, array.association), -1);
+  for (Index row = 0; row < index_size(array.indices); ++row) source.row_of[array.indices[row]] = row;
   return source;
 }
 
@@ -100,9 +100,9 @@ Role usual_role(Shape shape) {
 }
 
 /// Whether the elements of the file fit the cells of the mesh, block by block.
-bool elements_fit(const PlyResidue& residue, const Mesh& mesh) {
+bool elements_fit(const PlyMetadata& metadata, const Mesh& mesh) {
   Index cell = 0;
-  for (const Element& element : residue.elements) {
+  for (const Element& element : metadata.elements) {
     if (element.role == Role::vertices && element.count != mesh.vertex_count()) return false;
     if (!ply::holds_cells(element)) continue;
     if (element.count > mesh.cell_count() - cell) return false;
@@ -116,10 +116,10 @@ bool elements_fit(const PlyResidue& residue, const Mesh& mesh) {
   return cell == mesh.cell_count();
 }
 
-std::vector<Table> tables_of_file(const PlyResidue& residue) {
+std::vector<Table> tables_of_file(const PlyMetadata& metadata) {
   std::vector<Table> tables;
   Index cell = 0;
-  for (const Element& element : residue.elements) {
+  for (const Element& element : metadata.elements) {
     Table& table = tables.emplace_back(Table{element, {}, {}});
     if (element.role == Role::other) continue;
     table.items.resize(element.count);
@@ -176,7 +176,7 @@ class Columns {
         table_(table),
         written_(written),
         notes_(notes),
-        on_(table.element.role == Role::vertices ? Attached::vertices : Attached::cells),
+        on_(table.element.role == Role::vertices ? Association::vertices : Association::cells),
         is_item_(item_count(mesh, on_), false) {
     for (const Index item : table.items) is_item_[item] = true;
   }
@@ -185,16 +185,16 @@ class Columns {
     for (const Property& property : table_.element.properties) add_known(property);
     for (const SurfaceVector* vector : {&kNormal, &kColor, &kTexture}) add_vector(*vector);
     for (const DataArray& array : mesh_.data) {
-      if (array.on == on_ && !is_used(array) && rows_inside(array) > 0) add_other(array);
+      if (array.association == on_ && !is_used(array) && rows_inside(array) > 0) add_other(array);
     }
   }
 
  private:
   /// How many rows of the array belong to things of this table.
   [[nodiscard]] Index rows_inside(const DataArray& array) const {
-    if (array.covers_all()) return index_size(table_.items);
+    if (array.is_dense()) return index_size(table_.items);
     return static_cast<Index>(
-        std::count_if(array.rows.begin(), array.rows.end(), [&](Index row) { return is_item_[row]; }));
+        std::count_if(array.indices.begin(), array.indices.end(), [&](Index row) { return is_item_[row]; }));
   }
 
   [[nodiscard]] bool is_used(const DataArray& array) const {
@@ -227,7 +227,7 @@ class Columns {
     Column column{property, {}};
     if (is_geometry(property)) return table_.columns.push_back(widened(std::move(column)));
     for (const DataArray& array : mesh_.data) {
-      const bool fits = array.on == on_ && array.name == property.name && rows_inside(array) > 0 &&
+      const bool fits = array.association == on_ && array.name == property.name && rows_inside(array) > 0 &&
                         word_of(array.values).type == property.type.type && array.values.index() < 8 &&
                         (property.is_list || covers_table(array));
       if (!fits || (!property.is_list && !column.sources.empty())) continue;
@@ -314,7 +314,7 @@ class Columns {
   Table& table_;
   std::vector<const DataArray*>& written_;
   Notes& notes_;
-  Attached on_;
+  Association on_;
   std::vector<bool> is_item_;
   std::vector<const DataArray*> used_;
 };
@@ -327,12 +327,12 @@ void write_property(OutputFile& out, const Property& property) {
   out.print("{} {}\n", property.type.word, property.name);
 }
 
-void write_header(OutputFile& out, Encoding encoding, const PlyResidue* residue,
+void write_header(OutputFile& out, Encoding encoding, const PlyMetadata* metadata,
                   const std::vector<Table>& tables) {
   constexpr std::array<std::string_view, 3> kNames{"ascii", "binary_little_endian", "binary_big_endian"};
   out.print("ply\nformat {} 1.0\n", kNames[static_cast<std::size_t>(encoding)]);
-  if (residue) {
-    for (const std::string& comment : residue->comments) out.print("{}\n", comment);
+  if (metadata) {
+    for (const std::string& comment : metadata->comments) out.print("{}\n", comment);
   }
   for (const Table& table : tables) {
     out.print("element {} {}\n", table.element.name, table.element.count);
@@ -461,23 +461,23 @@ void note_losses(const Mesh& mesh, const std::vector<const DataArray*>& written,
     if (std::find(written.begin(), written.end(), &array) == written.end())
       note_array_left_out(array, "PLY", notes);
   }
-  for (const Set& set : mesh.sets) note_set_left_out(set, "PLY", notes);
+  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "PLY", notes);
   note_ids_left_out(mesh, "PLY", notes);
 }
 
 void write_ply(const Mesh& mesh, const fs::path& path, Notes& notes) {
   refuse_other_cells(mesh, path, "PLY", ply_holds, "write .vtu or .msh");
-  const auto* residue = dynamic_cast<const PlyResidue*>(mesh.residue.get());
-  const bool as_file = residue && elements_fit(*residue, mesh);
-  std::vector<Table> tables = as_file ? tables_of_file(*residue) : usual_tables(mesh);
+  const auto* metadata = dynamic_cast<const PlyMetadata*>(mesh.format_metadata.get());
+  const bool as_file = metadata && elements_fit(*metadata, mesh);
+  std::vector<Table> tables = as_file ? tables_of_file(*metadata) : usual_tables(mesh);
   std::vector<const DataArray*> written;
   for (Table& table : tables) {
     if (table.element.role != Role::other) Columns(mesh, table, written, notes).collect();
   }
 
-  const Encoding encoding = residue ? residue->encoding : Encoding::little_endian;
+  const Encoding encoding = metadata ? metadata->encoding : Encoding::little_endian;
   OutputFile out(path);
-  write_header(out, encoding, residue, tables);
+  write_header(out, encoding, metadata, tables);
   Body body(out, encoding);
   for (const Table& table : tables) {
     if (table.element.role == Role::other) out.write(table.element.content);

@@ -158,14 +158,14 @@ void leave_header(Scanner& scanner) {
   }
 }
 
-void check_elements(const Scanner& scanner, const PlyResidue& header) {
+void check_elements(const Scanner& scanner, const PlyMetadata& header) {
   const auto vertices = std::count_if(header.elements.begin(), header.elements.end(),
                                       [](const Element& e) { return e.role == Role::vertices; });
   if (vertices != 1) scanner.fail("the header has no element vertex, or several", "one is needed");
   for (const Element& element : header.elements) check_element(scanner, element);
 }
 
-void read_header(Scanner& scanner, PlyResidue& header) {
+void read_header(Scanner& scanner, PlyMetadata& header) {
   if (trimmed(scanner.peek_line()) != "ply")
     scanner.fail("the file does not begin with 'ply'", "PLY files do");
   (void)scanner.raw_line();
@@ -340,7 +340,7 @@ std::int64_t least_bytes(const Element& element, const Body& body) {
 
 class Reader {
  public:
-  Reader(Scanner& scanner, std::shared_ptr<PlyResidue> header)
+  Reader(Scanner& scanner, std::shared_ptr<PlyMetadata> header)
       : header_(std::move(header)), body_(scanner, header_->encoding) {
     for (const Element& element : header_->elements) {
       if (element.role == Role::vertices) vertex_count_ = element.count;
@@ -361,7 +361,7 @@ class Reader {
     const bool more = body_.is_ascii() ? !body_.scanner().at_end() : body_.scanner().bytes_left() > 0;
     if (more) body_.fail("more follows than the header promises", "the numbers of elements may be wrong");
     join_arrays_of_all_cells();
-    mesh_.residue = header_;
+    mesh_.format_metadata = header_;
     return std::move(mesh_);
   }
 
@@ -427,8 +427,9 @@ class Reader {
   }
 
   void add_arrays(const Element& element, const Property& property, Column column, Index first) {
-    const Attached on = element.role == Role::vertices ? Attached::vertices : Attached::cells;
-    const bool all = on == Attached::vertices || cell_elements_ == 1;
+    const Association association =
+        element.role == Role::vertices ? Association::vertices : Association::cells;
+    const bool all = association == Association::vertices || cell_elements_ == 1;
     for (auto& [length, part] : column.by_length) {
       if (length == 0) continue;  // the writer knows from the header that the list exists
       std::vector<Index> rows = std::move(part.rows);
@@ -436,7 +437,7 @@ class Reader {
         for (Index i = 0; i < element.count; ++i) rows.push_back(first + i);
       }
       if (all && index_size(rows) == element.count) rows.clear();
-      mesh_.data.push_back({property.name, on, length, std::move(part.values), std::move(rows), {}});
+      mesh_.data.push_back({property.name, association, length, std::move(part.values), std::move(rows), {}});
     }
   }
 
@@ -447,8 +448,8 @@ class Reader {
       const auto joins = [&](std::size_t k) {
         const DataArray& a = mesh_.data[i];
         const DataArray& b = mesh_.data[k];
-        return b.on == Attached::cells && a.on == b.on && a.name == b.name && a.components == 1 &&
-               b.components == 1 && a.values.index() == b.values.index();
+        return b.association == Association::cells && a.association == b.association && a.name == b.name &&
+               a.components == 1 && b.components == 1 && a.values.index() == b.values.index();
       };
       std::vector<std::size_t> parts;
       Index rows = 0;
@@ -480,7 +481,7 @@ class Reader {
           }
         },
         whole.values);
-    whole.rows.clear();
+    whole.indices.clear();
     for (std::size_t p = parts.size() - 1; p > 0; --p) {
       mesh_.data.erase(mesh_.data.begin() + static_cast<std::ptrdiff_t>(parts[p]));
     }
@@ -508,7 +509,7 @@ class Reader {
     }
   }
 
-  std::shared_ptr<PlyResidue> header_;
+  std::shared_ptr<PlyMetadata> header_;
   Body body_;
   Mesh mesh_;
   Index vertex_count_ = 0;
@@ -521,7 +522,7 @@ class Reader {
 
 Mesh read(const std::filesystem::path& path, Notes&) {
   Scanner scanner(path);
-  auto header = std::make_shared<PlyResidue>();
+  auto header = std::make_shared<PlyMetadata>();
   read_header(scanner, *header);
   return Reader(scanner, header).read();
 }

@@ -30,7 +30,7 @@ constexpr std::int64_t kTriangleBytes = 50;
 constexpr std::string_view kAttribute = "attribute";
 constexpr auto kOrder = std::endian::little;
 
-struct StlResidue : Residue {
+struct StlMetadata : FormatMetadata {
   bool binary = false;
   std::string header;                ///< the 80 bytes of a binary file
   std::vector<std::string> names;    ///< of the solids of an ASCII file, also of empty ones
@@ -131,9 +131,9 @@ std::int64_t promised_bytes(const Scanner& scanner) {
   return static_cast<std::int64_t>(kHeaderBytes) + 4 + kTriangleBytes * std::int64_t{count};
 }
 
-Mesh read_binary(Scanner& scanner, StlResidue& residue, Notes& notes) {
-  residue.binary = true;
-  residue.header = scanner.binary_block(kHeaderBytes, "the header");
+Mesh read_binary(Scanner& scanner, StlMetadata& metadata, Notes& notes) {
+  metadata.binary = true;
+  metadata.header = scanner.binary_block(kHeaderBytes, "the header");
   const auto count = scanner.binary<std::uint32_t>("the number of triangles", kOrder);
   Builder builder;
   if (count > static_cast<std::uint32_t>(kMaxIndex) / 3) {
@@ -154,7 +154,8 @@ Mesh read_binary(Scanner& scanner, StlResidue& residue, Notes& notes) {
     builder.add(points[0], {points[1], points[2], points[3]});
   }
   if (std::any_of(attributes.begin(), attributes.end(), [](std::uint16_t a) { return a != 0; })) {
-    builder.mesh.data.push_back({std::string(kAttribute), Attached::cells, 1, std::move(attributes), {}, {}});
+    builder.mesh.data.push_back(
+        {std::string(kAttribute), Association::cells, 1, std::move(attributes), {}, {}});
   }
   builder.note(notes);
   return std::move(builder.mesh);
@@ -208,28 +209,28 @@ std::vector<std::int64_t> labels_of(const std::vector<std::string>& names) {
   return labels;
 }
 
-Mesh read_ascii(Scanner& scanner, StlResidue& residue, Notes& notes) {
+Mesh read_ascii(Scanner& scanner, StlMetadata& metadata, Notes& notes) {
   Builder builder;
   std::vector<Index> first_cells;
   while (!scanner.at_end()) {
     expect_word(scanner, "solid");
-    residue.names.emplace_back(scanner.rest_of_line());
+    metadata.names.emplace_back(scanner.rest_of_line());
     first_cells.push_back(builder.mesh.cells.size());
     while (!same_but_for_case(scanner.peek_word(), "endsolid")) read_facet(scanner, builder);
     expect_word(scanner, "endsolid");
     (void)scanner.rest_of_line();
   }
   Mesh& mesh = builder.mesh;
-  residue.labels = labels_of(residue.names);
-  if (residue.names.size() > 1 || std::to_string(residue.labels[0]) == residue.names[0]) {
+  metadata.labels = labels_of(metadata.names);
+  if (metadata.names.size() > 1 || std::to_string(metadata.labels[0]) == metadata.names[0]) {
     std::vector<std::int32_t> labels(mesh.cells.shapes.size());
     for (std::size_t s = 0; s < first_cells.size(); ++s) {
-      std::fill(labels.begin() + first_cells[s], labels.end(), static_cast<std::int32_t>(residue.labels[s]));
+      std::fill(labels.begin() + first_cells[s], labels.end(), static_cast<std::int32_t>(metadata.labels[s]));
       const Index end = s + 1 < first_cells.size() ? first_cells[s + 1] : mesh.cell_count();
       if (end > first_cells[s]) mesh.cell_blocks.push_back(first_cells[s]);
     }
     if (mesh.cell_blocks.size() == 1) mesh.cell_blocks.clear();
-    mesh.data.push_back({std::string(kLabel), Attached::cells, 1, std::move(labels), {}, {}});
+    mesh.data.push_back({std::string(kLabel), Association::cells, 1, std::move(labels), {}, {}});
   }
   builder.note(notes);
   return std::move(mesh);
@@ -237,16 +238,16 @@ Mesh read_ascii(Scanner& scanner, StlResidue& residue, Notes& notes) {
 
 Mesh read_stl(const fs::path& path, Notes& notes) {
   Scanner scanner(path);
-  auto residue = std::make_shared<StlResidue>();
+  auto metadata = std::make_shared<StlMetadata>();
   const auto size = static_cast<std::int64_t>(scanner.all().size());
   const std::int64_t promised = promised_bytes(scanner);
   Mesh mesh;
   // a binary header may begin with "solid" as well, so the size decides
   if (promised == size) {
-    mesh = read_binary(scanner, *residue, notes);
+    mesh = read_binary(scanner, *metadata, notes);
   } else if (same_but_for_case(scanner.peek_word(), "solid") &&
              scanner.all().find('\0') == std::string_view::npos) {
-    mesh = read_ascii(scanner, *residue, notes);
+    mesh = read_ascii(scanner, *metadata, notes);
   } else if (promised < 0 || scanner.all().find('\0') == std::string_view::npos) {
     throw Error(scanner.file(), "is no STL file: it does not begin with 'solid' and is not binary",
                 "give an ASCII or binary STL file");
@@ -256,7 +257,7 @@ Mesh read_stl(const fs::path& path, Notes& notes) {
                             (promised - 84) / kTriangleBytes, promised, size),
                 "the count is wrong or the file is cut short");
   }
-  mesh.residue = std::move(residue);
+  mesh.format_metadata = std::move(metadata);
   return mesh;
 }
 
@@ -264,18 +265,18 @@ Mesh read_stl(const fs::path& path, Notes& notes) {
 
 bool stl_holds(Shape shape, int vertices) { return shape == Shape::triangle && vertices == 3; }
 
-const DataArray* binary_attribute(const Mesh& mesh, const StlResidue* residue) {
-  if (!residue || !residue->binary) return nullptr;
-  const DataArray* array = find_array(mesh, kAttribute, Attached::cells);
-  const bool fits = array && array->covers_all() && array->components == 1 &&
+const DataArray* binary_attribute(const Mesh& mesh, const StlMetadata* metadata) {
+  if (!metadata || !metadata->binary) return nullptr;
+  const DataArray* array = find_array(mesh, kAttribute, Association::cells);
+  const bool fits = array && array->is_dense() && array->components == 1 &&
                     std::holds_alternative<std::vector<std::uint16_t>>(array->values);
   return fits ? array : nullptr;
 }
 
 /// The labels of all cells, by which an ASCII file has solids; empty when the mesh has none.
 std::vector<std::int64_t> solid_labels(const Mesh& mesh) {
-  const DataArray* array = find_array(mesh, kLabel, Attached::cells);
-  if (!array || !array->covers_all() || array->components != 1) return {};
+  const DataArray* array = find_array(mesh, kLabel, Association::cells);
+  if (!array || !array->is_dense() || array->components != 1) return {};
   if (const auto* small = std::get_if<std::vector<std::int32_t>>(&array->values))
     return {small->begin(), small->end()};
   if (const auto* large = std::get_if<std::vector<std::int64_t>>(&array->values)) return *large;
@@ -290,17 +291,18 @@ void note_losses(const Mesh& mesh, const DataArray* attribute, bool has_solids, 
   const auto unused = std::count(used.begin(), used.end(), false);
   if (unused > 0) notes.push_back(fmt::format("vertices that no cell uses are left out: {}", unused));
   for (const DataArray& array : mesh.data) {
-    const bool is_label = has_solids && array.on == Attached::cells && array.name == kLabel;
+    const bool is_label = has_solids && array.association == Association::cells && array.name == kLabel;
     if (&array != attribute && !is_label) note_array_left_out(array, "STL", notes);
   }
-  for (const Set& set : mesh.sets) note_set_left_out(set, "STL", notes);
+  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "STL", notes);
   note_ids_left_out(mesh, "STL", notes);
-  if (!dynamic_cast<const StlResidue*>(mesh.residue.get())) note_residue_left_out(mesh, "STL", notes);
+  if (!dynamic_cast<const StlMetadata*>(mesh.format_metadata.get()))
+    note_residue_left_out(mesh, "STL", notes);
 }
 
-void write_binary(const Mesh& mesh, const StlResidue& residue, const DataArray* attribute, OutputFile& out,
+void write_binary(const Mesh& mesh, const StlMetadata& metadata, const DataArray* attribute, OutputFile& out,
                   Notes& notes) {
-  out.write(residue.header);
+  out.write(metadata.header);
   out.binary(static_cast<std::uint32_t>(mesh.cell_count()), kOrder);
   bool rounded = false;
   for (Index c = 0; c < mesh.cell_count(); ++c) {
@@ -339,17 +341,17 @@ void write_solid(const Mesh& mesh, const std::string& name, const std::vector<In
   out.print("endsolid{}\n", title);
 }
 
-void write_ascii(const Mesh& mesh, const StlResidue* residue, const std::vector<std::int64_t>& labels,
+void write_ascii(const Mesh& mesh, const StlMetadata* metadata, const std::vector<std::int64_t>& labels,
                  OutputFile& out) {
   std::map<std::int64_t, std::vector<Index>> by_label;
   for (Index c = 0; c < mesh.cell_count(); ++c) by_label[labels.empty() ? 0 : labels[c]].push_back(c);
   // the solids of the file in their order, then those of other labels
-  if (residue && residue->names.size() == 1 && labels.empty()) {
-    return write_solid(mesh, residue->names[0], by_label[0], out);
+  if (metadata && metadata->names.size() == 1 && labels.empty()) {
+    return write_solid(mesh, metadata->names[0], by_label[0], out);
   }
-  for (std::size_t s = 0; residue && s < residue->names.size(); ++s) {
-    write_solid(mesh, residue->names[s], by_label[residue->labels[s]], out);
-    by_label.erase(residue->labels[s]);
+  for (std::size_t s = 0; metadata && s < metadata->names.size(); ++s) {
+    write_solid(mesh, metadata->names[s], by_label[metadata->labels[s]], out);
+    by_label.erase(metadata->labels[s]);
   }
   for (const auto& [label, cells] : by_label) {
     write_solid(mesh, labels.empty() ? "" : std::to_string(label), cells, out);
@@ -359,15 +361,15 @@ void write_ascii(const Mesh& mesh, const StlResidue* residue, const std::vector<
 void write_stl(const Mesh& mesh, const fs::path& path, Notes& notes) {
   refuse_other_cells(mesh, path, "STL", stl_holds, "STL has triangles only; write .off, .vtu or .msh");
   // what comes from elsewhere is written as text, which keeps every bit
-  const auto* residue = dynamic_cast<const StlResidue*>(mesh.residue.get());
-  const DataArray* attribute = binary_attribute(mesh, residue);
-  const bool binary = residue && residue->binary;
+  const auto* metadata = dynamic_cast<const StlMetadata*>(mesh.format_metadata.get());
+  const DataArray* attribute = binary_attribute(mesh, metadata);
+  const bool binary = metadata && metadata->binary;
   const std::vector<std::int64_t> labels = binary ? std::vector<std::int64_t>{} : solid_labels(mesh);
   OutputFile out(path);
   if (binary) {
-    write_binary(mesh, *residue, attribute, out, notes);
+    write_binary(mesh, *metadata, attribute, out, notes);
   } else {
-    write_ascii(mesh, residue, labels, out);
+    write_ascii(mesh, metadata, labels, out);
   }
   out.commit();
   note_losses(mesh, attribute, !labels.empty(), notes);

@@ -10,7 +10,7 @@ namespace meshorder {
 namespace {
 
 bool is_usable(const DataArray* array) {
-  return array && array->covers_all() && !std::holds_alternative<std::vector<std::string>>(array->values);
+  return array && array->is_dense() && !std::holds_alternative<std::vector<std::string>>(array->values);
 }
 
 /// The columns beside each other.
@@ -44,17 +44,17 @@ std::vector<double> as_reals(const Values& values) {
       values);
 }
 
-GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Attached on) {
+GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Association association) {
   GatheredVector result;
   const int most = static_cast<int>(vector.components.size());
   // one array of all components
-  const DataArray* whole = find_array(mesh, vector.name, on);
+  const DataArray* whole = find_array(mesh, vector.name, association);
   if (is_usable(whole) && whole->components >= vector.least && whole->components <= most) {
     return {whole->components, holds_integers(whole->values), as_reals(whole->values), {whole}};
   }
   // or an array for each, of one type
   for (const std::string_view component : vector.components) {
-    const DataArray* array = find_array(mesh, component, on);
+    const DataArray* array = find_array(mesh, component, association);
     if (!is_usable(array) || array->components != 1) break;
     if (!result.from.empty() && array->values.index() != result.from[0]->values.index()) break;
     result.from.push_back(array);
@@ -62,8 +62,8 @@ GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Attached on
   if (static_cast<int>(result.from.size()) < vector.least) return {};
   result.width = static_cast<int>(result.from.size());
   result.integers = holds_integers(result.from[0]->values);
-  result.values =
-      interleaved(result.from, on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count());
+  result.values = interleaved(result.from,
+                              association == Association::vertices ? mesh.vertex_count() : mesh.cell_count());
   return result;
 }
 

@@ -35,7 +35,7 @@ struct GatheredVector {
 };
 
 /// The vector of all vertices or cells, if the mesh has it for all of them. O(rows).
-GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Attached on);
+GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Association association);
 
 /// Whether the values are of an integer type.
 bool holds_integers(const Values& values);

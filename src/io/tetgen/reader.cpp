@@ -35,7 +35,7 @@ struct Reading {
   Mesh mesh;
   Numbering points;
   std::array<Part, 4> parts;
-  std::shared_ptr<FilesResidue> residue = std::make_shared<FilesResidue>();
+  std::shared_ptr<FilesMetadata> metadata = std::make_shared<FilesMetadata>();
   bool second_order = false;
 };
 
@@ -114,7 +114,7 @@ void add_number(Scanner& in, Numbering& numbering, std::string_view what) {
 }
 
 /// The rest of the file must be comments; takes them along.
-void end_file(Scanner& in, FilesResidue::Part& part, Notes& notes) {
+void end_file(Scanner& in, FilesMetadata::Part& part, Notes& notes) {
   if (!in.at_end()) in.fail("the file goes on after its last record", "correct the number in the header");
   part.present = true;
   part.comments_before = comments_before(in.all(), kComment);
@@ -158,15 +158,15 @@ void read_points(Scanner& in, Reading& to) {
   }
 
   // as TetGen does, the first number decides whether counting begins at 0 or at 1
-  to.residue->base = to.points.id(0) == 0 ? 0 : 1;
-  mesh.vertex_ids = to.points.ids_unless_from(to.residue->base);
+  to.metadata->base = to.points.id(0) == 0 ? 0 : 1;
+  mesh.vertex_ids = to.points.ids_unless_from(to.metadata->base);
   if (attributes > 0) {
     mesh.data.push_back(
-        {"attribute", Attached::vertices, static_cast<Index>(attributes), std::move(values), {}, {}});
+        {"attribute", Association::vertices, static_cast<Index>(attributes), std::move(values), {}, {}});
   }
   if (marked) {
     mesh.data.push_back(
-        {std::string(kLabel), Attached::vertices, 1, label_values(std::move(markers)), {}, {}});
+        {std::string(kLabel), Association::vertices, 1, label_values(std::move(markers)), {}, {}});
   }
 }
 
@@ -234,7 +234,7 @@ void read_ele(Scanner& in, Reading& to) {
   Part& part = to.parts[kEle];
   part.attributes_per_cell = static_cast<Index>(checked_attributes(in, attributes));
   part.count = checked_records(in, records, "the number of cells", 1 + nodes + attributes);
-  to.residue->nodes_in_ele = static_cast<int>(nodes);
+  to.metadata->nodes_in_ele = static_cast<int>(nodes);
   to.second_order = nodes == 6 || nodes == 10;
   read_cells(in, kEle, triangles ? Shape::triangle : Shape::tetrahedron, static_cast<int>(nodes), false, to);
   take_regions_as_markers(part);
@@ -321,7 +321,7 @@ void settle_face_order(Reading& to) {
   }
   if (opposite <= vtk) return;
 
-  to.residue->faces_name_opposite_edges = true;
+  to.metadata->faces_name_opposite_edges = true;
   for (Index c = tetrahedra; c < end; ++c) {
     const auto face = cells[c];
     std::rotate(face.begin() + 3, face.begin() + 5, face.end());
@@ -332,7 +332,7 @@ void settle_face_order(Reading& to) {
 
 /// Cells are numbered in each file anew; the mesh keeps the numbers when one file's are not consecutive.
 void set_cell_ids(Reading& to) {
-  const int base = to.residue->base;
+  const int base = to.metadata->base;
   if (std::all_of(to.parts.begin(), to.parts.end(),
                   [&](const Part& part) { return part.numbering.runs_from(base); })) {
     return;
@@ -349,8 +349,9 @@ void set_cell_data(Reading& to) {
   // attributes are those of the first file's cells
   Part& ele = to.parts[kEle];
   if (ele.attributes_per_cell > 0 && ele.count > 0) {
-    DataArray array{"attribute", Attached::cells, ele.attributes_per_cell, std::move(ele.attributes), {}, {}};
-    for (Index c = 0; ele.count < mesh.cell_count() && c < ele.count; ++c) array.rows.push_back(c);
+    DataArray array{"attribute", Association::cells, ele.attributes_per_cell, std::move(ele.attributes), {},
+                    {}};
+    for (Index c = 0; ele.count < mesh.cell_count() && c < ele.count; ++c) array.indices.push_back(c);
     mesh.data.push_back(std::move(array));
   }
 
@@ -367,7 +368,7 @@ void set_cell_data(Reading& to) {
   if (labels.empty()) return;
   if (index_size(rows) == mesh.cell_count()) rows.clear();
   mesh.data.push_back(
-      {std::string(kLabel), Attached::cells, 1, label_values(std::move(labels)), std::move(rows), {}});
+      {std::string(kLabel), Association::cells, 1, label_values(std::move(labels)), std::move(rows), {}});
 }
 
 void set_blocks(Reading& to) {
@@ -380,7 +381,7 @@ void set_blocks(Reading& to) {
 
 void read_cell_file(const fs::path& path, File file, Reading& to, Notes& notes) {
   Scanner in(path, kComment);
-  const int nodes_in_ele = to.residue->nodes_in_ele;
+  const int nodes_in_ele = to.metadata->nodes_in_ele;
   if (file == kFace && (to.mesh.dimension == 2 || nodes_in_ele == 3 || nodes_in_ele == 6)) {
     throw Error(path.string(), "holds faces, but the cells of the mesh are triangles themselves",
                 "remove it, if it belongs to another mesh");
@@ -390,7 +391,7 @@ void read_cell_file(const fs::path& path, File file, Reading& to, Notes& notes) 
   } else {
     read_boundary(in, file, to);
   }
-  end_file(in, to.residue->parts[file], notes);
+  end_file(in, to.metadata->parts[file], notes);
 }
 
 }  // namespace
@@ -406,7 +407,7 @@ Mesh read(const fs::path& path, Notes& notes) {
   {
     Scanner in(node_path, kComment);
     read_points(in, reading);
-    end_file(in, reading.residue->parts[kNode], notes);
+    end_file(in, reading.metadata->parts[kNode], notes);
   }
   for (const File file : kCellFiles) {
     const fs::path cell_path = beside(path, kExtensions[file]);
@@ -422,7 +423,7 @@ Mesh read(const fs::path& path, Notes& notes) {
   set_cell_data(reading);
   set_blocks(reading);
   note_other_companions(path, "is not carried along: its numbers hold for the original order only", notes);
-  reading.mesh.residue = reading.residue;
+  reading.mesh.format_metadata = reading.metadata;
   return std::move(reading.mesh);
 }
 

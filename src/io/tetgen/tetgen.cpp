@@ -74,15 +74,15 @@ bool holds(Shape shape, int vertices) {
          (shape == Shape::line && (vertices == 2 || vertices == 3));
 }
 
-Layout layout_of(const Mesh& mesh, const FilesResidue& residue, const fs::path& path) {
+Layout layout_of(const Mesh& mesh, const FilesMetadata& metadata, const fs::path& path) {
   const auto& shapes = mesh.cells.shapes;
   const bool solid = std::find(shapes.begin(), shapes.end(), Shape::tetrahedron) != shapes.end();
   Layout layout;
   layout.dimension = solid ? 3 : mesh.dimension;
-  layout.nodes[kEle] = residue.nodes_in_ele;
+  layout.nodes[kEle] = metadata.nodes_in_ele;
   // triangles are the cells of a plane mesh and the boundary of a solid one
   const bool in_ele =
-      !solid && (layout.dimension == 2 || residue.nodes_in_ele == 3 || residue.nodes_in_ele == 6);
+      !solid && (layout.dimension == 2 || metadata.nodes_in_ele == 3 || metadata.nodes_in_ele == 6);
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const Shape shape = mesh.cells.shapes[c];
     const File file = shape == Shape::line ? kEdge : shape == Shape::triangle && !in_ele ? kFace : kEle;
@@ -106,10 +106,10 @@ Layout layout_of(const Mesh& mesh, const FilesResidue& residue, const fs::path& 
 }
 
 /// A file of an earlier mesh would be read as part of this one.
-void refuse_leftovers(const Layout& layout, const FilesResidue& residue, const fs::path& path) {
+void refuse_leftovers(const Layout& layout, const FilesMetadata& metadata, const fs::path& path) {
   for (const File file : kCellFiles) {
     const fs::path other = beside(path, kExtensions[file]);
-    if (!layout.cells[file].empty() || residue.parts[file].present || !is_there(other)) continue;
+    if (!layout.cells[file].empty() || metadata.parts[file].present || !is_there(other)) continue;
     throw Error(path.string(),
                 fmt::format("{} stands beside it from another mesh and would be read with this one",
                             other.filename().string()),
@@ -142,9 +142,9 @@ void print_value(OutputFile& out, const Column& column, Index item) {
 /// Where the array has the row of each vertex or cell; −1 where it has none.
 std::vector<Index> rows_of(const DataArray& array, Index count) {
   std::vector<Index> result;
-  if (array.covers_all()) return result;
+  if (array.is_dense()) return result;
   result.assign(count, -1);
-  for (Index r = 0; r < index_size(array.rows); ++r) result[array.rows[r]] = r;
+  for (Index r = 0; r < index_size(array.indices); ++r) result[array.indices[r]] = r;
   return result;
 }
 
@@ -154,14 +154,15 @@ void note_missing_labels(std::ptrdiff_t missing, std::string_view file, Notes& n
 
 /// The columns of attributes that `items` (the points, or the cells of .ele) get. An array called "attribute"
 /// comes first, then the labels of cells, then all else that has numbers for every item; names get lost.
-std::vector<Column> attribute_columns(const Mesh& mesh, Attached on, const std::vector<Index>& items,
-                                      Notes& notes) {
-  const Index count = on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
-  const DataArray* const labels = label_array(mesh, on);
+std::vector<Column> attribute_columns(const Mesh& mesh, Association association,
+                                      const std::vector<Index>& items, Notes& notes) {
+  const Index count = association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
+  const DataArray* const labels = label_array(mesh, association);
   std::vector<const DataArray*> arrays;
   for (const DataArray& array : mesh.data) {
     // labels of vertices are boundary markers
-    if (array.on == on && (&array != labels || on == Attached::cells)) arrays.push_back(&array);
+    if (array.association == association && (&array != labels || association == Association::cells))
+      arrays.push_back(&array);
   }
   std::stable_sort(arrays.begin(), arrays.end(), [&](const DataArray* a, const DataArray* b) {
     const auto rank = [&](const DataArray* x) { return x->name == "attribute" ? 0 : x == labels ? 1 : 2; };
@@ -216,18 +217,18 @@ bool has_markers(const Labels& labels, const std::vector<Index>& items, std::str
 
 struct Writing {
   const Mesh& mesh;
-  const FilesResidue& residue;
+  const FilesMetadata& metadata;
   Layout layout;
   bool own_ids;  // the numbers came from such files; others than TetGen's own are counted anew
   Labels vertex_labels;
   Labels cell_labels;
 
   [[nodiscard]] std::int64_t vertex_number(Index v) const {
-    return own_ids && !mesh.vertex_ids.empty() ? mesh.vertex_ids[v] : v + std::int64_t{residue.base};
+    return own_ids && !mesh.vertex_ids.empty() ? mesh.vertex_ids[v] : v + std::int64_t{metadata.base};
   }
   /// Of the cell that stands at `place` in its file.
   [[nodiscard]] std::int64_t cell_number(Index c, Index place) const {
-    return own_ids && !mesh.cell_ids.empty() ? mesh.cell_ids[c] : place + std::int64_t{residue.base};
+    return own_ids && !mesh.cell_ids.empty() ? mesh.cell_ids[c] : place + std::int64_t{metadata.base};
   }
 };
 
@@ -235,7 +236,7 @@ void write_points(OutputFile& out, const Writing& from, Notes& notes) {
   const Mesh& mesh = from.mesh;
   std::vector<Index> all(mesh.vertex_count());
   std::iota(all.begin(), all.end(), Index{0});
-  const auto columns = attribute_columns(mesh, Attached::vertices, all, notes);
+  const auto columns = attribute_columns(mesh, Association::vertices, all, notes);
   note_lost_names(columns, ".node", notes);
   const bool marked = has_markers(from.vertex_labels, all, ".node", notes);
 
@@ -253,7 +254,7 @@ void write_cells(OutputFile& out, File file, const Writing& from, const std::vec
                  bool marked) {
   const Mesh& mesh = from.mesh;
   const auto& cells = from.layout.cells[file];
-  const auto order = places(file, from.layout.nodes[file], from.residue.faces_name_opposite_edges);
+  const auto order = places(file, from.layout.nodes[file], from.metadata.faces_name_opposite_edges);
   std::array<Index, 10> as_given{};
   for (Index i = 0; i < index_size(cells); ++i) {
     const Index c = cells[i];
@@ -268,7 +269,7 @@ void write_cells(OutputFile& out, File file, const Writing& from, const std::vec
 
 void write_ele(OutputFile& out, const Writing& from, Notes& notes) {
   const auto& cells = from.layout.cells[kEle];
-  const auto columns = attribute_columns(from.mesh, Attached::cells, cells, notes);
+  const auto columns = attribute_columns(from.mesh, Association::cells, cells, notes);
   note_lost_names(columns, ".ele", notes);
   out.print("{}  {}  {}\n", cells.size(), from.layout.nodes[kEle], columns.size());
   write_cells(out, kEle, from, columns, false);
@@ -284,22 +285,22 @@ void write_boundary(OutputFile& out, File file, const Writing& from, Notes& note
 }  // namespace
 
 void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  const FilesResidue standard;
-  const auto* own = dynamic_cast<const FilesResidue*>(mesh.residue.get());
+  const FilesMetadata standard;
+  const auto* own = dynamic_cast<const FilesMetadata*>(mesh.format_metadata.get());
   refuse_other_cells(mesh, path, "TetGen", holds, "write .msh, .vtu or .mesh instead");
   Writing from{mesh,
                own ? *own : standard,
                {},
                own != nullptr,
-               labels_of(mesh, Attached::vertices),
-               labels_of(mesh, Attached::cells)};
-  from.layout = layout_of(mesh, from.residue, path);
-  refuse_leftovers(from.layout, from.residue, path);
+               labels_of(mesh, Association::vertices),
+               labels_of(mesh, Association::cells)};
+  from.layout = layout_of(mesh, from.metadata, path);
+  refuse_leftovers(from.layout, from.metadata, path);
 
   std::vector<OutputFile> files;
   files.reserve(kExtensions.size());
   for (const File file : {kNode, kEle, kFace, kEdge}) {
-    const FilesResidue::Part& part = from.residue.parts[file];
+    const FilesMetadata::Part& part = from.metadata.parts[file];
     if (file != kNode && !part.present && from.layout.cells[file].empty()) continue;
     OutputFile& out = files.emplace_back(beside(path, kExtensions[file]));
     out.write(part.comments_before);
@@ -318,7 +319,7 @@ void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
     note_ids_left_out(mesh, "TetGen", notes);
     note_residue_left_out(mesh, "TetGen", notes);
   }
-  for (const Set& set : mesh.sets) note_set_left_out(set, "TetGen", notes);
+  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "TetGen", notes);
   note_other_companions(path, "does not fit the mesh that was just written beside it", notes);
 }
 

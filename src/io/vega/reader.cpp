@@ -50,7 +50,7 @@ class Reader {
           "count lines");
     }
     residue_->included = lines_.included();
-    mesh_.residue = residue_;
+    mesh_.format_metadata = residue_;
     return std::move(mesh_);
   }
 
@@ -195,15 +195,16 @@ class Reader {
       lines_.take();
     }
     residue_->vertex_base = vertices_.find(0) >= 0 ? 0 : 1;
-    if (!attributes.empty()) add_attributes(Attached::vertices, std::move(attributes));
+    if (!attributes.empty()) add_attributes(Association::vertices, std::move(attributes));
     if (!markers.empty()) {
-      mesh_.data.push_back({std::string(kLabel), Attached::vertices, 1, std::move(markers), {}, {}});
+      mesh_.data.push_back({std::string(kLabel), Association::vertices, 1, std::move(markers), {}, {}});
     }
   }
 
-  void add_attributes(Attached on, std::vector<double> values) {
-    const int width = on == Attached::vertices ? residue_->vertex_attributes : residue_->element_attributes;
-    mesh_.data.push_back({std::string(kAttributes), on, width, std::move(values), {}, {}});
+  void add_attributes(Association association, std::vector<double> values) {
+    const int width =
+        association == Association::vertices ? residue_->vertex_attributes : residue_->element_attributes;
+    mesh_.data.push_back({std::string(kAttributes), association, width, std::move(values), {}, {}});
   }
 
   void read_elements() {
@@ -238,7 +239,7 @@ class Reader {
       lines_.take();
     }
     residue_->element_base = elements_.find(0) >= 0 ? 0 : 1;
-    if (!attributes.empty()) add_attributes(Attached::cells, std::move(attributes));
+    if (!attributes.empty()) add_attributes(Association::cells, std::move(attributes));
   }
 
   Index find(const Numbering& numbering, std::int64_t id, const std::string& what) {
@@ -275,7 +276,7 @@ class Reader {
     section.kind = Kind::set;
     section.set = mesh_.sets.size();
     lines_.take();
-    Set set{name, Attached::cells, {}};
+    EntitySet set{name, Association::cells, {}};
     std::string_view line;
     while (lines_.peek(line) && line.front() != '*') {
       lines_.take_comments();
@@ -305,7 +306,7 @@ class Reader {
       lines_.at().fail("material '" + section.region_material + "' does not exist", "define it before");
     }
     const auto set = std::find_if(mesh_.sets.begin(), mesh_.sets.end(),
-                                  [&](const Set& s) { return s.name == section.region_set; });
+                                  [&](const EntitySet& s) { return s.name == section.region_set; });
     if (set == mesh_.sets.end() && section.region_set != kAllElements) {
       lines_.at().fail("set '" + section.region_set + "' does not exist", "define it before");
     }
@@ -338,7 +339,7 @@ class Reader {
   VegaLines lines_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<VegaResidue> residue_ = std::make_shared<VegaResidue>();
+  std::shared_ptr<VegaMetadata> residue_ = std::make_shared<VegaMetadata>();
   Numbering vertices_;
   Numbering elements_;
   std::set<std::string> materials_;
@@ -349,16 +350,16 @@ class Reader {
 void Reader::label_by_region() {
   auto labels = region_numbers(*residue_, mesh_);
   if (labels.empty()) return;
-  mesh_.data.push_back({std::string(kLabel), Attached::cells, 1, std::move(labels), {}, {}});
+  mesh_.data.push_back({std::string(kLabel), Association::cells, 1, std::move(labels), {}, {}});
 }
 
 }  // namespace
 
 /// For each cell the number, from 1, of the last region that it lies in; 0 for none. Empty without regions.
-std::vector<std::int32_t> region_numbers(const VegaResidue& residue, const Mesh& mesh) {
+std::vector<std::int32_t> region_numbers(const VegaMetadata& metadata, const Mesh& mesh) {
   std::vector<std::int32_t> numbers;
   std::int32_t number = 0;
-  for (const Section& section : residue.sections) {
+  for (const Section& section : metadata.sections) {
     if (section.kind != Kind::region) continue;
     numbers.resize(mesh.cells.shapes.size(), 0);
     ++number;
@@ -366,8 +367,8 @@ std::vector<std::int32_t> region_numbers(const VegaResidue& residue, const Mesh&
       std::fill(numbers.begin(), numbers.end(), number);
       continue;
     }
-    const auto set = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const Set& s) {
-      return s.on == Attached::cells && s.name == section.region_set;
+    const auto set = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& s) {
+      return s.association == Association::cells && s.name == section.region_set;
     });
     if (set == mesh.sets.end()) continue;
     for (const Index member : set->members) numbers[member] = number;

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using vega::Kind;
 using vega::Section;
-using vega::VegaResidue;
+using vega::VegaMetadata;
 
 bool vega_holds(Shape shape, int vertices) {
   return (shape == Shape::tetrahedron && vertices == 4) || (shape == Shape::hexahedron && vertices == 8);
@@ -33,7 +33,7 @@ class Writer {
   Writer(const Mesh& mesh, const fs::path& path, Notes& notes)
       : mesh_(mesh),
         notes_(notes),
-        native_(dynamic_cast<const VegaResidue*>(mesh.residue.get())),
+        native_(dynamic_cast<const VegaMetadata*>(mesh.format_metadata.get())),
         out_(path) {}
 
   void write() {
@@ -74,17 +74,18 @@ class Writer {
 
   [[nodiscard]] bool has_set(const std::string& name) const {
     return name == vega::kAllElements ||
-           std::any_of(mesh_.sets.begin(), mesh_.sets.end(),
-                       [&](const Set& set) { return set.on == Attached::cells && set.name == name; });
+           std::any_of(mesh_.sets.begin(), mesh_.sets.end(), [&](const EntitySet& set) {
+             return set.association == Association::cells && set.name == name;
+           });
   }
 
   [[nodiscard]] bool is_cell_set(std::size_t i) const {
-    return i < mesh_.sets.size() && mesh_.sets[i].on == Attached::cells;
+    return i < mesh_.sets.size() && mesh_.sets[i].association == Association::cells;
   }
 
   void note_losses() {
-    for (const Set& set : mesh_.sets) {
-      if (set.on == Attached::vertices) note_set_left_out(set, "Vega", notes_);
+    for (const EntitySet& set : mesh_.sets) {
+      if (set.association == Association::vertices) note_set_left_out(set, "Vega", notes_);
     }
     for (const DataArray& array : mesh_.data) {
       if (&array == vertex_attributes() || &array == element_attributes() || &array == markers()) continue;
@@ -107,15 +108,15 @@ class Writer {
   }
 
   static bool is_cell_label(const DataArray& array) {
-    return array.on == Attached::cells && array.name == kLabel && array.components == 1 &&
-           array.covers_all() &&
+    return array.association == Association::cells && array.name == kLabel && array.components == 1 &&
+           array.is_dense() &&
            (std::holds_alternative<std::vector<std::int32_t>>(array.values) ||
             std::holds_alternative<std::vector<std::int64_t>>(array.values));
   }
 
   /// Without materials there are no regions, but a set for each label keeps the cells of one together.
   void write_labels_as_sets(const DataArray& array) {
-    std::map<std::int64_t, Set> sets;
+    std::map<std::int64_t, EntitySet> sets;
     std::visit(
         [&](const auto& values) {
           if constexpr (std::is_integral_v<typename std::decay_t<decltype(values)>::value_type>) {
@@ -131,23 +132,23 @@ class Writer {
     notes_.push_back("labels of cells are written as sets of the names label_N");
   }
 
-  [[nodiscard]] const DataArray* attributes(Attached on, int width) const {
+  [[nodiscard]] const DataArray* attributes(Association association, int width) const {
     if (!native_ || width == 0) return nullptr;
-    const DataArray* array = find_array(mesh_, vega::kAttributes, on);
-    const bool fits = array && array->covers_all() && array->components == width &&
+    const DataArray* array = find_array(mesh_, vega::kAttributes, association);
+    const bool fits = array && array->is_dense() && array->components == width &&
                       std::holds_alternative<std::vector<double>>(array->values);
     return fits ? array : nullptr;
   }
   [[nodiscard]] const DataArray* vertex_attributes() const {
-    return attributes(Attached::vertices, native_ ? native_->vertex_attributes : 0);
+    return attributes(Association::vertices, native_ ? native_->vertex_attributes : 0);
   }
   [[nodiscard]] const DataArray* element_attributes() const {
-    return attributes(Attached::cells, native_ ? native_->element_attributes : 0);
+    return attributes(Association::cells, native_ ? native_->element_attributes : 0);
   }
   [[nodiscard]] const DataArray* markers() const {
     if (!native_ || !native_->vertex_markers) return nullptr;
-    const DataArray* array = find_array(mesh_, kLabel, Attached::vertices);
-    const bool fits = array && array->covers_all() && array->components == 1 &&
+    const DataArray* array = find_array(mesh_, kLabel, Association::vertices);
+    const bool fits = array && array->is_dense() && array->components == 1 &&
                       std::holds_alternative<std::vector<std::int32_t>>(array->values);
     return fits ? array : nullptr;
   }
@@ -229,7 +230,7 @@ class Writer {
     return fits ? native_->element_word : usual;
   }
 
-  void write_set(const Set& set) {
+  void write_set(const EntitySet& set) {
     constexpr std::size_t kPerLine = 8;
     out_.print("*SET {}\n", set.name);
     for (std::size_t i = 0; i < set.members.size(); ++i) {
@@ -242,10 +243,10 @@ class Writer {
 
   const Mesh& mesh_;
   Notes& notes_;
-  const VegaResidue* native_;
+  const VegaMetadata* native_;
   OutputFile out_;
   std::vector<Section> sections_;
-  std::vector<Set> label_sets_;
+  std::vector<EntitySet> label_sets_;
 };
 
 void write_vega(const Mesh& mesh, const fs::path& path, Notes& notes) {

@@ -172,14 +172,16 @@ void take_vtk_cells(Mesh& mesh, VtkCells cells, const VtkError& error, Notes& no
     if (cells.types[c] == kPixel) cells.types[c] = 9;
     if (cells.types[c] == kVoxel) cells.types[c] = 12;
   }
-  std::erase_if(mesh.data, [](const DataArray& a) { return a.on == Attached::cells && a.name == kVtkTypes; });
-  mesh.data.push_back({std::string(kVtkTypes), Attached::cells, 1, std::move(cells.types), {}, {}});
+  std::erase_if(mesh.data, [](const DataArray& a) {
+    return a.association == Association::cells && a.name == kVtkTypes;
+  });
+  mesh.data.push_back({std::string(kVtkTypes), Association::cells, 1, std::move(cells.types), {}, {}});
 }
 
 std::vector<std::uint8_t> vtk_types(const Mesh& mesh, const std::string& file, bool higher_orders) {
-  const DataArray* kept = find_array(mesh, kVtkTypes, Attached::cells);
+  const DataArray* kept = find_array(mesh, kVtkTypes, Association::cells);
   const auto* numbers = kept != nullptr ? std::get_if<std::vector<std::uint8_t>>(&kept->values) : nullptr;
-  if (numbers != nullptr && (!kept->covers_all() || kept->components != 1)) numbers = nullptr;
+  if (numbers != nullptr && (!kept->is_dense() || kept->components != 1)) numbers = nullptr;
 
   DefaultTypes defaults;
   std::vector<std::uint8_t> types(mesh.cells.shapes.size());
@@ -210,8 +212,8 @@ std::vector<std::uint8_t> vtk_types(const Mesh& mesh, const std::string& file, b
 bool is_higher_order_hexahedron(std::uint8_t type) { return type == 67 || type == 72 || type == 79; }
 
 void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& types, Cells& cells) {
-  const DataArray* array = find_array(mesh, "HigherOrderDegrees", Attached::cells);
-  const bool usable = array != nullptr && array->components == 3 && array->covers_all();
+  const DataArray* array = find_array(mesh, "HigherOrderDegrees", Association::cells);
+  const bool usable = array != nullptr && array->components == 3 && array->is_dense();
   for (Index c = 0; c < cells.size(); ++c) {
     if (!is_higher_order_hexahedron(types[c])) continue;
     const int n = cells.vertex_count(c);

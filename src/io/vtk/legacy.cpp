@@ -81,8 +81,8 @@ class Writer {
         notes_(notes),
         residue_(vtk_residue(mesh, notes)),
         layout_(residue_.legacy.value_or(VtkLegacyLayout{})),
-        types_(
-            vtk_types(mesh, path.string(), dynamic_cast<const VtkResidue*>(mesh.residue.get()) != nullptr)),
+        types_(vtk_types(mesh, path.string(),
+                         dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get()) != nullptr)),
         arrays_(vtk_arrays(mesh, notes)),
         out_(path) {}
 
@@ -188,8 +188,8 @@ class Writer {
   // ---- arrays
 
   /// The number type under which an array is written: the file's own, while it can hold the values.
-  std::string type_of(const DataArray& array, std::optional<Attached> on) const {
-    const VtkArrayFacts* facts = find_facts(residue_, on, array.name);
+  std::string type_of(const DataArray& array, std::optional<Association> association) const {
+    const VtkArrayFacts* facts = find_facts(residue_, association, array.name);
     std::string usual(kVtkTypeNames[array.values.index()]);
     if (facts == nullptr || facts->type.empty()) return usual;
     const auto is = [&](std::string_view name) { return same_but_for_case(facts->type, name); };
@@ -205,7 +205,7 @@ class Writer {
     return kept ? facts->type : usual;
   }
 
-  void write_values(const DataArray& array, const std::string& type, std::optional<Attached> on) {
+  void write_values(const DataArray& array, const std::string& type, std::optional<Association> association) {
     std::visit(
         [&](const auto& values) {
           using Number = typename std::decay_t<decltype(values)>::value_type;
@@ -219,11 +219,11 @@ class Writer {
           }
         },
         array.values);
-    write_metadata(array, on, array.name);
+    write_metadata(array, association, array.name);
   }
 
-  void write_metadata(const DataArray& array, std::optional<Attached> on, std::string_view name) {
-    const VtkArrayFacts* facts = find_facts(residue_, on, name);
+  void write_metadata(const DataArray& array, std::optional<Association> association, std::string_view name) {
+    const VtkArrayFacts* facts = find_facts(residue_, association, name);
     const bool information = facts != nullptr && !facts->information.empty();
     if (array.component_names.empty() && !information) return;
     out_.write("METADATA\n");
@@ -243,10 +243,10 @@ class Writer {
     out_.write("\n");
   }
 
-  void write_field_array(const DataArray& array, std::optional<Attached> on) {
-    const std::string type = type_of(array, on);
+  void write_field_array(const DataArray& array, std::optional<Association> association) {
+    const std::string type = type_of(array, association);
     out_.print("{} {} {} {}\n", encoded(array.name), array.components, row_count(array), type);
-    write_values(array, type, on);
+    write_values(array, type, association);
   }
 
   // ---- points and cells
@@ -323,20 +323,21 @@ class Writer {
 
   void write_data() {
     // points first, unless the arrays say otherwise
-    std::array order{Attached::vertices, Attached::cells};
-    if (!arrays_.all.empty() && arrays_.all.front()->on == Attached::cells) std::swap(order[0], order[1]);
-    for (const Attached on : order) {
+    std::array order{Association::vertices, Association::cells};
+    if (!arrays_.all.empty() && arrays_.all.front()->association == Association::cells)
+      std::swap(order[0], order[1]);
+    for (const Association association : order) {
       std::vector<const DataArray*> own;
       std::copy_if(arrays_.all.begin(), arrays_.all.end(), std::back_inserter(own),
-                   [&](const DataArray* array) { return array->on == on; });
+                   [&](const DataArray* array) { return array->association == association; });
       const bool tables = std::any_of(layout_.lookup_tables.begin(), layout_.lookup_tables.end(),
-                                      [&](const auto& table) { return table.on == on; });
+                                      [&](const auto& table) { return table.association == association; });
       if (own.empty() && !tables) continue;
-      out_.print("{} {}\n", on == Attached::vertices ? "POINT_DATA" : "CELL_DATA",
-                 on == Attached::vertices ? mesh_.vertex_count() : mesh_.cell_count());
-      write_arrays(own, on);
+      out_.print("{} {}\n", association == Association::vertices ? "POINT_DATA" : "CELL_DATA",
+                 association == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count());
+      write_arrays(own, association);
       for (const auto& table : layout_.lookup_tables) {
-        if (table.on == on)
+        if (table.association == association)
           out_.print("LOOKUP_TABLE {} {}\n{}{}", table.name, table.size, table.content,
                      layout_.binary ? "\n" : "");
       }
@@ -344,7 +345,7 @@ class Writer {
   }
 
   /// Arrays in a role by its keyword, runs of others as a FIELD.
-  void write_arrays(const std::vector<const DataArray*>& arrays, Attached on) {
+  void write_arrays(const std::vector<const DataArray*>& arrays, Association association) {
     for (std::size_t i = 0; i < arrays.size();) {
       if (write_attribute(*arrays[i])) {
         ++i;
@@ -353,7 +354,7 @@ class Writer {
       std::size_t end = i + 1;
       while (end < arrays.size() && attribute_of(*arrays[end]).first == nullptr) ++end;
       out_.print("FIELD FieldData {}\n", end - i);
-      for (; i < end; ++i) write_field_array(*arrays[i], on);
+      for (; i < end; ++i) write_field_array(*arrays[i], association);
     }
   }
 
@@ -361,9 +362,9 @@ class Writer {
   [[nodiscard]] std::pair<const VtkLegacyAttribute*, const VtkRoleOfArray*> attribute_of(
       const DataArray& array) const {
     if (array.name.empty()) return {};
-    const auto role =
-        std::find_if(residue_.roles.begin(), residue_.roles.end(),
-                     [&](const VtkRoleOfArray& r) { return r.on == array.on && r.array == array.name; });
+    const auto role = std::find_if(
+        residue_.roles.begin(), residue_.roles.end(),
+        [&](const VtkRoleOfArray& r) { return r.association == array.association && r.array == array.name; });
     if (role == residue_.roles.end()) return {};
     const bool text = std::holds_alternative<std::vector<std::string>>(array.values);
     if (text && role->role != VtkRole::pedigree_ids) return {};
@@ -384,7 +385,7 @@ class Writer {
   bool write_attribute(const DataArray& array) {
     const auto [attribute, role] = attribute_of(array);
     if (attribute == nullptr) return false;
-    const std::string type = type_of(array, array.on);
+    const std::string type = type_of(array, array.association);
     out_.print("{} {}", attribute->keyword, encoded(array.name));
     switch (attribute->role) {
       case VtkRole::scalars:
@@ -400,13 +401,13 @@ class Writer {
       default:
         out_.print(" {}\n", type);
     }
-    write_values(array, type, array.on);
+    write_values(array, type, array.association);
     return true;
   }
 
   const Mesh& mesh_;
   Notes& notes_;
-  const VtkResidue& residue_;
+  const VtkMetadata& residue_;
   VtkLegacyLayout layout_;
   std::vector<std::uint8_t> types_;
   VtkArrays arrays_;

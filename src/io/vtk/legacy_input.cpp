@@ -202,11 +202,11 @@ std::int64_t VtkLegacyInput::text_length(const std::string& what) {
 
 // ---- arrays
 
-DataArray VtkLegacyInput::array(const std::string& name, std::optional<Attached> on, std::int64_t tuples,
-                                std::int64_t components, const std::string& given_type) {
+DataArray VtkLegacyInput::array(const std::string& name, std::optional<Association> association,
+                                std::int64_t tuples, std::int64_t components, const std::string& given_type) {
   DataArray result;
   result.name = name;
-  result.on = on.value_or(Attached::vertices);
+  result.association = association.value_or(Association::vertices);
   const std::string what = "the array '" + shown(name) + "'";
   if (components < 1 || components > kMaxIndex)
     fail(what + " has " + std::to_string(components) + " components", "at least 1 is needed");
@@ -244,23 +244,23 @@ DataArray VtkLegacyInput::array(const std::string& name, std::optional<Attached>
         },
         result.values);
   }
-  if (usual == kVtkTypeNames.end() && type != "bit") facts_of(on, name).type = given_type;
+  if (usual == kVtkTypeNames.end() && type != "bit") facts_of(association, name).type = given_type;
   if (upper_case(scanner.peek_word()) == "METADATA") {
     word("METADATA");
-    metadata(result, on);
+    metadata(result, association);
   }
   return result;
 }
 
-VtkArrayFacts& VtkLegacyInput::facts_of(std::optional<Attached> on, const std::string& name) {
+VtkArrayFacts& VtkLegacyInput::facts_of(std::optional<Association> association, const std::string& name) {
   const auto found = std::find_if(facts.begin(), facts.end(), [&](const VtkArrayFacts& fact) {
-    return fact.on == on && fact.array == name;
+    return fact.association == association && fact.array == name;
   });
   if (found != facts.end()) return *found;
-  return facts.emplace_back(VtkArrayFacts{on, name, {}, {}, {}});
+  return facts.emplace_back(VtkArrayFacts{association, name, {}, {}, {}});
 }
 
-void VtkLegacyInput::metadata(DataArray& array, std::optional<Attached> on) {
+void VtkLegacyInput::metadata(DataArray& array, std::optional<Association> association) {
   scanner.raw_line();
   while (scanner.bytes_left() > 0) {
     std::string_view line = scanner.raw_line();
@@ -273,7 +273,7 @@ void VtkLegacyInput::metadata(DataArray& array, std::optional<Attached> on) {
         array.component_names.push_back(percent_decoded(scanner.raw_line()));
       }
     } else if (key == "INFORMATION") {
-      information(parsed(next_word(line), "the number of keys"), array, on);
+      information(parsed(next_word(line), "the number of keys"), array, association);
       return;
     } else {
       fail("METADATA has '" + shown(key) + "'", "COMPONENT_NAMES or INFORMATION is needed");
@@ -282,7 +282,8 @@ void VtkLegacyInput::metadata(DataArray& array, std::optional<Attached> on) {
 }
 
 /// Keys are kept as they stand but for the norms, which VTK finds itself.
-void VtkLegacyInput::information(std::int64_t keys, const DataArray& array, std::optional<Attached> on) {
+void VtkLegacyInput::information(std::int64_t keys, const DataArray& array,
+                                 std::optional<Association> association) {
   std::string kept;
   bool keep = false;
   while (true) {
@@ -301,7 +302,7 @@ void VtkLegacyInput::information(std::int64_t keys, const DataArray& array, std:
     }
     if (keep) kept += std::string(line) + "\n";
   }
-  if (!kept.empty() && !array.name.empty()) facts_of(on, array.name).information = kept;
+  if (!kept.empty() && !array.name.empty()) facts_of(association, array.name).information = kept;
 }
 
 }  // namespace meshorder

@@ -45,10 +45,10 @@ class VtkLegacyInput {
   std::int32_t list_entry(const std::string& what);
 
   /// An array of tuples, and the METADATA that may follow it.
-  DataArray array(const std::string& name, std::optional<Attached> on, std::int64_t tuples,
+  DataArray array(const std::string& name, std::optional<Association> association, std::int64_t tuples,
                   std::int64_t components, const std::string& type);
   /// COMPONENT_NAMES and INFORMATION, up to an empty line.
-  void metadata(DataArray& array, std::optional<Attached> on);
+  void metadata(DataArray& array, std::optional<Association> association);
 
   Scanner scanner;
   bool binary = false;
@@ -65,8 +65,8 @@ class VtkLegacyInput {
   void bits(std::vector<std::uint8_t>& values, std::int64_t count, const std::string& what);
   void texts(std::vector<std::string>& values, std::int64_t count, const std::string& what);
   std::int64_t text_length(const std::string& what);
-  void information(std::int64_t keys, const DataArray& array, std::optional<Attached> on);
-  VtkArrayFacts& facts_of(std::optional<Attached> on, const std::string& name);
+  void information(std::int64_t keys, const DataArray& array, std::optional<Association> association);
+  VtkArrayFacts& facts_of(std::optional<Association> association, const std::string& name);
 };
 
 }  // namespace meshorder

@@ -200,7 +200,8 @@ class Reader {
         in_.fail(std::string(name) + " is missing in " + key, "it stands before its numbers");
       const std::string type(in_.word("the type of the numbers"));
       DataArray part = in_.array(name, {}, entries, 1, type);
-      std::erase_if(in_.facts, [&](const VtkArrayFacts& fact) { return !fact.on && fact.array == name; });
+      std::erase_if(in_.facts,
+                    [&](const VtkArrayFacts& fact) { return !fact.association && fact.array == name; });
       return part;
     };
     in_.check_room(count, 1, key);
@@ -253,15 +254,16 @@ class Reader {
   // ---- data
 
   void begin_data(const std::string& key) {
-    on_ = key == "POINT_DATA" ? Attached::vertices : Attached::cells;
+    on_ = key == "POINT_DATA" ? Association::vertices : Association::cells;
     const std::int64_t count = in_.count("the number of " + key);
     if (count != owner_count())
-      in_.fail(key + " is for " + std::to_string(count) + (on_ == Attached::vertices ? " points" : " cells"),
-               "the file has " + std::to_string(owner_count()));
+      in_.fail(
+          key + " is for " + std::to_string(count) + (on_ == Association::vertices ? " points" : " cells"),
+          "the file has " + std::to_string(owner_count()));
   }
 
   [[nodiscard]] std::int64_t owner_count() const {
-    if (on_ == Attached::vertices) return mesh_.vertex_count();
+    if (on_ == Association::vertices) return mesh_.vertex_count();
     std::int64_t cells = 0;
     for (const VtkCells& section : sections_) cells += static_cast<std::int64_t>(section.offsets.size()) - 1;
     return cells;
@@ -269,7 +271,7 @@ class Reader {
 
   void keep(DataArray array) {
     for (const DataArray& other : mesh_.data) {
-      if (other.on == array.on && other.name == array.name)
+      if (other.association == array.association && other.name == array.name)
         in_.fail("the array '" + shown(array.name) + "' stands here a second time", "names must differ");
     }
     add_vtk_array(mesh_, std::move(array));
@@ -371,7 +373,7 @@ class Reader {
     layout_.binary = in_.binary;
     residue_->facts = std::move(in_.facts);
     residue_->legacy = std::move(layout_);
-    mesh_.residue = residue_;
+    mesh_.format_metadata = residue_;
   }
 
   /// The cells of all sections of a POLYDATA file; each section is a block.
@@ -409,14 +411,14 @@ class Reader {
 
   VtkLegacyInput in_;
   Mesh mesh_;
-  std::shared_ptr<VtkResidue> residue_ = std::make_shared<VtkResidue>();
+  std::shared_ptr<VtkMetadata> residue_ = std::make_shared<VtkMetadata>();
   VtkLegacyLayout layout_;
   int version_ = 0;
   bool has_points_ = false;
   std::array<VtkCells, 4> sections_;  // an unstructured grid has the first alone
   std::int64_t cells_line_ = 0;
   std::int64_t types_line_ = 0;
-  std::optional<Attached> on_;  // what the arrays that follow belong to
+  std::optional<Association> on_;  // what the arrays that follow belong to
 };
 
 }  // namespace

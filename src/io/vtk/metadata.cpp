@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::string_view kSetPrefix = "set:";
 
-Index owner_count(const Mesh& mesh, Attached on) {
-  return on == Attached::vertices ? mesh.vertex_count() : mesh.cell_count();
+Index owner_count(const Mesh& mesh, Association association) {
+  return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
 }
 
 /// The members that an array of marks or ranks names, or nothing when it is neither.
@@ -42,7 +42,7 @@ std::optional<std::vector<Index>> members_of(const std::vector<Number>& marks) {
 }
 
 /// Membership as an array: 1 for a member when they rise, else the rank of each, so that their order stays.
-Values marks_of(const Set& set, Index count) {
+Values marks_of(const EntitySet& set, Index count) {
   if (std::adjacent_find(set.members.begin(), set.members.end(), std::greater_equal<>()) ==
       set.members.end()) {
     std::vector<std::uint8_t> marks(count, 0);
@@ -63,9 +63,9 @@ std::vector<Number> filled(const DataArray& array, const std::vector<Number>& va
   if constexpr (std::is_floating_point_v<Number>) nothing = std::numeric_limits<Number>::quiet_NaN();
   const auto width = static_cast<std::size_t>(array.components);
   std::vector<Number> result(static_cast<std::size_t>(count) * width, nothing);
-  for (std::size_t i = 0; i < array.rows.size(); ++i) {
+  for (std::size_t i = 0; i < array.indices.size(); ++i) {
     const auto from = values.begin() + static_cast<Offset>(i * width);
-    std::copy(from, from + array.components, result.begin() + Offset{array.rows[i]} * array.components);
+    std::copy(from, from + array.components, result.begin() + Offset{array.indices[i]} * array.components);
   }
   return result;
 }
@@ -73,25 +73,25 @@ std::vector<Number> filled(const DataArray& array, const std::vector<Number>& va
 /// Hands out names that no other array of the same owner has; VTK keeps arrays by name.
 class Names {
  public:
-  std::string unused(const std::string& wanted, Attached on, Notes& notes) {
+  std::string unused(const std::string& wanted, Association association, Notes& notes) {
     std::string name = wanted.empty() ? "array" : wanted;
     for (char& c : name) {
       if (static_cast<unsigned char>(c) < ' ') c = '_';  // XML has no such characters
     }
-    for (int i = 2; !taken_.emplace(on, name).second; ++i) name = wanted + "_" + std::to_string(i);
+    for (int i = 2; !taken_.emplace(association, name).second; ++i) name = wanted + "_" + std::to_string(i);
     if (name != wanted)
-      notes.push_back("the array '" + wanted + "' on " + std::string(meshorder::name(on)) +
+      notes.push_back("the array '" + wanted + "' on " + std::string(meshorder::name(association)) +
                       " is written as '" + name + "'");
     return name;
   }
 
  private:
-  std::set<std::pair<Attached, std::string>> taken_;
+  std::set<std::pair<Association, std::string>> taken_;
 };
 
 DataArray full_copy(const DataArray& array, Index count) {
-  DataArray copy{array.name, array.on, array.components, {}, {}, array.component_names};
-  copy.values = array.covers_all()
+  DataArray copy{array.name, array.association, array.components, {}, {}, array.component_names};
+  copy.values = array.is_dense()
                     ? array.values
                     : std::visit([&](const auto& values) { return Values(filled(array, values, count)); },
                                  array.values);
@@ -105,7 +105,7 @@ bool filled_with_nan(const DataArray& array) {
 
 }  // namespace
 
-std::vector<std::string> VtkResidue::contents() const {
+std::vector<std::string> VtkMetadata::contents() const {
   std::vector<std::string> result;
   for (const DataArray& field : fields) result.push_back("the field '" + field.name + "' of the whole mesh");
   if (legacy) {
@@ -118,17 +118,18 @@ std::vector<std::string> VtkResidue::contents() const {
   return result;
 }
 
-const VtkArrayFacts* find_facts(const VtkResidue& residue, std::optional<Attached> on,
+const VtkArrayFacts* find_facts(const VtkMetadata& metadata, std::optional<Association> association,
                                 std::string_view array) {
-  const auto found = std::find_if(residue.facts.begin(), residue.facts.end(), [&](const VtkArrayFacts& fact) {
-    return fact.on == on && fact.array == array;
-  });
-  return found == residue.facts.end() ? nullptr : &*found;
+  const auto found = std::find_if(
+      metadata.facts.begin(), metadata.facts.end(),
+      [&](const VtkArrayFacts& fact) { return fact.association == association && fact.array == array; });
+  return found == metadata.facts.end() ? nullptr : &*found;
 }
 
 void add_vtk_array(Mesh& mesh, DataArray array) {
-  if (array.name == kVtkTypes && find_array(mesh, kVtkTypes, array.on) != nullptr) return;  // known already
-  if (array.name.starts_with(kSetPrefix) && array.components == 1 && array.covers_all()) {
+  if (array.name == kVtkTypes && find_array(mesh, kVtkTypes, array.association) != nullptr)
+    return;  // known already
+  if (array.name.starts_with(kSetPrefix) && array.components == 1 && array.is_dense()) {
     auto members = std::visit(
         [](const auto& values) -> std::optional<std::vector<Index>> {
           using Number = typename std::decay_t<decltype(values)>::value_type;
@@ -137,7 +138,7 @@ void add_vtk_array(Mesh& mesh, DataArray array) {
         },
         array.values);
     if (members) {
-      mesh.sets.push_back({array.name.substr(kSetPrefix.size()), array.on, std::move(*members)});
+      mesh.sets.push_back({array.name.substr(kSetPrefix.size()), array.association, std::move(*members)});
       return;
     }
   }
@@ -153,53 +154,54 @@ VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes) {
   };
 
   for (const DataArray& array : mesh.data) {
-    if (array.on == Attached::cells && array.name == kVtkTypes) continue;  // the types say it
-    const std::string name = names.unused(array.name, array.on, notes);
-    if (array.covers_all() && name == array.name) {
+    if (array.association == Association::cells && array.name == kVtkTypes) continue;  // the types say it
+    const std::string name = names.unused(array.name, array.association, notes);
+    if (array.is_dense() && name == array.name) {
       result.all.push_back(&array);
       continue;
     }
-    if (!array.covers_all()) {
+    if (!array.is_dense()) {
       notes.push_back("the array '" + array.name + "' is given for some " +
-                      std::string(meshorder::name(array.on)) + "; the others get " +
+                      std::string(meshorder::name(array.association)) + "; the others get " +
                       (filled_with_nan(array) ? "NaN" : "0"));
     }
-    make(full_copy(array, owner_count(mesh, array.on)));
+    make(full_copy(array, owner_count(mesh, array.association)));
     result.made.back()->name = name;
   }
 
-  const bool from_vtk = dynamic_cast<const VtkResidue*>(mesh.residue.get()) != nullptr;
-  for (const Set& set : mesh.sets) {
-    const std::string name = names.unused(std::string(kSetPrefix) + set.name, set.on, notes);
+  const bool from_vtk = dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get()) != nullptr;
+  for (const EntitySet& set : mesh.sets) {
+    const std::string name = names.unused(std::string(kSetPrefix) + set.name, set.association, notes);
     if (!from_vtk) {
-      notes.push_back("the set '" + set.name + "' of " + std::string(meshorder::name(set.on)) +
+      notes.push_back("the set '" + set.name + "' of " + std::string(meshorder::name(set.association)) +
                       " is written as the array '" + name + "'");
     }
-    make({name, set.on, 1, marks_of(set, owner_count(mesh, set.on)), {}, {}});
+    make({name, set.association, 1, marks_of(set, owner_count(mesh, set.association)), {}, {}});
   }
 
-  const auto add_ids = [&](const std::vector<std::int64_t>& ids, const char* wanted, Attached on) {
+  const auto add_ids = [&](const std::vector<std::int64_t>& ids, const char* wanted,
+                           Association association) {
     if (ids.empty()) return;
-    const std::string name = names.unused(wanted, on, notes);
-    notes.push_back("the ids of " + std::string(meshorder::name(on)) + " are written as the array '" + name +
-                    "'");
-    make({name, on, 1, label_values(ids), {}, {}});
+    const std::string name = names.unused(wanted, association, notes);
+    notes.push_back("the ids of " + std::string(meshorder::name(association)) +
+                    " are written as the array '" + name + "'");
+    make({name, association, 1, label_values(ids), {}, {}});
   };
-  add_ids(mesh.vertex_ids, "vertex_id", Attached::vertices);
-  add_ids(mesh.cell_ids, "cell_id", Attached::cells);
+  add_ids(mesh.vertex_ids, "vertex_id", Association::vertices);
+  add_ids(mesh.cell_ids, "cell_id", Association::cells);
   return result;
 }
 
-const VtkResidue& vtk_residue(const Mesh& mesh, Notes& notes) {
-  static const VtkResidue none;
-  if (!mesh.residue) return none;
-  if (const auto* own = dynamic_cast<const VtkResidue*>(mesh.residue.get())) return *own;
+const VtkMetadata& vtk_residue(const Mesh& mesh, Notes& notes) {
+  static const VtkMetadata none;
+  if (!mesh.format_metadata) return none;
+  if (const auto* own = dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get())) return *own;
   note_residue_left_out(mesh, "VTK", notes);
   return none;
 }
 
-bool points_are_floats(const Mesh& mesh, const VtkResidue& residue) {
-  return residue.float_points && std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& point) {
+bool points_are_floats(const Mesh& mesh, const VtkMetadata& metadata) {
+  return metadata.float_points && std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& point) {
            return std::all_of(point.begin(), point.end(),
                               [](double x) { return double{static_cast<float>(x)} == x; });
          });

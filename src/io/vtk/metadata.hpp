@@ -31,14 +31,14 @@ enum class VtkRole : std::uint8_t {
 /// An array in a role. A legacy file can have several of one role; the first counts.
 struct VtkRoleOfArray {
   VtkRole role;
-  Attached on;
+  Association association;
   std::string array;
   std::string lookup_table;  ///< legacy scalars: the name of their table
 };
 
 /// What a file says of an array beyond DataArray.
 struct VtkArrayFacts {
-  std::optional<Attached> on;  ///< none: of the whole mesh
+  std::optional<Association> association;  ///< none: of the whole mesh
   std::string array;
   std::string type;  ///< the file's name of a number type that Values does not tell: "vtkIdType", "long"
   std::string information;      ///< legacy: its INFORMATION, line by line
@@ -62,7 +62,7 @@ struct VtkLegacyLayout {
   bool binary = true;
   bool polydata = false;
   struct LookupTable {
-    Attached on;
+    Association association;
     std::string name;
     Index size;
     std::string content;  ///< as it stood in the file, text or bytes
@@ -71,7 +71,7 @@ struct VtkLegacyLayout {
 };
 
 /// What VTK's two formats keep of each other's files and of their own.
-struct VtkResidue : Residue {
+struct VtkMetadata : FormatMetadata {
   std::vector<DataArray> fields;  ///< arrays of the whole mesh, in which `on` and `rows` mean nothing
   std::vector<VtkRoleOfArray> roles;
   std::vector<VtkArrayFacts> facts;
@@ -83,7 +83,7 @@ struct VtkResidue : Residue {
 };
 
 /// The facts of an array, or nullptr.
-const VtkArrayFacts* find_facts(const VtkResidue& residue, std::optional<Attached> on,
+const VtkArrayFacts* find_facts(const VtkMetadata& metadata, std::optional<Association> association,
                                 std::string_view array);
 
 /// Gives the mesh an array that a file holds. Integers called "set:NAME" that mark members (1, or their rank
@@ -102,9 +102,9 @@ VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes);
 
 /// The residue of a mesh that came from VTK, or an empty one; what another format's residue holds is noted as
 /// left out.
-const VtkResidue& vtk_residue(const Mesh& mesh, Notes& notes);
+const VtkMetadata& vtk_residue(const Mesh& mesh, Notes& notes);
 
 /// Whether the points can be written as floats as their file had them: no coordinate changes by that.
-bool points_are_floats(const Mesh& mesh, const VtkResidue& residue);
+bool points_are_floats(const Mesh& mesh, const VtkMetadata& metadata);
 
 }  // namespace meshorder

@@ -64,8 +64,8 @@ class Writer {
         notes_(notes),
         residue_(vtk_residue(mesh, notes)),
         encoding_(residue_.vtu.value_or(VtuEncoding{})),
-        types_(
-            vtk_types(mesh, path.string(), dynamic_cast<const VtkResidue*>(mesh.residue.get()) != nullptr)),
+        types_(vtk_types(mesh, path.string(),
+                         dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get()) != nullptr)),
         data_(vtk_arrays(mesh, notes)),
         out_(path) {}
 
@@ -108,34 +108,34 @@ class Writer {
       Section& fields = sections_.emplace_back(Section{"    <FieldData>\n", "    </FieldData>\n", {}});
       for (const DataArray& field : residue_.fields) fields.arrays.push_back(array_of(field, {}));
     }
-    collect_data(Attached::vertices);
-    collect_data(Attached::cells);
+    collect_data(Association::vertices);
+    collect_data(Association::cells);
     sections_.push_back({"      <Points>\n", "      </Points>\n", {points()}});
     sections_.push_back({"      <Cells>\n", "      </Cells>\n", cells()});
   }
 
-  void collect_data(Attached on) {
+  void collect_data(Association association) {
     Section section;
-    const std::string_view name = on == Attached::vertices ? "PointData" : "CellData";
-    section.begin = fmt::format("      <{}{}>\n", name, roles(on));
+    const std::string_view name = association == Association::vertices ? "PointData" : "CellData";
+    section.begin = fmt::format("      <{}{}>\n", name, roles(association));
     section.end = fmt::format("      </{}>\n", name);
     for (const DataArray* array : data_.all) {
-      if (array->on == on) section.arrays.push_back(array_of(*array, on));
+      if (array->association == association) section.arrays.push_back(array_of(*array, association));
     }
     sections_.push_back(std::move(section));
   }
 
   /// The attributes that name the arrays in roles.
-  [[nodiscard]] std::string roles(Attached on) const {
+  [[nodiscard]] std::string roles(Association association) const {
     std::string result;
     for (std::size_t role = 0; role < kVtuRoles.size(); ++role) {
       const auto found =
           std::find_if(residue_.roles.begin(), residue_.roles.end(), [&](const VtkRoleOfArray& r) {
             const VtkRole kind = r.role == VtkRole::color_scalars ? VtkRole::scalars : r.role;
             const bool there = std::any_of(data_.all.begin(), data_.all.end(), [&](const DataArray* array) {
-              return array->on == on && array->name == r.array;
+              return array->association == association && array->name == r.array;
             });
-            return r.on == on && kind == static_cast<VtkRole>(role) && there;
+            return r.association == association && kind == static_cast<VtkRole>(role) && there;
           });
       if (found != residue_.roles.end())
         result += fmt::format(" {}=\"{}\"", kVtuRoles[role], xml_escaped(found->array));
@@ -143,10 +143,10 @@ class Writer {
     return result;
   }
 
-  Array array_of(const DataArray& array, std::optional<Attached> on) {
+  Array array_of(const DataArray& array, std::optional<Association> association) {
     Array result;
     const bool text = std::holds_alternative<std::vector<std::string>>(array.values);
-    const VtkArrayFacts* facts = find_facts(residue_, on, array.name);
+    const VtkArrayFacts* facts = find_facts(residue_, association, array.name);
     result.tag =
         fmt::format("<{} type=\"{}\"", text ? "Array" : "DataArray", kVtuTypeNames[array.values.index()]);
     if (facts != nullptr && facts->type == "vtkIdType" &&
@@ -158,7 +158,7 @@ class Writer {
       if (!array.component_names[i].empty())
         result.tag += fmt::format(" ComponentName{}=\"{}\"", i, xml_escaped(array.component_names[i]));
     }
-    if (!on) result.tag += fmt::format(" NumberOfTuples=\"{}\"", row_count(array));
+    if (!association) result.tag += fmt::format(" NumberOfTuples=\"{}\"", row_count(array));
     if (facts != nullptr) result.information = facts->xml_information;
     std::visit(
         [&](const auto& values) {
@@ -402,7 +402,7 @@ class Writer {
 
   const Mesh& mesh_;
   Notes& notes_;
-  const VtkResidue& residue_;
+  const VtkMetadata& residue_;
   VtuEncoding encoding_;
   std::vector<std::uint8_t> types_;
   VtkArrays data_;

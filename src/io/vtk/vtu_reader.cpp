@@ -75,8 +75,9 @@ class Reader {
     const Index first_point = mesh_.vertex_count();
     for (const VtuElement& element : piece.children) {
       if (element.name == "PointData" || element.name == "CellData") {
-        const Attached on = element.name == "PointData" ? Attached::vertices : Attached::cells;
-        read_data(element, on, on == Attached::vertices ? points : cells);
+        const Association association =
+            element.name == "PointData" ? Association::vertices : Association::cells;
+        read_data(element, association, association == Association::vertices ? points : cells);
       } else if (element.name != "Points" && element.name != "Cells") {
         note_unknown(element);
       }
@@ -210,11 +211,12 @@ class Reader {
   }
 
   /// An array of PointData, CellData or FieldData with what belongs to it.
-  DataArray read_array(const VtuElement& element, std::optional<Attached> on, std::int64_t tuples) {
+  DataArray read_array(const VtuElement& element, std::optional<Association> association,
+                       std::int64_t tuples) {
     refuse_time_steps(element);
     DataArray array;
     array.name = file_.required(element, "Name");
-    array.on = on.value_or(Attached::vertices);
+    array.association = association.value_or(Association::vertices);
     const std::int64_t components = components_of(element);
     if (components < 1) throw file_.error(element, "the array has no components", "at least 1 is needed");
     array.components = static_cast<Index>(components);
@@ -227,12 +229,12 @@ class Reader {
       array.component_names.resize(static_cast<std::size_t>(components));
       array.component_names[static_cast<std::size_t>(i)] = *name;
     }
-    read_facts(element, on, array);
+    read_facts(element, association, array);
     return array;
   }
 
-  void read_facts(const VtuElement& element, std::optional<Attached> on, const DataArray& array) {
-    VtkArrayFacts facts{on, array.name, {}, {}, {}};
+  void read_facts(const VtuElement& element, std::optional<Association> association, const DataArray& array) {
+    VtkArrayFacts facts{association, array.name, {}, {}, {}};
     const std::string* id = element.attribute("IdType");
     if (id != nullptr && *id == "1" && std::holds_alternative<std::vector<std::int64_t>>(array.values))
       facts.type = "vtkIdType";
@@ -242,7 +244,7 @@ class Reader {
       facts.xml_information += file_.source(key) + "\n";
     }
     if ((!facts.type.empty() || !facts.xml_information.empty()) &&
-        find_facts(*residue_, on, array.name) == nullptr)
+        find_facts(*residue_, association, array.name) == nullptr)
       residue_->facts.push_back(std::move(facts));
   }
 
@@ -256,15 +258,16 @@ class Reader {
     }
   }
 
-  void read_data(const VtuElement& section, Attached on, std::int64_t tuples) {
+  void read_data(const VtuElement& section, Association association, std::int64_t tuples) {
     for (std::size_t role = 0; role < kVtuRoles.size(); ++role) {
       const std::string* name = section.attribute(kVtuRoles[role]);
       if (name == nullptr || name->empty()) continue;
       const auto kind = static_cast<VtkRole>(role);
       const bool known =
-          std::any_of(residue_->roles.begin(), residue_->roles.end(),
-                      [&](const VtkRoleOfArray& other) { return other.role == kind && other.on == on; });
-      if (!known) residue_->roles.push_back({kind, on, *name, {}});
+          std::any_of(residue_->roles.begin(), residue_->roles.end(), [&](const VtkRoleOfArray& other) {
+            return other.role == kind && other.association == association;
+          });
+      if (!known) residue_->roles.push_back({kind, association, *name, {}});
     }
     std::vector<std::string> names;
     for (const VtuElement& element : section.children) {
@@ -272,13 +275,13 @@ class Reader {
         note_unknown(element);
         continue;
       }
-      DataArray array = read_array(element, on, tuples);
+      DataArray array = read_array(element, association, tuples);
       if (std::find(names.begin(), names.end(), array.name) != names.end())
         throw file_.error(element, "the array '" + array.name + "' stands here a second time",
                           "names must differ");
       names.push_back(array.name);
       const auto before = std::find_if(arrays_.begin(), arrays_.end(), [&](const DataArray& other) {
-        return other.on == on && other.name == array.name;
+        return other.association == association && other.name == array.name;
       });
       if (before == arrays_.end()) {
         arrays_.push_back(std::move(array));
@@ -302,20 +305,21 @@ class Reader {
         [&](const std::string& what, const std::string& remedy) { return file_.error(at, what, remedy); },
         notes_);
     for (DataArray& array : arrays_) {
-      const Index needed = array.on == Attached::vertices ? mesh_.vertex_count() : mesh_.cell_count();
+      const Index needed =
+          array.association == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count();
       if (row_count(array) != needed)
         throw file_.error(grid, "the array '" + array.name + "' is missing in a piece",
                           "all pieces have the same arrays");
       add_vtk_array(mesh_, std::move(array));
     }
     if (old_order) swap_hexahedron_edges(mesh_, types, mesh_.cells);
-    mesh_.residue = residue_;
+    mesh_.format_metadata = residue_;
   }
 
   VtuDocument file_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<VtkResidue> residue_ = std::make_shared<VtkResidue>();
+  std::shared_ptr<VtkMetadata> residue_ = std::make_shared<VtkMetadata>();
   std::vector<DataArray> arrays_;
   VtkCells cells_;
   const VtuElement* types_ = nullptr;
