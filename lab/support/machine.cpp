@@ -2,6 +2,7 @@
 #include "lab/support/machine.hpp"
 
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "kernels/simd_target.hpp"
 #include "payoff/bandwidth.hpp"
 #include "payoff/memory.hpp"
@@ -26,11 +27,6 @@ std::size_t buffer_bytes(const MachineRecord& machine) {
   return std::min(std::clamp(4 * last, kLeast, kMost), static_cast<std::size_t>(machine.memory_bytes) / 8);
 }
 
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 }  // namespace
 
 std::string processor_name(std::istream& cpuinfo, const std::string& architecture) {
@@ -38,7 +34,8 @@ std::string processor_name(std::istream& cpuinfo, const std::string& architectur
   for (std::string line; std::getline(cpuinfo, line);) {
     const std::size_t colon = line.find(':');
     if (colon != std::string::npos)
-      first_values.emplace(trimmed(line.substr(0, colon)), trimmed(line.substr(colon + 1)));
+      first_values.emplace(trimmed(std::string_view(line).substr(0, colon)),
+                           trimmed(std::string_view(line).substr(colon + 1)));
   }
   if (!first_values["model name"].empty()) return first_values["model name"];
   std::string result = architecture + " processor";

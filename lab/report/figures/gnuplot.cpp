@@ -2,7 +2,7 @@
 #include "lab/report/figures/gnuplot.hpp"
 
 #include "base/error.hpp"
-#include "io/vtk/xml_text.hpp"
+#include "base/text.hpp"
 #include "lab/report/figures/figures.hpp"
 #include "lab/support/process.hpp"
 

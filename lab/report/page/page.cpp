@@ -2,9 +2,9 @@
 #include "lab/report/page/page.hpp"
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/stream/base64.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/vtk/xml_text.hpp"
 #include "lab/report/page/packed_arrays.hpp"
 #include "lab/report/page/template.hpp"
 #include "lab/report/page/viewer_sources.hpp"

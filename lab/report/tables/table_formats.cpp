@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/vtk/xml_text.hpp"
+#include "base/text.hpp"
 #include "lab/report/tables/tables.hpp"
 
 #include <fmt/format.h>

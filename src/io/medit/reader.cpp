@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/labels.hpp"
 #include "io/medit/medit.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
-#include "io/words.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
 #include "io/medit/medit.hpp"
-#include "io/words.hpp"
 
 #include <algorithm>
 #include <system_error>

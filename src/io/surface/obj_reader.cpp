@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/surface/obj_parts.hpp"
 #include "io/surface/surface_data.hpp"
-#include "io/words.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/surface/ply_parts.hpp"
-#include "io/words.hpp"
 
 #include <fmt/format.h>
 

@@ -4,11 +4,11 @@
 // https://www.loc.gov/preservation/digital/formats/fdd/fdd000504.shtml describes. Each triangle has its own
 // three points; equal points become one vertex here, numbered by first appearance.
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/unsupported.hpp"
-#include "io/words.hpp"
 
 #include <fmt/format.h>
 

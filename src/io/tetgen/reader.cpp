@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/labels.hpp"
 #include "io/numbering.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/tetgen/tetgen.hpp"
-#include "io/words.hpp"
 
 #include <fmt/format.h>
 

@@ -2,11 +2,11 @@
 #include "io/tetgen/tetgen.hpp"
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/labels.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
-#include "io/words.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/vega/lines.hpp"
 
-#include "io/words.hpp"
+#include "base/text.hpp"
 
 #include <system_error>
 

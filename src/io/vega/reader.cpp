@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/numbering.hpp"
 #include "io/vega/lines.hpp"
 #include "io/vega/parts.hpp"
-#include "io/words.hpp"
 
 #include <fmt/format.h>
 

@@ -4,11 +4,11 @@
 // described in Vega's user manual, https://viterbi-web.usc.edu/~jbarbic/vega/. The corners of CUBIC elements
 // come in VTK's order.
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include "io/vega/parts.hpp"
-#include "io/words.hpp"
 
 #include <fmt/format.h>
 

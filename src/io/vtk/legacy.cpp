@@ -5,12 +5,12 @@
 // VTK's own writer is not used: in text it keeps 11 digits of a double, and it cuts ids to 32 bits.
 #include "io/vtk/legacy.hpp"
 
+#include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/vtk/cells.hpp"
 #include "io/vtk/numbers.hpp"
 #include "io/vtk/vtu.hpp"
-#include "io/words.hpp"
 
 #include <fmt/format.h>
 

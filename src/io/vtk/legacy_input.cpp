@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/vtk/legacy_input.hpp"
 
+#include "base/text.hpp"
 #include "io/vtk/numbers.hpp"
-#include "io/words.hpp"
 
 #include <fmt/format.h>
 

@@ -5,11 +5,11 @@
 //
 // VTK's own reader is not used: it reads past the end of cell lists that promise too many vertices, allocates
 // what a header promises, cannot read `nan`, and changes the locale of the whole program.
+#include "base/text.hpp"
 #include "io/vtk/cells.hpp"
 #include "io/vtk/legacy.hpp"
 #include "io/vtk/legacy_input.hpp"
 #include "io/vtk/numbers.hpp"
-#include "io/words.hpp"
 
 #include <algorithm>
 #include <charconv>

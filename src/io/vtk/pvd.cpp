@@ -2,8 +2,8 @@
 #include "io/vtk/pvd.hpp"
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/vtk/xml_text.hpp"
 
 #include <cmath>
 

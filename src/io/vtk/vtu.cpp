@@ -7,6 +7,7 @@
 // pedigree ids that are texts, and does not notice that a disk is full when it closes a file.
 #include "io/vtk/vtu.hpp"
 
+#include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/base64.hpp"
 #include "io/stream/output_file.hpp"
@@ -14,7 +15,6 @@
 #include "io/vtk/metadata.hpp"
 #include "io/vtk/numbers.hpp"
 #include "io/vtk/vtu_compressor.hpp"
-#include "io/vtk/xml_text.hpp"
 
 #include <fmt/format.h>
 

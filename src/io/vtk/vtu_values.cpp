@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Arrays of .vtu files: text, base64 and raw bytes, plain or in compressed blocks.
+#include "base/text.hpp"
 #include "io/stream/base64.hpp"
 #include "io/vtk/numbers.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include "io/vtk/vtu_document.hpp"
-#include "io/words.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,127 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <concepts>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+
+/// Returns the items as one text, separated by `separator`. `text_of(item)` gives the text of an item.
+template <class Items, class TextOf>
+std::string join(const Items& items, TextOf text_of, std::string_view separator = ", ") {
+  std::string result;
+  bool first = true;
+  for (const auto& item : items) {
+    if (!first) result += separator;
+    first = false;
+    result += text_of(item);
+  }
+  return result;
+}
+
+/// Returns the texts as one, separated by `separator`.
+template <class Texts>
+std::string join(const Texts& texts, std::string_view separator = ", ") {
+  return join(
+      texts, [](const auto& text) -> const auto& { return text; }, separator);
+}
+
+/// Returns `text` without spaces and tabs at its ends.
+inline std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// Removes the next word from the front of `line` and returns it without the separators around it; empty if
+/// none is left.
+inline std::string_view next_word(std::string_view& line, std::string_view separators = " \t") {
+  const std::size_t begin = line.find_first_not_of(separators);
+  if (begin == std::string_view::npos) return line = {};
+  line.remove_prefix(begin);
+  const std::string_view word = line.substr(0, line.find_first_of(separators));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+/// Returns whether two words differ at most in the case of ASCII letters.
+inline bool same_but_for_case(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+/// Returns `text` escaped for an XML attribute between double quotes.
+inline std::string xml_escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '&':
+        result += "&amp;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+/// The names of an enumeration's values, the same in the command, in JSON and in messages. A specialisation
+/// lists all values once:
+///
+///     template <>
+///     struct EnumNames<Colour> {
+///       static constexpr std::string_view kind = "colour";
+///       static constexpr std::array names{std::pair{Colour::red, "red"}, std::pair{Colour::blue, "blue"}};
+///     };
+template <class Enum>
+struct EnumNames;
+
+template <class Enum>
+concept NamedEnum = std::is_enum_v<Enum> && requires {
+  EnumNames<Enum>::names.size();
+};
+
+/// Returns the name of `value`, an empty text if it has none.
+template <NamedEnum Enum>
+constexpr std::string_view to_string(Enum value) {
+  for (const auto& [candidate, name] : EnumNames<Enum>::names) {
+    if (candidate == value) return name;
+  }
+  return {};
+}
+
+/// Returns all names of an enumeration, separated by commas.
+template <NamedEnum Enum>
+std::string names_of() {
+  return join(EnumNames<Enum>::names, [](const auto& entry) { return std::string_view(entry.second); });
+}
+
+/// Returns the value of that name. Throws InvalidArgument, which lists the known names, if there is none.
+template <NamedEnum Enum>
+Enum parse(std::string_view text) {
+  for (const auto& [value, name] : EnumNames<Enum>::names) {
+    if (text == name) return value;
+  }
+  throw InvalidArgument("unknown " + std::string(EnumNames<Enum>::kind) + " '" + std::string(text) +
+                        "'; known are " + names_of<Enum>());
+}
+
+}  // namespace meshorder
