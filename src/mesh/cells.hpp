@@ -50,8 +50,9 @@ std::vector<std::vector<int>> facets(Shape shape, int vertices);
 /// Cells of any types, mixed, in file order: cell c has shape `shapes[c]` and the vertices
 /// `vertices[offsets[c]] … vertices[offsets[c + 1] − 1]`.
 ///
-/// Corners come first, in VTK's order; then, in second-order cells, the nodes of edges, faces and interior
-/// in VTK's order for the types that VTK knows. Higher orders keep the order of the file they came from.
+/// Corners come first, in VTK's order, but for linear wedges: the first triangle of every wedge faces inward,
+/// as in Gmsh's; then, in second-order cells, the nodes of edges, faces and interior in VTK's order for the
+/// types that VTK knows. Higher orders keep the order of the file they came from.
 struct Cells {
   std::vector<Shape> shapes;
   std::vector<Offset> offsets{0};

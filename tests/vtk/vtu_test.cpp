@@ -5,6 +5,7 @@
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
+#include "support/vtk_grids.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -135,8 +136,7 @@ void expect_same_grid(vtkUnstructuredGrid* grid, const Mesh& mesh) {
     vtkIdType count = 0;
     const vtkIdType* vertices = nullptr;
     grid->GetCellPoints(c, count, vertices);
-    EXPECT_EQ(std::vector<Index>(vertices, vertices + count),
-              std::vector<Index>(mesh.cells[c].begin(), mesh.cells[c].end()));
+    EXPECT_EQ(std::vector<Index>(vertices, vertices + count), vertices_in_vtk(mesh, c, grid->GetCellType(c)));
   }
   for (const DataArray& array : mesh.data) {
     SCOPED_TRACE(array.name);
@@ -306,6 +306,42 @@ TEST(Vtu, EveryCellTypeIsWrittenAndRead) {
     expect_write_and_read(cells_of_type(shape, vertices, 3), "cells.vtu");
   }
   expect_write_and_read(mixed_mesh(), "mixed.vtu");
+}
+
+TEST(Vtu, FacesOfCellsFromGmshAreOutwardInVtkAndBack) {
+  const TemporaryFolder folder;
+  const auto gmsh = folder.file("a.msh", kVolumesOfGmsh);
+  const Mesh mesh = read_mesh(gmsh);
+  expect_wedges_of_gmsh(mesh);
+  write_mesh(mesh, folder.path() / "b.vtu");
+  expect_faces_outward(read_with_vtk(folder.path() / "b.vtu"));
+  const Mesh back = read_mesh(folder.path() / "b.vtu");
+  EXPECT_EQ(back.points, mesh.points);
+  EXPECT_EQ(back.cells, mesh.cells);
+}
+
+TEST(Vtu, WedgesOfVtkArriveInGmshTheRightWayRoundAndStayInVtk) {
+  const TemporaryFolder folder;
+  const auto grid = grid_of_wedges();
+  expect_faces_outward(grid);
+  for (const Encoding& encoding : all_encodings()) {
+    SCOPED_TRACE(encoding.name);
+    write_with_vtk(grid, folder.path() / "a.vtu", encoding);
+    const Mesh mesh = read_mesh(folder.path() / "a.vtu");
+    expect_wedges_of_gmsh(mesh);
+    write_mesh(mesh, folder.path() / "b.msh");
+    const std::string written = content_of(folder.path() / "b.msh");
+    EXPECT_NE(written.find("\n1 1 3 2 4 6 5\n"), std::string::npos) << written;
+    EXPECT_NE(written.find("\n2 7 9 8 10 12 11\n"), std::string::npos) << written;
+
+    write_mesh(mesh, folder.path() / "c.vtu");
+    const auto back = read_with_vtk(folder.path() / "c.vtu");
+    EXPECT_EQ(points_of_cells(back), points_of_cells(grid));
+    EXPECT_EQ(back->GetCellType(0), VTK_WEDGE);
+    EXPECT_EQ(back->GetCellType(1), VTK_LAGRANGE_WEDGE);
+    write_mesh(read_mesh(folder.path() / "c.vtu"), folder.path() / "d.vtu");
+    EXPECT_EQ(content_of(folder.path() / "d.vtu"), content_of(folder.path() / "c.vtu"));
+  }
 }
 
 TEST(Vtu, VtkReadsWhatWeWrite) {

@@ -18,10 +18,21 @@ struct VtkType {
   std::string_view name;
   Shape shape;
   int vertices;  // exactly so many, or at least −vertices
+
+  // places whose vertices a Mesh has the other way round; {0, 0} is none
+  std::array<std::pair<int, int>, 2> swapped{};
 };
 
 constexpr int kPixel = 8;
 constexpr int kVoxel = 11;
+
+// The first triangle of VTK's linear wedge faces outward; in a Mesh, in Gmsh's files and in Lagrange wedges
+// it faces inward. Shape functions do not mind, but faces, normals and volumes do. Quadratic wedges have the
+// order of a Mesh, as in the files of Gmsh and meshio: VTK 9.1 sees their faces from inside, a mistake by
+// the notes of a later version. By its release notes VTK 9.7 takes linear wedges, too, in the order of a
+// Mesh, but files do not tell which order they have, and those of Gmsh, meshio and VTK up to 9.6 have this
+// one.
+constexpr std::array<std::pair<int, int>, 2> kWedge{{{1, 2}, {4, 5}}};
 
 // in the order in which a type is chosen for a shape and its vertices
 constexpr std::array kTypes{
@@ -35,7 +46,7 @@ constexpr std::array kTypes{
     VtkType{9, "VTK_QUAD", Shape::quad, 4},
     VtkType{10, "VTK_TETRA", Shape::tetrahedron, 4},
     VtkType{12, "VTK_HEXAHEDRON", Shape::hexahedron, 8},
-    VtkType{13, "VTK_WEDGE", Shape::wedge, 6},
+    VtkType{13, "VTK_WEDGE", Shape::wedge, 6, kWedge},
     VtkType{14, "VTK_PYRAMID", Shape::pyramid, 5},
     VtkType{21, "VTK_QUADRATIC_EDGE", Shape::line, 3},
     VtkType{22, "VTK_QUADRATIC_TRIANGLE", Shape::triangle, 6},
@@ -60,8 +71,8 @@ constexpr std::array kTypes{
     VtkType{72, "VTK_LAGRANGE_HEXAHEDRON", Shape::hexahedron, -8},
     VtkType{73, "VTK_LAGRANGE_WEDGE", Shape::wedge, -6},
     VtkType{74, "VTK_LAGRANGE_PYRAMID", Shape::pyramid, -5},
-    VtkType{8, "VTK_PIXEL", Shape::quad, 4},
-    VtkType{11, "VTK_VOXEL", Shape::hexahedron, 8},
+    VtkType{kPixel, "VTK_PIXEL", Shape::quad, 4, {{{2, 3}}}},
+    VtkType{kVoxel, "VTK_VOXEL", Shape::hexahedron, 8, {{{2, 3}, {6, 7}}}},
     VtkType{36, "VTK_QUADRATIC_POLYGON", Shape::polygon, -3},
     VtkType{60, "VTK_HIGHER_ORDER_EDGE", Shape::line, -2},
     VtkType{61, "VTK_HIGHER_ORDER_TRIANGLE", Shape::triangle, -3},
@@ -79,6 +90,15 @@ constexpr std::array kTypes{
     VtkType{81, "VTK_BEZIER_PYRAMID", Shape::pyramid, -5},
 };
 
+/// By their numbers, the types of which vertices are swapped; nullptr for the others.
+constexpr std::array<const VtkType*, 256> kSwappedTypes = [] {
+  std::array<const VtkType*, 256> types{};
+  for (const VtkType& type : kTypes) {
+    if (type.swapped != decltype(type.swapped){}) types[static_cast<std::size_t>(type.number)] = &type;
+  }
+  return types;
+}();
+
 constexpr int kFirstLagrange = 68;
 constexpr int kLastLagrange = 74;
 
@@ -90,6 +110,10 @@ const VtkType* type_of(int number) {
 
 bool fits(const VtkType& type, Offset vertices) {
   return type.vertices > 0 ? vertices == type.vertices : vertices >= -type.vertices;
+}
+
+void swap_vertices(const VtkType& type, Index* vertices) {
+  for (const auto& [a, b] : type.swapped) std::swap(vertices[a], vertices[b]);
 }
 
 /// The type that a shape with so many vertices has, when nothing else is known; nullptr when there is none.
@@ -150,13 +174,9 @@ void take_vtk_cells(Mesh& mesh, VtkCells cells, const VtkError& error, Notes& no
           (type->vertices > 0 ? "it has " : "it has at least ") + std::to_string(std::abs(type->vertices)));
     }
     mesh.cells.shapes[c] = type->shape;
-
-    // the ways in which an image's cells run differ from those of all others
-    Index* const v = cells.vertices.data() + cells.offsets[c];
+    swap_vertices(*type, cells.vertices.data() + cells.offsets[c]);
     if (type->number == kPixel || type->number == kVoxel) {
       ++converted;
-      std::swap(v[2], v[3]);
-      if (type->number == kVoxel) std::swap(v[6], v[7]);
     } else {
       plain = plain && defaults(type->shape, static_cast<int>(vertices))->number == type->number;
     }
@@ -207,6 +227,14 @@ std::vector<std::uint8_t> vtk_types(const Mesh& mesh, const std::string& file, b
     types[c] = static_cast<std::uint8_t>(type->number);
   }
   return types;
+}
+
+bool has_order_of_its_own(std::uint8_t type) { return kSwappedTypes[type] != nullptr; }
+
+void swap_to_vtk(const std::vector<std::uint8_t>& types, Cells& cells) {
+  for (Index c = 0; c < cells.size(); ++c) {
+    if (const VtkType* type = kSwappedTypes[types[c]]) swap_vertices(*type, cells[c].data());
+  }
 }
 
 bool is_higher_order_hexahedron(std::uint8_t type) { return type == 67 || type == 72 || type == 79; }

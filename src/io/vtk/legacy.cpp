@@ -269,12 +269,16 @@ class Writer {
   }
 
   void write_cells() {
+    const bool swapped = std::any_of(types_.begin(), types_.end(), has_order_of_its_own);
     // VTK numbered the nodes of some hexahedra differently before version 5.1
+    const bool old_order =
+        layout_.version != "5.1" && std::any_of(types_.begin(), types_.end(), is_higher_order_hexahedron);
     Cells changed;
     const Cells* cells = &mesh_.cells;
-    if (layout_.version != "5.1" && std::any_of(types_.begin(), types_.end(), is_higher_order_hexahedron)) {
+    if (swapped || old_order) {
       changed = mesh_.cells;
-      swap_hexahedron_edges(mesh_, types_, changed);
+      if (swapped) swap_to_vtk(types_, changed);
+      if (old_order) swap_hexahedron_edges(mesh_, types_, changed);
       cells = &changed;
     }
     if (!layout_.polydata) {

@@ -195,7 +195,12 @@ class Writer {
 
   /// Vertices, ends and types of the cells; VTK wants the first two in one type.
   std::vector<Array> cells() {
-    const Cells& cells = mesh_.cells;
+    const bool swapped = std::any_of(types_.begin(), types_.end(), has_order_of_its_own);
+    if (swapped) {
+      changed_ = mesh_.cells;
+      swap_to_vtk(types_, changed_);
+    }
+    const Cells& cells = swapped ? changed_ : mesh_.cells;
     const bool narrow = cells.offsets.back() <= kMaxIndex;
     std::vector<Array> result(3);
     if (narrow) {
@@ -414,6 +419,7 @@ class Writer {
   std::vector<float> float_points_;
   std::vector<std::int32_t> ends_;
   std::vector<std::int64_t> wide_vertices_;
+  Cells changed_;
 };
 
 }  // namespace
