@@ -2,7 +2,7 @@
 #include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "console.hpp"
-#include "graph/components.hpp"
+#include "graph/traversal.hpp"
 #include "io/format.hpp"
 #include "mesh/check.hpp"
 #include "mesh/graphs.hpp"

@@ -2,7 +2,7 @@
 //
 // `peer-graph_of MESH FOLDER` writes the largest component of a mesh's vertex graph as offsets.npy and
 // neighbours.npy, so that every peer starts from the same ready graph.
-#include "graph/components.hpp"
+#include "graph/traversal.hpp"
 #include "io/format.hpp"
 #include "io/npy.hpp"
 #include "mesh/graphs.hpp"

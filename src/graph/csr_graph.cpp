@@ -52,7 +52,7 @@ CsrGraph graph_from_edges(Index n, std::span<const Edge> edges) {
   return graph;
 }
 
-CsrGraph renumbered(const CsrGraph& graph, std::span<const Index> old_to_new) {
+CsrGraph renumbered(GraphRef graph, std::span<const Index> old_to_new) {
   CsrGraph result;
   result.offsets.assign(graph.offsets.size(), 0);
   for (Index v = 0; v < graph.size(); ++v) result.offsets[old_to_new[v] + 1] = graph.degree(v);
@@ -66,7 +66,7 @@ CsrGraph renumbered(const CsrGraph& graph, std::span<const Index> old_to_new) {
   return result;
 }
 
-CsrGraph induced_subgraph(const CsrGraph& graph, std::span<const Index> vertices) {
+CsrGraph induced_subgraph(GraphRef graph, std::span<const Index> vertices) {
   std::vector<Index> local(graph.size(), -1);
   for (Index k = 0; k < index_size(vertices); ++k) local[vertices[k]] = k;
   CsrGraph result;
@@ -82,7 +82,7 @@ CsrGraph induced_subgraph(const CsrGraph& graph, std::span<const Index> vertices
   return result;
 }
 
-void check_graph(const CsrGraph& graph) {
+void check_graph(GraphRef graph) {
   if (graph.offsets.empty() || graph.offsets.front() != 0 ||
       graph.offsets.back() != static_cast<Offset>(graph.neighbours.size()) ||
       !std::is_sorted(graph.offsets.begin(), graph.offsets.end())) {

@@ -24,6 +24,25 @@ struct CsrGraph {
   bool operator==(const CsrGraph&) const = default;
 };
 
+/// A view of a clean undirected graph: what the algorithms take. Converts from a `CsrGraph`, and refers to
+/// the caller's arrays where these already are as CsrGraph describes them. Costs four words to copy.
+struct GraphRef {
+  std::span<const Offset> offsets;    ///< n + 1, from 0
+  std::span<const Index> neighbours;  ///< twice the number of edges
+
+  GraphRef(std::span<const Offset> row_offsets, std::span<const Index> row_neighbours)
+      : offsets(row_offsets), neighbours(row_neighbours) {}
+  GraphRef(const CsrGraph& graph)  // NOLINT(google-explicit-constructor)
+      : offsets(graph.offsets), neighbours(graph.neighbours) {}
+
+  [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
+  [[nodiscard]] Offset edge_count() const noexcept { return static_cast<Offset>(neighbours.size() / 2); }
+  [[nodiscard]] Index degree(Index v) const { return static_cast<Index>(offsets[v + 1] - offsets[v]); }
+  [[nodiscard]] std::span<const Index> operator[](Index v) const {
+    return {neighbours.data() + offsets[v], neighbours.data() + offsets[v + 1]};
+  }
+};
+
 /// An edge given by its two ends.
 struct Edge {
   Index a;
@@ -35,13 +54,13 @@ struct Edge {
 CsrGraph graph_from_edges(Index n, std::span<const Edge> edges);
 
 /// The same graph with vertex v renamed `old_to_new[v]`, a bijection of 0 … n−1. O(n + edges · log degree).
-CsrGraph renumbered(const CsrGraph& graph, std::span<const Index> old_to_new);
+CsrGraph renumbered(GraphRef graph, std::span<const Index> old_to_new);
 
 /// The subgraph of the listed vertices (each once): vertex k of the result is `vertices[k]`. Edges that leave
 /// the list are dropped. O(n of `graph` + entries of the listed rows · log degree).
-CsrGraph induced_subgraph(const CsrGraph& graph, std::span<const Index> vertices);
+CsrGraph induced_subgraph(GraphRef graph, std::span<const Index> vertices);
 
 /// Throws InvalidArgument unless the graph keeps the promises of its type. O(n + edges · log degree).
-void check_graph(const CsrGraph& graph);
+void check_graph(GraphRef graph);
 
 }  // namespace meshorder

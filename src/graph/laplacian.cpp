@@ -3,7 +3,7 @@
 
 namespace meshorder {
 
-Laplacian combinatorial_laplacian(const CsrGraph& graph) {
+Laplacian combinatorial_laplacian(GraphRef graph) {
   Laplacian laplacian{graph.offsets, graph.neighbours, {}, std::vector<double>(graph.size())};
   for (Index v = 0; v < graph.size(); ++v) laplacian.diagonal[v] = graph.degree(v);
   return laplacian;

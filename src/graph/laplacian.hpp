@@ -65,6 +65,6 @@ struct Laplacian {
 };
 
 /// The Laplacian of a graph whose edges all have weight 1. O(n + edges).
-Laplacian combinatorial_laplacian(const CsrGraph& graph);
+Laplacian combinatorial_laplacian(GraphRef graph);
 
 }  // namespace meshorder

@@ -14,7 +14,7 @@ namespace {
 
 /// Calls `visit(span)` for every edge once.
 template <class Visit>
-void for_each_span(const CsrGraph& graph, const Permutation& order, Visit visit) {
+void for_each_span(GraphRef graph, const Permutation& order, Visit visit) {
   for (Index v = 0; v < graph.size(); ++v) {
     for (const Index u : graph[v]) {
       if (u < v) visit(std::abs(order.old_to_new()[u] - order.old_to_new()[v]));
@@ -24,7 +24,7 @@ void for_each_span(const CsrGraph& graph, const Permutation& order, Visit visit)
 
 /// How many edges fall into each bin, to the last one that has any.
 template <class BinOf>
-std::vector<Offset> histogram(const CsrGraph& graph, const Permutation& order, BinOf bin_of) {
+std::vector<Offset> histogram(GraphRef graph, const Permutation& order, BinOf bin_of) {
   std::vector<Offset> bins;
   for_each_span(graph, order, [&](Index span) {
     const auto bin = static_cast<std::size_t>(bin_of(span));
@@ -36,7 +36,7 @@ std::vector<Offset> histogram(const CsrGraph& graph, const Permutation& order, B
 
 }  // namespace
 
-EdgeSpan edge_span(const CsrGraph& graph, const Permutation& order) {
+EdgeSpan edge_span(GraphRef graph, const Permutation& order) {
   EdgeSpan result;
   if (graph.neighbours.empty()) return result;
   // sums over spans, not over edges, do not depend on how the vertices are numbered
@@ -57,7 +57,7 @@ EdgeSpan edge_span(const CsrGraph& graph, const Permutation& order) {
   return result;
 }
 
-Offset profile(const CsrGraph& graph, const Permutation& order) {
+Offset profile(GraphRef graph, const Permutation& order) {
   Offset sum = 0;
   for (Index v = 0; v < graph.size(); ++v) {
     Index first = order.old_to_new()[v];
@@ -67,12 +67,12 @@ Offset profile(const CsrGraph& graph, const Permutation& order) {
   return sum;
 }
 
-std::vector<Offset> span_histogram_log2(const CsrGraph& graph, const Permutation& order) {
+std::vector<Offset> span_histogram_log2(GraphRef graph, const Permutation& order) {
   return histogram(graph, order,
                    [](Index span) { return std::bit_width(static_cast<std::uint32_t>(span)) - 1; });
 }
 
-std::vector<Offset> span_histogram(const CsrGraph& graph, const Permutation& order, Index width) {
+std::vector<Offset> span_histogram(GraphRef graph, const Permutation& order, Index width) {
   if (width < 1) throw InvalidArgument("span histogram: bins without width");
   return histogram(graph, order, [width](Index span) { return span / width; });
 }

@@ -19,17 +19,17 @@ struct EdgeSpan {
 };
 
 /// Spans of the graph's vertices in the given order. O(n + edges).
-EdgeSpan edge_span(const CsrGraph& graph, const Permutation& order);
+EdgeSpan edge_span(GraphRef graph, const Permutation& order);
 
 /// Σ over vertices of the distance to the first neighbour before them in the order: the size of the envelope
 /// of a matrix with this pattern (diagonal not counted). O(n + edges).
-Offset profile(const CsrGraph& graph, const Permutation& order);
+Offset profile(GraphRef graph, const Permutation& order);
 
 /// The number of edges whose span is in [2^k, 2^(k+1)), for k from 0 to that of the largest. O(n + edges).
-std::vector<Offset> span_histogram_log2(const CsrGraph& graph, const Permutation& order);
+std::vector<Offset> span_histogram_log2(GraphRef graph, const Permutation& order);
 
 /// The number of edges whose span is in [k·width, (k + 1)·width), for k from 0 to that of the largest (the
 /// paper's Figure 10 has a width of 50). Throws InvalidArgument unless `width` ≥ 1. O(n + edges).
-std::vector<Offset> span_histogram(const CsrGraph& graph, const Permutation& order, Index width);
+std::vector<Offset> span_histogram(GraphRef graph, const Permutation& order, Index width);
 
 }  // namespace meshorder

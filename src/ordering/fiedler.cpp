@@ -10,7 +10,7 @@ namespace meshorder {
 namespace {
 
 /// Component after component, largest first, each by rising Fiedler value, ties by old number.
-Ordering by_fiedler_vector(const CsrGraph& graph, const OrderingOptions& options) {
+Ordering by_fiedler_vector(GraphRef graph, const OrderingOptions& options) {
   FiedlerOptions solver;
   solver.tolerance = options.tolerance;
   solver.seed = options.seed;

@@ -37,7 +37,7 @@ Sorted sorted_into_groups(std::span<const Index> group_of, Index groups) {
 
 /// The graph of one group's vertices among themselves. Unlike induced_subgraph it takes time for the group
 /// alone, since there may be as many groups as vertices.
-CsrGraph graph_of_group(const CsrGraph& graph, const Sorted& sorted, Index group) {
+CsrGraph graph_of_group(GraphRef graph, const Sorted& sorted, Index group) {
   const Index begin = sorted.starts[group];
   const Index end = sorted.starts[group + 1];
   CsrGraph result;
@@ -51,7 +51,7 @@ CsrGraph graph_of_group(const CsrGraph& graph, const Sorted& sorted, Index group
   return result;
 }
 
-void check_groups(const CsrGraph& graph, std::span<const Index> group_of, Index groups) {
+void check_groups(GraphRef graph, std::span<const Index> group_of, Index groups) {
   const bool known =
       std::all_of(group_of.begin(), group_of.end(), [&](Index g) { return g >= 0 && g < groups; });
   if (index_size(group_of) != graph.size() || !known) {

@@ -59,7 +59,7 @@ const auto& find_method(const Methods& methods, std::string_view name, std::stri
 }
 
 /// Moves what has no neighbours behind the rest, in old order.
-Permutation with_isolated_last(const Permutation& order, const CsrGraph& graph) {
+Permutation with_isolated_last(const Permutation& order, GraphRef graph) {
   std::vector<Index> new_to_old;
   new_to_old.reserve(order.new_to_old().size());
   for (const Index v : order.new_to_old()) {

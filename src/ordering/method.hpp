@@ -40,7 +40,7 @@ struct Ordering {
 
 /// What a vertex method may look at.
 struct VertexProblem {
-  const CsrGraph& graph;
+  GraphRef graph;
   std::span<const Point> points;  ///< one for each vertex, or none where there are no coordinates
 };
 

@@ -1,15 +1,32 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/metis.hpp"
-
+// Karypis, Kumar: A Fast and High Quality Multilevel Scheme for Partitioning Irregular Graphs (1998).
 #include "base/error.hpp"
+#include "ordering/all_methods.hpp"
 
+#include <metis.h>
+
+#include <array>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace meshorder {
+namespace {
 
-MetisGraph::MetisGraph(const CsrGraph& graph, std::uint64_t seed) : size(graph.size()) {
+/// A graph in METIS's own arrays, and options that make METIS reproducible.
+struct MetisGraph {
+  idx_t size = 0;
+  std::vector<idx_t> offsets;
+  std::vector<idx_t> neighbours;
+  idx_t options[METIS_NOPTIONS] = {};
+
+  /// Throws InvalidArgument for a graph with more entries than METIS's integers count.
+  MetisGraph(GraphRef graph, std::uint64_t seed);
+};
+
+MetisGraph::MetisGraph(GraphRef graph, std::uint64_t seed) : size(graph.size()) {
   if (graph.offsets.back() > std::numeric_limits<idx_t>::max()) {
     throw InvalidArgument("METIS here counts with " + std::to_string(8 * sizeof(idx_t)) +
                           " bits; this graph has " + std::to_string(graph.offsets.back()) + " entries");
@@ -21,9 +38,70 @@ MetisGraph::MetisGraph(const CsrGraph& graph, std::uint64_t seed) : size(graph.s
   options[METIS_OPTION_NUMBERING] = 0;
 }
 
+/// Throws std::runtime_error, naming the call, unless METIS reports success.
 void check_metis(int status, const char* call) {
   if (status != METIS_OK)
     throw std::runtime_error(std::string(call) + " failed with " + std::to_string(status));
+}
+
+constexpr Index kLeaf = 8;  // smaller leaves cost METIS more and no longer shorten spans
+
+/// Which half each vertex belongs to, 0 or 1.
+std::vector<idx_t> halves(GraphRef graph, std::uint64_t seed) {
+  MetisGraph metis(graph, seed);
+  idx_t constraints = 1;
+  idx_t parts = 2;
+  idx_t cut = 0;
+  std::vector<idx_t> half_of(graph.size());
+  check_metis(METIS_PartGraphRecursive(&metis.size, &constraints, metis.offsets.data(),
+                                       metis.neighbours.data(), nullptr, nullptr, nullptr, &parts, nullptr,
+                                       nullptr, metis.options, &cut, half_of.data()),
+              "METIS_PartGraphRecursive");
+  return half_of;
+}
+
+/// Appends `vertices`, which `graph` joins under their positions, half after half.
+void append_bisected(GraphRef graph, const std::vector<Index>& vertices, std::uint64_t seed,
+                     std::vector<Index>& order) {
+  std::array<std::vector<Index>, 2> sides;
+  if (graph.size() > kLeaf && !graph.neighbours.empty()) {
+    const std::vector<idx_t> half_of = halves(graph, seed);
+    for (Index v = 0; v < graph.size(); ++v) sides[half_of[v]].push_back(v);
+  }
+  if (sides[0].empty() || sides[1].empty()) {
+    order.insert(order.end(), vertices.begin(), vertices.end());
+    return;
+  }
+  for (const std::vector<Index>& side : sides) {
+    std::vector<Index> names;
+    names.reserve(side.size());
+    for (const Index v : side) names.push_back(vertices[v]);
+    append_bisected(induced_subgraph(graph, side), names, seed, order);
+  }
+}
+
+}  // namespace
+
+Ordering metis_nd_vertices(const VertexProblem& problem, const OrderingOptions& options) {
+  if (problem.graph.neighbours.empty()) return {Permutation::identity(problem.graph.size()), {}};
+  MetisGraph graph(problem.graph, options.seed);
+  std::vector<idx_t> new_to_old(problem.graph.size());
+  std::vector<idx_t> old_to_new(problem.graph.size());
+  check_metis(METIS_NodeND(&graph.size, graph.offsets.data(), graph.neighbours.data(), nullptr, graph.options,
+                           new_to_old.data(), old_to_new.data()),
+              "METIS_NodeND");
+  return {Permutation::from_new_to_old({new_to_old.begin(), new_to_old.end()}), {}};
+}
+
+// One half of the mesh comes before the other, and so on within each half. METIS's own recursion into many
+// parts prints to stdout and fails where a part becomes empty, so it is asked for one bisection at a time.
+Ordering metis_rb_vertices(const VertexProblem& problem, const OrderingOptions& options) {
+  std::vector<Index> all(problem.graph.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  std::vector<Index> new_to_old;
+  new_to_old.reserve(all.size());
+  append_bisected(problem.graph, all, options.seed, new_to_old);
+  return {Permutation::from_new_to_old(std::move(new_to_old)), {}};
 }
 
 }  // namespace meshorder

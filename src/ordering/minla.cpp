@@ -19,7 +19,7 @@ constexpr int kVisits = 2;
 
 /// The part of the graph that stands at the places first … first + count − 1, a union of components; its
 /// vertices are numbered in their order.
-ArrangementGraph local_graph(const CsrGraph& graph, const Permutation& order, Index first, Index count) {
+ArrangementGraph local_graph(GraphRef graph, const Permutation& order, Index first, Index count) {
   ArrangementGraph local;
   local.offsets.reserve(Offset{count} + 1);
   local.volumes.assign(count, 1);

@@ -3,7 +3,7 @@
 // Graphs, 1990) as a linear order. Of the two directions of each cut the one is taken that suits the
 // neighbours outside the piece (terminal propagation: Dunlop and Kernighan 1985).
 #include "base/parallel.hpp"
-#include "graph/components.hpp"
+#include "graph/traversal.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/smoothed_bisection.hpp"
 
@@ -29,7 +29,7 @@ struct Piece {
 
 /// A component of the graph, its vertices rising. `number` has an entry for each vertex of the graph; those
 /// of the component are changed. O(component).
-Piece whole_component(const CsrGraph& graph, std::vector<Index> component, std::vector<Index>& number) {
+Piece whole_component(GraphRef graph, std::vector<Index> component, std::vector<Index>& number) {
   Piece piece;
   for (Index k = 0; k < index_size(component); ++k) number[component[k]] = k;
   piece.graph.offsets.reserve(component.size() + 1);
@@ -72,7 +72,7 @@ std::vector<Index> along_fiedler_vector(const Piece& piece, std::uint64_t seed) 
 
 /// The mean over all places of the sequence of how many vertices before it have neighbours behind it: the
 /// size of the piece's cross-section. At least 1.
-double mean_front(const CsrGraph& graph, const std::vector<Index>& sequence) {
+double mean_front(GraphRef graph, const std::vector<Index>& sequence) {
   std::vector<Index> place(sequence.size());
   for (Index k = 0; k < graph.size(); ++k) place[sequence[k]] = k;
   double sum = 0;
@@ -97,7 +97,7 @@ struct Slabs {
 
 /// Two halves, or as many slabs as keep them thicker than they are wide and high: one vector then does what
 /// several cuts in a row would do.
-Slabs cut(const CsrGraph& graph, std::vector<Index> sequence) {
+Slabs cut(GraphRef graph, std::vector<Index> sequence) {
   Slabs slabs;
   const double least = std::pow(kThickness * mean_front(graph, sequence), 1.5);
   slabs.count = std::max(Index{2}, static_cast<Index>(graph.size() / std::max<double>(kSmall, least)));

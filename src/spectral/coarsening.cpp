@@ -16,7 +16,7 @@ class RowSum {
       : sum_(columns, 0.0), last_row_(columns, -1), columns_(std::size_t{1} + columns) {}
 
   void add(Index column, double value) {
-    // without a branch: whether a column is new in a row is a coin's toss
+    // branch-free: the test is unpredictable
     columns_[used_] = column;
     used_ += last_row_[column] == row_ ? 0 : 1;
     last_row_[column] = row_;
@@ -103,6 +103,25 @@ Members members_of(const Aggregation& aggregation) {
 }
 
 }  // namespace
+
+SparseRows transposed(const SparseRows& a) {
+  SparseRows result;
+  result.columns_count = a.rows();
+  result.offsets.assign(Offset{a.columns_count} + 1, 0);
+  for (const Index column : a.columns) ++result.offsets[column + 1];
+  std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
+  result.columns.resize(a.columns.size());
+  result.values.resize(a.values.size());
+  std::vector<Offset> next(result.offsets.begin(), result.offsets.end() - 1);
+  for (Index row = 0; row < a.rows(); ++row) {
+    for (Offset k = a.offsets[row]; k < a.offsets[row + 1]; ++k) {
+      const Offset place = next[a.columns[k]]++;
+      result.columns[place] = row;
+      result.values[place] = a.values[k];
+    }
+  }
+  return result;
+}
 
 Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation) {
   const Members members = members_of(aggregation);

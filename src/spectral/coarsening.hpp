@@ -1,12 +1,25 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/index.hpp"
 #include "spectral/aggregation.hpp"
-#include "spectral/sparse_rows.hpp"
 
 #include <vector>
 
 namespace meshorder {
+
+/// A sparse matrix by rows; the columns of a row are in no particular order, none twice.
+struct SparseRows {
+  Index columns_count = 0;
+  std::vector<Offset> offsets{0};  ///< rows + 1
+  std::vector<Index> columns;
+  std::vector<double> values;
+
+  [[nodiscard]] Index rows() const noexcept { return static_cast<Index>(offsets.size() - 1); }
+};
+
+/// Aᵀ. O(rows + columns + entries).
+SparseRows transposed(const SparseRows& a);
 
 /// The (weighted) Galerkin product Pᵀ L P of the piecewise constant P of an aggregation: the weights between
 /// two aggregates added up. O(n + edges), on all threads.

@@ -13,7 +13,7 @@ constexpr Index kBatch = 256;   // vertices whose discoveries are sorted togethe
 constexpr Index kDegrees = 64;  // larger degrees are rare and sorted as this one
 
 /// Asks for the row that stands a few places after `k` in the order: rows lie anywhere in memory.
-void prefetch_row(const CsrGraph& graph, std::span<const Index> order, Index k) {
+void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
   constexpr Index kAhead = 8;
   if (k + kAhead < index_size(order)) {
     __builtin_prefetch(graph.neighbours.data() + graph.offsets[order[k + kAhead]]);
@@ -21,7 +21,7 @@ void prefetch_row(const CsrGraph& graph, std::span<const Index> order, Index k) 
 }
 
 /// Appends the vertices to the order by rising degree, those of one degree as they come, and numbers them.
-void append_by_degree(const CsrGraph& graph, const std::vector<Index>& found, Index component_start,
+void append_by_degree(GraphRef graph, const std::vector<Index>& found, Index component_start,
                       ComponentNumbering& numbering, Index& tail) {
   const auto degree = [&](Index v) { return std::min(graph.degree(v), kDegrees); };
   std::array<Index, std::size_t{kDegrees} + 2> place{};
@@ -36,8 +36,8 @@ void append_by_degree(const CsrGraph& graph, const std::vector<Index>& found, In
 }
 
 /// Numbers the component of `start` from order[tail] on.
-void number_component(const CsrGraph& graph, Index start, std::vector<Index>& found,
-                      ComponentNumbering& numbering, Index& tail) {
+void number_component(GraphRef graph, Index start, std::vector<Index>& found, ComponentNumbering& numbering,
+                      Index& tail) {
   const Index component_start = tail;
   numbering.order[tail++] = start;
   numbering.number[start] = 0;
@@ -58,7 +58,7 @@ void number_component(const CsrGraph& graph, Index start, std::vector<Index>& fo
 
 }  // namespace
 
-ComponentNumbering number_components(const CsrGraph& graph) {
+ComponentNumbering number_components(GraphRef graph) {
   const Index n = graph.size();
   ComponentNumbering numbering;
   numbering.order.resize(n);
@@ -73,7 +73,7 @@ ComponentNumbering number_components(const CsrGraph& graph) {
   return numbering;
 }
 
-Laplacian component_laplacian(const CsrGraph& graph, std::span<const double> weights,
+Laplacian component_laplacian(GraphRef graph, std::span<const double> weights,
                               const ComponentNumbering& numbering, Index c) {
   constexpr Index kRows = 4096;
   const auto vertices = numbering.component(c);

@@ -28,11 +28,11 @@ struct ComponentNumbering {
 };
 
 /// Numbers all components, in the order of their smallest vertices. O(n + edges).
-ComponentNumbering number_components(const CsrGraph& graph);
+ComponentNumbering number_components(GraphRef graph);
 
 /// The Laplacian of component c in its numbering. `weights` has an entry for each of the graph's neighbours,
 /// or none when all are 1. O(component), on all threads.
-Laplacian component_laplacian(const CsrGraph& graph, std::span<const double> weights,
+Laplacian component_laplacian(GraphRef graph, std::span<const double> weights,
                               const ComponentNumbering& numbering, Index c);
 
 }  // namespace meshorder

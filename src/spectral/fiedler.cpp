@@ -129,7 +129,7 @@ std::vector<std::vector<Index>> rising_vertices(const ComponentNumbering& number
   return result;
 }
 
-void check_weights(const CsrGraph& graph, std::span<const double> weights) {
+void check_weights(GraphRef graph, std::span<const double> weights) {
   if (weights.size() != graph.neighbours.size()) {
     throw InvalidArgument("fiedler_vector: " + std::to_string(weights.size()) + " weights for " +
                           std::to_string(graph.neighbours.size()) + " neighbours");
@@ -142,7 +142,7 @@ void check_weights(const CsrGraph& graph, std::span<const double> weights) {
   }
 }
 
-FiedlerResult solve(const CsrGraph& graph, std::span<const double> weights, const FiedlerOptions& options) {
+FiedlerResult solve(GraphRef graph, std::span<const double> weights, const FiedlerOptions& options) {
   const ComponentNumbering numbering = number_components(graph);
   const std::vector<Index> components = largest_first(numbering);
   FiedlerResult result;
@@ -164,12 +164,11 @@ FiedlerResult solve(const CsrGraph& graph, std::span<const double> weights, cons
 
 }  // namespace
 
-FiedlerResult fiedler_vector(const CsrGraph& graph, const FiedlerOptions& options) {
+FiedlerResult fiedler_vector(GraphRef graph, const FiedlerOptions& options) {
   return solve(graph, {}, options);
 }
 
-FiedlerResult fiedler_vector(const CsrGraph& graph, std::span<const double> weights,
-                             const FiedlerOptions& options) {
+FiedlerResult fiedler_vector(GraphRef graph, std::span<const double> weights, const FiedlerOptions& options) {
   check_weights(graph, weights);
   return solve(graph, weights, options);
 }

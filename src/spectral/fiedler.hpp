@@ -43,12 +43,12 @@ struct FiedlerResult {
 /// gives the same bits on every run and on any number of threads. A component that does not converge in time
 /// keeps its best vector and says so. Memory: about 3.5 times the graph's on meshes. Time: O(n + edges) times
 /// the iterations, about six on meshes.
-FiedlerResult fiedler_vector(const CsrGraph& graph, const FiedlerOptions& options = {});
+FiedlerResult fiedler_vector(GraphRef graph, const FiedlerOptions& options = {});
 
 /// The same of a weighted graph: `weights` has an entry for each of the graph's neighbours, the same in both
 /// rows of an edge. Throws InvalidArgument for another number of weights and for one that is not positive and
 /// finite.
-FiedlerResult fiedler_vector(const CsrGraph& graph, std::span<const double> weights,
+FiedlerResult fiedler_vector(GraphRef graph, std::span<const double> weights,
                              const FiedlerOptions& options = {});
 
 }  // namespace meshorder

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "graph/laplacian.hpp"
+#include "spectral/coarsening.hpp"
 #include "spectral/row_chunks.hpp"
-#include "spectral/sparse_rows.hpp"
 
 #include <Eigen/Dense>
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/aggregation.hpp"
 
-#include "graph/components.hpp"
+#include "graph/traversal.hpp"
 #include "support/sample_graphs.hpp"
 
 #include <gtest/gtest.h>

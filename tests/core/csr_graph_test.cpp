@@ -2,7 +2,7 @@
 #include "graph/csr_graph.hpp"
 
 #include "base/error.hpp"
-#include "graph/components.hpp"
+#include "graph/traversal.hpp"
 #include "graph/incidence.hpp"
 
 #include <gtest/gtest.h>

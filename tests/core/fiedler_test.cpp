@@ -2,7 +2,7 @@
 #include "spectral/fiedler.hpp"
 
 #include "base/error.hpp"
-#include "graph/components.hpp"
+#include "graph/traversal.hpp"
 #include "support/dense.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"

@@ -2,7 +2,7 @@
 #include "mesh/procedural.hpp"
 
 #include "base/error.hpp"
-#include "graph/components.hpp"
+#include "graph/traversal.hpp"
 #include "mesh/check.hpp"
 #include "mesh/graphs.hpp"
 #include "support/sample_graphs.hpp"

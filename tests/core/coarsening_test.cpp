@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "spectral/sparse_rows.hpp"
+#include "spectral/coarsening.hpp"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>

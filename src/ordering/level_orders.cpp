@@ -1,15 +1,28 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// Cuthill, McKee: Reducing the Bandwidth of Sparse Symmetric Matrices (1969); reversed after George (1971).
-#include "graph/breadth_first.hpp"
-#include "graph/components.hpp"
+// Orders by levels of a breadth-first search from a vertex at the rim. Cuthill, McKee: Reducing the Bandwidth
+// of Sparse Symmetric Matrices (1969); reversed after George (1971).
+#include "graph/traversal.hpp"
 #include "ordering/all_methods.hpp"
 
 #include <algorithm>
 
 namespace meshorder {
 
+Ordering bfs_vertices(const VertexProblem& problem, const OrderingOptions&) {
+  std::vector<Index> new_to_old;
+  new_to_old.reserve(problem.graph.size());
+  std::vector<Index> tried(problem.graph.size(), -1);
+  std::vector<Index> placed(problem.graph.size(), -1);
+  for (const std::vector<Index>& component : connected_components(problem.graph)) {
+    const Index start = pseudo_peripheral_vertex(problem.graph, component.front(), tried);
+    const std::vector<Index> order = breadth_first(problem.graph, start, placed, 0).order;
+    new_to_old.insert(new_to_old.end(), order.begin(), order.end());
+  }
+  return {Permutation::from_new_to_old(std::move(new_to_old)), {}};
+}
+
 Ordering rcm_vertices(const VertexProblem& problem, const OrderingOptions&) {
-  const CsrGraph& graph = problem.graph;
+  const GraphRef graph = problem.graph;
   std::vector<Index> new_to_old;
   new_to_old.reserve(graph.size());
   std::vector<Index> tried(graph.size(), -1);

@@ -1,11 +1,33 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "graph/breadth_first.hpp"
+#include "graph/traversal.hpp"
 
 #include <algorithm>
 
 namespace meshorder {
 
-BreadthFirst breadth_first(const CsrGraph& graph, Index start, std::vector<Index>& marks, Index mark) {
+std::vector<std::vector<Index>> connected_components(GraphRef graph) {
+  std::vector<std::vector<Index>> components;
+  std::vector<bool> reached(graph.size(), false);
+  for (Index start = 0; start < graph.size(); ++start) {
+    if (reached[start]) continue;
+    std::vector<Index> component{start};
+    reached[start] = true;
+    for (std::size_t k = 0; k < component.size(); ++k) {
+      for (const Index u : graph[component[k]]) {
+        if (reached[u]) continue;
+        reached[u] = true;
+        component.push_back(u);
+      }
+    }
+    std::sort(component.begin(), component.end());
+    components.push_back(std::move(component));
+  }
+  std::stable_sort(components.begin(), components.end(),
+                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return components;
+}
+
+BreadthFirst breadth_first(GraphRef graph, Index start, std::vector<Index>& marks, Index mark) {
   BreadthFirst search;
   search.order.push_back(start);
   marks[start] = mark;
@@ -26,7 +48,7 @@ BreadthFirst breadth_first(const CsrGraph& graph, Index start, std::vector<Index
   return search;
 }
 
-Index pseudo_peripheral_vertex(const CsrGraph& graph, Index start, std::vector<Index>& marks) {
+Index pseudo_peripheral_vertex(GraphRef graph, Index start, std::vector<Index>& marks) {
   Index mark = 0;
   BreadthFirst search = breadth_first(graph, start, marks, mark);
   for (;;) {

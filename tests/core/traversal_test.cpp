@@ -1,8 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "graph/breadth_first.hpp"
+#include "graph/traversal.hpp"
 
 #include "base/stopwatch.hpp"
-#include "graph/components.hpp"
 #include "support/sample_graphs.hpp"
 
 #include <gtest/gtest.h>

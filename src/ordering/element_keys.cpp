@@ -1,0 +1,46 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// Elements sorted by one number that the ranks of their vertices give.
+#include "ordering/all_methods.hpp"
+#include "ordering/sorted.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace meshorder {
+namespace {
+
+/// Elements sorted by `key(ranks)`, where `ranks` are the new numbers of an element's vertices; ties by old
+/// number. O(elements · log elements).
+template <class Key>
+Ordering elements_by_ranks(const ElementProblem& problem, Key key) {
+  using Value = decltype(key(std::span<const Index>()));
+  std::vector<Value> keys;
+  keys.reserve(problem.elements.size());
+  std::vector<Index> ranks;
+  for (Index e = 0; e < problem.elements.size(); ++e) {
+    ranks.clear();
+    for (const Index v : problem.elements[e]) ranks.push_back(problem.vertices.old_to_new()[v]);
+    keys.push_back(key(std::span<const Index>(ranks)));
+  }
+  return {sorted_by(keys), {}};
+}
+
+}  // namespace
+
+Ordering min_elements(const ElementProblem& problem, const OrderingOptions&) {
+  return elements_by_ranks(
+      problem, [](std::span<const Index> ranks) { return *std::min_element(ranks.begin(), ranks.end()); });
+}
+
+Ordering max_elements(const ElementProblem& problem, const OrderingOptions&) {
+  return elements_by_ranks(
+      problem, [](std::span<const Index> ranks) { return *std::max_element(ranks.begin(), ranks.end()); });
+}
+
+Ordering mean_elements(const ElementProblem& problem, const OrderingOptions&) {
+  return elements_by_ranks(problem, [](std::span<const Index> ranks) {
+    return std::accumulate(ranks.begin(), ranks.end(), 0.0) / static_cast<double>(ranks.size());
+  });
+}
+
+}  // namespace meshorder
