@@ -1,29 +1,69 @@
-# Debian 12's packages; `./run` installs them.
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)   # dense linear algebra
-find_package(TBB REQUIRED)                    # threads
-find_package(fmt REQUIRED)                    # text
-find_package(spdlog REQUIRED)                 # log
-find_package(nlohmann_json REQUIRED)          # --json
-find_package(hwy REQUIRED)                    # SIMD chosen at run time
-find_package(ZLIB REQUIRED)                   # compressed arrays of .vtu
-find_package(LibLZMA REQUIRED)
-find_package(meshoptimizer REQUIRED)          # fewer triangles for what is only looked at
-find_path(CLI11_INCLUDE_DIR CLI/CLI.hpp REQUIRED)
+# Debian 12's packages. Each part of the tree asks for what it needs, so that a build of the core alone looks for TBB
+# and Eigen only.
 
-# METIS and LZ4 ship without a CMake file
-find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
-find_library(METIS_LIBRARY metis REQUIRED)
-add_library(metis::metis UNKNOWN IMPORTED)
-set_target_properties(metis::metis PROPERTIES IMPORTED_LOCATION ${METIS_LIBRARY}
-                                              INTERFACE_INCLUDE_DIRECTORIES ${METIS_INCLUDE_DIR})
-find_path(LZ4_INCLUDE_DIR lz4.h REQUIRED)
-find_library(LZ4_LIBRARY lz4 REQUIRED)
-add_library(lz4::lz4 UNKNOWN IMPORTED)
-set_target_properties(lz4::lz4 PROPERTIES IMPORTED_LOCATION ${LZ4_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${LZ4_INCLUDE_DIR})
+# meshorder_find_library(<target> <header> <library> [suffix of the include folder]): libraries without a CMake file
+function(meshorder_find_library target header library)
+  if(TARGET ${target})
+    return()
+  endif()
+  string(MAKE_C_IDENTIFIER ${library} id)
+  string(TOUPPER ${id} id)
+  find_path(${id}_INCLUDE_DIR ${header} PATH_SUFFIXES ${ARGN})
+  find_library(${id}_LIBRARY ${library})
+  mark_as_advanced(${id}_INCLUDE_DIR ${id}_LIBRARY)
+  if(${id}_INCLUDE_DIR AND ${id}_LIBRARY)
+    add_library(${target} UNKNOWN IMPORTED)
+    set_target_properties(${target} PROPERTIES IMPORTED_LOCATION ${${id}_LIBRARY}
+                                               INTERFACE_INCLUDE_DIRECTORIES ${${id}_INCLUDE_DIR})
+  endif()
+endfunction()
 
-# CHOLMOD: of its modules only those under the LGPL are called
-find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
-find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
-add_library(cholmod::cholmod UNKNOWN IMPORTED)
-set_target_properties(cholmod::cholmod PROPERTIES IMPORTED_LOCATION ${CHOLMOD_LIBRARY}
-                                                  INTERFACE_INCLUDE_DIRECTORIES ${CHOLMOD_INCLUDE_DIR})
+# meshorder_switch(<option> <target>): an option AUTO, ON or OFF for a library that the build can do without. Sets
+# MESHORDER_HAS_<option>; ON without the library is an error.
+function(meshorder_switch option target)
+  set(MESHORDER_HAS_${option} OFF PARENT_SCOPE)
+  if(MESHORDER_${option} STREQUAL "OFF")
+    return()
+  endif()
+  if(TARGET ${target})
+    set(MESHORDER_HAS_${option} ON PARENT_SCOPE)
+  elseif(NOT MESHORDER_${option} STREQUAL "AUTO")
+    message(FATAL_ERROR "MESHORDER_${option} is ON, but its library was not found")
+  endif()
+endfunction()
+
+find_package(TBB REQUIRED)                   # threads
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # small dense eigenproblems; needed to build only
+if(NOT MESHORDER_METIS STREQUAL "OFF")
+  meshorder_find_library(metis::metis metis.h metis)
+endif()
+meshorder_switch(METIS metis::metis)
+
+if("io" IN_LIST components)
+  find_package(fmt REQUIRED)                 # text
+  if(NOT MESHORDER_ZLIB STREQUAL "OFF")
+    find_package(ZLIB)                       # compressed arrays of .vtu
+  endif()
+  if(NOT MESHORDER_LZMA STREQUAL "OFF")
+    find_package(LibLZMA)
+  endif()
+  if(NOT MESHORDER_LZ4 STREQUAL "OFF")
+    meshorder_find_library(lz4::lz4 lz4.h lz4)
+  endif()
+  meshorder_switch(ZLIB ZLIB::ZLIB)
+  meshorder_switch(LZMA LibLZMA::LibLZMA)
+  meshorder_switch(LZ4 lz4::lz4)
+endif()
+if("payoff" IN_LIST components)
+  find_package(hwy REQUIRED)                 # SIMD chosen at run time
+endif()
+if(MESHORDER_CLI OR MESHORDER_TESTS OR MESHORDER_BENCHMARKS)
+  find_package(nlohmann_json REQUIRED)       # results
+  find_package(meshoptimizer REQUIRED)       # fewer triangles for what is only looked at
+  # of CHOLMOD's modules only those under the LGPL are called
+  meshorder_find_library(cholmod::cholmod cholmod.h cholmod suitesparse)
+  find_package(ZLIB REQUIRED)                # checkpoints, the page's arrays
+endif()
+if(MESHORDER_CLI)
+  find_package(CLI11 REQUIRED)               # the command line
+endif()

@@ -1,0 +1,22 @@
+# How targets of ours are compiled.
+
+# Warnings: every target of ours links this.
+add_library(meshorder_warnings INTERFACE)
+target_compile_options(meshorder_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
+if(MESHORDER_WERROR)
+  target_compile_options(meshorder_warnings INTERFACE -Werror)
+endif()
+# GCC 12 and 13 warn of an overlap within std::string that cannot happen (GCC bug 105651)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14)
+  target_compile_options(meshorder_warnings INTERFACE -Wno-restrict)
+endif()
+target_compile_features(meshorder_warnings INTERFACE cxx_std_20)
+if(MESHORDER_SANITIZE)
+  target_compile_options(meshorder_warnings INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
+                                                     -fno-omit-frame-pointer)
+  target_link_options(meshorder_warnings INTERFACE -fsanitize=address,undefined)
+endif()
+
+# Instruction sets that Highway does not compile the kernels for. SSSE3 gains nothing for doubles over SSE4; vectors of
+# unknown length (SVE, RISC-V) cannot be members of structs, as the kernels' values are.
+set(MESHORDER_SIMD_TARGETS HWY_DISABLED_TARGETS=\(HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV\))

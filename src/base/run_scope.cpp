@@ -1,0 +1,59 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/run_scope.hpp"
+
+#include <meshorder/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshorder {
+namespace {
+
+constexpr auto kBetweenReports = std::chrono::milliseconds(50);
+constexpr unsigned kPollsBetweenLooks = 16;
+
+thread_local RunScope* innermost = nullptr;
+thread_local unsigned polls = 0;
+
+bool asks_for_nothing(const Run& run) { return !run.progress && std::isinf(run.time_limit); }
+
+}  // namespace
+
+RunScope::RunScope(const Run& run) : run_(run), outer_(innermost) {
+  if (run.time_limit < 0 || std::isnan(run.time_limit)) {
+    throw InvalidArgument("run: the time limit must be 0 or more seconds, or infinite");
+  }
+  if (!asks_for_nothing(run)) innermost = this;
+}
+
+RunScope::~RunScope() { innermost = outer_; }
+
+void RunScope::tell() {
+  const auto now = std::chrono::steady_clock::now();
+  if (!run_.progress || now - told_ < kBetweenReports) return;
+  told_ = now;
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  if (!run_.progress({.stage = stage_, .fraction = fraction_, .seconds = seconds})) throw Stopped();
+}
+
+void report(std::string_view stage, double fraction) {
+  if (innermost == nullptr) return;
+  innermost->stage_ = stage;
+  innermost->fraction_ = std::max(innermost->fraction_, fraction);
+  innermost->tell();
+}
+
+void poll() {
+  if (innermost != nullptr && ++polls % kPollsBetweenLooks == 0) innermost->tell();
+}
+
+TimeLimit::TimeLimit() {
+  if (innermost == nullptr || std::isinf(innermost->run_.time_limit)) return;
+  limited_ = true;
+  // a limit beyond the clock's range is none
+  constexpr double kLongest = 1e9;
+  const std::chrono::duration<double> limit(std::min(innermost->run_.time_limit, kLongest));
+  end_ = innermost->start_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,64 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/options.hpp>
+
+#include <chrono>
+#include <string_view>
+
+namespace meshorder {
+
+/// The call into the library that the current thread is in: reports its progress and ends it when the caller
+/// wants that.
+///
+/// The scope belongs to the thread that made the call. `poll` does nothing on other threads, so a parallel
+/// loop may call it from every chunk: the calling thread works on chunks too, and an exception there cancels
+/// the loop on all threads. A call within a call (a user's own method) with a run that asks for nothing
+/// belongs to the outer one.
+class RunScope {
+ public:
+  explicit RunScope(const Run& run);
+  ~RunScope();
+  RunScope(const RunScope&) = delete;
+  RunScope& operator=(const RunScope&) = delete;
+
+ private:
+  friend void report(std::string_view stage, double fraction);
+  friend void poll();
+  friend class TimeLimit;
+  void tell();
+
+  const Run& run_;
+  RunScope* outer_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point told_ = start_;
+  std::string_view stage_ = "check";
+  double fraction_ = -1;
+};
+
+/// Says what the calling thread's call does now, and how much of the call is done: 0 … 1, or −1 where that is
+/// unknown. A smaller fraction than before is raised to that. Calls the user's progress function if 50 ms have
+/// passed since it was last called.
+///
+/// @throws Stopped if the progress function returns false, and what it throws itself
+void report(std::string_view stage, double fraction = -1);
+
+/// Calls the user's progress function if 50 ms have passed since it was last called. Costs a few nanoseconds,
+/// every sixteenth time a look at the clock: to be called at least every millisecond or so of work.
+///
+/// @throws as `report`
+void poll();
+
+/// The moment at which the time limit of the calling thread's call ends. Copies may be asked on any thread.
+class TimeLimit {
+ public:
+  /// The limit of the call that the current thread is in; none outside calls.
+  TimeLimit();
+  [[nodiscard]] bool is_over() const { return limited_ && std::chrono::steady_clock::now() >= end_; }
+
+ private:
+  bool limited_ = false;
+  std::chrono::steady_clock::time_point end_;
+};
+
+}  // namespace meshorder
