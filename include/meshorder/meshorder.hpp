@@ -1,13 +1,24 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// The short way in: read a mesh, reorder it, write it, and what that needs.
-#include "base/error.hpp"
-#include "io/format.hpp"
-#include "mesh/graphs.hpp"
-#include "mesh/mesh.hpp"
-#include "mesh/mesh_ordering.hpp"
-#include "mesh/reorder.hpp"
-#include "metrics/edge_span.hpp"
-#include "ordering/method.hpp"
-#include "spectral/fiedler.hpp"
+/// @file
+/// Includes all public headers of the components that are installed.
+
+#include <meshorder/error.hpp>
+#include <meshorder/fiedler.hpp>
+#include <meshorder/options.hpp>
+#include <meshorder/order.hpp>
+#include <meshorder/permutation.hpp>
+#include <meshorder/quality.hpp>
+#include <meshorder/registry.hpp>
+#include <meshorder/shape.hpp>
+#include <meshorder/version.hpp>
+#include <meshorder/view.hpp>
+
+#if __has_include(<meshorder/io.hpp>)
+#include <meshorder/io.hpp>
+#include <meshorder/mesh.hpp>
+#endif
+#if __has_include(<meshorder/payoff.hpp>)
+#include <meshorder/payoff.hpp>
+#endif

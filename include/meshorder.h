@@ -1,0 +1,232 @@
+/* Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT */
+#ifndef MESHORDER_H
+#define MESHORDER_H
+
+/**
+ * @file
+ * The C interface of meshorder (C99): orders of graphs and meshes, Fiedler vectors, methods of one's own. Its
+ * binary interface is stable: structures only grow at their end, functions and numbers do not change.
+ *
+ * Every function returns MO_OK or the status of its failure, unless stated otherwise; `mo_last_error` then
+ * returns a sentence. Outputs are unspecified after a failure. All functions may be called by several threads
+ * at once. None throws, and a callback must not throw or longjmp.
+ */
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#if defined(MESHORDER_BUILDING)
+#define MO_API __declspec(dllexport)
+#else
+#define MO_API __declspec(dllimport)
+#endif
+#define MO_EXPORT __declspec(dllexport)
+#elif defined(__GNUC__)
+#define MO_API __attribute__((visibility("default")))
+#define MO_EXPORT __attribute__((visibility("default")))
+#else
+#define MO_API
+#define MO_EXPORT
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Status of a call. */
+typedef int32_t mo_status;
+enum {
+  MO_OK = 0,
+  MO_INVALID_ARGUMENT = 1, /**< a mistake of the caller: sizes, unknown method, asymmetric graph, NaN */
+  MO_BAD_INPUT = 2,        /**< a faulty file */
+  MO_TOO_LARGE = 3,        /**< 2^31 vertices or more, or a result that the output's type cannot hold */
+  MO_UNAVAILABLE = 4,      /**< a method that this build lacks */
+  MO_STOPPED = 5,          /**< the progress callback returned non-zero */
+  MO_IO = 6,               /**< the operating system refused */
+  MO_INTERNAL = 7,         /**< a failure of meshorder or a library that it uses, or of an own method */
+  MO_OUT_OF_MEMORY = 8
+};
+
+/** Type of the numbers of an array. */
+typedef int32_t mo_type;
+enum { MO_INT32 = 0, MO_UINT32 = 1, MO_INT64 = 2, MO_UINT64 = 3, MO_FLOAT = 4, MO_DOUBLE = 5 };
+
+/** An array that is read during the call. A null pointer to this structure, or size 0, stands for no array.
+ */
+typedef struct mo_in {
+  const void* data;
+  int64_t size; /**< numbers, not bytes; >= 0 */
+  mo_type type;
+} mo_in;
+
+/** An array that is written during the call. A null pointer to this structure: the result is not wanted. */
+typedef struct mo_out {
+  void* data;
+  int64_t size; /**< numbers; must be that of the result */
+  mo_type type;
+} mo_out;
+
+/** Values of mo_options.check. */
+enum {
+  MO_CHECK_FULL = 0, /**< everything */
+  MO_CHECK_FAST = 1, /**< everything but symmetry */
+  MO_CHECK_NONE = 2  /**< nothing: faulty input is undefined behaviour */
+};
+
+/** Options of a call. `mo_options_init` fills in the defaults; a null pointer stands for them. */
+typedef struct mo_options {
+  size_t struct_size;         /**< sizeof(mo_options) of the caller */
+  const char* method;         /**< vertex method; null: "auto" */
+  const char* element_method; /**< element method; null: "auto" */
+  const char* workload; /**< what "auto" chooses for: "all" (null), "element", "spmv", "assembly", "springs",
+                             "bandwidth", "fill" */
+  uint64_t seed;        /**< default 0 */
+  double tolerance;     /**< of Fiedler vectors, relative to lambda2, > 0; default 0.1 */
+  double time_limit;    /**< seconds, then the best so far; default infinity */
+  int32_t threads;      /**< at most; 0 (default): all that TBB would take */
+  int32_t base;         /**< of offsets and numbers that are read, and of those written; 0 (default) or 1 */
+  int32_t check;        /**< MO_CHECK_...; default MO_CHECK_FULL */
+  int32_t symmetrize;   /**< non-zero: take the pattern of A + A^T; default 0: refuse asymmetric input */
+  mo_in start;          /**< n numbers near the Fiedler vector, or none */
+  mo_in groups;         /**< a group for each vertex, which stay together, ascending; or none */
+  /** Called now and then on the calling thread: stage in words, fraction 0 ... 1 or -1 for unknown. Non-zero
+   * stops. */
+  int32_t (*progress)(void* user, const char* stage, double fraction);
+  void* user;             /**< passed to `progress` */
+  int32_t max_iterations; /**< of the eigensolver, >= 1; default 500 */
+  int32_t reserved;       /**< 0 */
+  mo_in cell_groups;      /**< likewise for cells, within their block and dimension */
+} mo_options;
+
+/** Report on a call. Set `struct_size` to sizeof(mo_result) before it; a null pointer: not wanted. */
+typedef struct mo_result {
+  size_t struct_size;
+  int32_t complete;   /**< 0: the time limit ended it early */
+  int32_t components; /**< connected components where Fiedler vectors were computed, else 0 */
+  double seconds;     /**< wall-clock time */
+  double lambda2;     /**< of the largest component where a Fiedler vector was computed, else 0 */
+  char method[32];    /**< the method taken, null-terminated; cut if longer */
+} mo_result;
+
+/** Returns the version of the library: 10000 major + 100 minor + patch. Never fails. */
+MO_API uint32_t mo_version(void);
+
+/** Returns the message of this thread's last failure, "" if there was none. Valid until this thread's next
+ * call. */
+MO_API const char* mo_last_error(void);
+
+/** Fills in the defaults. `struct_size` is sizeof(mo_options) of the caller. Does nothing for a null pointer.
+ */
+MO_API void mo_options_init(mo_options* options, size_t struct_size);
+
+/**
+ * Orders the vertices of an undirected graph or the rows of a matrix, given in compressed sparse rows.
+ *
+ * @param offsets     n + 1, ascending, the first is `base`
+ * @param neighbours  offsets[n] - base numbers from `base` on; loops and repeats are ignored
+ * @param weights     one positive number for each neighbour, or null
+ * @param points      dimension * n coordinates x y z x y z ... for geometric methods, or null
+ * @param dimension   1 to 3; not used without points
+ * @param options     or null
+ * @param new_to_old  n integers, or null: the old number of the vertex at each new place, from `base` on
+ * @param old_to_new  n integers, or null: the new number of each old vertex, from `base` on
+ * @param result      or null
+ */
+MO_API mo_status mo_order_graph(const mo_in* offsets, const mo_in* neighbours, const mo_in* weights,
+                                const mo_in* points, int32_t dimension, const mo_options* options,
+                                const mo_out* new_to_old, const mo_out* old_to_new, mo_result* result);
+
+/**
+ * Orders the vertices and cells of a mesh.
+ *
+ * @param cell_offsets       cells + 1, ascending, the first is `base`
+ * @param cell_vertices      vertices of the cells, from `base` on
+ * @param vtk_types          VTK's type of each cell (any integer type), or null: all cells of one dimension
+ * @param vertex_count       n; 0: as many as there are points
+ * @param points             dimension * n coordinates, or null
+ * @param dimension          1 to 3; not used without points
+ * @param options            or null
+ * @param vertex_new_to_old  n integers, or null
+ * @param vertex_old_to_new  n integers, or null
+ * @param cell_new_to_old    one integer for each cell, or null
+ * @param cell_old_to_new    one integer for each cell, or null
+ * @param vertex_result      or null
+ * @param cell_result        or null
+ */
+MO_API mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vertices, const mo_in* vtk_types,
+                               int64_t vertex_count, const mo_in* points, int32_t dimension,
+                               const mo_options* options, const mo_out* vertex_new_to_old,
+                               const mo_out* vertex_old_to_new, const mo_out* cell_new_to_old,
+                               const mo_out* cell_old_to_new, mo_result* vertex_result,
+                               mo_result* cell_result);
+
+/**
+ * Computes the Fiedler vector of every connected component: norm 1 and sum 0 in each.
+ *
+ * @param values  n numbers of type MO_DOUBLE or MO_FLOAT
+ * @param result  or null; its lambda2 is that of the largest component
+ */
+MO_API mo_status mo_fiedler(const mo_in* offsets, const mo_in* neighbours, const mo_in* weights,
+                            const mo_options* options, const mo_out* values, mo_result* result);
+
+/**
+ * Copies rows to their new places: row k of `to` becomes row new_to_old[k] - base of `from`.
+ *
+ * @param new_to_old  a bijection, n integers
+ * @param base        0 or 1
+ * @param from        n rows
+ * @param to          n rows that do not overlap `from`
+ * @param row_bytes   bytes of a row, >= 0
+ */
+MO_API mo_status mo_move(const mo_in* new_to_old, int32_t base, const void* from, void* to,
+                         int64_t row_bytes);
+
+/** Returns the number of vertex methods, registered ones among them. Never fails. */
+MO_API int32_t mo_method_count(void);
+
+/** Returns the name of a vertex method, 0 <= k < mo_method_count(), or null. Valid for the life of the
+ * process. */
+MO_API const char* mo_method_name(int32_t k);
+
+/**
+ * A vertex method of one's own.
+ *
+ * @param user        as registered
+ * @param n           number of vertices
+ * @param offsets     n + 1, from 0
+ * @param neighbours  ascending in each row, no loops, no repeats, symmetric
+ * @param xyz         3 n coordinates, or null
+ * @param new_to_old  n numbers to be written: a bijection of 0 ... n-1
+ * @return 0, or another number, which makes the call that asked for the order fail with MO_INTERNAL
+ */
+typedef int32_t (*mo_method)(void* user, int64_t n, const int64_t* offsets, const int32_t* neighbours,
+                             const double* xyz, int32_t* new_to_old);
+
+/** Type of `mo_register`, which a plug-in is handed. */
+typedef mo_status (*mo_register_fn)(const char* name, const char* description, int32_t needs_points,
+                                    mo_method method, void* user);
+
+/**
+ * Adds a vertex method for the rest of the process.
+ *
+ * @param name          lower case letters, digits and '-'; not taken yet; copied
+ * @param description   one line; copied
+ * @param needs_points  non-zero: refuse to be called without coordinates
+ * @param method        may be called by several threads at once
+ * @param user          passed to `method`
+ */
+MO_API mo_status mo_register(const char* name, const char* description, int32_t needs_points,
+                             mo_method method, void* user);
+
+/**
+ * The function that a plug-in defines: it registers its methods by `add` and returns MO_OK, or what `add`
+ * returned. `meshorder --plugin FILE` and `load_methods` of the C++ interface call it.
+ */
+MO_EXPORT mo_status meshorder_plugin_v1(mo_register_fn add);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* MESHORDER_H */

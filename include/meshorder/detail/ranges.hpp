@@ -1,0 +1,100 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <ranges>
+#include <type_traits>
+
+namespace meshorder::inline v0_2 {
+
+/// An integer type that views and spans accept: 32 or 64 bits, signed or not. Neither bool nor a character
+/// type.
+template <class T>
+concept IndexType = std::integral<T> && !std::same_as<T, bool> && !std::same_as<T, wchar_t> &&
+                    !std::same_as<T, char32_t> && (sizeof(T) == 4 || sizeof(T) == 8) && !std::is_const_v<T>;
+
+/// A floating-point type that views accept.
+template <class T>
+concept RealType = std::same_as<T, float> || std::same_as<T, double>;
+
+/// An integer type for a number of entries.
+template <class N>
+concept CountType = std::integral<N> && !std::same_as<N, bool>;
+
+}  // namespace meshorder::inline v0_2
+
+/// Parts of the public headers that may change at any time.
+namespace meshorder::inline v0_2::detail {
+
+/// The number type of a range's values: T of T and of std::array<T, width>.
+template <class T>
+struct Row {
+  using Number = T;
+  static constexpr std::size_t width = 1;
+  static constexpr bool is_array = false;
+};
+
+template <class T, std::size_t N>
+struct Row<std::array<T, N>> {
+  static_assert(N > 0 && sizeof(std::array<T, N>) == N * sizeof(T));
+  using Number = T;
+  static constexpr std::size_t width = N;
+  static constexpr bool is_array = true;
+};
+
+template <class R>
+concept Contiguous = std::ranges::contiguous_range<R> && std::ranges::sized_range<R>;
+
+template <class R>
+using RowOf = Row<std::ranges::range_value_t<R>>;
+
+template <class R>
+concept IndexRange = Contiguous<R> && IndexType<typename RowOf<R>::Number>;
+
+template <class R>
+concept RealRange = Contiguous<R> && RealType<std::ranges::range_value_t<R>>;
+
+template <class R>
+concept PointRange =
+    Contiguous<R> && RowOf<R>::is_array && RealType<typename RowOf<R>::Number> && RowOf<R>::width <= 3;
+
+/// A range whose values may be assigned to and which does not die at the end of the expression.
+template <class R>
+concept Writable = Contiguous<R> && std::ranges::borrowed_range<R> &&
+    !std::is_const_v<std::remove_reference_t<std::ranges::range_reference_t<R>>>;
+
+/// Views such as std::span, whose arrays outlive them.
+template <class R>
+concept Borrowed = std::ranges::enable_borrowed_range<std::remove_cvref_t<R>>;
+
+/// Returns the first number of a range of numbers or of arrays of numbers; unspecified for an empty range.
+template <class R>
+auto first_number(R&& range) noexcept {
+  using Value = std::remove_pointer_t<decltype(std::ranges::data(range))>;
+  using Number = typename Row<std::remove_const_t<Value>>::Number;
+  using Target = std::conditional_t<std::is_const_v<Value>, const Number, Number>;
+  if constexpr (RowOf<R>::is_array) {
+    return reinterpret_cast<Target*>(std::ranges::data(range));
+  } else {
+    return static_cast<Target*>(std::ranges::data(range));
+  }
+}
+
+/// Returns how many numbers a range of numbers or of arrays of numbers holds.
+template <class R>
+std::size_t number_count(R&& range) noexcept {
+  return static_cast<std::size_t>(std::ranges::size(range)) * RowOf<R>::width;
+}
+
+/// Returns a count as std::size_t, 0 for a negative one: whoever reads the array then finds its size wrong.
+template <CountType N>
+constexpr std::size_t checked_count(N count) noexcept {
+  if constexpr (std::is_signed_v<N>) {
+    if (count < 0) return 0;
+  }
+  return static_cast<std::size_t>(count);
+}
+
+}  // namespace meshorder::inline v0_2::detail

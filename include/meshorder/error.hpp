@@ -1,0 +1,100 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/export.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace meshorder::inline v0_2 {
+
+/// Kind of a failure. The numbers are those of `mo_status` in meshorder.h and do not change.
+enum class Code : int {
+  ok = 0,
+  invalid_argument = 1,
+  bad_input = 2,
+  too_large = 3,
+  unavailable = 4,
+  stopped = 5,
+  io = 6,
+  internal = 7,
+};
+
+/// Base class of all exceptions that meshorder throws, besides `std::bad_alloc`.
+///
+/// Exceptions of a user's callback (progress, companion, own method) pass through unchanged. After an
+/// exception the input arguments have the values that they had before the call; output arrays are
+/// unspecified.
+class MESHORDER_API Error : public std::runtime_error {
+ public:
+  /// @param code     kind of the failure; `Code::io` is thrown as this class itself
+  /// @param message  one sentence: what is wrong, where, and what would be right
+  Error(Code code, const std::string& message) : std::runtime_error(message), code_(code) {}
+
+  /// Returns the kind of the failure; one kind for each derived class.
+  [[nodiscard]] Code code() const noexcept { return code_; }
+
+ private:
+  Code code_;
+};
+
+/// Thrown for invalid arguments: an unknown method, a map that is not a bijection, sizes that do not match,
+/// an asymmetric graph, a coordinate or weight that is not finite. Nothing was changed.
+struct MESHORDER_API InvalidArgument : Error {
+  explicit InvalidArgument(const std::string& message) : Error(Code::invalid_argument, message) {}
+};
+
+/// Position of a fault in a file. Text is located by line, binary data by byte.
+struct Location {
+  std::string file;
+  std::int64_t line = 0;   ///< from 1; 0 where unknown
+  std::int64_t byte = -1;  ///< from 0; −1 where unknown
+};
+
+/// Thrown for a faulty file or faulty bytes in memory.
+///
+/// `what()` reads "FILE:LINE: fault; remedy" for text and "FILE: byte N: fault; remedy" for binary data.
+class MESHORDER_API InputError : public Error {
+ public:
+  /// @param location  where the fault is
+  /// @param what      the fault
+  /// @param remedy    what would be right; may be empty
+  InputError(Location location, const std::string& what, const std::string& remedy);
+
+  /// The same for a fault of the file as a whole.
+  InputError(const std::string& file, const std::string& what, const std::string& remedy)
+      : InputError(Location{file, 0, -1}, what, remedy) {}
+
+  /// Returns where the fault is. Valid as long as this exception or a copy of it exists.
+  [[nodiscard]] const Location& location() const noexcept { return *location_; }
+
+ private:
+  std::shared_ptr<const Location> location_;  // shared: copying an exception must not throw
+};
+
+/// Thrown where numbers would not fit: 2³¹ or more vertices, cells or degrees of freedom; 2³¹ or more entries
+/// for a METIS of 32 bits; a result that the caller's integer type cannot hold.
+struct MESHORDER_API TooLarge : Error {
+  explicit TooLarge(const std::string& message) : Error(Code::too_large, message) {}
+};
+
+/// Thrown for a method or a compression that this build lacks; the message names the build option that brings
+/// it.
+struct MESHORDER_API Unavailable : Error {
+  explicit Unavailable(const std::string& message) : Error(Code::unavailable, message) {}
+};
+
+/// Thrown when `Run::progress` returned false.
+struct MESHORDER_API Stopped : Error {
+  explicit Stopped(const std::string& message = "stopped by the progress callback")
+      : Error(Code::stopped, message) {}
+};
+
+/// Thrown for a failure inside meshorder or a library that it uses, such as an error status of METIS.
+struct MESHORDER_API InternalError : Error {
+  explicit InternalError(const std::string& message) : Error(Code::internal, message) {}
+};
+
+}  // namespace meshorder::inline v0_2

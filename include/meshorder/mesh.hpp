@@ -1,0 +1,214 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/export.hpp>
+#include <meshorder/number_view.hpp>
+#include <meshorder/options.hpp>
+#include <meshorder/order.hpp>
+#include <meshorder/permutation.hpp>
+#include <meshorder/shape.hpp>
+#include <meshorder/view.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace meshorder::inline v0_2 {
+
+/// Coordinates x, y, z; z is 0 in the plane.
+using Point = std::array<double, 3>;
+
+/// Cells of any types in file order: cell c has shape `shapes[c]` and the vertices
+/// `vertices[offsets[c]] … vertices[offsets[c + 1] − 1]`, in the order that `Shape` tells. Cells of more than
+/// second order keep the order of the file that they came from.
+struct MESHORDER_API Cells {
+  std::vector<Shape> shapes;
+  std::vector<Offset> offsets{0};  ///< cells + 1, ascending
+  std::vector<Index> vertices;     ///< offsets[cells]
+
+  /// Returns the number of cells. O(1).
+  [[nodiscard]] Index size() const noexcept { return static_cast<Index>(shapes.size()); }
+  /// Returns the number of vertices of a cell < size(). O(1).
+  [[nodiscard]] int vertex_count(Index cell) const { return static_cast<int>(end(cell) - begin(cell)); }
+  /// Returns the vertices of a cell < size(). Valid until `vertices` changes its size. O(1).
+  [[nodiscard]] std::span<const Index> operator[](Index cell) const {
+    return {vertices.data() + begin(cell), vertices.data() + end(cell)};
+  }
+  [[nodiscard]] std::span<Index> operator[](Index cell) {
+    return {vertices.data() + begin(cell), vertices.data() + end(cell)};
+  }
+  /// Appends a cell. The vertices are not checked, and must not be part of this object. Amortised
+  /// O(vertices).
+  void push_back(Shape shape, std::span<const Index> cell_vertices);
+  /// Reserves memory for so many cells and vertex entries in all.
+  void reserve(Offset cells, Offset vertex_entries);
+  /// Returns the highest dimension of any cell, −1 without cells. O(cells).
+  [[nodiscard]] int highest_dimension() const;
+
+  bool operator==(const Cells&) const = default;
+
+ private:
+  [[nodiscard]] Offset begin(Index cell) const { return offsets[static_cast<std::size_t>(cell)]; }
+  [[nodiscard]] Offset end(Index cell) const { return offsets[static_cast<std::size_t>(cell) + 1]; }
+};
+
+/// What an array or a set belongs to.
+enum class Association : std::uint8_t { vertices, cells };
+
+/// Returns "vertices" or "cells". Valid for the life of the program.
+MESHORDER_API std::string_view to_string(Association association);
+
+/// The values of an array in the number type that the file gave them.
+using Values = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int8_t>,
+                            std::vector<std::uint8_t>, std::vector<std::int16_t>, std::vector<std::uint16_t>,
+                            std::vector<std::int32_t>, std::vector<std::uint32_t>, std::vector<std::int64_t>,
+                            std::vector<std::uint64_t>, std::vector<std::string>>;
+
+/// Array name of the integer label of vertices or cells. Formats translate their own label field to and from
+/// it: a Medit reference, a TetGen boundary marker, the first physical group of Gmsh.
+inline constexpr std::string_view kLabel = "label";
+
+/// Values that belong to vertices or cells, `components` for each, row after row.
+struct DataArray {
+  std::string name = {};
+  Association association = Association::vertices;
+  Index components = 1;  ///< ≥ 1
+  Values values = {};    ///< components · rows
+  /// The vertices or cells of the rows, for arrays that cover only some (any order, each at most once); empty
+  /// where row i belongs to vertex or cell i.
+  std::vector<Index> indices = {};
+  std::vector<std::string> component_names = {};  ///< where the file gave them; else empty
+
+  /// Returns true if there is a row for every vertex or cell.
+  [[nodiscard]] bool is_dense() const noexcept { return indices.empty(); }
+  bool operator==(const DataArray&) const = default;
+};
+
+/// A named list of vertices or cells, in the order of the file.
+struct EntitySet {
+  std::string name = {};
+  Association association = Association::cells;
+  std::vector<Index> members = {};  ///< each at most once
+
+  bool operator==(const EntitySet&) const = default;
+};
+
+/// Format-specific data, preserved for writing the same format again: materials, encodings, whole sections of
+/// text. Must not depend on the order of vertices or cells. Only the formats of this library derive from it.
+class MESHORDER_API FormatMetadata {
+ public:
+  FormatMetadata() = default;
+  FormatMetadata(const FormatMetadata&) = default;
+  FormatMetadata(FormatMetadata&&) = default;
+  FormatMetadata& operator=(const FormatMetadata&) = default;
+  FormatMetadata& operator=(FormatMetadata&&) = default;
+  virtual ~FormatMetadata() = default;
+  /// Returns what is lost when another format is written, in a user's words: {"2 materials", "the section
+  /// $Periodic"}.
+  [[nodiscard]] virtual std::vector<std::string> contents() const = 0;
+};
+
+/// A simulation mesh with everything that its file attached to it. Plain data: whoever changes one member
+/// keeps the others in step; `check_mesh` verifies it.
+struct Mesh {
+  std::vector<Point> points = {};  ///< one for each vertex; the third coordinate is 0 where the file has two
+  int dimension = 3;               ///< coordinates that the file gives to a point: 2 or 3
+  Cells cells = {};
+  std::vector<DataArray> data = {};
+  std::vector<EntitySet> sets = {};
+  /// The number that the file gives to each vertex and cell, where it is not simply its position (from 0 or
+  /// 1); else empty. Ids of cells are unique at least among cells of one type.
+  std::vector<std::int64_t> vertex_ids = {};
+  std::vector<std::int64_t> cell_ids = {};
+  /// The first cell of each block of cells that the format keeps together (Gmsh 4.1's entities), ascending
+  /// from 0; empty for one block. Reordering keeps every cell in its block.
+  std::vector<Index> cell_blocks = {};
+  std::string format = {};  ///< name of the format that it was read from; empty for a mesh made in memory
+  std::shared_ptr<const FormatMetadata> format_metadata = {};
+
+  [[nodiscard]] Index vertex_count() const noexcept { return static_cast<Index>(points.size()); }
+  [[nodiscard]] Index cell_count() const noexcept { return cells.size(); }
+};
+
+/// Returns the number of rows of an array: its values divided by its components. O(1).
+MESHORDER_API Index row_count(const DataArray& array);
+
+/// Returns the array of that name, or null. Valid until `mesh.data` changes. O(arrays).
+MESHORDER_API const DataArray* find_array(const Mesh& mesh MESHORDER_LIFETIMEBOUND, std::string_view name,
+                                          Association association);
+const DataArray* find_array(const Mesh&& mesh, std::string_view name, Association association) = delete;
+
+/// Checks that a mesh is sound: every cell has vertices that exist and as many as its shape needs,
+/// coordinates are finite, arrays have as many rows as what they belong to (or indices that exist), members
+/// of sets exist, ids and blocks fit.
+///
+/// @throws InvalidArgument for the first fault, which the message names
+/// @note O(size of the mesh).
+MESHORDER_API void check_mesh(const Mesh& mesh);
+
+/// Views the points and cells of a mesh; nothing is copied. Valid until either changes its size. O(1).
+[[nodiscard]] MESHORDER_API MeshView view(const Mesh& mesh MESHORDER_LIFETIMEBOUND);
+MeshView view(const Mesh&& mesh) = delete;
+
+/// Copies a view into a mesh without data, sets and ids. Blocks become `cell_blocks`.
+///
+/// @throws InvalidArgument for sizes that do not match, a vertex out of range, an unknown VTK type, and cells
+/// without
+///         types
+/// @note O(size of the mesh).
+[[nodiscard]] MESHORDER_API Mesh make_mesh(const MeshView& mesh);
+
+/// What becomes of the ids of vertices and cells.
+enum class Ids : std::uint8_t {
+  renumber,  ///< the same numbers, ascending along the new order (cells: within each dimension of each block)
+  keep,      ///< every vertex and cell keeps its id, so that other files that name it stay valid
+  attach,    ///< as `renumber`, and each old id, or old position from 0, is attached as the array "original"
+};
+
+/// Options of `reorder`.
+struct ReorderOptions {
+  MeshMethods methods = {};
+  OrderOptions order = {};  ///< `groups` and `cell_groups` must be empty where `group_by` is not
+  Ids ids = Ids::renumber;
+  /// Name of an array of whole numbers whose groups stay together, ascending; what has no value comes last.
+  /// An array on cells groups cells and, by the smallest value among its elements, each vertex; "cells:NAME"
+  /// and "vertices:NAME" tell arrays of one name apart; "sets" groups by the sets of cells. Empty: no groups.
+  std::string group_by = {};
+  /// Name of the format that the mesh will be written in: one that keeps cells of a type together gets them
+  /// so before they are ordered. Empty: the one that it was read from.
+  std::string format = {};
+};
+
+/// Orders a mesh and moves its vertices and cells, with everything attached to them.
+///
+/// @param mesh     changed in place; unchanged after an exception
+/// @param options  see `ReorderOptions`
+/// @return where everything went: `cells.permutation` holds all moves of cells, those for the format among
+/// them, so
+///         that it describes the file that `write_mesh` makes. An identity order changes nothing, not even
+///         ids
+/// @throws as `order_mesh`, and InvalidArgument for a mesh that `check_mesh` refuses, an unknown array or
+/// format
+/// @note Cost of `order_mesh`, then O(size of the mesh) and a copy of its largest part at a time.
+MESHORDER_API MeshOrder reorder(Mesh& mesh, const ReorderOptions& options = {});
+
+/// Moves the vertices and cells of a mesh to given places, with everything attached to them: cells name their
+/// renumbered vertices, arrays and sets follow.
+///
+/// @param mesh      changed in place; unchanged after an exception
+/// @param vertices  vertex_count() places
+/// @param cells     cell_count() places; keeps each cell in its block and at the place of a cell of its
+/// dimension
+/// @param ids       what becomes of ids
+/// @throws InvalidArgument if a size does not match or `cells` breaks that rule
+/// @note O(size of the mesh); a copy of its largest part at a time.
+MESHORDER_API void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells,
+                                    Ids ids = Ids::renumber);
+
+}  // namespace meshorder::inline v0_2

@@ -1,0 +1,103 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/export.hpp>
+#include <meshorder/number_view.hpp>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string_view>
+
+namespace meshorder::inline v0_2 {
+
+/// What to order for. `auto` chooses its method by this; methods asked for by name ignore it.
+enum class Workload : std::uint8_t {
+  all,        ///< the four kernels below, weighted equally
+  element,    ///< element forces: gather from and scatter to the vertices of each element
+  spmv,       ///< products of the stiffness matrix with a vector, as iterative solvers repeat them
+  assembly,   ///< assembly of the stiffness matrix
+  springs,    ///< a force along every edge
+  bandwidth,  ///< the bandwidth of the matrix, for banded and skyline solvers
+  fill,       ///< few non-zeros in the factors of the matrix, for sparse direct solvers
+};
+
+/// All values of `Workload`.
+inline constexpr std::array kWorkloads{Workload::all,      Workload::element, Workload::spmv,
+                                       Workload::assembly, Workload::springs, Workload::bandwidth,
+                                       Workload::fill};
+
+/// Returns "all", "element", "spmv", "assembly", "springs", "bandwidth" or "fill". Valid for the life of the
+/// program.
+MESHORDER_API std::string_view to_string(Workload workload);
+
+/// Returns the workload of that name.
+///
+/// @throws InvalidArgument for another name; the message lists the known ones
+MESHORDER_API Workload parse_workload(std::string_view name);
+
+/// How much of the input is checked before work begins. Offsets and numbers that leave their range make every
+/// level but `none` throw InvalidArgument.
+enum class Check : std::uint8_t {
+  /// Everything: sizes; ascending offsets; numbers in range; weights positive and finite; coordinates finite;
+  /// pattern
+  /// and weights symmetric. Symmetry is decided by a 64-bit hash sum over the entries, which misses a random
+  /// fault with
+  /// probability 2⁻⁶⁴.
+  full,
+  /// Everything but symmetry. An asymmetric graph gives an unspecified, valid order.
+  fast,
+  /// Nothing. The graph must be what `full` accepts, with ascending rows, no loops and no repeats; anything
+  /// else is
+  /// undefined behaviour.
+  none,
+};
+
+/// What to do with an asymmetric pattern.
+enum class Symmetry : std::uint8_t {
+  require,  ///< refuse it with InvalidArgument, where `Check` looks for it
+  mirror,   ///< order A + Aᵀ; weights become those of (A + Aᵀ) / 2
+};
+
+/// State of a running call.
+struct Progress {
+  /// What is done now: "check", "graph", "coarsen", "eigenvector", "improve", "sort", "move", or "metis",
+  /// which cannot be asked or stopped. These words are stable; more may come. Valid during the callback.
+  std::string_view stage;
+  double fraction = -1;  ///< of the whole call that is done, 0 … 1, never decreasing; −1 where unknown
+  double seconds = 0;    ///< since the call began
+};
+
+/// How a call runs. Except for `time_limit` nothing here changes a result by a single bit.
+struct Run {
+  /// Threads at most, ≥ 0; 0: as many as the caller's TBB arena has. The call runs in an arena of its own; 1
+  /// starts no thread. A limit set by tbb::global_control holds as well.
+  int threads = 0;
+
+  /// Called now and then on the thread that made the call, never twice at once and with no lock held.
+  /// Returning false ends the call with `Stopped`; an exception ends it and passes through.
+  std::function<bool(const Progress&)> progress = {};
+
+  /// Seconds after which iterative methods return the best result so far, with `complete` = false. Methods
+  /// that do not iterate ignore it.
+  double time_limit = std::numeric_limits<double>::infinity();
+};
+
+/// Options of orders and of the Fiedler vector. All have defaults: name those that differ,
+/// `{.seed = 7, .run = {.threads = 4}}`.
+struct OrderOptions {
+  std::uint64_t seed = 0;  ///< of `scrambled`, of METIS and of start vectors
+  double tolerance =
+      0.1;  ///< of Fiedler vectors: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖, > 0; 0.1 suffices for orders
+  int max_iterations = 500;           ///< of the eigensolver on the whole graph, ≥ 1
+  Workload workload = Workload::all;  ///< what `auto` chooses its method for
+  RealView start = {};    ///< n numbers near the Fiedler vector, as `Order::vector` has them; or none
+  IndexView groups = {};  ///< a group for each vertex, any integer: groups stay together, ascending; or none
+  IndexView cell_groups = {};  ///< likewise for each cell, within its block and dimension
+  Check check = Check::full;
+  Symmetry symmetry = Symmetry::require;
+  Run run = {};
+};
+
+}  // namespace meshorder::inline v0_2

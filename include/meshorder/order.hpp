@@ -1,0 +1,213 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/export.hpp>
+#include <meshorder/fiedler.hpp>
+#include <meshorder/options.hpp>
+#include <meshorder/permutation.hpp>
+#include <meshorder/view.hpp>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshorder::inline v0_2 {
+
+/// The method that made an order.
+struct MethodChoice {
+  std::string name;    ///< never "auto"
+  std::string reason;  ///< why `auto` took it; empty where it was asked for by name
+
+  bool operator==(const MethodChoice&) const = default;
+};
+
+/// An order and how it was found.
+struct Order {
+  Permutation permutation;
+  MethodChoice method = {};
+  std::vector<FiedlerComponent> fiedler =
+      {};  ///< of methods that use Fiedler vectors: a report for each component
+  std::vector<double> vector =
+      {};                ///< of `fiedler` and `minla`: n entries, the next call's `OrderOptions::start`
+  bool complete = true;  ///< false: `Run::time_limit` ended the method early
+  double seconds = 0;    ///< wall-clock time of the call
+  std::vector<std::string> notes =
+      {};  ///< what was cleaned or converted: "12 loops dropped", "indices narrowed"
+};
+
+/// Orders of a mesh's vertices and of all its cells.
+struct MeshOrder {
+  Order vertices;
+  Order cells;
+};
+
+/// Names of the methods for a mesh's vertices and elements (`vertex_methods` and `element_methods` list
+/// them).
+struct MeshMethods {
+  std::string vertices = "auto";
+  std::string elements = "auto";
+
+  bool operator==(const MeshMethods&) const = default;
+};
+
+/// Orders the vertices of a graph or the rows of a matrix. Nothing is changed.
+///
+/// Vertices without neighbours come last, in their old order, except under `original`. With `options.groups`
+/// the groups ascend and each is ordered by the method.
+///
+/// @param graph    n vertices, any integer types; see `GraphView`
+/// @param method   name of a vertex method
+/// @param options  see `OrderOptions`
+/// @param points   n points for geometric methods (hilbert, morton), else ignored
+/// @throws InvalidArgument for an unknown method (the message lists the known ones), for a geometric method
+/// without
+///         coordinates, for sizes that do not match, and for what `check` refuses
+/// @throws TooLarge for more than 2,147,483,647 vertices, or entries beyond the index type of METIS
+/// @throws Unavailable for a method that this build lacks
+/// @throws Stopped if the progress callback returned false
+/// @note rcm and bfs O(n + entries · log degree); hilbert and morton O(n log n); fiedler O((n + entries) ·
+/// iterations),
+///       about six; spectral that times log n; minla that and O(n + entries) a pass. No copy of a clean graph
+///       with int64 offsets and int32 neighbours; other offsets take 8 bytes a vertex, other neighbours 4
+///       bytes an entry. The same input, options and version give the same order on any number of threads and
+///       for any integer types. Reentrant.
+MESHORDER_API Order order_vertices(const GraphView& graph, std::string_view method = "auto",
+                                   const OrderOptions& options = {}, const PointsView& points = {});
+
+/// Orders the cells of a mesh. Nothing is changed.
+///
+/// The elements, which are the cells of the highest dimension, go by the method; cells of lower dimension go
+/// by `lexmax` (under `original` they stay). Cells stay within their block, and each dimension keeps its
+/// places there.
+///
+/// @param cells     m cells of n vertices, any layout; see `CellsView`
+/// @param vertices  order of the n vertices, which most element orders follow
+/// @param method    name of an element method
+/// @param options   see `OrderOptions`; `cell_groups` has m entries or none, `groups` is not used
+/// @param points    n points in their old order for geometric methods, else ignored
+/// @return permutation of all m cells
+/// @throws as `order_vertices`
+/// @note lexmax, mean, min, max O(entries + m log m); fiedler as for vertices, on the dual graph. Determinism
+/// as above.
+MESHORDER_API Order order_elements(const CellsView& cells, const Permutation& vertices,
+                                   std::string_view method = "auto", const OrderOptions& options = {},
+                                   const PointsView& points = {});
+
+/// Orders the vertices of a mesh, by the graph that joins those of a common element, and then its cells.
+///
+/// @param mesh     n vertices, m cells
+/// @param methods  names of the two methods
+/// @param options  see `OrderOptions`; `groups` has n entries or none, `cell_groups` m or none; the time
+/// limit and the
+///                 progress are those of the whole call
+/// @throws as `order_vertices`, and InvalidArgument for faulty cells
+/// @note The graph costs O(Σ (vertices of an element)²) and about 60 bytes a tetrahedron.
+MESHORDER_API MeshOrder order_mesh(const MeshView& mesh, const MeshMethods& methods = {},
+                                   const OrderOptions& options = {});
+
+/// A clean undirected graph that owns its arrays: rows ascend, no loops, no repeats, every edge in the rows
+/// of both its ends. Converts to `GraphView` where it has a name: a view of a temporary would dangle and does
+/// not compile.
+class MESHORDER_API Graph {
+ public:
+  /// The graph without vertices.
+  Graph() = default;
+
+  /// Takes over the arrays of a clean graph without a check; `check` verifies it afterwards where in doubt.
+  ///
+  /// @param offsets     n + 1, from 0
+  /// @param neighbours  offsets[n] numbers in 0 … n−1
+  /// @param weights     one for each neighbour, or none
+  [[nodiscard]] static Graph adopt(std::vector<Offset> offsets, std::vector<Index> neighbours,
+                                   std::vector<double> weights = {}) noexcept {
+    Graph graph;
+    graph.offsets_ = std::move(offsets);
+    graph.neighbours_ = std::move(neighbours);
+    graph.weights_ = std::move(weights);
+    return graph;
+  }
+
+  operator GraphView() const& noexcept MESHORDER_LIFETIMEBOUND {  // NOLINT(google-explicit-constructor)
+    return {.offsets = offsets_, .neighbours = neighbours_, .weights = weights_};
+  }
+  operator GraphView() const&& = delete;
+
+  /// Returns the number of vertices n.
+  [[nodiscard]] Index size() const noexcept {
+    return offsets_.empty() ? Index{0} : static_cast<Index>(offsets_.size() - 1);
+  }
+  /// Returns the number of edges, half the number of entries.
+  [[nodiscard]] Offset edge_count() const noexcept { return static_cast<Offset>(neighbours_.size() / 2); }
+  /// Returns the n + 1 offsets, or none for a default or moved-from graph. Valid while this object lives
+  /// unchanged.
+  [[nodiscard]] std::span<const Offset> offsets() const& noexcept MESHORDER_LIFETIMEBOUND { return offsets_; }
+  [[nodiscard]] std::span<const Index> neighbours() const& noexcept MESHORDER_LIFETIMEBOUND {
+    return neighbours_;
+  }
+  [[nodiscard]] std::span<const double> weights() const& noexcept MESHORDER_LIFETIMEBOUND { return weights_; }
+  std::span<const Offset> offsets() const&& = delete;
+  std::span<const Index> neighbours() const&& = delete;
+  std::span<const double> weights() const&& = delete;
+
+  bool operator==(const Graph&) const = default;
+
+ private:
+  std::vector<Offset> offsets_;
+  std::vector<Index> neighbours_;
+  std::vector<double> weights_;
+};
+
+/// Builds the graph that joins any two vertices of a common element (a cell of the highest dimension).
+///
+/// @param cells         the cells; those of lower dimension are ignored
+/// @param vertex_count  n; vertices that no element uses have no neighbours
+/// @param run           threads, progress
+/// @throws InvalidArgument for faulty cells: sizes that do not match, a vertex out of range
+/// @throws TooLarge for more than 2,147,483,647 vertices or cells
+/// @note O(Σ (vertices of an element)² · log degree). The same graph on any number of threads.
+[[nodiscard]] MESHORDER_API Graph vertex_graph(const CellsView& cells, std::size_t vertex_count,
+                                               const Run& run = {});
+
+/// Builds the graph that joins any two elements that share a facet or a vertex.
+///
+/// @param cells         the cells; vertex e of the graph is the e-th cell of the highest dimension
+/// @param vertex_count  number of the mesh's vertices
+/// @param by_facet      true: join elements that share a face (volumes), an edge (surfaces) or an end
+/// (lines); where
+///                      more than two share it, each is joined to the next. false: join those that share a
+///                      vertex, about 50 neighbours for a tetrahedron
+/// @param run           threads, progress
+/// @throws as `vertex_graph`; InvalidArgument for `by_facet` with cells of unknown shape
+/// @note By facet O(facets · log facets at a vertex), by vertex O(Σ (elements at a vertex)²).
+[[nodiscard]] MESHORDER_API Graph dual_graph(const CellsView& cells, std::size_t vertex_count,
+                                             bool by_facet = true, const Run& run = {});
+
+/// Copies a graph with ascending rows, without loops and repeats; weights of repeats are added.
+///
+/// @param graph     n vertices; offsets and numbers must be in range
+/// @param symmetry  mirror: adds the missing entries, weights become those of (A + Aᵀ) / 2; require: throws
+/// if entries
+///                  or weights are missing on one side
+/// @param run       threads
+/// @throws InvalidArgument as `check`, but for asymmetry only under `Symmetry::require`
+/// @throws TooLarge for more than 2,147,483,647 vertices
+/// @note O(n + entries · log degree) time; memory one copy of the result and, under `mirror`, of the input.
+[[nodiscard]] MESHORDER_API Graph cleaned(const GraphView& graph, Symmetry symmetry = Symmetry::mirror,
+                                          const Run& run = {});
+
+/// Checks that a graph is what the functions of this library accept: see `Check`. Loops, repeats and unsorted
+/// rows pass.
+///
+/// @param graph  any arrays of the sizes that the views state
+/// @param level  what to check
+/// @throws InvalidArgument for the first fault, in words that name the row, the entry and the fault
+/// @throws TooLarge for more than 2,147,483,647 vertices
+/// @note O(n + entries), on all threads; row by row with a sorted copy only where symmetry fails. No memory
+/// for int64
+///       offsets and int32 neighbours, else as `order_vertices`.
+MESHORDER_API void check(const GraphView& graph, Check level = Check::full);
+
+}  // namespace meshorder::inline v0_2

@@ -1,0 +1,57 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/export.hpp>
+#include <meshorder/number_view.hpp>
+#include <meshorder/options.hpp>
+#include <meshorder/permutation.hpp>
+#include <meshorder/view.hpp>
+
+#include <vector>
+
+namespace meshorder::inline v0_2 {
+
+/// Numbers that describe how near the ends of edges stand in an order. The span of edge ij is |rank i − rank
+/// j|. All 0 without edges.
+struct Quality {
+  Offset edges = 0;      ///< loops not counted, repeats once
+  double mean_span = 0;  ///< ≥ 1; about n/3 for a random order
+  double mean_log2_span =
+      0;  ///< mean of log₂ span: what stays near counts, where mean_span is ruled by what is far
+  Index bandwidth = 0;  ///< the largest span: the half bandwidth of the matrix with this pattern
+  Offset profile = 0;   ///< Σ over rows of the distance from the first neighbour before the diagonal to it
+  std::vector<Offset> histogram_log2 = {};  ///< entry k: the number of edges with span in [2ᵏ, 2ᵏ⁺¹)
+
+  bool operator==(const Quality&) const = default;
+};
+
+/// Measures the order that a graph's vertices have.
+///
+/// @param graph  n vertices; weights are not used
+/// @param run    threads, progress
+/// @throws InvalidArgument if `check` refuses the graph
+/// @note O(n + edges). The result does not depend on the number of threads. Cache lines, prefetching and the
+/// traversal
+///       of elements are not modelled; see payoff.hpp.
+MESHORDER_API Quality quality(const GraphView& graph, const Run& run = {});
+
+/// Measures another order of a graph's vertices, without moving them.
+///
+/// @param graph  n vertices
+/// @param order  n places
+/// @param run    threads, progress
+/// @throws InvalidArgument as above, and if the sizes differ
+MESHORDER_API Quality quality(const GraphView& graph, const Permutation& order, const Run& run = {});
+
+/// Counts the edges by their spans in bins of equal width.
+///
+/// @param graph  n vertices
+/// @param order  n places
+/// @param width  of a bin, ≥ 1
+/// @return entry k: the number of edges with span in [k · width, (k + 1) · width), up to the largest span
+/// @throws InvalidArgument as `quality`, and if width < 1
+/// @note O(n + edges).
+MESHORDER_API std::vector<Offset> span_histogram(const GraphView& graph, const Permutation& order,
+                                                 Index width, const Run& run = {});
+
+}  // namespace meshorder::inline v0_2

@@ -1,0 +1,102 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/export.hpp>
+#include <meshorder/number_view.hpp>
+#include <meshorder/options.hpp>
+#include <meshorder/permutation.hpp>
+#include <meshorder/view.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace meshorder::inline v0_2 {
+
+/// Description of a method, as lists of methods show it.
+struct MethodInfo {
+  std::string name = {};         ///< lower case letters, digits and '-'; unique
+  std::string description = {};  ///< one line
+  bool needs_points = false;     ///< InvalidArgument without coordinates
+  bool deterministic = true;     ///< the same result on every run and for any number of threads
+  std::string source = "built in";
+};
+
+/// Input of a vertex method: a clean graph (rows ascend, no loops, no repeats, symmetric). Valid during the
+/// call.
+struct VertexProblem {
+  std::span<const Offset> offsets;    ///< n + 1, from 0
+  std::span<const Index> neighbours;  ///< offsets[n]
+  std::span<const double> weights;    ///< one for each neighbour, or none
+  PointsView points;                  ///< n, or none
+};
+
+/// Input of an element method: cells of one dimension and the order of the vertices. Valid during the call.
+struct ElementProblem {
+  std::span<const Offset> offsets;      ///< m + 1, from 0
+  std::span<const Index> vertices;      ///< offsets[m] numbers in 0 … n−1
+  std::span<const Index> vertex_ranks;  ///< n: the new place of each vertex
+  PointsView points;                    ///< n, in the vertices' old order, or none
+};
+
+/// A vertex method returns the order of the n vertices. It may throw; the exception reaches who asked for the
+/// order. It is called on the thread that asked, by several threads at once if several ask.
+using VertexMethod = std::function<Permutation(const VertexProblem&, const OrderOptions&)>;
+
+/// An element method returns the order of the m elements. Calls and exceptions as of `VertexMethod`.
+using ElementMethod = std::function<Permutation(const ElementProblem&, const OrderOptions&)>;
+
+/// Owner of an entry in the list of methods: takes the method out when it is destroyed. Calls in flight
+/// finish first on their own copy of the method. Move-only.
+class [[nodiscard]] MESHORDER_API Registration {
+ public:
+  /// Owns nothing.
+  Registration() = default;
+  Registration(Registration&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  Registration& operator=(Registration&& other) noexcept;
+  Registration(const Registration&) = delete;
+  Registration& operator=(const Registration&) = delete;
+  ~Registration();
+
+  /// Leaves the method in the list until the program ends.
+  void keep() && noexcept { id_ = 0; }
+
+  /// For the registry: owns the entry of that number, > 0.
+  explicit Registration(std::uint64_t id) noexcept : id_(id) {}
+
+ private:
+  std::uint64_t id_ = 0;
+};
+
+/// Adds a vertex method, which `order_vertices`, the comparison and the C interface then know by its name.
+/// `auto` never takes it.
+///
+/// @param info    name and description
+/// @param method  must not be empty; its result is checked to have n places
+/// @throws InvalidArgument for a name that is taken, "auto" or not of the permitted characters, and for no
+/// method
+/// @note Thread-safe.
+MESHORDER_API Registration register_vertex_method(MethodInfo info, VertexMethod method);
+
+/// Adds an element method; likewise.
+MESHORDER_API Registration register_element_method(MethodInfo info, ElementMethod method);
+
+/// Lists the methods of this build and the registered ones, in the order in which help shows them.
+/// Thread-safe.
+[[nodiscard]] MESHORDER_API std::vector<MethodInfo> vertex_methods();
+[[nodiscard]] MESHORDER_API std::vector<MethodInfo> element_methods();
+
+/// Loads a shared library and calls its `meshorder_plugin_v1` (see meshorder.h), which registers methods. The
+/// library is never unloaded.
+///
+/// @throws Unavailable if it cannot be loaded or lacks that function, or where the platform has no shared
+/// libraries
+/// @throws InvalidArgument if the function returns other than 0
+/// @warning Runs code of that library.
+MESHORDER_API void load_methods(const std::filesystem::path& shared_library);
+
+}  // namespace meshorder::inline v0_2
