@@ -131,8 +131,7 @@ class MESHORDER_API Permutation {
   ///
   /// @param numbers  any count, each in base … base + n − 1; may be a range of std::array
   /// @param base     0 or 1
-  /// @throws InvalidArgument for a number outside that range; nothing is changed then
-  /// @throws TooLarge if base + n − 1 does not fit the numbers' type
+  /// @throws InvalidArgument for a number outside that range or another base; nothing is changed then
   /// @note O(numbers), two passes, on all threads.
   void renumber(IndexSpan numbers, int base = 0) const;
 
@@ -149,7 +148,9 @@ class MESHORDER_API Permutation {
   /// @param moved    as many bytes as `values`, written; no output may overlap an input
   /// @throws InvalidArgument if sizes do not match, A is faulty or an output overlaps an input
   /// @throws TooLarge if an output type cannot hold its numbers
-  /// @note O(n + entries · log row), on all threads. Memory: 8 (n + 1) bytes and a row for each thread.
+  /// @note O(n + entries · log row), on all threads. Memory: 8 (n + 1) bytes and a row for each thread; for
+  /// other than
+  ///       int64 offsets and int32 columns of base 0 another 8 (n + 1) bytes, 4 bytes an entry.
   void move_csr(const GraphView& matrix, std::span<const std::byte> values, IndexSpan offsets,
                 IndexSpan columns, std::span<std::byte> moved) const;
 

@@ -64,10 +64,12 @@ class PointsView {
              Offset axis_stride)
       : data_(data),
         size_(detail::checked_count(count)),
-        dimension_(valid_dimension(dimension)),
+        dimension_(dimension),
         bytes_(sizeof(T)),
         point_stride_(point_stride),
-        axis_stride_(axis_stride) {}
+        axis_stride_(axis_stride) {
+    check_dimension(dimension);
+  }
 
   /// A container of std::array<float or double, 1 to 3>; the array's size is the dimension.
   template <class R>
@@ -118,7 +120,7 @@ class PointsView {
     return value;
   }
 
-  MESHORDER_API static int valid_dimension(int dimension);
+  MESHORDER_API static void check_dimension(int dimension);
   MESHORDER_API static std::size_t point_count(std::size_t numbers, int dimension);
 
   const void* data_ = nullptr;

@@ -1,0 +1,38 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/error.hpp>
+#include <meshorder/number_view.hpp>
+#include <meshorder/options.hpp>
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace meshorder {
+
+/// Calls `work()` in a TBB arena of its own with as many threads as `run` allows, and returns its result.
+///
+/// @throws InvalidArgument if run.threads is negative
+template <class Work>
+decltype(auto) in_arena(const Run& run, Work&& work) {
+  if (run.threads < 0) throw InvalidArgument("run: threads must not be negative");
+  tbb::task_arena arena(run.threads > 0 ? run.threads : tbb::this_task_arena::max_concurrency());
+  return arena.execute(std::forward<Work>(work));
+}
+
+/// Calls `work(begin, end)` for the ranges of `size` that make up 0 … n−1, on all threads of the arena. The
+/// ranges do not depend on the number of threads. As for_each_chunk, for more than 2³¹ entries.
+template <class Work>
+void for_each_range(Offset n, Offset size, const Work& work) {
+  if (n <= size) {
+    if (n > 0) work(Offset{0}, n);
+    return;
+  }
+  tbb::parallel_for(Offset{0}, (n + size - 1) / size,
+                    [&](Offset range) { work(range * size, std::min(n, (range + 1) * size)); });
+}
+
+}  // namespace meshorder

@@ -1,0 +1,27 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include <meshorder/error.hpp>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+std::string format_message(const Location& location, const std::string& what, const std::string& remedy) {
+  std::string text = location.file;
+  if (location.line > 0) text += ":" + std::to_string(location.line);
+  text += ": ";
+  if (location.line <= 0 && location.byte >= 0) text += "byte " + std::to_string(location.byte) + ": ";
+  text += what;
+  if (!remedy.empty()) text += "; " + remedy;
+  return text;
+}
+
+}  // namespace
+
+InputError::InputError(Location location, const std::string& what, const std::string& remedy)
+    : Error(Code::bad_input, format_message(location, what, remedy)),
+      location_(std::make_shared<const Location>(std::move(location))) {}
+
+}  // namespace meshorder

@@ -1,0 +1,38 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "graph/graph_arrays.hpp"
+#include <meshorder/options.hpp>
+
+#include <vector>
+
+namespace meshorder {
+
+/// A graph that owns its arrays: n + 1 offsets from 0, neighbours, and a weight for each of them or none.
+struct OwnedGraph {
+  std::vector<Offset> offsets;
+  std::vector<Index> neighbours;
+  std::vector<double> weights;
+
+  [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
+};
+
+/// Makes a caller's graph clean: ascending rows, no loops, no repeats, every edge in both rows. Without a
+/// copy where it is clean already and has the library's types; otherwise `notes` tell what was done.
+///
+/// @param check     full, fast: as stated there. none: the arrays are taken as they are, apart from their
+/// types
+/// @param symmetry  mirror: the pattern of A + Aᵀ, weights of (A + Aᵀ) / 2
+/// @throws InvalidArgument, TooLarge as `meshorder::check`
+/// @note O(n + entries · log degree), on all threads of the arena.
+GraphArrays clean_graph(const GraphView& graph, Check check, Symmetry symmetry);
+
+/// Returns a clean copy; the argument may have loops, repeats and unsorted rows, its numbers are in range.
+/// Weights of repeats are added in ascending order, so that both rows of an edge get the same bits. O(n +
+/// entries · log degree).
+OwnedGraph cleaned_copy(const GraphArrays& graph);
+
+/// Returns the clean graph of A + Aᵀ, with weights of (A + Aᵀ) / 2. O(n + entries · log degree).
+OwnedGraph mirrored_copy(const GraphArrays& graph);
+
+}  // namespace meshorder

@@ -1,0 +1,42 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "graph/graph_arrays.hpp"
+
+#include <cstdint>
+
+namespace meshorder {
+
+/// Counts of what deviates from a clean graph, and a hash of its asymmetry.
+struct GraphFindings {
+  Offset out_of_range = 0;  ///< neighbours outside 0 … n−1
+  Offset bad_weights = 0;   ///< not positive or not finite
+  Offset loops = 0;
+  Offset unordered = 0;         ///< neighbours not above the one before in their row, repeats among them
+  std::uint64_t asymmetry = 0;  ///< Σ h(u, v) for u < v, −h for u > v, modulo 2⁶⁴; 0 for a symmetric graph
+
+  [[nodiscard]] bool is_clean() const noexcept { return loops == 0 && unordered == 0; }
+  GraphFindings& operator+=(const GraphFindings& other) noexcept;
+};
+
+/// Examines all entries in one pass.
+///
+/// The asymmetry of an entry includes its weight. A symmetric graph has 0 if its repeats are symmetric too; a
+/// random asymmetric one has 0 with probability 2⁻⁶⁴.
+///
+/// @param symmetry  whether to compute `asymmetry`
+/// @note O(n + entries), on all threads; the result does not depend on their number.
+GraphFindings examine(const GraphArrays& graph, bool symmetry);
+
+/// Throws InvalidArgument for the first neighbour out of range or the first bad weight; `view` gives the
+/// caller's numbers. Returns if there is none. O(n + entries).
+void refuse_faults(const GraphView& view, const GraphArrays& graph, const GraphFindings& findings);
+
+/// Throws InvalidArgument for the first edge of a clean graph that stands in one row only or has two weights;
+/// returns if there is none. One cursor for each row; O(n + entries) time, 8 n bytes.
+///
+/// @param base  number of the first vertex in messages
+void refuse_asymmetry(std::span<const Offset> offsets, std::span<const Index> neighbours,
+                      std::span<const double> weights, int base);
+
+}  // namespace meshorder
