@@ -21,9 +21,6 @@
 
 namespace meshorder::inline v0_2 {
 
-/// Coordinates x, y, z; z is 0 in the plane.
-using Point = std::array<double, 3>;
-
 /// Cells of any types in file order: cell c has shape `shapes[c]` and the vertices
 /// `vertices[offsets[c]] … vertices[offsets[c + 1] − 1]`, in the order that `Shape` tells. Cells of more than
 /// second order keep the order of the file that they came from.

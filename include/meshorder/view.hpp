@@ -6,6 +6,7 @@
 #include <meshorder/number_view.hpp>
 #include <meshorder/shape.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -31,6 +32,9 @@ struct GraphView {
       {};        ///< one for each neighbour, > 0, finite, equal in both rows of an edge; or none: all 1
   int base = 0;  ///< 0, or 1 for arrays of Fortran and Julia
 };
+
+/// Coordinates x, y, z; z is 0 in the plane.
+using Point = std::array<double, 3>;
 
 /// A view of the caller's coordinates, float or double, in one to three dimensions and in any regular layout.
 ///

@@ -1,13 +1,17 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
+#include <meshorder/view.hpp>
+
 #include <cmath>
 
 namespace meshorder {
 
-/// Coordinates x, y, z; z is 0 in the plane.
-using Point = std::array<double, 3>;
+/// Returns point `i` of a view, 0 along axes that it does not have.
+inline Point point_at(const PointsView& points, Index i) {
+  const auto at = static_cast<std::size_t>(i);
+  return {points(at, 0), points(at, 1), points(at, 2)};
+}
 
 inline Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline Point scaled(double factor, const Point& a) { return {factor * a[0], factor * a[1], factor * a[2]}; }

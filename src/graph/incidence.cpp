@@ -2,6 +2,7 @@
 #include "graph/incidence.hpp"
 
 #include "base/parallel.hpp"
+#include "base/run_scope.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -11,7 +12,7 @@
 
 namespace meshorder {
 
-Incidence transposed(const Incidence& incidence) {
+Incidence transposed(IncidenceRef incidence) {
   Incidence result;
   result.vertex_count = incidence.size();
   result.offsets.assign(Offset{incidence.vertex_count} + 1, 0);
@@ -30,7 +31,7 @@ namespace {
 constexpr Index kChunk = 16384;  // vertices whose rows a thread finds together
 
 /// The size that all elements share, 0 where they differ.
-Offset common_size(const Incidence& elements) {
+Offset common_size(IncidenceRef elements) {
   if (elements.size() == 0) return 0;
   const Offset size = elements.offsets[1];
   for (Index e = 0; e < elements.size(); ++e) {
@@ -49,7 +50,7 @@ struct Rows {
 /// spares reading the offsets, or 0 where they differ.
 template <int Size>
 struct Elements {
-  const Incidence& incidence;
+  IncidenceRef incidence;
 
   [[nodiscard]] const Index* begin(Index e) const {
     return incidence.vertices.data() + (Size > 0 ? Offset{e} * Size : incidence.offsets[e]);
@@ -79,7 +80,7 @@ void append_row(Elements<Size> elements, const Incidence& at_vertex, Index v, st
     const Index e = at_vertex.vertices[k];
     const Index* const vertices = elements.begin(e);
     for (Offset i = 0; i < elements.size(e); ++i) {
-      // without a branch: whether a neighbour is new is a coin's toss
+      // branch-free: the test is unpredictable
       const Index u = vertices[i];
       found[end] = u;
       end += seen[u] == v ? 0 : 1;
@@ -111,7 +112,7 @@ std::vector<Rows> find_rows(Elements<Size> elements, std::vector<Offset>& degree
 }
 
 /// The same for elements whose size is known only now.
-std::vector<Rows> find_rows(const Incidence& elements, std::vector<Offset>& degrees) {
+std::vector<Rows> find_rows(IncidenceRef elements, std::vector<Offset>& degrees) {
   switch (common_size(elements)) {
     case 3:
       return find_rows(Elements<3>{elements}, degrees);
@@ -143,13 +144,13 @@ CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::span<const Rows> chu
 
 }  // namespace
 
-CsrGraph vertex_graph(const Incidence& elements) {
+CsrGraph joined_vertices(IncidenceRef elements) {
   std::vector<Offset> offsets(Offset{elements.vertex_count} + 1, 0);
   const std::vector<Rows> rows = find_rows(elements, offsets);
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
   return with_sorted_rows(std::move(offsets), rows);
 }
 
-CsrGraph dual_graph_by_vertex(const Incidence& elements) { return vertex_graph(transposed(elements)); }
+CsrGraph joined_by_vertex(IncidenceRef elements) { return joined_vertices(transposed(elements)); }
 
 }  // namespace meshorder

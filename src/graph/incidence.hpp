@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// Elements and the vertices that each joins: element e has `vertices[offsets[e]] … vertices[offsets[e + 1] −
-/// 1]`.
+/// Rows of indices in compressed form. For a mesh: the vertices of each element; transposed: the elements at
+/// each vertex. Row e is `vertices[offsets[e]] … vertices[offsets[e + 1] − 1]`.
 struct Incidence {
   Index vertex_count = 0;
   std::vector<Offset> offsets{0};  ///< elements + 1
@@ -22,15 +22,32 @@ struct Incidence {
   }
 };
 
-/// The elements at each vertex, rising: the incidence read the other way. O(entries).
-Incidence transposed(const Incidence& incidence);
+/// A view of an incidence, its arrays owned by somebody else. Costs five words to copy.
+struct IncidenceRef {
+  Index vertex_count = 0;
+  std::span<const Offset> offsets;  ///< elements + 1, from 0
+  std::span<const Index> vertices;
 
-/// Joins any two vertices of a common element: the vertex graph of a mesh (the paper, section 3).
-/// Repeated vertices of an element make no loop. O(sum of element sizes squared).
-CsrGraph vertex_graph(const Incidence& elements);
+  IncidenceRef(Index vertices_in_all, std::span<const Offset> row_offsets, std::span<const Index> row_vertices)
+      : vertex_count(vertices_in_all), offsets(row_offsets), vertices(row_vertices) {}
+  IncidenceRef(const Incidence& incidence)  // NOLINT(google-explicit-constructor)
+      : IncidenceRef(incidence.vertex_count, incidence.offsets, incidence.vertices) {}
+
+  [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
+  [[nodiscard]] std::span<const Index> operator[](Index element) const {
+    return {vertices.data() + offsets[element], vertices.data() + offsets[element + 1]};
+  }
+};
+
+/// Returns the elements at each vertex, ascending. O(entries).
+Incidence transposed(IncidenceRef incidence);
+
+/// Joins any two vertices of a common element: the vertex graph of a mesh (the paper, section 3). Vertices
+/// that an element repeats make no loop. O(sum of element sizes squared).
+CsrGraph joined_vertices(IncidenceRef elements);
 
 /// Joins any two elements that share a vertex: the dual graph of the paper, section 4.1. This is
-/// `vertex_graph(transposed(elements))`, about 50 neighbours for an element of a tetrahedral mesh.
-CsrGraph dual_graph_by_vertex(const Incidence& elements);
+/// `joined_vertices(transposed(elements))`, about 50 neighbours for an element of a tetrahedral mesh.
+CsrGraph joined_by_vertex(IncidenceRef elements);
 
 }  // namespace meshorder

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "metrics/edge_span.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
-#include "ordering/permutation.hpp"
+#include <meshorder/permutation.hpp>
 
 #include <vector>
 

@@ -3,31 +3,36 @@
 
 #include "ordering/method.hpp"
 
+#include <vector>
+
 namespace meshorder {
 
-// Each is defined in the file of its name; method.cpp lists them.
-Ordering auto_vertices(const VertexProblem&, const OrderingOptions&);
-Ordering original_vertices(const VertexProblem&, const OrderingOptions&);
-Ordering scrambled_vertices(const VertexProblem&, const OrderingOptions&);
-Ordering fiedler_vertices(const VertexProblem&, const OrderingOptions&);
-Ordering minla_vertices(const VertexProblem&, const OrderingOptions&);
-Ordering spectral_vertices(const VertexProblem&, const OrderingOptions&);
-Ordering rcm_vertices(const VertexProblem&, const OrderingOptions&);
-Ordering bfs_vertices(const VertexProblem&, const OrderingOptions&);
-Ordering morton_vertices(const VertexProblem&, const OrderingOptions&);
-Ordering hilbert_vertices(const VertexProblem&, const OrderingOptions&);
-Ordering metis_nd_vertices(const VertexProblem&, const OrderingOptions&);
-Ordering metis_rb_vertices(const VertexProblem&, const OrderingOptions&);
+// The built-in methods. Each is defined in the file of its family; method.cpp lists them.
+Order auto_vertices(const VertexInput&, const OrderOptions&);
+Order original_vertices(const VertexInput&, const OrderOptions&);
+Order scrambled_vertices(const VertexInput&, const OrderOptions&);
+Order fiedler_vertices(const VertexInput&, const OrderOptions&);
+Order minla_vertices(const VertexInput&, const OrderOptions&);
+Order spectral_vertices(const VertexInput&, const OrderOptions&);
+Order rcm_vertices(const VertexInput&, const OrderOptions&);
+Order bfs_vertices(const VertexInput&, const OrderOptions&);
+Order morton_vertices(const VertexInput&, const OrderOptions&);
+Order hilbert_vertices(const VertexInput&, const OrderOptions&);
+Order metis_nd_vertices(const VertexInput&, const OrderOptions&);
+Order metis_rb_vertices(const VertexInput&, const OrderOptions&);
 
-Ordering auto_elements(const ElementProblem&, const OrderingOptions&);
-Ordering original_elements(const ElementProblem&, const OrderingOptions&);
-Ordering scrambled_elements(const ElementProblem&, const OrderingOptions&);
-Ordering fiedler_elements(const ElementProblem&, const OrderingOptions&);
-Ordering fiedler_facet_elements(const ElementProblem&, const OrderingOptions&);
-Ordering mean_elements(const ElementProblem&, const OrderingOptions&);
-Ordering min_elements(const ElementProblem&, const OrderingOptions&);
-Ordering max_elements(const ElementProblem&, const OrderingOptions&);
-Ordering lexmax_elements(const ElementProblem&, const OrderingOptions&);
-Ordering hilbert_elements(const ElementProblem&, const OrderingOptions&);
+Order auto_elements(const ElementInput&, const OrderOptions&);
+Order original_elements(const ElementInput&, const OrderOptions&);
+Order scrambled_elements(const ElementInput&, const OrderOptions&);
+Order fiedler_elements(const ElementInput&, const OrderOptions&);
+Order fiedler_facet_elements(const ElementInput&, const OrderOptions&);
+Order mean_elements(const ElementInput&, const OrderOptions&);
+Order min_elements(const ElementInput&, const OrderOptions&);
+Order max_elements(const ElementInput&, const OrderOptions&);
+Order lexmax_elements(const ElementInput&, const OrderOptions&);
+Order hilbert_elements(const ElementInput&, const OrderOptions&);
+
+std::vector<MethodInfo> built_in_vertex_methods();
+std::vector<MethodInfo> built_in_element_methods();
 
 }  // namespace meshorder

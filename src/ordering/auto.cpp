@@ -1,6 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/auto.hpp"
-
 #include "ordering/all_methods.hpp"
 
 #include <algorithm>
@@ -14,7 +12,7 @@ namespace {
 
 /// When a method is taken: the first rule that fits decides.
 struct Rule {
-  std::optional<Workload> use = {};  ///< none: any
+  std::optional<Workload> workload = {};  ///< none: any
   Index least_vertices = 0;          ///< from so many on
   bool geometric = false;            ///< only where there are coordinates
   std::string_view method;
@@ -24,7 +22,15 @@ struct Rule {
 // Evidence: `meshorder compare` on one thread of a 2-core Zen 5 machine (48 KB L1, 1 MB L2, 32 MB L3); the
 // tables stand in docs/auto.md.
 constexpr std::array kVertexRules{
-    Rule{.use = Workload::springs,
+    Rule{.workload = Workload::bandwidth,
+         .method = "rcm",
+         .reason = "reverse Cuthill-McKee is made to keep the bandwidth small"},
+#ifdef MESHORDER_HAS_METIS
+    Rule{.workload = Workload::fill,
+         .method = "metis-nd",
+         .reason = "nested dissection is made to keep the factors of a direct solver sparse"},
+#endif
+    Rule{.workload = Workload::springs,
          .least_vertices = 1'000'000,
          .method = "rcm",
          .reason = "springs of a mesh this large run fastest on the few forward streams of its levels"},
@@ -36,43 +42,46 @@ constexpr std::array kVertexRules{
          .reason = "the best order measured that needs no coordinates, of which there are none"},
 };
 
-bool fits(const Rule& rule, Index vertices, bool coordinates, Workload use) {
-  return (!rule.use || *rule.use == use) && vertices >= rule.least_vertices &&
+bool fits(const Rule& rule, Index vertices, bool coordinates, Workload workload) {
+  return (!rule.workload || *rule.workload == workload) && vertices >= rule.least_vertices &&
          (coordinates || !rule.geometric);
 }
 
-/// Whether coordinates are given and tell any two vertices apart.
-bool has_coordinates(const VertexProblem& problem) {
-  return index_size(problem.points) == problem.graph.size() &&
-         std::any_of(problem.points.begin(), problem.points.end(),
-                     [&](const Point& point) { return point != problem.points.front(); });
+/// Returns whether there are coordinates and at least two vertices differ in them.
+bool has_coordinates(const VertexInput& input) {
+  if (index_size(input.points) != input.graph.size() || input.graph.size() == 0) return false;
+  const Point first = point_at(input.points, 0);
+  for (Index v = 1; v < input.graph.size(); ++v) {
+    if (point_at(input.points, v) != first) return true;
+  }
+  return false;
 }
 
 }  // namespace
 
-MethodChoice choose_vertex_method(const VertexProblem& problem, Workload use) {
-  const bool coordinates = has_coordinates(problem);
+MethodChoice choose_vertex_method(const VertexInput& input, Workload workload) {
+  const bool coordinates = has_coordinates(input);
   const auto rule = std::find_if(kVertexRules.begin(), kVertexRules.end(), [&](const Rule& r) {
-    return fits(r, problem.graph.size(), coordinates, use);
+    return fits(r, input.graph.size(), coordinates, workload);
   });
   return {std::string(rule->method), std::string(rule->reason)};
 }
 
-MethodChoice choose_element_method(const ElementProblem& /*problem*/, Workload /*use*/) {
+MethodChoice choose_element_method(const ElementInput& /*input*/, Workload /*workload*/) {
   return {"lexmax",
           "one sort by the new numbers of their vertices, and no order measured computes faster on it"};
 }
 
-Ordering auto_vertices(const VertexProblem& problem, const OrderingOptions& options) {
-  MethodChoice choice = choose_vertex_method(problem, options.use);
-  Ordering result = order_vertices(choice.name, problem, options);
+Order auto_vertices(const VertexInput& input, const OrderOptions& options) {
+  MethodChoice choice = choose_vertex_method(input, options.workload);
+  Order result = order_graph(choice.name, input, options);
   result.method = std::move(choice);
   return result;
 }
 
-Ordering auto_elements(const ElementProblem& problem, const OrderingOptions& options) {
-  MethodChoice choice = choose_element_method(problem, options.use);
-  Ordering result = order_elements(choice.name, problem, options);
+Order auto_elements(const ElementInput& input, const OrderOptions& options) {
+  MethodChoice choice = choose_element_method(input, options.workload);
+  Order result = order_incidence(choice.name, input, options);
   result.method = std::move(choice);
   return result;
 }

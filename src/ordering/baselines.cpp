@@ -22,20 +22,20 @@ Permutation shuffled(Index n, std::uint64_t seed) {
 
 }  // namespace
 
-Ordering original_vertices(const VertexProblem& problem, const OrderingOptions&) {
-  return {Permutation::identity(problem.graph.size()), {}};
+Order original_vertices(const VertexInput& input, const OrderOptions&) {
+  return {Permutation::identity(input.graph.size()), {}};
 }
 
-Ordering original_elements(const ElementProblem& problem, const OrderingOptions&) {
-  return {Permutation::identity(problem.elements.size()), {}};
+Order original_elements(const ElementInput& input, const OrderOptions&) {
+  return {Permutation::identity(input.elements.size()), {}};
 }
 
-Ordering scrambled_vertices(const VertexProblem& problem, const OrderingOptions& options) {
-  return {shuffled(problem.graph.size(), options.seed), {}};
+Order scrambled_vertices(const VertexInput& input, const OrderOptions& options) {
+  return {shuffled(input.graph.size(), options.seed), {}};
 }
 
-Ordering scrambled_elements(const ElementProblem& problem, const OrderingOptions& options) {
-  return {shuffled(problem.elements.size(), options.seed), {}};
+Order scrambled_elements(const ElementInput& input, const OrderOptions& options) {
+  return {shuffled(input.elements.size(), options.seed), {}};
 }
 
 }  // namespace meshorder

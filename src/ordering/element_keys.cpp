@@ -12,14 +12,14 @@ namespace {
 /// Elements sorted by `key(ranks)`, where `ranks` are the new numbers of an element's vertices; ties by old
 /// number. O(elements · log elements).
 template <class Key>
-Ordering elements_by_ranks(const ElementProblem& problem, Key key) {
+Order elements_by_ranks(const ElementInput& input, Key key) {
   using Value = decltype(key(std::span<const Index>()));
   std::vector<Value> keys;
-  keys.reserve(problem.elements.size());
+  keys.reserve(input.elements.size());
   std::vector<Index> ranks;
-  for (Index e = 0; e < problem.elements.size(); ++e) {
+  for (Index e = 0; e < input.elements.size(); ++e) {
     ranks.clear();
-    for (const Index v : problem.elements[e]) ranks.push_back(problem.vertices.old_to_new()[v]);
+    for (const Index v : input.elements[e]) ranks.push_back(input.vertices.old_to_new()[v]);
     keys.push_back(key(std::span<const Index>(ranks)));
   }
   return {sorted_by(keys), {}};
@@ -27,18 +27,18 @@ Ordering elements_by_ranks(const ElementProblem& problem, Key key) {
 
 }  // namespace
 
-Ordering min_elements(const ElementProblem& problem, const OrderingOptions&) {
+Order min_elements(const ElementInput& input, const OrderOptions&) {
   return elements_by_ranks(
-      problem, [](std::span<const Index> ranks) { return *std::min_element(ranks.begin(), ranks.end()); });
+      input, [](std::span<const Index> ranks) { return *std::min_element(ranks.begin(), ranks.end()); });
 }
 
-Ordering max_elements(const ElementProblem& problem, const OrderingOptions&) {
+Order max_elements(const ElementInput& input, const OrderOptions&) {
   return elements_by_ranks(
-      problem, [](std::span<const Index> ranks) { return *std::max_element(ranks.begin(), ranks.end()); });
+      input, [](std::span<const Index> ranks) { return *std::max_element(ranks.begin(), ranks.end()); });
 }
 
-Ordering mean_elements(const ElementProblem& problem, const OrderingOptions&) {
-  return elements_by_ranks(problem, [](std::span<const Index> ranks) {
+Order mean_elements(const ElementInput& input, const OrderOptions&) {
+  return elements_by_ranks(input, [](std::span<const Index> ranks) {
     return std::accumulate(ranks.begin(), ranks.end(), 0.0) / static_cast<double>(ranks.size());
   });
 }

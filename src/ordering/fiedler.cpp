@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Barnard, Pothen, Simon: A Spectral Algorithm for Envelope Reduction of Sparse Matrices (1993); the paper,
 // sections 3 and 4.1.
+#include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"
+#include "spectral/fiedler.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -9,36 +11,44 @@
 namespace meshorder {
 namespace {
 
-/// Component after component, largest first, each by rising Fiedler value, ties by old number.
-Ordering by_fiedler_vector(GraphRef graph, const OrderingOptions& options) {
-  FiedlerOptions solver;
-  solver.tolerance = options.tolerance;
-  solver.seed = options.seed;
-  FiedlerResult fiedler = fiedler_vector(graph, solver);
+/// Returns component after component, largest first, each by ascending Fiedler value, ties by old number.
+Order by_fiedler_vector(GraphRef graph, std::span<const double> weights, const OrderOptions& options) {
+  FiedlerVectors fiedler = fiedler_vectors(graph, weights, solver_options(options));
+  report("sort");
   std::vector<Index> new_to_old;
   new_to_old.reserve(graph.size());
   std::vector<std::pair<double, Index>> sorted;
   for (const std::vector<Index>& component : fiedler.component_vertices) {
+    poll();
     sorted.clear();
     for (const Index v : component) sorted.emplace_back(fiedler.values[v], v);
     std::sort(sorted.begin(), sorted.end());
     for (const auto& [value, v] : sorted) new_to_old.push_back(v);
   }
-  return {Permutation::from_new_to_old(std::move(new_to_old)), std::move(fiedler.components)};
+  return {.permutation = Permutation::from_new_to_old(std::move(new_to_old)),
+          .fiedler = std::move(fiedler.components),
+          .vector = std::move(fiedler.values),
+          .complete = fiedler.complete};
+}
+
+/// Returns the options for the dual graph: a start vector belongs to the vertices.
+OrderOptions without_start(OrderOptions options) {
+  options.start = {};
+  return options;
 }
 
 }  // namespace
 
-Ordering fiedler_vertices(const VertexProblem& problem, const OrderingOptions& options) {
-  return by_fiedler_vector(problem.graph, options);
+Order fiedler_vertices(const VertexInput& input, const OrderOptions& options) {
+  return by_fiedler_vector(input.graph, input.weights, options);
 }
 
-Ordering fiedler_elements(const ElementProblem& problem, const OrderingOptions& options) {
-  return by_fiedler_vector(dual_graph_by_vertex(problem.elements), options);
+Order fiedler_elements(const ElementInput& input, const OrderOptions& options) {
+  return by_fiedler_vector(joined_by_vertex(input.elements), {}, without_start(options));
 }
 
-Ordering fiedler_facet_elements(const ElementProblem& problem, const OrderingOptions& options) {
-  return by_fiedler_vector(problem.facet_graph(), options);
+Order fiedler_facet_elements(const ElementInput& input, const OrderOptions& options) {
+  return by_fiedler_vector(input.facet_graph(), {}, without_start(options));
 }
 
 }  // namespace meshorder

@@ -1,8 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/grouped.hpp"
+#include "ordering/method.hpp"
 
-#include "base/error.hpp"
-#include "ordering/auto.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -62,13 +61,13 @@ void check_groups(GraphRef graph, std::span<const Index> group_of, Index groups)
 
 }  // namespace
 
-Ordering order_vertices_in_groups(std::string_view method, const VertexProblem& problem,
+Order order_graph_in_groups(std::string_view method, const VertexInput& input,
                                   std::span<const Index> group_of, Index groups,
-                                  const OrderingOptions& options) {
-  check_groups(problem.graph, group_of, groups);
-  Ordering result;
+                                  const OrderOptions& options) {
+  check_groups(input.graph, group_of, groups);
+  Order result;
   result.method =
-      method == "auto" ? choose_vertex_method(problem, options.use) : MethodChoice{std::string(method), ""};
+      method == "auto" ? choose_vertex_method(input, options.workload) : MethodChoice{std::string(method), ""};
   const Sorted sorted = sorted_into_groups(group_of, groups);
   std::vector<Index> new_to_old;
   new_to_old.reserve(sorted.vertices.size());
@@ -77,11 +76,11 @@ Ordering order_vertices_in_groups(std::string_view method, const VertexProblem& 
     const std::span<const Index> members(sorted.vertices.data() + sorted.starts[group],
                                          sorted.vertices.data() + sorted.starts[group + 1]);
     points.clear();
-    if (!problem.points.empty()) {
-      for (const Index v : members) points.push_back(problem.points[v]);
+    if (input.points.size() > 0) {
+      for (const Index v : members) points.push_back(point_at(input.points, v));
     }
-    const CsrGraph graph = graph_of_group(problem.graph, sorted, group);
-    const Ordering ordering = order_vertices(result.method.name, {graph, points}, options);
+    const CsrGraph graph = graph_of_group(input.graph, sorted, group);
+    const Order ordering = order_graph(result.method.name, {graph, PointsView(points)}, options);
     for (const Index k : ordering.permutation.new_to_old()) new_to_old.push_back(members[k]);
     result.fiedler.insert(result.fiedler.end(), ordering.fiedler.begin(), ordering.fiedler.end());
   }

@@ -8,21 +8,21 @@
 
 namespace meshorder {
 
-Ordering bfs_vertices(const VertexProblem& problem, const OrderingOptions&) {
+Order bfs_vertices(const VertexInput& input, const OrderOptions&) {
   std::vector<Index> new_to_old;
-  new_to_old.reserve(problem.graph.size());
-  std::vector<Index> tried(problem.graph.size(), -1);
-  std::vector<Index> placed(problem.graph.size(), -1);
-  for (const std::vector<Index>& component : connected_components(problem.graph)) {
-    const Index start = pseudo_peripheral_vertex(problem.graph, component.front(), tried);
-    const std::vector<Index> order = breadth_first(problem.graph, start, placed, 0).order;
+  new_to_old.reserve(input.graph.size());
+  std::vector<Index> tried(input.graph.size(), -1);
+  std::vector<Index> placed(input.graph.size(), -1);
+  for (const std::vector<Index>& component : connected_components(input.graph)) {
+    const Index start = pseudo_peripheral_vertex(input.graph, component.front(), tried);
+    const std::vector<Index> order = breadth_first(input.graph, start, placed, 0).order;
     new_to_old.insert(new_to_old.end(), order.begin(), order.end());
   }
   return {Permutation::from_new_to_old(std::move(new_to_old)), {}};
 }
 
-Ordering rcm_vertices(const VertexProblem& problem, const OrderingOptions&) {
-  const GraphRef graph = problem.graph;
+Order rcm_vertices(const VertexInput& input, const OrderOptions&) {
+  const GraphRef graph = input.graph;
   std::vector<Index> new_to_old;
   new_to_old.reserve(graph.size());
   std::vector<Index> tried(graph.size(), -1);

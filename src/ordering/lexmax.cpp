@@ -17,14 +17,14 @@ namespace {
 constexpr Index kChunk = 65536;  // elements or vertices that a thread takes together
 
 /// The ranks of every element's vertices, falling within each element.
-std::vector<Index> falling_ranks(const ElementProblem& problem) {
-  const Incidence& elements = problem.elements;
+std::vector<Index> falling_ranks(const ElementInput& input) {
+  const IncidenceRef elements = input.elements;
   std::vector<Index> ranks(elements.vertices.size());
   for_each_chunk(elements.size(), kChunk, [&](Index /*chunk*/, Index begin, Index end) {
     for (Index e = begin; e < end; ++e) {
       const auto own = ranks.begin() + elements.offsets[e];
       std::transform(elements[e].begin(), elements[e].end(), own,
-                     [&](Index v) { return problem.vertices.old_to_new()[v]; });
+                     [&](Index v) { return input.vertices.old_to_new()[v]; });
       std::sort(own, ranks.begin() + elements.offsets[e + 1], std::greater<>());
     }
   });
@@ -38,7 +38,7 @@ struct Entry {
   Index element;
 };
 
-Entry entry_of(const Incidence& elements, const std::vector<Index>& ranks, Index e) {
+Entry entry_of(IncidenceRef elements, const std::vector<Index>& ranks, Index e) {
   Entry entry{{-1, -1, -1}, e};
   const Offset begin = elements.offsets[e] + 1;
   const Offset count = std::min<Offset>(3, elements.offsets[e + 1] - begin);
@@ -48,9 +48,9 @@ Entry entry_of(const Incidence& elements, const std::vector<Index>& ranks, Index
 
 }  // namespace
 
-Ordering lexmax_elements(const ElementProblem& problem, const OrderingOptions&) {
-  const Incidence& elements = problem.elements;
-  const std::vector<Index> ranks = falling_ranks(problem);
+Order lexmax_elements(const ElementInput& input, const OrderOptions&) {
+  const IncidenceRef elements = input.elements;
+  const std::vector<Index> ranks = falling_ranks(input);
   const auto largest = [&](Index e) { return ranks[elements.offsets[e]]; };
 
   // a bucket for each largest rank, filled in any order

@@ -1,64 +1,98 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "ordering/method.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
+
+#include "base/run_scope.hpp"
+#include "base/text.hpp"
 #include "ordering/all_methods.hpp"
 
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace meshorder {
 namespace {
 
+struct BuiltInVertexMethod {
+  std::string_view name;
+  std::string_view description;
+  Order (*order)(const VertexInput&, const OrderOptions&);
+  bool needs_points = false;
+};
+
+struct BuiltInElementMethod {
+  std::string_view name;
+  std::string_view description;
+  Order (*order)(const ElementInput&, const OrderOptions&);
+  bool needs_points = false;
+};
+
 constexpr std::array kVertexMethods{
-    VertexMethod{"auto", "the one below that measurements favour for the mesh's size and use (--for)",
+    BuiltInVertexMethod{"auto", "the one below that measurements favour for the mesh's size and use (--for)",
                  auto_vertices},
-    VertexMethod{"original", "the order of the file", original_vertices},
-    VertexMethod{"scrambled", "a seeded random order, the paper's point of reference", scrambled_vertices},
-    VertexMethod{"fiedler", "sorted by the Fiedler vector of the vertex graph, the paper's order",
+    BuiltInVertexMethod{"original", "the order of the file", original_vertices},
+    BuiltInVertexMethod{"scrambled", "a seeded random order, the paper's point of reference", scrambled_vertices},
+    BuiltInVertexMethod{"fiedler", "sorted by the Fiedler vector of the vertex graph, the paper's order",
                  fiedler_vertices},
-    VertexMethod{"minla", "the Fiedler order, improved towards the least sum of edge spans", minla_vertices},
-    VertexMethod{"spectral", "cut along Fiedler vectors again and again, down to a few vertices",
+    BuiltInVertexMethod{"minla", "the Fiedler order, improved towards the least sum of edge spans", minla_vertices},
+    BuiltInVertexMethod{"spectral", "cut along Fiedler vectors again and again, down to a few vertices",
                  spectral_vertices},
-    VertexMethod{"rcm", "reverse Cuthill-McKee: breadth first, neighbours by degree, reversed", rcm_vertices},
-    VertexMethod{"bfs", "breadth first from a vertex at the rim", bfs_vertices},
-    VertexMethod{"morton", "along Morton's Z curve through the coordinates", morton_vertices},
-    VertexMethod{"hilbert", "along Hilbert's curve through the coordinates", hilbert_vertices},
-    VertexMethod{"metis-nd", "METIS nested dissection, made for sparse factorisation", metis_nd_vertices},
-    VertexMethod{"metis-rb", "METIS recursive bisection down to a few vertices", metis_rb_vertices},
+    BuiltInVertexMethod{"rcm", "reverse Cuthill-McKee: breadth first, neighbours by degree, reversed", rcm_vertices},
+    BuiltInVertexMethod{"bfs", "breadth first from a vertex at the rim", bfs_vertices},
+    BuiltInVertexMethod{"morton", "along Morton's Z curve through the coordinates", morton_vertices, true},
+    BuiltInVertexMethod{"hilbert", "along Hilbert's curve through the coordinates", hilbert_vertices, true},
+#ifdef MESHORDER_HAS_METIS
+    BuiltInVertexMethod{"metis-nd", "METIS nested dissection, made for sparse factorisation", metis_nd_vertices},
+    BuiltInVertexMethod{"metis-rb", "METIS recursive bisection down to a few vertices", metis_rb_vertices},
+#endif
 };
 
 constexpr std::array kElementMethods{
-    ElementMethod{"auto", "the one below that measurements favour: lexmax", auto_elements},
-    ElementMethod{"original", "the order of the file", original_elements},
-    ElementMethod{"scrambled", "a seeded random order, the paper's point of reference", scrambled_elements},
-    ElementMethod{
+    BuiltInElementMethod{"auto", "the one below that measurements favour: lexmax", auto_elements},
+    BuiltInElementMethod{"original", "the order of the file", original_elements},
+    BuiltInElementMethod{"scrambled", "a seeded random order, the paper's point of reference", scrambled_elements},
+    BuiltInElementMethod{
         "fiedler",
         "by the Fiedler vector of the graph that joins elements sharing a vertex, the paper's order",
         fiedler_elements},
-    ElementMethod{"fiedler-facet", "by the Fiedler vector of the graph that joins elements sharing a facet",
+    BuiltInElementMethod{"fiedler-facet", "by the Fiedler vector of the graph that joins elements sharing a facet",
                   fiedler_facet_elements},
-    ElementMethod{"mean", "by the mean rank of their vertices", mean_elements},
-    ElementMethod{"min", "by the least rank of their vertices", min_elements},
-    ElementMethod{"max", "by the largest rank of their vertices", max_elements},
-    ElementMethod{"lexmax", "by the ranks of their vertices, largest first, compared like words",
+    BuiltInElementMethod{"mean", "by the mean rank of their vertices", mean_elements},
+    BuiltInElementMethod{"min", "by the least rank of their vertices", min_elements},
+    BuiltInElementMethod{"max", "by the largest rank of their vertices", max_elements},
+    BuiltInElementMethod{"lexmax", "by the ranks of their vertices, largest first, compared like words",
                   lexmax_elements},
-    ElementMethod{"hilbert", "along Hilbert's curve through their centroids", hilbert_elements},
+    BuiltInElementMethod{"hilbert", "along Hilbert's curve through their centroids", hilbert_elements, true},
 };
 
+/// Returns the built-in method of that name, or null.
 template <class Methods>
-const auto& find_method(const Methods& methods, std::string_view name, std::string_view what) {
-  const auto found =
-      std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.name == name; });
-  if (found != methods.end()) return *found;
-  std::string known;
-  for (const auto& method : methods) known += (known.empty() ? "" : ", ") + std::string(method.name);
-  throw InvalidArgument("unknown " + std::string(what) + " order '" + std::string(name) + "'; known are " +
-                        known);
+const auto* find_method(const Methods& methods, std::string_view name) {
+  const auto found = std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.name == name; });
+  return found != methods.end() ? &*found : nullptr;
 }
 
-/// Moves what has no neighbours behind the rest, in old order.
+[[noreturn]] void refuse(std::string_view kind, std::string_view name, const std::vector<MethodInfo>& known) {
+#ifndef MESHORDER_HAS_METIS
+  if (name == "metis-nd" || name == "metis-rb") {
+    throw Unavailable("the order '" + std::string(name) + "' needs a build with METIS (MESHORDER_METIS=ON)");
+  }
+#endif
+  throw InvalidArgument("unknown " + std::string(kind) + " order '" + std::string(name) + "'; known are " +
+                        join(known, [](const MethodInfo& method) -> const auto& { return method.name; }));
+}
+
+template <class Method>
+MethodInfo info_of(const Method& method) {
+  return {.name = std::string(method.name),
+          .description = std::string(method.description),
+          .needs_points = method.needs_points};
+}
+
+/// Moves vertices without neighbours behind the others, in their old order.
 Permutation with_isolated_last(const Permutation& order, GraphRef graph) {
   std::vector<Index> new_to_old;
   new_to_old.reserve(order.new_to_old().size());
@@ -71,26 +105,60 @@ Permutation with_isolated_last(const Permutation& order, GraphRef graph) {
   return Permutation::from_new_to_old(std::move(new_to_old));
 }
 
+/// The caller's Permutation of a registered method, checked.
+Order result_of(Permutation permutation, Index size, std::string_view method) {
+  if (permutation.size() != size) {
+    throw InvalidArgument("the registered order '" + std::string(method) + "' returned " +
+                          std::to_string(permutation.size()) + " places for " + std::to_string(size));
+  }
+  return {.permutation = std::move(permutation)};
+}
+
 }  // namespace
 
-std::span<const VertexMethod> vertex_methods() { return kVertexMethods; }
-std::span<const ElementMethod> element_methods() { return kElementMethods; }
-
-Ordering order_vertices(std::string_view method, const VertexProblem& problem,
-                        const OrderingOptions& options) {
-  const VertexMethod& found = find_method(kVertexMethods, method, "vertex");
-  Ordering result = found.order(problem, options);
-  if (found.order != original_vertices) {
-    result.permutation = with_isolated_last(result.permutation, problem.graph);
+Order order_graph(std::string_view method, const VertexInput& input, const OrderOptions& options) {
+  report("sort");
+  Order result;
+  if (const BuiltInVertexMethod* found = find_method(kVertexMethods, method)) {
+    result = found->order(input, options);
+    if (found->order != original_vertices) {
+      result.permutation = with_isolated_last(result.permutation, input.graph);
+    }
+  } else if (const VertexMethod registered = registered_vertex_method(method)) {
+    const VertexProblem problem{input.graph.offsets, input.graph.neighbours, input.weights, input.points};
+    result = result_of(registered(problem, options), input.graph.size(), method);
+  } else {
+    refuse("vertex", method, vertex_methods());
   }
   if (result.method.name.empty()) result.method.name = method;
   return result;
 }
 
-Ordering order_elements(std::string_view method, const ElementProblem& problem,
-                        const OrderingOptions& options) {
-  Ordering result = find_method(kElementMethods, method, "element").order(problem, options);
+Order order_incidence(std::string_view method, const ElementInput& input, const OrderOptions& options) {
+  report("sort");
+  Order result;
+  if (const BuiltInElementMethod* found = find_method(kElementMethods, method)) {
+    result = found->order(input, options);
+  } else if (const ElementMethod registered = registered_element_method(method)) {
+    const ElementProblem problem{input.elements.offsets, input.elements.vertices, input.vertices.old_to_new(),
+                                 input.points};
+    result = result_of(registered(problem, options), input.elements.size(), method);
+  } else {
+    refuse("element", method, element_methods());
+  }
   if (result.method.name.empty()) result.method.name = method;
+  return result;
+}
+
+std::vector<MethodInfo> built_in_vertex_methods() {
+  std::vector<MethodInfo> result;
+  for (const auto& method : kVertexMethods) result.push_back(info_of(method));
+  return result;
+}
+
+std::vector<MethodInfo> built_in_element_methods() {
+  std::vector<MethodInfo> result;
+  for (const auto& method : kElementMethods) result.push_back(info_of(method));
   return result;
 }
 

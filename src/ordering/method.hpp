@@ -1,83 +1,63 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "base/point.hpp"
+#include <meshorder/order.hpp>
+#include <meshorder/registry.hpp>
+
 #include "graph/csr_graph.hpp"
 #include "graph/incidence.hpp"
-#include "ordering/permutation.hpp"
-#include "ordering/use.hpp"
-#include "spectral/fiedler.hpp"
 
-#include <cstdint>
 #include <functional>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
 namespace meshorder {
 
-struct OrderingOptions {
-  std::uint64_t seed = 0;        ///< of `scrambled`, of METIS and of eigensolvers' start vectors
-  double tolerance = 0.1;        ///< of Fiedler vectors, relative to λ₂
-  Workload use = Workload::all;  ///< what `auto` chooses a method for
-};
-
-/// Which method made an order.
-struct MethodChoice {
-  std::string name;
-  std::string reason;  ///< why `auto` took it; empty where it was asked for by its name
-
-  bool operator==(const MethodChoice&) const = default;
-};
-
-/// An order, and how the eigensolver fared where there was one (a report for each connected component).
-struct Ordering {
-  Permutation permutation;
-  std::vector<FiedlerComponent> fiedler;
-  MethodChoice method = {};  ///< filled in by order_vertices and order_elements
-};
-
-/// What a vertex method may look at.
-struct VertexProblem {
+/// Input of a vertex method inside the library: a clean graph.
+struct VertexInput {
   GraphRef graph;
-  std::span<const Point> points;  ///< one for each vertex, or none where there are no coordinates
+  PointsView points = {};                 ///< one for each vertex, or none
+  std::span<const double> weights = {};   ///< one for each neighbour, or none
 };
 
-/// What an element method may look at.
-struct ElementProblem {
-  const Incidence& elements;
+/// Input of an element method inside the library.
+struct ElementInput {
+  IncidenceRef elements;                  ///< every element has a vertex
   const Permutation& vertices;            ///< the order of the vertices, which most element orders follow
-  std::span<const Point> points;          ///< of the vertices in their old order, or none
+  PointsView points;                      ///< of the vertices in their old order, or none
   std::function<CsrGraph()> facet_graph;  ///< joins elements that share a facet
 };
 
-/// A method is a name with a function behind it.
-struct VertexMethod {
-  std::string_view name;
-  std::string_view sentence;  ///< for a list of methods
-  Ordering (*order)(const VertexProblem&, const OrderingOptions&);
-};
+/// Orders vertices by the method of that name, built in or registered. Vertices without neighbours come last,
+/// in their old order (but stay where they are under `original`). Polls the call's progress.
+///
+/// @throws InvalidArgument for an unknown name, which lists the known ones, and for a geometric method without
+///         coordinates
+/// @throws Unavailable for a method that this build lacks
+Order order_graph(std::string_view method, const VertexInput& input, const OrderOptions& options = {});
 
-struct ElementMethod {
-  std::string_view name;
-  std::string_view sentence;
-  Ordering (*order)(const ElementProblem&, const OrderingOptions&);
-};
+/// Orders the vertices group after group, each group by the method on the graph of its own vertices, so that
+/// neighbours within a group stay neighbours in memory. `auto` chooses once, for the whole graph; reports of
+/// eigensolvers follow each other as the groups do. O(n + edges) and what the method costs.
+///
+/// @param group_of  for each vertex the number of its group, 0 … groups − 1
+/// @throws as `order_graph`, and InvalidArgument if `group_of` does not fit
+Order order_graph_in_groups(std::string_view method, const VertexInput& input, std::span<const Index> group_of,
+                            Index groups, const OrderOptions& options = {});
 
-/// All methods, in the order in which help lists them.
-std::span<const VertexMethod> vertex_methods();
-std::span<const ElementMethod> element_methods();
+/// Orders elements by the method of that name; throws as `order_graph`.
+Order order_incidence(std::string_view method, const ElementInput& input, const OrderOptions& options = {});
 
-/// Orders the vertices by the method of that name. Vertices without neighbours come last, in their old order
-/// (but stay where they are under `original`). Throws InvalidArgument for an unknown name, which lists the
-/// known ones, and for a geometric method without coordinates. `auto` chooses one of the others, and the
-/// result says which.
-Ordering order_vertices(std::string_view method, const VertexProblem& problem,
-                        const OrderingOptions& options = {});
+/// Returns the vertex method that measurements favour for that graph and workload: never `auto` itself, and
+/// none that needs coordinates where there are none that tell vertices apart. The rules stand in auto.cpp with
+/// their evidence. O(n).
+MethodChoice choose_vertex_method(const VertexInput& input, Workload workload);
 
-/// Orders the elements by the method of that name. Throws InvalidArgument like `order_vertices`.
-Ordering order_elements(std::string_view method, const ElementProblem& problem,
-                        const OrderingOptions& options = {});
+/// Returns the element method that measurements favour for that workload. O(1).
+MethodChoice choose_element_method(const ElementInput& input, Workload workload);
+
+/// Returns a registered method of that name, empty if there is none. Thread-safe.
+VertexMethod registered_vertex_method(std::string_view name);
+ElementMethod registered_element_method(std::string_view name);
 
 }  // namespace meshorder

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Karypis, Kumar: A Fast and High Quality Multilevel Scheme for Partitioning Irregular Graphs (1998).
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 #include "ordering/all_methods.hpp"
 
 #include <metis.h>
@@ -82,11 +82,11 @@ void append_bisected(GraphRef graph, const std::vector<Index>& vertices, std::ui
 
 }  // namespace
 
-Ordering metis_nd_vertices(const VertexProblem& problem, const OrderingOptions& options) {
-  if (problem.graph.neighbours.empty()) return {Permutation::identity(problem.graph.size()), {}};
-  MetisGraph graph(problem.graph, options.seed);
-  std::vector<idx_t> new_to_old(problem.graph.size());
-  std::vector<idx_t> old_to_new(problem.graph.size());
+Order metis_nd_vertices(const VertexInput& input, const OrderOptions& options) {
+  if (input.graph.neighbours.empty()) return {Permutation::identity(input.graph.size()), {}};
+  MetisGraph graph(input.graph, options.seed);
+  std::vector<idx_t> new_to_old(input.graph.size());
+  std::vector<idx_t> old_to_new(input.graph.size());
   check_metis(METIS_NodeND(&graph.size, graph.offsets.data(), graph.neighbours.data(), nullptr, graph.options,
                            new_to_old.data(), old_to_new.data()),
               "METIS_NodeND");
@@ -95,12 +95,12 @@ Ordering metis_nd_vertices(const VertexProblem& problem, const OrderingOptions& 
 
 // One half of the mesh comes before the other, and so on within each half. METIS's own recursion into many
 // parts prints to stdout and fails where a part becomes empty, so it is asked for one bisection at a time.
-Ordering metis_rb_vertices(const VertexProblem& problem, const OrderingOptions& options) {
-  std::vector<Index> all(problem.graph.size());
+Order metis_rb_vertices(const VertexInput& input, const OrderOptions& options) {
+  std::vector<Index> all(input.graph.size());
   std::iota(all.begin(), all.end(), Index{0});
   std::vector<Index> new_to_old;
   new_to_old.reserve(all.size());
-  append_bisected(problem.graph, all, options.seed, new_to_old);
+  append_bisected(input.graph, all, options.seed, new_to_old);
   return {Permutation::from_new_to_old(std::move(new_to_old)), {}};
 }
 

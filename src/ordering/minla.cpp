@@ -2,12 +2,14 @@
 // Minimum linear arrangement, to which the Fiedler vector is a relaxation: Juvan, Mohar, Optimal Linear
 // Labelings and Eigenvalues of Graphs (1992). Multilevel search: Safro, Ron, Brandt, Graph Minimum Linear
 // Arrangement by Multilevel Weighted Edge Contractions (2006).
+#include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/arrangement_graph.hpp"
 #include "ordering/insertions.hpp"
 
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace meshorder {
@@ -54,7 +56,7 @@ std::vector<Index> expanded(const std::vector<Index>& coarse_order, const std::v
 /// by moving single vertices. What is better on the coarser graph need not be so here; so this goes twice,
 /// the second time with groups that follow the new order, and keeps the better outcome, which may have a
 /// larger span than what it began with.
-void search(const ArrangementGraph& graph, std::vector<Index>& order) {
+void search(const ArrangementGraph& graph, TimeLimit limit, std::vector<Index>& order) {
   Offset least = std::numeric_limits<Offset>::max();
   for (int visit = 0; visit < kVisits; ++visit) {
     std::vector<Index> candidate = order;
@@ -64,7 +66,7 @@ void search(const ArrangementGraph& graph, std::vector<Index>& order) {
       const bool shrinks = Offset{10} * coarse.graph.size() <= Offset{9} * graph.size();
       if (shrinks) {
         std::vector<Index> coarse_order = identity(coarse.graph.size());
-        search(coarse.graph, coarse_order);
+        search(coarse.graph, limit, coarse_order);
         candidate = expanded(coarse_order, coarse.group_of, order);
       }
       // else the visits would take more than O(edges · log n) in all
@@ -75,23 +77,25 @@ void search(const ArrangementGraph& graph, std::vector<Index>& order) {
       least = span;
       order = std::move(candidate);
     }
-    if (!twice) return;
+    if (!twice || limit.is_over()) return;
   }
 }
 
 }  // namespace
 
-Ordering minla_vertices(const VertexProblem& problem, const OrderingOptions& options) {
-  Ordering result = fiedler_vertices(problem, options);
-  const std::vector<Index>& start = result.permutation.new_to_old();
-  std::vector<Index> new_to_old = start;
+Order minla_vertices(const VertexInput& input, const OrderOptions& options) {
+  Order result = fiedler_vertices(input, options);
+  const std::span<const Index> start = result.permutation.new_to_old();
+  std::vector<Index> new_to_old(start.begin(), start.end());
+  const TimeLimit limit;
+  report("improve");
   Index first = 0;
   for (const FiedlerComponent& component : result.fiedler) {
-    if (component.size > 2) {
-      const ArrangementGraph graph = local_graph(problem.graph, result.permutation, first, component.size);
+    if (component.size > 2 && !limit.is_over()) {
+      const ArrangementGraph graph = local_graph(input.graph, result.permutation, first, component.size);
       std::vector<Index> order = identity(component.size);
       const Offset before = total_span(graph, order);
-      search(graph, order);
+      search(graph, limit, order);
       if (total_span(graph, order) < before) {
         for (Index k = 0; k < component.size; ++k) new_to_old[first + k] = start[first + order[k]];
       }
@@ -99,6 +103,7 @@ Ordering minla_vertices(const VertexProblem& problem, const OrderingOptions& opt
     first += component.size;
   }
   result.permutation = Permutation::from_new_to_old(std::move(new_to_old));
+  result.complete = result.complete && !limit.is_over();
   return result;
 }
 

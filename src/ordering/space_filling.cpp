@@ -3,8 +3,9 @@
 // Data Base (1966). Hilbert's curve by the transformation of Skilling: Programming the Hilbert Curve (2004).
 #include "ordering/space_filling.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 #include "base/parallel.hpp"
+#include "base/point.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/sorted.hpp"
 
@@ -14,21 +15,23 @@
 
 namespace meshorder {
 
-void check_points(std::span<const Point> points, std::size_t count, std::string_view method) {
+void check_points(const PointsView& points, std::size_t count, std::string_view method) {
   if (points.size() != count) {
     throw InvalidArgument("order '" + std::string(method) + "' needs the coordinates of all " +
                           std::to_string(count) + " vertices, got " + std::to_string(points.size()));
   }
 }
 
-LatticePoints on_lattice(std::span<const Point> points) {
+LatticePoints on_lattice(const PointsView& points) {
   LatticePoints lattice;
-  if (points.empty()) return lattice;
+  if (points.size() == 0) return lattice;
 
   // the bounding box, and its axes of any extent
-  Point low = points.front();
-  Point high = points.front();
-  for (const Point& point : points) {
+  const Index n = index_size(points);
+  Point low = point_at(points, 0);
+  Point high = low;
+  for (Index i = 0; i < n; ++i) {
+    const Point point = point_at(points, i);
     for (int a = 0; a < 3; ++a) {
       low[a] = std::min(low[a], point[a]);
       high[a] = std::max(high[a], point[a]);
@@ -47,9 +50,10 @@ LatticePoints on_lattice(std::span<const Point> points) {
   // one scale for all axes, so that cells are cubes
   const double cells = std::ldexp(1.0, lattice.bits) - 1;
   lattice.coordinates.assign(points.size(), {0, 0, 0});
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (Index i = 0; i < n; ++i) {
+    const Point point = point_at(points, i);
     for (int k = 0; k < lattice.axes; ++k) {
-      const double share = (points[i][used[k]] - low[used[k]]) / extent;
+      const double share = (point[used[k]] - low[used[k]]) / extent;
       lattice.coordinates[i][k] = static_cast<std::uint32_t>(std::clamp(share, 0.0, 1.0) * cells);
     }
   }
@@ -94,7 +98,7 @@ std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x, int axes, int bits) {
   return interleaved(x, axes, bits);
 }
 
-Permutation along_hilbert_curve(std::span<const Point> points) {
+Permutation along_hilbert_curve(const PointsView& points) {
   const LatticePoints lattice = on_lattice(points);
   std::vector<std::uint64_t> keys(points.size());
   for_each_chunk(index_size(points), kPointsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
@@ -106,31 +110,31 @@ Permutation along_hilbert_curve(std::span<const Point> points) {
 
 }  // namespace
 
-Ordering morton_vertices(const VertexProblem& problem, const OrderingOptions&) {
-  check_points(problem.points, static_cast<std::size_t>(problem.graph.size()), "morton");
-  const LatticePoints lattice = on_lattice(problem.points);
+Order morton_vertices(const VertexInput& input, const OrderOptions&) {
+  check_points(input.points, static_cast<std::size_t>(input.graph.size()), "morton");
+  const LatticePoints lattice = on_lattice(input.points);
   std::vector<std::uint64_t> keys;
   keys.reserve(lattice.coordinates.size());
   for (const auto& cell : lattice.coordinates) keys.push_back(interleaved(cell, lattice.axes, lattice.bits));
   return {sorted_by(keys), {}};
 }
 
-Ordering hilbert_vertices(const VertexProblem& problem, const OrderingOptions&) {
-  check_points(problem.points, static_cast<std::size_t>(problem.graph.size()), "hilbert");
-  return {along_hilbert_curve(problem.points), {}};
+Order hilbert_vertices(const VertexInput& input, const OrderOptions&) {
+  check_points(input.points, static_cast<std::size_t>(input.graph.size()), "hilbert");
+  return {along_hilbert_curve(input.points), {}};
 }
 
-Ordering hilbert_elements(const ElementProblem& problem, const OrderingOptions&) {
-  const Incidence& elements = problem.elements;
-  check_points(problem.points, static_cast<std::size_t>(elements.vertex_count), "hilbert");
+Order hilbert_elements(const ElementInput& input, const OrderOptions&) {
+  const IncidenceRef elements = input.elements;
+  check_points(input.points, static_cast<std::size_t>(elements.vertex_count), "hilbert");
   std::vector<Point> centroids(elements.size(), Point{});
   for (Index e = 0; e < elements.size(); ++e) {
     const double share = 1.0 / static_cast<double>(elements[e].size());
     for (const Index v : elements[e]) {
-      for (int a = 0; a < 3; ++a) centroids[e][a] += share * problem.points[v][a];
+      for (int a = 0; a < 3; ++a) centroids[e][a] += share * input.points(static_cast<std::size_t>(v), a);
     }
   }
-  return {along_hilbert_curve(centroids), {}};
+  return {along_hilbert_curve(PointsView(centroids)), {}};
 }
 
 }  // namespace meshorder

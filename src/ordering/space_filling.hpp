@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -19,11 +18,11 @@ struct LatticePoints {
 };
 
 /// Throws InvalidArgument, naming `method`, unless there are `count` points.
-void check_points(std::span<const Point> points, std::size_t count, std::string_view method);
+void check_points(const PointsView& points, std::size_t count, std::string_view method);
 
 /// The points on the finest lattice of cubes that covers their bounding box and whose cell number fits in 64
 /// bits. O(points).
-LatticePoints on_lattice(std::span<const Point> points);
+LatticePoints on_lattice(const PointsView& points);
 
 /// One bit of each axis in turn, highest first: the number of a cell along Morton's curve.
 std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int axes, int bits);

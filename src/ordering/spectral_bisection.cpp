@@ -3,9 +3,11 @@
 // Graphs, 1990) as a linear order. Of the two directions of each cut the one is taken that suits the
 // neighbours outside the piece (terminal propagation: Dunlop and Kernighan 1985).
 #include "base/parallel.hpp"
+#include "base/run_scope.hpp"
 #include "graph/traversal.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/smoothed_bisection.hpp"
+#include "spectral/fiedler.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,8 +47,8 @@ Piece whole_component(GraphRef graph, std::vector<Index> component, std::vector<
 /// The piece's vertices along its Fiedler vector; where it has come apart, component by component, first the
 /// one that is pulled forward most.
 std::vector<Index> along_fiedler_vector(const Piece& piece, std::uint64_t seed) {
-  const FiedlerResult fiedler =
-      fiedler_vector(piece.graph, {.tolerance = kTolerance, .max_iterations = kMaxIterations, .seed = seed});
+  const FiedlerVectors fiedler =
+      fiedler_vectors(piece.graph, {.tolerance = kTolerance, .max_iterations = kMaxIterations, .seed = seed});
   std::vector<std::pair<double, Index>> components;
   for (Index c = 0; c < index_size(fiedler.components); ++c) {
     double pull = 0;
@@ -129,9 +131,11 @@ Piece piece_of(const Piece& whole, const Slabs& slabs, Index slab) {
   return piece;
 }
 
-/// Writes the names of the piece's vertices in their new order to `out`.
-void write_in_order(Piece piece, std::uint64_t seed, Index* out) {
-  if (piece.graph.neighbours.empty()) {
+/// Writes the names of the piece's vertices in their new order to `out`. When the time limit is over, pieces stay
+/// in the order that the cuts before gave them.
+void write_in_order(Piece piece, std::uint64_t seed, TimeLimit limit, Index* out) {
+  poll();
+  if (piece.graph.neighbours.empty() || limit.is_over()) {
     std::copy(piece.names.begin(), piece.names.end(), out);
     return;
   }
@@ -143,22 +147,23 @@ void write_in_order(Piece piece, std::uint64_t seed, Index* out) {
   }
   const Slabs slabs = cut(piece.graph, along_fiedler_vector(piece, seed));
   for_each_chunk(slabs.count, 1, [&](Index slab, Index, Index) {
-    write_in_order(piece_of(piece, slabs, slab), seed, out + slabs.begin_of(slab));
+    write_in_order(piece_of(piece, slabs, slab), seed, limit, out + slabs.begin_of(slab));
   });
 }
 
 }  // namespace
 
-Ordering spectral_vertices(const VertexProblem& problem, const OrderingOptions& options) {
-  std::vector<Index> new_to_old(problem.graph.size());
-  std::vector<Index> number(problem.graph.size());
+Order spectral_vertices(const VertexInput& input, const OrderOptions& options) {
+  std::vector<Index> new_to_old(input.graph.size());
+  std::vector<Index> number(input.graph.size());
+  const TimeLimit limit;
   Index* out = new_to_old.data();
-  for (std::vector<Index>& component : connected_components(problem.graph)) {
+  for (std::vector<Index>& component : connected_components(input.graph)) {
     const Index size = index_size(component);
-    write_in_order(whole_component(problem.graph, std::move(component), number), options.seed, out);
+    write_in_order(whole_component(input.graph, std::move(component), number), options.seed, limit, out);
     out += size;
   }
-  return {Permutation::from_new_to_old(std::move(new_to_old)), {}};
+  return {.permutation = Permutation::from_new_to_old(std::move(new_to_old)), .complete = !limit.is_over()};
 }
 
 }  // namespace meshorder

@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/fiedler.hpp"
 
-#include "base/error.hpp"
+#include "base/run_scope.hpp"
+
+#include <meshorder/error.hpp>
 #include "base/random.hpp"
 #include "spectral/component_numbering.hpp"
 #include "spectral/hierarchy.hpp"
@@ -30,8 +32,8 @@ void fill_with_noise(Block& x, int first_column, std::uint64_t seed) {
   }
 }
 
-/// The start vectors on the finest graph: exact on the coarsest, improved on every graph between.
-Block nested_start(const Hierarchy& hierarchy, std::uint64_t seed) {
+/// Returns the start vectors on the finest graph: exact on the coarsest, improved on every graph between.
+Block nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimit limit) {
   const auto& levels = hierarchy.levels();
   int level = static_cast<int>(levels.size()) - 1;
   Block x;
@@ -53,7 +55,7 @@ Block nested_start(const Hierarchy& hierarchy, std::uint64_t seed) {
       fill_with_noise(x, known, seed);
       known = kColumns;
     }
-    if (level > 0) lobpcg<kColumns>(hierarchy, level, {kCoarseTolerance, kCoarseIterations}, x);
+    if (level > 0) lobpcg<kColumns>(hierarchy, level, {kCoarseTolerance, kCoarseIterations, limit}, x);
   }
   return x;
 }
@@ -64,29 +66,45 @@ VectorBlock<1> column(const Block& x, int m) {
   return result;
 }
 
-/// The Fiedler vector of a component with that Laplacian into the entries `vertices` of `values`.
+/// Returns the caller's start vector on a component; empty if there is none or it is constant there.
+VectorBlock<1> given_start(RealView start, std::span<const Index> vertices) {
+  VectorBlock<1> x;
+  if (start.empty()) return x;
+  x.resize(vertices.size());
+  bool constant = true;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    x[k][0] = start[static_cast<std::size_t>(vertices[k])];
+    constant = constant && x[k][0] == x[0][0];
+  }
+  if (constant) x.clear();
+  return x;
+}
+
+/// Writes the Fiedler vector of a component with that Laplacian to the entries `vertices` of `values`.
 FiedlerComponent solve_component(Laplacian laplacian, std::span<const Index> vertices,
-                                 const FiedlerOptions& options, std::vector<double>& values) {
+                                 const FiedlerOptions& options, TimeLimit limit, std::vector<double>& values) {
   const Hierarchy hierarchy(std::move(laplacian));
   VectorBlock<1> x;
   LobpcgResult solved;
   if (hierarchy.levels().size() == 1 && hierarchy.has_exact_coarsest()) {
     x = hierarchy.coarsest_eigenvectors<1>();
-    solved = lobpcg<1>(hierarchy, 0, {options.tolerance, 0}, x);
+    solved = lobpcg<1>(hierarchy, 0, {options.tolerance, 0, limit}, x);
+  } else if (x = given_start(options.start, vertices); !x.empty()) {
+    solved = lobpcg<1>(hierarchy, 0, {options.tolerance, options.max_iterations, limit}, x);
   } else {
     VectorBlock<1> companion;
     {
-      const Block start = nested_start(hierarchy, options.seed);
+      const Block start = nested_start(hierarchy, options.seed, limit);
       x = column(start, 0);
       companion = column(start, 1);
     }
-    solved = lobpcg<1, 1>(hierarchy, 0, {options.tolerance, options.max_iterations}, x, std::move(companion));
+    solved = lobpcg<1, 1>(hierarchy, 0, {options.tolerance, options.max_iterations, limit}, x, std::move(companion));
   }
   for (std::size_t k = 0; k < x.size(); ++k) values[vertices[k]] = x[k][0];
   return {index_size(x), solved.eigenvalue, solved.residual, solved.iterations, solved.converged};
 }
 
-/// Norm 1, sum 0, and the sign that FiedlerResult promises. `vertices` are the component's, rising.
+/// Scales to norm 1, sum 0 and the sign that FiedlerVectors promises. `vertices` are the component's, ascending.
 void normalise(std::vector<double>& values, const std::vector<Index>& vertices) {
   double norm_squared = 0;
   double largest = 0;
@@ -105,7 +123,7 @@ void normalise(std::vector<double>& values, const std::vector<Index>& vertices) 
   for (const Index v : vertices) values[v] *= scale;
 }
 
-/// The components by falling size, ties in the order in which they are numbered.
+/// Returns the components, largest first, ties in the order in which they are numbered.
 std::vector<Index> largest_first(const ComponentNumbering& numbering) {
   std::vector<Index> result(numbering.component_count());
   std::iota(result.begin(), result.end(), Index{0});
@@ -115,8 +133,8 @@ std::vector<Index> largest_first(const ComponentNumbering& numbering) {
   return result;
 }
 
-/// The vertices of each of those components, rising.
-std::vector<std::vector<Index>> rising_vertices(const ComponentNumbering& numbering,
+/// Returns the vertices of each of those components, ascending.
+std::vector<std::vector<Index>> ascending_vertices(const ComponentNumbering& numbering,
                                                 const std::vector<Index>& components) {
   std::vector<std::vector<Index>> result(components.size());
   std::vector<Index> rank_of(numbering.order.size());  // of each vertex's component
@@ -129,8 +147,8 @@ std::vector<std::vector<Index>> rising_vertices(const ComponentNumbering& number
   return result;
 }
 
-void check_weights(GraphRef graph, std::span<const double> weights) {
-  if (weights.size() != graph.neighbours.size()) {
+void check_input(GraphRef graph, std::span<const double> weights, RealView start) {
+  if (!weights.empty() && weights.size() != graph.neighbours.size()) {
     throw InvalidArgument("fiedler_vector: " + std::to_string(weights.size()) + " weights for " +
                           std::to_string(graph.neighbours.size()) + " neighbours");
   }
@@ -138,16 +156,41 @@ void check_weights(GraphRef graph, std::span<const double> weights) {
       std::find_if(weights.begin(), weights.end(), [](double w) { return !(w > 0 && std::isfinite(w)); });
   if (bad != weights.end()) {
     throw InvalidArgument("fiedler_vector: weight " + std::to_string(bad - weights.begin()) + " is " +
-                          std::to_string(*bad) + "; weights must be positive");
+                          std::to_string(*bad) + "; weights must be positive and finite");
+  }
+  if (!start.empty() && index_size(start) != graph.size()) {
+    throw InvalidArgument("fiedler_vector: a start vector of " + std::to_string(start.size()) + " entries for " +
+                          std::to_string(graph.size()) + " vertices");
+  }
+  for (std::size_t v = 0; v < start.size(); ++v) {
+    if (!std::isfinite(start[v])) {
+      throw InvalidArgument("fiedler_vector: entry " + std::to_string(v) + " of the start vector is not finite");
+    }
   }
 }
 
-FiedlerResult solve(GraphRef graph, std::span<const double> weights, const FiedlerOptions& options) {
+}  // namespace
+
+FiedlerOptions solver_options(const OrderOptions& options) {
+  if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) {
+    throw InvalidArgument("options: the tolerance must be positive and finite");
+  }
+  if (options.max_iterations < 1) throw InvalidArgument("options: max_iterations must be at least 1");
+  return {.tolerance = options.tolerance,
+          .max_iterations = options.max_iterations,
+          .seed = options.seed,
+          .start = options.start};
+}
+
+FiedlerVectors fiedler_vectors(GraphRef graph, std::span<const double> weights, const FiedlerOptions& options) {
+  check_input(graph, weights, options.start);
+  report("coarsen");
+  const TimeLimit limit;
   const ComponentNumbering numbering = number_components(graph);
   const std::vector<Index> components = largest_first(numbering);
-  FiedlerResult result;
+  FiedlerVectors result;
   result.values.assign(graph.size(), 0);
-  result.component_vertices = rising_vertices(numbering, components);
+  result.component_vertices = ascending_vertices(numbering, components);
   result.components.resize(components.size());
   for_each_chunk(index_size(components), 1, [&](Index rank, Index, Index) {
     const auto vertices = numbering.component(components[rank]);
@@ -155,22 +198,15 @@ FiedlerResult solve(GraphRef graph, std::span<const double> weights, const Fiedl
       result.components[rank] = {1, 0, 0, 0, true};
       return;
     }
-    result.components[rank] = solve_component(
-        component_laplacian(graph, weights, numbering, components[rank]), vertices, options, result.values);
+    result.components[rank] =
+        solve_component(component_laplacian(graph, weights, numbering, components[rank]), vertices, options,
+                        limit, result.values);
     normalise(result.values, result.component_vertices[rank]);
   });
+  const bool converged = std::all_of(result.components.begin(), result.components.end(),
+                                     [](const FiedlerComponent& component) { return component.converged; });
+  result.complete = converged || !limit.is_over();
   return result;
-}
-
-}  // namespace
-
-FiedlerResult fiedler_vector(GraphRef graph, const FiedlerOptions& options) {
-  return solve(graph, {}, options);
-}
-
-FiedlerResult fiedler_vector(GraphRef graph, std::span<const double> weights, const FiedlerOptions& options) {
-  check_weights(graph, weights);
-  return solve(graph, weights, options);
 }
 
 }  // namespace meshorder

@@ -244,7 +244,8 @@ LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& 
   result.residual = search();
   const auto converged = [&] { return result.residual <= options.tolerance * values[0]; };
   for (;; ++result.iterations) {
-    const bool last = result.iterations >= options.max_iterations;
+    report("eigenvector");
+    const bool last = result.iterations >= options.max_iterations || options.limit.is_over();
     if (last || converged()) {
       result.residual = refresh<M>(s.x, here, values, r);
       if (last || converged()) break;

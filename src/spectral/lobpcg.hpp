@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/run_scope.hpp"
 #include "spectral/hierarchy.hpp"
 
 #include <array>
@@ -10,6 +11,7 @@ namespace meshorder {
 struct LobpcgOptions {
   double tolerance = 0.1;    ///< on ‖L x − λ B x‖ / (λ ‖x‖) of the first column
   int max_iterations = 500;  ///< more are not made; the result says whether it converged
+  TimeLimit limit = {};      ///< ends the iteration like max_iterations
 };
 
 struct LobpcgResult {
@@ -26,7 +28,7 @@ struct LobpcgResult {
 /// Rayleigh quotient over the span of x, the hierarchy's cycle applied to the residuals, the previous
 /// directions, and `companions`, all kept orthogonal to constants. Companions are rough guesses of the next
 /// eigenvectors: a single column that is slow to part from a close λ₃ parts quickly when it may subtract what
-/// resembles that eigenvector, for far less than a second column costs. Columns end in rising order of their
+/// resembles that eigenvector, for far less than a second column costs. Columns end in ascending order of their
 /// eigenvalues, ‖x‖_B = 1. Columns of x that depend on others or are constant are replaced by the search
 /// itself. O(graph) an iteration.
 template <int M, int Companions>
