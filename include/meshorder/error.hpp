@@ -8,7 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// Kind of a failure. The numbers are those of `mo_status` in meshorder.h and do not change.
 enum class Code : int {
@@ -97,4 +98,5 @@ struct MESHORDER_API InternalError : Error {
   explicit InternalError(const std::string& message) : Error(Code::internal, message) {}
 };
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// The eigensolver's report on one connected component.
 struct FiedlerComponent {
@@ -57,4 +58,5 @@ struct Fiedler {
 ///       does not depend on the number of threads, in any bit. Reentrant.
 MESHORDER_API Fiedler fiedler_vector(const GraphView& graph, const OrderOptions& options = {});
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

@@ -15,7 +15,8 @@
 #include <string_view>
 #include <vector>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// Warnings of a reader or writer, a sentence each: what was dropped, repaired or looks wrong. The library
 /// never prints.
@@ -102,4 +103,5 @@ struct MemoryFiles {
 [[nodiscard]] MESHORDER_API MemoryFiles write_mesh_to_memory(const Mesh& mesh, std::string_view format,
                                                              std::string_view name, Notes* notes = nullptr);
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

@@ -19,7 +19,8 @@
 #include <variant>
 #include <vector>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// Cells of any types in file order: cell c has shape `shapes[c]` and the vertices
 /// `vertices[offsets[c]] … vertices[offsets[c + 1] − 1]`, in the order that `Shape` tells. Cells of more than
@@ -208,4 +209,5 @@ MESHORDER_API MeshOrder reorder(Mesh& mesh, const ReorderOptions& options = {});
 MESHORDER_API void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells,
                                     Ids ids = Ids::renumber);
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

@@ -9,7 +9,8 @@
 #include <ranges>
 #include <type_traits>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// Number of a vertex, a cell, or a row of a matrix inside meshorder: at most 2,147,483,647 of them.
 using Index = std::int32_t;
@@ -168,4 +169,5 @@ class RealView {
   int bytes_ = sizeof(double);
 };
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

@@ -10,7 +10,8 @@
 #include <limits>
 #include <string_view>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// What to order for. `auto` chooses its method by this; methods asked for by name ignore it.
 enum class Workload : std::uint8_t {
@@ -100,4 +101,5 @@ struct OrderOptions {
   Run run = {};
 };
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

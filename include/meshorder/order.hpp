@@ -14,7 +14,8 @@
 #include <utility>
 #include <vector>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// The method that made an order.
 struct MethodChoice {
@@ -210,4 +211,5 @@ class MESHORDER_API Graph {
 ///       offsets and int32 neighbours, else as `order_vertices`.
 MESHORDER_API void check(const GraphView& graph, Check level = Check::full);
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

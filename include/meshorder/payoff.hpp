@@ -18,7 +18,8 @@
 #include <string_view>
 #include <vector>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// The hot loops of simulators that are predicted and measured.
 enum class Kernel : std::uint8_t {
@@ -92,4 +93,5 @@ struct PayoffOptions {
 [[nodiscard]] MESHORDER_API std::vector<Candidate> compare(const MeshView& mesh,
                                                            const PayoffOptions& options = {});
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

@@ -17,7 +17,8 @@
 #include <utility>
 #include <vector>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// A bijection of 0 … n−1, stored in both directions, and the moves of arrays that it stands for.
 ///
@@ -216,4 +217,5 @@ void Permutation::move_in_place(R&& values, std::size_t width) const {
   }
 }
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

@@ -9,7 +9,8 @@
 
 #include <vector>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// Numbers that describe how near the ends of edges stand in an order. The span of edge ij is |rank i − rank
 /// j|. All 0 without edges.
@@ -54,4 +55,5 @@ MESHORDER_API Quality quality(const GraphView& graph, const Permutation& order, 
 MESHORDER_API std::vector<Offset> span_histogram(const GraphView& graph, const Permutation& order,
                                                  Index width, const Run& run = {});
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

@@ -15,7 +15,8 @@
 #include <utility>
 #include <vector>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// Description of a method, as lists of methods show it.
 struct MethodInfo {
@@ -99,4 +100,5 @@ MESHORDER_API Registration register_element_method(MethodInfo info, ElementMetho
 /// @warning Runs code of that library.
 MESHORDER_API void load_methods(const std::filesystem::path& shared_library);
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

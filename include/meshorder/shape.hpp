@@ -8,7 +8,8 @@
 #include <string_view>
 #include <vector>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// The geometric shape of a cell. Shape and number of vertices together are the type of a cell: a tetrahedron
 /// of 4 vertices is linear, one of 10 is quadratic. The last four shapes have any number of vertices.
@@ -55,4 +56,5 @@ MESHORDER_API std::string type_name(Shape shape, int vertices);
 ///         {{0, 1}, {1, 2}, {2, 0}}. A triangle strip gives its outline. Vertex shapes have none.
 MESHORDER_API std::vector<std::vector<int>> facets(Shape shape, int vertices);
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

@@ -15,7 +15,8 @@
 #include <type_traits>
 #include <vector>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// A view of an undirected graph, or of the pattern of a square matrix, in compressed sparse rows.
 ///
@@ -245,4 +246,5 @@ struct MeshView {
   std::size_t vertex_count = 0;  ///< 0: as many as there are points
 };
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

@@ -7,7 +7,8 @@
 
 #include <utility>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 namespace {
 
 /// Throws unless a graph whose entries are in range is symmetric, repeats and loops aside. The hash of a
@@ -48,4 +49,5 @@ Graph cleaned(const GraphView& graph, Symmetry symmetry, const Run& run) {
   });
 }
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder

@@ -7,7 +7,8 @@
 #include <ranges>
 #include <type_traits>
 
-namespace meshorder::inline v0_2 {
+namespace meshorder {
+inline namespace v0_2 {
 
 /// An integer type that views and spans accept: 32 or 64 bits, signed or not. Neither bool nor a character
 /// type.
@@ -23,10 +24,13 @@ concept RealType = std::same_as<T, float> || std::same_as<T, double>;
 template <class N>
 concept CountType = std::integral<N> && !std::same_as<N, bool>;
 
-}  // namespace meshorder::inline v0_2
+}  // namespace v0_2
+}  // namespace meshorder
 
 /// Parts of the public headers that may change at any time.
-namespace meshorder::inline v0_2::detail {
+namespace meshorder {
+inline namespace v0_2 {
+namespace detail {
 
 /// The number type of a range's values: T of T and of std::array<T, width>.
 template <class T>
@@ -97,4 +101,6 @@ constexpr std::size_t checked_count(N count) noexcept {
   return static_cast<std::size_t>(count);
 }
 
-}  // namespace meshorder::inline v0_2::detail
+}  // namespace detail
+}  // namespace v0_2
+}  // namespace meshorder
