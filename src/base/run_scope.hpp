@@ -37,8 +37,8 @@ class RunScope {
 };
 
 /// Says what the calling thread's call does now, and how much of the call is done: 0 … 1, or −1 where that is
-/// unknown. A smaller fraction than before is raised to that. Calls the user's progress function if 50 ms have
-/// passed since it was last called.
+/// unknown. A smaller fraction than before is raised to that. Calls the user's progress function if 50 ms
+/// have passed since it was last called.
 ///
 /// @throws Stopped if the progress function returns false, and what it throws itself
 void report(std::string_view stage, double fraction = -1);

@@ -28,7 +28,8 @@ struct IncidenceRef {
   std::span<const Offset> offsets;  ///< elements + 1, from 0
   std::span<const Index> vertices;
 
-  IncidenceRef(Index vertices_in_all, std::span<const Offset> row_offsets, std::span<const Index> row_vertices)
+  IncidenceRef(Index vertices_in_all, std::span<const Offset> row_offsets,
+               std::span<const Index> row_vertices)
       : vertex_count(vertices_in_all), offsets(row_offsets), vertices(row_vertices) {}
   IncidenceRef(const Incidence& incidence)  // NOLINT(google-explicit-constructor)
       : IncidenceRef(incidence.vertex_count, incidence.offsets, incidence.vertices) {}

@@ -64,7 +64,4 @@ struct Laplacian {
   }
 };
 
-/// The Laplacian of a graph whose edges all have weight 1. O(n + edges).
-Laplacian combinatorial_laplacian(GraphRef graph);
-
 }  // namespace meshorder

@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/point.hpp"
 #include "ordering/all_methods.hpp"
 
 #include <algorithm>
@@ -13,8 +14,8 @@ namespace {
 /// When a method is taken: the first rule that fits decides.
 struct Rule {
   std::optional<Workload> workload = {};  ///< none: any
-  Index least_vertices = 0;          ///< from so many on
-  bool geometric = false;            ///< only where there are coordinates
+  Index least_vertices = 0;               ///< from so many on
+  bool geometric = false;                 ///< only where there are coordinates
   std::string_view method;
   std::string_view reason;
 };

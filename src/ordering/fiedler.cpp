@@ -1,9 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Barnard, Pothen, Simon: A Spectral Algorithm for Envelope Reduction of Sparse Matrices (1993); the paper,
 // sections 3 and 4.1.
+#include "spectral/fiedler.hpp"
+
 #include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"
-#include "spectral/fiedler.hpp"
 
 #include <algorithm>
 #include <utility>

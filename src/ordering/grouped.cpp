@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/point.hpp"
 #include "ordering/method.hpp"
-
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -62,12 +62,11 @@ void check_groups(GraphRef graph, std::span<const Index> group_of, Index groups)
 }  // namespace
 
 Order order_graph_in_groups(std::string_view method, const VertexInput& input,
-                                  std::span<const Index> group_of, Index groups,
-                                  const OrderOptions& options) {
+                            std::span<const Index> group_of, Index groups, const OrderOptions& options) {
   check_groups(input.graph, group_of, groups);
   Order result;
-  result.method =
-      method == "auto" ? choose_vertex_method(input, options.workload) : MethodChoice{std::string(method), ""};
+  result.method = method == "auto" ? choose_vertex_method(input, options.workload)
+                                   : MethodChoice{std::string(method), ""};
   const Sorted sorted = sorted_into_groups(group_of, groups);
   std::vector<Index> new_to_old;
   new_to_old.reserve(sorted.vertices.size());

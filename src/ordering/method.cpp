@@ -1,11 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "ordering/method.hpp"
 
-#include <meshorder/error.hpp>
-
 #include "base/run_scope.hpp"
 #include "base/text.hpp"
 #include "ordering/all_methods.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <array>
@@ -32,20 +31,24 @@ struct BuiltInElementMethod {
 
 constexpr std::array kVertexMethods{
     BuiltInVertexMethod{"auto", "the one below that measurements favour for the mesh's size and use (--for)",
-                 auto_vertices},
+                        auto_vertices},
     BuiltInVertexMethod{"original", "the order of the file", original_vertices},
-    BuiltInVertexMethod{"scrambled", "a seeded random order, the paper's point of reference", scrambled_vertices},
+    BuiltInVertexMethod{"scrambled", "a seeded random order, the paper's point of reference",
+                        scrambled_vertices},
     BuiltInVertexMethod{"fiedler", "sorted by the Fiedler vector of the vertex graph, the paper's order",
-                 fiedler_vertices},
-    BuiltInVertexMethod{"minla", "the Fiedler order, improved towards the least sum of edge spans", minla_vertices},
+                        fiedler_vertices},
+    BuiltInVertexMethod{"minla", "the Fiedler order, improved towards the least sum of edge spans",
+                        minla_vertices},
     BuiltInVertexMethod{"spectral", "cut along Fiedler vectors again and again, down to a few vertices",
-                 spectral_vertices},
-    BuiltInVertexMethod{"rcm", "reverse Cuthill-McKee: breadth first, neighbours by degree, reversed", rcm_vertices},
+                        spectral_vertices},
+    BuiltInVertexMethod{"rcm", "reverse Cuthill-McKee: breadth first, neighbours by degree, reversed",
+                        rcm_vertices},
     BuiltInVertexMethod{"bfs", "breadth first from a vertex at the rim", bfs_vertices},
     BuiltInVertexMethod{"morton", "along Morton's Z curve through the coordinates", morton_vertices, true},
     BuiltInVertexMethod{"hilbert", "along Hilbert's curve through the coordinates", hilbert_vertices, true},
 #ifdef MESHORDER_HAS_METIS
-    BuiltInVertexMethod{"metis-nd", "METIS nested dissection, made for sparse factorisation", metis_nd_vertices},
+    BuiltInVertexMethod{"metis-nd", "METIS nested dissection, made for sparse factorisation",
+                        metis_nd_vertices},
     BuiltInVertexMethod{"metis-rb", "METIS recursive bisection down to a few vertices", metis_rb_vertices},
 #endif
 };
@@ -53,25 +56,28 @@ constexpr std::array kVertexMethods{
 constexpr std::array kElementMethods{
     BuiltInElementMethod{"auto", "the one below that measurements favour: lexmax", auto_elements},
     BuiltInElementMethod{"original", "the order of the file", original_elements},
-    BuiltInElementMethod{"scrambled", "a seeded random order, the paper's point of reference", scrambled_elements},
+    BuiltInElementMethod{"scrambled", "a seeded random order, the paper's point of reference",
+                         scrambled_elements},
     BuiltInElementMethod{
         "fiedler",
         "by the Fiedler vector of the graph that joins elements sharing a vertex, the paper's order",
         fiedler_elements},
-    BuiltInElementMethod{"fiedler-facet", "by the Fiedler vector of the graph that joins elements sharing a facet",
-                  fiedler_facet_elements},
+    BuiltInElementMethod{"fiedler-facet",
+                         "by the Fiedler vector of the graph that joins elements sharing a facet",
+                         fiedler_facet_elements},
     BuiltInElementMethod{"mean", "by the mean rank of their vertices", mean_elements},
     BuiltInElementMethod{"min", "by the least rank of their vertices", min_elements},
     BuiltInElementMethod{"max", "by the largest rank of their vertices", max_elements},
     BuiltInElementMethod{"lexmax", "by the ranks of their vertices, largest first, compared like words",
-                  lexmax_elements},
+                         lexmax_elements},
     BuiltInElementMethod{"hilbert", "along Hilbert's curve through their centroids", hilbert_elements, true},
 };
 
 /// Returns the built-in method of that name, or null.
 template <class Methods>
 const auto* find_method(const Methods& methods, std::string_view name) {
-  const auto found = std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.name == name; });
+  const auto found =
+      std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.name == name; });
   return found != methods.end() ? &*found : nullptr;
 }
 
@@ -82,7 +88,8 @@ const auto* find_method(const Methods& methods, std::string_view name) {
   }
 #endif
   throw InvalidArgument("unknown " + std::string(kind) + " order '" + std::string(name) + "'; known are " +
-                        join(known, [](const MethodInfo& method) -> const auto& { return method.name; }));
+                        join(
+                            known, [](const MethodInfo& method) -> const auto& { return method.name; }));
 }
 
 template <class Method>

@@ -1,14 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Karypis, Kumar: A Fast and High Quality Multilevel Scheme for Partitioning Irregular Graphs (1998).
-#include <meshorder/error.hpp>
 #include "ordering/all_methods.hpp"
+#include <meshorder/error.hpp>
 
 #include <metis.h>
 
 #include <array>
 #include <limits>
 #include <numeric>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -22,14 +21,14 @@ struct MetisGraph {
   std::vector<idx_t> neighbours;
   idx_t options[METIS_NOPTIONS] = {};
 
-  /// Throws InvalidArgument for a graph with more entries than METIS's integers count.
+  /// Throws TooLarge for a graph with more entries than METIS's integers count.
   MetisGraph(GraphRef graph, std::uint64_t seed);
 };
 
 MetisGraph::MetisGraph(GraphRef graph, std::uint64_t seed) : size(graph.size()) {
   if (graph.offsets.back() > std::numeric_limits<idx_t>::max()) {
-    throw InvalidArgument("METIS here counts with " + std::to_string(8 * sizeof(idx_t)) +
-                          " bits; this graph has " + std::to_string(graph.offsets.back()) + " entries");
+    throw TooLarge("METIS here counts with " + std::to_string(8 * sizeof(idx_t)) + " bits; this graph has " +
+                   std::to_string(graph.offsets.back()) + " entries");
   }
   offsets.assign(graph.offsets.begin(), graph.offsets.end());
   neighbours.assign(graph.neighbours.begin(), graph.neighbours.end());
@@ -38,10 +37,9 @@ MetisGraph::MetisGraph(GraphRef graph, std::uint64_t seed) : size(graph.size()) 
   options[METIS_OPTION_NUMBERING] = 0;
 }
 
-/// Throws std::runtime_error, naming the call, unless METIS reports success.
+/// Throws InternalError, naming the call, unless METIS reports success.
 void check_metis(int status, const char* call) {
-  if (status != METIS_OK)
-    throw std::runtime_error(std::string(call) + " failed with " + std::to_string(status));
+  if (status != METIS_OK) throw InternalError(std::string(call) + " failed with " + std::to_string(status));
 }
 
 constexpr Index kLeaf = 8;  // smaller leaves cost METIS more and no longer shorten spans

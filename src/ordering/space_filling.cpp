@@ -3,11 +3,11 @@
 // Data Base (1966). Hilbert's curve by the transformation of Skilling: Programming the Hilbert Curve (2004).
 #include "ordering/space_filling.hpp"
 
-#include <meshorder/error.hpp>
 #include "base/parallel.hpp"
 #include "base/point.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/sorted.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <limits>

@@ -131,8 +131,8 @@ Piece piece_of(const Piece& whole, const Slabs& slabs, Index slab) {
   return piece;
 }
 
-/// Writes the names of the piece's vertices in their new order to `out`. When the time limit is over, pieces stay
-/// in the order that the cuts before gave them.
+/// Writes the names of the piece's vertices in their new order to `out`. When the time limit is over, pieces
+/// stay in the order that the cuts before gave them.
 void write_in_order(Piece piece, std::uint64_t seed, TimeLimit limit, Index* out) {
   poll();
   if (piece.graph.neighbours.empty() || limit.is_over()) {

@@ -1,13 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/fiedler.hpp"
 
-#include "base/run_scope.hpp"
-
-#include <meshorder/error.hpp>
 #include "base/random.hpp"
+#include "base/run_scope.hpp"
 #include "spectral/component_numbering.hpp"
 #include "spectral/hierarchy.hpp"
 #include "spectral/lobpcg.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +81,8 @@ VectorBlock<1> given_start(RealView start, std::span<const Index> vertices) {
 
 /// Writes the Fiedler vector of a component with that Laplacian to the entries `vertices` of `values`.
 FiedlerComponent solve_component(Laplacian laplacian, std::span<const Index> vertices,
-                                 const FiedlerOptions& options, TimeLimit limit, std::vector<double>& values) {
+                                 const FiedlerOptions& options, TimeLimit limit,
+                                 std::vector<double>& values) {
   const Hierarchy hierarchy(std::move(laplacian));
   VectorBlock<1> x;
   LobpcgResult solved;
@@ -98,13 +98,15 @@ FiedlerComponent solve_component(Laplacian laplacian, std::span<const Index> ver
       x = column(start, 0);
       companion = column(start, 1);
     }
-    solved = lobpcg<1, 1>(hierarchy, 0, {options.tolerance, options.max_iterations, limit}, x, std::move(companion));
+    solved = lobpcg<1, 1>(hierarchy, 0, {options.tolerance, options.max_iterations, limit}, x,
+                          std::move(companion));
   }
   for (std::size_t k = 0; k < x.size(); ++k) values[vertices[k]] = x[k][0];
   return {index_size(x), solved.eigenvalue, solved.residual, solved.iterations, solved.converged};
 }
 
-/// Scales to norm 1, sum 0 and the sign that FiedlerVectors promises. `vertices` are the component's, ascending.
+/// Scales to norm 1, sum 0 and the sign that FiedlerVectors promises. `vertices` are the component's,
+/// ascending.
 void normalise(std::vector<double>& values, const std::vector<Index>& vertices) {
   double norm_squared = 0;
   double largest = 0;
@@ -135,7 +137,7 @@ std::vector<Index> largest_first(const ComponentNumbering& numbering) {
 
 /// Returns the vertices of each of those components, ascending.
 std::vector<std::vector<Index>> ascending_vertices(const ComponentNumbering& numbering,
-                                                const std::vector<Index>& components) {
+                                                   const std::vector<Index>& components) {
   std::vector<std::vector<Index>> result(components.size());
   std::vector<Index> rank_of(numbering.order.size());  // of each vertex's component
   for (std::size_t rank = 0; rank < components.size(); ++rank) {
@@ -159,12 +161,13 @@ void check_input(GraphRef graph, std::span<const double> weights, RealView start
                           std::to_string(*bad) + "; weights must be positive and finite");
   }
   if (!start.empty() && index_size(start) != graph.size()) {
-    throw InvalidArgument("fiedler_vector: a start vector of " + std::to_string(start.size()) + " entries for " +
-                          std::to_string(graph.size()) + " vertices");
+    throw InvalidArgument("fiedler_vector: a start vector of " + std::to_string(start.size()) +
+                          " entries for " + std::to_string(graph.size()) + " vertices");
   }
   for (std::size_t v = 0; v < start.size(); ++v) {
     if (!std::isfinite(start[v])) {
-      throw InvalidArgument("fiedler_vector: entry " + std::to_string(v) + " of the start vector is not finite");
+      throw InvalidArgument("fiedler_vector: entry " + std::to_string(v) +
+                            " of the start vector is not finite");
     }
   }
 }
@@ -182,7 +185,8 @@ FiedlerOptions solver_options(const OrderOptions& options) {
           .start = options.start};
 }
 
-FiedlerVectors fiedler_vectors(GraphRef graph, std::span<const double> weights, const FiedlerOptions& options) {
+FiedlerVectors fiedler_vectors(GraphRef graph, std::span<const double> weights,
+                               const FiedlerOptions& options) {
   check_input(graph, weights, options.start);
   report("coarsen");
   const TimeLimit limit;

@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <meshorder/fiedler.hpp>
-
 #include "graph/csr_graph.hpp"
+#include <meshorder/fiedler.hpp>
 
 #include <cstdint>
 #include <span>
@@ -12,7 +11,7 @@
 namespace meshorder {
 
 struct FiedlerOptions {
-  double tolerance = 0.1;    ///< residual ‖L x − λ x‖ / ‖x‖ relative to λ₂; an order settles at 0.1
+  double tolerance = 0.1;  ///< residual ‖L x − λ x‖ / ‖x‖ relative to λ₂; an order settles at 0.1
   int max_iterations = 500;  ///< of LOBPCG on the whole graph
   std::uint64_t seed = 0;    ///< of the start vector, where one is needed
   RealView start = {};       ///< n numbers near the Fiedler vector, or none

@@ -28,9 +28,9 @@ struct LobpcgResult {
 /// Rayleigh quotient over the span of x, the hierarchy's cycle applied to the residuals, the previous
 /// directions, and `companions`, all kept orthogonal to constants. Companions are rough guesses of the next
 /// eigenvectors: a single column that is slow to part from a close λ₃ parts quickly when it may subtract what
-/// resembles that eigenvector, for far less than a second column costs. Columns end in ascending order of their
-/// eigenvalues, ‖x‖_B = 1. Columns of x that depend on others or are constant are replaced by the search
-/// itself. O(graph) an iteration.
+/// resembles that eigenvector, for far less than a second column costs. Columns end in ascending order of
+/// their eigenvalues, ‖x‖_B = 1. Columns of x that depend on others or are constant are replaced by the
+/// search itself. O(graph) an iteration.
 template <int M, int Companions>
 LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
                     VectorBlock<Companions> companions);

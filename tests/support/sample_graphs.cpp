@@ -14,6 +14,12 @@ Index below(std::mt19937_64& random, Index bound) {
 
 }  // namespace
 
+Laplacian combinatorial_laplacian(const CsrGraph& graph) {
+  Laplacian laplacian{graph.offsets, graph.neighbours, {}, std::vector<double>(graph.size())};
+  for (Index v = 0; v < graph.size(); ++v) laplacian.diagonal[v] = graph.degree(v);
+  return laplacian;
+}
+
 CsrGraph path(Index n) {
   std::vector<Edge> edges;
   for (Index v = 1; v < n; ++v) edges.push_back({v - 1, v});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
+#include "graph/laplacian.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -17,6 +18,9 @@ inline constexpr bool kSanitized = false;
 
 /// The size of a large test: `n`, a tenth of it when sanitized.
 constexpr Index large(Index n) { return kSanitized ? n / 10 : n; }
+
+/// Returns the Laplacian of a graph whose edges all have weight 1.
+Laplacian combinatorial_laplacian(const CsrGraph& graph);
 
 CsrGraph path(Index n);
 CsrGraph cycle(Index n);

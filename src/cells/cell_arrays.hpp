@@ -1,0 +1,82 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "graph/incidence.hpp"
+#include <meshorder/options.hpp>
+#include <meshorder/view.hpp>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+
+/// The cells of a view in the library's own types, numbered from 0: the caller's arrays where they have these
+/// types, copies of others.
+///
+/// Movable, not copyable: the spans refer to the caller's arrays or to the own ones.
+struct CellArrays {
+  CellArrays() = default;
+  CellArrays(CellArrays&&) = default;
+  CellArrays& operator=(CellArrays&&) = default;
+  CellArrays(const CellArrays&) = delete;
+  CellArrays& operator=(const CellArrays&) = delete;
+  ~CellArrays() = default;
+
+  Index vertex_count = 0;
+  std::span<const Offset> offsets;  ///< cells + 1, ascending from 0
+  std::span<const Index> vertices;  ///< 0 … vertex_count − 1
+  std::span<const Shape> shapes;    ///< one for each cell, or none where shapes are not known
+  std::vector<Index> block_starts;  ///< the first cell of each block, from 0; empty for one block
+  std::vector<Offset> own_offsets;
+  std::vector<Index> own_vertices;
+  std::vector<Shape> own_shapes;
+  std::vector<std::string> notes;
+
+  [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
+  [[nodiscard]] IncidenceRef incidence() const { return {vertex_count, offsets, vertices}; }
+  /// Returns the dimension of a cell; 3 for all where shapes are not known.
+  [[nodiscard]] int dimension_of(Index cell) const { return shapes.empty() ? 3 : dimension(shapes[cell]); }
+};
+
+/// Converts a view of cells, and checks it unless `check` is none: sizes that match, ascending offsets, known
+/// VTK types, as many vertices as the shape has corners, vertices in range.
+///
+/// @throws InvalidArgument for the first fault, with the cell that has it
+/// @throws TooLarge for more than 2,147,483,647 vertices or cells
+/// @note O(entries), on all threads of the arena.
+CellArrays cell_arrays(const CellsView& cells, std::size_t vertex_count, Check check);
+
+/// Some cells, and the vertices that each joins.
+class CellSelection {
+ public:
+  /// The cells of the highest dimension: the elements that are simulated. Refers to the arrays where these
+  /// are all cells, which need not be copied then. O(entries).
+  static CellSelection elements(const CellArrays& cells);
+  /// The cells of lower dimension: boundary faces, edges, points. O(entries).
+  static CellSelection lower_dimensional(const CellArrays& cells);
+
+  [[nodiscard]] Index size() const { return incidence().size(); }
+  /// Returns the number of the k-th selected cell among all cells.
+  [[nodiscard]] Index cell(Index k) const { return is_all_ ? k : numbers_[k]; }
+  [[nodiscard]] IncidenceRef incidence() const { return is_all_ ? all_ : IncidenceRef(own_); }
+
+ private:
+  template <class Wanted>
+  CellSelection(const CellArrays& cells, Wanted wanted);
+
+  IncidenceRef all_;
+  bool is_all_ = false;
+  std::vector<Index> numbers_;
+  Incidence own_;
+};
+
+/// Joins elements that share a facet, numbered as in `elements`: a face for volumes, an edge for surfaces, an
+/// end for lines. Facets are the same when their corners are, in any order; of more than two elements at a
+/// facet each is joined to the next. O(facets · log facets at a vertex).
+///
+/// @throws InvalidArgument if the shapes of cells are not known
+CsrGraph joined_by_facet(const CellArrays& cells, const CellSelection& elements);
+
+}  // namespace meshorder

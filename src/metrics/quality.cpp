@@ -1,0 +1,55 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/call.hpp"
+#include "graph/clean_graph.hpp"
+#include "metrics/edge_span.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/quality.hpp>
+
+#include <string>
+
+namespace meshorder {
+inline namespace v0_2 {
+namespace {
+
+/// Calls `measure(graph, order)` with a clean graph and a permutation that fits it.
+template <class Measure>
+auto measured(const GraphView& graph, const Permutation* order, const Run& run, Measure measure) {
+  return in_call(run, [&] {
+    report("check");
+    const GraphArrays clean = clean_graph(graph, Check::full, Symmetry::require);
+    if (order != nullptr && order->size() != clean.size()) {
+      throw InvalidArgument("quality: an order of " + std::to_string(order->size()) + " places for " +
+                            std::to_string(clean.size()) + " vertices");
+    }
+    const GraphRef arrays(clean.offsets, clean.neighbours);
+    return order != nullptr ? measure(arrays, *order) : measure(arrays, Permutation::identity(clean.size()));
+  });
+}
+
+Quality quality_of(GraphRef graph, const Permutation& order) {
+  const EdgeSpan span = edge_span(graph, order);
+  return {.edges = graph.edge_count(),
+          .mean_span = span.mean,
+          .mean_log2_span = span.mean_log2,
+          .bandwidth = span.max,
+          .profile = profile(graph, order),
+          .histogram_log2 = span_histogram_log2(graph, order)};
+}
+
+}  // namespace
+
+Quality quality(const GraphView& graph, const Run& run) { return measured(graph, nullptr, run, quality_of); }
+
+Quality quality(const GraphView& graph, const Permutation& order, const Run& run) {
+  return measured(graph, &order, run, quality_of);
+}
+
+std::vector<Offset> span_histogram(const GraphView& graph, const Permutation& order, Index width,
+                                   const Run& run) {
+  return measured(graph, &order, run, [width](GraphRef clean, const Permutation& places) {
+    return meshorder::span_histogram(clean, places, width);
+  });
+}
+
+}  // namespace v0_2
+}  // namespace meshorder

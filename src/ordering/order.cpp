@@ -1,0 +1,140 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// The public functions: they check what the caller gave, bring it into the library's types, and call the
+// method.
+#include "base/call.hpp"
+#include "base/stopwatch.hpp"
+#include "graph/clean_graph.hpp"
+#include "ordering/method.hpp"
+#include "ordering/order_cells.hpp"
+#include "spectral/fiedler.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/order.hpp>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace meshorder {
+inline namespace v0_2 {
+namespace {
+
+/// Throws unless there are `count` finite points or none.
+void check_points(const PointsView& points, std::size_t count, Check check) {
+  if (points.size() == 0 || check == Check::none) return;
+  if (points.size() != count) {
+    throw InvalidArgument("points: " + std::to_string(points.size()) + " points for " +
+                          std::to_string(count) + " vertices");
+  }
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (p % 4096 == 0) poll();
+    for (int axis = 0; axis < points.dimension(); ++axis) {
+      if (std::isfinite(points(p, axis))) continue;
+      throw InvalidArgument("points: coordinate " + std::to_string(axis) + " of point " + std::to_string(p) +
+                            " is not finite");
+    }
+  }
+}
+
+void append(std::vector<std::string>& notes, const std::vector<std::string>& more) {
+  notes.insert(notes.end(), more.begin(), more.end());
+}
+
+Graph adopted(CsrGraph&& graph) {
+  return Graph::adopt(std::move(graph.offsets), std::move(graph.neighbours));
+}
+
+}  // namespace
+
+Order order_vertices(const GraphView& graph, std::string_view method, const OrderOptions& options,
+                     const PointsView& points) {
+  return in_call(options.run, [&] {
+    const Stopwatch stopwatch;
+    report("check");
+    const GraphArrays clean = clean_graph(graph, options.check, options.symmetry);
+    check_points(points, static_cast<std::size_t>(clean.size()), options.check);
+    Order result = order_vertices_by_options(
+        method, {{clean.offsets, clean.neighbours}, points, clean.weights}, options);
+    append(result.notes, clean.notes);
+    result.seconds = stopwatch.seconds();
+    return result;
+  });
+}
+
+Order order_elements(const CellsView& cells, const Permutation& vertices, std::string_view method,
+                     const OrderOptions& options, const PointsView& points) {
+  return in_call(options.run, [&] {
+    const Stopwatch stopwatch;
+    report("check");
+    const CellArrays arrays = cell_arrays(cells, static_cast<std::size_t>(vertices.size()), options.check);
+    check_points(points, static_cast<std::size_t>(vertices.size()), options.check);
+    Order result = order_cells(method, arrays, vertices, points, options.cell_groups, options);
+    append(result.notes, arrays.notes);
+    result.seconds = stopwatch.seconds();
+    return result;
+  });
+}
+
+MeshOrder order_mesh(const MeshView& mesh, const MeshMethods& methods, const OrderOptions& options) {
+  return in_call(options.run, [&] {
+    const Stopwatch vertex_time;
+    report("check");
+    const std::size_t n = mesh.vertex_count > 0 ? mesh.vertex_count : mesh.points.size();
+    const CellArrays arrays = cell_arrays(mesh.cells, n, options.check);
+    check_points(mesh.points, n, options.check);
+    MeshOrder result;
+    {
+      report("graph");
+      const CsrGraph graph = joined_vertices(CellSelection::elements(arrays).incidence());
+      result.vertices = order_vertices_by_options(methods.vertices, {graph, mesh.points}, options);
+      result.vertices.seconds = vertex_time.seconds();
+    }
+    const Stopwatch cell_time;
+    result.cells = order_cells(methods.elements, arrays, result.vertices.permutation, mesh.points,
+                               options.cell_groups, options);
+    result.cells.seconds = cell_time.seconds();
+    append(result.cells.notes, arrays.notes);
+    return result;
+  });
+}
+
+Graph vertex_graph(const CellsView& cells, std::size_t vertex_count, const Run& run) {
+  return in_call(run, [&] {
+    report("graph");
+    const CellArrays arrays = cell_arrays(cells, vertex_count, Check::full);
+    return adopted(joined_vertices(CellSelection::elements(arrays).incidence()));
+  });
+}
+
+Graph dual_graph(const CellsView& cells, std::size_t vertex_count, bool by_facet, const Run& run) {
+  return in_call(run, [&] {
+    report("graph");
+    const CellArrays arrays = cell_arrays(cells, vertex_count, Check::full);
+    const CellSelection elements = CellSelection::elements(arrays);
+    return adopted(by_facet ? joined_by_facet(arrays, elements) : joined_by_vertex(elements.incidence()));
+  });
+}
+
+Fiedler fiedler_vector(const GraphView& graph, const OrderOptions& options) {
+  return in_call(options.run, [&] {
+    report("check");
+    const GraphArrays clean = clean_graph(graph, options.check, options.symmetry);
+    FiedlerVectors vectors =
+        fiedler_vectors({clean.offsets, clean.neighbours}, clean.weights, solver_options(options));
+    Fiedler result;
+    result.component_of.resize(vectors.values.size());
+    for (std::size_t c = 0; c < vectors.component_vertices.size(); ++c) {
+      for (const Index v : vectors.component_vertices[c]) {
+        result.component_of[static_cast<std::size_t>(v)] = static_cast<Index>(c);
+      }
+    }
+    result.values = std::move(vectors.values);
+    result.components = std::move(vectors.components);
+    result.complete = vectors.complete;
+    result.notes = clean.notes;
+    return result;
+  });
+}
+
+}  // namespace v0_2
+}  // namespace meshorder

@@ -1,0 +1,110 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "ordering/order_cells.hpp"
+
+#include "ordering/method.hpp"
+#include <meshorder/error.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+bool is_one_class(std::span<const Index> classes) {
+  return std::all_of(classes.begin(), classes.end(), [&](Index k) { return k == classes.front(); });
+}
+
+/// Returns the numbers of a view as ranks of their values, 0 … `count` − 1.
+std::vector<Index> dense_groups(const IndexView& groups, Index size, const char* what, Index& count) {
+  if (index_size(groups) != size) {
+    throw InvalidArgument("groups: " + std::to_string(groups.size()) + " numbers for " +
+                          std::to_string(size) + " " + what);
+  }
+  std::vector<std::int64_t> values(groups.size());
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = groups[k];
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  count = index_size(values);
+  std::vector<Index> result(groups.size());
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    result[k] =
+        static_cast<Index>(std::lower_bound(values.begin(), values.end(), groups[k]) - values.begin());
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Index> slot_classes(const CellArrays& cells) {
+  std::vector<Index> classes(static_cast<std::size_t>(cells.size()));
+  const std::vector<Index>& starts = cells.block_starts;
+  Index block = 0;
+  for (Index c = 0; c < cells.size(); ++c) {
+    while (block + 1 < index_size(starts) && starts[block + 1] <= c) ++block;
+    classes[c] = 4 * block + cells.dimension_of(c);
+  }
+  return classes;
+}
+
+Permutation permutation_within_classes(std::span<const Index> classes, std::vector<Index>&& cells_in_order) {
+  if (cells_in_order.size() != classes.size()) {
+    throw InvalidArgument("cells: an order of " + std::to_string(cells_in_order.size()) + " for " +
+                          std::to_string(classes.size()) + " cells");
+  }
+  if (is_one_class(classes)) return Permutation::from_new_to_old(std::move(cells_in_order));
+
+  // places of each class, ascending, one class after another
+  const Index count = *std::max_element(classes.begin(), classes.end()) + 1;
+  std::vector<Index> start(static_cast<std::size_t>(count) + 1, 0);
+  for (const Index k : classes) ++start[k + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<Index> places(classes.size());
+  std::vector<Index> next(start.begin(), start.end() - 1);
+  for (Index c = 0; c < index_size(classes); ++c) places[next[classes[c]]++] = c;
+
+  // hand them out
+  std::copy(start.begin(), start.end() - 1, next.begin());
+  std::vector<Index> old_to_new(classes.size(), -1);
+  for (const Index c : cells_in_order) old_to_new[c] = places[next[classes[c]]++];
+  return Permutation::from_old_to_new(std::move(old_to_new));
+}
+
+Order order_cells(std::string_view method, const CellArrays& cells, const Permutation& vertices,
+                  const PointsView& points, const IndexView& groups, const OrderOptions& options) {
+  const CellSelection elements = CellSelection::elements(cells);
+  const auto facet_graph = [&] { return joined_by_facet(cells, elements); };
+  Order result = order_incidence(method, {elements.incidence(), vertices, points, facet_graph}, options);
+
+  std::vector<Index> sequence;
+  sequence.reserve(static_cast<std::size_t>(cells.size()));
+  for (const Index e : result.permutation.new_to_old()) sequence.push_back(elements.cell(e));
+  const CellSelection lower = CellSelection::lower_dimensional(cells);
+  const std::string_view lower_method = method == "original" ? "original" : "lexmax";
+  const Order of_lower =
+      order_incidence(lower_method, {lower.incidence(), vertices, points, facet_graph}, options);
+  for (const Index e : of_lower.permutation.new_to_old()) sequence.push_back(lower.cell(e));
+  if (!groups.empty()) {
+    Index count = 0;
+    const std::vector<Index> group_of = dense_groups(groups, cells.size(), "cells", count);
+    std::stable_sort(sequence.begin(), sequence.end(),
+                     [&](Index a, Index b) { return group_of[a] < group_of[b]; });
+  }
+  result.permutation = permutation_within_classes(slot_classes(cells), std::move(sequence));
+  return result;
+}
+
+Order order_vertices_by_options(std::string_view method, const VertexInput& input,
+                                const OrderOptions& options) {
+  if (options.groups.empty()) return order_graph(method, input, options);
+  Index count = 0;
+  const std::vector<Index> group_of = dense_groups(options.groups, input.graph.size(), "vertices", count);
+  OrderOptions of_group = options;
+  of_group.groups = {};
+  of_group.start = {};
+  return order_graph_in_groups(method, input, group_of, count, of_group);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,30 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "cells/cell_arrays.hpp"
+#include <meshorder/order.hpp>
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace meshorder {
+
+/// Cells that may change places with each other have the same slot class: block × dimension. Returns the
+/// class of each cell, 4 · block + dimension. O(cells).
+std::vector<Index> slot_classes(const CellArrays& cells);
+
+/// Hands the places of each class to its cells in the order in which `cells_in_order` lists them.
+///
+/// @throws InvalidArgument unless there are as many cells as classes
+Permutation permutation_within_classes(std::span<const Index> classes, std::vector<Index>&& cells_in_order);
+
+/// Orders all cells: those of the highest dimension by the method, the others by `lexmax` (under `original`
+/// they stay), each within the places of its slot class; `groups` stay together there, ascending.
+///
+/// @param groups  a number for each cell, or none
+/// @throws as `order_incidence`, and InvalidArgument for another number of groups
+Order order_cells(std::string_view method, const CellArrays& cells, const Permutation& vertices,
+                  const PointsView& points, const IndexView& groups, const OrderOptions& options);
+
+}  // namespace meshorder

@@ -1,0 +1,149 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
+#include "ordering/all_methods.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/options.hpp>
+#include <meshorder/registry.hpp>
+
+#include <algorithm>
+#include <mutex>
+#include <shared_mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace meshorder {
+
+template <>
+struct EnumNames<Workload> {
+  static constexpr std::string_view kind = "use";
+  static constexpr std::array names{
+      std::pair{Workload::all, "all"},         std::pair{Workload::element, "element"},
+      std::pair{Workload::spmv, "spmv"},       std::pair{Workload::assembly, "assembly"},
+      std::pair{Workload::springs, "springs"}, std::pair{Workload::bandwidth, "bandwidth"},
+      std::pair{Workload::fill, "fill"},
+  };
+};
+
+namespace {
+
+template <class Method>
+struct Entry {
+  std::uint64_t id;
+  MethodInfo info;
+  Method method;
+};
+
+/// The registered methods of a program, in the order in which they came.
+struct Registry {
+  std::shared_mutex mutex;
+  std::uint64_t next_id = 1;
+  std::vector<Entry<VertexMethod>> vertex_methods;
+  std::vector<Entry<ElementMethod>> element_methods;
+};
+
+/// Never destroyed: registrations of other static objects may outlive any order of destruction.
+Registry& registry() {
+  static auto* const registry = new Registry;
+  return *registry;
+}
+
+bool is_permitted(std::string_view name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  });
+}
+
+template <class Method>
+std::uint64_t add(MethodInfo info, Method method, const std::vector<MethodInfo>& built_in,
+                  std::vector<Entry<Method>> Registry::*list) {
+  if (!method) throw InvalidArgument("method '" + info.name + "': the function is empty");
+  if (!is_permitted(info.name)) {
+    throw InvalidArgument("method '" + info.name +
+                          "': a name consists of lower case letters, digits, '-' and '_'");
+  }
+  Registry& all = registry();
+  const std::unique_lock lock(all.mutex);
+  const auto has_name = [&](const MethodInfo& other) { return other.name == info.name; };
+  if (std::any_of(built_in.begin(), built_in.end(), has_name) ||
+      std::any_of((all.*list).begin(), (all.*list).end(),
+                  [&](const Entry<Method>& entry) { return has_name(entry.info); })) {
+    throw InvalidArgument("method '" + info.name + "': the name is taken");
+  }
+  if (info.source == MethodInfo{}.source) info.source = "registered";
+  const std::uint64_t id = all.next_id++;
+  (all.*list).push_back({id, std::move(info), std::move(method)});
+  return id;
+}
+
+template <class Method>
+std::vector<MethodInfo> all_infos(std::vector<MethodInfo> infos, std::vector<Entry<Method>> Registry::*list) {
+  Registry& all = registry();
+  const std::shared_lock lock(all.mutex);
+  for (const Entry<Method>& entry : all.*list) infos.push_back(entry.info);
+  return infos;
+}
+
+template <class Method>
+Method method_of_name(std::string_view name, std::vector<Entry<Method>> Registry::*list) {
+  Registry& all = registry();
+  const std::shared_lock lock(all.mutex);
+  for (const Entry<Method>& entry : all.*list) {
+    if (entry.info.name == name) return entry.method;
+  }
+  return {};
+}
+
+void remove(std::uint64_t id) {
+  if (id == 0) return;
+  Registry& all = registry();
+  const std::unique_lock lock(all.mutex);
+  std::erase_if(all.vertex_methods, [&](const auto& entry) { return entry.id == id; });
+  std::erase_if(all.element_methods, [&](const auto& entry) { return entry.id == id; });
+}
+
+}  // namespace
+
+VertexMethod registered_vertex_method(std::string_view name) {
+  return method_of_name(name, &Registry::vertex_methods);
+}
+
+ElementMethod registered_element_method(std::string_view name) {
+  return method_of_name(name, &Registry::element_methods);
+}
+
+inline namespace v0_2 {
+
+std::string_view to_string(Workload workload) { return to_string<Workload>(workload); }
+Workload parse_workload(std::string_view name) { return parse<Workload>(name); }
+
+Registration& Registration::operator=(Registration&& other) noexcept {
+  if (this != &other) {
+    remove(id_);
+    id_ = std::exchange(other.id_, 0);
+  }
+  return *this;
+}
+
+Registration::~Registration() { remove(id_); }
+
+Registration register_vertex_method(MethodInfo info, VertexMethod method) {
+  return Registration(
+      add(std::move(info), std::move(method), built_in_vertex_methods(), &Registry::vertex_methods));
+}
+
+Registration register_element_method(MethodInfo info, ElementMethod method) {
+  return Registration(
+      add(std::move(info), std::move(method), built_in_element_methods(), &Registry::element_methods));
+}
+
+std::vector<MethodInfo> vertex_methods() {
+  return all_infos(built_in_vertex_methods(), &Registry::vertex_methods);
+}
+
+std::vector<MethodInfo> element_methods() {
+  return all_infos(built_in_element_methods(), &Registry::element_methods);
+}
+
+}  // namespace v0_2
+}  // namespace meshorder
