@@ -6,7 +6,6 @@
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/mesh.hpp"
-#include "mesh/mesh_ordering.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"

@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "io/all_formats.hpp"
-#include "mesh/check.hpp"
+#include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 
 #include <algorithm>

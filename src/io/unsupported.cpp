@@ -9,20 +9,20 @@ namespace meshorder {
 
 void note_array_left_out(const DataArray& array, std::string_view format, Notes& notes) {
   notes.push_back(fmt::format("the array '{}' on {} is left out: {} cannot hold it", array.name,
-                              name(array.association), format));
+                              to_string(array.association), format));
 }
 
 void note_set_left_out(const EntitySet& set, std::string_view format, Notes& notes) {
   notes.push_back(fmt::format("the set '{}' of {} is left out: {} cannot hold it", set.name,
-                              name(set.association), format));
+                              to_string(set.association), format));
 }
 
 void note_ids_left_out(const Mesh& mesh, std::string_view format, Notes& notes) {
   for (const Association association : {Association::vertices, Association::cells}) {
     const auto& ids = association == Association::vertices ? mesh.vertex_ids : mesh.cell_ids;
     if (ids.empty()) continue;
-    notes.push_back(
-        fmt::format("the numbers of {} are left out: {} counts them by place", name(association), format));
+    notes.push_back(fmt::format("the numbers of {} are left out: {} counts them by place",
+                                to_string(association), format));
   }
 }
 

@@ -52,8 +52,7 @@ std::string usable_names(const Mesh& mesh) {
   std::string list;
   for (const DataArray& array : mesh.data) {
     if (!whole_numbers(array)) continue;
-    list +=
-        (list.empty() ? "" : ", ") + array.name + " on " + std::string(meshorder::name(array.association));
+    list += (list.empty() ? "" : ", ") + array.name + " on " + std::string(to_string(array.association));
   }
   if (has_cell_sets(mesh)) list += list.empty() ? "sets" : ", sets";
   return list.empty() ? "none" : list;
@@ -65,7 +64,7 @@ const DataArray* array_meant(const Mesh& mesh, std::string_view name) {
     if (const DataArray* array = find_array(mesh, name, association)) return array;
   }
   for (const Association association : {Association::cells, Association::vertices}) {
-    const std::string prefix = std::string(meshorder::name(association)) + ":";
+    const std::string prefix = std::string(to_string(association)) + ":";
     if (name.starts_with(prefix)) return find_array(mesh, name.substr(prefix.size()), association);
   }
   return nullptr;
@@ -137,7 +136,7 @@ Grouping grouping_by(const Mesh& mesh, std::string_view name) {
   const std::optional<std::vector<std::int64_t>> numbers = whole_numbers(*array);
   if (!numbers) {
     throw InvalidArgument("group by: the array '" + array->name + "' on " +
-                          std::string(meshorder::name(array->association)) +
+                          std::string(to_string(array->association)) +
                           " does not hold one whole number each; what can group is: " + usable_names(mesh));
   }
   result.name = array->name;

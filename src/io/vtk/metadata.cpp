@@ -80,7 +80,7 @@ class Names {
     }
     for (int i = 2; !taken_.emplace(association, name).second; ++i) name = wanted + "_" + std::to_string(i);
     if (name != wanted)
-      notes.push_back("the array '" + wanted + "' on " + std::string(meshorder::name(association)) +
+      notes.push_back("the array '" + wanted + "' on " + std::string(to_string(association)) +
                       " is written as '" + name + "'");
     return name;
   }
@@ -162,7 +162,7 @@ VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes) {
     }
     if (!array.is_dense()) {
       notes.push_back("the array '" + array.name + "' is given for some " +
-                      std::string(meshorder::name(array.association)) + "; the others get " +
+                      std::string(to_string(array.association)) + "; the others get " +
                       (filled_with_nan(array) ? "NaN" : "0"));
     }
     make(full_copy(array, owner_count(mesh, array.association)));
@@ -173,7 +173,7 @@ VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes) {
   for (const EntitySet& set : mesh.sets) {
     const std::string name = names.unused(std::string(kSetPrefix) + set.name, set.association, notes);
     if (!from_vtk) {
-      notes.push_back("the set '" + set.name + "' of " + std::string(meshorder::name(set.association)) +
+      notes.push_back("the set '" + set.name + "' of " + std::string(to_string(set.association)) +
                       " is written as the array '" + name + "'");
     }
     make({name, set.association, 1, marks_of(set, owner_count(mesh, set.association)), {}, {}});
@@ -183,8 +183,8 @@ VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes) {
                            Association association) {
     if (ids.empty()) return;
     const std::string name = names.unused(wanted, association, notes);
-    notes.push_back("the ids of " + std::string(meshorder::name(association)) +
-                    " are written as the array '" + name + "'");
+    notes.push_back("the ids of " + std::string(to_string(association)) + " are written as the array '" +
+                    name + "'");
     make({name, association, 1, label_values(ids), {}, {}});
   };
   add_ids(mesh.vertex_ids, "vertex_id", Association::vertices);
