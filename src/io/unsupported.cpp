@@ -7,17 +7,17 @@
 
 namespace meshorder {
 
-void note_array_left_out(const DataArray& array, std::string_view format, Notes& notes) {
+void note_array_unsupported(const DataArray& array, std::string_view format, Notes& notes) {
   notes.push_back(fmt::format("the array '{}' on {} is left out: {} cannot hold it", array.name,
                               to_string(array.association), format));
 }
 
-void note_set_left_out(const EntitySet& set, std::string_view format, Notes& notes) {
+void note_set_unsupported(const EntitySet& set, std::string_view format, Notes& notes) {
   notes.push_back(fmt::format("the set '{}' of {} is left out: {} cannot hold it", set.name,
                               to_string(set.association), format));
 }
 
-void note_ids_left_out(const Mesh& mesh, std::string_view format, Notes& notes) {
+void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& notes) {
   for (const Association association : {Association::vertices, Association::cells}) {
     const auto& ids = association == Association::vertices ? mesh.vertex_ids : mesh.cell_ids;
     if (ids.empty()) continue;
@@ -26,15 +26,15 @@ void note_ids_left_out(const Mesh& mesh, std::string_view format, Notes& notes) 
   }
 }
 
-void note_residue_left_out(const Mesh& mesh, std::string_view format, Notes& notes) {
+void note_metadata_unsupported(const Mesh& mesh, std::string_view format, Notes& notes) {
   if (!mesh.format_metadata) return;
   for (const std::string& what : mesh.format_metadata->contents()) {
     notes.push_back(fmt::format("left out, as {} cannot hold it: {}", format, what));
   }
 }
 
-void refuse_other_cells(const Mesh& mesh, const std::filesystem::path& path, std::string_view format,
-                        bool (*holds)(Shape shape, int vertices), const std::string& remedy) {
+void require_supported_cells(const Mesh& mesh, const std::filesystem::path& path, std::string_view format,
+                             bool (*holds)(Shape shape, int vertices), const std::string& remedy) {
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const int vertices = mesh.cells.vertex_count(c);
     if (holds(mesh.cells.shapes[c], vertices)) continue;

@@ -258,7 +258,7 @@ void name_views(Reading& reading) {
 bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes) {
   const Index components = gmsh_components(array.components);
   if (std::holds_alternative<std::vector<std::string>>(array.values) || components == 0) {
-    note_array_left_out(array, "Gmsh", notes);
+    note_array_unsupported(array, "Gmsh", notes);
     return false;
   }
   if (components != array.components) {

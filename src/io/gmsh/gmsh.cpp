@@ -276,7 +276,7 @@ Mesh read(const std::filesystem::path& path, Notes& notes) {
 
 /// The type of every cell; throws Error for a cell that Gmsh does not have.
 std::vector<const ElementType*> types_of_cells(const Mesh& mesh, const std::filesystem::path& path) {
-  refuse_other_cells(
+  require_supported_cells(
       mesh, path, "Gmsh", [](Shape shape, int nodes) { return find_type(shape, nodes) != nullptr; },
       "write another format, or split such cells into triangles and quads");
   const std::vector<std::int32_t> numbers = integers_of(mesh, kCellType, Association::cells);
@@ -370,7 +370,7 @@ void note_sets(const Mesh& mesh, const GmshMetadata& layout, Notes& notes) {
     const bool held = std::any_of(physical.begin(), physical.end(), [&](const EntitySet& other) {
       return set.association == other.association && set.name == other.name && members == other.members;
     });
-    if (!held) note_set_left_out(set, "Gmsh", notes);
+    if (!held) note_set_unsupported(set, "Gmsh", notes);
   }
 }
 
@@ -437,7 +437,7 @@ void write(const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
     take_layout(layout, output);
     note_sets(mesh, layout, notes);
   } else {
-    note_residue_left_out(mesh, "Gmsh", notes);
+    note_metadata_unsupported(mesh, "Gmsh", notes);
     output.node_ids = usable_ids(mesh.vertex_ids, "vertices", notes);
     output.cell_ids = usable_ids(mesh.cell_ids, "cells", notes);
     classify(layout, output, notes);

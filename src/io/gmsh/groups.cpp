@@ -218,7 +218,7 @@ std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups, std::
   for (const EntitySet& set : mesh.sets) {
     if (set.association == Association::vertices || set.members.empty() ||
         next > std::numeric_limits<std::int32_t>::max()) {
-      note_set_left_out(set, "Gmsh", notes);
+      note_set_unsupported(set, "Gmsh", notes);
       continue;
     }
     const auto physical = static_cast<std::int32_t>(next++);

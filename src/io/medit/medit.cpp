@@ -135,7 +135,7 @@ const ListKind* fitting_kind(const std::array<ListKind, N>& kinds, const Writing
 
 void write_set(OutputFile& out, const Writing& from, const EntitySet& set, Notes& notes) {
   const ListKind* kind = fitting_kind(kListKinds, from, set.name, set.association, set.members);
-  if (!kind) return note_set_left_out(set, "Medit", notes);
+  if (!kind) return note_set_unsupported(set, "Medit", notes);
   out.print("\n{}\n{}\n", set.name, set.members.size());
   for (const Index member : set.members) out.print("{}\n", position_in(from, kind->target, member) + 1);
 }
@@ -156,7 +156,7 @@ void write_array(OutputFile& out, const Writing& from, const DataArray& array, N
   if (from.own && numbers && !array.is_dense()) {
     kind = fitting_kind(kTableKinds, from, array.name, array.association, array.indices);
   }
-  if (!kind) return note_array_left_out(array, "Medit", notes);
+  if (!kind) return note_array_unsupported(array, "Medit", notes);
   out.print("\n{}\n{}\n", array.name, array.indices.size());
   for (Index row = 0; row < index_size(array.indices); ++row) {
     out.print("{}", position_in(from, kind->target, array.indices[row]) + 1);
@@ -197,7 +197,7 @@ bool holds(Shape shape, int vertices) { return kind_of(shape, vertices) < kCellK
 }  // namespace
 
 void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  refuse_other_cells(mesh, path, "Medit", holds, "write .msh, .vtu or .vtk instead");
+  require_supported_cells(mesh, path, "Medit", holds, "write .msh, .vtu or .vtk instead");
   const Writing from{mesh, dynamic_cast<const MeshMetadata*>(mesh.format_metadata.get()), layout_of(mesh),
                      labels_of(mesh, Association::vertices), labels_of(mesh, Association::cells)};
   OutputFile out(path);
@@ -216,8 +216,8 @@ void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
 
   note_missing_labels(from.vertex_labels, "vertices", notes);
   note_missing_labels(from.cell_labels, "cells", notes);
-  note_ids_left_out(mesh, "Medit", notes);
-  if (!from.own) note_residue_left_out(mesh, "Medit", notes);
+  note_ids_unsupported(mesh, "Medit", notes);
+  if (!from.own) note_metadata_unsupported(mesh, "Medit", notes);
   note_solutions(path, "does not fit the mesh that was just written beside it", notes);
 }
 

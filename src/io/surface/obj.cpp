@@ -279,17 +279,17 @@ class Writer {
 
   void note_losses() {
     for (const DataArray& array : mesh_.data) {
-      if (!written_.contains(&array)) note_array_left_out(array, "OBJ", notes_);
+      if (!written_.contains(&array)) note_array_unsupported(array, "OBJ", notes_);
     }
     for (const EntitySet& set : mesh_.sets) {
       if (set.association == Association::vertices) {
-        note_set_left_out(set, "OBJ", notes_);
+        note_set_unsupported(set, "OBJ", notes_);
       } else if (group_name(set) != set.name) {
         notes_.push_back(fmt::format("the set '{}' is written as the group '{}'", set.name, group_name(set)));
       }
     }
-    note_ids_left_out(mesh_, "OBJ", notes_);
-    if (!native_) note_residue_left_out(mesh_, "OBJ", notes_);
+    note_ids_unsupported(mesh_, "OBJ", notes_);
+    if (!native_) note_metadata_unsupported(mesh_, "OBJ", notes_);
   }
 
   const Mesh& mesh_;
@@ -313,7 +313,7 @@ class Writer {
 };
 
 void write_obj(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  refuse_other_cells(mesh, path, "OBJ", obj_holds, "write .vtu or .msh");
+  require_supported_cells(mesh, path, "OBJ", obj_holds, "write .vtu or .msh");
   Writer(mesh, path, notes).write();
 }
 

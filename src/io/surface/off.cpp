@@ -302,11 +302,11 @@ Content content_of(const Mesh& mesh) {
 void note_losses(const Mesh& mesh, const Content& content, Notes& notes) {
   for (const DataArray& array : mesh.data) {
     if (std::find(content.written.begin(), content.written.end(), &array) != content.written.end()) continue;
-    note_array_left_out(array, "OFF", notes);
+    note_array_unsupported(array, "OFF", notes);
   }
-  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "OFF", notes);
-  note_ids_left_out(mesh, "OFF", notes);
-  note_residue_left_out(mesh, "OFF", notes);
+  for (const EntitySet& set : mesh.sets) note_set_unsupported(set, "OFF", notes);
+  note_ids_unsupported(mesh, "OFF", notes);
+  note_metadata_unsupported(mesh, "OFF", notes);
 }
 
 void write_numbers(OutputFile& out, std::span<const double> numbers) {
@@ -342,7 +342,7 @@ void write_face_color(OutputFile& out, const Content& content, Index face) {
 }
 
 void write_off(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  refuse_other_cells(mesh, path, "OFF", off_holds, "write .vtu or .msh");
+  require_supported_cells(mesh, path, "OFF", off_holds, "write .vtu or .msh");
   const Content content = content_of(mesh);
   const auto* metadata = dynamic_cast<const OffMetadata*>(mesh.format_metadata.get());
   OutputFile out(path);

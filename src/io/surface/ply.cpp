@@ -459,14 +459,14 @@ bool ply_holds(Shape shape, int vertices) {
 void note_losses(const Mesh& mesh, const std::vector<const DataArray*>& written, Notes& notes) {
   for (const DataArray& array : mesh.data) {
     if (std::find(written.begin(), written.end(), &array) == written.end())
-      note_array_left_out(array, "PLY", notes);
+      note_array_unsupported(array, "PLY", notes);
   }
-  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "PLY", notes);
-  note_ids_left_out(mesh, "PLY", notes);
+  for (const EntitySet& set : mesh.sets) note_set_unsupported(set, "PLY", notes);
+  note_ids_unsupported(mesh, "PLY", notes);
 }
 
 void write_ply(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  refuse_other_cells(mesh, path, "PLY", ply_holds, "write .vtu or .msh");
+  require_supported_cells(mesh, path, "PLY", ply_holds, "write .vtu or .msh");
   const auto* metadata = dynamic_cast<const PlyMetadata*>(mesh.format_metadata.get());
   const bool as_file = metadata && elements_fit(*metadata, mesh);
   std::vector<Table> tables = as_file ? tables_of_file(*metadata) : usual_tables(mesh);
@@ -486,7 +486,7 @@ void write_ply(const Mesh& mesh, const fs::path& path, Notes& notes) {
   out.commit();
   if (body.rounded()) notes.emplace_back("coordinates are rounded to 32 bits, as the file has them");
   note_losses(mesh, written, notes);
-  if (!as_file) note_residue_left_out(mesh, "PLY", notes);
+  if (!as_file) note_metadata_unsupported(mesh, "PLY", notes);
 }
 
 }  // namespace

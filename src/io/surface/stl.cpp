@@ -292,12 +292,12 @@ void note_losses(const Mesh& mesh, const DataArray* attribute, bool has_solids, 
   if (unused > 0) notes.push_back(fmt::format("vertices that no cell uses are left out: {}", unused));
   for (const DataArray& array : mesh.data) {
     const bool is_label = has_solids && array.association == Association::cells && array.name == kLabel;
-    if (&array != attribute && !is_label) note_array_left_out(array, "STL", notes);
+    if (&array != attribute && !is_label) note_array_unsupported(array, "STL", notes);
   }
-  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "STL", notes);
-  note_ids_left_out(mesh, "STL", notes);
+  for (const EntitySet& set : mesh.sets) note_set_unsupported(set, "STL", notes);
+  note_ids_unsupported(mesh, "STL", notes);
   if (!dynamic_cast<const StlMetadata*>(mesh.format_metadata.get()))
-    note_residue_left_out(mesh, "STL", notes);
+    note_metadata_unsupported(mesh, "STL", notes);
 }
 
 void write_binary(const Mesh& mesh, const StlMetadata& metadata, const DataArray* attribute, OutputFile& out,
@@ -359,7 +359,7 @@ void write_ascii(const Mesh& mesh, const StlMetadata* metadata, const std::vecto
 }
 
 void write_stl(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  refuse_other_cells(mesh, path, "STL", stl_holds, "STL has triangles only; write .off, .vtu or .msh");
+  require_supported_cells(mesh, path, "STL", stl_holds, "STL has triangles only; write .off, .vtu or .msh");
   // what comes from elsewhere is written as text, which keeps every bit
   const auto* metadata = dynamic_cast<const StlMetadata*>(mesh.format_metadata.get());
   const DataArray* attribute = binary_attribute(mesh, metadata);

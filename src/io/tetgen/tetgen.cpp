@@ -177,7 +177,7 @@ std::vector<Column> attribute_columns(const Mesh& mesh, Association association,
     if (array == labels && given == 0) continue;  // they are markers of other cells
     const bool text = std::holds_alternative<std::vector<std::string>>(array->values);
     if (text || items.empty() || (given < index_size(items) && array != labels)) {
-      note_array_left_out(*array, "TetGen", notes);
+      note_array_unsupported(*array, "TetGen", notes);
       continue;
     }
     if (array != labels && row_count(*array) > given) {
@@ -287,7 +287,7 @@ void write_boundary(OutputFile& out, File file, const Writing& from, Notes& note
 void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
   const FilesMetadata standard;
   const auto* own = dynamic_cast<const FilesMetadata*>(mesh.format_metadata.get());
-  refuse_other_cells(mesh, path, "TetGen", holds, "write .msh, .vtu or .mesh instead");
+  require_supported_cells(mesh, path, "TetGen", holds, "write .msh, .vtu or .mesh instead");
   Writing from{mesh,
                own ? *own : standard,
                {},
@@ -316,10 +316,10 @@ void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
   OutputFile::commit_all(files);
 
   if (!own) {
-    note_ids_left_out(mesh, "TetGen", notes);
-    note_residue_left_out(mesh, "TetGen", notes);
+    note_ids_unsupported(mesh, "TetGen", notes);
+    note_metadata_unsupported(mesh, "TetGen", notes);
   }
-  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "TetGen", notes);
+  for (const EntitySet& set : mesh.sets) note_set_unsupported(set, "TetGen", notes);
   note_other_companions(path, "does not fit the mesh that was just written beside it", notes);
 }
 

@@ -85,7 +85,7 @@ class Writer {
 
   void note_losses() {
     for (const EntitySet& set : mesh_.sets) {
-      if (set.association == Association::vertices) note_set_left_out(set, "Vega", notes_);
+      if (set.association == Association::vertices) note_set_unsupported(set, "Vega", notes_);
     }
     for (const DataArray& array : mesh_.data) {
       if (&array == vertex_attributes() || &array == element_attributes() || &array == markers()) continue;
@@ -94,7 +94,7 @@ class Writer {
       if (!native_ && is_cell_label(array)) {
         write_labels_as_sets(array);
       } else {
-        note_array_left_out(array, "Vega", notes_);
+        note_array_unsupported(array, "Vega", notes_);
       }
     }
     if (native_) {
@@ -102,8 +102,8 @@ class Writer {
         notes_.push_back("the file '" + name + "', which was included, is written inline");
       }
     } else {
-      note_ids_left_out(mesh_, "Vega", notes_);
-      note_residue_left_out(mesh_, "Vega", notes_);
+      note_ids_unsupported(mesh_, "Vega", notes_);
+      note_metadata_unsupported(mesh_, "Vega", notes_);
     }
   }
 
@@ -251,7 +251,7 @@ class Writer {
 
 void write_vega(const Mesh& mesh, const fs::path& path, Notes& notes) {
   const std::string remedy = "write .vtu or .msh";
-  refuse_other_cells(mesh, path, "Vega", vega_holds, remedy);
+  require_supported_cells(mesh, path, "Vega", vega_holds, remedy);
   for (Index c = 1; c < mesh.cell_count(); ++c) {
     if (mesh.cells.shapes[c] == mesh.cells.shapes[0]) continue;
     throw Error(path.string(), "a Vega file cannot hold both tetrahedra and hexahedra", remedy);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "io/stream/scanner.hpp"
-#include "io/vtk/metadata.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace meshorder {
+namespace meshorder::vtk {
 
 /// "SCALARS" for "scalars".
 std::string upper_case(std::string_view text);
@@ -23,9 +23,9 @@ std::string shown(std::string_view text);
 std::string percent_decoded(std::string_view text);
 
 /// Words, counts and arrays of a legacy file of VTK, text or binary.
-class VtkLegacyInput {
+class LegacyInput {
  public:
-  explicit VtkLegacyInput(const std::filesystem::path& path) : scanner(path) {}
+  explicit LegacyInput(const std::filesystem::path& path) : scanner(path) {}
 
   /// Stops with an Error; text is located by line, binary by byte.
   [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
@@ -53,7 +53,7 @@ class VtkLegacyInput {
   Scanner scanner;
   bool binary = false;
   bool finite_only = false;  ///< in text, real numbers that are not finite are refused
-  std::vector<VtkArrayFacts> facts;
+  std::vector<ArrayFacts> facts;
   Notes notes;
 
  private:
@@ -66,7 +66,7 @@ class VtkLegacyInput {
   void texts(std::vector<std::string>& values, std::int64_t count, const std::string& what);
   std::int64_t text_length(const std::string& what);
   void information(std::int64_t keys, const DataArray& array, std::optional<Association> association);
-  VtkArrayFacts& facts_of(std::optional<Association> association, const std::string& name);
+  ArrayFacts& facts_of(std::optional<Association> association, const std::string& name);
 };
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

@@ -6,10 +6,8 @@
 // VTK's own reader is not used: it reads past the end of cell lists that promise too many vertices, allocates
 // what a header promises, cannot read `nan`, and changes the locale of the whole program.
 #include "base/text.hpp"
-#include "io/vtk/cells.hpp"
-#include "io/vtk/legacy.hpp"
 #include "io/vtk/legacy_input.hpp"
-#include "io/vtk/numbers.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -18,7 +16,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
 constexpr int kFirstVersionWithOffsets = 50;  // ten times the version
@@ -78,11 +76,11 @@ class Reader {
 
   void read_section(std::string_view name) {
     const std::string key = upper_case(name);
-    const auto section = std::find(kVtkPolydataSections.begin(), kVtkPolydataSections.end(), key);
+    const auto section = std::find(kPolydataSections.begin(), kPolydataSections.end(), key);
     if (key == "POINTS") {
       read_points();
-    } else if (layout_.polydata && section != kVtkPolydataSections.end()) {
-      read_cells(static_cast<std::size_t>(section - kVtkPolydataSections.begin()), key);
+    } else if (layout_.polydata && section != kPolydataSections.end()) {
+      read_cells(static_cast<std::size_t>(section - kPolydataSections.begin()), key);
     } else if (!layout_.polydata && key == "CELLS") {
       read_cells(0, key);
     } else if (!layout_.polydata && key == "CELL_TYPES") {
@@ -113,10 +111,10 @@ class Reader {
       in_.fail("the points are of type " + type, "numbers are needed");
     const std::int64_t start = in_.scanner.line();
     in_.finite_only = true;
-    const DataArray array = in_.array(std::string(kVtkPoints), {}, count, 3, type);
+    const DataArray array = in_.array(std::string(kPoints), {}, count, 3, type);
     in_.finite_only = false;
-    residue_->float_points = std::holds_alternative<std::vector<float>>(array.values);
-    if (!residue_->float_points && !std::holds_alternative<std::vector<double>>(array.values)) {
+    metadata_->float_points = std::holds_alternative<std::vector<float>>(array.values);
+    if (!metadata_->float_points && !std::holds_alternative<std::vector<double>>(array.values)) {
       in_.notes.push_back("the points are of type " + type + " and are carried as double");
     }
     mesh_.points.resize(static_cast<std::size_t>(count));
@@ -141,7 +139,7 @@ class Reader {
   // ---- cells
 
   void read_cells(std::size_t section, const std::string& key) {
-    VtkCells& cells = sections_[section];
+    FileCells& cells = sections_[section];
     if (on_) in_.fail(key + " stands after the data", "points and cells come first");
     if (!cells.vertices.empty()) in_.fail(key + " stands here a second time", "one is needed");
     cells_line_ = in_.scanner.line();
@@ -155,7 +153,7 @@ class Reader {
   }
 
   /// Before version 5: the number of vertices before those of each cell.
-  void read_counted_cells(VtkCells& cells, std::int64_t count, std::int64_t size, const std::string& key) {
+  void read_counted_cells(FileCells& cells, std::int64_t count, std::int64_t size, const std::string& key) {
     in_.check_room(size, 4, key);
     if (count > size)
       in_.fail(key + " has " + std::to_string(count) + " cells in " + std::to_string(size) + " numbers",
@@ -192,7 +190,7 @@ class Reader {
   }
 
   /// From version 5 on: where each cell begins, then all vertices.
-  void read_offsets_and_vertices(VtkCells& cells, std::int64_t count, std::int64_t size,
+  void read_offsets_and_vertices(FileCells& cells, std::int64_t count, std::int64_t size,
                                  const std::string& key) {
     if (count == 0) return;
     const auto read_part = [&](const char* name, std::int64_t entries) {
@@ -201,7 +199,7 @@ class Reader {
       const std::string type(in_.word("the type of the numbers"));
       DataArray part = in_.array(name, {}, entries, 1, type);
       std::erase_if(in_.facts,
-                    [&](const VtkArrayFacts& fact) { return !fact.association && fact.array == name; });
+                    [&](const ArrayFacts& fact) { return !fact.association && fact.array == name; });
       return part;
     };
     in_.check_room(count, 1, key);
@@ -265,7 +263,7 @@ class Reader {
   [[nodiscard]] std::int64_t owner_count() const {
     if (on_ == Association::vertices) return mesh_.vertex_count();
     std::int64_t cells = 0;
-    for (const VtkCells& section : sections_) cells += static_cast<std::int64_t>(section.offsets.size()) - 1;
+    for (const FileCells& section : sections_) cells += static_cast<std::int64_t>(section.offsets.size()) - 1;
     return cells;
   }
 
@@ -274,30 +272,30 @@ class Reader {
       if (other.association == array.association && other.name == array.name)
         in_.fail("the array '" + shown(array.name) + "' stands here a second time", "names must differ");
     }
-    add_vtk_array(mesh_, std::move(array));
+    add_array(mesh_, std::move(array));
   }
 
   /// SCALARS, VECTORS and their like; false for another keyword.
   bool read_attribute(const std::string& key) {
-    const auto attribute = std::find_if(kVtkLegacyAttributes.begin(), kVtkLegacyAttributes.end(),
-                                        [&](const VtkLegacyAttribute& a) { return a.keyword == key; });
-    if (attribute == kVtkLegacyAttributes.end()) return false;
+    const auto attribute = std::find_if(kLegacyAttributes.begin(), kLegacyAttributes.end(),
+                                        [&](const LegacyAttribute& a) { return a.keyword == key; });
+    if (attribute == kLegacyAttributes.end()) return false;
     const std::string name = percent_decoded(in_.word("the name of " + key));
     std::int64_t components = attribute->components;
-    if (attribute->role == VtkRole::texture_coordinates || attribute->role == VtkRole::color_scalars)
+    if (attribute->role == Role::texture_coordinates || attribute->role == Role::color_scalars)
       components = in_.integer("the components of " + key);
 
-    VtkRoleOfArray role{attribute->role, *on_, name, {}};
+    ArrayRole role{attribute->role, *on_, name, {}};
     std::string type = in_.binary ? "unsigned_char" : "float";
-    if (attribute->role != VtkRole::color_scalars) type = in_.word("the type of " + key);
-    if (attribute->role == VtkRole::scalars) {
+    if (attribute->role != Role::color_scalars) type = in_.word("the type of " + key);
+    if (attribute->role == Role::scalars) {
       components = in_.scanner.at_line_end() ? 1 : in_.integer("the components of SCALARS");
       if (upper_case(in_.word("LOOKUP_TABLE")) != "LOOKUP_TABLE")
         in_.fail("SCALARS '" + shown(name) + "' has no LOOKUP_TABLE",
                  "'LOOKUP_TABLE default' follows its name and type");
       role.lookup_table = in_.word("the name of the lookup table");
     }
-    residue_->roles.push_back(std::move(role));
+    metadata_->roles.push_back(std::move(role));
     keep(in_.array(name, on_, owner_count(), components, type));
     return true;
   }
@@ -320,7 +318,7 @@ class Reader {
       if (on_) {
         keep(std::move(array));
       } else {
-        residue_->fields.push_back(std::move(array));
+        metadata_->fields.push_back(std::move(array));
       }
     }
   }
@@ -347,7 +345,7 @@ class Reader {
 
   void finish() {
     if (!has_points_) in_.fail("there are no POINTS", "the file may be cut short");
-    VtkCells all = layout_.polydata ? polydata_cells() : std::move(sections_[0]);
+    FileCells all = layout_.polydata ? polydata_cells() : std::move(sections_[0]);
     if (all.types.size() + 1 != all.offsets.size()) {
       throw in_.section_error(types_line_,
                               "there are " + std::to_string(all.types.size()) + " CELL_TYPES for " +
@@ -362,7 +360,7 @@ class Reader {
     const bool old_order = version_ < kLastVersion &&
                            std::any_of(all.types.begin(), all.types.end(), is_higher_order_hexahedron);
     const std::vector<std::uint8_t> types = old_order ? all.types : std::vector<std::uint8_t>{};
-    take_vtk_cells(
+    take_cells(
         mesh_, std::move(all),
         [&](const std::string& what, const std::string& remedy) {
           return in_.section_error(types_line_, what, remedy);
@@ -371,17 +369,17 @@ class Reader {
     if (old_order) swap_hexahedron_edges(mesh_, types, mesh_.cells);
 
     layout_.binary = in_.binary;
-    residue_->facts = std::move(in_.facts);
-    residue_->legacy = std::move(layout_);
-    mesh_.format_metadata = residue_;
+    metadata_->facts = std::move(in_.facts);
+    metadata_->legacy = std::move(layout_);
+    mesh_.format_metadata = metadata_;
   }
 
   /// The cells of all sections of a POLYDATA file; each section is a block.
-  VtkCells polydata_cells() {
-    VtkCells all;
+  FileCells polydata_cells() {
+    FileCells all;
     std::vector<Index> blocks;
     for (std::size_t s = 0; s < sections_.size(); ++s) {
-      VtkCells& section = sections_[s];
+      FileCells& section = sections_[s];
       const std::size_t count = section.offsets.size() - 1;
       if (count > 0) blocks.push_back(index_size(all.types));
       const auto shift = static_cast<Offset>(all.vertices.size());
@@ -409,13 +407,13 @@ class Reader {
     }
   }
 
-  VtkLegacyInput in_;
+  LegacyInput in_;
   Mesh mesh_;
-  std::shared_ptr<VtkMetadata> residue_ = std::make_shared<VtkMetadata>();
-  VtkLegacyLayout layout_;
+  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  LegacyLayout layout_;
   int version_ = 0;
   bool has_points_ = false;
-  std::array<VtkCells, 4> sections_;  // an unstructured grid has the first alone
+  std::array<FileCells, 4> sections_;  // an unstructured grid has the first alone
   std::int64_t cells_line_ = 0;
   std::int64_t types_line_ = 0;
   std::optional<Association> on_;  // what the arrays that follow belong to
@@ -423,6 +421,6 @@ class Reader {
 
 }  // namespace
 
-Mesh read_vtk_legacy(const std::filesystem::path& path, Notes& notes) { return Reader(path).read(notes); }
+Mesh read_legacy(const std::filesystem::path& path, Notes& notes) { return Reader(path).read(notes); }
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

@@ -5,15 +5,11 @@
 //
 // VTK's own writer (9.1) is not used: it writes names with & or < as they are, which is no XML, crashes over
 // pedigree ids that are texts, and does not notice that a disk is full when it closes a file.
-#include "io/vtk/vtu.hpp"
-
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/base64.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/vtk/cells.hpp"
-#include "io/vtk/metadata.hpp"
-#include "io/vtk/numbers.hpp"
+#include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +23,7 @@
 #include <utility>
 #include <variant>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 20;  // bytes that are swapped and compressed at once
@@ -60,14 +56,7 @@ struct Section {
 class Writer {
  public:
   Writer(const Mesh& mesh, const std::filesystem::path& path, Notes& notes)
-      : mesh_(mesh),
-        notes_(notes),
-        residue_(vtk_residue(mesh, notes)),
-        encoding_(residue_.vtu.value_or(VtuEncoding{})),
-        types_(vtk_types(mesh, path.string(),
-                         dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get()) != nullptr)),
-        data_(vtk_arrays(mesh, notes)),
-        out_(path) {}
+      : from_(mesh, path, notes), encoding_(from_.metadata.vtu.value_or(VtuEncoding{})), out_(path) {}
 
   void write() {
     note_legacy_parts();
@@ -90,23 +79,23 @@ class Writer {
   [[nodiscard]] std::size_t header_size() const { return encoding_.wide_headers ? 8 : 4; }
 
   void note_legacy_parts() {
-    if (residue_.legacy) {
-      for (const auto& table : residue_.legacy->lookup_tables)
-        notes_.push_back("left out, as VTU cannot hold it: the lookup table '" + table.name + "'");
+    if (from_.metadata.legacy) {
+      for (const auto& table : from_.metadata.legacy->lookup_tables)
+        from_.notes.push_back("left out, as VTU cannot hold it: the lookup table '" + table.name + "'");
     }
-    for (const VtkArrayFacts& fact : residue_.facts) {
+    for (const ArrayFacts& fact : from_.metadata.facts) {
       if (!fact.information.empty())
-        notes_.push_back("left out, as VTU has it in another form: the information of the array '" +
-                         fact.array + "'");
+        from_.notes.push_back("left out, as VTU has it in another form: the information of the array '" +
+                              fact.array + "'");
     }
   }
 
   // ---- what is written
 
   void collect() {
-    if (!residue_.fields.empty()) {
+    if (!from_.metadata.fields.empty()) {
       Section& fields = sections_.emplace_back(Section{"    <FieldData>\n", "    </FieldData>\n", {}});
-      for (const DataArray& field : residue_.fields) fields.arrays.push_back(array_of(field, {}));
+      for (const DataArray& field : from_.metadata.fields) fields.arrays.push_back(array_of(field, {}));
     }
     collect_data(Association::vertices);
     collect_data(Association::cells);
@@ -119,7 +108,7 @@ class Writer {
     const std::string_view name = association == Association::vertices ? "PointData" : "CellData";
     section.begin = fmt::format("      <{}{}>\n", name, roles(association));
     section.end = fmt::format("      </{}>\n", name);
-    for (const DataArray* array : data_.all) {
+    for (const DataArray* array : from_.arrays) {
       if (array->association == association) section.arrays.push_back(array_of(*array, association));
     }
     sections_.push_back(std::move(section));
@@ -128,17 +117,18 @@ class Writer {
   /// The attributes that name the arrays in roles.
   [[nodiscard]] std::string roles(Association association) const {
     std::string result;
-    for (std::size_t role = 0; role < kVtuRoles.size(); ++role) {
+    for (std::size_t role = 0; role < kXmlRoles.size(); ++role) {
       const auto found =
-          std::find_if(residue_.roles.begin(), residue_.roles.end(), [&](const VtkRoleOfArray& r) {
-            const VtkRole kind = r.role == VtkRole::color_scalars ? VtkRole::scalars : r.role;
-            const bool there = std::any_of(data_.all.begin(), data_.all.end(), [&](const DataArray* array) {
-              return array->association == association && array->name == r.array;
-            });
-            return r.association == association && kind == static_cast<VtkRole>(role) && there;
+          std::find_if(from_.metadata.roles.begin(), from_.metadata.roles.end(), [&](const ArrayRole& r) {
+            const Role kind = r.role == Role::color_scalars ? Role::scalars : r.role;
+            const bool there =
+                std::any_of(from_.arrays.begin(), from_.arrays.end(), [&](const DataArray* array) {
+                  return array->association == association && array->name == r.array;
+                });
+            return r.association == association && kind == static_cast<Role>(role) && there;
           });
-      if (found != residue_.roles.end())
-        result += fmt::format(" {}=\"{}\"", kVtuRoles[role], xml_escaped(found->array));
+      if (found != from_.metadata.roles.end())
+        result += fmt::format(" {}=\"{}\"", kXmlRoles[role], xml_escaped(found->array));
     }
     return result;
   }
@@ -146,9 +136,9 @@ class Writer {
   Array array_of(const DataArray& array, std::optional<Association> association) {
     Array result;
     const bool text = std::holds_alternative<std::vector<std::string>>(array.values);
-    const VtkArrayFacts* facts = find_facts(residue_, association, array.name);
+    const ArrayFacts* facts = find_facts(from_.metadata, association, array.name);
     result.tag =
-        fmt::format("<{} type=\"{}\"", text ? "Array" : "DataArray", kVtuTypeNames[array.values.index()]);
+        fmt::format("<{} type=\"{}\"", text ? "Array" : "DataArray", kXmlTypeNames[array.values.index()]);
     if (facts != nullptr && facts->type == "vtkIdType" &&
         std::holds_alternative<std::vector<std::int64_t>>(array.values))
       result.tag += " IdType=\"1\"";
@@ -180,9 +170,9 @@ class Writer {
 
   Array points() {
     Array result;
-    const bool floats = points_are_floats(mesh_, residue_);
-    const std::span<const double> numbers(mesh_.points.empty() ? nullptr : mesh_.points.front().data(),
-                                          3 * mesh_.points.size());
+    const bool floats = from_.points_are_floats();
+    const std::span<const double> numbers(
+        from_.mesh.points.empty() ? nullptr : from_.mesh.points.front().data(), 3 * from_.mesh.points.size());
     result.numbers = numbers;
     if (floats) {
       for (const double x : numbers) float_points_.push_back(static_cast<float>(x));
@@ -195,12 +185,7 @@ class Writer {
 
   /// Vertices, ends and types of the cells; VTK wants the first two in one type.
   std::vector<Array> cells() {
-    const bool swapped = std::any_of(types_.begin(), types_.end(), has_order_of_its_own);
-    if (swapped) {
-      changed_ = mesh_.cells;
-      swap_to_vtk(types_, changed_);
-    }
-    const Cells& cells = swapped ? changed_ : mesh_.cells;
+    const Cells& cells = from_.cells();
     const bool narrow = cells.offsets.back() <= kMaxIndex;
     std::vector<Array> result(3);
     if (narrow) {
@@ -212,7 +197,7 @@ class Writer {
       result[0].numbers = std::span<const std::int64_t>(wide_vertices_);
       result[1].numbers = std::span<const std::int64_t>(cells.offsets).subspan(1);
     }
-    result[2].numbers = std::span<const std::uint8_t>(types_);
+    result[2].numbers = std::span<const std::uint8_t>(from_.types);
     const char* const type = narrow ? "Int32" : "Int64";
     result[0].tag = fmt::format("<DataArray type=\"{}\" Name=\"connectivity\"", type);
     result[1].tag = fmt::format("<DataArray type=\"{}\" Name=\"offsets\"", type);
@@ -351,7 +336,7 @@ class Writer {
 
   void write_header() {
     // 2.1 and later tell of the order of nodes of VTK 9, 1.0 of wide headers
-    const bool order = std::any_of(types_.begin(), types_.end(), is_higher_order_hexahedron);
+    const bool order = std::any_of(from_.types.begin(), from_.types.end(), is_higher_order_hexahedron);
     out_.print(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"{}\" byte_order=\"{}\" "
         "header_type=\"{}\"",
@@ -361,14 +346,14 @@ class Writer {
         encoding_.order == std::endian::big ? "BigEndian" : "LittleEndian",
         encoding_.wide_headers ? "UInt64" : "UInt32");
     if (encoding_.compressor != Compressor::none)
-      out_.print(" compressor=\"{}\"", kVtuCompressors[static_cast<std::size_t>(encoding_.compressor)]);
+      out_.print(" compressor=\"{}\"", kCompressors[static_cast<std::size_t>(encoding_.compressor)]);
     out_.write(">\n  <UnstructuredGrid>\n");
-    if (residue_.fields.empty()) begin_piece();
+    if (from_.metadata.fields.empty()) begin_piece();
   }
 
   void begin_piece() {
-    out_.print("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", mesh_.vertex_count(),
-               mesh_.cell_count());
+    out_.print("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", from_.mesh.vertex_count(),
+               from_.mesh.cell_count());
   }
 
   void write_section(const Section& section) {
@@ -405,12 +390,8 @@ class Writer {
     out_.write("\n  </AppendedData>\n");
   }
 
-  const Mesh& mesh_;
-  Notes& notes_;
-  const VtkMetadata& residue_;
+  WriteContext from_;
   VtuEncoding encoding_;
-  std::vector<std::uint8_t> types_;
-  VtkArrays data_;
   OutputFile out_;
   std::vector<Section> sections_;
 
@@ -419,7 +400,6 @@ class Writer {
   std::vector<float> float_points_;
   std::vector<std::int32_t> ends_;
   std::vector<std::int64_t> wide_vertices_;
-  Cells changed_;
 };
 
 }  // namespace
@@ -428,6 +408,6 @@ void write_vtu(const Mesh& mesh, const std::filesystem::path& path, Notes& notes
   Writer(mesh, path, notes).write();
 }
 
-Format vtu_format() { return {"VTU", {".vtu"}, false, read_vtu, write_vtu}; }
+}  // namespace meshorder::vtk
 
-}  // namespace meshorder
+meshorder::Format meshorder::vtu_format() { return {"VTU", {".vtu"}, false, vtk::read_vtu, vtk::write_vtu}; }

@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "io/vtk/metadata.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <cstdint>
 #include <span>
 #include <string>
 
-namespace meshorder {
+namespace meshorder::vtk {
 
 /// One of the compressors of .vtu files: zlib, LZ4 blocks, or xz streams, as VTK's vtkZLibDataCompressor,
 /// vtkLZ4DataCompressor and vtkLZMADataCompressor write them.
@@ -28,4 +28,4 @@ class VtuCompressor {
   VtuEncoding::Compressor kind_;
 };
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

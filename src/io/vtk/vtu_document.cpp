@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/vtk/vtu_document.hpp"
 
-#include "io/vtk/vtu.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <array>
 #include <charconv>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -268,12 +268,12 @@ void VtuDocument::read_root() {
   encoding_.wide_headers = header != nullptr && *header == "UInt64";
   if (const std::string* compressor = root_.attribute("compressor");
       compressor != nullptr && !compressor->empty()) {
-    const auto found = std::find(kVtuCompressors.begin(), kVtuCompressors.end(), *compressor);
-    if (found == kVtuCompressors.end())
+    const auto found = std::find(kCompressors.begin(), kCompressors.end(), *compressor);
+    if (found == kCompressors.end())
       throw error(root_, "the compressor is '" + compressor->substr(0, 40) + "'",
                   "zlib, LZ4 and LZMA are understood");
-    encoding_.compressor = static_cast<VtuEncoding::Compressor>(found - kVtuCompressors.begin());
+    encoding_.compressor = static_cast<VtuEncoding::Compressor>(found - kCompressors.begin());
   }
 }
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "io/stream/scanner.hpp"
-#include "io/vtk/metadata.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace meshorder {
+namespace meshorder::vtk {
 
 /// An element of a .vtu file.
 struct VtuElement {
@@ -90,4 +90,4 @@ class VtuDocument {
   bool appended_base64_ = false;
 };
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

@@ -5,9 +5,7 @@
 //
 // VTK's own reader is not used: it allocates what a header promises, reads past the end of damaged arrays,
 // cannot read the NaN that VTK writes as text, and tells of faults on the standard error output.
-#include "io/vtk/cells.hpp"
-#include "io/vtk/metadata.hpp"
-#include "io/vtk/vtu.hpp"
+#include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +16,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
 /// Appends what one piece has to what others had, of the same type.
@@ -39,7 +37,7 @@ class Reader {
     const VtuElement* grid = file_.root().child("UnstructuredGrid");
     if (grid == nullptr)
       throw file_.error(file_.root(), "there is no <UnstructuredGrid>", "the file may be cut short");
-    residue_->vtu = file_.encoding();
+    metadata_->vtu = file_.encoding();
     int pieces = 0;
     for (const VtuElement& element : grid->children) {
       if (element.name == "FieldData") {
@@ -101,8 +99,8 @@ class Reader {
                         "3 are needed");
     const Values values = file_.values(array, 3 * count);
     if (mesh_.points.empty()) {
-      residue_->float_points = std::holds_alternative<std::vector<float>>(values);
-      residue_->vtu->mode = file_.mode(array);
+      metadata_->float_points = std::holds_alternative<std::vector<float>>(values);
+      metadata_->vtu->mode = file_.mode(array);
     }
     const std::size_t first = mesh_.points.size();
     mesh_.points.resize(first + static_cast<std::size_t>(count));
@@ -234,7 +232,7 @@ class Reader {
   }
 
   void read_facts(const VtuElement& element, std::optional<Association> association, const DataArray& array) {
-    VtkArrayFacts facts{association, array.name, {}, {}, {}};
+    ArrayFacts facts{association, array.name, {}, {}, {}};
     const std::string* id = element.attribute("IdType");
     if (id != nullptr && *id == "1" && std::holds_alternative<std::vector<std::int64_t>>(array.values))
       facts.type = "vtkIdType";
@@ -244,8 +242,8 @@ class Reader {
       facts.xml_information += file_.source(key) + "\n";
     }
     if ((!facts.type.empty() || !facts.xml_information.empty()) &&
-        find_facts(*residue_, association, array.name) == nullptr)
-      residue_->facts.push_back(std::move(facts));
+        find_facts(*metadata_, association, array.name) == nullptr)
+      metadata_->facts.push_back(std::move(facts));
   }
 
   void read_fields(const VtuElement& fields) {
@@ -254,20 +252,19 @@ class Reader {
         note_unknown(element);
         continue;
       }
-      residue_->fields.push_back(read_array(element, {}, file_.count(element, "NumberOfTuples")));
+      metadata_->fields.push_back(read_array(element, {}, file_.count(element, "NumberOfTuples")));
     }
   }
 
   void read_data(const VtuElement& section, Association association, std::int64_t tuples) {
-    for (std::size_t role = 0; role < kVtuRoles.size(); ++role) {
-      const std::string* name = section.attribute(kVtuRoles[role]);
+    for (std::size_t role = 0; role < kXmlRoles.size(); ++role) {
+      const std::string* name = section.attribute(kXmlRoles[role]);
       if (name == nullptr || name->empty()) continue;
-      const auto kind = static_cast<VtkRole>(role);
-      const bool known =
-          std::any_of(residue_->roles.begin(), residue_->roles.end(), [&](const VtkRoleOfArray& other) {
-            return other.role == kind && other.association == association;
-          });
-      if (!known) residue_->roles.push_back({kind, association, *name, {}});
+      const auto kind = static_cast<Role>(role);
+      const bool known = std::any_of(
+          metadata_->roles.begin(), metadata_->roles.end(),
+          [&](const ArrayRole& other) { return other.role == kind && other.association == association; });
+      if (!known) metadata_->roles.push_back({kind, association, *name, {}});
     }
     std::vector<std::string> names;
     for (const VtuElement& element : section.children) {
@@ -300,7 +297,7 @@ class Reader {
                            std::any_of(cells_.types.begin(), cells_.types.end(), is_higher_order_hexahedron);
     const std::vector<std::uint8_t> types = old_order ? cells_.types : std::vector<std::uint8_t>{};
     const VtuElement& at = types_ != nullptr ? *types_ : grid;
-    take_vtk_cells(
+    take_cells(
         mesh_, std::move(cells_),
         [&](const std::string& what, const std::string& remedy) { return file_.error(at, what, remedy); },
         notes_);
@@ -310,18 +307,18 @@ class Reader {
       if (row_count(array) != needed)
         throw file_.error(grid, "the array '" + array.name + "' is missing in a piece",
                           "all pieces have the same arrays");
-      add_vtk_array(mesh_, std::move(array));
+      add_array(mesh_, std::move(array));
     }
     if (old_order) swap_hexahedron_edges(mesh_, types, mesh_.cells);
-    mesh_.format_metadata = residue_;
+    mesh_.format_metadata = metadata_;
   }
 
   VtuDocument file_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<VtkMetadata> residue_ = std::make_shared<VtkMetadata>();
+  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   std::vector<DataArray> arrays_;
-  VtkCells cells_;
+  FileCells cells_;
   const VtuElement* types_ = nullptr;
 };
 
@@ -329,4 +326,4 @@ class Reader {
 
 Mesh read_vtu(const std::filesystem::path& path, Notes& notes) { return Reader(path, notes).read(); }
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

@@ -3,7 +3,7 @@
 // Arrays of .vtu files: text, base64 and raw bytes, plain or in compressed blocks.
 #include "base/text.hpp"
 #include "io/stream/base64.hpp"
-#include "io/vtk/numbers.hpp"
+#include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include "io/vtk/vtu_document.hpp"
 
@@ -17,7 +17,7 @@
 #include <limits>
 #include <type_traits>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -288,11 +288,11 @@ std::vector<std::string> VtuDocument::strings(const VtuElement& array, std::int6
 Values VtuDocument::values(const VtuElement& array, std::int64_t count) const {
   const std::string& type = required(array, "type");
   if (type == "Bit") return bits(array, count);
-  const auto found = std::find(kVtuTypeNames.begin(), kVtuTypeNames.end(), type);
-  if (found == kVtuTypeNames.end())
+  const auto found = std::find(kXmlTypeNames.begin(), kXmlTypeNames.end(), type);
+  if (found == kXmlTypeNames.end())
     throw error(array, "the type is '" + type.substr(0, 40) + "'",
                 "Int8 … UInt64, Float32, Float64 or String is needed");
-  Values values = values_of_type(static_cast<std::size_t>(found - kVtuTypeNames.begin()));
+  Values values = values_of_type(static_cast<std::size_t>(found - kXmlTypeNames.begin()));
   std::visit(
       [&](auto& result) {
         using Number = typename std::decay_t<decltype(result)>::value_type;
@@ -306,4 +306,4 @@ Values VtuDocument::values(const VtuElement& array, std::int64_t count) const {
   return values;
 }
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk
