@@ -2,8 +2,9 @@
 #pragma once
 
 #include "io/format.hpp"
+#include "io/stream/id_map.hpp"
+#include "io/stream/number_reader.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/stream/scanner.hpp"
 #include "mesh/mesh.hpp"
 
 #include <array>
@@ -13,7 +14,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -102,7 +102,7 @@ struct Section {
 using Entity = std::pair<std::int32_t, std::int32_t>;  ///< dimension and tag
 
 /// Everything about a Gmsh file that does not depend on the order of its nodes and elements.
-struct GmshMetadata : FormatMetadata {
+struct Metadata : FormatMetadata {
   double version = 4.1;
   bool binary = false;
   std::endian order = std::endian::native;  ///< of the file's numbers; kept, as verbatim sections hold some
@@ -121,69 +121,33 @@ struct GmshMetadata : FormatMetadata {
 
 // ---- reading
 
-struct Source;
+/// Maps the numbers of nodes or elements to their positions. Fails for negative numbers and for numbers that
+/// are given twice; `what` is "node" or "element".
+IdMap number_ids(const NumberReader& source, const std::vector<std::int64_t>& ids, std::string_view what);
 
-/// Where the numbers that a file gives stand in the mesh.
-class Places {
- public:
-  Places() = default;
-  /// Fails through `source` when a number is negative or given twice; `what` is "node" or "element".
-  Places(const Source& source, const std::vector<std::int64_t>& ids, std::string_view what);
-  /// The place of the thing with that number, or −1.
-  [[nodiscard]] Index find(std::int64_t id) const;
-  /// True when the numbers are 1, 2, 3 … in the order of the file.
-  [[nodiscard]] bool consecutive() const noexcept { return consecutive_; }
-
- private:
-  Index count_ = 0;
-  bool consecutive_ = true;
-  std::vector<Index> dense_;
-  std::unordered_map<std::int64_t, Index> sparse_;
-};
-
-/// A file that is being read: numbers are taken as text or binary, as its $MeshFormat says.
-struct Source {
-  explicit Source(const std::filesystem::path& path) : in(path) {}
-
-  std::int32_t int32(std::string_view what);
-  std::int64_t size(std::string_view what);  ///< size_t of the specification
-  double real(std::string_view what);
-  double finite(std::string_view what);
-  /// A size of things that take so many bytes each at least, in text and in binary.
-  Index count(std::string_view what, std::int64_t text_bytes, std::int64_t binary_bytes);
-  /// Numbers that are text in binary files too.
-  std::int64_t text_integer(std::string_view what);
-  double text_real(std::string_view what);
-  [[nodiscard]] Index checked(std::int64_t number, std::string_view what, std::int64_t bytes) const;
-  /// Moves behind the end of the line if the numbers that follow are binary.
-  void begin_binary();
-  void expect_end(std::string_view section);
-  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
-
-  Scanner in;
-  bool binary = false;
-  std::endian order = std::endian::native;
-};
+/// Reads the line $EndSECTION.
+void expect_end(NumberReader& source, std::string_view section);
 
 /// A mesh that is being read.
-struct Reading {
-  Source source;
+struct ReadContext {
+  NumberReader source;
   Mesh mesh;
-  GmshMetadata metadata;
-  Places nodes;
-  Places elements;
+  Metadata metadata;
+  IdMap nodes;
+  IdMap elements;
   std::vector<std::size_t> view_arrays;  ///< place of each view's array in `mesh.data`, where it has one
   Notes& notes;
 };
 
 /// The element type of that number; fails where we cannot hold it.
-const ElementType& known_type(const Source& source, std::int64_t number);
+const ElementType& known_type(const NumberReader& source, std::int64_t number);
 
 /// Adds a cell whose nodes have the given places, in Gmsh's order.
 void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes);
 
 /// The place of a node that an element or section names; fails where there is none.
-Index place_of_node(const Reading& reading, std::int64_t id, std::string_view owner, std::int64_t owner_id);
+Index place_of_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
+                    std::int64_t owner_id);
 
 /// Adds the array kCellType when a cell's type does not follow from shape and count.
 void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers);
@@ -192,30 +156,30 @@ void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers);
 void keep_parameters(Mesh& mesh, std::vector<double> values);
 
 /// Fails when a row stands twice.
-void check_distinct(const Source& source, std::vector<Index> rows, std::string_view section);
+void check_distinct(const NumberReader& source, std::vector<Index> rows, std::string_view section);
 
 /// `section` is $Nodes or $ParametricNodes, without the $.
-void read_nodes_2(Reading& reading, std::string_view section);
-void read_elements_2(Reading& reading);
-void read_entities_4(Reading& reading, bool partitioned);
-void read_nodes_4(Reading& reading);
-void read_elements_4(Reading& reading);
-void read_view(Reading& reading, std::string_view section);
-void read_periodic(Reading& reading);
-void read_ghosts(Reading& reading);
+void read_nodes_2(ReadContext& reading, std::string_view section);
+void read_elements_2(ReadContext& reading);
+void read_entities_4(ReadContext& reading, bool partitioned);
+void read_nodes_4(ReadContext& reading);
+void read_elements_4(ReadContext& reading);
+void read_view(ReadContext& reading, std::string_view section);
+void read_periodic(ReadContext& reading);
+void read_ghosts(ReadContext& reading);
 /// Gives the views' arrays their final names, which are distinct and say the step where there are several.
-void name_views(Reading& reading);
+void name_views(ReadContext& reading);
 
 /// The cells of every named physical group that has any, as sets.
-std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metadata);
+std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata);
 
 /// The first physical group of each cell's entity, 0 for none; empty when no cell has any.
-std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadata& metadata);
+std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const Metadata& metadata);
 
 // ---- writing
 
 /// A file that is being written: numbers go out as text, separated by blanks, or as binary.
-struct Sink {
+struct NumberWriter {
   void int32(std::int64_t value);
   void size(std::int64_t value);
   void real(double value);
@@ -235,9 +199,9 @@ struct Sink {
 };
 
 /// All that the writer needs besides the mesh: read with it, or made for a mesh from elsewhere.
-struct Output {
+struct WriteContext {
   const Mesh& mesh;
-  const GmshMetadata& layout;
+  const Metadata& layout;
   std::vector<const ElementType*> types;      ///< of each cell
   std::vector<std::int64_t> node_ids;         ///< empty: 1, 2, 3 …
   std::vector<std::int64_t> cell_ids;         ///< empty: 1, 2, 3 …
@@ -258,20 +222,20 @@ const std::vector<double>* parameters_of(const Mesh& mesh);
 
 /// Makes entities, physical groups and their names for a mesh that has no Gmsh layout of its own, from its
 /// labels, its sets of cells and the entities that it may have kept from an earlier conversion.
-void classify(GmshMetadata& layout, Output& output, Notes& notes);
+void classify(Metadata& layout, WriteContext& output, Notes& notes);
 
 /// Adds a view for an array that has none yet; false, with a note, where Gmsh cannot hold it.
-bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes);
+bool add_view(Metadata& layout, const DataArray& array, Notes& notes);
 
 /// The numbers of a cell's nodes in Gmsh's order; `wide` as size_t (4.1), else as int.
-void write_cell_nodes(Sink& sink, const Output& output, Index c, bool wide);
+void write_cell_nodes(NumberWriter& sink, const WriteContext& output, Index c, bool wide);
 
-void write_nodes_2(Sink& sink, const Output& output);
-void write_elements_2(Sink& sink, const Output& output);
-void write_nodes_4(Sink& sink, const Output& output);
-void write_elements_4(Sink& sink, const Output& output);
-void write_view(Sink& sink, const Output& output, const View& view);
-void write_periodic(Sink& sink, const Output& output);
-void write_ghosts(Sink& sink, const Output& output);
+void write_nodes_2(NumberWriter& sink, const WriteContext& output);
+void write_elements_2(NumberWriter& sink, const WriteContext& output);
+void write_nodes_4(NumberWriter& sink, const WriteContext& output);
+void write_elements_4(NumberWriter& sink, const WriteContext& output);
+void write_view(NumberWriter& sink, const WriteContext& output, const View& view);
+void write_periodic(NumberWriter& sink, const WriteContext& output);
+void write_ghosts(NumberWriter& sink, const WriteContext& output);
 
 }  // namespace meshorder::gmsh

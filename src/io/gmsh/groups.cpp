@@ -159,7 +159,7 @@ void assign_tags(const Mesh& mesh, Groups& groups) {
 
 /// Entities of the nodes: those that they had in Gmsh, or the first entity of the highest dimension.
 std::vector<std::int32_t> entities_of_nodes(const Mesh& mesh, std::map<Entity, Group>& entities,
-                                            Output& output) {
+                                            WriteContext& output) {
   std::vector<std::int32_t> kept = integers_of(mesh, kNodeEntity, Association::vertices);
   const DataArray* array = find_array(mesh, kNodeEntity, Association::vertices);
   bool usable = !kept.empty() && array->components == 2;
@@ -232,7 +232,7 @@ std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups, std::
 
 }  // namespace
 
-std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metadata) {
+std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata) {
   // a name may stand for groups of several dimensions: they are one set
   std::vector<EntitySet> sets;
   std::map<std::string, Index> set_of_name;
@@ -268,7 +268,7 @@ std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metad
   return sets;
 }
 
-std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadata& metadata) {
+std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const Metadata& metadata) {
   const CellEntities entities(mesh);
   EntityTable<std::vector<std::int32_t>> table(metadata.physicals);
   std::vector<std::int32_t> labels(mesh.cells.shapes.size(), 0);
@@ -283,7 +283,7 @@ std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadat
   return labels;
 }
 
-void classify(GmshMetadata& layout, Output& output, Notes& notes) {
+void classify(Metadata& layout, WriteContext& output, Notes& notes) {
   const Mesh& mesh = output.mesh;
   const std::vector<std::int32_t> labels = labels_for_groups(mesh, notes);
   if (!labels.empty()) output.placed.push_back(find_array(mesh, kLabel, Association::cells));

@@ -84,7 +84,7 @@ inline constexpr std::array kTableKinds{
 };
 
 /// What other formats cannot hold and this one keeps.
-struct MeshMetadata final : FormatMetadata {
+struct Metadata final : FormatMetadata {
   struct Section {
     std::string keyword;
     std::string text;  ///< from the keyword on, as it stood

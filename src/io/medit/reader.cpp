@@ -77,14 +77,14 @@ class Reader {
 
   Mesh read() {
     refuse_other_formats();
-    residue_->comments_before = comments_before(in_.all(), kComment);
+    metadata_->comments_before = comments_before(in_.all(), kComment);
     while (!in_.at_end() && read_section()) {
     }
     if (!has_end_) note_missing_end();
     read_pending();
     arrange_nodes();
     set_labels();
-    mesh_.format_metadata = residue_;
+    mesh_.format_metadata = metadata_;
     return std::move(mesh_);
   }
 
@@ -113,9 +113,9 @@ class Reader {
     last_keyword_ = keyword;
 
     if (same_but_for_case(keyword, "MeshVersionFormatted")) {
-      residue_->version = in_.integer<std::int64_t>("the version");
-      if (residue_->version < 0 || residue_->version > 4) {
-        in_.fail(fmt::format("the version is {}", residue_->version), "1 to 4 are known");
+      metadata_->version = in_.integer<std::int64_t>("the version");
+      if (metadata_->version < 0 || metadata_->version > 4) {
+        in_.fail(fmt::format("the version is {}", metadata_->version), "1 to 4 are known");
       }
     } else if (same_but_for_case(keyword, "Dimension")) {
       mesh_.dimension = in_.integer<std::int32_t>("the dimension");
@@ -183,7 +183,7 @@ class Reader {
   // ---- sections that are kept
 
   void keep_section(const std::string& keyword) {
-    residue_->sections.push_back(
+    metadata_->sections.push_back(
         {keyword, std::string(in_.all().substr(begin_, in_.byte() - begin_)), !has_vertices_});
   }
 
@@ -222,7 +222,7 @@ class Reader {
                                    last_keyword_, kCellKinds[kind].keyword));
       return;
     }
-    residue_->places[kind] = std::move(places);
+    metadata_->places[kind] = std::move(places);
   }
 
   // ---- vertices and cells
@@ -254,7 +254,7 @@ class Reader {
     const auto& [keyword, shape, nodes, alias] = kCellKinds[kind];
     const Index count = in_.count(what_count(), 2 * (nodes + 1));
     if (count == 0) {
-      residue_->empty_sections.push_back(kind);
+      metadata_->empty_sections.push_back(kind);
       return;
     }
     mesh_.cell_blocks.push_back(mesh_.cell_count());
@@ -321,8 +321,9 @@ class Reader {
     const std::size_t kind = counted_kind(*target, counts_);
     if (kind < kCellKinds.size()) return {first_[kind], counts_[kind]};
     if (needed > 0) {
-      in_.fail(fmt::format("{} counts cells of type {}, and there are none", last_keyword_, name(*target)),
-               "remove the section");
+      in_.fail(
+          fmt::format("{} counts cells of type {}, and there are none", last_keyword_, to_string(*target)),
+          "remove the section");
     }
     return {0, 0};
   }
@@ -341,7 +342,7 @@ class Reader {
         std::string(kind.keyword), kind.target ? Association::cells : Association::vertices, 1, {}, {}, {}};
     const Index rows = in_.count(what_count(), 2);
     if (rows == 0) {
-      residue_->sections.push_back({array.name, array.name + "\n0", false});
+      metadata_->sections.push_back({array.name, array.name + "\n0", false});
       return;
     }
     array.components = words_of_line() - 1;
@@ -372,7 +373,7 @@ class Reader {
     has_end_ = true;
     const std::string_view rest = in_.all().substr(in_.byte());
     // npos + 1 is 0: nothing but blanks
-    residue_->after_end = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);
+    metadata_->after_end = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);
   }
 
   void note_missing_end() {
@@ -384,11 +385,11 @@ class Reader {
   void arrange_nodes() {
     for (std::size_t kind = kLinearKinds; kind < kCellKinds.size(); ++kind) {
       if (counts_[kind] == 0) continue;
-      const auto order = residue_->places.find(kind);
+      const auto order = metadata_->places.find(kind);
       // libMeshb leaves the order of nodes to the file; for simplices all writers agree
       const Shape shape = kCellKinds[kind].shape;
       const bool simplex = shape == Shape::line || shape == Shape::triangle || shape == Shape::tetrahedron;
-      if (order == residue_->places.end()) {
+      if (order == metadata_->places.end()) {
         if (!simplex) {
           notes_.push_back(
               fmt::format("the nodes of {} are taken to be in VTK's order, as the file does not tell",
@@ -418,7 +419,7 @@ class Reader {
   Scanner in_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<MeshMetadata> residue_ = std::make_shared<MeshMetadata>();
+  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   std::int64_t begin_ = 0;  // of the section
   std::string last_keyword_;
   std::unordered_set<std::string> kinds_seen_;

@@ -61,7 +61,7 @@ Reference reference(Shape shape) {
 
 }  // namespace
 
-std::vector<std::string> MeshMetadata::contents() const {
+std::vector<std::string> Metadata::contents() const {
   std::vector<std::string> result;
   for (const Section& section : sections) result.push_back("the section " + section.keyword);
   return result;

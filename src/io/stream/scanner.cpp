@@ -12,14 +12,13 @@ namespace {
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
 
-/// A word as it can be shown in a message: short, and printable.
+}  // namespace
+
 std::string shown(std::string_view text) {
   std::string result;
   for (const char c : text.substr(0, 40)) result += (c >= ' ' && c < 127) ? c : '?';
   return text.size() > 40 ? result + "…" : result;
 }
-
-}  // namespace
 
 Scanner::Scanner(const std::filesystem::path& path, char comment) : file_(path.string()), comment_(comment) {
   std::error_code code;

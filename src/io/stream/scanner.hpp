@@ -99,6 +99,9 @@ T parse_integer(const Scanner& at, std::string_view text, std::string_view what)
 /// `text` as a real number, or Error at the scanner's line.
 double parse_real(const Scanner& at, std::string_view text, std::string_view what);
 
+/// Returns at most 40 characters of `text` for a message, with `?` for those that cannot be printed.
+std::string shown(std::string_view text);
+
 extern template std::int32_t parse_integer<std::int32_t>(const Scanner&, std::string_view, std::string_view);
 extern template std::int64_t parse_integer<std::int64_t>(const Scanner&, std::string_view, std::string_view);
 extern template std::uint64_t parse_integer<std::uint64_t>(const Scanner&, std::string_view,

@@ -20,7 +20,7 @@ namespace meshorder {
 namespace {
 namespace fs = std::filesystem;
 using obj::kStates;
-using obj::ObjMetadata;
+using obj::Metadata;
 
 bool obj_holds(Shape shape, int vertices) {
   if (shape == Shape::polygon) return vertices >= 3;
@@ -44,7 +44,7 @@ class Writer {
   Writer(const Mesh& mesh, const fs::path& path, Notes& notes)
       : mesh_(mesh),
         notes_(notes),
-        native_(dynamic_cast<const ObjMetadata*>(mesh.format_metadata.get())),
+        native_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
         out_(path) {}
 
   void write() {
@@ -294,7 +294,7 @@ class Writer {
 
   const Mesh& mesh_;
   Notes& notes_;
-  const ObjMetadata* native_;
+  const Metadata* native_;
   OutputFile out_;
   std::set<const DataArray*> written_;
   GatheredVector colors_;

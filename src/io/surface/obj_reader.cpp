@@ -105,7 +105,7 @@ class Reader {
     add_corner_arrays("normal", normal_indices_);
     add_states();
     add_groups();
-    mesh_.format_metadata = residue_;
+    mesh_.format_metadata = metadata_;
     return std::move(mesh_);
   }
 
@@ -141,15 +141,15 @@ class Reader {
   void read_line(std::string_view line) {
     if (line.empty()) return;
     if (line.front() == '#') {
-      residue_->comments.append(line).append("\n");
+      metadata_->comments.append(line).append("\n");
       return;
     }
     std::string_view rest = line;
     const std::string_view keyword = next_word(rest);
     const std::string_view numbers = rest.substr(0, rest.find('#'));
     if (keyword == "v") return read_vertex(numbers);
-    if (keyword == "vt") return read_listed(line, numbers, 1, 3, texture_, residue_->texture);
-    if (keyword == "vn") return read_listed(line, numbers, 3, 3, normals_, residue_->normals);
+    if (keyword == "vt") return read_listed(line, numbers, 1, 3, texture_, metadata_->texture);
+    if (keyword == "vn") return read_listed(line, numbers, 3, 3, normals_, metadata_->normals);
     if (keyword == "f") return read_cell(numbers, 2);
     if (keyword == "l") return read_cell(numbers, 1);
     if (keyword == "p") return read_cell(numbers, 0);
@@ -159,7 +159,7 @@ class Reader {
     }
     for (const std::string_view library : {"mtllib", "maplib", "shadow_obj", "trace_obj"}) {
       if (keyword != library) continue;
-      residue_->libraries.append(line).append("\n");
+      metadata_->libraries.append(line).append("\n");
       return;
     }
     refuse(keyword);
@@ -342,13 +342,13 @@ class Reader {
     for (std::size_t i = 0; i < kStates.size(); ++i) {
       Named& state = states_[i];
       if (!state.is_used || (state.names.empty() && i != kSmoothing)) continue;
-      residue_->names[i] = numbered(state, i == kSmoothing);
+      metadata_->names[i] = numbered(state, i == kSmoothing);
       std::unordered_map<std::string, std::int32_t> number_of;
-      for (const auto& [number, name] : residue_->names[i]) number_of[name] = number;
+      for (const auto& [number, name] : metadata_->names[i]) number_of[name] = number;
       std::vector<std::int32_t> numbers(state.names.size() + 1, 0);
       for (std::size_t k = 0; k < state.names.size(); ++k) numbers[k + 1] = number_of[state.names[k]];
       for (std::int32_t& value : state.of_cell) value = numbers[value];
-      if (i == kSmoothing) residue_->names[i].clear();  // numbers are their own names
+      if (i == kSmoothing) metadata_->names[i].clear();  // numbers are their own names
       mesh_.data.push_back(
           {std::string(kStates[i].array), Association::cells, 1, std::move(state.of_cell), {}, {}});
     }
@@ -372,7 +372,7 @@ class Reader {
 
   Scanner scanner_;
   Mesh mesh_;
-  std::shared_ptr<ObjMetadata> residue_ = std::make_shared<ObjMetadata>();
+  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   List vertices_{"v"};
   List texture_{"vt"};
   List normals_{"vn"};

@@ -25,14 +25,14 @@ namespace {
 namespace fs = std::filesystem;
 using ply::Element;
 using ply::Encoding;
-using ply::PlyMetadata;
+using ply::Metadata;
 using ply::Property;
 using ply::Role;
 using ply::Type;
 using ply::TypeWord;
 
 /// Where a property's numbers come from.
-struct Source {
+struct ArraySource {
   const DataArray* array = nullptr;
   Index component = 0;        ///< of a property that is no list
   std::vector<Index> row_of;  ///< the row of each vertex or cell, −1 for none; empty when it is itself
@@ -41,7 +41,7 @@ struct Source {
 /// A property to be written; without a source its numbers are coordinates or vertices of cells.
 struct Column {
   Property property;
-  std::vector<Source> sources;  ///< several for a list whose lengths differ
+  std::vector<ArraySource> sources;  ///< several for a list whose lengths differ
 };
 
 /// An element to be written.
@@ -83,15 +83,17 @@ Index item_count(const Mesh& mesh, Association association) {
   return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
 }
 
-Source source_of(const Mesh& mesh, const DataArray& array, Index component) {
-  Source source{&array, component, {}};
+ArraySource source_of(const Mesh& mesh, const DataArray& array, Index component) {
+  ArraySource source{&array, component, {}};
   if (array.is_dense()) return source;
   source.row_of.assign(item_count(mesh, array.association), -1);
   for (Index row = 0; row < index_size(array.indices); ++row) source.row_of[array.indices[row]] = row;
   return source;
 }
 
-Index row_in(const Source& source, Index item) { return source.row_of.empty() ? item : source.row_of[item]; }
+Index row_in(const ArraySource& source, Index item) {
+  return source.row_of.empty() ? item : source.row_of[item];
+}
 
 // ---- which elements, with which cells
 
@@ -100,7 +102,7 @@ Role usual_role(Shape shape) {
 }
 
 /// Whether the elements of the file fit the cells of the mesh, block by block.
-bool elements_fit(const PlyMetadata& metadata, const Mesh& mesh) {
+bool elements_fit(const Metadata& metadata, const Mesh& mesh) {
   Index cell = 0;
   for (const Element& element : metadata.elements) {
     if (element.role == Role::vertices && element.count != mesh.vertex_count()) return false;
@@ -116,7 +118,7 @@ bool elements_fit(const PlyMetadata& metadata, const Mesh& mesh) {
   return cell == mesh.cell_count();
 }
 
-std::vector<Table> tables_of_file(const PlyMetadata& metadata) {
+std::vector<Table> tables_of_file(const Metadata& metadata) {
   std::vector<Table> tables;
   Index cell = 0;
   for (const Element& element : metadata.elements) {
@@ -327,7 +329,7 @@ void write_property(OutputFile& out, const Property& property) {
   out.print("{} {}\n", property.type.word, property.name);
 }
 
-void write_header(OutputFile& out, Encoding encoding, const PlyMetadata* metadata,
+void write_header(OutputFile& out, Encoding encoding, const Metadata* metadata,
                   const std::vector<Table>& tables) {
   constexpr std::array<std::string_view, 3> kNames{"ascii", "binary_little_endian", "binary_big_endian"};
   out.print("ply\nformat {} 1.0\n", kNames[static_cast<std::size_t>(encoding)]);
@@ -345,9 +347,9 @@ void write_header(OutputFile& out, Encoding encoding, const PlyMetadata* metadat
 }
 
 /// Writes the body's numbers in the encoding, each line of text with blanks between them.
-class Body {
+class NumberWriter {
  public:
-  Body(OutputFile& out, Encoding encoding) : out_(out), encoding_(encoding) {}
+  NumberWriter(OutputFile& out, Encoding encoding) : out_(out), encoding_(encoding) {}
 
   template <class T>
   void number(Type type, T value) {
@@ -404,51 +406,51 @@ class Body {
 };
 
 /// `count` numbers of the array from that entry on.
-void write_values(Body& body, Type type, const DataArray& array, Offset first, Index count) {
+void write_values(NumberWriter& to, Type type, const DataArray& array, Offset first, Index count) {
   std::visit(
       [&](const auto& values) {
         if constexpr (std::is_arithmetic_v<typename std::decay_t<decltype(values)>::value_type>) {
-          for (Index k = 0; k < count; ++k) body.number(type, values[first + k]);
+          for (Index k = 0; k < count; ++k) to.number(type, values[first + k]);
         }
       },
       array.values);
 }
 
-void write_attached(Body& body, const Column& column, Index item) {
+void write_attached(NumberWriter& to, const Column& column, Index item) {
   const Property& property = column.property;
-  for (const Source& source : column.sources) {
+  for (const ArraySource& source : column.sources) {
     const Index row = row_in(source, item);
     if (row < 0) continue;
     const Offset first = static_cast<Offset>(row) * source.array->components;
     if (!property.is_list) {
-      return write_values(body, property.type.type, *source.array, first + source.component, 1);
+      return write_values(to, property.type.type, *source.array, first + source.component, 1);
     }
-    body.number(property.count_type.type, source.array->components);
-    return write_values(body, property.type.type, *source.array, first, source.array->components);
+    to.number(property.count_type.type, source.array->components);
+    return write_values(to, property.type.type, *source.array, first, source.array->components);
   }
-  body.number(property.count_type.type, 0);  // an empty list
+  to.number(property.count_type.type, 0);  // an empty list
 }
 
-void write_corners(Body& body, const Property& property, std::span<const Index> corners) {
-  body.number(property.count_type.type, index_size(corners));
-  for (const Index v : corners) body.number(property.type.type, v);
+void write_corners(NumberWriter& to, const Property& property, std::span<const Index> corners) {
+  to.number(property.count_type.type, index_size(corners));
+  for (const Index v : corners) to.number(property.type.type, v);
 }
 
-void write_item(Body& body, const Mesh& mesh, const Table& table, Index item) {
+void write_item(NumberWriter& to, const Mesh& mesh, const Table& table, Index item) {
   for (const Column& column : table.columns) {
     const Property& property = column.property;
     const Role role = table.element.role;
     if (role == Role::vertices && ply::coordinate_of(property) >= 0) {
-      body.coordinate(property.type.type, mesh.points[item][ply::coordinate_of(property)]);
+      to.coordinate(property.type.type, mesh.points[item][ply::coordinate_of(property)]);
     } else if (role == Role::edges && ply::end_of(property) >= 0) {
-      body.number(property.type.type, mesh.cells[item][ply::end_of(property)]);
+      to.number(property.type.type, mesh.cells[item][ply::end_of(property)]);
     } else if (role != Role::vertices && role != Role::edges && ply::is_corner_list(property)) {
-      write_corners(body, property, mesh.cells[item]);
+      write_corners(to, property, mesh.cells[item]);
     } else {
-      write_attached(body, column, item);
+      write_attached(to, column, item);
     }
   }
-  body.end_line();
+  to.end_line();
 }
 
 bool ply_holds(Shape shape, int vertices) {
@@ -467,7 +469,7 @@ void note_losses(const Mesh& mesh, const std::vector<const DataArray*>& written,
 
 void write_ply(const Mesh& mesh, const fs::path& path, Notes& notes) {
   require_supported_cells(mesh, path, "PLY", ply_holds, "write .vtu or .msh");
-  const auto* metadata = dynamic_cast<const PlyMetadata*>(mesh.format_metadata.get());
+  const auto* metadata = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   const bool as_file = metadata && elements_fit(*metadata, mesh);
   std::vector<Table> tables = as_file ? tables_of_file(*metadata) : usual_tables(mesh);
   std::vector<const DataArray*> written;
@@ -478,13 +480,13 @@ void write_ply(const Mesh& mesh, const fs::path& path, Notes& notes) {
   const Encoding encoding = metadata ? metadata->encoding : Encoding::little_endian;
   OutputFile out(path);
   write_header(out, encoding, metadata, tables);
-  Body body(out, encoding);
+  NumberWriter to(out, encoding);
   for (const Table& table : tables) {
     if (table.element.role == Role::other) out.write(table.element.content);
-    for (const Index item : table.items) write_item(body, mesh, table, item);
+    for (const Index item : table.items) write_item(to, mesh, table, item);
   }
   out.commit();
-  if (body.rounded()) notes.emplace_back("coordinates are rounded to 32 bits, as the file has them");
+  if (to.rounded()) notes.emplace_back("coordinates are rounded to 32 bits, as the file has them");
   note_losses(mesh, written, notes);
   if (!as_file) note_metadata_unsupported(mesh, "PLY", notes);
 }

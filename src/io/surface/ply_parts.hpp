@@ -47,7 +47,7 @@ inline bool holds_cells(const Element& element) {
   return element.role != Role::vertices && element.role != Role::other;
 }
 
-struct PlyMetadata : FormatMetadata {
+struct Metadata : FormatMetadata {
   Encoding encoding = Encoding::ascii;
   std::vector<std::string> comments;  ///< whole lines, obj_info as well
   std::vector<Element> elements;

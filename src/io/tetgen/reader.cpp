@@ -2,7 +2,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/labels.hpp"
-#include "io/numbering.hpp"
+#include "io/stream/id_map.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/tetgen/tetgen.hpp"
@@ -25,17 +25,17 @@ constexpr char kComment = '#';
 /// What one of the files with cells gave.
 struct Part {
   Index count = 0;
-  Numbering numbering;
+  IdMap numbering;
   std::vector<std::int64_t> markers;  // one for each cell, or none
   std::vector<double> attributes;
   Index attributes_per_cell = 0;
 };
 
-struct Reading {
+struct ReadContext {
   Mesh mesh;
-  Numbering points;
+  IdMap points;
   std::array<Part, 4> parts;
-  std::shared_ptr<FilesMetadata> metadata = std::make_shared<FilesMetadata>();
+  std::shared_ptr<Metadata> metadata = std::make_shared<Metadata>();
   bool second_order = false;
 };
 
@@ -108,13 +108,13 @@ bool checked_markers(Scanner& in, std::int64_t markers) {
   return markers == 1;
 }
 
-void add_number(Scanner& in, Numbering& numbering, std::string_view what) {
+void add_number(Scanner& in, IdMap& numbering, std::string_view what) {
   const auto number = parse_integer<std::int64_t>(in, column(in, what), what);
   if (!numbering.add(number)) in.fail(fmt::format("{} {} stands twice", what, number), "each must be unique");
 }
 
 /// The rest of the file must be comments; takes them along.
-void end_file(Scanner& in, FilesMetadata::Part& part, Notes& notes) {
+void end_file(Scanner& in, Metadata::Part& part, Notes& notes) {
   if (!in.at_end()) in.fail("the file goes on after its last record", "correct the number in the header");
   part.present = true;
   part.comments_before = comments_before(in.all(), kComment);
@@ -124,7 +124,7 @@ void end_file(Scanner& in, FilesMetadata::Part& part, Notes& notes) {
 
 // ---- points
 
-void read_points(Scanner& in, Reading& to) {
+void read_points(Scanner& in, ReadContext& to) {
   auto [records, dimension, attributes, has_markers] = header<4>(in, {0, 3, 0, 0});
   if (dimension != 2 && dimension != 3) {
     in.fail(fmt::format("the dimension is {}", dimension), "2 or 3 are possible");
@@ -173,7 +173,7 @@ void read_points(Scanner& in, Reading& to) {
 // ---- cells
 
 /// The points of a cell, from the file's order into VTK's.
-void read_cell_points(Scanner& in, const Numbering& points, std::span<const int> places,
+void read_cell_points(Scanner& in, const IdMap& points, std::span<const int> places,
                       std::array<Index, 10>& cell) {
   std::array<Index, 10> as_given{};
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -190,7 +190,7 @@ void read_cell_points(Scanner& in, const Numbering& points, std::span<const int>
 }
 
 /// Reads all cells of a file behind its header; every line has `nodes` points, attributes and a marker.
-void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, Reading& to) {
+void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, ReadContext& to) {
   Part& part = to.parts[file];
   const std::span<const int> order = places(file, nodes, false);
   Cells& cells = to.mesh.cells;
@@ -222,7 +222,7 @@ void take_regions_as_markers(Part& part) {
   part.attributes_per_cell = 0;
 }
 
-void read_ele(Scanner& in, Reading& to) {
+void read_ele(Scanner& in, ReadContext& to) {
   const bool plane = to.mesh.dimension == 2;
   const auto [records, nodes, attributes] = header<3>(in, {0, plane ? 3 : 4, 0});
   const bool triangles = nodes == 3 || nodes == 6;
@@ -259,7 +259,7 @@ int columns_of_first_record(Scanner& in) {
 }
 
 /// Faces and edges: their header does not say how many points a cell has, the first line does.
-void read_boundary(Scanner& in, File file, Reading& to) {
+void read_boundary(Scanner& in, File file, ReadContext& to) {
   const auto [records, has_markers] = header<2>(in, {0, 0});
   const bool marked = checked_markers(in, has_markers);
   const int least = file == kFace ? 3 : 2;
@@ -301,7 +301,7 @@ std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahe
 
 /// TetGen 1.5 writes the second-order nodes of faces in two orders: with -f that of the opposite edges, else
 /// that of VTK, in which they were read. The tetrahedra, which know the edge of every node, tell which it is.
-void settle_face_order(Reading& to) {
+void settle_face_order(ReadContext& to) {
   const Index tetrahedra = to.parts[kEle].count;
   const Index end = tetrahedra + to.parts[kFace].count;
   Cells& cells = to.mesh.cells;
@@ -331,7 +331,7 @@ void settle_face_order(Reading& to) {
 // ---- what all files of cells together give
 
 /// Cells are numbered in each file anew; the mesh keeps the numbers when one file's are not consecutive.
-void set_cell_ids(Reading& to) {
+void set_cell_ids(ReadContext& to) {
   const int base = to.metadata->base;
   if (std::all_of(to.parts.begin(), to.parts.end(),
                   [&](const Part& part) { return part.numbering.runs_from(base); })) {
@@ -343,7 +343,7 @@ void set_cell_ids(Reading& to) {
   }
 }
 
-void set_cell_data(Reading& to) {
+void set_cell_data(ReadContext& to) {
   Mesh& mesh = to.mesh;
 
   // attributes are those of the first file's cells
@@ -371,7 +371,7 @@ void set_cell_data(Reading& to) {
       {std::string(kLabel), Association::cells, 1, label_values(std::move(labels)), std::move(rows), {}});
 }
 
-void set_blocks(Reading& to) {
+void set_blocks(ReadContext& to) {
   Index first = 0;
   for (const File file : kCellFiles) {
     if (to.parts[file].count > 0) to.mesh.cell_blocks.push_back(first);
@@ -379,7 +379,7 @@ void set_blocks(Reading& to) {
   }
 }
 
-void read_cell_file(const fs::path& path, File file, Reading& to, Notes& notes) {
+void read_cell_file(const fs::path& path, File file, ReadContext& to, Notes& notes) {
   Scanner in(path, kComment);
   const int nodes_in_ele = to.metadata->nodes_in_ele;
   if (file == kFace && (to.mesh.dimension == 2 || nodes_in_ele == 3 || nodes_in_ele == 6)) {
@@ -403,7 +403,7 @@ Mesh read(const fs::path& path, Notes& notes) {
     throw Error(path.string(), "has no .node file beside it", node_path.filename().string() + " is needed");
   }
 
-  Reading reading;
+  ReadContext reading;
   {
     Scanner in(node_path, kComment);
     read_points(in, reading);

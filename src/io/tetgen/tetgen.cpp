@@ -74,7 +74,7 @@ bool holds(Shape shape, int vertices) {
          (shape == Shape::line && (vertices == 2 || vertices == 3));
 }
 
-Layout layout_of(const Mesh& mesh, const FilesMetadata& metadata, const fs::path& path) {
+Layout layout_of(const Mesh& mesh, const Metadata& metadata, const fs::path& path) {
   const auto& shapes = mesh.cells.shapes;
   const bool solid = std::find(shapes.begin(), shapes.end(), Shape::tetrahedron) != shapes.end();
   Layout layout;
@@ -106,7 +106,7 @@ Layout layout_of(const Mesh& mesh, const FilesMetadata& metadata, const fs::path
 }
 
 /// A file of an earlier mesh would be read as part of this one.
-void refuse_leftovers(const Layout& layout, const FilesMetadata& metadata, const fs::path& path) {
+void refuse_leftovers(const Layout& layout, const Metadata& metadata, const fs::path& path) {
   for (const File file : kCellFiles) {
     const fs::path other = beside(path, kExtensions[file]);
     if (!layout.cells[file].empty() || metadata.parts[file].present || !is_there(other)) continue;
@@ -215,9 +215,9 @@ bool has_markers(const Labels& labels, const std::vector<Index>& items, std::str
   return given > 0;
 }
 
-struct Writing {
+struct WriteContext {
   const Mesh& mesh;
-  const FilesMetadata& metadata;
+  const Metadata& metadata;
   Layout layout;
   bool own_ids;  // the numbers came from such files; others than TetGen's own are counted anew
   Labels vertex_labels;
@@ -232,7 +232,7 @@ struct Writing {
   }
 };
 
-void write_points(OutputFile& out, const Writing& from, Notes& notes) {
+void write_points(OutputFile& out, const WriteContext& from, Notes& notes) {
   const Mesh& mesh = from.mesh;
   std::vector<Index> all(mesh.vertex_count());
   std::iota(all.begin(), all.end(), Index{0});
@@ -250,7 +250,7 @@ void write_points(OutputFile& out, const Writing& from, Notes& notes) {
   }
 }
 
-void write_cells(OutputFile& out, File file, const Writing& from, const std::vector<Column>& columns,
+void write_cells(OutputFile& out, File file, const WriteContext& from, const std::vector<Column>& columns,
                  bool marked) {
   const Mesh& mesh = from.mesh;
   const auto& cells = from.layout.cells[file];
@@ -267,7 +267,7 @@ void write_cells(OutputFile& out, File file, const Writing& from, const std::vec
   }
 }
 
-void write_ele(OutputFile& out, const Writing& from, Notes& notes) {
+void write_ele(OutputFile& out, const WriteContext& from, Notes& notes) {
   const auto& cells = from.layout.cells[kEle];
   const auto columns = attribute_columns(from.mesh, Association::cells, cells, notes);
   note_lost_names(columns, ".ele", notes);
@@ -275,7 +275,7 @@ void write_ele(OutputFile& out, const Writing& from, Notes& notes) {
   write_cells(out, kEle, from, columns, false);
 }
 
-void write_boundary(OutputFile& out, File file, const Writing& from, Notes& notes) {
+void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes& notes) {
   const auto& cells = from.layout.cells[file];
   const bool marked = has_markers(from.cell_labels, cells, kExtensions[file], notes);
   out.print("{}  {}\n", cells.size(), marked ? 1 : 0);
@@ -285,22 +285,22 @@ void write_boundary(OutputFile& out, File file, const Writing& from, Notes& note
 }  // namespace
 
 void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  const FilesMetadata standard;
-  const auto* own = dynamic_cast<const FilesMetadata*>(mesh.format_metadata.get());
+  const Metadata standard;
+  const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   require_supported_cells(mesh, path, "TetGen", holds, "write .msh, .vtu or .mesh instead");
-  Writing from{mesh,
-               own ? *own : standard,
-               {},
-               own != nullptr,
-               labels_of(mesh, Association::vertices),
-               labels_of(mesh, Association::cells)};
+  WriteContext from{mesh,
+                    own ? *own : standard,
+                    {},
+                    own != nullptr,
+                    labels_of(mesh, Association::vertices),
+                    labels_of(mesh, Association::cells)};
   from.layout = layout_of(mesh, from.metadata, path);
   refuse_leftovers(from.layout, from.metadata, path);
 
   std::vector<OutputFile> files;
   files.reserve(kExtensions.size());
   for (const File file : {kNode, kEle, kFace, kEdge}) {
-    const FilesMetadata::Part& part = from.metadata.parts[file];
+    const Metadata::Part& part = from.metadata.parts[file];
     if (file != kNode && !part.present && from.layout.cells[file].empty()) continue;
     OutputFile& out = files.emplace_back(beside(path, kExtensions[file]));
     out.write(part.comments_before);

@@ -24,7 +24,7 @@ inline constexpr std::array<std::string_view, 4> kExtensions{".node", ".ele", ".
 inline constexpr std::array kCellFiles{kEle, kFace, kEdge};
 
 /// What other formats cannot hold and this one keeps.
-struct FilesMetadata final : FormatMetadata {
+struct Metadata final : FormatMetadata {
   struct Part {
     bool present = false;
     std::string comments_before;

@@ -29,7 +29,7 @@ struct Section {
   std::string region_material;
 };
 
-struct VegaMetadata : FormatMetadata {
+struct Metadata : FormatMetadata {
   std::vector<Section> sections;
   std::string closing_comments;
   std::string element_word = "TET";
@@ -54,7 +54,7 @@ struct VegaMetadata : FormatMetadata {
 };
 
 /// For each cell the number, from 1, of the last region that it lies in; 0 for none. Empty without regions.
-std::vector<std::int32_t> region_numbers(const VegaMetadata& metadata, const Mesh& mesh);
+std::vector<std::int32_t> region_numbers(const Metadata& metadata, const Mesh& mesh);
 
 Mesh read(const std::filesystem::path& path, Notes& notes);
 

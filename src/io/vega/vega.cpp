@@ -20,8 +20,8 @@ namespace meshorder {
 namespace {
 namespace fs = std::filesystem;
 using vega::Kind;
+using vega::Metadata;
 using vega::Section;
-using vega::VegaMetadata;
 
 bool vega_holds(Shape shape, int vertices) {
   return (shape == Shape::tetrahedron && vertices == 4) || (shape == Shape::hexahedron && vertices == 8);
@@ -33,7 +33,7 @@ class Writer {
   Writer(const Mesh& mesh, const fs::path& path, Notes& notes)
       : mesh_(mesh),
         notes_(notes),
-        native_(dynamic_cast<const VegaMetadata*>(mesh.format_metadata.get())),
+        native_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
         out_(path) {}
 
   void write() {
@@ -243,7 +243,7 @@ class Writer {
 
   const Mesh& mesh_;
   Notes& notes_;
-  const VegaMetadata* native_;
+  const Metadata* native_;
   OutputFile out_;
   std::vector<Section> sections_;
   std::vector<EntitySet> label_sets_;

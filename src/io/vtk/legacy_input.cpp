@@ -45,12 +45,6 @@ std::string lower_case(std::string_view text) {
   return result;
 }
 
-std::string shown(std::string_view text) {
-  std::string result;
-  for (const char c : text.substr(0, 40)) result += (c >= ' ' && c < 127) ? c : '?';
-  return result;
-}
-
 std::string percent_decoded(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -66,35 +60,13 @@ std::string percent_decoded(std::string_view text) {
   return result;
 }
 
-void LegacyInput::fail(const std::string& what, const std::string& remedy) const {
-  if (binary) scanner.fail_at_byte(what, remedy);
-  scanner.fail(what, remedy);
-}
-
 Error LegacyInput::section_error(std::int64_t line, const std::string& what,
                                  const std::string& remedy) const {
   return {Location{scanner.file(), binary ? 0 : line, -1}, what, remedy};
 }
 
-std::string_view LegacyInput::word(std::string_view what) {
-  if (binary && scanner.at_end())
-    fail(fmt::format("the file ends where {} should stand", what), "it may be cut short");
-  return scanner.word(what);
-}
-
-std::int64_t LegacyInput::integer(std::string_view what) { return parsed(word(what), what); }
-
-std::int64_t LegacyInput::parsed(std::string_view text, std::string_view what) const {
-  if (!binary) return parse_integer<std::int64_t>(scanner, text, what);
-  std::int64_t value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc{} || end != text.data() + text.size())
-    fail(fmt::format("{} is '{}'", what, shown(text)), "a whole number is needed");
-  return value;
-}
-
 std::int64_t LegacyInput::count(std::string_view what) {
-  const std::int64_t value = integer(what);
+  const std::int64_t value = text_integer(what);
   if (value < 0) fail(fmt::format("{} is {}", what, value), "it cannot be negative");
   if (value > kMaxIndex) fail(fmt::format("{} is {}", what, value), "at most 2147483647 are possible");
   return value;
@@ -107,14 +79,6 @@ void LegacyInput::check_room(std::int64_t entries, std::int64_t bytes, const std
                      scanner.bytes_left()),
          "the count is wrong or the file is cut short");
   }
-}
-
-void LegacyInput::end_heading() {
-  if (binary) scanner.raw_line();
-}
-
-std::int32_t LegacyInput::list_entry(const std::string& what) {
-  return binary ? scanner.binary<std::int32_t>(what, std::endian::big) : scanner.integer<std::int32_t>(what);
 }
 
 // ---- numbers

@@ -158,12 +158,12 @@ class Reader {
     if (count > size)
       in_.fail(key + " has " + std::to_string(count) + " cells in " + std::to_string(size) + " numbers",
                "each cell takes 2 at least");
-    if (size > 0) in_.end_heading();
+    if (size > 0) in_.begin_binary();
     cells.offsets.reserve(static_cast<std::size_t>(count) + 1);
     cells.vertices.reserve(static_cast<std::size_t>(size - count));
     std::int64_t left = size;
     for (std::int64_t c = 0; c < count; ++c) {
-      const std::int32_t vertices = left > 0 ? in_.list_entry(key) : 0;
+      const std::int32_t vertices = left > 0 ? in_.int32(key) : 0;
       if (left == 0 || vertices < 0 || vertices > --left) {
         in_.fail("cell " + std::to_string(c) + " (counted from 0) of " + key + " has " +
                      std::to_string(vertices) + " vertices where " + std::to_string(left) +
@@ -171,8 +171,7 @@ class Reader {
                  "the size of " + key + " counts all numbers that follow");
       }
       left -= vertices;
-      for (std::int32_t i = 0; i < vertices; ++i)
-        cells.vertices.push_back(checked_vertex(in_.list_entry(key), c));
+      for (std::int32_t i = 0; i < vertices; ++i) cells.vertices.push_back(checked_vertex(in_.int32(key), c));
       cells.offsets.push_back(static_cast<Offset>(cells.vertices.size()));
     }
     if (left != 0)
@@ -236,12 +235,12 @@ class Reader {
     types_line_ = in_.scanner.line();
     const std::int64_t count = in_.count("the number of CELL_TYPES");
     in_.check_room(count, 4, "CELL_TYPES");
-    if (count > 0) in_.end_heading();
+    if (count > 0) in_.begin_binary();
     std::vector<std::uint8_t>& types = sections_[0].types;
     types.clear();
     types.reserve(static_cast<std::size_t>(count));
     for (std::int64_t c = 0; c < count; ++c) {
-      const std::int32_t type = in_.list_entry("CELL_TYPES");
+      const std::int32_t type = in_.int32("CELL_TYPES");
       if (type < 0 || type > 255)
         in_.fail("cell " + std::to_string(c) + " (counted from 0) has the type " + std::to_string(type),
                  "VTK's types run from 0 to 81");
@@ -283,13 +282,13 @@ class Reader {
     const std::string name = percent_decoded(in_.word("the name of " + key));
     std::int64_t components = attribute->components;
     if (attribute->role == Role::texture_coordinates || attribute->role == Role::color_scalars)
-      components = in_.integer("the components of " + key);
+      components = in_.text_integer("the components of " + key);
 
     ArrayRole role{attribute->role, *on_, name, {}};
     std::string type = in_.binary ? "unsigned_char" : "float";
     if (attribute->role != Role::color_scalars) type = in_.word("the type of " + key);
     if (attribute->role == Role::scalars) {
-      components = in_.scanner.at_line_end() ? 1 : in_.integer("the components of SCALARS");
+      components = in_.scanner.at_line_end() ? 1 : in_.text_integer("the components of SCALARS");
       if (upper_case(in_.word("LOOKUP_TABLE")) != "LOOKUP_TABLE")
         in_.fail("SCALARS '" + shown(name) + "' has no LOOKUP_TABLE",
                  "'LOOKUP_TABLE default' follows its name and type");
@@ -328,7 +327,7 @@ class Reader {
     const std::int64_t size = in_.count("the size of the lookup table");
     std::string content;
     if (in_.binary) {
-      in_.end_heading();
+      in_.begin_binary();
       content = in_.scanner.binary_block(4 * size, "the lookup table");
     } else {
       in_.check_room(4 * size, 1, "the lookup table");

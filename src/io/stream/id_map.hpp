@@ -13,7 +13,7 @@ namespace meshorder {
 /// The numbers that a file gives to its vertices or cells, in file order, and the way back from such a number
 /// to its position (counted from 0). Numbers that run without gaps cost no memory, others a table while they
 /// are dense, else a hash map.
-class Numbering {
+class IdMap {
  public:
   /// The number of the next position. False, and nothing added, when that number was given before. O(1).
   bool add(std::int64_t id) {
