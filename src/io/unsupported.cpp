@@ -8,12 +8,12 @@
 namespace meshorder {
 
 void note_array_unsupported(const DataArray& array, std::string_view format, Notes& notes) {
-  notes.push_back(fmt::format("the array '{}' on {} is left out: {} cannot hold it", array.name,
+  notes.push_back(fmt::format("the array '{}' on {} is not written: {} has no place for it", array.name,
                               to_string(array.association), format));
 }
 
 void note_set_unsupported(const EntitySet& set, std::string_view format, Notes& notes) {
-  notes.push_back(fmt::format("the set '{}' of {} is left out: {} cannot hold it", set.name,
+  notes.push_back(fmt::format("the set '{}' of {} is not written: {} has no place for it", set.name,
                               to_string(set.association), format));
 }
 
@@ -21,7 +21,7 @@ void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& note
   for (const Association association : {Association::vertices, Association::cells}) {
     const auto& ids = association == Association::vertices ? mesh.vertex_ids : mesh.cell_ids;
     if (ids.empty()) continue;
-    notes.push_back(fmt::format("the numbers of {} are left out: {} counts them by place",
+    notes.push_back(fmt::format("the ids of {} are not written: {} numbers them by position",
                                 to_string(association), format));
   }
 }
@@ -29,7 +29,7 @@ void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& note
 void note_metadata_unsupported(const Mesh& mesh, std::string_view format, Notes& notes) {
   if (!mesh.format_metadata) return;
   for (const std::string& what : mesh.format_metadata->contents()) {
-    notes.push_back(fmt::format("left out, as {} cannot hold it: {}", format, what));
+    notes.push_back(fmt::format("not written ({} has no place for it): {}", format, what));
   }
 }
 

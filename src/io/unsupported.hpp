@@ -25,6 +25,6 @@ void note_metadata_unsupported(const Mesh& mesh, std::string_view format, Notes&
 
 /// Throws Error when `holds(shape, vertices)` is false for a cell of the mesh; the message names its type.
 void require_supported_cells(const Mesh& mesh, const std::filesystem::path& path, std::string_view format,
-                        bool (*holds)(Shape shape, int vertices), const std::string& remedy);
+                             bool (*holds)(Shape shape, int vertices), const std::string& remedy);
 
 }  // namespace meshorder

@@ -131,13 +131,13 @@ Grouping grouping_by(const Mesh& mesh, std::string_view name) {
   }
   if (!array) {
     throw InvalidArgument("group by: the mesh has no array '" + std::string(name) +
-                          "'; what can group is: " + usable_names(mesh));
+                          "'; arrays you can group by: " + usable_names(mesh));
   }
   const std::optional<std::vector<std::int64_t>> numbers = whole_numbers(*array);
   if (!numbers) {
-    throw InvalidArgument("group by: the array '" + array->name + "' on " +
-                          std::string(to_string(array->association)) +
-                          " does not hold one whole number each; what can group is: " + usable_names(mesh));
+    throw InvalidArgument(
+        "group by: the array '" + array->name + "' on " + std::string(to_string(array->association)) +
+        " does not hold one whole number each; arrays you can group by: " + usable_names(mesh));
   }
   result.name = array->name;
   result.association = array->association;

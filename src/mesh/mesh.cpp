@@ -61,7 +61,7 @@ void check_numbering(const Mesh& mesh) {
   }
   if (!mesh.cell_blocks.empty() &&
       (mesh.cell_blocks.front() != 0 || !std::is_sorted(mesh.cell_blocks.begin(), mesh.cell_blocks.end()))) {
-    fail("blocks of cells must rise from 0");
+    fail("blocks of cells must ascend from 0");
   }
 }
 

@@ -21,7 +21,7 @@ std::string unquoted(std::string_view text) {
   return std::string(text);
 }
 
-/// Reads what stands before the values.
+/// Reads what comes before the values.
 View read_view_head(NumberReader& source, std::string_view section) {
   View view;
   view.section = section;

@@ -47,8 +47,8 @@ std::string_view body(NumberReader& source, std::string_view section) {
 /// Fails unless the version is one that we read.
 void check_version(const NumberReader& source, double version) {
   if ((version >= 2 && version < 2.3) || (version > 4.05 && version < 4.15)) return;
-  source.fail(fmt::format("version {} of Gmsh's format is not supported", version),
-              "2.2 and 4.1 are; convert the file with gmsh -save -format msh41");
+  source.fail(fmt::format("version {:.1f} of Gmsh's format is not supported", version),
+              "2.2 and 4.1 are; convert the file with gmsh OLD.msh -save -format msh41 -o NEW.msh");
 }
 
 void read_format(ReadContext& reading) {
@@ -63,7 +63,7 @@ void read_format(ReadContext& reading) {
   }
   if (file_type == 1 && data_size != 8) {
     source.fail("the data size is " + std::to_string(data_size),
-                "only binary files with 8 are read; convert the file with gmsh -save");
+                "only binary files with 8 are read; convert the file with gmsh OLD.msh -save -o NEW.msh");
   }
   reading.metadata.header = source.scanner.all().substr(begin, source.scanner.byte() - begin);
   (void)source.scanner.raw_line();
@@ -143,10 +143,11 @@ void read_verbatim(ReadContext& reading, const std::string& section) {
   const std::int64_t line = source.scanner.line();
   const std::string_view text = body(source, section);
   if (!kVerbatimSections.contains(section) && (has_numbers(text) || !is_text(text))) {
-    source.fail(fmt::format("the section ${} from line {} on holds numbers of unknown meaning, which another "
-                            "order could falsify",
-                            section, line - 1),
-                "take it out of the file, or keep it as $Comments");
+    source.fail(
+        fmt::format("the section ${} from line {} on holds numbers of unknown meaning, which reordering "
+                    "could invalidate",
+                    section, line - 1),
+        "take it out of the file, or keep it as $Comments");
   }
   expect_end(source, section);
   reading.metadata.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
@@ -200,7 +201,7 @@ void read_single(ReadContext& reading, const Single& single) {
     reading.source.fail("a second section $" + name, "a file has one of them");
   }
   if (!has_section(reading.metadata, single.after)) {
-    reading.source.fail("$" + name + " stands before what it names", "put $Nodes and $Elements first");
+    reading.source.fail("$" + name + " comes before what it names", "put $Nodes and $Elements first");
   }
   single.read(reading);
   reading.metadata.sections.push_back({single.kind, name, "", 0});
@@ -212,21 +213,21 @@ void read_section(ReadContext& reading, const std::string& name) {
   const bool has_format = has_section(reading.metadata, SectionKind::format);
   if (name == "NOD") {
     source.fail("version 1 of Gmsh's format is not supported",
-                "convert the file with gmsh -save -format msh41");
+                "convert the file with gmsh OLD.msh -save -format msh41 -o NEW.msh");
   }
   if (name == "MeshFormat") {
     if (has_format) source.fail("a second section $MeshFormat", "a file has one");
     return read_format(reading);
   }
   if (!has_format && name != "Comments") {
-    source.fail("$" + name + " stands before $MeshFormat", "a Gmsh file begins with $MeshFormat");
+    source.fail("$" + name + " comes before $MeshFormat", "a Gmsh file begins with $MeshFormat");
   }
   if (name == "PhysicalNames") return read_names(reading);
   const bool entities = name == "Entities" || name == "PartitionedEntities";
   if (entities && !reading.metadata.is_version_2()) return read_entities(reading, name);
   if (kDataSections.contains(name)) {
     if (!has_section(reading.metadata, SectionKind::elements)) {
-      source.fail("$" + name + " stands before $Elements", "put $Nodes and $Elements first");
+      source.fail("$" + name + " comes before $Elements", "put $Nodes and $Elements first");
     }
     return read_view(reading, name);
   }
@@ -263,8 +264,11 @@ Mesh read(const std::filesystem::path& path, Notes& notes) {
   while (!in.at_end()) {
     const std::string word(in.peek_word());
     if (word.front() != '$' || word.size() < 2 || word.substr(0, 4) == "$End") {
-      reading.source.fail("something stands outside the sections",
-                          "a section begins with a line such as $Nodes");
+      if (reading.metadata.sections.empty()) {
+        reading.source.fail("is not a Gmsh file (it begins with '" + shown(in.peek_line()) + "')",
+                            "a Gmsh file begins with $MeshFormat");
+      }
+      reading.source.fail("unexpected text outside a section", "a section begins with a line such as $Nodes");
     }
     (void)in.raw_line();
     read_section(reading, word.substr(1));
@@ -305,7 +309,7 @@ std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::
   const bool usable = sorted.empty() || (sorted.front() > 0 &&
                                          std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end());
   if (usable) return ids;
-  notes.push_back(fmt::format("the {} are numbered anew: Gmsh's numbers are positive and different", what));
+  notes.push_back(fmt::format("the {} are renumbered: Gmsh's numbers are positive and distinct", what));
   return {};
 }
 
@@ -462,9 +466,9 @@ std::vector<std::string> Metadata::contents() const {
     if (section.kind != SectionKind::verbatim) continue;
     // the groups themselves are labels and sets
     const bool has_names = section.name == "PhysicalNames";
-    add(has_names ? "the numbers of named physical groups" : "the section $" + section.name);
+    add(has_names ? "the numbers of named physical groups" : "Gmsh's $" + section.name);
   }
-  if (!periodic.empty()) add(fmt::format("which of {} periodic entities copies which", periodic.size()));
+  if (!periodic.empty()) add(fmt::format("the pairs of {} periodic entities", periodic.size()));
   const bool timed = std::any_of(views.begin(), views.end(), [](const View& view) {
     return (!view.reals.empty() && view.reals[0] != 0) || view.integers[0] != 0;
   });

@@ -81,7 +81,7 @@ void read_periodic(ReadContext& reading) {
   source.binary = binary;
   if (missing > 0) {
     reading.notes.push_back(std::to_string(missing) +
-                            " pairs of $Periodic are left out: they name nodes that the file does not have");
+                            " pairs of $Periodic are ignored: they name nodes that the file does not have");
   }
 }
 

@@ -172,7 +172,7 @@ void read_elements_2(ReadContext& reading) {
       run = source.checked_count(source.int32("the length of a run"), "the length of a run", 8);
     element.tag_count = read_tag_count(source);
     if (run > count - index_size(ids)) {
-      source.fail("$Elements has more elements than the " + std::to_string(count) + " it promises",
+      source.fail("$Elements has more elements than the " + std::to_string(count) + " in its header",
                   "the count is wrong or the file is damaged");
     }
     for (Index i = 0; i < run; ++i) {

@@ -49,7 +49,7 @@ void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
   }
 }
 
-/// What stands before the blocks of nodes or elements.
+/// What comes before the blocks of nodes or elements.
 struct Head {
   Index blocks;
   Index count;
@@ -69,8 +69,7 @@ Head read_head(NumberReader& source, std::string_view what, std::int64_t text_by
 [[noreturn]] void fail_count(const NumberReader& source, std::string_view section, std::int64_t blocks,
                              std::int64_t promised) {
   source.fail("the blocks of $" + std::string(section) + " have " + std::to_string(blocks) +
-                  (blocks > promised ? " or more" : "") + " instead of the promised " +
-                  std::to_string(promised),
+                  (blocks > promised ? " or more" : "") + " instead of " + std::to_string(promised),
               "the counts must agree");
 }
 

@@ -94,7 +94,9 @@ class Reader {
       throw Error(in_.file(), "is binary, perhaps a .meshb file", "convert it to an ASCII .mesh");
     }
     if (in_.at_end() || !same_but_for_case(in_.peek_word(), "MeshVersionFormatted")) {
-      in_.fail("this is no Medit mesh", "its first word must be MeshVersionFormatted");
+      in_.fail(
+          "is not a Medit mesh",
+          "the first word must be MeshVersionFormatted (MFEM and Netgen use .mesh for formats of their own)");
     }
   }
 
@@ -108,7 +110,7 @@ class Reader {
     }
     refuse_numbers(keyword);
     if (!kinds_seen_.insert(lower(keyword)).second) {
-      in_.fail("a second section " + keyword, "each may stand once");
+      in_.fail("a second section " + keyword, "each may appear once");
     }
     last_keyword_ = keyword;
 
@@ -124,7 +126,7 @@ class Reader {
       }
       has_dimension_ = true;
     } else if (!has_dimension_) {
-      in_.fail("the section " + keyword + " stands before the Dimension", "Dimension 2 or 3 must come first");
+      in_.fail("the section " + keyword + " comes before the Dimension", "Dimension 2 or 3 must come first");
     } else if (same_but_for_case(keyword, "Vertices")) {
       read_vertices();
     } else {
@@ -144,8 +146,11 @@ class Reader {
     std::string shown = keyword.substr(0, 20);
     std::replace_if(
         shown.begin(), shown.end(), [](unsigned char c) { return std::isprint(c) == 0; }, '?');
-    in_.fail(fmt::format("'{}' stands where a keyword should", shown),
-             fmt::format("the count of {} may be wrong", last_keyword_));
+    in_.fail(
+        fmt::format("expected a keyword, found '{}'", shown),
+        fmt::format("the count of {} may be wrong, or its lines longer (second-order cells under a linear "
+                    "keyword; save those as .msh)",
+                    last_keyword_));
   }
 
   void read_other_section(const std::string& keyword) {
@@ -437,7 +442,7 @@ class Reader {
 }  // namespace
 
 Mesh read(const fs::path& path, Notes& notes) {
-  note_solutions(path, "is not carried along: its values stand in the original order", notes);
+  note_solutions(path, "is not reordered: its values are in the original order", notes);
   return Reader(path, notes).read();
 }
 

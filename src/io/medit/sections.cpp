@@ -63,7 +63,7 @@ Reference reference(Shape shape) {
 
 std::vector<std::string> Metadata::contents() const {
   std::vector<std::string> result;
-  for (const Section& section : sections) result.push_back("the section " + section.keyword);
+  for (const Section& section : sections) result.push_back("Medit's " + section.keyword);
   return result;
 }
 

@@ -107,7 +107,7 @@ std::string_view Scanner::peek_word() {
 std::string_view Scanner::word(std::string_view what) {
   const std::string_view result = peek_word();
   if (result.empty()) {
-    fail("the file ends where " + std::string(what) + " should stand", "it may be cut short");
+    fail("unexpected end of file; expected " + std::string(what), "it may be cut short");
   }
   position_ += result.size();
   return result;
@@ -166,7 +166,7 @@ std::string_view Scanner::peek_line() const {
 
 std::string_view Scanner::binary_block(std::int64_t bytes, std::string_view what) {
   if (bytes < 0 || bytes > bytes_left()) {
-    fail_at_byte("the file ends within " + std::string(what), "it may be cut short");
+    fail_at_byte("unexpected end of file in " + std::string(what), "it may be cut short");
   }
   const auto result = std::string_view(text_).substr(position_, static_cast<std::size_t>(bytes));
   position_ += result.size();

@@ -9,9 +9,9 @@
 
 namespace meshorder {
 
-/// What stands before and after the data of a text file, so that a writer can put it back.
+/// What comes before and after the data of a text file, so that a writer can put it back.
 
-/// The lines up to the last comment that stands before the first word, as they are; empty without one.
+/// The lines up to the last comment that comes before the first word, as they are; empty without one.
 std::string comments_before(std::string_view text, char comment);
 
 /// The lines from the first comment on that stands after the last line with a word, as they are.

@@ -243,7 +243,7 @@ Mesh read_off(const fs::path& path, Notes&) {
   read_vertices(scanner, vertices, layout, mesh);
   read_faces(scanner, faces, mesh);
   if (!scanner.at_end()) {
-    scanner.fail("more follows after " + std::to_string(faces) + " faces", "the counts may be wrong");
+    scanner.fail("unexpected data after " + std::to_string(faces) + " faces", "the counts may be wrong");
   }
   mesh.format_metadata = std::move(metadata);
   return mesh;

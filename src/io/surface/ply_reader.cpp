@@ -82,7 +82,7 @@ Property parse_property(const Scanner& scanner, std::string_view line) {
   if (property.is_list) {
     property.count_type = parse_type(scanner, next_word(line));
     if (!is_integer(property.count_type.type)) {
-      scanner.fail("a list with a count that is no whole number", "uchar or int is usual");
+      scanner.fail("a list whose length is not an integer", "uchar or int is usual");
     }
     word = next_word(line);
   }
@@ -189,11 +189,11 @@ void read_header(Scanner& scanner, Metadata& header) {
     } else if (keyword == "property" && !header.elements.empty()) {
       header.elements.back().properties.push_back(parse_property(scanner, line));
     } else if (!keyword.empty()) {
-      scanner.fail("'" + whole.substr(0, 40) + "' does not belong into a header", std::string(kRemedy));
+      scanner.fail("'" + whole.substr(0, 40) + "' is not a header line", std::string(kRemedy));
     }
     (void)scanner.raw_line();
   }
-  scanner.fail("the file ends within the header", "it may be cut short");
+  scanner.fail("unexpected end of file in the header", "it may be cut short");
 }
 
 // ---- body
@@ -347,7 +347,7 @@ class Reader {
       }
     }
     const bool more = !body_.binary ? !body_.scanner.at_end() : body_.scanner.bytes_left() > 0;
-    if (more) body_.fail("more follows than the header promises", "the numbers of elements may be wrong");
+    if (more) body_.fail("unexpected data after the last element", "the numbers of elements may be wrong");
     join_arrays_of_all_cells();
     mesh_.format_metadata = header_;
     return std::move(mesh_);

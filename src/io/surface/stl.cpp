@@ -249,7 +249,7 @@ Mesh read_stl(const fs::path& path, Notes& notes) {
              scanner.all().find('\0') == std::string_view::npos) {
     mesh = read_ascii(scanner, *metadata, notes);
   } else if (promised < 0 || scanner.all().find('\0') == std::string_view::npos) {
-    throw Error(scanner.file(), "is no STL file: it does not begin with 'solid' and is not binary",
+    throw Error(scanner.file(), "is not an STL file: it does not begin with 'solid' and is not binary",
                 "give an ASCII or binary STL file");
   } else {
     throw Error(Location{scanner.file(), 0, static_cast<std::int64_t>(kHeaderBytes)},
@@ -289,7 +289,7 @@ void note_losses(const Mesh& mesh, const DataArray* attribute, bool has_solids, 
   std::vector<bool> used(mesh.points.size(), false);
   for (const Index v : mesh.cells.vertices) used[v] = true;
   const auto unused = std::count(used.begin(), used.end(), false);
-  if (unused > 0) notes.push_back(fmt::format("vertices that no cell uses are left out: {}", unused));
+  if (unused > 0) notes.push_back(fmt::format("vertices without cells are not written: {}", unused));
   for (const DataArray& array : mesh.data) {
     const bool is_label = has_solids && array.association == Association::cells && array.name == kLabel;
     if (&array != attribute && !is_label) note_array_unsupported(array, "STL", notes);

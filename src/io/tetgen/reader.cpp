@@ -44,24 +44,23 @@ struct ReadContext {
 /// Moves to the next record, which begins on a line of its own.
 void begin_record(Scanner& in, std::string_view what) {
   if (in.at_end()) {
-    in.fail(fmt::format("the file ends where {} should stand", what),
-            "it may be cut short, or its header promise too much");
+    in.fail(fmt::format("unexpected end of file; expected {}", what),
+            "it may be cut short, or the count in its header is wrong");
   }
 }
 
 /// The next number of a record, which must stand on the same line.
 std::string_view column(Scanner& in, std::string_view what) {
   if (in.at_line_end()) {
-    in.fail(fmt::format("the line ends where {} should stand", what),
-            "the header announces more columns, or the file is cut short");
+    in.fail(fmt::format("unexpected end of line; expected {}", what),
+            "the header gives more columns, or the file is cut short");
   }
   return in.word(what);
 }
 
 void end_record(Scanner& in) {
   if (!in.at_line_end()) {
-    in.fail("the line goes on after the columns that the header announces",
-            "correct the header or remove the rest");
+    in.fail("the line has more columns than the header gives", "correct the header or remove the rest");
   }
 }
 
@@ -95,7 +94,7 @@ Index checked_records(Scanner& in, std::int64_t records, std::string_view what, 
 
 std::int64_t checked_attributes(Scanner& in, std::int64_t attributes) {
   if (attributes < 0 || attributes > in.bytes_left()) {
-    in.fail(fmt::format("the header announces {} attributes", attributes),
+    in.fail(fmt::format("the header gives {} attributes", attributes),
             "0 or as many as each line has are possible");
   }
   return attributes;
@@ -103,19 +102,20 @@ std::int64_t checked_attributes(Scanner& in, std::int64_t attributes) {
 
 bool checked_markers(Scanner& in, std::int64_t markers) {
   if (markers != 0 && markers != 1) {
-    in.fail(fmt::format("the header announces {} boundary markers", markers), "0 or 1 are possible");
+    in.fail(fmt::format("the header gives {} boundary markers", markers), "0 or 1 are possible");
   }
   return markers == 1;
 }
 
 void add_number(Scanner& in, IdMap& numbering, std::string_view what) {
   const auto number = parse_integer<std::int64_t>(in, column(in, what), what);
-  if (!numbering.add(number)) in.fail(fmt::format("{} {} stands twice", what, number), "each must be unique");
+  if (!numbering.add(number))
+    in.fail(fmt::format("{} {} is given twice", what, number), "each must be unique");
 }
 
 /// The rest of the file must be comments; takes them along.
 void end_file(Scanner& in, Metadata::Part& part, Notes& notes) {
-  if (!in.at_end()) in.fail("the file goes on after its last record", "correct the number in the header");
+  if (!in.at_end()) in.fail("unexpected text after the last record", "correct the number in the header");
   part.present = true;
   part.comments_before = comments_before(in.all(), kComment);
   part.comments_after = comments_after(in.all(), kComment);
@@ -254,7 +254,7 @@ int columns_of_first_record(Scanner& in) {
 [[noreturn]] void fail_neighbours(const Scanner& in) {
   in.fail(
       "the last columns are the numbers of neighbouring tetrahedra (TetGen's switch -nn), which reordering "
-      "would falsify",
+      "would invalidate",
       "remove them, or let TetGen write the file without -nn");
 }
 
@@ -414,15 +414,14 @@ Mesh read(const fs::path& path, Notes& notes) {
     if (is_there(cell_path)) read_cell_file(cell_path, file, reading, notes);
   }
   if (reading.mesh.cell_count() == 0) {
-    throw Error(path.string(), "has no cells",
-                "an .ele, .face or .edge file with cells must stand beside it");
+    throw Error(path.string(), "has no cells", "an .ele, .face or .edge file with cells must be beside it");
   }
 
   settle_face_order(reading);
   set_cell_ids(reading);
   set_cell_data(reading);
   set_blocks(reading);
-  note_other_companions(path, "is not carried along: its numbers hold for the original order only", notes);
+  note_other_companions(path, "is not reordered: its numbers refer to the original order", notes);
   reading.mesh.format_metadata = reading.metadata;
   return std::move(reading.mesh);
 }

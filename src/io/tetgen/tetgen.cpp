@@ -110,10 +110,10 @@ void refuse_leftovers(const Layout& layout, const Metadata& metadata, const fs::
   for (const File file : kCellFiles) {
     const fs::path other = beside(path, kExtensions[file]);
     if (!layout.cells[file].empty() || metadata.parts[file].present || !is_there(other)) continue;
-    throw Error(path.string(),
-                fmt::format("{} stands beside it from another mesh and would be read with this one",
-                            other.filename().string()),
-                "remove that file or choose another name");
+    throw Error(
+        path.string(),
+        fmt::format("{} is beside it and would be read as part of this mesh", other.filename().string()),
+        "remove that file or choose another name");
   }
 }
 
@@ -181,8 +181,7 @@ std::vector<Column> attribute_columns(const Mesh& mesh, Association association,
       continue;
     }
     if (array != labels && row_count(*array) > given) {
-      notes.push_back(
-          fmt::format("the array '{}' is left out on cells that .ele does not hold", array->name));
+      notes.push_back(fmt::format("the array '{}' is not written for cells outside .ele", array->name));
     }
     if (given < index_size(items)) note_missing_labels(index_size(items) - given, ".ele", notes);
     for (Index k = 0; k < array->components; ++k) columns.push_back({array, k, row_of});

@@ -83,10 +83,10 @@ class Reader {
   std::string_view data_line(const std::string& what) {
     std::string_view line;
     if (!lines_.peek(line)) {
-      lines_.at().fail("the file ends where " + what + " should stand", "it may be cut short");
+      lines_.at().fail("unexpected end of file; expected " + what, "it may be cut short");
     }
     if (line.front() == '*') {
-      lines_.at().fail(std::string(line.substr(0, 40)) + " stands where " + what + " should be",
+      lines_.at().fail("expected " + what + ", found " + std::string(line.substr(0, 40)),
                        "lines are missing");
     }
     lines_.take_comments();
@@ -112,8 +112,7 @@ class Reader {
 
   std::string_view required_word(std::string_view& line, std::string_view what) {
     const std::string_view word = next_word(line, kSeparators);
-    if (word.empty())
-      lines_.at().fail("the line ends where " + std::string(what) + " should stand", "add it");
+    if (word.empty()) lines_.at().fail("unexpected end of line; expected " + std::string(what), "add it");
     return word;
   }
 

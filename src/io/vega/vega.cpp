@@ -51,7 +51,8 @@ class Writer {
       for (const Section& section : native_->sections) {
         if (section.kind == Kind::set && !is_cell_set(section.set)) continue;
         if (section.kind == Kind::region && !has_set(section.region_set)) {
-          notes_.push_back("the region of the set '" + section.region_set + "' is left out: the set is gone");
+          notes_.push_back("the region of the set '" + section.region_set +
+                           "' is not written: the mesh no longer has the set");
           continue;
         }
         if (section.kind == Kind::set) has_section[section.set] = true;

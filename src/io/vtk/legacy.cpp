@@ -115,7 +115,7 @@ class Writer {
     for (const ArrayFacts& fact : from_.metadata.facts) {
       if (fact.xml_information.empty()) continue;
       from_.notes.push_back(fmt::format(
-          "left out, as VTK has it in another form: the information of the array '{}'", fact.array));
+          "not written (legacy files store it differently): the information of the array '{}'", fact.array));
     }
   }
 

@@ -148,7 +148,7 @@ void LegacyInput::texts(std::vector<std::string>& values, std::int64_t count, co
     if (binary) {
       values.emplace_back(scanner.binary_block(text_length(what), what));
     } else {
-      if (scanner.bytes_left() == 0) fail("the file ends within " + what, "it may be cut short");
+      if (scanner.bytes_left() == 0) fail("unexpected end of file in " + what, "it may be cut short");
       values.push_back(percent_decoded(scanner.raw_line()));
     }
   }
@@ -194,7 +194,7 @@ DataArray LegacyInput::array(const std::string& name, std::optional<Association>
   if (count > 0 && (binary || text)) scanner.raw_line();
   if (type == "bit") {
     bits(std::get<std::vector<std::uint8_t>>(result.values), count, what);
-    notes.push_back(what + " holds bits, which are carried as bytes");
+    notes.push_back(what + " holds bits, which are stored as bytes");
   } else if (type == "vtkidtype") {
     numbers<std::int64_t, std::int32_t>(std::get<std::vector<std::int64_t>>(result.values), count, what);
   } else {
@@ -233,7 +233,8 @@ void LegacyInput::metadata(DataArray& array, std::optional<Association> associat
     if (key == "COMPONENT_NAMES") {
       array.component_names.clear();
       for (Index i = 0; i < array.components; ++i) {
-        if (scanner.bytes_left() == 0) fail("the file ends within COMPONENT_NAMES", "it may be cut short");
+        if (scanner.bytes_left() == 0)
+          fail("unexpected end of file in COMPONENT_NAMES", "it may be cut short");
         array.component_names.push_back(percent_decoded(scanner.raw_line()));
       }
     } else if (key == "INFORMATION") {
@@ -252,7 +253,7 @@ void LegacyInput::information(std::int64_t keys, const DataArray& array,
   bool keep = false;
   while (true) {
     if (scanner.bytes_left() == 0) {
-      if (keys > 0) fail("the file ends within INFORMATION", "it may be cut short");
+      if (keys > 0) fail("unexpected end of file in INFORMATION", "it may be cut short");
       break;
     }
     const std::string_view line = scanner.raw_line();

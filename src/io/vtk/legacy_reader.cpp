@@ -44,8 +44,8 @@ class Reader {
     const char* const end = version.data() + version.size();
     const auto dot = std::from_chars(version.data(), end, major).ptr;
     if (version.empty() || dot == end || *dot != '.' || std::from_chars(dot + 1, end, minor).ptr != end) {
-      throw Error(Location{in_.scanner.file(), 1, -1}, "this is no legacy file of VTK",
-                  "'# vtk DataFile Version 4.2' stands in the first line of one");
+      throw Error(Location{in_.scanner.file(), 1, -1}, "is not a legacy VTK file",
+                  "the first line of one is like '# vtk DataFile Version 4.2'");
     }
     version_ = major > 9 || minor > 9 || minor < 0 ? kLastVersion + 1 : 10 * major + minor;
     if (version_ > kLastVersion || version_ < 10) {
@@ -63,11 +63,11 @@ class Reader {
     const std::string kind = dataset == "dataset" ? lower_case(in_.word("the kind of the dataset")) : "";
     if (kind == "structured_points" || kind == "structured_grid" || kind == "rectilinear_grid" ||
         kind == "image_data") {
-      in_.fail("the dataset " + upper_case(kind) + " is structured: its order is its grid's",
-               "UNSTRUCTURED_GRID and POLYDATA can be ordered");
+      in_.fail("the dataset " + upper_case(kind) + " is structured and cannot be reordered",
+               "UNSTRUCTURED_GRID and POLYDATA can be");
     }
     if (kind != "unstructured_grid" && kind != "polydata") {
-      in_.fail("no mesh is here but '" + shown(kind.empty() ? dataset : kind) + "'",
+      in_.fail("expected a mesh, found '" + shown(kind.empty() ? dataset : kind) + "'",
                "DATASET UNSTRUCTURED_GRID or DATASET POLYDATA is needed");
     }
     layout_.polydata = kind == "polydata";
@@ -103,7 +103,8 @@ class Reader {
   }
 
   void read_points() {
-    if (has_points_ || on_) in_.fail("POINTS stands here late", "there is one, before the data");
+    if (on_) in_.fail("POINTS after the data", "move it before POINT_DATA and CELL_DATA");
+    if (has_points_) in_.fail("a second section POINTS", "a file has one");
     has_points_ = true;
     const std::int64_t count = in_.count("the number of points");
     const std::string type(in_.word("the type of the points"));
@@ -115,7 +116,7 @@ class Reader {
     in_.finite_only = false;
     metadata_->float_points = std::holds_alternative<std::vector<float>>(array.values);
     if (!metadata_->float_points && !std::holds_alternative<std::vector<double>>(array.values)) {
-      in_.notes.push_back("the points are of type " + type + " and are carried as double");
+      in_.notes.push_back("the points are of type " + type + " and are stored as double");
     }
     mesh_.points.resize(static_cast<std::size_t>(count));
     std::visit(
@@ -140,8 +141,8 @@ class Reader {
 
   void read_cells(std::size_t section, const std::string& key) {
     FileCells& cells = sections_[section];
-    if (on_) in_.fail(key + " stands after the data", "points and cells come first");
-    if (!cells.vertices.empty()) in_.fail(key + " stands here a second time", "one is needed");
+    if (on_) in_.fail(key + " comes after the data", "points and cells come first");
+    if (!cells.vertices.empty()) in_.fail(key + " is given twice", "one is needed");
     cells_line_ = in_.scanner.line();
     const std::int64_t count = in_.count("the number of " + key);
     const std::int64_t size = in_.count("the size of " + key);
@@ -194,7 +195,7 @@ class Reader {
     if (count == 0) return;
     const auto read_part = [&](const char* name, std::int64_t entries) {
       if (upper_case(in_.word(name)) != name)
-        in_.fail(std::string(name) + " is missing in " + key, "it stands before its numbers");
+        in_.fail(std::string(name) + " is missing in " + key, "it comes before its numbers");
       const std::string type(in_.word("the type of the numbers"));
       DataArray part = in_.array(name, {}, entries, 1, type);
       std::erase_if(in_.facts,
@@ -206,7 +207,7 @@ class Reader {
     if (cells.offsets.empty() || cells.offsets.front() != 0 || cells.offsets.back() != size ||
         !std::is_sorted(cells.offsets.begin(), cells.offsets.end())) {
       throw in_.section_error(cells_line_,
-                              "the OFFSETS of " + key + " do not rise from 0 to " + std::to_string(size),
+                              "the OFFSETS of " + key + " do not ascend from 0 to " + std::to_string(size),
                               "each is where a cell begins, the last is the size of CONNECTIVITY");
     }
     const DataArray vertices = read_part("CONNECTIVITY", size);
@@ -224,7 +225,7 @@ class Reader {
               }
             }
           } else {
-            throw in_.section_error(cells_line_, "the CONNECTIVITY of " + key + " is no list of integers",
+            throw in_.section_error(cells_line_, "the CONNECTIVITY of " + key + " is not a list of integers",
                                     "an integer type is needed");
           }
         },
@@ -269,7 +270,7 @@ class Reader {
   void keep(DataArray array) {
     for (const DataArray& other : mesh_.data) {
       if (other.association == array.association && other.name == array.name)
-        in_.fail("the array '" + shown(array.name) + "' stands here a second time", "names must differ");
+        in_.fail("the array '" + shown(array.name) + "' is given twice", "names must differ");
     }
     add_array(mesh_, std::move(array));
   }
@@ -343,7 +344,7 @@ class Reader {
   // ---- the whole
 
   void finish() {
-    if (!has_points_) in_.fail("there are no POINTS", "the file may be cut short");
+    if (!has_points_) in_.fail("the file has no POINTS", "the file may be cut short");
     FileCells all = layout_.polydata ? polydata_cells() : std::move(sections_[0]);
     if (all.types.size() + 1 != all.offsets.size()) {
       throw in_.section_error(types_line_,

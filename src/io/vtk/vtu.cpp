@@ -81,11 +81,11 @@ class Writer {
   void note_legacy_parts() {
     if (from_.metadata.legacy) {
       for (const auto& table : from_.metadata.legacy->lookup_tables)
-        from_.notes.push_back("left out, as VTU cannot hold it: the lookup table '" + table.name + "'");
+        from_.notes.push_back("not written (VTU has no place for it): the lookup table '" + table.name + "'");
     }
     for (const ArrayFacts& fact : from_.metadata.facts) {
       if (!fact.information.empty())
-        from_.notes.push_back("left out, as VTU has it in another form: the information of the array '" +
+        from_.notes.push_back("not written (VTU files store it differently): the information of the array '" +
                               fact.array + "'");
     }
   }

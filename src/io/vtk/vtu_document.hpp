@@ -21,7 +21,7 @@ struct VtuElement {
   std::vector<std::pair<std::string, std::string>> attributes;
   std::size_t at = 0;     ///< byte of its <
   std::size_t end = 0;    ///< byte after it
-  std::string_view text;  ///< what stands before the first element in it
+  std::string_view text;  ///< what comes before the first element in it
   std::vector<VtuElement> children;
 
   /// The value of an attribute, or nullptr.

@@ -55,7 +55,7 @@ class Reader {
 
  private:
   void note_unknown(const VtuElement& element) {
-    notes_.push_back("the element <" + element.name + "> is left out");
+    notes_.push_back("the element <" + element.name + "> is ignored");
   }
 
   static bool is_array(const VtuElement& element) {
@@ -108,10 +108,10 @@ class Reader {
         [&](const auto& numbers) {
           using Number = typename std::decay_t<decltype(numbers)>::value_type;
           if constexpr (std::is_same_v<Number, std::string>) {
-            throw file_.error(array, "the points are texts", "Float32 or Float64 is needed");
+            throw file_.error(array, "the points are strings", "Float32 or Float64 is needed");
           } else {
             if constexpr (!std::is_floating_point_v<Number>)
-              notes_.push_back("the points are integers and are carried as Float64");
+              notes_.push_back("the points are integers and are stored as Float64");
             for (std::size_t i = 0; i < numbers.size(); ++i) {
               const auto x = static_cast<double>(numbers[i]);
               if (!std::isfinite(x))
@@ -157,7 +157,7 @@ class Reader {
       if (!std::in_range<Offset>(end) || std::cmp_less(end, last)) {
         throw file_.error(
             offsets, fmt::format("cell {} (counted from 0) ends at {}, before it begins at {}", c, end, last),
-            "offsets rise");
+            "offsets must ascend");
       }
       last = static_cast<Offset>(end);
       return first_entry + last;
@@ -197,7 +197,7 @@ class Reader {
             std::int64_t i = 0;
             for (const Stored number : numbers) target.push_back(checked(i++, number));
           } else {
-            throw file_.error(array, "the array holds no integers", "Int32 or Int64 is usual");
+            throw file_.error(array, "the array does not hold integers", "Int32 or Int64 is usual");
           }
         },
         values);
@@ -220,7 +220,7 @@ class Reader {
     array.components = static_cast<Index>(components);
     array.values = file_.values(element, tuples * components);
     if (*element.attribute("type") == "Bit")
-      notes_.push_back("the array '" + array.name + "' holds bits, which are carried as bytes");
+      notes_.push_back("the array '" + array.name + "' holds bits, which are stored as bytes");
     for (std::int64_t i = 0; i < components && i < 64; ++i) {
       const std::string* name = element.attribute("ComponentName" + std::to_string(i));
       if (name == nullptr) continue;
@@ -274,8 +274,7 @@ class Reader {
       }
       DataArray array = read_array(element, association, tuples);
       if (std::find(names.begin(), names.end(), array.name) != names.end())
-        throw file_.error(element, "the array '" + array.name + "' stands here a second time",
-                          "names must differ");
+        throw file_.error(element, "the array '" + array.name + "' is given twice", "names must differ");
       names.push_back(array.name);
       const auto before = std::find_if(arrays_.begin(), arrays_.end(), [&](const DataArray& other) {
         return other.association == association && other.name == array.name;

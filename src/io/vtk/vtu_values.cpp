@@ -67,7 +67,7 @@ std::string VtuDocument::base64(const VtuElement& array, std::string_view text, 
       const std::uint32_t value = kBase64[static_cast<unsigned char>(c)];
       // padding fills the last group alone
       if (value == 64 && (c != '=' || i <= used))
-        throw error(array, "the array is no base64", "letters, digits, + and / are needed");
+        throw error(array, "the array is not base64", "letters, digits, + and / are needed");
       packed = (packed << 6U) | (value & 63U);
     }
     for (std::size_t i = 0; i < used; ++i)
@@ -157,7 +157,7 @@ void VtuDocument::locate_blocks(const VtuElement& array, std::string_view data, 
         stored.compressed.back() * VtuCompressor::greatest_ratio(encoding_.compressor) + 1024;
     if (stored.uncompressed.back() > most) {
       throw error(array,
-                  fmt::format("a block of {} bytes promises {}", stored.compressed.back(),
+                  fmt::format("a block of {} bytes cannot hold {}", stored.compressed.back(),
                               stored.uncompressed.back()),
                   "the array is damaged");
     }
