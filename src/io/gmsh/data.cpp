@@ -15,13 +15,13 @@ namespace {
 constexpr std::int64_t kMostComponents = 1 << 20;
 constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers up to here are exact as double
 
-/// `"name"` without its quotes.
+/// Returns `"name"` without its quotes.
 std::string unquoted(std::string_view text) {
   if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
   return std::string(text);
 }
 
-/// Reads what comes before the values.
+/// Reads a view up to its values.
 View read_view_head(NumberReader& source, std::string_view section) {
   View view;
   view.section = section;
@@ -53,7 +53,7 @@ View read_view_head(NumberReader& source, std::string_view section) {
   return view;
 }
 
-/// How many nodes the entry of cell c has according to a rule.
+/// Returns the number of nodes that the entry of cell c has by a rule.
 int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
   const int vertices = mesh.cells.vertex_count(c);
   switch (per) {
@@ -69,14 +69,14 @@ int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
   return fixed;
 }
 
-/// Entries of a section as they stand in the file: rows with `nodes` × components values each.
+/// Entries of a section in file order: rows of `nodes` × components values each.
 struct Entries {
   std::vector<Index> rows;
   std::vector<int> nodes;  ///< empty: one for all
   std::vector<double> values;
 };
 
-/// Finds the rule that tells the numbers of nodes from the cells.
+/// Finds the rule that gives the number of nodes of an entry from its cell.
 void find_rule(const ReadContext& reading, const Entries& entries, View& view) {
   if (entries.nodes.empty()) return;
   for (const PerElement per : {PerElement::each_node, PerElement::each_corner, PerElement::fixed}) {
@@ -125,7 +125,7 @@ Entries read_entries(ReadContext& reading, const View& view) {
   return entries;
 }
 
-/// The entries as rows of even width, filled with 0.
+/// Returns the entries as rows of one width, padded with 0.
 std::vector<double> even_rows(const ReadContext& reading, Entries& entries, const View& view, Index& width) {
   const int components = view.integers[1];
   int most = 1;
@@ -152,7 +152,7 @@ std::vector<double> even_rows(const ReadContext& reading, Entries& entries, cons
   return values;
 }
 
-/// Rows that cover everything go into the mesh's order.
+/// Sorts rows that cover all vertices or cells into the order of the mesh.
 void sort_full(DataArray& array, std::vector<double>& values, Index count) {
   if (index_size(array.indices) != count) return;
   std::vector<double> sorted(values.size());
@@ -165,7 +165,7 @@ void sort_full(DataArray& array, std::vector<double>& values, Index count) {
   array.indices.clear();
 }
 
-/// Labels that were converted to real numbers become integers again, for those who look for labels.
+/// Turns labels that were written as real numbers into integers again.
 void restore_labels(DataArray& array) {
   const auto* values = std::get_if<std::vector<double>>(&array.values);
   if (array.name != kLabel || array.components != 1 || !values) return;
@@ -181,14 +181,14 @@ void restore_labels(DataArray& array) {
   }
 }
 
-/// Whether another array has the same name.
+/// Returns whether another array has the same name.
 bool is_taken(const Mesh& mesh, const DataArray& array) {
   return std::any_of(mesh.data.begin(), mesh.data.end(), [&](const DataArray& other) {
     return &other != &array && other.association == array.association && other.name == array.name;
   });
 }
 
-/// The smallest number of components that Gmsh knows and that holds so many; 0 where there is none.
+/// Returns the smallest number of components of Gmsh's data that is at least `components`; 0 if none is.
 Index gmsh_components(Index components) {
   for (const Index known : {1, 3, 9}) {
     if (components <= known) return known;

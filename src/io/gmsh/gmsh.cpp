@@ -11,9 +11,9 @@
 #include <charconv>
 #include <set>
 
-// Specification: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format. This file goes through the
-// sections; gmsh_v2.cpp and gmsh_v4.cpp read and write nodes and elements, gmsh_data.cpp and gmsh_links.cpp
-// what is attached to them, gmsh_groups.cpp makes groups and entities.
+// Specification: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format. This file walks the
+// sections; v2.cpp and v4.cpp read and write nodes and elements, data.cpp and links.cpp their data and links,
+// groups.cpp makes groups and entities.
 
 namespace meshorder {
 namespace gmsh {
@@ -23,11 +23,11 @@ namespace {
 
 const std::set<std::string_view> kDataSections{"NodeData", "ElementData", "ElementNodeData"};
 
-/// Sections without numbers of nodes or elements, which therefore stay as they are. $Parametrizations has
-/// triangles over nodes of its own.
+/// Sections without numbers of nodes or elements, kept verbatim. $Parametrizations has triangles over nodes
+/// of its own.
 const std::set<std::string_view> kVerbatimSections{"Comments", "InterpolationScheme", "Parametrizations"};
 
-/// Goes to the line $EndName and returns all before it.
+/// Moves to the line $EndName and returns the text before it.
 std::string_view body(NumberReader& source, std::string_view section) {
   const std::string_view all = source.scanner.all();
   const std::string end = "$End" + std::string(section);
@@ -44,7 +44,7 @@ std::string_view body(NumberReader& source, std::string_view section) {
   source.fail("$" + std::string(section) + " has no " + end, "the file may be cut short");
 }
 
-/// Fails unless the version is one that we read.
+/// Fails unless the version is supported.
 void check_version(const NumberReader& source, double version) {
   if ((version >= 2 && version < 2.3) || (version > 4.05 && version < 4.15)) return;
   source.fail(fmt::format("version {:.1f} of Gmsh's format is not supported", version),
@@ -80,8 +80,8 @@ void read_format(ReadContext& reading) {
   reading.metadata.sections.push_back({SectionKind::format, "MeshFormat", "", 0});
 }
 
-/// Names of physical groups stay as they stand, and are understood where that is possible: version 2.0 does
-/// not tell dimensions.
+/// Reads the names of physical groups and keeps the section verbatim. Version 2.0 gives no dimensions, so its
+/// names are not interpreted.
 void read_names(ReadContext& reading) {
   NumberReader& source = reading.source;
   if (reading.metadata.version > 2.05) {
@@ -108,7 +108,7 @@ void read_names(ReadContext& reading) {
   reading.metadata.sections.push_back({SectionKind::verbatim, "PhysicalNames", std::string(text), 0});
 }
 
-/// Entities stay as they stand; what is taken from them are their physical groups.
+/// Reads the physical groups of entities and keeps the section verbatim.
 void read_entities(ReadContext& reading, const std::string& section) {
   NumberReader& source = reading.source;
   const std::int64_t begin = source.scanner.byte();
@@ -119,7 +119,7 @@ void read_entities(ReadContext& reading, const std::string& section) {
   reading.metadata.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
 }
 
-/// Whether a word of the text is a number.
+/// Returns whether a word of the text is a number.
 bool has_numbers(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\n,;:";
   for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos;) {
@@ -137,7 +137,7 @@ bool is_text(std::string_view text) {
                       [](char c) { return (c >= '\0' && c < '\t') || (c > '\r' && c < ' ') || c == '\x7f'; });
 }
 
-/// A section that nobody here knows stays as it is if its words can hardly number nodes or elements.
+/// Keeps an unknown section verbatim, provided it cannot contain node or element numbers.
 void read_verbatim(ReadContext& reading, const std::string& section) {
   NumberReader& source = reading.source;
   const std::int64_t line = source.scanner.line();
@@ -177,7 +177,7 @@ bool has_section(const Metadata& metadata, SectionKind kind) {
                      [kind](const Section& section) { return section.kind == kind; });
 }
 
-/// The kinds of section that a file has once.
+/// The kinds of section that a file has at most once.
 struct Single {
   std::string_view name;
   SectionKind kind;
@@ -207,7 +207,7 @@ void read_single(ReadContext& reading, const Single& single) {
   reading.metadata.sections.push_back({single.kind, name, "", 0});
 }
 
-/// Reads the section of that name, whose first line was read.
+/// Reads the section `name` after its first line.
 void read_section(ReadContext& reading, const std::string& name) {
   NumberReader& source = reading.source;
   const bool has_format = has_section(reading.metadata, SectionKind::format);
@@ -237,7 +237,7 @@ void read_section(ReadContext& reading, const std::string& name) {
   read_verbatim(reading, name);
 }
 
-/// What can only be done when all sections are known.
+/// Completes the mesh once all sections are read.
 void finish(ReadContext& reading) {
   Mesh& mesh = reading.mesh;
   for (const auto& [kind, name] : {std::pair{SectionKind::format, "$MeshFormat"},
@@ -279,7 +279,7 @@ Mesh read(const std::filesystem::path& path, Notes& notes) {
 
 // ---- writing
 
-/// The type of every cell; throws Error for a cell that Gmsh does not have.
+/// Returns the type of every cell; throws Error for a cell that Gmsh does not have.
 std::vector<const ElementType*> types_of_cells(const Mesh& mesh, const std::filesystem::path& path) {
   require_supported_cells(
       mesh, path, "Gmsh", [](Shape shape, int nodes) { return find_type(shape, nodes) != nullptr; },
@@ -301,7 +301,7 @@ std::vector<const ElementType*> types_of_cells(const Mesh& mesh, const std::file
   return types;
 }
 
-/// Ids of another format, where Gmsh can take them: positive, and different for all cells.
+/// Returns the ids of another format if Gmsh allows them: positive and distinct; else none, with a note.
 std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::string_view what,
                                      Notes& notes) {
   std::vector<std::int64_t> sorted = ids;
@@ -319,7 +319,7 @@ bool is_parametric_2(const Metadata& layout) {
                      [](const Section& section) { return section.name == "ParametricNodes"; });
 }
 
-/// Whether the arrays that a file of this layout needs are still there.
+/// Returns whether the mesh still has the arrays that a file of this layout needs.
 bool still_fits(const Mesh& mesh, const Metadata& layout) {
   const DataArray* entities = find_array(mesh, kNodeEntity, Association::vertices);
   const bool has_node_entities =
@@ -329,7 +329,7 @@ bool still_fits(const Mesh& mesh, const Metadata& layout) {
          integers_of(mesh, kCellEntity, Association::cells).size() == mesh.cells.shapes.size();
 }
 
-/// Fills in what the mesh has kept from its Gmsh file.
+/// Takes ids, entities and tags from a mesh that came from a Gmsh file.
 void take_layout(const Metadata& layout, WriteContext& output) {
   const Mesh& mesh = output.mesh;
   const auto place = [&](std::string_view name, Association association) {
@@ -363,7 +363,7 @@ void take_layout(const Metadata& layout, WriteContext& output) {
   if (!labels.empty() && labels == labels_of_entities(mesh, layout)) place(kLabel, Association::cells);
 }
 
-/// Notes the sets that the layout does not hold as they are.
+/// Notes the sets that differ from the physical groups and periodic nodes of the layout.
 void note_sets(const Mesh& mesh, const Metadata& layout, Notes& notes) {
   const std::vector<EntitySet> physical = physical_sets(mesh, layout);
   std::set<std::string> periodic;
@@ -379,7 +379,7 @@ void note_sets(const Mesh& mesh, const Metadata& layout, Notes& notes) {
   }
 }
 
-/// Gives a data section to every array that is neither placed elsewhere nor in a section already.
+/// Adds a data section for every array that has no place in the file yet.
 void add_views(Metadata& layout, const WriteContext& output, Notes& notes) {
   const auto has_view = [&](const DataArray& array) {
     return std::any_of(layout.views.begin(), layout.views.end(), [&](const View& view) {

@@ -17,13 +17,13 @@
 #include <utility>
 #include <vector>
 
-/// Gmsh's .msh files, shared by the sources gmsh*.cpp and by nobody else.
+/// Declarations shared by the reader and the writer of Gmsh's .msh files.
 ///
 /// The specification is the section "MSH file format" of Gmsh's reference manual,
 /// https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format, and "Node ordering" there.
 namespace meshorder::gmsh {
 
-// ---- element types (gmsh_types.cpp)
+// ---- element types
 
 /// One of Gmsh's element types: its number in files, its shape and how many nodes it has.
 struct ElementType {
@@ -32,31 +32,31 @@ struct ElementType {
   int nodes;
 };
 
-/// The type of that number, or nullptr where it has no fixed number of nodes or no shape of ours.
+/// Returns the type with that number, or nullptr if it has no fixed number of nodes or no Shape.
 const ElementType* find_type(int number);
 
-/// The type of cells of that shape with so many vertices, or nullptr. Where Gmsh has two (the complete and
-/// the serendipity quad of 16 nodes), the complete one.
+/// Returns the type of cells of that shape with `nodes` vertices, or nullptr. If Gmsh has two (the complete
+/// and the serendipity quad of 16 nodes), the complete one.
 const ElementType* find_type(Shape shape, int nodes);
 
-/// `order[k]` is the place in Gmsh's list of the node that stands at place k in VTK's order; empty where the
-/// two agree or VTK knows no such cell.
+/// Returns an order in which `order[k]` is the position in Gmsh's list of the k-th node in VTK's order; empty
+/// if the two agree or VTK has no such cell.
 std::span<const int> vtk_order(Shape shape, int nodes);
 
-// ---- names of the arrays in which a mesh keeps what only Gmsh has
+// ---- names of the arrays that keep data of Gmsh's files
 
 inline constexpr std::string_view kCellEntity = "gmsh:geometrical";    ///< tag of each cell's entity
-inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< where it is not the cell's own
-inline constexpr std::string_view kCellType = "gmsh:type";  ///< where shape and count are not enough
+inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< if it differs from the cell's own
+inline constexpr std::string_view kCellType = "gmsh:type";  ///< if shape and count do not determine it
 inline constexpr std::string_view kCellPartitions = "gmsh:partitions";  ///< 2.2: tags from the third on
-inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.2: where it differs among cells
+inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.2: if it differs among cells
 inline constexpr std::string_view kCellGhosts = "gmsh:ghosts";    ///< owner, number of ghosts, ghosts, 0 …
 inline constexpr std::string_view kNodeEntity = "gmsh:dim_tags";  ///< 4.1: dimension and tag
-inline constexpr std::string_view kNodeParameters = "gmsh:parametric";  ///< 1 or 0 for given or not, u, v, w
+inline constexpr std::string_view kNodeParameters = "gmsh:parametric";  ///< 1 if given, else 0; u, v, w
 
-// ---- what the reader keeps for the writer
+// ---- metadata
 
-/// Which values an $ElementNodeData section has for a cell.
+/// The rule for the number of values that an $ElementNodeData section has for a cell.
 enum class PerElement : std::uint8_t { one, each_node, each_corner, fixed };
 
 /// A section $NodeData, $ElementData or $ElementNodeData without its values, which are an array of the mesh.
@@ -64,7 +64,7 @@ struct View {
   std::string section;
   Association association = Association::vertices;
   std::string array;                   ///< name of the array in the mesh
-  std::vector<std::string> strings;    ///< as they stand, quotes included
+  std::vector<std::string> strings;    ///< verbatim, quotes included
   std::vector<double> reals;           ///< the time first
   std::vector<std::int32_t> integers;  ///< step, components, entries (set anew when written), partition …
   PerElement per = PerElement::one;
@@ -87,7 +87,7 @@ struct PhysicalName {
   std::string name;
 };
 
-/// Head of a block that has no nodes or elements: dimension, tag and `parametric` or the element type.
+/// The heading of a block without nodes or elements: dimension, tag and `parametric` or the element type.
 using EmptyBlock = std::array<std::int32_t, 3>;
 
 enum class SectionKind : std::uint8_t { format, verbatim, nodes, elements, periodic, ghosts, view };
@@ -95,17 +95,18 @@ enum class SectionKind : std::uint8_t { format, verbatim, nodes, elements, perio
 struct Section {
   SectionKind kind;
   std::string name;
-  std::string text;  ///< all between the lines $Name and $EndName, for SectionKind::verbatim
+  std::string text;  ///< for SectionKind::verbatim: between the lines $Name and $EndName
   std::size_t view = 0;
 };
 
 using Entity = std::pair<std::int32_t, std::int32_t>;  ///< dimension and tag
 
-/// Everything about a Gmsh file that does not depend on the order of its nodes and elements.
+/// The parts of a Gmsh file that do not depend on the order of its nodes and elements.
 struct Metadata : FormatMetadata {
   double version = 4.1;
   bool binary = false;
-  std::endian order = std::endian::native;  ///< of the file's numbers; kept, as verbatim sections hold some
+  std::endian order =
+      std::endian::native;  ///< of the file's numbers; kept because verbatim sections may hold some
   std::string header = "4.1 0 8";
   std::vector<Section> sections;
   std::vector<View> views;
@@ -128,34 +129,34 @@ IdMap number_ids(const NumberReader& source, const std::vector<std::int64_t>& id
 /// Reads the line $EndSECTION.
 void expect_end(NumberReader& source, std::string_view section);
 
-/// A mesh that is being read.
+/// The state of the reader.
 struct ReadContext {
   NumberReader source;
   Mesh mesh;
   Metadata metadata;
   IdMap nodes;
   IdMap elements;
-  std::vector<std::size_t> view_arrays;  ///< place of each view's array in `mesh.data`, where it has one
+  std::vector<std::size_t> view_arrays;  ///< index of each view's array in `mesh.data`, if it has one
   Notes& notes;
 };
 
-/// The element type of that number; fails where we cannot hold it.
+/// Returns the element type of that number; fails if it is not supported.
 const ElementType& known_type(const NumberReader& source, std::int64_t number);
 
-/// Adds a cell whose nodes have the given places, in Gmsh's order.
+/// Adds a cell with these vertices, in Gmsh's order.
 void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes);
 
-/// The place of a node that an element or section names; fails where there is none.
+/// Returns the vertex with the number `id`; fails, naming its owner, if there is none.
 Index place_of_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
                     std::int64_t owner_id);
 
-/// Adds the array kCellType when a cell's type does not follow from shape and count.
+/// Adds the array kCellType if shape and count do not determine the type of every cell.
 void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers);
 
-/// Adds the array kNodeParameters; nodes behind the last value have none.
+/// Adds the array kNodeParameters; nodes after the last value have none.
 void keep_parameters(Mesh& mesh, std::vector<double> values);
 
-/// Fails when a row stands twice.
+/// Fails if a row is given twice.
 void check_distinct(const NumberReader& source, std::vector<Index> rows, std::string_view section);
 
 /// `section` is $Nodes or $ParametricNodes, without the $.
@@ -167,25 +168,25 @@ void read_elements_4(ReadContext& reading);
 void read_view(ReadContext& reading, std::string_view section);
 void read_periodic(ReadContext& reading);
 void read_ghosts(ReadContext& reading);
-/// Gives the views' arrays their final names, which are distinct and say the step where there are several.
+/// Gives the arrays of views distinct names, with the step if there are several.
 void name_views(ReadContext& reading);
 
-/// The cells of every named physical group that has any, as sets.
+/// Returns the cells of every named physical group that has any, as sets.
 std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata);
 
-/// The first physical group of each cell's entity, 0 for none; empty when no cell has any.
+/// Returns the first physical group of each cell's entity, 0 for none; empty if no cell has one.
 std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const Metadata& metadata);
 
 // ---- writing
 
-/// A file that is being written: numbers go out as text, separated by blanks, or as binary.
+/// Writes numbers as text, separated by blanks, or as binary.
 struct NumberWriter {
   void int32(std::int64_t value);
   void size(std::int64_t value);
   void real(double value);
-  /// Ends the line in text; nothing in binary.
+  /// Ends the line in text; does nothing in binary.
   void end_line();
-  /// Numbers that are text in binary files too, with the line end.
+  /// Writes a line with a number that is text in binary files too.
   void text_line(std::int64_t value) { out.print("{}\n", value); }
 
   OutputFile& out;
@@ -198,7 +199,7 @@ struct NumberWriter {
   void separate();
 };
 
-/// All that the writer needs besides the mesh: read with it, or made for a mesh from elsewhere.
+/// The input of the writer: a mesh and its layout, read with it or made for a mesh of another format.
 struct WriteContext {
   const Mesh& mesh;
   const Metadata& layout;
@@ -214,20 +215,20 @@ struct WriteContext {
   [[nodiscard]] std::int64_t cell_id(Index c) const { return cell_ids.empty() ? c + 1 : cell_ids[c]; }
 };
 
-/// The values of an array of integers that covers everything; empty where it is none.
+/// Returns the values of a dense array of 32-bit integers; empty if there is none.
 std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association);
 
-/// The values of the array kNodeParameters, or nullptr where there is none as it should be.
+/// Returns the values of the array kNodeParameters, or nullptr if it is missing or malformed.
 const std::vector<double>* parameters_of(const Mesh& mesh);
 
-/// Makes entities, physical groups and their names for a mesh that has no Gmsh layout of its own, from its
-/// labels, its sets of cells and the entities that it may have kept from an earlier conversion.
+/// Makes entities, physical groups and their names for a mesh without a Gmsh layout, from its labels, its
+/// sets of cells and the entities that it may have kept from an earlier conversion.
 void classify(Metadata& layout, WriteContext& output, Notes& notes);
 
-/// Adds a view for an array that has none yet; false, with a note, where Gmsh cannot hold it.
+/// Adds a view for an array that has none yet; returns false, with a note, if Gmsh has no place for it.
 bool add_view(Metadata& layout, const DataArray& array, Notes& notes);
 
-/// The numbers of a cell's nodes in Gmsh's order; `wide` as size_t (4.1), else as int.
+/// Writes the numbers of a cell's nodes in Gmsh's order, as size_t (4.1) if `wide`, else as int.
 void write_cell_nodes(NumberWriter& sink, const WriteContext& output, Index c, bool wide);
 
 void write_nodes_2(NumberWriter& sink, const WriteContext& output);

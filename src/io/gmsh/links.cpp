@@ -15,7 +15,8 @@ const EntitySet* find_set(const Mesh& mesh, const std::string& name) {
   return found == mesh.sets.end() ? nullptr : &*found;
 }
 
-/// Version 2.2 has a line "Affine …" of 16 numbers, or none; 4.1 a count and so many numbers.
+/// Reads the affine map: in version 2.2 an optional line "Affine …" of 16 numbers, in 4.1 a count and
+/// numbers.
 void read_affine(ReadContext& reading, PeriodicLink& link) {
   NumberReader& source = reading.source;
   if (!reading.metadata.is_version_2()) {
@@ -27,7 +28,7 @@ void read_affine(ReadContext& reading, PeriodicLink& link) {
   for (double& value : link.affine) value = source.real("an affine coefficient");
 }
 
-/// Pairs of nodes; those that the file does not have, as in meshes saved in part, are left out.
+/// Reads pairs of nodes; returns how many name a node that the file lacks, as in meshes saved in part.
 Index read_pairs(ReadContext& reading, PeriodicLink& link) {
   NumberReader& source = reading.source;
   const Index count = source.count("the number of periodic nodes", 4, 16);

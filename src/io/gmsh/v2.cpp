@@ -20,14 +20,14 @@ struct Tags {
   }
 };
 
-/// What is being read of one element.
+/// The head of one element.
 struct Element {
   std::int64_t id;
   const ElementType* type;
   Index tag_count;
 };
 
-/// Stops at tags that are numbers of elements: parents and domains of cut elements, which follow partitions.
+/// Fails for tags that are numbers of elements: parents and domains of cut elements, after the partitions.
 void refuse_element_tags(const NumberReader& source, double version, std::span<const std::int32_t> tags) {
   const std::size_t plain =
       version < 2.15 || tags.size() < 4 ? 3 : 3 + static_cast<std::size_t>(std::max(0, tags[2]));
@@ -73,7 +73,7 @@ void keep_tags(const NumberReader& source, Mesh& mesh, const Tags& tags) {
     most = std::max(most, tags[c].size());
     even = even && tags[c].size() == tags[0].size();
   }
-  // every cell gets room for the most tags that any has; a damaged file may not make that absurd
+  // all rows are as wide as the longest; refuse absurd widths of damaged files
   if (most * static_cast<std::size_t>(tags.size()) > 64 * tags.values.size() + 4096) {
     source.fail("an element has " + std::to_string(most) + " tags, far more than the others",
                 "the file may be damaged");

@@ -5,13 +5,13 @@
 #include <limits>
 #include <set>
 
-// Version 4.1: nodes and elements stand in blocks, each of which belongs to an entity of the geometry;
+// Version 4.1: nodes and elements are in blocks, each of which belongs to an entity of the geometry;
 // entities have physical groups. An entity may have several blocks.
 
 namespace meshorder::gmsh {
 namespace {
 
-/// Reads a count and so many ints.
+/// Reads a count and that many ints.
 std::vector<std::int32_t> read_ints(NumberReader& source, std::string_view what) {
   std::vector<std::int32_t> result(source.count(what, 2, 4));
   for (std::int32_t& value : result) value = source.int32(what);
@@ -49,7 +49,7 @@ void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
   }
 }
 
-/// What comes before the blocks of nodes or elements.
+/// The heading of a section of blocks.
 struct Head {
   Index blocks;
   Index count;
@@ -60,9 +60,9 @@ Head read_head(NumberReader& source, std::string_view what, std::int64_t text_by
   Head head{};
   head.blocks = source.count("the number of blocks", 8, 20);
   head.count = source.count("the number of " + std::string(what), text_bytes, binary_bytes);
-  // the least and the greatest number; Gmsh itself does not rely on them
-  (void)source.int64("the least number of " + std::string(what));
-  (void)source.int64("the greatest number of " + std::string(what));
+  // the smallest and largest number, on which Gmsh itself does not rely
+  (void)source.int64("the smallest number of " + std::string(what));
+  (void)source.int64("the largest number of " + std::string(what));
   return head;
 }
 
@@ -73,7 +73,7 @@ Head read_head(NumberReader& source, std::string_view what, std::int64_t text_by
               "the counts must agree");
 }
 
-/// The smallest and greatest number, 0 without any.
+/// Returns the smallest and largest number, 0 if there are none.
 std::pair<std::int64_t, std::int64_t> range_of(const std::vector<std::int64_t>& ids, Index count) {
   if (count == 0) return {0, 0};
   if (ids.empty()) return {1, count};
@@ -96,7 +96,7 @@ void write_block_head(NumberWriter& sink, const EmptyBlock& head, Index count) {
   sink.end_line();
 }
 
-/// Where runs of equal heads begin, with the end behind them.
+/// Returns the beginnings of runs of equal heads, and the end of the last.
 template <class Head, class Breaks>
 std::vector<Index> runs(Index count, const Head& head, const Breaks& breaks) {
   std::vector<Index> starts;
@@ -132,7 +132,7 @@ void read_entities_4(ReadContext& reading, bool partitioned) {
       skip_reals(source, dimension == 0 ? 3 : 6, "an entity's extent");
       auto physicals = read_ints(source, "an entity's physical groups");
       if (dimension > 0) (void)read_ints(source, "an entity's boundary");
-      // negative ones tell an orientation
+      // the sign is an orientation
       for (std::int32_t& physical : physicals) {
         if (physical < 0 && physical > std::numeric_limits<std::int32_t>::min()) physical = -physical;
       }
@@ -221,7 +221,7 @@ void read_elements_4(ReadContext& reading) {
   reading.elements = number_ids(source, ids, "element");
   if (!reading.elements.runs_from(1)) mesh.cell_ids = std::move(ids);
 
-  // blocks that come back (a converted mesh, whose order counts more than its blocks) do not bind their cells
+  // blocks that repeat (a converted mesh, whose order matters more than its blocks) do not bind their cells
   if (!repeated && starts.size() > 1) mesh.cell_blocks = std::move(starts);
   bool own = true;
   for (Index c = 0; c < mesh.cell_count(); ++c) own = own && dimensions[c] == dimension(mesh.cells.shapes[c]);
@@ -240,7 +240,7 @@ void write_nodes_4(NumberWriter& sink, const WriteContext& output) {
             parameters && (*parameters)[2 * at] != 0 ? 1 : 0};
   };
 
-  // neighbours of one entity make a block, so that the nodes stand in the mesh's order
+  // successive nodes of one entity make a block, which keeps the order of the mesh
   const std::vector<Index> starts = runs(mesh.vertex_count(), head, [](Index) { return false; });
   const auto& empty = output.layout.empty_node_blocks;
   write_head(sink, starts.size() - 1 + empty.size(), mesh.vertex_count(), output.node_ids);

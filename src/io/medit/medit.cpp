@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The cells of each section in their order, the order of the sections, and where each cell stands.
+/// The order of the sections, the cells of each and the position of each cell.
 struct Layout {
   std::array<std::vector<Index>, kCellKinds.size()> cells;
   std::array<Index, kCellKinds.size()> counts{};
@@ -26,8 +26,8 @@ struct Layout {
   std::vector<Index> place;  ///< of each cell in its section
 };
 
-/// Sections follow each other as their first cells do; those of a mesh with interleaved types from volumes to
-/// edges, as group_cells_by_type has them.
+/// Orders sections by their first cells; if types are interleaved, from volumes to edges as
+/// group_cells_by_type does.
 Layout layout_of(const Mesh& mesh) {
   Layout layout;
   layout.place.reserve(mesh.cell_count());
@@ -57,7 +57,7 @@ Layout layout_of(const Mesh& mesh) {
 
 struct WriteContext {
   const Mesh& mesh;
-  const Metadata* own;  ///< nullptr when the mesh comes from another format
+  const Metadata* own;  ///< nullptr if the mesh comes from another format
   Layout layout;
   Labels vertex_labels;
   Labels cell_labels;
@@ -83,7 +83,7 @@ void write_vertices(OutputFile& out, const WriteContext& from) {
   }
 }
 
-/// Where the nodes of a kind stand in the file; empty for VTK's order.
+/// Returns the positions of a kind's nodes in the file; empty for VTK's order.
 std::vector<int> places(const WriteContext& from, std::size_t kind) {
   if (!from.own) return {};
   const auto found = from.own->places.find(kind);
@@ -103,16 +103,17 @@ void write_cells(OutputFile& out, const WriteContext& from, std::size_t kind) {
   }
 }
 
-/// The order of nodes in second-order cells, so that a reader need not guess.
+/// Writes the order of nodes in second-order cells.
 void write_ordering(OutputFile& out, std::size_t kind) {
   const auto nodes = reference_nodes(kCellKinds[kind].shape);
   out.print("\n{}Ordering\n{}\n", kCellKinds[kind].keyword, nodes.size());
   for (const auto& node : nodes) out.print("{}\n", fmt::join(node, " "));
 }
 
-// ---- sections that count vertices or cells
+// ---- sections that refer to vertices or cells
 
-/// Where a vertex or cell stands in what the positions of a section count; −1 when it is not part of that.
+/// Returns the position of a vertex or cell among those that a section refers to; −1 if it is not one of
+/// them.
 Index position_in(const WriteContext& from, const Target& target, Index item) {
   if (!target) return item;
   const std::size_t kind = counted_kind(*target, from.layout.counts);
@@ -120,7 +121,7 @@ Index position_in(const WriteContext& from, const Target& target, Index item) {
   return kind_of(cells.shapes[item], cells.vertex_count(item)) == kind ? from.layout.place[item] : -1;
 }
 
-/// The kind of section with that name that all `items` fit, or nullptr.
+/// Returns the kind of section with that name that all `items` fit, or nullptr.
 template <std::size_t N>
 const ListKind* fitting_kind(const std::array<ListKind, N>& kinds, const WriteContext& from,
                              std::string_view name, Association association,
@@ -150,7 +151,7 @@ void print_value(OutputFile& out, const Values& values, Offset at) {
       values);
 }
 
-/// Tables are known by their name, and go with sections that only a mesh of this format has.
+/// Writes an array as the table of its name, if the mesh came from this format.
 void write_array(OutputFile& out, const WriteContext& from, const DataArray& array, Notes& notes) {
   const ListKind* kind = nullptr;
   const bool numbers = !std::holds_alternative<std::vector<std::string>>(array.values);

@@ -21,15 +21,10 @@ namespace fs = std::filesystem;
 
 constexpr char kComment = '#';
 
-/// A section that depends on none that counts vertices or cells, and is kept as it stands.
+/// A section that refers to no vertices or cells and is kept verbatim.
 struct PlainKind {
   std::string_view keyword;
-  enum Form : std::uint8_t {
-    words,
-    rows,
-    line,
-    lines
-  } form;  ///< rows and lines have their count before them
+  enum Form : std::uint8_t { words, rows, line, lines } form;  ///< rows and lines follow their count
   int words_per_row;
   int words_per_dimension;
 };
@@ -57,7 +52,7 @@ constexpr std::array kPlainKinds{
     PlainKind{"ReferenceStrings", PlainKind::lines, 0, 0},
 };
 
-/// The place of the kind with that keyword, or the size of the table.
+/// Returns the index of the kind with that keyword, or the size of the table.
 template <class Kinds>
 std::size_t find_kind(const Kinds& kinds, std::string_view keyword) {
   const auto found = std::find_if(kinds.begin(), kinds.end(),
@@ -65,7 +60,7 @@ std::size_t find_kind(const Kinds& kinds, std::string_view keyword) {
   return static_cast<std::size_t>(found - kinds.begin());
 }
 
-/// A section to be read when those before it in need are known; it lies at `byte`, behind its keyword.
+/// A section to be read later, when those that it refers to are known; `byte` follows its keyword.
 struct Pending {
   std::size_t kind;
   std::int64_t byte;
@@ -100,7 +95,7 @@ class Reader {
     }
   }
 
-  /// Reads or skips one section; false at the end of the mesh.
+  /// Reads or skips one section; returns false at the end of the mesh.
   bool read_section() {
     begin_ = in_.byte();
     const std::string keyword(in_.word("a keyword"));
@@ -207,7 +202,7 @@ class Reader {
     }
   }
 
-  /// The order of nodes in a kind of cells, by their coordinates in the reference cell.
+  /// Reads the order of nodes in a kind of cells, given by their coordinates in the reference cell.
   void read_ordering(std::size_t kind) {
     const auto nodes = reference_nodes(kCellKinds[kind].shape);
     const Index count = in_.count(what_count(), 2);
@@ -246,7 +241,7 @@ class Reader {
         {std::string(kLabel), Association::vertices, 1, label_values(std::move(references)), {}, {}});
   }
 
-  /// A position from 1 to `count`, counted from 0.
+  /// Reads a position from 1 to `count`; returns it counted from 0.
   Index position(Index count, std::string_view what) {
     const auto number = in_.integer<std::int64_t>(what);
     if (number < 1 || number > count) {
@@ -275,9 +270,9 @@ class Reader {
     }
   }
 
-  // ---- sections that count vertices or cells of others
+  // ---- sections that refer to vertices or cells
 
-  /// Leaves a section for later; without words per row, its first line tells.
+  /// Skips a section that is read later; `words` per row are counted in its first line if 0.
   void skip_rows(std::vector<Pending>& pending, std::size_t kind, int words) {
     pending.push_back({kind, in_.byte()});
     const Index count = in_.count(what_count(), 2 * std::max(words, 1));
@@ -288,7 +283,7 @@ class Reader {
     }
   }
 
-  /// The words of the line of the next word.
+  /// Counts the words in the line of the next word.
   int words_of_line() {
     if (in_.at_end()) return 1;
     std::string_view line = in_.peek_line();
@@ -320,7 +315,7 @@ class Reader {
     last_keyword_ = keyword;
   }
 
-  /// What `needed` positions count: the first of them, and how many there are.
+  /// Returns the first cell that positions of a target refer to, and the number of cells.
   std::pair<Index, Index> range_of(const Target& target, Index needed) {
     if (!target) return {0, mesh_.vertex_count()};
     const std::size_t kind = counted_kind(*target, counts_);
@@ -386,7 +381,7 @@ class Reader {
     note_missing_line_end(in_, kComment, notes_);
   }
 
-  /// Brings second-order nodes from the order that the file describes into VTK's.
+  /// Sorts second-order nodes from the order that the file describes into VTK's.
   void arrange_nodes() {
     for (std::size_t kind = kLinearKinds; kind < kCellKinds.size(); ++kind) {
       if (counts_[kind] == 0) continue;

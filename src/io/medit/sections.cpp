@@ -8,8 +8,7 @@
 namespace meshorder::medit {
 namespace {
 
-/// A reference cell: the coordinates of its corners, and pairs of corners in whose middle the other nodes
-/// lie.
+/// A reference cell: the coordinates of its corners, and the pairs of corners with a node halfway.
 struct Reference {
   std::vector<std::vector<int>> corners;
   std::vector<std::array<int, 2>> middles;

@@ -24,12 +24,12 @@ struct NumberReader {
   double real(std::string_view what);
   double finite(std::string_view what);
 
-  /// Reads the number of things that take so many bytes each at least (see Scanner::count).
+  /// Reads a count of items that take at least that many bytes each (see Scanner::count).
   Index count(std::string_view what, std::int64_t text_bytes, std::int64_t binary_bytes);
-  /// Checks such a number that was read already; `bytes` are those in the file's encoding.
+  /// Checks a count that was read already; `bytes` is the minimum in the file's encoding.
   [[nodiscard]] Index checked_count(std::int64_t number, std::string_view what, std::int64_t bytes) const;
 
-  // ---- what is text in binary files too
+  // ---- text, also in binary files
   std::string_view word(std::string_view what);
   std::int64_t text_integer(std::string_view what);
   double text_real(std::string_view what);

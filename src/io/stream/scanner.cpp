@@ -123,16 +123,16 @@ double Scanner::finite(std::string_view what) {
   return value;
 }
 
-Index Scanner::count(std::string_view what, std::int64_t least_bytes) {
-  return checked_count(integer<std::int64_t>(what), what, least_bytes);
+Index Scanner::count(std::string_view what, std::int64_t min_bytes) {
+  return checked_count(integer<std::int64_t>(what), what, min_bytes);
 }
 
-Index Scanner::checked_count(std::int64_t number, std::string_view what, std::int64_t least_bytes) const {
+Index Scanner::checked_count(std::int64_t number, std::string_view what, std::int64_t min_bytes) const {
   const std::string shown_count = std::string(what) + " is " + std::to_string(number);
   if (number < 0) fail(shown_count, "it cannot be negative");
   if (number > kMaxIndex) fail(shown_count, "at most 2147483647 are possible");
   // the last item of a text file may lack its line end
-  if (number > 0 && number > (bytes_left() + 1) / std::max<std::int64_t>(least_bytes, 1)) {
+  if (number > 0 && number > (bytes_left() + 1) / std::max<std::int64_t>(min_bytes, 1)) {
     fail(shown_count + ", but only " + std::to_string(bytes_left()) + " bytes follow",
          "the count is wrong or the file is cut short");
   }
@@ -205,7 +205,7 @@ double parse_real(const Scanner& at, std::string_view text, std::string_view wha
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = end == digits.data() + digits.size();
   if (code == std::errc::result_out_of_range && whole) {
-    // too small to matter is 0; too large is not a number that we can carry
+    // underflow is 0, overflow an error
     if (digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos) return 0;
     at.fail(std::string(what) + " is " + shown(text), "that is too large");
   }

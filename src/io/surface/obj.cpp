@@ -28,7 +28,7 @@ bool obj_holds(Shape shape, int vertices) {
   return shape == Shape::poly_vertex || (dimension(shape) <= 2 && vertices == corners(shape, 0));
 }
 
-/// Integers of all cells, whichever type the array has; empty when they do not fit.
+/// Returns the integers of all cells, of any type; none if they do not fit.
 std::vector<std::int32_t> cell_integers(const DataArray& array) {
   if (!array.is_dense() || array.components != 1) return {};
   if (const auto* same = std::get_if<std::vector<std::int32_t>>(&array.values)) return *same;
@@ -145,7 +145,7 @@ class Writer {
     }
   }
 
-  /// For each cell the sets that hold it, as positions in the list of sets, rising.
+  /// Returns for each cell the sets that contain it, as ascending positions in the list of sets.
   void find_groups() {
     group_offsets_.assign(mesh_.cells.shapes.size() + 1, 0);
     for (const EntitySet& set : mesh_.sets) {
@@ -165,7 +165,7 @@ class Writer {
     return {groups_.data() + group_offsets_[cell], groups_.data() + group_offsets_[cell + 1]};
   }
 
-  /// A set's name as one word, which a group's name is.
+  /// Returns a set's name as one word, as required of a group's name.
   static std::string group_name(const EntitySet& set) {
     std::string name = set.name.empty() ? "unnamed" : set.name;
     std::replace_if(
@@ -221,7 +221,7 @@ class Writer {
     current_[i] = name;
   }
 
-  /// Names that no cell has are stated once, so that they stay known.
+  /// Writes names that no cell has once, to preserve them.
   void write_unused_names() {
     for (const EntitySet& set : mesh_.sets) {
       if (set.association != Association::cells || !set.members.empty()) continue;

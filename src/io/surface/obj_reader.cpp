@@ -18,7 +18,7 @@
 namespace meshorder::obj {
 namespace {
 
-/// Which name holds for each cell.
+/// The name that applies to each cell.
 struct Named {
   std::vector<std::string> names;  ///< by first appearance; cells count them from 1
   std::unordered_map<std::string, std::int32_t> number_of;
@@ -51,7 +51,7 @@ std::optional<std::int32_t> as_integer(const std::string& text) {
   return value;
 }
 
-/// The numbers that names get: those that they are, when all are whole numbers, else by the alphabet, so that
+/// Returns the numbers of names: their values if all are integers, else their alphabetical ranks, so that
 /// they do not depend on the order of cells.
 std::map<std::int32_t, std::string> numbered(const Named& named, bool are_numbers) {
   std::map<std::int32_t, std::string> result;
@@ -69,7 +69,7 @@ std::map<std::int32_t, std::string> numbered(const Named& named, bool are_number
   return result;
 }
 
-/// Indices of corners, apart for each number of corners.
+/// Indices of corners, separately for each number of corners.
 struct CornerIndices {
   struct OfWidth {
     std::vector<Index> cells;
@@ -85,7 +85,7 @@ struct CornerIndices {
   }
 };
 
-/// A list (v, vt or vn) and the highest place named before the file gave it.
+/// A list (v, vt or vn) and the highest position named before it was read.
 struct List {
   std::string_view name;
   Index count = 0;
@@ -110,7 +110,7 @@ class Reader {
   }
 
  private:
-  /// One line, or several that end in a backslash; taken when it is done, so that errors name it.
+  /// Reads one line, or several joined by backslashes. Takes it at the end, so that errors name its line.
   void read_statement() {
     std::string_view line = trimmed(scanner_.peek_line());
     if (!line.empty() && line.back() == '\\') return read_long_statement();
@@ -210,7 +210,7 @@ class Reader {
     }
   }
 
-  /// A line of vt or vn, kept as it stands.
+  /// Reads a line of vt or vn, kept verbatim.
   void read_listed(std::string_view line, std::string_view numbers, int least, int most, List& list,
                    std::string& text) {
     int count = 0;
@@ -227,7 +227,7 @@ class Reader {
     ++list.count;
   }
 
-  /// The place, from 0, in the list that a number means: from 1, or from the last one back.
+  /// Returns the position, from 0, for a number that counts from 1, or back from the last if negative.
   Index place(std::string_view text, List& list) {
     const auto number = parse_integer<Index>(scanner_, text, "a number of " + std::string(list.name));
     if (number < 0 && -static_cast<std::int64_t>(number) <= list.count) return list.count + number;
@@ -244,7 +244,7 @@ class Reader {
                   fmt::format("there are {} so far, counted from 1 or back from -1", list.count));
   }
 
-  /// Numbers may point ahead, but not behind the end of the file.
+  /// Checks that numbers that point ahead stay within the list.
   void check_ahead(const List& list) const {
     if (list.highest_ahead < list.count) return;
     throw Error(Location{scanner_.file(), list.line_ahead, -1},

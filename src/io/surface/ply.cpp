@@ -31,11 +31,11 @@ using ply::Role;
 using ply::Type;
 using ply::TypeWord;
 
-/// Where a property's numbers come from.
+/// The source of a property's numbers.
 struct ArraySource {
   const DataArray* array = nullptr;
   Index component = 0;        ///< of a property that is no list
-  std::vector<Index> row_of;  ///< the row of each vertex or cell, −1 for none; empty when it is itself
+  std::vector<Index> row_of;  ///< the row of each vertex or cell, −1 for none; empty if row i belongs to i
 };
 
 /// A property to be written; without a source its numbers are coordinates or vertices of cells.
@@ -64,7 +64,7 @@ TypeWord word_of(const Values& values) {
   return i < kWords.size() ? TypeWord{std::string(kWords[i].first), kWords[i].second} : TypeWord{};
 }
 
-/// The type in which 64-bit integers can be written: PLY has none.
+/// Returns the type in which 64-bit integers are written, as PLY has none for them.
 TypeWord word_for_wide(const Values& values) {
   const std::vector<double> numbers = as_reals(values);
   const bool fit = std::all_of(numbers.begin(), numbers.end(), [](double x) {
@@ -101,7 +101,7 @@ Role usual_role(Shape shape) {
   return shape == Shape::tetrahedron ? Role::tetrahedra : shape == Shape::line ? Role::edges : Role::faces;
 }
 
-/// Whether the elements of the file fit the cells of the mesh, block by block.
+/// Returns whether the elements of the file fit the cells of the mesh, block by block.
 bool elements_fit(const Metadata& metadata, const Mesh& mesh) {
   Index cell = 0;
   for (const Element& element : metadata.elements) {
@@ -170,7 +170,7 @@ std::vector<Table> usual_tables(const Mesh& mesh) {
 
 // ---- which properties
 
-/// Gathers the columns of one table, and remembers which arrays went into them.
+/// Collects the columns of one table and the arrays that they use.
 class Columns {
  public:
   Columns(const Mesh& mesh, Table& table, std::vector<const DataArray*>& written, Notes& notes)
@@ -192,7 +192,7 @@ class Columns {
   }
 
  private:
-  /// How many rows of the array belong to things of this table.
+  /// Counts the rows of the array that belong to items of this table.
   [[nodiscard]] Index rows_inside(const DataArray& array) const {
     if (array.is_dense()) return index_size(table_.items);
     return static_cast<Index>(
@@ -224,7 +224,7 @@ class Columns {
     }
   }
 
-  /// A property that the file had, with the arrays of its name.
+  /// Adds a property that the file had, with the arrays of its name.
   void add_known(const Property& property) {
     Column column{property, {}};
     if (is_geometry(property)) return table_.columns.push_back(widened(std::move(column)));
@@ -236,7 +236,7 @@ class Columns {
       column.sources.push_back(source_of(mesh_, array, 0));
       use(array);
     }
-    // a list may be empty everywhere; another property without an array is gone
+    // only a list can be empty everywhere; other properties without an array were removed
     if (property.is_list || !column.sources.empty() || table_.items.empty()) {
       table_.columns.push_back(std::move(column));
     }
@@ -246,7 +246,7 @@ class Columns {
     return array.components == 1 && rows_inside(array) == index_size(table_.items);
   }
 
-  /// Vertices of cells need types that hold every vertex's number after reordering, and every cell's length.
+  /// Widens the types of a cell's vertices, if needed, to hold every vertex and every cell's length.
   [[nodiscard]] Column widened(Column column) const {
     if (table_.element.role == Role::vertices) return column;
     constexpr std::array<std::int64_t, 6> kLargest{127, 255, 32767, 65535, 2147483647, 4294967295};
@@ -263,7 +263,7 @@ class Columns {
     return column;
   }
 
-  /// A normal, colour or texture coordinates of several components, as single properties of the usual names.
+  /// Adds a normal, colour or texture coordinates as one property a component, of the usual names.
   void add_vector(const SurfaceVector& vector) {
     const GatheredVector gathered = gather(mesh_, vector, on_);
     if (gathered.from.size() != 1 || is_used(*gathered.from[0]) || table_.items.empty()) return;
@@ -284,7 +284,7 @@ class Columns {
     use(array);
   }
 
-  /// Any other array: a property of its name, or a list where it has several components or gaps.
+  /// Adds any other array: a property of its name, or a list if it has several components or gaps.
   void add_other(const DataArray& array) {
     if (std::holds_alternative<std::vector<std::string>>(array.values)) return;
     std::string name = array.name;
@@ -307,7 +307,7 @@ class Columns {
     use(array);
   }
 
-  /// Notes once what concerns several elements.
+  /// Adds a note once, also if it concerns several elements.
   void note(const std::string& text) {
     if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
   }
@@ -373,7 +373,7 @@ class NumberWriter {
     }
   }
 
-  /// Text keeps the digits that a coordinate has, whatever its type.
+  /// Writes a coordinate; text keeps all its digits, whatever its type.
   void coordinate(Type type, double value) {
     if (encoding_ == Encoding::ascii) return put(value);
     if (type == Type::float32) rounded_ = rounded_ || static_cast<double>(static_cast<float>(value)) != value;
@@ -405,7 +405,7 @@ class NumberWriter {
   bool rounded_ = false;
 };
 
-/// `count` numbers of the array from that entry on.
+/// Writes `count` numbers of the array from entry `first` on.
 void write_values(NumberWriter& to, Type type, const DataArray& array, Offset first, Index count) {
   std::visit(
       [&](const auto& values) {

@@ -92,7 +92,7 @@ Property parse_property(const Scanner& scanner, std::string_view line) {
   return property;
 }
 
-/// Numbers as wide as this could be those of vertices or faces.
+/// Returns whether numbers of this type could refer to vertices or faces.
 bool could_be_indices(const Property& property) {
   return is_integer(property.type.type) && property.type.type != Type::int8 &&
          property.type.type != Type::uint8;
@@ -115,7 +115,7 @@ void check_cells_element(const Scanner& scanner, const Element& element) {
   }
 }
 
-/// Stops where reordering could falsify what we do not understand, or what we need is missing.
+/// Fails if a required property is missing, or an unknown one could refer to vertices or faces.
 void check_element(const Scanner& scanner, const Element& element) {
   for (std::size_t i = 0; i < element.properties.size(); ++i) {
     const Property& property = element.properties[i];
@@ -146,7 +146,7 @@ void check_element(const Scanner& scanner, const Element& element) {
   }
 }
 
-/// Moves behind the line of end_header, in a binary file to the first byte of data.
+/// Moves to the first byte after the line of end_header.
 void leave_header(Scanner& scanner) {
   const std::string_view all = scanner.all();
   const bool only_cr = all.size() > 4 && all[3] == '\r' && all[4] != '\n';
@@ -207,7 +207,7 @@ struct BodyReader : NumberReader {
     return binary ? scanner.binary<T>(what, order) : text_number<T>(what);
   }
 
-  /// A number of that type, as T.
+  /// Reads a number of that type and converts it to T.
   template <class T>
   T number_as(Type type, std::string_view what) {
     switch (type) {
@@ -232,7 +232,7 @@ struct BodyReader : NumberReader {
     return static_cast<T>(number<double>(what));
   }
 
-  /// The length of a list; each entry takes at least one byte of what is left.
+  /// Reads the length of a list, at most the number of bytes that are left.
   Index list_length(const Property& property) {
     const auto length = number_as<std::int64_t>(property.count_type.type, "the length of a list");
     if (length < 0 || length > scanner.bytes_left()) {
@@ -295,7 +295,7 @@ void append(Values& values, BodyReader& body, Index count, const Property& prope
       values);
 }
 
-/// The values of one property: of a list, those of each length apart.
+/// The values of one property; those of a list separately for each length.
 struct Column {
   struct OfLength {
     std::vector<Index> rows;
@@ -313,8 +313,8 @@ struct Column {
   }
 };
 
-/// Bytes, or characters with a blank, that a thing of the element takes at least.
-std::int64_t least_bytes(const Element& element, const BodyReader& body) {
+/// Returns the minimum number of bytes (in text: digits and blanks) of an item of the element.
+std::int64_t min_bytes(const Element& element, const BodyReader& body) {
   constexpr std::array<int, 8> kBytes{1, 1, 2, 2, 4, 4, 4, 8};
   std::int64_t bytes = 0;
   for (const Property& property : element.properties) {
@@ -339,7 +339,7 @@ class Reader {
   Mesh read() {
     for (Element& element : header_->elements) {
       (void)body_.scanner.checked_count(element.count, "the number of " + element.name,
-                                        least_bytes(element, body_));
+                                        min_bytes(element, body_));
       if (element.role == Role::other) {
         read_other(element);
       } else {
@@ -372,7 +372,7 @@ class Reader {
     }
   }
 
-  /// Reads a coordinate or vertices of a cell; false for every other property.
+  /// Reads a coordinate or vertices of a cell; returns false for every other property.
   bool read_geometry(const Element& element, const Property& property, Index i) {
     if (element.role == Role::vertices) {
       const int k = coordinate_of(property);
@@ -429,7 +429,7 @@ class Reader {
     }
   }
 
-  /// A property that all cells have, faces and edges, is one array.
+  /// Joins the arrays of a property that all cells have, faces and edges, into one.
   void join_arrays_of_all_cells() {
     if (cell_elements_ < 2) return;
     for (std::size_t i = 0; i < mesh_.data.size(); ++i) {
@@ -458,7 +458,7 @@ class Reader {
     });
   }
 
-  /// Appends the later parts to the first; the rows of all follow each other.
+  /// Appends the later parts to the first.
   void join(const std::vector<std::size_t>& parts) {
     DataArray& whole = mesh_.data[parts[0]];
     std::visit(
@@ -475,7 +475,7 @@ class Reader {
     }
   }
 
-  /// Passes over an element that is kept as it stands.
+  /// Reads an element that is kept verbatim.
   void read_other(Element& element) {
     const std::int64_t begin = body_.scanner.byte();
     for (Index i = 0; i < element.count; ++i) {

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr char kComment = '#';
 
-/// What one of the files with cells gave.
+/// The content of one file of cells.
 struct Part {
   Index count = 0;
   IdMap numbering;
@@ -49,7 +49,7 @@ void begin_record(Scanner& in, std::string_view what) {
   }
 }
 
-/// The next number of a record, which must stand on the same line.
+/// Takes the next number of a record, which must be on the same line.
 std::string_view column(Scanner& in, std::string_view what) {
   if (in.at_line_end()) {
     in.fail(fmt::format("unexpected end of line; expected {}", what),
@@ -64,7 +64,7 @@ void end_record(Scanner& in) {
   }
 }
 
-/// A whole number; 2.0 is one, as some writers print markers so.
+/// Reads an integer; accepts 2.0, as some writers print markers so.
 std::int64_t whole(Scanner& in, std::string_view what) {
   const std::string_view text = column(in, what);
   if (text.find_first_of(".eE") == std::string_view::npos) return parse_integer<std::int64_t>(in, text, what);
@@ -75,7 +75,7 @@ std::int64_t whole(Scanner& in, std::string_view what) {
   return static_cast<std::int64_t>(value);
 }
 
-/// The numbers of a header line, `standard` where the line leaves some out.
+/// Reads the numbers of a header line; missing ones are those of `standard`.
 template <std::size_t N>
 std::array<std::int64_t, N> header(Scanner& in, std::array<std::int64_t, N> standard) {
   begin_record(in, "the header");
@@ -87,7 +87,7 @@ std::array<std::int64_t, N> header(Scanner& in, std::array<std::int64_t, N> stan
   return standard;
 }
 
-/// The number of records, which must fit what is left of the file.
+/// Checks the number of records, which must fit the rest of the file.
 Index checked_records(Scanner& in, std::int64_t records, std::string_view what, std::int64_t columns) {
   return in.checked_count(records, what, 2 * columns);
 }
@@ -113,7 +113,7 @@ void add_number(Scanner& in, IdMap& numbering, std::string_view what) {
     in.fail(fmt::format("{} {} is given twice", what, number), "each must be unique");
 }
 
-/// The rest of the file must be comments; takes them along.
+/// Keeps the comments at the end of the file; fails for anything else.
 void end_file(Scanner& in, Metadata::Part& part, Notes& notes) {
   if (!in.at_end()) in.fail("unexpected text after the last record", "correct the number in the header");
   part.present = true;
@@ -172,7 +172,7 @@ void read_points(Scanner& in, ReadContext& to) {
 
 // ---- cells
 
-/// The points of a cell, from the file's order into VTK's.
+/// Reads the points of a cell, from the file's order into VTK's.
 void read_cell_points(Scanner& in, const IdMap& points, std::span<const int> places,
                       std::array<Index, 10>& cell) {
   std::array<Index, 10> as_given{};
@@ -189,7 +189,7 @@ void read_cell_points(Scanner& in, const IdMap& points, std::span<const int> pla
   for (std::size_t k = 0; k < places.size(); ++k) cell[k] = as_given[places[k]];
 }
 
-/// Reads all cells of a file behind its header; every line has `nodes` points, attributes and a marker.
+/// Reads all cells of a file after its header; every line has `nodes` points, attributes and a marker.
 void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, ReadContext& to) {
   Part& part = to.parts[file];
   const std::span<const int> order = places(file, nodes, false);
@@ -240,7 +240,7 @@ void read_ele(Scanner& in, ReadContext& to) {
   take_regions_as_markers(part);
 }
 
-/// The words of the first record's line, after its number; the scanner stays where it is.
+/// Counts the words of the first record's line after its number, without taking them.
 int columns_of_first_record(Scanner& in) {
   if (in.at_end()) return 0;
   std::string_view line = in.peek_line();
@@ -258,7 +258,7 @@ int columns_of_first_record(Scanner& in) {
       "remove them, or let TetGen write the file without -nn");
 }
 
-/// Faces and edges: their header does not say how many points a cell has, the first line does.
+/// Reads faces and edges; their header lacks the number of points of a cell, which the first line shows.
 void read_boundary(Scanner& in, File file, ReadContext& to) {
   const auto [records, has_markers] = header<2>(in, {0, 0});
   const bool marked = checked_markers(in, has_markers);
@@ -284,7 +284,7 @@ void read_boundary(Scanner& in, File file, ReadContext& to) {
   read_cells(in, file, file == kFace ? Shape::triangle : Shape::line, nodes, marked, to);
 }
 
-/// The two ends of the edge on which each second-order node of the tetrahedra lies, the lower first.
+/// Returns, for each second-order node of the tetrahedra, the ends of its edge, the lower first.
 std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahedra) {
   constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
   std::vector<std::array<Index, 2>> result(mesh.points.size(), {-1, -1});
@@ -300,7 +300,7 @@ std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahe
 }
 
 /// TetGen 1.5 writes the second-order nodes of faces in two orders: with -f that of the opposite edges, else
-/// that of VTK, in which they were read. The tetrahedra, which know the edge of every node, tell which it is.
+/// that of VTK, in which they were read. The tetrahedra, which have the edge of every node, decide.
 void settle_face_order(ReadContext& to) {
   const Index tetrahedra = to.parts[kEle].count;
   const Index end = tetrahedra + to.parts[kFace].count;
@@ -328,9 +328,9 @@ void settle_face_order(ReadContext& to) {
   }
 }
 
-// ---- what all files of cells together give
+// ---- all files of cells together
 
-/// Cells are numbered in each file anew; the mesh keeps the numbers when one file's are not consecutive.
+/// Sets the ids of cells if those of a file are not consecutive. Each file numbers its cells separately.
 void set_cell_ids(ReadContext& to) {
   const int base = to.metadata->base;
   if (std::all_of(to.parts.begin(), to.parts.end(),

@@ -33,7 +33,7 @@ bool is_there(const fs::path& path) {
 
 namespace {
 
-/// Whether a .poly or .smesh file has no points of its own but refers to those of the .node file.
+/// Returns whether a .poly or .smesh file has no points of its own but refers to those of the .node file.
 bool refers_to_points(const fs::path& path) {
   std::ifstream in(path);
   for (std::string line; std::getline(in, line);) {
@@ -59,7 +59,7 @@ void note_other_companions(const fs::path& path, std::string_view what, Notes& n
 
 namespace {
 
-// ---- which cell goes where
+// ---- the cells of each file
 
 /// The cells of each file, in their order, and how many points each has.
 struct Layout {
@@ -105,7 +105,7 @@ Layout layout_of(const Mesh& mesh, const Metadata& metadata, const fs::path& pat
   return layout;
 }
 
-/// A file of an earlier mesh would be read as part of this one.
+/// Fails if a file of an earlier mesh would be read as part of this one.
 void refuse_leftovers(const Layout& layout, const Metadata& metadata, const fs::path& path) {
   for (const File file : kCellFiles) {
     const fs::path other = beside(path, kExtensions[file]);
@@ -139,7 +139,7 @@ void print_value(OutputFile& out, const Column& column, Index item) {
       column.array->values);
 }
 
-/// Where the array has the row of each vertex or cell; −1 where it has none.
+/// Returns the row of each vertex or cell in the array; −1 for none.
 std::vector<Index> rows_of(const DataArray& array, Index count) {
   std::vector<Index> result;
   if (array.is_dense()) return result;
@@ -189,7 +189,7 @@ std::vector<Column> attribute_columns(const Mesh& mesh, Association association,
   return columns;
 }
 
-/// Says which array became which columns, where the reader could not know.
+/// Notes the mapping of arrays to attribute columns if it is not the default.
 void note_lost_names(const std::vector<Column>& columns, std::string_view file, Notes& notes) {
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const DataArray& array = *columns[k].array;
@@ -205,7 +205,7 @@ void note_lost_names(const std::vector<Column>& columns, std::string_view file, 
 
 // ---- files
 
-/// Whether the items of a file have markers; those without one get 0.
+/// Returns whether the items of a file have markers; notes those without one, which get 0.
 bool has_markers(const Labels& labels, const std::vector<Index>& items, std::string_view file, Notes& notes) {
   if (!labels.any()) return false;
   const auto given =
@@ -218,14 +218,14 @@ struct WriteContext {
   const Mesh& mesh;
   const Metadata& metadata;
   Layout layout;
-  bool own_ids;  // the numbers came from such files; others than TetGen's own are counted anew
+  bool own_ids;  // the ids came from TetGen's files; others are not written
   Labels vertex_labels;
   Labels cell_labels;
 
   [[nodiscard]] std::int64_t vertex_number(Index v) const {
     return own_ids && !mesh.vertex_ids.empty() ? mesh.vertex_ids[v] : v + std::int64_t{metadata.base};
   }
-  /// Of the cell that stands at `place` in its file.
+  /// Returns the number of the cell at position `place` of its file.
   [[nodiscard]] std::int64_t cell_number(Index c, Index place) const {
     return own_ids && !mesh.cell_ids.empty() ? mesh.cell_ids[c] : place + std::int64_t{metadata.base};
   }

@@ -79,7 +79,7 @@ class Reader {
     metadata_->sections.push_back(std::move(section));
   }
 
-  /// The next line that is no keyword, without its comment; Error when there is none.
+  /// Takes the next line that is not a keyword, without its comment; fails if there is none.
   std::string_view data_line(const std::string& what) {
     std::string_view line;
     if (!lines_.peek(line)) {
@@ -133,7 +133,7 @@ class Reader {
     std::string_view line = data_line("the number of " + what);
     Header header;
     const std::int64_t count = integer(line, "the number of " + what);
-    // lines may come from an included file, so the bytes left here are no bound
+    // lines may come from an included file, so the bytes left are not a bound
     if (count < 0 || count > kMaxIndex) {
       lines_.at().fail("the number of " + what + " is " + std::to_string(count),
                        "0 to 2147483647 are possible");
@@ -156,7 +156,7 @@ class Reader {
 
   static std::string_view trimmed_all(std::string_view line) { return next_word(line, kSeparators); }
 
-  /// No more is reserved than the rest of this file could fill; included files grow the rest.
+  /// Returns how many items to reserve: no more than the rest of this file can hold.
   std::size_t reservable(Index count) {
     return static_cast<std::size_t>(std::min<std::int64_t>(count, lines_.at().bytes_left() / 8));
   }
@@ -251,7 +251,7 @@ class Reader {
     return place;
   }
 
-  /// Lines up to the next keyword, as they stand.
+  /// Reads the lines up to the next keyword, verbatim.
   void read_lines(Section& section) {
     std::string_view line;
     while (lines_.peek(line) && line.front() != '*') {
@@ -313,7 +313,7 @@ class Reader {
     lines_.take();
   }
 
-  /// A section that Vega does not know is kept as it stands, unless it could name elements or vertices.
+  /// Keeps an unknown section verbatim, provided it cannot name elements or vertices.
   void read_other(Section& section, const std::string& title) {
     section.title = title;
     const std::int64_t where = lines_.at().line();
@@ -355,7 +355,6 @@ void Reader::label_by_region() {
 
 }  // namespace
 
-/// For each cell the number, from 1, of the last region that it lies in; 0 for none. Empty without regions.
 std::vector<std::int32_t> region_numbers(const Metadata& metadata, const Mesh& mesh) {
   std::vector<std::int32_t> numbers;
   std::int32_t number = 0;

@@ -19,7 +19,7 @@ struct CellType {
   Shape shape;
   int vertices;  // exactly so many, or at least −vertices
 
-  // places whose vertices a Mesh has the other way round; {0, 0} is none
+  // positions whose vertices are swapped in a Mesh; {0, 0} is none
   std::array<std::pair<int, int>, 2> swapped{};
 };
 
@@ -30,8 +30,7 @@ constexpr int kVoxel = 11;
 // it faces inward. Shape functions do not mind, but faces, normals and volumes do. Quadratic wedges have the
 // order of a Mesh, as in the files of Gmsh and meshio: VTK 9.1 sees their faces from inside, a mistake by
 // the notes of a later version. By its release notes VTK 9.7 takes linear wedges, too, in the order of a
-// Mesh, but files do not tell which order they have, and those of Gmsh, meshio and VTK up to 9.6 have this
-// one.
+// Mesh, but files do not record their order, and those of Gmsh, meshio and VTK up to 9.6 have this one.
 constexpr std::array<std::pair<int, int>, 2> kWedge{{{1, 2}, {4, 5}}};
 
 // in the order in which a type is chosen for a shape and its vertices
@@ -90,7 +89,7 @@ constexpr std::array kTypes{
     CellType{81, "VTK_BEZIER_PYRAMID", Shape::pyramid, -5},
 };
 
-/// By their numbers, the types of which vertices are swapped; nullptr for the others.
+/// Types with swapped vertices, by number; nullptr for the others.
 constexpr std::array<const CellType*, 256> kSwappedTypes = [] {
   std::array<const CellType*, 256> types{};
   for (const CellType& type : kTypes) {
@@ -116,7 +115,7 @@ void swap_vertices(const CellType& type, Index* vertices) {
   for (const auto& [a, b] : type.swapped) std::swap(vertices[a], vertices[b]);
 }
 
-/// The type that a shape with so many vertices has, when nothing else is known; nullptr when there is none.
+/// Returns the default type of a shape with that number of vertices, or nullptr.
 const CellType* default_type(Shape shape, int vertices) {
   const auto found = std::find_if(kTypes.begin(), kTypes.end(), [&](const CellType& type) {
     return type.shape == shape && fits(type, vertices);
@@ -124,7 +123,7 @@ const CellType* default_type(Shape shape, int vertices) {
   return found == kTypes.end() ? nullptr : &*found;
 }
 
-/// Types of all pairs met so far, since a mesh asks for the same few again and again.
+/// Caches default types, as a mesh has few.
 class DefaultTypes {
  public:
   const CellType* operator()(Shape shape, int vertices) {
@@ -160,7 +159,7 @@ void take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes)
 
   DefaultTypes defaults;
   Index converted = 0;
-  bool plain = true;  // shapes and vertices tell all types
+  bool plain = true;  // shapes and vertices determine all types
   const Index count = index_size(cells.types);
   mesh.cells.shapes.resize(count);
   for (Index c = 0; c < count; ++c) {

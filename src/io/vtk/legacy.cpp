@@ -22,7 +22,7 @@
 namespace meshorder::vtk {
 namespace {
 
-/// Unusual characters of names and texts as %XX, as VTK writes them.
+/// Returns names and strings with unusual characters as %XX, as VTK writes them.
 std::string encoded(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -36,7 +36,7 @@ std::string encoded(std::string_view text) {
   return result;
 }
 
-/// The section of a POLYDATA file that holds cells of this type, or −1.
+/// Returns the section of a POLYDATA file for cells of this type, or −1.
 int polydata_section(std::uint8_t type) {
   switch (type) {
     case 1:
@@ -56,7 +56,7 @@ int polydata_section(std::uint8_t type) {
   }
 }
 
-/// Whether the cells stand in the order of the sections of a POLYDATA file, which also tell their types.
+/// Returns whether the cells are in the order of the sections of a POLYDATA file, which imply their types.
 bool fits_polydata(const Cells& cells, const std::vector<std::uint8_t>& types) {
   int last = 0;
   for (Index c = 0; c < cells.size(); ++c) {
@@ -161,7 +161,7 @@ class Writer {
       out_.print("{}\n", encoded(text));
       return;
     }
-    // the length's first two bits tell its bytes
+    // the first two bits encode the size of the length
     const std::uint64_t length = text.size();
     if (length < 1U << 6U) {
       out_.binary(static_cast<std::uint8_t>(0xC0U | length));
@@ -177,7 +177,7 @@ class Writer {
 
   // ---- arrays
 
-  /// The number type under which an array is written: the file's own, while it can hold the values.
+  /// Returns the number type of an array: that of its file if it can hold the values.
   std::string type_of(const DataArray& array, std::optional<Association> association) const {
     const ArrayFacts* facts = find_facts(from_.metadata, association, array.name);
     std::string usual(kLegacyTypeNames[array.values.index()]);
@@ -307,7 +307,7 @@ class Writer {
   // ---- data
 
   void write_data() {
-    // points first, unless the arrays say otherwise
+    // points first, unless the first array is of cells
     std::array order{Association::vertices, Association::cells};
     if (!from_.arrays.empty() && from_.arrays.front()->association == Association::cells)
       std::swap(order[0], order[1]);
@@ -329,7 +329,7 @@ class Writer {
     }
   }
 
-  /// Arrays in a role by its keyword, runs of others as a FIELD.
+  /// Writes arrays with a role by its keyword, runs of others as a FIELD.
   void write_arrays(const std::vector<const DataArray*>& arrays, Association association) {
     for (std::size_t i = 0; i < arrays.size();) {
       if (write_attribute(*arrays[i])) {
@@ -343,7 +343,7 @@ class Writer {
     }
   }
 
-  /// The keyword of an array's role, where it fits, and the role.
+  /// Returns the keyword of an array's role, if it fits, and the role.
   [[nodiscard]] std::pair<const LegacyAttribute*, const ArrayRole*> attribute_of(
       const DataArray& array) const {
     if (array.name.empty()) return {};

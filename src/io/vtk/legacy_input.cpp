@@ -19,13 +19,13 @@
 namespace meshorder::vtk {
 namespace {
 
-/// A number type as files name it.
+/// A number type and its name in files.
 struct TypeName {
   std::string_view name;
   std::size_t alternative;  // of Values
 };
 
-// without those of kLegacyTypeNames
+// besides those of kLegacyTypeNames
 constexpr std::array kOtherTypeNames{TypeName{"signed_char", 2},   TypeName{"long", 8},
                                      TypeName{"unsigned_long", 9}, TypeName{"vtkidtype", 8},
                                      TypeName{"long_long", 8},     TypeName{"unsigned_long_long", 9},
@@ -88,7 +88,7 @@ Number LegacyInput::number(const std::string& what) {
   if constexpr (std::is_same_v<Number, double>) {
     return finite_only ? scanner.finite(what) : scanner.real(what);
   } else if constexpr (std::is_same_v<Number, float>) {
-    // a float in its own digits: a detour over double would round twice
+    // parsed as float, since a conversion from double would round twice
     const std::string_view digits = scanner.peek_word();
     float value = 0;
     const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -154,7 +154,7 @@ void LegacyInput::texts(std::vector<std::string>& values, std::int64_t count, co
   }
 }
 
-/// The first two bits of a length tell its bytes.
+/// Reads a length, whose first two bits encode its size.
 std::int64_t LegacyInput::text_length(const std::string& what) {
   std::uint64_t length = scanner.binary<std::uint8_t>(what);
   constexpr std::array kFollowing{7, 3, 1, 0};
@@ -188,7 +188,7 @@ DataArray LegacyInput::array(const std::string& name, std::optional<Association>
                                      ? static_cast<std::size_t>(usual - kLegacyTypeNames.begin())
                                      : other->alternative);
 
-  // the tuples begin in the next line, those of a binary file with its very first byte
+  // tuples begin on the next line; in a binary file at its first byte
   const bool text = std::holds_alternative<std::vector<std::string>>(result.values);
   const std::int64_t count = tuples * components;
   if (count > 0 && (binary || text)) scanner.raw_line();
@@ -246,7 +246,7 @@ void LegacyInput::metadata(DataArray& array, std::optional<Association> associat
   }
 }
 
-/// Keys are kept as they stand but for the norms, which VTK finds itself.
+/// Keeps keys verbatim except for norms, which VTK computes.
 void LegacyInput::information(std::int64_t keys, const DataArray& array,
                               std::optional<Association> association) {
   std::string kept;

@@ -13,34 +13,35 @@
 
 namespace meshorder::vtk {
 
-/// "SCALARS" for "scalars".
+/// Returns "SCALARS" for "scalars".
 std::string upper_case(std::string_view text);
-/// "float" for "FLOAT".
+/// Returns "float" for "FLOAT".
 std::string lower_case(std::string_view text);
-/// Names and texts carry unusual characters as %XX.
+/// Decodes %XX in names and strings.
 std::string percent_decoded(std::string_view text);
 
-/// Words, counts and arrays of a legacy file of VTK, text or binary.
+/// Reads words, counts and arrays of a legacy file, text or binary.
 class LegacyInput : public NumberReader {
  public:
   explicit LegacyInput(const std::filesystem::path& path) : NumberReader(path) { order = std::endian::big; }
 
-  /// The same for a fault that is seen after a section that began at that line.
+  /// Makes the Error for a fault in a section that began at that line.
   [[nodiscard]] Error section_error(std::int64_t line, const std::string& what,
                                     const std::string& remedy) const;
 
-  /// A number of things, 0 … kMaxIndex.
+  /// Reads a count, 0 … kMaxIndex.
   std::int64_t count(std::string_view what);
-  /// Stops unless `count` numbers of `bytes` bytes (in text: a digit and a blank) can follow.
+  /// Fails unless the rest of the file has room for `entries` numbers of `bytes` bytes (in text: a digit and
+  /// a blank).
   void check_room(std::int64_t entries, std::int64_t bytes, const std::string& what) const;
 
-  /// An array of tuples, and the METADATA that may follow it.
+  /// Reads an array of tuples and the METADATA that may follow it.
   DataArray array(const std::string& name, std::optional<Association> association, std::int64_t tuples,
                   std::int64_t components, const std::string& type);
-  /// COMPONENT_NAMES and INFORMATION, up to an empty line.
+  /// Reads COMPONENT_NAMES and INFORMATION, up to an empty line.
   void metadata(DataArray& array, std::optional<Association> association);
 
-  bool finite_only = false;  ///< in text, real numbers that are not finite are refused
+  bool finite_only = false;  ///< fail for real numbers in text that are not finite
   std::vector<ArrayFacts> facts;
   Notes notes;
 

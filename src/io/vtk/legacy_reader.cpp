@@ -3,8 +3,8 @@
 // Reader of VTK's legacy files, versions 1.0 to 5.1, UNSTRUCTURED_GRID and POLYDATA, text and binary:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
 //
-// VTK's own reader is not used: it reads past the end of cell lists that promise too many vertices, allocates
-// what a header promises, cannot read `nan`, and changes the locale of the whole program.
+// VTK's own reader is not used: it reads past the end of damaged cell lists, trusts the sizes in a header
+// when it allocates, cannot read `nan`, and changes the locale of the whole program.
 #include "base/text.hpp"
 #include "io/vtk/legacy_input.hpp"
 #include "io/vtk/vtk.hpp"
@@ -153,7 +153,7 @@ class Reader {
     }
   }
 
-  /// Before version 5: the number of vertices before those of each cell.
+  /// Reads cells as before version 5: each cell's number of vertices before its vertices.
   void read_counted_cells(FileCells& cells, std::int64_t count, std::int64_t size, const std::string& key) {
     in_.check_room(size, 4, key);
     if (count > size)
@@ -189,7 +189,7 @@ class Reader {
     return static_cast<Index>(vertex);
   }
 
-  /// From version 5 on: where each cell begins, then all vertices.
+  /// Reads cells as from version 5 on: offsets, then vertices.
   void read_offsets_and_vertices(FileCells& cells, std::int64_t count, std::int64_t size,
                                  const std::string& key) {
     if (count == 0) return;
@@ -275,7 +275,7 @@ class Reader {
     add_array(mesh_, std::move(array));
   }
 
-  /// SCALARS, VECTORS and their like; false for another keyword.
+  /// Reads SCALARS, VECTORS and similar; returns false for another keyword.
   bool read_attribute(const std::string& key) {
     const auto attribute = std::find_if(kLegacyAttributes.begin(), kLegacyAttributes.end(),
                                         [&](const LegacyAttribute& a) { return a.keyword == key; });
@@ -300,7 +300,7 @@ class Reader {
     return true;
   }
 
-  /// Arrays of points or cells, or of the whole mesh before both.
+  /// Reads arrays of points or cells; before both, arrays of the whole mesh.
   void read_field() {
     in_.word("the name of the FIELD");
     const std::int64_t arrays = in_.count("the number of arrays of the FIELD");
@@ -341,7 +341,7 @@ class Reader {
     layout_.lookup_tables.push_back({*on_, name, static_cast<Index>(size), std::move(content)});
   }
 
-  // ---- the whole
+  // ---- the end
 
   void finish() {
     if (!has_points_) in_.fail("the file has no POINTS", "the file may be cut short");
@@ -374,7 +374,7 @@ class Reader {
     mesh_.format_metadata = metadata_;
   }
 
-  /// The cells of all sections of a POLYDATA file; each section is a block.
+  /// Returns the cells of all sections of a POLYDATA file; each section is a block.
   FileCells polydata_cells() {
     FileCells all;
     std::vector<Index> blocks;
@@ -416,7 +416,7 @@ class Reader {
   std::array<FileCells, 4> sections_;  // an unstructured grid has the first alone
   std::int64_t cells_line_ = 0;
   std::int64_t types_line_ = 0;
-  std::optional<Association> on_;  // what the arrays that follow belong to
+  std::optional<Association> on_;  // the owner of the arrays that follow
 };
 
 }  // namespace

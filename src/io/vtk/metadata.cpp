@@ -174,7 +174,7 @@ void WriteContext::add_made(DataArray array) {
 void WriteContext::collect_arrays() {
   Names names;
   for (const DataArray& array : mesh.data) {
-    // the cell types tell these
+    // written as the cell types
     if (array.association == Association::cells && array.name == kCellTypes) continue;
     const std::string name = names.unused(array.name, array.association, notes);
     if (array.is_dense() && name == array.name) {

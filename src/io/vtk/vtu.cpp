@@ -3,8 +3,8 @@
 // Writer of VTK's XML files of unstructured grids:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 //
-// VTK's own writer (9.1) is not used: it writes names with & or < as they are, which is no XML, crashes over
-// pedigree ids that are texts, and does not notice that a disk is full when it closes a file.
+// VTK's own writer (9.1) is not used: it writes names with & or < as they are, which is not XML, crashes on
+// pedigree ids that are strings, and does not notice a full disk when it closes a file.
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/base64.hpp"
@@ -37,7 +37,7 @@ using Numbers =
                  std::span<const std::int32_t>, std::span<const std::uint32_t>, std::span<const std::int64_t>,
                  std::span<const std::uint64_t>, std::span<const char>>;
 
-/// An array of the file: its tag and its numbers; texts as their characters.
+/// An array of the file: its tag and its numbers; strings as their characters.
 struct Array {
   std::string tag;  // without format and end
   Numbers numbers;
@@ -46,7 +46,7 @@ struct Array {
   std::uint64_t offset = 0;
 };
 
-/// The part of the file that an array stands in, and its attributes.
+/// A part of the file with arrays: its opening and closing tags.
 struct Section {
   std::string begin;
   std::string end;
@@ -90,7 +90,7 @@ class Writer {
     }
   }
 
-  // ---- what is written
+  // ---- arrays
 
   void collect() {
     if (!from_.metadata.fields.empty()) {
@@ -114,7 +114,7 @@ class Writer {
     sections_.push_back(std::move(section));
   }
 
-  /// The attributes that name the arrays in roles.
+  /// Returns the attributes that name the arrays with roles.
   [[nodiscard]] std::string roles(Association association) const {
     std::string result;
     for (std::size_t role = 0; role < kXmlRoles.size(); ++role) {
@@ -183,7 +183,7 @@ class Writer {
     return result;
   }
 
-  /// Vertices, ends and types of the cells; VTK wants the first two in one type.
+  /// Returns the vertices, ends and types of the cells; VTK requires one number type for the first two.
   std::vector<Array> cells() {
     const Cells& cells = from_.cells();
     const bool narrow = cells.offsets.back() <= kMaxIndex;
@@ -211,7 +211,7 @@ class Writer {
     return std::visit([](const auto& numbers) { return std::uint64_t{numbers.size_bytes()}; }, array.numbers);
   }
 
-  /// Hands out the bytes of an array, in the byte order of the file, block by block.
+  /// Calls `take` with the bytes of an array, in the byte order of the file, block by block.
   template <class Take>
   void for_blocks(const Array& array, const Take& take) const {
     std::visit(
@@ -242,7 +242,7 @@ class Writer {
     return blocks;
   }
 
-  /// Words of a header, in the byte order of the file.
+  /// Returns words of a header in the byte order of the file.
   [[nodiscard]] std::string words(const std::vector<std::uint64_t>& values) const {
     std::string result;
     for (const std::uint64_t value : values) {
@@ -254,8 +254,8 @@ class Writer {
     return result;
   }
 
-  /// The header of compressed blocks: how many, the bytes of each, of the last where it has fewer, and the
-  /// compressed bytes.
+  /// Returns the header of compressed blocks: their number, the bytes of each and of a shorter last one, and
+  /// the compressed bytes of each.
   [[nodiscard]] std::string block_header(const Array& array, const std::vector<std::string>& blocks) const {
     std::vector<std::uint64_t> values{blocks.size(), kBlock, byte_count(array) % kBlock};
     for (const std::string& block : blocks) values.push_back(block.size());
@@ -277,7 +277,7 @@ class Writer {
     }
   }
 
-  /// What `produce` puts, as it is or as base64 with an end of its own.
+  /// Writes the bytes that `produce` puts, raw or as one base64 text.
   template <class Produce>
   void write_coded(const Produce& produce) {
     if (!coded()) {
@@ -289,7 +289,7 @@ class Writer {
     out_.write(base64.finish());
   }
 
-  /// Numbers as text, six in a line.
+  /// Writes numbers as text, six a line.
   void write_text(const Array& array) {
     std::visit(
         [&](const auto& numbers) {
@@ -315,7 +315,7 @@ class Writer {
     }
   }
 
-  /// Finds where appended arrays begin.
+  /// Computes the offsets of appended arrays.
   void place() {
     std::uint64_t offset = 0;
     for (Section& section : sections_) {
@@ -335,7 +335,7 @@ class Writer {
   }
 
   void write_header() {
-    // 2.1 and later tell of the order of nodes of VTK 9, 1.0 of wide headers
+    // 2.1 and later imply VTK 9's order of nodes, 1.0 and later allow wide headers
     const bool order = std::any_of(from_.types.begin(), from_.types.end(), is_higher_order_hexahedron);
     out_.print(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"{}\" byte_order=\"{}\" "
@@ -395,7 +395,7 @@ class Writer {
   OutputFile out_;
   std::vector<Section> sections_;
 
-  // what arrays show that the mesh does not have
+  // numbers of arrays that the mesh does not have
   std::vector<std::shared_ptr<std::string>> texts_;
   std::vector<float> float_points_;
   std::vector<std::int32_t> ends_;

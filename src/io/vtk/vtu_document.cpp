@@ -20,7 +20,7 @@ bool is_name_character(char c) {
          c == '-' || c == '.';
 }
 
-/// One entity of XML, "lt" or "#65"; empty when it is none.
+/// Decodes one entity of XML, "lt" or "#65"; empty if it is none.
 std::string entity(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, char>, 5> kNamed{
       {{"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}}};
@@ -110,7 +110,7 @@ std::int64_t VtuDocument::count(const VtuElement& element, std::string_view name
   return value;
 }
 
-/// Reads a start tag at `at`; returns where it ends.
+/// Parses a start tag at `at`; returns its end.
 std::size_t VtuDocument::parse_tag(std::size_t at, VtuElement& element, bool& closed) const {
   const std::string_view all = scanner_.all();
   const auto broken = [&] { return error_at(at, "malformed tag", "the file is not XML or is cut short"); };

@@ -3,8 +3,8 @@
 // Reader of VTK's XML files of unstructured grids:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 //
-// VTK's own reader is not used: it allocates what a header promises, reads past the end of damaged arrays,
-// cannot read the NaN that VTK writes as text, and tells of faults on the standard error output.
+// VTK's own reader is not used: it trusts the sizes in a header when it allocates, reads past the end of
+// damaged arrays, cannot read the NaN that VTK writes as text, and reports faults on standard error.
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
 
@@ -19,7 +19,7 @@
 namespace meshorder::vtk {
 namespace {
 
-/// Appends what one piece has to what others had, of the same type.
+/// Appends the values of one piece to those of others, of the same type.
 void append(Values& values, Values more) {
   std::visit(
       [&](auto& all) {
@@ -62,7 +62,7 @@ class Reader {
     return element.name == "DataArray" || element.name == "Array";
   }
 
-  /// False for a piece without anything.
+  /// Returns false for an empty piece.
   bool read_piece(const VtuElement& piece) {
     const std::int64_t points = file_.count(piece, "NumberOfPoints");
     const std::int64_t cells = file_.count(piece, "NumberOfCells");
@@ -182,7 +182,7 @@ class Reader {
     });
   }
 
-  /// Appends `checked(i, number)` of every number of an array.
+  /// Appends `checked(i, number)` for every number of an array.
   template <class Number, class Checked>
   void append_integers(const VtuElement& array, std::int64_t count, std::vector<Number>& target,
                        const Checked& checked) {
@@ -208,7 +208,7 @@ class Reader {
       throw file_.error(array, "the file holds several time steps", "save each step as a file of its own");
   }
 
-  /// An array of PointData, CellData or FieldData with what belongs to it.
+  /// Reads an array of PointData, CellData or FieldData.
   DataArray read_array(const VtuElement& element, std::optional<Association> association,
                        std::int64_t tuples) {
     refuse_time_steps(element);
