@@ -13,7 +13,7 @@
 #include "lab/linear/cg/solve.hpp"
 #include "lab/linear/preconditioners/preconditioner.hpp"
 #include "mesh/graphs.hpp"
-#include "mesh/mesh_ordering.hpp"
+#include "mesh/reorder.hpp"
 #include "payoff/band.hpp"
 #include "payoff/bandwidth.hpp"
 

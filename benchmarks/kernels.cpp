@@ -2,8 +2,8 @@
 // kernels [cubes across, default 40]: the simulators' kernels on a lattice of tetrahedra, scrambled, in its
 // own order and along a Hilbert curve: best time, rate of compulsory memory traffic, speedup over scrambled.
 #include "mesh/graphs.hpp"
-#include "mesh/mesh_ordering.hpp"
 #include "mesh/procedural.hpp"
+#include "mesh/reorder.hpp"
 #include "payoff/bandwidth.hpp"
 #include "payoff/kernel_timing.hpp"
 

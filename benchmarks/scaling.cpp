@@ -7,8 +7,8 @@
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
-#include "mesh/mesh_ordering.hpp"
 #include "mesh/procedural.hpp"
+#include "mesh/reorder.hpp"
 
 #include <fmt/core.h>
 

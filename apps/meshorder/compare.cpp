@@ -5,7 +5,6 @@
 #include "console.hpp"
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
-#include "mesh/mesh_ordering.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
 #include "payoff/band.hpp"

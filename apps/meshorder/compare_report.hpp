@@ -2,7 +2,7 @@
 #pragma once
 
 #include "console.hpp"
-#include "mesh/mesh_ordering.hpp"
+#include "mesh/reorder.hpp"
 #include "metrics/cache.hpp"
 #include "metrics/edge_span.hpp"
 #include "payoff/access_stream.hpp"

@@ -4,8 +4,8 @@
 #include "console.hpp"
 #include "graph/traversal.hpp"
 #include "io/format.hpp"
-#include "mesh/check.hpp"
 #include "mesh/graphs.hpp"
+#include "mesh/mesh.hpp"
 #include "metrics/edge_span.hpp"
 #include "progress.hpp"
 #include "reuse_report.hpp"
@@ -84,13 +84,13 @@ nlohmann::ordered_json attachments(const Mesh& mesh) {
   auto data = nlohmann::ordered_json::array();
   for (const DataArray& array : mesh.data) {
     data.push_back({{"name", array.name},
-                    {"on", name(array.association)},
+                    {"on", to_string(array.association)},
                     {"components", array.components},
                     {"rows", row_count(array)}});
   }
   auto sets = nlohmann::ordered_json::array();
   for (const EntitySet& set : mesh.sets) {
-    sets.push_back({{"name", set.name}, {"on", name(set.association)}, {"members", set.members.size()}});
+    sets.push_back({{"name", set.name}, {"on", to_string(set.association)}, {"members", set.members.size()}});
   }
   return {{"data", data}, {"sets", sets}};
 }

@@ -6,7 +6,6 @@
 #include "io/stream/output_file.hpp"
 #include "maps.hpp"
 #include "mesh/graphs.hpp"
-#include "mesh/mesh_ordering.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
 #include "progress.hpp"

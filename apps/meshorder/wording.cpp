@@ -72,7 +72,7 @@ nlohmann::ordered_json to_json(const Grouping& grouping) {
                     {"cells", grouping.of_cells.empty() ? nullptr : nlohmann::ordered_json(group.cells)}});
     first_vertex += group.vertices;
   }
-  return {{"name", grouping.name}, {"on", name(grouping.association)}, {"groups", list}};
+  return {{"name", grouping.name}, {"on", to_string(grouping.association)}, {"groups", list}};
 }
 
 nlohmann::ordered_json cells_by_type(const Mesh& mesh) {
@@ -97,7 +97,7 @@ std::string groups_in_words(const Grouping& grouping) {
   constexpr std::size_t kShown = 8;
   const std::size_t count = grouping.values.size();
   std::string words = fmt::format("{} group{} by {} on {}:", with_commas(static_cast<long long>(count)),
-                                  count == 1 ? "" : "s", grouping.name, name(grouping.association));
+                                  count == 1 ? "" : "s", grouping.name, to_string(grouping.association));
   for (std::size_t g = 0; g < std::min(count, kShown); ++g) {
     words += (g == 0 ? " " : ", ") +
              (grouping.names.empty() ? std::to_string(grouping.values[g]) : grouping.names[g]);

@@ -11,7 +11,6 @@
 #include "io/npy.hpp"
 #include "lab/models/catalogue.hpp"
 #include "mesh/graphs.hpp"
-#include "mesh/mesh_ordering.hpp"
 #include "mesh/reorder.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/kernel_timing.hpp"

@@ -4,7 +4,7 @@
 #include "lab/admm/projective_dynamics.hpp"
 #include "lab/implicit/backward_euler.hpp"
 #include "lab/scenario/scenario.hpp"
-#include "mesh/mesh_ordering.hpp"
+#include "mesh/reorder.hpp"
 
 #include <cstdint>
 

@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/vtk/metadata.hpp"
+#include "io/vtk/vtk.hpp"
 #include "lab/scenario/scenario_obstacles.hpp"
 #include "lab/scenario/vertex_choice.hpp"
 
@@ -33,9 +33,9 @@ std::vector<DataArray> own_arrays(const Mesh& mesh, const Reordering& order) {
 }
 
 /// What a .vtu file says beyond the mesh: of one that came from VTK what it had; compressed.
-std::shared_ptr<VtkMetadata> metadata_of(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get());
-  auto metadata = own != nullptr ? std::make_shared<VtkMetadata>(*own) : std::make_shared<VtkMetadata>();
+std::shared_ptr<vtk::Metadata> metadata_of(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const vtk::Metadata*>(mesh.format_metadata.get());
+  auto metadata = own != nullptr ? std::make_shared<vtk::Metadata>(*own) : std::make_shared<vtk::Metadata>();
   metadata->legacy.reset();
   metadata->float_points = true;
   // raw bytes would be a quarter less, but no XML: meshio 5.0 takes one file in some hundreds apart wrongly

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "io/vtk/pvd.hpp"
+#include "io/vtu.hpp"
 #include "lab/scenario/followers.hpp"
 #include "lab/scenario/simulation.hpp"
 

@@ -2,7 +2,7 @@
 #include "lab/scenario/motion_file.hpp"
 
 #include "base/error.hpp"
-#include "io/npy.hpp"
+#include "io/npy_header.hpp"
 #include "io/stream/scanner.hpp"
 
 #include <fmt/format.h>

@@ -5,7 +5,7 @@
 #include "lab/motion/integrator.hpp"
 #include "lab/scenario/fingerprint.hpp"
 #include "lab/scenario/scenario.hpp"
-#include "mesh/mesh_ordering.hpp"
+#include "mesh/reorder.hpp"
 
 #include <memory>
 #include <vector>

@@ -75,7 +75,7 @@ std::vector<std::string> arrays_of_labels(const Mesh& mesh, const VertexChoice& 
   std::vector<std::string> names;
   for (const Association association : {Association::vertices, Association::cells}) {
     if (choice.name.empty() && find_array(mesh, kLabel, association) != nullptr)
-      names.push_back(fmt::format("{}:{}", name(association), kLabel));
+      names.push_back(fmt::format("{}:{}", to_string(association), kLabel));
   }
   if (names.empty()) names.push_back(choice.name.empty() ? std::string(kLabel) : choice.name);
   return names;
@@ -89,7 +89,7 @@ std::vector<Index> with_label(const Mesh& mesh, std::span<const Index> candidate
     const auto found = std::lower_bound(groups.values.begin(), groups.values.end(), choice.label);
     if (found == groups.values.end() || *found != choice.label) {
       constexpr std::size_t kShown = 8;
-      known += fmt::format("{}those of {} are ", known.empty() ? "" : "; ", name(groups.association));
+      known += fmt::format("{}those of {} are ", known.empty() ? "" : "; ", to_string(groups.association));
       for (std::size_t i = 0; i < std::min(kShown, groups.values.size()); ++i)
         known += fmt::format("{}{}", i == 0 ? "" : ", ", groups.values[i]);
       if (groups.values.size() > kShown) known += ", …";

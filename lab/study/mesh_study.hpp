@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lab/study/results.hpp"
-#include "mesh/mesh_ordering.hpp"
+#include "mesh/reorder.hpp"
 #include "payoff/kernel_timing.hpp"
 
 #include <functional>

@@ -3,12 +3,12 @@
 
 #include "base/error.hpp"
 #include "io/all_formats.hpp"
-#include "mesh/check.hpp"
 #include "mesh/reorder.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <system_error>
 
 namespace meshorder {
 namespace {
@@ -26,6 +26,9 @@ const Format& format_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (std::error_code code; extension.empty() && std::filesystem::is_directory(path, code)) {
+    throw Error(path.string(), "is a folder", "give a mesh file");
+  }
   std::string known;
   for (const Format& format : kFormats) {
     for (const std::string_view candidate : format.extensions) {
@@ -42,6 +45,11 @@ Mesh read_mesh(const std::filesystem::path& path, Notes* notes) {
   Notes& noted = notes != nullptr ? *notes : ignored;
   Mesh mesh = format_of(path).read(path, noted);
   if (mesh.cell_count() == 0) throw Error(path.string(), "has no cells", "a mesh needs at least one");
+  try {
+    check_mesh(mesh);
+  } catch (const InvalidArgument& fault) {
+    throw Error(path.string(), fault.what(), "the file may be damaged");
+  }
   const std::vector<Index> degenerate = degenerate_cells(mesh);
   if (!degenerate.empty()) {
     noted.push_back(std::to_string(degenerate.size()) +

@@ -8,21 +8,21 @@
 
 namespace meshorder {
 
-/// The labels (kLabel) of all vertices or all cells, for formats that have a column for them.
+/// The labels (kLabel) of all vertices or all cells.
 struct Labels {
-  std::vector<std::int64_t> values;  ///< 0 where none is given; empty when the mesh has no such array
+  std::vector<std::int64_t> values;  ///< 0 if not given; empty if the mesh has no labels
   std::vector<bool> given;
 
   [[nodiscard]] bool any() const noexcept { return !values.empty(); }
 };
 
-/// Labels of a mesh. An array of that name that does not hold one whole number for each is no label.
+/// Returns the labels of a mesh. Ignores an array of that name unless it holds one integer for each.
 Labels labels_of(const Mesh& mesh, Association association);
 
-/// The array that `labels_of` takes, or nullptr.
+/// Returns the array that `labels_of` uses, or nullptr.
 const DataArray* label_array(const Mesh& mesh, Association association);
 
-/// The values of a label array: in 32 bits when all fit.
+/// Converts labels to the values of an array: 32-bit integers if all fit.
 Values label_values(std::vector<std::int64_t> labels);
 
 }  // namespace meshorder

@@ -3,8 +3,11 @@
 #include "io/npy.hpp"
 
 #include "base/error.hpp"
+#include "io/npy_header.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
+
+#include <fmt/format.h>
 
 #include <bit>
 #include <string>
@@ -27,7 +30,7 @@ void write_array(std::span<const T> values, const std::filesystem::path& path) {
   file.commit();
 }
 
-/// What stands behind `'key':` in a header, up to the next comma outside parentheses.
+/// Returns the value after `'key':` in a header, up to the next comma outside parentheses.
 std::string_view header_value(const Scanner& at, std::string_view header, std::string_view key) {
   const auto found = header.find("'" + std::string(key) + "'");
   const auto colon = header.find(':', found);
@@ -104,7 +107,7 @@ std::vector<std::int64_t> read_npy(const std::filesystem::path& path) {
   const std::endian order = type[0] == '<' ? std::endian::little : std::endian::big;
   const std::int64_t width = type[2] - '0';
   if (size < 0 || size > file.bytes_left() / width) {
-    file.fail_at_byte("promises " + std::to_string(size) + " entries, but only " +
+    file.fail_at_byte("announces " + std::to_string(size) + " entries, but only " +
                           std::to_string(file.bytes_left()) + " bytes follow",
                       "it may be cut short");
   }
@@ -126,7 +129,7 @@ Permutation read_permutation(const std::filesystem::path& path, Index count, con
   }
   std::vector<Index> old_to_new;
   old_to_new.reserve(places.size());
-  // what is no index is no place either
+  // -1 is no position, which Permutation reports
   for (const std::int64_t place : places)
     old_to_new.push_back(place < 0 || place >= count ? -1 : static_cast<Index>(place));
   try {

@@ -7,34 +7,34 @@
 
 namespace meshorder {
 
-void note_array_left_out(const DataArray& array, std::string_view format, Notes& notes) {
-  notes.push_back(fmt::format("the array '{}' on {} is left out: {} cannot hold it", array.name,
-                              name(array.association), format));
+void note_array_unsupported(const DataArray& array, std::string_view format, Notes& notes) {
+  notes.push_back(fmt::format("the array '{}' on {} is not written: {} has no place for it", array.name,
+                              to_string(array.association), format));
 }
 
-void note_set_left_out(const EntitySet& set, std::string_view format, Notes& notes) {
-  notes.push_back(fmt::format("the set '{}' of {} is left out: {} cannot hold it", set.name,
-                              name(set.association), format));
+void note_set_unsupported(const EntitySet& set, std::string_view format, Notes& notes) {
+  notes.push_back(fmt::format("the set '{}' of {} is not written: {} has no place for it", set.name,
+                              to_string(set.association), format));
 }
 
-void note_ids_left_out(const Mesh& mesh, std::string_view format, Notes& notes) {
+void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& notes) {
   for (const Association association : {Association::vertices, Association::cells}) {
     const auto& ids = association == Association::vertices ? mesh.vertex_ids : mesh.cell_ids;
     if (ids.empty()) continue;
-    notes.push_back(
-        fmt::format("the numbers of {} are left out: {} counts them by place", name(association), format));
+    notes.push_back(fmt::format("the ids of {} are not written: {} numbers them by position",
+                                to_string(association), format));
   }
 }
 
-void note_residue_left_out(const Mesh& mesh, std::string_view format, Notes& notes) {
+void note_metadata_unsupported(const Mesh& mesh, std::string_view format, Notes& notes) {
   if (!mesh.format_metadata) return;
   for (const std::string& what : mesh.format_metadata->contents()) {
-    notes.push_back(fmt::format("left out, as {} cannot hold it: {}", format, what));
+    notes.push_back(fmt::format("not written ({} has no place for it): {}", format, what));
   }
 }
 
-void refuse_other_cells(const Mesh& mesh, const std::filesystem::path& path, std::string_view format,
-                        bool (*holds)(Shape shape, int vertices), const std::string& remedy) {
+void require_supported_cells(const Mesh& mesh, const std::filesystem::path& path, std::string_view format,
+                             bool (*holds)(Shape shape, int vertices), const std::string& remedy) {
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const int vertices = mesh.cells.vertex_count(c);
     if (holds(mesh.cells.shapes[c], vertices)) continue;

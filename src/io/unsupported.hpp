@@ -9,22 +9,22 @@
 
 namespace meshorder {
 
-/// What writers note about parts of a mesh that their format cannot hold, in one wording for all formats.
+// Notes of writers on parts of a mesh that their format has no place for, worded alike for all formats.
 
-/// "the array 'stress' on cells is left out: OFF cannot hold it".
-void note_array_left_out(const DataArray& array, std::string_view format, Notes& notes);
+/// Notes "the array 'stress' on cells is not written: OFF has no place for it".
+void note_array_unsupported(const DataArray& array, std::string_view format, Notes& notes);
 
-/// "the set 'fixed' of vertices is left out: OFF cannot hold it".
-void note_set_left_out(const EntitySet& set, std::string_view format, Notes& notes);
+/// Notes "the set 'fixed' of vertices is not written: OFF has no place for it".
+void note_set_unsupported(const EntitySet& set, std::string_view format, Notes& notes);
 
-/// Notes the mesh's numbers of vertices and cells, where it has any.
-void note_ids_left_out(const Mesh& mesh, std::string_view format, Notes& notes);
+/// Notes the ids of vertices and cells, if there are any.
+void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& notes);
 
-/// Notes the contents of a residue that another format left, if there is one.
-void note_residue_left_out(const Mesh& mesh, std::string_view format, Notes& notes);
+/// Notes the contents of the metadata that another format left, if any.
+void note_metadata_unsupported(const Mesh& mesh, std::string_view format, Notes& notes);
 
-/// Throws Error when `holds(shape, vertices)` is false for a cell of the mesh; the message names its type.
-void refuse_other_cells(const Mesh& mesh, const std::filesystem::path& path, std::string_view format,
-                        bool (*holds)(Shape shape, int vertices), const std::string& remedy);
+/// Throws Error, which names the cell type, if `holds(shape, vertices)` is false for a cell.
+void require_supported_cells(const Mesh& mesh, const std::filesystem::path& path, std::string_view format,
+                             bool (*holds)(Shape shape, int vertices), const std::string& remedy);
 
 }  // namespace meshorder

@@ -2,29 +2,12 @@
 #pragma once
 
 #include "kernels/aligned.hpp"
-#include "mesh/mesh.hpp"
+#include "mesh/simplices.hpp"
 
 #include <span>
 #include <vector>
 
 namespace meshorder {
-
-/// Simplices of one dimension D, each on D + 1 vertices: lines, triangles or tetrahedra.
-struct Simplices {
-  int dimension = 0;            ///< 0 for none at all
-  std::vector<Index> vertices;  ///< those of simplex s are `vertices[(D + 1) s] …`
-  std::vector<Index> cells;     ///< the cell that each was cut out of
-
-  [[nodiscard]] Offset size() const noexcept {
-    return static_cast<Offset>(vertices.size()) / (dimension + 1);
-  }
-};
-
-/// Cuts the mesh's cells of its highest dimension, in their order, into simplices on their corners: a
-/// hexahedron into six tetrahedra, a wedge into three, a pyramid into two, a polygon into a fan of triangles.
-/// Nodes of edges and faces stay out, and so do lower cells. The pieces of a cell depend on the order of its
-/// corners alone, so that reordering the mesh reorders the simplices and changes none. O(cells).
-Simplices cut_into_simplices(const Mesh& mesh);
 
 /// Simplices are computed eight at a time, the doubles of an AVX-512 register.
 inline constexpr Index kBatch = 8;

@@ -8,23 +8,12 @@ namespace meshorder {
 namespace {
 
 struct ShapeFacts {
-  std::string_view name;
   int dimension;
   int corners;  // 0: every vertex is a corner
 };
 
-constexpr std::array<ShapeFacts, kShapes> kFacts{{{"vertex", 0, 1},
-                                                  {"line", 1, 2},
-                                                  {"triangle", 2, 3},
-                                                  {"quad", 2, 4},
-                                                  {"tetrahedron", 3, 4},
-                                                  {"pyramid", 3, 5},
-                                                  {"wedge", 3, 6},
-                                                  {"hexahedron", 3, 8},
-                                                  {"poly_vertex", 0, 0},
-                                                  {"polyline", 1, 0},
-                                                  {"polygon", 2, 0},
-                                                  {"triangle_strip", 2, 0}}};
+constexpr std::array<ShapeFacts, kShapes> kFacts{
+    {{0, 1}, {1, 2}, {2, 3}, {2, 4}, {3, 4}, {3, 5}, {3, 6}, {3, 8}, {0, 0}, {1, 0}, {2, 0}, {2, 0}}};
 
 const ShapeFacts& facts(Shape shape) { return kFacts[static_cast<std::size_t>(shape)]; }
 
@@ -37,10 +26,8 @@ int corners(Shape shape, int vertices) {
   return fixed > 0 ? fixed : vertices;
 }
 
-std::string_view name(Shape shape) { return facts(shape).name; }
-
 std::string type_name(Shape shape, int vertices) {
-  std::string result(name(shape));
+  std::string result(to_string(shape));
   if (facts(shape).corners > 0 && vertices != facts(shape).corners) result += std::to_string(vertices);
   return result;
 }

@@ -9,25 +9,25 @@
 
 namespace meshorder {
 
-/// Some cells of a mesh, and the vertices that each joins.
+/// Some cells of a mesh and their vertices.
 struct CellIncidence {
-  std::vector<Index> cells;  ///< rising; element e of `incidence` is cell `cells[e]`
+  std::vector<Index> cells;  ///< ascending; row e of `incidence` is cell `cells[e]`
   Incidence incidence;
 };
 
-/// The cells of the highest dimension: the elements that are simulated. O(vertex entries).
+/// Returns the cells of the highest dimension: the elements that are simulated. O(vertex entries).
 CellIncidence elements(const Mesh& mesh);
 
-/// The cells of lower dimension: boundary faces, edges, points. O(vertex entries).
+/// Returns the cells of lower dimension: boundary faces, edges, points. O(vertex entries).
 CellIncidence lower_dimensional_cells(const Mesh& mesh);
 
-/// Joins any two vertices of a common element (the paper, section 3). Vertices that only cells of lower
-/// dimension use, or none, have no neighbours. O(sum of element sizes squared · log degree).
+/// Returns the graph that joins any two vertices of a common element (the paper, section 3). Vertices
+/// without elements have no neighbours. O(sum of element sizes squared · log degree).
 CsrGraph vertex_graph(const Mesh& mesh);
 
-/// Joins elements that share a facet, numbered as by `elements`: a face for volumes, an edge for surfaces, an
-/// end for lines. Facets are the same when their corners are, in any order. O(facets · log facets at a
-/// vertex).
+/// Returns the graph of elements that share a facet, numbered as by `elements`: a face for volumes, an edge
+/// for surfaces, an end for lines. Facets are the same if their corners are, in any order. O(facets · log
+/// facets at a vertex).
 CsrGraph facet_graph(const Mesh& mesh);
 
 }  // namespace meshorder

@@ -12,7 +12,7 @@
 namespace meshorder {
 namespace {
 
-/// The value as a whole number, or none where it is not one that 64 bits hold.
+/// Returns the value as a 64-bit integer, or nothing if it is not one.
 template <class Value>
 std::optional<std::int64_t> whole(const Value& value) {
   if constexpr (std::is_integral_v<Value>) {
@@ -25,7 +25,7 @@ std::optional<std::int64_t> whole(const Value& value) {
   return std::nullopt;
 }
 
-/// The array's values, or nothing where they are not whole numbers, one in each row.
+/// Returns the values of an array of one integer a row; nothing for other arrays.
 std::optional<std::vector<std::int64_t>> whole_numbers(const DataArray& array) {
   if (array.components != 1) return std::nullopt;
   return std::visit(
@@ -47,31 +47,30 @@ bool has_cell_sets(const Mesh& mesh) {
                      [](const EntitySet& set) { return set.association == Association::cells; });
 }
 
-/// "label on cells, part on vertices, sets"
+/// Returns "label on cells, part on vertices, sets".
 std::string usable_names(const Mesh& mesh) {
   std::string list;
   for (const DataArray& array : mesh.data) {
     if (!whole_numbers(array)) continue;
-    list +=
-        (list.empty() ? "" : ", ") + array.name + " on " + std::string(meshorder::name(array.association));
+    list += (list.empty() ? "" : ", ") + array.name + " on " + std::string(to_string(array.association));
   }
   if (has_cell_sets(mesh)) list += list.empty() ? "sets" : ", sets";
   return list.empty() ? "none" : list;
 }
 
-/// The array that is meant: of that very name, or behind a prefix.
+/// Returns the array of that name, or of the name after "cells:" or "vertices:"; else nullptr.
 const DataArray* array_meant(const Mesh& mesh, std::string_view name) {
   for (const Association association : {Association::cells, Association::vertices}) {
     if (const DataArray* array = find_array(mesh, name, association)) return array;
   }
   for (const Association association : {Association::cells, Association::vertices}) {
-    const std::string prefix = std::string(meshorder::name(association)) + ":";
+    const std::string prefix = std::string(to_string(association)) + ":";
     if (name.starts_with(prefix)) return find_array(mesh, name.substr(prefix.size()), association);
   }
   return nullptr;
 }
 
-/// Numbers the values that occur, and gives every vertex or cell the number of its own.
+/// Numbers the distinct values, ascending, and returns the number for every vertex or cell.
 std::vector<Index> numbered(const DataArray& array, const std::vector<std::int64_t>& numbers, Index count,
                             std::vector<std::int64_t>& values) {
   values = numbers;
@@ -86,7 +85,7 @@ std::vector<Index> numbered(const DataArray& array, const std::vector<std::int64
   return groups;
 }
 
-/// The smallest group among the elements of each vertex, `none` where it has none.
+/// Returns the smallest group among the elements of each vertex; `none` without elements.
 std::vector<Index> smallest_at_vertices(const Mesh& mesh, const std::vector<Index>& of_cells, Index none) {
   std::vector<Index> groups(mesh.points.size(), none);
   const int highest = mesh.cells.highest_dimension();
@@ -97,7 +96,7 @@ std::vector<Index> smallest_at_vertices(const Mesh& mesh, const std::vector<Inde
   return groups;
 }
 
-/// A group for each set of cells that is the smallest one of some cell.
+/// Makes a group for each set of cells that is the smallest set of some cell.
 Grouping grouping_by_sets(const Mesh& mesh) {
   std::vector<const EntitySet*> set_of(mesh.cells.shapes.size(), nullptr);
   for (const EntitySet& set : mesh.sets) {
@@ -132,13 +131,13 @@ Grouping grouping_by(const Mesh& mesh, std::string_view name) {
   }
   if (!array) {
     throw InvalidArgument("group by: the mesh has no array '" + std::string(name) +
-                          "'; what can group is: " + usable_names(mesh));
+                          "'; arrays you can group by: " + usable_names(mesh));
   }
   const std::optional<std::vector<std::int64_t>> numbers = whole_numbers(*array);
   if (!numbers) {
-    throw InvalidArgument("group by: the array '" + array->name + "' on " +
-                          std::string(meshorder::name(array->association)) +
-                          " does not hold one whole number each; what can group is: " + usable_names(mesh));
+    throw InvalidArgument(
+        "group by: the array '" + array->name + "' on " + std::string(to_string(array->association)) +
+        " does not hold one whole number each; arrays you can group by: " + usable_names(mesh));
   }
   result.name = array->name;
   result.association = array->association;

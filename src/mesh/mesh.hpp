@@ -14,32 +14,36 @@
 
 namespace meshorder {
 
-/// What an array or a set belongs to.
+/// Whether an array or a set belongs to vertices or to cells.
 enum class Association : std::uint8_t { vertices, cells };
 
-/// "vertices", "cells".
-std::string_view name(Association association);
+template <>
+struct EnumNames<Association> {
+  static constexpr std::string_view kind = "association";
+  static constexpr std::array names{std::pair{Association::vertices, "vertices"},
+                                    std::pair{Association::cells, "cells"}};
+};
 
-/// The values of an array in the number type that the file gave them.
+/// The values of an array, in the number type of the file.
 using Values = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int8_t>,
                             std::vector<std::uint8_t>, std::vector<std::int16_t>, std::vector<std::uint16_t>,
                             std::vector<std::int32_t>, std::vector<std::uint32_t>, std::vector<std::int64_t>,
                             std::vector<std::uint64_t>, std::vector<std::string>>;
 
-/// The name under which every format keeps *the* integer label of a vertex or cell: a Medit reference, a
-/// TetGen boundary marker, the first physical group of Gmsh. Conversions find each other by it.
+/// Name of the array of integer labels, one for each vertex or cell. Formats translate their own label to and
+/// from it: a Medit reference, a TetGen boundary marker, the first physical group of Gmsh.
 inline constexpr std::string_view kLabel = "label";
 
-/// Numbers that belong to vertices or cells, `components` for each, row after row.
+/// Values of vertices or cells: a row of `components` values for each.
 struct DataArray {
   std::string name;
   Association association = Association::vertices;
   Index components = 1;
   Values values;
-  /// The vertices or cells that the rows belong to, for arrays that cover only some of them (in any order,
-  /// none twice); empty when row i belongs to vertex or cell i.
+  /// The vertex or cell of each row, in any order, none twice, for arrays that cover only some of them; empty
+  /// if row i belongs to vertex or cell i.
   std::vector<Index> indices;
-  /// Names of the components, where the file gave them; else empty.
+  /// Names of the components; empty if the file has none.
   std::vector<std::string> component_names;
 
   [[nodiscard]] bool is_dense() const noexcept { return indices.empty(); }
@@ -55,8 +59,8 @@ struct EntitySet {
   bool operator==(const EntitySet&) const = default;
 };
 
-/// What a format's reader keeps for its own writer and no other format can hold: materials, names, encodings,
-/// whole sections of text. Nothing in it may depend on the order of vertices or cells.
+/// Data that only one format has, kept by its reader for its writer: materials, encodings, whole sections of
+/// text. Must not depend on the order of vertices or cells.
 struct FormatMetadata {
   FormatMetadata() = default;
   FormatMetadata(const FormatMetadata&) = default;
@@ -64,28 +68,27 @@ struct FormatMetadata {
   FormatMetadata& operator=(const FormatMetadata&) = default;
   FormatMetadata& operator=(FormatMetadata&&) = default;
   virtual ~FormatMetadata() = default;
-  /// What is lost when another format is written, in a user's words: {"2 materials", "the section
-  /// $Periodic"}.
+  /// Lists, in a user's words, the parts that another format loses: {"2 materials", "Gmsh's $Periodic"}.
   [[nodiscard]] virtual std::vector<std::string> contents() const = 0;
 };
 
-/// A simulation mesh with all that its file attached to it. Plain data: whoever changes one member keeps the
-/// others in step; `check_mesh` (mesh/check.hpp) tells whether they are.
+/// A simulation mesh with the arrays, sets and ids of its file. Plain data: `check_mesh` tells whether the
+/// members are consistent.
 struct Mesh {
-  std::vector<Point> points;  ///< coordinates; the third is 0 where the file has two
-  int dimension = 3;          ///< coordinates that the file gives to a point: 2 or 3
+  std::vector<Point> points;  ///< coordinates of the vertices; the third is 0 in the plane
+  int dimension = 3;          ///< coordinates of a point in the file: 2 or 3
   Cells cells;
 
   std::vector<DataArray> data;
   std::vector<EntitySet> sets;
 
-  /// The number that the file gives to each vertex and cell, where it is not simply its position (counted
-  /// from 0 or 1); else empty. Ids of cells are unique among cells of one type at least.
+  /// The file's number of each vertex and cell; empty if that is its position, counted from 0 or 1. Ids of
+  /// cells are unique at least among cells of one type.
   std::vector<std::int64_t> vertex_ids;
   std::vector<std::int64_t> cell_ids;
 
-  /// The first cell of each block of cells that the format keeps together (Gmsh 4.1's entities), rising from
-  /// 0; empty for one block. Reordering keeps every cell in its block.
+  /// The first cell of each block of cells that the format keeps together (Gmsh 4.1's entities), ascending
+  /// from 0; empty for one block. Reordering keeps every cell in its block.
   std::vector<Index> cell_blocks;
 
   std::shared_ptr<const FormatMetadata> format_metadata;
@@ -94,10 +97,18 @@ struct Mesh {
   [[nodiscard]] Index cell_count() const noexcept { return cells.size(); }
 };
 
-/// Rows of an array: its values divided by its components. O(1).
+/// Returns the number of rows of an array: its values divided by its components. O(1).
 Index row_count(const DataArray& array);
 
-/// The array of that name, or nullptr. O(arrays).
+/// Returns the array of that name, or nullptr. O(arrays).
 const DataArray* find_array(const Mesh& mesh, std::string_view name, Association association);
+
+/// Throws InvalidArgument that names the first fault, unless every cell has existing vertices, coordinates
+/// are finite, every array has one row for each vertex or cell (or for each of its existing indices), members
+/// of sets exist, and ids and blocks fit. O(size of the mesh).
+void check_mesh(const Mesh& mesh);
+
+/// Returns the cells that name a vertex twice, ascending. O(vertex entries).
+std::vector<Index> degenerate_cells(const Mesh& mesh);
 
 }  // namespace meshorder

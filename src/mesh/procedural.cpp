@@ -24,7 +24,7 @@ struct Lattice {
   [[nodiscard]] Index vertex(Index i, Index j, Index k) const {
     return ((k * vertices_along(1)) + j) * vertices_along(0) + i % vertices_along(0);
   }
-  /// The place of a vertex in [0, 1]³ before jitter.
+  /// Returns the position of a vertex in [0, 1]³ before jitter.
   [[nodiscard]] Point point(Index v) const {
     const Index row = v / vertices_along(0);
     const Index layer = row / vertices_along(1);
@@ -62,7 +62,7 @@ Mesh cut_lattice(const Lattice& lattice, const ProceduralOptions& options) {
     }
   }
 
-  // paths from corner 000 to corner 111 that take one axis after another: even ones turn right-handed
+  // paths from corner 000 to corner 111 along one axis after another; the first three are right-handed
   constexpr std::array<std::array<int, 3>, 6> kAxisOrders{
       {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}}};
   const Offset cubes = Offset{lattice.cubes[0]} * lattice.cubes[1] * lattice.cubes[2];
@@ -97,12 +97,11 @@ double volume(const std::array<Point, 4>& p) {
          6;
 }
 
-/// Moves every vertex to `map` of its place. Where the map folds cubes flat, at the rim and along diagonals,
-/// jitter could turn tetrahedra over: the vertices of those that it leaves less than a tenth of their volume
-/// lose it.
+/// Applies `map` to every vertex. Where the map flattens cubes, at the rim and along diagonals, jitter could
+/// invert tetrahedra: vertices of those with less than a tenth of their unjittered volume lose their jitter.
 template <class Map>
 void bend(Mesh& mesh, const Lattice& lattice, Map map) {
-  constexpr double kLeastShare = 0.1;
+  constexpr double kMinShare = 0.1;
   for (Point& point : mesh.points) point = map(point);
   for (bool changed = true; changed;) {
     changed = false;
@@ -113,14 +112,14 @@ void bend(Mesh& mesh, const Lattice& lattice, Map map) {
         jittered[k] = mesh.points[mesh.cells[c][k]];
         regular[k] = map(lattice.point(mesh.cells[c][k]));
       }
-      if (jittered == regular || volume(jittered) >= kLeastShare * volume(regular)) continue;
+      if (jittered == regular || volume(jittered) >= kMinShare * volume(regular)) continue;
       for (int k = 0; k < 4; ++k) mesh.points[mesh.cells[c][k]] = regular[k];
       changed = true;
     }
   }
 }
 
-/// The square [−1, 1]² or cube [−1, 1]³ drawn into the disc or ball along rays from the centre.
+/// Maps the square [−1, 1]² or cube [−1, 1]³ into the disc or ball along rays from the centre.
 template <std::size_t D>
 std::array<double, D> drawn_into_ball(std::array<double, D> p) {
   double largest = 0;

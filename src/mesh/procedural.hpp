@@ -7,23 +7,22 @@
 
 namespace meshorder {
 
-/// A tetrahedral mesh made by rule. Cubes of a lattice are cut into six tetrahedra each around a diagonal
-/// (Kuhn 1960); inner vertices are moved at random by up to `jitter` of a lattice step along each axis, so
-/// that nothing is exactly regular. All tetrahedra have positive volume: in ball and torus a few vertices go
-/// without jitter for that.
+/// Options of a procedural tetrahedral mesh. Cubes of a lattice are cut into six tetrahedra each around a
+/// diagonal (Kuhn 1960); inner vertices are moved at random by up to `jitter` of a lattice step along each
+/// axis. All tetrahedra have positive volume, for which a few vertices of ball and torus have no jitter.
 struct ProceduralOptions {
   Index size = 20;         ///< lattice cubes across the shape, at least 1
   double jitter = 0.15;    ///< 0 … 0.15
-  std::uint64_t seed = 0;  ///< of the jitter
+  std::uint64_t seed = 0;  ///< seed of the jitter
 };
 
-/// The unit cube: (size + 1)³ vertices, 6 size³ tetrahedra.
+/// Makes the unit cube: (size + 1)³ vertices, 6 size³ tetrahedra.
 Mesh make_grid(const ProceduralOptions& options);
 
-/// The unit ball: the cube's lattice, drawn into the ball. As many vertices and tetrahedra.
+/// Makes the unit ball: the cube's lattice, mapped into the ball; as many vertices and tetrahedra.
 Mesh make_ball(const ProceduralOptions& options);
 
-/// A torus, radius 1 and tube 0.4: size × size cubes through the tube, 8 size around.
+/// Makes a torus of radius 1 and tube radius 0.4: size × size cubes through the tube, 8 size around.
 Mesh make_torus(const ProceduralOptions& options);
 
 }  // namespace meshorder

@@ -3,6 +3,9 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "base/stopwatch.hpp"
+#include "mesh/graphs.hpp"
+#include "ordering/grouped.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +16,7 @@
 namespace meshorder {
 namespace {
 
-/// Cells that may change places with each other have the same slot class: block × dimension.
+/// Returns the slot class of each cell, block × dimension: only cells of one class may swap positions.
 std::vector<Index> slot_classes(const Mesh& mesh) {
   std::vector<Index> classes(mesh.cells.shapes.size());
   Index block = 0;
@@ -26,7 +29,7 @@ std::vector<Index> slot_classes(const Mesh& mesh) {
 
 Index class_count(const Mesh& mesh) { return 4 * std::max<Index>(1, index_size(mesh.cell_blocks)); }
 
-/// Whether all cells may change places with each other, as in most meshes.
+/// Returns whether all cells have one class, as in most meshes.
 bool is_one_class(const std::vector<Index>& classes) {
   return std::all_of(classes.begin(), classes.end(), [&](Index k) { return k == classes.front(); });
 }
@@ -60,7 +63,7 @@ void reorder_data(DataArray& array, const Permutation& order) {
   }
 }
 
-/// Sorts the ids of each class, so that they rise along the places of that class.
+/// Sorts the ids of each class, ascending along the positions of that class.
 void sort_ids_within_classes(std::vector<std::int64_t>& ids, const std::vector<Index>& classes, Index count) {
   std::vector<std::vector<std::int64_t>> by_class(count);
   for (std::size_t c = 0; c < ids.size(); ++c) by_class[classes[c]].push_back(ids[c]);
@@ -69,7 +72,7 @@ void sort_ids_within_classes(std::vector<std::int64_t>& ids, const std::vector<I
   for (std::size_t c = 0; c < ids.size(); ++c) ids[c] = by_class[classes[c]][next[classes[c]]++];
 }
 
-/// Moves vertices and cells and all that is attached to them but ids and blocks.
+/// Moves vertices and cells with their arrays and sets, but not ids and blocks.
 void move_all(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
   mesh.points = vertices.moved(mesh.points);
   mesh.cells = reordered(mesh.cells, vertices, cells);
@@ -89,7 +92,57 @@ void check_fits(const Mesh& mesh, const Permutation& vertices, const Permutation
   }
 }
 
+/// Returns all cells in their new order: elements by their method, then the others by lexmax.
+std::vector<Index> cells_in_order(const Mesh& mesh, const ReorderingOptions& options, Reordering& result) {
+  const CellIncidence top = elements(mesh);
+  const auto facets_of_mesh = [&] { return facet_graph(mesh); };
+  Ordering by_method = order_elements(
+      options.elements, {top.incidence, result.vertices, mesh.points, facets_of_mesh}, options.ordering);
+  result.element_fiedler = std::move(by_method.fiedler);
+  result.element_method = std::move(by_method.method);
+
+  std::vector<Index> order;
+  order.reserve(mesh.cells.shapes.size());
+  for (const Index e : by_method.permutation.new_to_old()) order.push_back(top.cells[e]);
+  const CellIncidence lower = lower_dimensional_cells(mesh);
+  const std::string_view lower_method = options.elements == "original" ? "original" : "lexmax";
+  const Ordering of_lower = order_elements(
+      lower_method, {lower.incidence, result.vertices, mesh.points, facets_of_mesh}, options.ordering);
+  for (const Index e : of_lower.permutation.new_to_old()) order.push_back(lower.cells[e]);
+  if (result.groups && result.groups->association == Association::cells) {
+    const std::vector<Index>& group_of = result.groups->of_cells;
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return group_of[a] < group_of[b]; });
+  }
+  return order;
+}
+
 }  // namespace
+
+Reordering compute_reordering(const Mesh& mesh, const CsrGraph& graph, const ReorderingOptions& options) {
+  Reordering result;
+  const Stopwatch vertices;
+  if (!options.group_by.empty()) result.groups = grouping_by(mesh, options.group_by);
+  Ordering by_method =
+      result.groups
+          ? order_vertices_in_groups(options.vertices, {graph, mesh.points}, result.groups->of_vertices,
+                                     result.groups->count(), options.ordering)
+          : order_vertices(options.vertices, {graph, mesh.points}, options.ordering);
+  result.vertices = std::move(by_method.permutation);
+  result.vertex_fiedler = std::move(by_method.fiedler);
+  result.vertex_method = std::move(by_method.method);
+  result.vertex_seconds = vertices.seconds();
+
+  const Stopwatch cells;
+  result.cells = permutation_within_blocks(mesh, cells_in_order(mesh, options, result));
+  result.element_seconds = cells.seconds();
+  return result;
+}
+
+Reordering reorder(Mesh& mesh, const ReorderingOptions& options) {
+  Reordering result = compute_reordering(mesh, vertex_graph(mesh), options);
+  apply_reordering(mesh, result.vertices, result.cells);
+  return result;
+}
 
 void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
   check_fits(mesh, vertices, cells);
@@ -114,7 +167,7 @@ Permutation permutation_within_blocks(const Mesh& mesh, const std::vector<Index>
   const std::vector<Index> classes = slot_classes(mesh);
   if (is_one_class(classes)) return Permutation::from_new_to_old(cells_in_order);
 
-  // places of each class, in their order, one class after another
+  // positions of each class, ascending, one class after another
   std::vector<Index> start(class_count(mesh) + 1, 0);
   for (const Index k : classes) ++start[k + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
@@ -122,7 +175,7 @@ Permutation permutation_within_blocks(const Mesh& mesh, const std::vector<Index>
   std::vector<Index> next(start.begin(), start.end() - 1);
   for (Index c = 0; c < mesh.cell_count(); ++c) places[next[classes[c]]++] = c;
 
-  // hand them out
+  // assign them
   std::copy(start.begin(), start.end() - 1, next.begin());
   std::vector<Index> old_to_new(classes.size(), -1);
   for (const Index c : cells_in_order) old_to_new[c] = places[next[classes[c]]++];

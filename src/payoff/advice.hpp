@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mesh/mesh.hpp"
-#include "mesh/mesh_ordering.hpp"
+#include "mesh/reorder.hpp"
 #include "payoff/cost_model.hpp"
 #include "payoff/kernel_timing.hpp"
 

@@ -2,7 +2,6 @@
 #include "io/format.hpp"
 
 #include "base/error.hpp"
-#include "mesh/mesh_ordering.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"

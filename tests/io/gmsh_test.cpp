@@ -238,14 +238,14 @@ TEST(Gmsh, NotesSetsAddedToAGmshFile) {
   mesh.sets.push_back({"mine", Association::cells, {0}});
   Notes notes;
   written(mesh, &notes);
-  EXPECT_THAT(notes, ElementsAre("the set 'mine' of cells is left out: Gmsh cannot hold it"));
+  EXPECT_THAT(notes, ElementsAre("the set 'mine' of cells is not written: Gmsh has no place for it"));
 }
 
 TEST(Gmsh, LeavesOutPeriodicPairsOfNodesThatAreNotThere) {
   Notes notes;
   const Mesh mesh = read_text(replaced(std::string(kGmsh41), "20 30\n$EndP", "20 31\n$EndP"), &notes);
   EXPECT_THAT(set_of(mesh, "gmsh:periodic 2 3").members, ElementsAre(1));
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("1 pairs of $Periodic are left out")));
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("1 pairs of $Periodic are ignored")));
 }
 
 TEST(Gmsh, KeepsUnknownSectionsWithoutNumbers) {
@@ -444,7 +444,7 @@ TEST(Gmsh, HoldsAMeshFromElsewhere) {
   for (const Mesh& mesh : {mixed_mesh(), tetrahedral_bar(5)}) {
     Notes notes;
     const std::string content = written(mesh, &notes);
-    EXPECT_THAT(notes, ElementsAre("the set 'fixed' of vertices is left out: Gmsh cannot hold it"));
+    EXPECT_THAT(notes, ElementsAre("the set 'fixed' of vertices is not written: Gmsh has no place for it"));
     const Mesh again = read_text(content);
     expect_converted(again, mesh);
     EXPECT_EQ(written(again), content);
@@ -474,7 +474,7 @@ TEST(Gmsh, WritesAMeshFromElsewhereInVersion41) {
       "$Elements\n3 3 1 3\n3 5 4 1\n1 1 2 3 4\n3 2 4 1\n2 2 3 4 5\n2 1 2 1\n3 1 3 2\n$EndElements\n"
       "$NodeData\n1\n\"uv\"\n1\n0\n3\n0\n3\n5\n1 1 2 0\n2 3 4 0\n3 5 6 0\n4 7 8 0\n5 9 10.5 "
       "0\n$EndNodeData\n");
-  EXPECT_THAT(notes, ElementsAre("the vertices are numbered anew: Gmsh's numbers are positive and different",
+  EXPECT_THAT(notes, ElementsAre("the vertices are renumbered: Gmsh's numbers are positive and distinct",
                                  HasSubstr("'uv' is filled up with zeros")));
 }
 

@@ -217,8 +217,8 @@ TEST(Facets, BoundEveryVolumeOnceOnEachSide) {
       for (std::size_t k = 0; k < facet.size(); ++k) walked.emplace(facet[k], facet[(k + 1) % facet.size()]);
     }
     for (const auto& [from, to] : walked) {
-      EXPECT_EQ(walked.count({from, to}), 1U) << name(shape);
-      EXPECT_EQ(walked.count({to, from}), 1U) << name(shape);
+      EXPECT_EQ(walked.count({from, to}), 1U) << to_string(shape);
+      EXPECT_EQ(walked.count({to, from}), 1U) << to_string(shape);
     }
   }
 }

@@ -2,7 +2,6 @@
 #include "mesh/groups.hpp"
 
 #include "base/error.hpp"
-#include "mesh/mesh_ordering.hpp"
 #include "mesh/reorder.hpp"
 #include "support/sample_meshes.hpp"
 

@@ -1,9 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "mesh/mesh_ordering.hpp"
-
 #include "base/error.hpp"
-#include "mesh/check.hpp"
 #include "mesh/graphs.hpp"
+#include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
 #include "support/sample_meshes.hpp"

@@ -208,14 +208,14 @@ TEST(Obj, WritesOtherMeshesExactlySoAndNotesWhatItCannotHold) {
       "v 0.1 0 0 1 0 0\nv 1 0 0 0 0.2 0\nv 0 1 0 0 0 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 0\nvn 0.5 0.5 0.5\n"
       "vn 1 1 1\ng part two_words\nusemtl 1\nf 1/1/1 2/2/2 3/3/3\n");
   EXPECT_EQ(notes, (Notes{"labels of cells are written as materials (usemtl) of their numbers",
-                          "the array 'label' on vertices is left out: OBJ cannot hold it",
-                          "the array 'temperature' on vertices is left out: OBJ cannot hold it",
-                          "the array 'stress' on vertices is left out: OBJ cannot hold it",
-                          "the array 'temperature' on cells is left out: OBJ cannot hold it",
-                          "the array 'stress' on cells is left out: OBJ cannot hold it",
-                          "the set 'fixed' of vertices is left out: OBJ cannot hold it",
+                          "the array 'label' on vertices is not written: OBJ has no place for it",
+                          "the array 'temperature' on vertices is not written: OBJ has no place for it",
+                          "the array 'stress' on vertices is not written: OBJ has no place for it",
+                          "the array 'temperature' on cells is not written: OBJ has no place for it",
+                          "the array 'stress' on cells is not written: OBJ has no place for it",
+                          "the set 'fixed' of vertices is not written: OBJ has no place for it",
                           "the set 'two words' is written as the group 'two_words'",
-                          "the numbers of cells are left out: OBJ counts them by place"}));
+                          "the ids of cells are not written: OBJ numbers them by position"}));
 }
 
 TEST(Obj, OtherFormatsNameWhatIsLost) {
@@ -224,9 +224,10 @@ TEST(Obj, OtherFormatsNameWhatIsLost) {
   write_mesh(
       read_mesh(folder.file("a.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n")),
       folder.path() / "a.off", &notes);
-  EXPECT_EQ(notes, (Notes{"the array 'label' on cells is left out: OFF cannot hold it",
-                          "left out, as OFF cannot hold it: the names of material libraries",
-                          "left out, as OFF cannot hold it: usemtl red, which is 1 in the array 'label'"}));
+  EXPECT_EQ(notes,
+            (Notes{"the array 'label' on cells is not written: OFF has no place for it",
+                   "not written (OFF has no place for it): the names of material libraries",
+                   "not written (OFF has no place for it): usemtl red, which is 1 in the array 'label'"}));
 }
 
 TEST(Obj, RefusesVolumesAndCurvedCells) {

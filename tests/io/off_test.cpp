@@ -156,15 +156,15 @@ TEST(Off, NotesWhatItCannotHold) {
   mesh.data.push_back({"blue", Association::vertices, 1, std::vector<std::uint8_t>{7, 8, 9}, {}, {}});
   Notes notes;
   write_mesh(mesh, folder.path() / "a.off", &notes);
-  EXPECT_EQ(notes, (Notes{"the array 'label' on vertices is left out: OFF cannot hold it",
-                          "the array 'temperature' on vertices is left out: OFF cannot hold it",
-                          "the array 'stress' on vertices is left out: OFF cannot hold it",
-                          "the array 'label' on cells is left out: OFF cannot hold it",
-                          "the array 'temperature' on cells is left out: OFF cannot hold it",
-                          "the array 'stress' on cells is left out: OFF cannot hold it",
-                          "the set 'fixed' of vertices is left out: OFF cannot hold it",
-                          "the set 'part' of cells is left out: OFF cannot hold it",
-                          "the numbers of vertices are left out: OFF counts them by place"}));
+  EXPECT_EQ(notes, (Notes{"the array 'label' on vertices is not written: OFF has no place for it",
+                          "the array 'temperature' on vertices is not written: OFF has no place for it",
+                          "the array 'stress' on vertices is not written: OFF has no place for it",
+                          "the array 'label' on cells is not written: OFF has no place for it",
+                          "the array 'temperature' on cells is not written: OFF has no place for it",
+                          "the array 'stress' on cells is not written: OFF has no place for it",
+                          "the set 'fixed' of vertices is not written: OFF has no place for it",
+                          "the set 'part' of cells is not written: OFF has no place for it",
+                          "the ids of vertices are not written: OFF numbers them by position"}));
   const Mesh back = read_mesh(folder.path() / "a.off");
   EXPECT_EQ(back.points, mesh.points);
   EXPECT_EQ(find_array(back, "color", Association::vertices)->values,

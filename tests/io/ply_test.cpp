@@ -182,7 +182,7 @@ TEST(Ply, BrokenFilesStopWithTheirPlace) {
   expect_broken(
       "a.ply",
       {{"garbage", "\x7f\x45\x4c\x46", ":1: the file does not begin with 'ply'"},
-       {"only ply", "ply\n", ":2: the file ends within the header"},
+       {"only ply", "ply\n", ":2: unexpected end of file in the header"},
        {"no format", "ply\nend_header\n", ":2: the header has no format"},
        {"unknown format", "ply\nformat xml 1.0\n", ":2: the encoding 'xml' is unknown"},
        {"unknown version", "ply\nformat ascii 2.0\n", ":2: the version of the format is unknown"},
@@ -191,7 +191,7 @@ TEST(Ply, BrokenFilesStopWithTheirPlace) {
        {"property first", ascii + "property float x\n", ":3: 'property float x' does not belong"},
        {"real list count", ascii + "element face 1\nproperty list float int vertex_indices\n",
         ":4: a list with a count"},
-       {"no end_header", head.substr(0, head.find("end_header")), "the file ends within the header"},
+       {"no end_header", head.substr(0, head.find("end_header")), "unexpected end of file in the header"},
        {"no vertices", ascii + "element face 1\n" + faces + "end_header\n1 0\n",
         ":5: the header has no element vertex"},
        {"no z", ascii + "element vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
@@ -233,14 +233,14 @@ TEST(Ply, BrokenFilesStopWithTheirPlace) {
        {"empty face", vertices + "0 0 1 2\n", ":13: a face without vertices"},
        {"absurd face", vertices + "200 0 1 2\n", ":13: the list vertex_indices has the length 200"},
        {"face count too wide", vertices + "300 0 1 2\n", ":13: the length of a list is 300; it does not fit"},
-       {"face cut", vertices + "3 0 1\n", "the file ends where a vertex should stand"},
+       {"face cut", vertices + "3 0 1\n", "unexpected end of file; expected a vertex"},
        {"byte too large",
         with_vertex("property uchar red")
             .replace(with_vertex("property uchar red").find("0 0 0 0"), 7, "0 0 0 999"),
         "red is 999; it does not fit"},
        {"tetrahedron of three", with_element("element tetra 1\nproperty list uchar int vertex_indices\n"),
         "a tetrahedron of 1 vertices"},
-       {"binary cut", binary.substr(0, binary.size() - 1), "byte 325: the file ends within scale"},
+       {"binary cut", binary.substr(0, binary.size() - 1), "byte 325: unexpected end of file in scale"},
        {"binary vertices cut", binary.substr(0, binary.size() - 40), "the number of vertex is 3"},
        {"binary too long", binary + "x", "byte 329: more follows"},
        {"binary nan", binary_triangle(std::endian::big, std::numeric_limits<float>::quiet_NaN()),
@@ -288,8 +288,8 @@ TEST(Ply, WritesOtherMeshesExactlySo) {
       "property list uchar int vertex_indices\nproperty int my_label\nproperty list uchar double pair\n"
       "element edge 1\nproperty int vertex1\nproperty int vertex2\nproperty int my_label\n");
   EXPECT_EQ(notes, (Notes{"the array 'my label' is written as 'my_label'",
-                          "the array 'words' on cells is left out: PLY cannot hold it",
-                          "the set 'part' of cells is left out: PLY cannot hold it"}));
+                          "the array 'words' on cells is not written: PLY has no place for it",
+                          "the set 'part' of cells is not written: PLY has no place for it"}));
   const Mesh back = read_mesh(folder.path() / "a.ply");
   EXPECT_EQ(back.points, mesh.points);
   EXPECT_EQ(back.cells.vertices, (std::vector<Index>{0, 1, 2, 0, 1}));

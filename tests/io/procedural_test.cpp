@@ -3,8 +3,8 @@
 
 #include "base/error.hpp"
 #include "graph/traversal.hpp"
-#include "mesh/check.hpp"
 #include "mesh/graphs.hpp"
+#include "mesh/mesh.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 

@@ -2,7 +2,7 @@
 #include "mesh/reorder.hpp"
 
 #include "base/error.hpp"
-#include "mesh/check.hpp"
+#include "mesh/mesh.hpp"
 #include "support/sample_meshes.hpp"
 
 #include <gtest/gtest.h>

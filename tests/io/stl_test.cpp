@@ -168,13 +168,13 @@ TEST(Stl, BrokenFilesStopWithTheirPlace) {
   const std::string huge = std::string(80, '\0') + std::string("\xff\xff\xff\xff", 4);
   expect_broken(
       "a.stl",
-      {{"garbage", "\x7f\x45\x4c\x46 garbage", "is no STL file"},
-       {"long garbage", std::string(200, '\xfe'), "is no STL file"},
+      {{"garbage", "\x7f\x45\x4c\x46 garbage", "is not an STL file"},
+       {"long garbage", std::string(200, '\xfe'), "is not an STL file"},
        {"zero triangles", "solid\nendsolid\n", "has no cells"},
        {"zero binary triangles", std::string(84, '\0'), "has no cells"},
        {"only solid", "solid a\n", ":2: the file ends where 'facet'"},
        {"no endsolid", "solid a\n" + facet, ":9: the file ends where 'facet'"},
-       {"facet without solid", facet, "is no STL file"},
+       {"facet without solid", facet, "is not an STL file"},
        {"text after", "solid a\n" + facet + "endsolid\nhello\n", ":10: 'solid' is missing"},
        {"two vertices", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n",
         ":6: 'vertex' is missing"},
@@ -193,7 +193,7 @@ TEST(Stl, BrokenFilesStopWithTheirPlace) {
         "byte 80: a binary STL file of 2 triangles has 184 bytes, this has 150"},
        {"binary too long", binary + "x",
         "byte 80: a binary STL file of 2 triangles has 184 bytes, this has 185"},
-       {"binary header cut", std::string(50, '\0'), "is no STL file"},
+       {"binary header cut", std::string(50, '\0'), "is not an STL file"},
        {"absurd count", huge, "byte 80: a binary STL file of 4294967295 triangles"},
        {"binary solid cut", binary_file("solid").substr(0, 100), "byte 80: a binary STL file of 2"},
        {"binary nan", binary_file("", std::numeric_limits<float>::quiet_NaN()),
@@ -219,12 +219,12 @@ TEST(Stl, WritesOtherMeshesAsTextWithASolidForEachLabel) {
   write_mesh(mesh, folder.path() / "a.stl", &notes);
   EXPECT_EQ(notes, (Notes{"STL has no vertex order: readers number vertices by first appearance and take "
                           "equal points as one",
-                          "vertices that no cell uses are left out: 1",
-                          "the array 'temperature' on cells is left out: STL cannot hold it",
-                          "the array 'stress' on cells is left out: STL cannot hold it",
-                          "the set 'fixed' of vertices is left out: STL cannot hold it",
-                          "the set 'part' of cells is left out: STL cannot hold it",
-                          "the numbers of cells are left out: STL counts them by place"}));
+                          "vertices without cells are not written: 1",
+                          "the array 'temperature' on cells is not written: STL has no place for it",
+                          "the array 'stress' on cells is not written: STL has no place for it",
+                          "the set 'fixed' of vertices is not written: STL has no place for it",
+                          "the set 'part' of cells is not written: STL has no place for it",
+                          "the ids of cells are not written: STL numbers them by position"}));
   const Mesh back = read_mesh(folder.path() / "a.stl");
   const Permutation by_label = Permutation::from_new_to_old({0, 3, 1, 2});  // labels 1 2 3 1
   apply_reordering(mesh, Permutation::identity(mesh.vertex_count()), by_label);

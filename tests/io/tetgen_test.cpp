@@ -336,7 +336,7 @@ TEST(TetGen, KeepsNumbersAsAttributesAndNamesWhatIsLost) {
   Notes notes;
   write_mesh(mesh, folder.path() / "m.node", &notes);
   EXPECT_THAT(notes,
-              ElementsAre(HasSubstr("'names' on vertices is left out"),
+              ElementsAre(HasSubstr("'names' on vertices is not written"),
                           AllOf(HasSubstr("'temperature'"), HasSubstr("column 1 of"), HasSubstr(".node")),
                           AllOf(HasSubstr("'stress'"), HasSubstr("columns 2 to 4 of"), HasSubstr(".node")),
                           AllOf(HasSubstr("'label'"), HasSubstr("column 1 of"), HasSubstr(".ele")),
@@ -398,8 +398,7 @@ TEST(TetGen, RefusesWhatItCannotHoldBeforeWritingAnything) {
 TEST(TetGen, RefusesToMixWithFilesOfAnotherMesh) {
   const TemporaryFolder folder;
   const fs::path face = folder.file("m.face", "1 0\n1 1 2 3\n");
-  EXPECT_THAT(write_error(test::tetrahedral_bar(1), folder.path() / "m.node"),
-              HasSubstr("m.face stands beside"));
+  EXPECT_THAT(write_error(test::tetrahedral_bar(1), folder.path() / "m.node"), HasSubstr("m.face is beside"));
   EXPECT_THAT(folder.names(), ElementsAre("m.face"));
 }
 
@@ -466,21 +465,23 @@ TEST(TetGen, SaysWhatIsWrongAndWhere) {
       {"negative attributes", {.node = "1 3 -1 0\n1 0 0 0\n"}, "-1 attributes"},
       {"four dimensions", {.node = "1 4\n1 0 0 0 0\n"}, "m.node:1: the dimension is 4"},
       {"two markers", {.node = "1 3 0 2\n1 0 0 0 1 1\n"}, "2 boundary markers"},
-      {"long header", {.node = "1 3 0 0 9\n1 0 0 0\n"}, "m.node:1: the line goes on"},
+      {"long header", {.node = "1 3 0 0 9\n1 0 0 0\n"}, "m.node:1: the line has more columns"},
       {"text in header", {.node = "five 3 0 0\n"}, "'five'"},
       {"a point too few", {.node = replaced(node, "5  3", "6  3")}, "m.node:10: the file ends where a point"},
-      {"a point too many", {.node = replaced(node, "5  3", "4  3")}, "m.node:8: the file goes on"},
+      {"a point too many",
+       {.node = replaced(node, "5  3", "4  3")},
+       "m.node:8: unexpected text after the last record"},
       {"short line",
        {.node = replaced(node, "1.5   0", "1.5")},
        "m.node:7: the line ends where the boundary marker"},
-      {"long line", {.node = replaced(node, "1.5   0", "1.5 0 3")}, "m.node:7: the line goes on"},
+      {"long line", {.node = replaced(node, "1.5   0", "1.5 0 3")}, "m.node:7: the line has more columns"},
       {"not a number", {.node = replaced(node, "0 0 1", "0 y 1")}, "m.node:7: a coordinate is 'y'"},
       {"nan", {.node = replaced(node, "0 0 1", "0 nan 1")}, "m.node:7: a coordinate is not finite"},
       {"infinite", {.node = replaced(node, "0 0 1", "0 -inf 1")}, "m.node:7: a coordinate is not finite"},
       {"huge", {.node = replaced(node, "0 0 1", "0 1e999 1")}, "m.node:7:"},
       {"number twice",
        {.node = replaced(node, "4  0 0 1", "2  0 0 1")},
-       "m.node:7: the point 2 stands twice"},
+       "m.node:7: the point 2 is given twice"},
       {"marker not whole", {.node = replaced(node, "-1", "1.5")}, "m.node:8: the boundary marker is 1.5"},
       {"no cells at all", {std::string(kNode), "", "", ""}, "m.node: has no cells"},
       {"empty ele", {std::string(kNode), "0 4 0\n", "", ""}, "m.node: has no cells"},
@@ -496,16 +497,18 @@ TEST(TetGen, SaysWhatIsWrongAndWhere) {
       {"point beyond", {.ele = replaced(kEle, "4 5 ", "4 6 ")}, "m.ele:3: the cell names point 6"},
       {"point 0 in base 1", {.ele = replaced(kEle, "1 2 3 4", "0 2 3 4")}, "m.ele:2: the cell names point 0"},
       {"negative point", {.ele = replaced(kEle, "1 2 3 4", "-1 2 3 4")}, "m.ele:2: the cell names point -1"},
-      {"cell twice", {.ele = replaced(kEle, "2  2 3", "1  2 3")}, "m.ele:3: the cell 1 stands twice"},
+      {"cell twice", {.ele = replaced(kEle, "2  2 3", "1  2 3")}, "m.ele:3: the cell 1 is given twice"},
       {"attribute missing", {.ele = replaced(kEle, "  20", "")}, "m.ele:3: the line ends where an attribute"},
-      {"more cells", {.ele = replaced(kEle, "2  4", "1  4")}, "m.ele:3: the file goes on"},
+      {"more cells",
+       {.ele = replaced(kEle, "2  4", "1  4")},
+       "m.ele:3: unexpected text after the last record"},
 
       {"cells promised, comment",
        {.ele = "3 4 0\n1 1 2 3 4\n2 2 3 4 5\n# three\n"},
        "m.ele:5: the file ends where a cell"},
       {"face too short", {.face = "1 1\n1 1 2 # and\n"}, "m.face:2: the line ends"},
       {"face of four", {.face = "1 1\n1 1 2 3 4 5\n"}, "m.face:2: a line has 4 columns"},
-      {"faces differ", {.face = "2 0\n1 1 2 3\n2 1 2 3 4\n"}, "m.face:3: the line goes on"},
+      {"faces differ", {.face = "2 0\n1 1 2 3\n2 1 2 3 4\n"}, "m.face:3: the line has more columns"},
       {"face beyond", {.face = replaced(kFace, "3 4 5", "3 4 50")}, "m.face:3: the cell names point 50"},
       {"neighbours",
        {.face = "1 1\n1 1 2 3  4  1 -1\n"},

@@ -176,8 +176,7 @@ TEST(Vega, BrokenFilesStopWithTheirLine) {
        {"no elements", vertices, "the file has no *ELEMENTS"},
        {"zero cells", vertices + "*ELEMENTS\nTET\n0 4 0\n", "has no cells"},
        {"text before sections", "hello\n" + elements, ":1: a section must begin here"},
-       {"a vertex too few", "*VERTICES\n3 3 0 0\n1 0 0 0\n2 1 0 0\n*ELEMENTS\n",
-        ":5: *ELEMENTS stands where vertex 3"},
+       {"a vertex too few", "*VERTICES\n3 3 0 0\n1 0 0 0\n2 1 0 0\n*ELEMENTS\n", ":5: expected vertex 3"},
        {"a vertex too many", "*VERTICES\n1 3 0 0\n1 0 0 0\n2 1 0 0\n*ELEMENTS\n",
         ":4: a section must begin here"},
        {"an element too few", vertices + "*ELEMENTS\nTET\n2 4 0\n1 1 2 3 4\n",
@@ -248,14 +247,14 @@ TEST(Vega, NotesWhatItCannotHold) {
   mesh.vertex_ids = {2, 3, 4, 5, 6, 7, 8, 9};
   Notes notes;
   write_mesh(mesh, folder.path() / "a.veg", &notes);
-  EXPECT_EQ(notes, (Notes{"the set 'fixed' of vertices is left out: Vega cannot hold it",
-                          "the array 'label' on vertices is left out: Vega cannot hold it",
-                          "the array 'temperature' on vertices is left out: Vega cannot hold it",
-                          "the array 'stress' on vertices is left out: Vega cannot hold it",
+  EXPECT_EQ(notes, (Notes{"the set 'fixed' of vertices is not written: Vega has no place for it",
+                          "the array 'label' on vertices is not written: Vega has no place for it",
+                          "the array 'temperature' on vertices is not written: Vega has no place for it",
+                          "the array 'stress' on vertices is not written: Vega has no place for it",
                           "labels of cells are written as sets of the names label_N",
-                          "the array 'temperature' on cells is left out: Vega cannot hold it",
-                          "the array 'stress' on cells is left out: Vega cannot hold it",
-                          "the numbers of vertices are left out: Vega counts them by place"}));
+                          "the array 'temperature' on cells is not written: Vega has no place for it",
+                          "the array 'stress' on cells is not written: Vega has no place for it",
+                          "the ids of vertices are not written: Vega numbers them by position"}));
   const Mesh back = read_mesh(folder.path() / "a.veg");
   EXPECT_EQ(back.points, mesh.points);
   EXPECT_EQ(back.cells, mesh.cells);

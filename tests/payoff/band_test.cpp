@@ -3,8 +3,8 @@
 
 #include "base/error.hpp"
 #include "kernels/simplices.hpp"
-#include "mesh/check.hpp"
 #include "mesh/graphs.hpp"
+#include "mesh/mesh.hpp"
 #include "mesh/procedural.hpp"
 #include "payoff/kernel_bench.hpp"
 #include "support/sample_meshes.hpp"

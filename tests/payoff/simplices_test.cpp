@@ -52,7 +52,7 @@ TEST(CutIntoSimplices, FillsEveryCell) {
        6,
        1.0}};
   for (const Solid& solid : solids) {
-    SCOPED_TRACE(name(solid.shape));
+    SCOPED_TRACE(to_string(solid.shape));
     const Mesh mesh = single_cell(solid.shape, solid.points);
     const Simplices simplices = cut_into_simplices(mesh);
     EXPECT_EQ(simplices.dimension, dimension(solid.shape));

@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "io/format.hpp"
-#include "mesh/check.hpp"
+#include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "support/sample_meshes.hpp"
 

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/vtk/pvd.hpp"
+#include "io/vtu.hpp"
 
 #include "base/error.hpp"
 #include "support/files.hpp"

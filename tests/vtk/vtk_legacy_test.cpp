@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/error.hpp"
 #include "io/format.hpp"
-#include "mesh/check.hpp"
+#include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
@@ -259,8 +259,8 @@ TEST(VtkLegacy, BrokenFilesGiveOneClearError) {
       "# vtk DataFile Version 5.1\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\n";
   expect_broken(
       "b.vtk",
-      {{"another file", "solid cube\n", ":1: this is no legacy file of VTK"},
-       {"garbage", std::string("\x00\x9f\x92\xff\n\xfe", 6), ":1: this is no legacy file"},
+      {{"another file", "solid cube\n", ":1: is not a legacy VTK file"},
+       {"garbage", std::string("\x00\x9f\x92\xff\n\xfe", 6), ":1: is not a legacy VTK file"},
        {"no version", broken("3.0", ""), ":1:"},
        {"a version to come", broken("3.0", "7.0"), ":1: the version 7.0 is unknown"},
        {"neither text nor binary", broken("ASCII", "UNICODE"), ":3: the third line is 'unicode'"},
@@ -269,7 +269,7 @@ TEST(VtkLegacy, BrokenFilesGiveOneClearError) {
        {"an image", grid("STRUCTURED_POINTS"), "its order is its grid's"},
        {"a rectilinear grid", grid("RECTILINEAR_GRID"), "its order is its grid's"},
        {"a table", grid("TABLE"), ":4: no mesh is here but 'table'"},
-       {"only a head", binary_head, "there are no POINTS"},
+       {"only a head", binary_head, "the file has no POINTS"},
        {"no points", broken("POINTS 5 double", "DOTS 5 double"), ":8: the section 'DOTS' is unknown"},
        {"10¹² points", broken("POINTS 5", "POINTS 1000000000000"),
         ":8: the number of points is 1000000000000"},
@@ -277,7 +277,7 @@ TEST(VtkLegacy, BrokenFilesGiveOneClearError) {
         ":8: the array 'POINTS' of 3000000000 numbers"},
        {"a negative number of points", broken("POINTS 5", "POINTS -5"), ":8: the number of points is -5"},
        {"points twice", broken("CELLS 2 9", "POINTS 1 float\n0 0 0\nPOINTS 1 float\n"),
-        ":11: POINTS stands here late"},
+        ":11: POINTS after the data"},
        {"an unknown number type", broken("5 double", "5 quad"), ":8: the array 'POINTS' is of type 'quad'"},
        {"points of texts", broken("5 double", "5 string"), ":8: the points are of type string"},
        {"a word among numbers", broken("0 1 0\n", "0 l 0\n"), ":9: the array 'POINTS' is 'l'"},
@@ -318,8 +318,7 @@ TEST(VtkLegacy, BrokenFilesGiveOneClearError) {
        {"10¹² components", broken("one 1 2 int", "one 1000000000000 2 int"),
         ":28: the components of 'part one'"},
        {"no components", broken("one 1 2 int", "one 0 2 int"), ":28: the array 'part one' has 0 components"},
-       {"the same name twice", broken("VECTORS wind", "VECTORS heat"),
-        "the array 'heat' stands here a second time"},
+       {"the same name twice", broken("VECTORS wind", "VECTORS heat"), "the array 'heat' is given twice"},
        {"no lookup table", broken("LOOKUP_TABLE warm\n", ""), ":19: SCALARS 'heat' has no LOOKUP_TABLE"},
        {"an absurd lookup table", broken("LOOKUP_TABLE warm 2", "LOOKUP_TABLE warm 1000000000"),
         "the lookup table of"},
@@ -350,7 +349,7 @@ TEST(VtkLegacy, BrokenFilesGiveOneClearError) {
         ":10: CONNECTIVITY is missing"},
        {"connectivity of real numbers",
         new_head + "CELLS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY float\n0 1 2\nCELL_TYPES 1\n5\n",
-        ":7: the CONNECTIVITY of CELLS is no list of integers"},
+        ":7: the CONNECTIVITY of CELLS is not a list of integers"},
        {"a large point",
         new_head + "CELLS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY vtktypeint64\n0 1 "
                    "4294967296\nCELL_TYPES 1\n5\n",
@@ -441,7 +440,7 @@ TEST(VtkLegacy, FilesOfVtkAreReadAndVtkReadsOurs) {
       write_with_vtk(grid, path, binary, version);
       Notes notes;
       const Mesh mesh = read_mesh(path, &notes);
-      EXPECT_EQ(notes, (Notes{"the array 'bits' holds bits, which are carried as bytes"}));
+      EXPECT_EQ(notes, (Notes{"the array 'bits' holds bits, which are stored as bytes"}));
       if (binary) expect_same_grid(grid, mesh);  // VTK writes 11 digits as text
 
       const auto own = folder.path() / "own.vtk";
@@ -553,7 +552,7 @@ TEST(VtkLegacy, BecomesVtuAndBackWithRolesAndFields) {
   const Mesh mesh = read_mesh(folder.file("a.vtk", with(kSmall, "nan", "3")));
   Notes notes;
   write_mesh(mesh, folder.path() / "b.vtu", &notes);
-  EXPECT_EQ(notes, (Notes{"left out, as VTU cannot hold it: the lookup table 'warm'"}));
+  EXPECT_EQ(notes, (Notes{"not written (VTU has no place for it): the lookup table 'warm'"}));
   const Mesh back = read_mesh(folder.path() / "b.vtu");
   expect_same(back, mesh);
   write_mesh(back, folder.path() / "c.vtk");

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/error.hpp"
 #include "io/format.hpp"
-#include "mesh/check.hpp"
+#include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
@@ -195,7 +195,7 @@ TEST(Vtu, BrokenFilesGiveOneClearError) {
 <AppendedData encoding="raw">_)";
   expect_broken(
       "b.vtu",
-      {{"no XML", "solid cube\nfacet\n", "this is no XML"},
+      {{"no XML", "solid cube\nfacet\n", "is not XML"},
        {"garbage", std::string("\x00\x9f\x92<\x96\xff>\n\xfe", 9), ":1:"},
        {"a tag that never ends", "<VTKFile type=\"Unstru", "cut short"},
        {"another root", "<html></html>", "VTKFile"},
@@ -232,7 +232,7 @@ TEST(Vtu, BrokenFilesGiveOneClearError) {
        {"a text without end", broken("98 0 0", "98 0 99"), ":13: the array has 1 texts"},
        {"no name", broken(" Name=\"heat\"", ""), ":9: <DataArray> has no Name"},
        {"the same name twice", broken("Name=\"who\"", "Name=\"part\""),
-        ":13: the array 'part' stands here a second time"},
+        ":13: the array 'part' is given twice"},
        {"no points", broken("<DataArray type=\"Float64\" Name=\"Points\"", "<Nothing type=\"Float64\""), ""},
        {"a point that is not there", broken("1 2 4<", "1 2 5<"),
         ":22: a cell names the point 5; the piece has points 0 to 4"},
@@ -258,7 +258,7 @@ TEST(Vtu, BrokenFilesGiveOneClearError) {
        {"appended data that are not there",
         broken("format=\"ascii\">7 -8", "format=\"appended\" offset=\"0\">"), ":12: the array is appended"},
        {"no base64", broken("format=\"ascii\">7 -8", "format=\"binary\">EAAAAAcA*AAAAAAA+P//////////"),
-        ":12: the array is no base64"},
+        ":12: the array is not base64"},
        {"short base64", broken("format=\"ascii\">7 -8", "format=\"binary\">EAAA"),
         ":12: the array's bytes end early"},
        {"raw data that end", raw_head + std::string("\x18\0\0\0\0\0\0\0", 8), ":3: the array has 24 bytes"},

@@ -15,24 +15,26 @@ namespace {
 constexpr std::int64_t kMostComponents = 1 << 20;
 constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers up to here are exact as double
 
-/// `"name"` without its quotes.
+/// Returns `"name"` without its quotes.
 std::string unquoted(std::string_view text) {
   if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
   return std::string(text);
 }
 
-/// Reads what stands before the values.
-View read_view_head(Source& source, std::string_view section) {
+/// Reads a view up to its values.
+View read_view_head(NumberReader& source, std::string_view section) {
   View view;
   view.section = section;
   view.association = section == "NodeData" ? Association::vertices : Association::cells;
-  const Index strings = source.checked(source.text_integer("the number of string tags"), "string tags", 1);
-  (void)source.in.raw_line();
-  for (Index i = 0; i < strings; ++i) view.strings.emplace_back(source.in.rest_of_line());
+  const Index strings =
+      source.checked_count(source.text_integer("the number of string tags"), "string tags", 1);
+  (void)source.scanner.raw_line();
+  for (Index i = 0; i < strings; ++i) view.strings.emplace_back(source.scanner.rest_of_line());
   view.array = view.strings.empty() ? std::string(section) : unquoted(view.strings.front());
-  view.reals.resize(source.checked(source.text_integer("the number of real tags"), "real tags", 2));
+  view.reals.resize(source.checked_count(source.text_integer("the number of real tags"), "real tags", 2));
   for (double& value : view.reals) value = source.text_real("a real tag");
-  view.integers.resize(source.checked(source.text_integer("the number of integer tags"), "integer tags", 2));
+  view.integers.resize(
+      source.checked_count(source.text_integer("the number of integer tags"), "integer tags", 2));
   if (view.integers.size() < 3) {
     source.fail("$" + std::string(section) + " has " + std::to_string(view.integers.size()) + " integer tags",
                 "step, components and number of entries are needed");
@@ -51,7 +53,7 @@ View read_view_head(Source& source, std::string_view section) {
   return view;
 }
 
-/// How many nodes the entry of cell c has according to a rule.
+/// Returns the number of nodes that the entry of cell c has by a rule.
 int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
   const int vertices = mesh.cells.vertex_count(c);
   switch (per) {
@@ -67,15 +69,15 @@ int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
   return fixed;
 }
 
-/// Entries of a section as they stand in the file: rows with `nodes` × components values each.
+/// Entries of a section in file order: rows of `nodes` × components values each.
 struct Entries {
   std::vector<Index> rows;
   std::vector<int> nodes;  ///< empty: one for all
   std::vector<double> values;
 };
 
-/// Finds the rule that tells the numbers of nodes from the cells.
-void find_rule(const Reading& reading, const Entries& entries, View& view) {
+/// Finds the rule that gives the number of nodes of an entry from its cell.
+void find_rule(const ReadContext& reading, const Entries& entries, View& view) {
   if (entries.nodes.empty()) return;
   for (const PerElement per : {PerElement::each_node, PerElement::each_corner, PerElement::fixed}) {
     bool fits = true;
@@ -91,19 +93,19 @@ void find_rule(const Reading& reading, const Entries& entries, View& view) {
                       "give values for all nodes or for the corners");
 }
 
-Entries read_entries(Reading& reading, const View& view) {
-  Source& source = reading.source;
+Entries read_entries(ReadContext& reading, const View& view) {
+  NumberReader& source = reading.source;
   const bool per_node = view.section == "ElementNodeData";
   const std::int64_t components = view.integers[1];
   const std::int64_t fields = 1 + (per_node ? 1 : 0);
-  const Index count = source.checked(view.integers[2], "the number of entries",
-                                     source.binary ? 4 * fields + (per_node ? 0 : 8 * components)
-                                                   : 2 * (fields + (per_node ? 0 : components)));
-  const Places& places = view.association == Association::vertices ? reading.nodes : reading.elements;
+  const Index count = source.checked_count(view.integers[2], "the number of entries",
+                                           source.binary ? 4 * fields + (per_node ? 0 : 8 * components)
+                                                         : 2 * (fields + (per_node ? 0 : components)));
+  const IdMap& places = view.association == Association::vertices ? reading.nodes : reading.elements;
   Entries entries;
   entries.rows.reserve(count);
   for (Index i = 0; i < count; ++i) {
-    const std::int64_t id = source.binary ? source.int32("the number of an entry") : source.size("an entry");
+    const std::int64_t id = source.binary ? source.int32("the number of an entry") : source.int64("an entry");
     const Index place = places.find(id);
     if (place < 0) {
       source.fail("$" + view.section + " names " +
@@ -114,8 +116,8 @@ Entries read_entries(Reading& reading, const View& view) {
     entries.rows.push_back(place);
     std::int64_t nodes = 1;
     if (per_node) {
-      nodes = source.checked(source.int32("the number of nodes of an entry"),
-                             "the number of nodes of an entry", (source.binary ? 8 : 2) * components);
+      nodes = source.checked_count(source.int32("the number of nodes of an entry"),
+                                   "the number of nodes of an entry", (source.binary ? 8 : 2) * components);
       entries.nodes.push_back(static_cast<int>(nodes));
     }
     for (std::int64_t k = 0; k < nodes * components; ++k) entries.values.push_back(source.real("a value"));
@@ -123,8 +125,8 @@ Entries read_entries(Reading& reading, const View& view) {
   return entries;
 }
 
-/// The entries as rows of even width, filled with 0.
-std::vector<double> even_rows(const Reading& reading, Entries& entries, const View& view, Index& width) {
+/// Returns the entries as rows of one width, padded with 0.
+std::vector<double> even_rows(const ReadContext& reading, Entries& entries, const View& view, Index& width) {
   const int components = view.integers[1];
   int most = 1;
   int least = entries.nodes.empty() ? 1 : entries.nodes.front();
@@ -150,7 +152,7 @@ std::vector<double> even_rows(const Reading& reading, Entries& entries, const Vi
   return values;
 }
 
-/// Rows that cover everything go into the mesh's order.
+/// Sorts rows that cover all vertices or cells into the order of the mesh.
 void sort_full(DataArray& array, std::vector<double>& values, Index count) {
   if (index_size(array.indices) != count) return;
   std::vector<double> sorted(values.size());
@@ -163,7 +165,7 @@ void sort_full(DataArray& array, std::vector<double>& values, Index count) {
   array.indices.clear();
 }
 
-/// Labels that were converted to real numbers become integers again, for those who look for labels.
+/// Turns labels that were written as real numbers into integers again.
 void restore_labels(DataArray& array) {
   const auto* values = std::get_if<std::vector<double>>(&array.values);
   if (array.name != kLabel || array.components != 1 || !values) return;
@@ -179,14 +181,14 @@ void restore_labels(DataArray& array) {
   }
 }
 
-/// Whether another array has the same name.
+/// Returns whether another array has the same name.
 bool is_taken(const Mesh& mesh, const DataArray& array) {
   return std::any_of(mesh.data.begin(), mesh.data.end(), [&](const DataArray& other) {
     return &other != &array && other.association == array.association && other.name == array.name;
   });
 }
 
-/// The smallest number of components that Gmsh knows and that holds so many; 0 where there is none.
+/// Returns the smallest number of components of Gmsh's data that is at least `components`; 0 if none is.
 Index gmsh_components(Index components) {
   for (const Index known : {1, 3, 9}) {
     if (components <= known) return known;
@@ -205,7 +207,7 @@ double as_double(const Number& value) {
 
 }  // namespace
 
-void check_distinct(const Source& source, std::vector<Index> rows, std::string_view section) {
+void check_distinct(const NumberReader& source, std::vector<Index> rows, std::string_view section) {
   std::sort(rows.begin(), rows.end());
   if (std::adjacent_find(rows.begin(), rows.end()) != rows.end()) {
     source.fail("$" + std::string(section) + " gives the same node or element twice",
@@ -213,7 +215,7 @@ void check_distinct(const Source& source, std::vector<Index> rows, std::string_v
   }
 }
 
-void read_view(Reading& reading, std::string_view section) {
+void read_view(ReadContext& reading, std::string_view section) {
   View view = read_view_head(reading.source, section);
   const bool on_vertices = view.association == Association::vertices;
   Entries entries = read_entries(reading, view);
@@ -223,7 +225,7 @@ void read_view(Reading& reading, std::string_view section) {
   array.name = view.array;
   array.association = view.association;
   std::vector<double> values = even_rows(reading, entries, view, array.components);
-  reading.source.expect_end(section);
+  expect_end(reading.source, section);
   reading.metadata.sections.push_back({SectionKind::view, view.section, "", reading.metadata.views.size()});
   reading.view_arrays.push_back(reading.mesh.data.size());
   if (entries.rows.empty()) {  // an array without rows would mean all
@@ -237,7 +239,7 @@ void read_view(Reading& reading, std::string_view section) {
   reading.metadata.views.push_back(std::move(view));
 }
 
-void name_views(Reading& reading) {
+void name_views(ReadContext& reading) {
   auto& views = reading.metadata.views;
   std::map<std::pair<std::string, std::string>, int> steps;
   for (const View& view : views) ++steps[{view.section, view.array}];
@@ -255,10 +257,10 @@ void name_views(Reading& reading) {
   }
 }
 
-bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes) {
+bool add_view(Metadata& layout, const DataArray& array, Notes& notes) {
   const Index components = gmsh_components(array.components);
   if (std::holds_alternative<std::vector<std::string>>(array.values) || components == 0) {
-    note_array_left_out(array, "Gmsh", notes);
+    note_array_unsupported(array, "Gmsh", notes);
     return false;
   }
   if (components != array.components) {
@@ -292,7 +294,7 @@ bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes) {
   return true;
 }
 
-void write_view(Sink& sink, const Output& output, const View& view) {
+void write_view(NumberWriter& sink, const WriteContext& output, const View& view) {
   const Mesh& mesh = output.mesh;
   const DataArray* array = find_array(mesh, view.array, view.association);
   const Index rows = array ? row_count(*array) : 0;

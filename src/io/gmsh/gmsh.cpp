@@ -11,9 +11,9 @@
 #include <charconv>
 #include <set>
 
-// Specification: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format. This file goes through the
-// sections; gmsh_v2.cpp and gmsh_v4.cpp read and write nodes and elements, gmsh_data.cpp and gmsh_links.cpp
-// what is attached to them, gmsh_groups.cpp makes groups and entities.
+// Specification: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format. This file walks the
+// sections; v2.cpp and v4.cpp read and write nodes and elements, data.cpp and links.cpp their data and links,
+// groups.cpp makes groups and entities.
 
 namespace meshorder {
 namespace gmsh {
@@ -23,50 +23,50 @@ namespace {
 
 const std::set<std::string_view> kDataSections{"NodeData", "ElementData", "ElementNodeData"};
 
-/// Sections without numbers of nodes or elements, which therefore stay as they are. $Parametrizations has
-/// triangles over nodes of its own.
+/// Sections without numbers of nodes or elements, kept verbatim. $Parametrizations has triangles over nodes
+/// of its own.
 const std::set<std::string_view> kVerbatimSections{"Comments", "InterpolationScheme", "Parametrizations"};
 
-/// Goes to the line $EndName and returns all before it.
-std::string_view body(Source& source, std::string_view section) {
-  const std::string_view all = source.in.all();
+/// Moves to the line $EndName and returns the text before it.
+std::string_view body(NumberReader& source, std::string_view section) {
+  const std::string_view all = source.scanner.all();
   const std::string end = "$End" + std::string(section);
-  const auto begin = static_cast<std::size_t>(source.in.byte());
+  const auto begin = static_cast<std::size_t>(source.scanner.byte());
   for (std::size_t at = all.find(end, begin); at != std::string_view::npos; at = all.find(end, at + 1)) {
     const char before = at == 0 ? '\n' : all[at - 1];
     const std::size_t behind = at + end.size();
     const bool ends =
         behind == all.size() || std::string_view(" \t\r\n").find(all[behind]) != std::string_view::npos;
     if ((before != '\n' && before != '\r') || !ends) continue;
-    source.in.seek(static_cast<std::int64_t>(at));
+    source.scanner.seek(static_cast<std::int64_t>(at));
     return all.substr(begin, at - begin);
   }
   source.fail("$" + std::string(section) + " has no " + end, "the file may be cut short");
 }
 
-/// Fails unless the version is one that we read.
-void check_version(const Source& source, double version) {
+/// Fails unless the version is supported.
+void check_version(const NumberReader& source, double version) {
   if ((version >= 2 && version < 2.3) || (version > 4.05 && version < 4.15)) return;
-  source.fail(fmt::format("version {} of Gmsh's format is not supported", version),
-              "2.2 and 4.1 are; convert the file with gmsh -save -format msh41");
+  source.fail(fmt::format("version {:.1f} of Gmsh's format is not supported", version),
+              "2.2 and 4.1 are; convert the file with gmsh OLD.msh -save -format msh41 -o NEW.msh");
 }
 
-void read_format(Reading& reading) {
-  Source& source = reading.source;
-  const std::int64_t begin = source.in.byte();
-  reading.metadata.version = source.in.real("the version");
+void read_format(ReadContext& reading) {
+  NumberReader& source = reading.source;
+  const std::int64_t begin = source.scanner.byte();
+  reading.metadata.version = source.scanner.real("the version");
   check_version(source, reading.metadata.version);
-  const auto file_type = source.in.integer<std::int32_t>("the file type");
-  const auto data_size = source.in.integer<std::int32_t>("the data size");
+  const auto file_type = source.scanner.integer<std::int32_t>("the file type");
+  const auto data_size = source.scanner.integer<std::int32_t>("the data size");
   if (file_type != 0 && file_type != 1) {
     source.fail("the file type is " + std::to_string(file_type), "0 (text) and 1 (binary) are possible");
   }
   if (file_type == 1 && data_size != 8) {
     source.fail("the data size is " + std::to_string(data_size),
-                "only binary files with 8 are read; convert the file with gmsh -save");
+                "only binary files with 8 are read; convert the file with gmsh OLD.msh -save -o NEW.msh");
   }
-  reading.metadata.header = source.in.all().substr(begin, source.in.byte() - begin);
-  (void)source.in.raw_line();
+  reading.metadata.header = source.scanner.all().substr(begin, source.scanner.byte() - begin);
+  (void)source.scanner.raw_line();
   source.binary = reading.metadata.binary = file_type == 1;
   if (source.binary) {
     const auto one = source.int32("the number 1 that shows the byte order");
@@ -76,22 +76,23 @@ void read_format(Reading& reading) {
     const auto other = std::endian::native == std::endian::little ? std::endian::big : std::endian::little;
     source.order = reading.metadata.order = one == 1 ? std::endian::native : other;
   }
-  source.expect_end("MeshFormat");
+  expect_end(source, "MeshFormat");
   reading.metadata.sections.push_back({SectionKind::format, "MeshFormat", "", 0});
 }
 
-/// Names of physical groups stay as they stand, and are understood where that is possible: version 2.0 does
-/// not tell dimensions.
-void read_names(Reading& reading) {
-  Source& source = reading.source;
+/// Reads the names of physical groups and keeps the section verbatim. Version 2.0 gives no dimensions, so its
+/// names are not interpreted.
+void read_names(ReadContext& reading) {
+  NumberReader& source = reading.source;
   if (reading.metadata.version > 2.05) {
-    const std::int64_t begin = source.in.byte();
-    const Index count = source.checked(source.text_integer("the number of names"), "the number of names", 4);
+    const std::int64_t begin = source.scanner.byte();
+    const Index count =
+        source.checked_count(source.text_integer("the number of names"), "the number of names", 4);
     for (Index i = 0; i < count; ++i) {
       PhysicalName name{};
       name.dimension = static_cast<std::int32_t>(source.text_integer("the dimension of a physical group"));
       name.tag = static_cast<std::int32_t>(source.text_integer("the tag of a physical group"));
-      const std::string_view text = source.in.rest_of_line();
+      const std::string_view text = source.scanner.rest_of_line();
       if (text.size() < 2 || text.front() != '"' || text.back() != '"') {
         source.fail("the name of the physical group " + std::to_string(name.tag) + " has no quotes",
                     "write it as \"name\"");
@@ -99,26 +100,26 @@ void read_names(Reading& reading) {
       name.name = text.substr(1, text.size() - 2);
       reading.metadata.names.push_back(std::move(name));
     }
-    source.expect_end("PhysicalNames");
-    source.in.seek(begin);
+    expect_end(source, "PhysicalNames");
+    source.scanner.seek(begin);
   }
   const std::string_view text = body(source, "PhysicalNames");
-  source.expect_end("PhysicalNames");
+  expect_end(source, "PhysicalNames");
   reading.metadata.sections.push_back({SectionKind::verbatim, "PhysicalNames", std::string(text), 0});
 }
 
-/// Entities stay as they stand; what is taken from them are their physical groups.
-void read_entities(Reading& reading, const std::string& section) {
-  Source& source = reading.source;
-  const std::int64_t begin = source.in.byte();
+/// Reads the physical groups of entities and keeps the section verbatim.
+void read_entities(ReadContext& reading, const std::string& section) {
+  NumberReader& source = reading.source;
+  const std::int64_t begin = source.scanner.byte();
   read_entities_4(reading, section == "PartitionedEntities");
-  (void)source.in.at_end();
-  const std::string_view text = source.in.all().substr(begin, source.in.byte() - begin);
-  source.expect_end(section);
+  (void)source.scanner.at_end();
+  const std::string_view text = source.scanner.all().substr(begin, source.scanner.byte() - begin);
+  expect_end(source, section);
   reading.metadata.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
 }
 
-/// Whether a word of the text is a number.
+/// Returns whether a word of the text is a number.
 bool has_numbers(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\n,;:";
   for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos;) {
@@ -136,51 +137,52 @@ bool is_text(std::string_view text) {
                       [](char c) { return (c >= '\0' && c < '\t') || (c > '\r' && c < ' ') || c == '\x7f'; });
 }
 
-/// A section that nobody here knows stays as it is if its words can hardly number nodes or elements.
-void read_verbatim(Reading& reading, const std::string& section) {
-  Source& source = reading.source;
-  const std::int64_t line = source.in.line();
+/// Keeps an unknown section verbatim, provided it cannot contain node or element numbers.
+void read_verbatim(ReadContext& reading, const std::string& section) {
+  NumberReader& source = reading.source;
+  const std::int64_t line = source.scanner.line();
   const std::string_view text = body(source, section);
   if (!kVerbatimSections.contains(section) && (has_numbers(text) || !is_text(text))) {
-    source.fail(fmt::format("the section ${} from line {} on holds numbers of unknown meaning, which another "
-                            "order could falsify",
-                            section, line - 1),
-                "take it out of the file, or keep it as $Comments");
+    source.fail(
+        fmt::format("the section ${} from line {} on holds numbers of unknown meaning, which reordering "
+                    "could invalidate",
+                    section, line - 1),
+        "take it out of the file, or keep it as $Comments");
   }
-  source.expect_end(section);
+  expect_end(source, section);
   reading.metadata.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
 }
 
-void read_nodes(Reading& reading) {
+void read_nodes(ReadContext& reading) {
   reading.metadata.is_version_2() ? read_nodes_2(reading, "Nodes") : read_nodes_4(reading);
 }
 
-void read_parametric_nodes(Reading& reading) {
+void read_parametric_nodes(ReadContext& reading) {
   if (!reading.metadata.is_version_2()) {
     reading.source.fail("a section $ParametricNodes", "in version 4.1 it is called $Nodes");
   }
   read_nodes_2(reading, "ParametricNodes");
 }
 
-void read_elements(Reading& reading) {
+void read_elements(ReadContext& reading) {
   reading.metadata.is_version_2() ? read_elements_2(reading) : read_elements_4(reading);
 }
 
-void read_periodic_or_ghosts(Reading& reading, SectionKind kind) {
+void read_periodic_or_ghosts(ReadContext& reading, SectionKind kind) {
   kind == SectionKind::periodic ? read_periodic(reading) : read_ghosts(reading);
 }
 
-bool has_section(const GmshMetadata& metadata, SectionKind kind) {
+bool has_section(const Metadata& metadata, SectionKind kind) {
   return std::any_of(metadata.sections.begin(), metadata.sections.end(),
                      [kind](const Section& section) { return section.kind == kind; });
 }
 
-/// The kinds of section that a file has once.
+/// The kinds of section that a file has at most once.
 struct Single {
   std::string_view name;
   SectionKind kind;
   SectionKind after;
-  void (*read)(Reading&);
+  void (*read)(ReadContext&);
 };
 
 constexpr std::array kSingles{
@@ -188,44 +190,44 @@ constexpr std::array kSingles{
     Single{"ParametricNodes", SectionKind::nodes, SectionKind::format, read_parametric_nodes},
     Single{"Elements", SectionKind::elements, SectionKind::nodes, read_elements},
     Single{"Periodic", SectionKind::periodic, SectionKind::nodes,
-           [](Reading& reading) { read_periodic_or_ghosts(reading, SectionKind::periodic); }},
+           [](ReadContext& reading) { read_periodic_or_ghosts(reading, SectionKind::periodic); }},
     Single{"GhostElements", SectionKind::ghosts, SectionKind::elements,
-           [](Reading& reading) { read_periodic_or_ghosts(reading, SectionKind::ghosts); }},
+           [](ReadContext& reading) { read_periodic_or_ghosts(reading, SectionKind::ghosts); }},
 };
 
-void read_single(Reading& reading, const Single& single) {
+void read_single(ReadContext& reading, const Single& single) {
   const std::string name(single.name);
   if (has_section(reading.metadata, single.kind)) {
     reading.source.fail("a second section $" + name, "a file has one of them");
   }
   if (!has_section(reading.metadata, single.after)) {
-    reading.source.fail("$" + name + " stands before what it names", "put $Nodes and $Elements first");
+    reading.source.fail("$" + name + " comes before what it names", "put $Nodes and $Elements first");
   }
   single.read(reading);
   reading.metadata.sections.push_back({single.kind, name, "", 0});
 }
 
-/// Reads the section of that name, whose first line was read.
-void read_section(Reading& reading, const std::string& name) {
-  Source& source = reading.source;
+/// Reads the section `name` after its first line.
+void read_section(ReadContext& reading, const std::string& name) {
+  NumberReader& source = reading.source;
   const bool has_format = has_section(reading.metadata, SectionKind::format);
   if (name == "NOD") {
     source.fail("version 1 of Gmsh's format is not supported",
-                "convert the file with gmsh -save -format msh41");
+                "convert the file with gmsh OLD.msh -save -format msh41 -o NEW.msh");
   }
   if (name == "MeshFormat") {
     if (has_format) source.fail("a second section $MeshFormat", "a file has one");
     return read_format(reading);
   }
   if (!has_format && name != "Comments") {
-    source.fail("$" + name + " stands before $MeshFormat", "a Gmsh file begins with $MeshFormat");
+    source.fail("$" + name + " comes before $MeshFormat", "a Gmsh file begins with $MeshFormat");
   }
   if (name == "PhysicalNames") return read_names(reading);
   const bool entities = name == "Entities" || name == "PartitionedEntities";
   if (entities && !reading.metadata.is_version_2()) return read_entities(reading, name);
   if (kDataSections.contains(name)) {
     if (!has_section(reading.metadata, SectionKind::elements)) {
-      source.fail("$" + name + " stands before $Elements", "put $Nodes and $Elements first");
+      source.fail("$" + name + " comes before $Elements", "put $Nodes and $Elements first");
     }
     return read_view(reading, name);
   }
@@ -235,8 +237,8 @@ void read_section(Reading& reading, const std::string& name) {
   read_verbatim(reading, name);
 }
 
-/// What can only be done when all sections are known.
-void finish(Reading& reading) {
+/// Completes the mesh once all sections are read.
+void finish(ReadContext& reading) {
   Mesh& mesh = reading.mesh;
   for (const auto& [kind, name] : {std::pair{SectionKind::format, "$MeshFormat"},
                                    {SectionKind::nodes, "$Nodes"},
@@ -253,17 +255,20 @@ void finish(Reading& reading) {
   name_views(reading);
   std::vector<EntitySet> sets = physical_sets(mesh, reading.metadata);
   std::move(sets.begin(), sets.end(), std::back_inserter(mesh.sets));
-  mesh.format_metadata = std::make_shared<GmshMetadata>(std::move(reading.metadata));
+  mesh.format_metadata = std::make_shared<Metadata>(std::move(reading.metadata));
 }
 
 Mesh read(const std::filesystem::path& path, Notes& notes) {
-  Reading reading{Source(path), {}, {}, {}, {}, {}, notes};
-  Scanner& in = reading.source.in;
+  ReadContext reading{NumberReader(path), {}, {}, {}, {}, {}, notes};
+  Scanner& in = reading.source.scanner;
   while (!in.at_end()) {
     const std::string word(in.peek_word());
     if (word.front() != '$' || word.size() < 2 || word.substr(0, 4) == "$End") {
-      reading.source.fail("something stands outside the sections",
-                          "a section begins with a line such as $Nodes");
+      if (reading.metadata.sections.empty()) {
+        reading.source.fail("is not a Gmsh file (it begins with '" + shown(in.peek_line()) + "')",
+                            "a Gmsh file begins with $MeshFormat");
+      }
+      reading.source.fail("unexpected text outside a section", "a section begins with a line such as $Nodes");
     }
     (void)in.raw_line();
     read_section(reading, word.substr(1));
@@ -274,9 +279,9 @@ Mesh read(const std::filesystem::path& path, Notes& notes) {
 
 // ---- writing
 
-/// The type of every cell; throws Error for a cell that Gmsh does not have.
+/// Returns the type of every cell; throws Error for a cell that Gmsh does not have.
 std::vector<const ElementType*> types_of_cells(const Mesh& mesh, const std::filesystem::path& path) {
-  refuse_other_cells(
+  require_supported_cells(
       mesh, path, "Gmsh", [](Shape shape, int nodes) { return find_type(shape, nodes) != nullptr; },
       "write another format, or split such cells into triangles and quads");
   const std::vector<std::int32_t> numbers = integers_of(mesh, kCellType, Association::cells);
@@ -296,7 +301,7 @@ std::vector<const ElementType*> types_of_cells(const Mesh& mesh, const std::file
   return types;
 }
 
-/// Ids of another format, where Gmsh can take them: positive, and different for all cells.
+/// Returns the ids of another format if Gmsh allows them: positive and distinct; else none, with a note.
 std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::string_view what,
                                      Notes& notes) {
   std::vector<std::int64_t> sorted = ids;
@@ -304,18 +309,18 @@ std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::
   const bool usable = sorted.empty() || (sorted.front() > 0 &&
                                          std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end());
   if (usable) return ids;
-  notes.push_back(fmt::format("the {} are numbered anew: Gmsh's numbers are positive and different", what));
+  notes.push_back(fmt::format("the {} are renumbered: Gmsh's numbers are positive and distinct", what));
   return {};
 }
 
-bool is_parametric_2(const GmshMetadata& layout) {
+bool is_parametric_2(const Metadata& layout) {
   return layout.is_version_2() &&
          std::any_of(layout.sections.begin(), layout.sections.end(),
                      [](const Section& section) { return section.name == "ParametricNodes"; });
 }
 
-/// Whether the arrays that a file of this layout needs are still there.
-bool still_fits(const Mesh& mesh, const GmshMetadata& layout) {
+/// Returns whether the mesh still has the arrays that a file of this layout needs.
+bool still_fits(const Mesh& mesh, const Metadata& layout) {
   const DataArray* entities = find_array(mesh, kNodeEntity, Association::vertices);
   const bool has_node_entities =
       entities && entities->components == 2 && !integers_of(mesh, kNodeEntity, Association::vertices).empty();
@@ -324,8 +329,8 @@ bool still_fits(const Mesh& mesh, const GmshMetadata& layout) {
          integers_of(mesh, kCellEntity, Association::cells).size() == mesh.cells.shapes.size();
 }
 
-/// Fills in what the mesh has kept from its Gmsh file.
-void take_layout(const GmshMetadata& layout, Output& output) {
+/// Takes ids, entities and tags from a mesh that came from a Gmsh file.
+void take_layout(const Metadata& layout, WriteContext& output) {
   const Mesh& mesh = output.mesh;
   const auto place = [&](std::string_view name, Association association) {
     output.placed.push_back(find_array(mesh, name, association));
@@ -358,8 +363,8 @@ void take_layout(const GmshMetadata& layout, Output& output) {
   if (!labels.empty() && labels == labels_of_entities(mesh, layout)) place(kLabel, Association::cells);
 }
 
-/// Notes the sets that the layout does not hold as they are.
-void note_sets(const Mesh& mesh, const GmshMetadata& layout, Notes& notes) {
+/// Notes the sets that differ from the physical groups and periodic nodes of the layout.
+void note_sets(const Mesh& mesh, const Metadata& layout, Notes& notes) {
   const std::vector<EntitySet> physical = physical_sets(mesh, layout);
   std::set<std::string> periodic;
   for (const PeriodicLink& link : layout.periodic) periodic.insert({link.nodes, link.master_nodes});
@@ -370,12 +375,12 @@ void note_sets(const Mesh& mesh, const GmshMetadata& layout, Notes& notes) {
     const bool held = std::any_of(physical.begin(), physical.end(), [&](const EntitySet& other) {
       return set.association == other.association && set.name == other.name && members == other.members;
     });
-    if (!held) note_set_left_out(set, "Gmsh", notes);
+    if (!held) note_set_unsupported(set, "Gmsh", notes);
   }
 }
 
-/// Gives a data section to every array that is neither placed elsewhere nor in a section already.
-void add_views(GmshMetadata& layout, const Output& output, Notes& notes) {
+/// Adds a data section for every array that has no place in the file yet.
+void add_views(Metadata& layout, const WriteContext& output, Notes& notes) {
   const auto has_view = [&](const DataArray& array) {
     return std::any_of(layout.views.begin(), layout.views.end(), [&](const View& view) {
       return view.association == array.association && view.array == array.name;
@@ -388,14 +393,14 @@ void add_views(GmshMetadata& layout, const Output& output, Notes& notes) {
   }
 }
 
-void write_format(Sink& sink, const GmshMetadata& layout) {
+void write_format(NumberWriter& sink, const Metadata& layout) {
   sink.out.print("{}\n", layout.header);
   if (!layout.binary) return;
   sink.int32(1);
   sink.out.write("\n");
 }
 
-void write_section(Sink& sink, const Output& output, const Section& section) {
+void write_section(NumberWriter& sink, const WriteContext& output, const Section& section) {
   const bool version_2 = output.layout.is_version_2();
   sink.out.print("${}\n", section.name);
   switch (section.kind) {
@@ -428,16 +433,16 @@ void write_section(Sink& sink, const Output& output, const Section& section) {
 }
 
 void write(const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
-  const auto* own = dynamic_cast<const GmshMetadata*>(mesh.format_metadata.get());
+  const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   const bool keeps_layout = own && still_fits(mesh, *own);
-  GmshMetadata layout = keeps_layout ? *own : GmshMetadata{};
-  Output output{mesh, layout, types_of_cells(mesh, path), {}, {}, {}, {}, {}, {}};
+  Metadata layout = keeps_layout ? *own : Metadata{};
+  WriteContext output{mesh, layout, types_of_cells(mesh, path), {}, {}, {}, {}, {}, {}};
   output.placed.push_back(find_array(mesh, kCellType, Association::cells));
   if (keeps_layout) {
     take_layout(layout, output);
     note_sets(mesh, layout, notes);
   } else {
-    note_residue_left_out(mesh, "Gmsh", notes);
+    note_metadata_unsupported(mesh, "Gmsh", notes);
     output.node_ids = usable_ids(mesh.vertex_ids, "vertices", notes);
     output.cell_ids = usable_ids(mesh.cell_ids, "cells", notes);
     classify(layout, output, notes);
@@ -445,14 +450,14 @@ void write(const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
   add_views(layout, output, notes);
 
   OutputFile out(path);
-  Sink sink{out, path.string(), layout.binary, layout.order};
+  NumberWriter sink{out, path.string(), layout.binary, layout.order};
   for (const Section& section : layout.sections) write_section(sink, output, section);
   out.commit();
 }
 
 }  // namespace
 
-std::vector<std::string> GmshMetadata::contents() const {
+std::vector<std::string> Metadata::contents() const {
   std::vector<std::string> result;
   const auto add = [&](std::string what) {
     if (std::find(result.begin(), result.end(), what) == result.end()) result.push_back(std::move(what));
@@ -461,9 +466,9 @@ std::vector<std::string> GmshMetadata::contents() const {
     if (section.kind != SectionKind::verbatim) continue;
     // the groups themselves are labels and sets
     const bool has_names = section.name == "PhysicalNames";
-    add(has_names ? "the numbers of named physical groups" : "the section $" + section.name);
+    add(has_names ? "the numbers of named physical groups" : "Gmsh's $" + section.name);
   }
-  if (!periodic.empty()) add(fmt::format("which of {} periodic entities copies which", periodic.size()));
+  if (!periodic.empty()) add(fmt::format("the pairs of {} periodic entities", periodic.size()));
   const bool timed = std::any_of(views.begin(), views.end(), [](const View& view) {
     return (!view.reals.empty() && view.reals[0] != 0) || view.integers[0] != 0;
   });
@@ -471,7 +476,7 @@ std::vector<std::string> GmshMetadata::contents() const {
   return result;
 }
 
-const ElementType& known_type(const Source& source, std::int64_t number) {
+const ElementType& known_type(const NumberReader& source, std::int64_t number) {
   const ElementType* type = number < 0 || number > 1000 ? nullptr : find_type(static_cast<int>(number));
   if (!type) {
     source.fail("the element type " + std::to_string(number) + " is not supported",
@@ -488,7 +493,7 @@ void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes)
   mesh.cells.push_back(type.shape, std::span(sorted).first(order.size()));
 }
 
-void write_cell_nodes(Sink& sink, const Output& output, Index c, bool wide) {
+void write_cell_nodes(NumberWriter& sink, const WriteContext& output, Index c, bool wide) {
   const auto nodes = output.mesh.cells[c];
   const std::span<const int> order = vtk_order(output.types[c]->shape, output.types[c]->nodes);
   std::array<Index, 27> sorted{};
@@ -499,7 +504,8 @@ void write_cell_nodes(Sink& sink, const Output& output, Index c, bool wide) {
   }
 }
 
-Index place_of_node(const Reading& reading, std::int64_t id, std::string_view owner, std::int64_t owner_id) {
+Index place_of_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
+                    std::int64_t owner_id) {
   const Index place = reading.nodes.find(id);
   if (place < 0) {
     reading.source.fail(fmt::format("{} {} names node {}, which $Nodes does not have", owner, owner_id, id),

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "io/format.hpp"
+#include "io/stream/id_map.hpp"
+#include "io/stream/number_reader.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/stream/scanner.hpp"
 #include "mesh/mesh.hpp"
 
 #include <array>
@@ -13,17 +14,16 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
-/// Gmsh's .msh files, shared by the sources gmsh*.cpp and by nobody else.
+/// Declarations shared by the reader and the writer of Gmsh's .msh files.
 ///
 /// The specification is the section "MSH file format" of Gmsh's reference manual,
 /// https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format, and "Node ordering" there.
 namespace meshorder::gmsh {
 
-// ---- element types (gmsh_types.cpp)
+// ---- element types
 
 /// One of Gmsh's element types: its number in files, its shape and how many nodes it has.
 struct ElementType {
@@ -32,31 +32,31 @@ struct ElementType {
   int nodes;
 };
 
-/// The type of that number, or nullptr where it has no fixed number of nodes or no shape of ours.
+/// Returns the type with that number, or nullptr if it has no fixed number of nodes or no Shape.
 const ElementType* find_type(int number);
 
-/// The type of cells of that shape with so many vertices, or nullptr. Where Gmsh has two (the complete and
-/// the serendipity quad of 16 nodes), the complete one.
+/// Returns the type of cells of that shape with `nodes` vertices, or nullptr. If Gmsh has two (the complete
+/// and the serendipity quad of 16 nodes), the complete one.
 const ElementType* find_type(Shape shape, int nodes);
 
-/// `order[k]` is the place in Gmsh's list of the node that stands at place k in VTK's order; empty where the
-/// two agree or VTK knows no such cell.
+/// Returns an order in which `order[k]` is the position in Gmsh's list of the k-th node in VTK's order; empty
+/// if the two agree or VTK has no such cell.
 std::span<const int> vtk_order(Shape shape, int nodes);
 
-// ---- names of the arrays in which a mesh keeps what only Gmsh has
+// ---- names of the arrays that keep data of Gmsh's files
 
 inline constexpr std::string_view kCellEntity = "gmsh:geometrical";    ///< tag of each cell's entity
-inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< where it is not the cell's own
-inline constexpr std::string_view kCellType = "gmsh:type";  ///< where shape and count are not enough
+inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< if it differs from the cell's own
+inline constexpr std::string_view kCellType = "gmsh:type";  ///< if shape and count do not determine it
 inline constexpr std::string_view kCellPartitions = "gmsh:partitions";  ///< 2.2: tags from the third on
-inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.2: where it differs among cells
+inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.2: if it differs among cells
 inline constexpr std::string_view kCellGhosts = "gmsh:ghosts";    ///< owner, number of ghosts, ghosts, 0 …
 inline constexpr std::string_view kNodeEntity = "gmsh:dim_tags";  ///< 4.1: dimension and tag
-inline constexpr std::string_view kNodeParameters = "gmsh:parametric";  ///< 1 or 0 for given or not, u, v, w
+inline constexpr std::string_view kNodeParameters = "gmsh:parametric";  ///< 1 if given, else 0; u, v, w
 
-// ---- what the reader keeps for the writer
+// ---- metadata
 
-/// Which values an $ElementNodeData section has for a cell.
+/// The rule for the number of values that an $ElementNodeData section has for a cell.
 enum class PerElement : std::uint8_t { one, each_node, each_corner, fixed };
 
 /// A section $NodeData, $ElementData or $ElementNodeData without its values, which are an array of the mesh.
@@ -64,7 +64,7 @@ struct View {
   std::string section;
   Association association = Association::vertices;
   std::string array;                   ///< name of the array in the mesh
-  std::vector<std::string> strings;    ///< as they stand, quotes included
+  std::vector<std::string> strings;    ///< verbatim, quotes included
   std::vector<double> reals;           ///< the time first
   std::vector<std::int32_t> integers;  ///< step, components, entries (set anew when written), partition …
   PerElement per = PerElement::one;
@@ -87,7 +87,7 @@ struct PhysicalName {
   std::string name;
 };
 
-/// Head of a block that has no nodes or elements: dimension, tag and `parametric` or the element type.
+/// The heading of a block without nodes or elements: dimension, tag and `parametric` or the element type.
 using EmptyBlock = std::array<std::int32_t, 3>;
 
 enum class SectionKind : std::uint8_t { format, verbatim, nodes, elements, periodic, ghosts, view };
@@ -95,17 +95,18 @@ enum class SectionKind : std::uint8_t { format, verbatim, nodes, elements, perio
 struct Section {
   SectionKind kind;
   std::string name;
-  std::string text;  ///< all between the lines $Name and $EndName, for SectionKind::verbatim
+  std::string text;  ///< for SectionKind::verbatim: between the lines $Name and $EndName
   std::size_t view = 0;
 };
 
 using Entity = std::pair<std::int32_t, std::int32_t>;  ///< dimension and tag
 
-/// Everything about a Gmsh file that does not depend on the order of its nodes and elements.
-struct GmshMetadata : FormatMetadata {
+/// The parts of a Gmsh file that do not depend on the order of its nodes and elements.
+struct Metadata : FormatMetadata {
   double version = 4.1;
   bool binary = false;
-  std::endian order = std::endian::native;  ///< of the file's numbers; kept, as verbatim sections hold some
+  std::endian order =
+      std::endian::native;  ///< of the file's numbers; kept because verbatim sections may hold some
   std::string header = "4.1 0 8";
   std::vector<Section> sections;
   std::vector<View> views;
@@ -121,107 +122,71 @@ struct GmshMetadata : FormatMetadata {
 
 // ---- reading
 
-struct Source;
+/// Maps the numbers of nodes or elements to their positions. Fails for negative numbers and for numbers that
+/// are given twice; `what` is "node" or "element".
+IdMap number_ids(const NumberReader& source, const std::vector<std::int64_t>& ids, std::string_view what);
 
-/// Where the numbers that a file gives stand in the mesh.
-class Places {
- public:
-  Places() = default;
-  /// Fails through `source` when a number is negative or given twice; `what` is "node" or "element".
-  Places(const Source& source, const std::vector<std::int64_t>& ids, std::string_view what);
-  /// The place of the thing with that number, or −1.
-  [[nodiscard]] Index find(std::int64_t id) const;
-  /// True when the numbers are 1, 2, 3 … in the order of the file.
-  [[nodiscard]] bool consecutive() const noexcept { return consecutive_; }
+/// Reads the line $EndSECTION.
+void expect_end(NumberReader& source, std::string_view section);
 
- private:
-  Index count_ = 0;
-  bool consecutive_ = true;
-  std::vector<Index> dense_;
-  std::unordered_map<std::int64_t, Index> sparse_;
-};
-
-/// A file that is being read: numbers are taken as text or binary, as its $MeshFormat says.
-struct Source {
-  explicit Source(const std::filesystem::path& path) : in(path) {}
-
-  std::int32_t int32(std::string_view what);
-  std::int64_t size(std::string_view what);  ///< size_t of the specification
-  double real(std::string_view what);
-  double finite(std::string_view what);
-  /// A size of things that take so many bytes each at least, in text and in binary.
-  Index count(std::string_view what, std::int64_t text_bytes, std::int64_t binary_bytes);
-  /// Numbers that are text in binary files too.
-  std::int64_t text_integer(std::string_view what);
-  double text_real(std::string_view what);
-  [[nodiscard]] Index checked(std::int64_t number, std::string_view what, std::int64_t bytes) const;
-  /// Moves behind the end of the line if the numbers that follow are binary.
-  void begin_binary();
-  void expect_end(std::string_view section);
-  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
-
-  Scanner in;
-  bool binary = false;
-  std::endian order = std::endian::native;
-};
-
-/// A mesh that is being read.
-struct Reading {
-  Source source;
+/// The state of the reader.
+struct ReadContext {
+  NumberReader source;
   Mesh mesh;
-  GmshMetadata metadata;
-  Places nodes;
-  Places elements;
-  std::vector<std::size_t> view_arrays;  ///< place of each view's array in `mesh.data`, where it has one
+  Metadata metadata;
+  IdMap nodes;
+  IdMap elements;
+  std::vector<std::size_t> view_arrays;  ///< index of each view's array in `mesh.data`, if it has one
   Notes& notes;
 };
 
-/// The element type of that number; fails where we cannot hold it.
-const ElementType& known_type(const Source& source, std::int64_t number);
+/// Returns the element type of that number; fails if it is not supported.
+const ElementType& known_type(const NumberReader& source, std::int64_t number);
 
-/// Adds a cell whose nodes have the given places, in Gmsh's order.
+/// Adds a cell with these vertices, in Gmsh's order.
 void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes);
 
-/// The place of a node that an element or section names; fails where there is none.
-Index place_of_node(const Reading& reading, std::int64_t id, std::string_view owner, std::int64_t owner_id);
+/// Returns the vertex with the number `id`; fails, naming its owner, if there is none.
+Index place_of_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
+                    std::int64_t owner_id);
 
-/// Adds the array kCellType when a cell's type does not follow from shape and count.
+/// Adds the array kCellType if shape and count do not determine the type of every cell.
 void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers);
 
-/// Adds the array kNodeParameters; nodes behind the last value have none.
+/// Adds the array kNodeParameters; nodes after the last value have none.
 void keep_parameters(Mesh& mesh, std::vector<double> values);
 
-/// Fails when a row stands twice.
-void check_distinct(const Source& source, std::vector<Index> rows, std::string_view section);
+/// Fails if a row is given twice.
+void check_distinct(const NumberReader& source, std::vector<Index> rows, std::string_view section);
 
 /// `section` is $Nodes or $ParametricNodes, without the $.
-void read_nodes_2(Reading& reading, std::string_view section);
-void read_elements_2(Reading& reading);
-void read_entities_4(Reading& reading, bool partitioned);
-void read_nodes_4(Reading& reading);
-void read_elements_4(Reading& reading);
-void read_view(Reading& reading, std::string_view section);
-void read_periodic(Reading& reading);
-void read_ghosts(Reading& reading);
-/// Gives the views' arrays their final names, which are distinct and say the step where there are several.
-void name_views(Reading& reading);
+void read_nodes_2(ReadContext& reading, std::string_view section);
+void read_elements_2(ReadContext& reading);
+void read_entities_4(ReadContext& reading, bool partitioned);
+void read_nodes_4(ReadContext& reading);
+void read_elements_4(ReadContext& reading);
+void read_view(ReadContext& reading, std::string_view section);
+void read_periodic(ReadContext& reading);
+void read_ghosts(ReadContext& reading);
+/// Gives the arrays of views distinct names, with the step if there are several.
+void name_views(ReadContext& reading);
 
-/// The cells of every named physical group that has any, as sets.
-std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metadata);
+/// Returns the cells of every named physical group that has any, as sets.
+std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata);
 
-/// The first physical group of each cell's entity, 0 for none; empty when no cell has any.
-std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadata& metadata);
+/// Returns the first physical group of each cell's entity, 0 for none; empty if no cell has one.
+std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const Metadata& metadata);
 
 // ---- writing
 
-/// A file that is being written: numbers go out as text, separated by blanks, or as binary.
-struct Sink {
+/// Writes numbers as text, separated by blanks, or as binary.
+struct NumberWriter {
   void int32(std::int64_t value);
   void size(std::int64_t value);
   void real(double value);
-  /// Ends the line in text; nothing in binary.
+  /// Ends the line in text; does nothing in binary.
   void end_line();
-  /// Numbers that are text in binary files too, with the line end.
+  /// Writes a line with a number that is text in binary files too.
   void text_line(std::int64_t value) { out.print("{}\n", value); }
 
   OutputFile& out;
@@ -234,10 +199,10 @@ struct Sink {
   void separate();
 };
 
-/// All that the writer needs besides the mesh: read with it, or made for a mesh from elsewhere.
-struct Output {
+/// The input of the writer: a mesh and its layout, read with it or made for a mesh of another format.
+struct WriteContext {
   const Mesh& mesh;
-  const GmshMetadata& layout;
+  const Metadata& layout;
   std::vector<const ElementType*> types;      ///< of each cell
   std::vector<std::int64_t> node_ids;         ///< empty: 1, 2, 3 …
   std::vector<std::int64_t> cell_ids;         ///< empty: 1, 2, 3 …
@@ -250,28 +215,28 @@ struct Output {
   [[nodiscard]] std::int64_t cell_id(Index c) const { return cell_ids.empty() ? c + 1 : cell_ids[c]; }
 };
 
-/// The values of an array of integers that covers everything; empty where it is none.
+/// Returns the values of a dense array of 32-bit integers; empty if there is none.
 std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association);
 
-/// The values of the array kNodeParameters, or nullptr where there is none as it should be.
+/// Returns the values of the array kNodeParameters, or nullptr if it is missing or malformed.
 const std::vector<double>* parameters_of(const Mesh& mesh);
 
-/// Makes entities, physical groups and their names for a mesh that has no Gmsh layout of its own, from its
-/// labels, its sets of cells and the entities that it may have kept from an earlier conversion.
-void classify(GmshMetadata& layout, Output& output, Notes& notes);
+/// Makes entities, physical groups and their names for a mesh without a Gmsh layout, from its labels, its
+/// sets of cells and the entities that it may have kept from an earlier conversion.
+void classify(Metadata& layout, WriteContext& output, Notes& notes);
 
-/// Adds a view for an array that has none yet; false, with a note, where Gmsh cannot hold it.
-bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes);
+/// Adds a view for an array that has none yet; returns false, with a note, if Gmsh has no place for it.
+bool add_view(Metadata& layout, const DataArray& array, Notes& notes);
 
-/// The numbers of a cell's nodes in Gmsh's order; `wide` as size_t (4.1), else as int.
-void write_cell_nodes(Sink& sink, const Output& output, Index c, bool wide);
+/// Writes the numbers of a cell's nodes in Gmsh's order, as size_t (4.1) if `wide`, else as int.
+void write_cell_nodes(NumberWriter& sink, const WriteContext& output, Index c, bool wide);
 
-void write_nodes_2(Sink& sink, const Output& output);
-void write_elements_2(Sink& sink, const Output& output);
-void write_nodes_4(Sink& sink, const Output& output);
-void write_elements_4(Sink& sink, const Output& output);
-void write_view(Sink& sink, const Output& output, const View& view);
-void write_periodic(Sink& sink, const Output& output);
-void write_ghosts(Sink& sink, const Output& output);
+void write_nodes_2(NumberWriter& sink, const WriteContext& output);
+void write_elements_2(NumberWriter& sink, const WriteContext& output);
+void write_nodes_4(NumberWriter& sink, const WriteContext& output);
+void write_elements_4(NumberWriter& sink, const WriteContext& output);
+void write_view(NumberWriter& sink, const WriteContext& output, const View& view);
+void write_periodic(NumberWriter& sink, const WriteContext& output);
+void write_ghosts(NumberWriter& sink, const WriteContext& output);
 
 }  // namespace meshorder::gmsh

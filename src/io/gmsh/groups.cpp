@@ -10,13 +10,12 @@
 #include <set>
 #include <tuple>
 
-// Physical groups and the entities that belong to them: found in a file's entities, or made for a mesh that
-// comes from elsewhere.
+// Physical groups and their entities: found in a file's entities, or made for a mesh of another format.
 
 namespace meshorder::gmsh {
 namespace {
 
-/// Dimension and tag of each cell's entity, as the mesh's arrays tell.
+/// Dimension and tag of each cell's entity, from the arrays of the mesh.
 struct CellEntities {
   explicit CellEntities(const Mesh& mesh)
       : tags(integers_of(mesh, kCellEntity, Association::cells)),
@@ -32,7 +31,7 @@ struct CellEntities {
   const Cells& cells;
 };
 
-/// Looks things up by entity; neighbours in a mesh mostly share theirs.
+/// A map lookup by entity that remembers the last one, as neighbouring cells mostly share theirs.
 template <class Value>
 class EntityTable {
  public:
@@ -54,7 +53,7 @@ class EntityTable {
   const Value* value_ = nullptr;
 };
 
-// ---- for a mesh from elsewhere: a group of cells with the same label and in the same sets is an entity
+// ---- for a mesh of another format: cells with the same label and in the same sets make an entity
 
 struct Box {
   Point least{};
@@ -72,7 +71,7 @@ struct Box {
 
 struct Group {
   std::int32_t dimension;
-  std::int32_t wanted;  ///< the tag that it would like to have
+  std::int32_t wanted;  ///< the preferred tag
   std::vector<std::int32_t> physicals;
   std::int32_t tag = 0;
   Box box;
@@ -83,7 +82,7 @@ struct Groups {
   std::vector<Index> of_cell;
 };
 
-/// Labels that can be numbers of physical groups; empty, with a note, where they cannot.
+/// Returns the labels if they can be numbers of physical groups; else none, with a note.
 std::vector<std::int32_t> labels_for_groups(const Mesh& mesh, Notes& notes) {
   const DataArray* array = find_array(mesh, kLabel, Association::cells);
   std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Association::cells);
@@ -136,7 +135,7 @@ void split_by_set(Groups& groups, const EntitySet& set, std::int32_t physical) {
   }
 }
 
-/// Gives every group that has cells its tag: the wanted one to the first that comes, new ones to the others.
+/// Gives every group that has cells its tag: the wanted one to the first group, new ones to the others.
 void assign_tags(const Mesh& mesh, Groups& groups) {
   std::array<std::int32_t, 4> last{};
   for (const Group& group : groups.groups) {
@@ -157,9 +156,10 @@ void assign_tags(const Mesh& mesh, Groups& groups) {
   }
 }
 
-/// Entities of the nodes: those that they had in Gmsh, or the first entity of the highest dimension.
+/// Returns the entities of the nodes: those that they had in Gmsh, or the first entity of the highest
+/// dimension.
 std::vector<std::int32_t> entities_of_nodes(const Mesh& mesh, std::map<Entity, Group>& entities,
-                                            Output& output) {
+                                            WriteContext& output) {
   std::vector<std::int32_t> kept = integers_of(mesh, kNodeEntity, Association::vertices);
   const DataArray* array = find_array(mesh, kNodeEntity, Association::vertices);
   bool usable = !kept.empty() && array->components == 2;
@@ -218,7 +218,7 @@ std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups, std::
   for (const EntitySet& set : mesh.sets) {
     if (set.association == Association::vertices || set.members.empty() ||
         next > std::numeric_limits<std::int32_t>::max()) {
-      note_set_left_out(set, "Gmsh", notes);
+      note_set_unsupported(set, "Gmsh", notes);
       continue;
     }
     const auto physical = static_cast<std::int32_t>(next++);
@@ -232,8 +232,8 @@ std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups, std::
 
 }  // namespace
 
-std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metadata) {
-  // a name may stand for groups of several dimensions: they are one set
+std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata) {
+  // groups of several dimensions with one name are one set
   std::vector<EntitySet> sets;
   std::map<std::string, Index> set_of_name;
   std::map<Entity, std::vector<Index>> sets_of_group;
@@ -268,7 +268,7 @@ std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metad
   return sets;
 }
 
-std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadata& metadata) {
+std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const Metadata& metadata) {
   const CellEntities entities(mesh);
   EntityTable<std::vector<std::int32_t>> table(metadata.physicals);
   std::vector<std::int32_t> labels(mesh.cells.shapes.size(), 0);
@@ -283,7 +283,7 @@ std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadat
   return labels;
 }
 
-void classify(GmshMetadata& layout, Output& output, Notes& notes) {
+void classify(Metadata& layout, WriteContext& output, Notes& notes) {
   const Mesh& mesh = output.mesh;
   const std::vector<std::int32_t> labels = labels_for_groups(mesh, notes);
   if (!labels.empty()) output.placed.push_back(find_array(mesh, kLabel, Association::cells));

@@ -15,29 +15,30 @@ const EntitySet* find_set(const Mesh& mesh, const std::string& name) {
   return found == mesh.sets.end() ? nullptr : &*found;
 }
 
-/// Version 2.2 has a line "Affine …" of 16 numbers, or none; 4.1 a count and so many numbers.
-void read_affine(Reading& reading, PeriodicLink& link) {
-  Source& source = reading.source;
+/// Reads the affine map: in version 2.2 an optional line "Affine …" of 16 numbers, in 4.1 a count and
+/// numbers.
+void read_affine(ReadContext& reading, PeriodicLink& link) {
+  NumberReader& source = reading.source;
   if (!reading.metadata.is_version_2()) {
     link.affine.resize(source.count("the number of affine coefficients", 2, 8));
-  } else if (source.in.peek_word() == "Affine") {
-    (void)source.in.word("Affine");
+  } else if (source.scanner.peek_word() == "Affine") {
+    (void)source.scanner.word("Affine");
     link.affine.resize(16);
   }
   for (double& value : link.affine) value = source.real("an affine coefficient");
 }
 
-/// Pairs of nodes; those that the file does not have, as in meshes saved in part, are left out.
-Index read_pairs(Reading& reading, PeriodicLink& link) {
-  Source& source = reading.source;
+/// Reads pairs of nodes; returns how many name a node that the file lacks, as in meshes saved in part.
+Index read_pairs(ReadContext& reading, PeriodicLink& link) {
+  NumberReader& source = reading.source;
   const Index count = source.count("the number of periodic nodes", 4, 16);
   const std::string name = "gmsh:periodic " + std::to_string(link.dimension) + " " + std::to_string(link.tag);
   EntitySet nodes{name, Association::vertices, {}};
   EntitySet masters{name + " master", Association::vertices, {}};
   Index missing = 0;
   for (Index i = 0; i < count; ++i) {
-    const Index node = reading.nodes.find(source.size("a periodic node"));
-    const Index master = reading.nodes.find(source.size("a periodic node"));
+    const Index node = reading.nodes.find(source.int64("a periodic node"));
+    const Index master = reading.nodes.find(source.int64("a periodic node"));
     if (node < 0 || master < 0) {
       ++missing;
       continue;
@@ -54,8 +55,8 @@ Index read_pairs(Reading& reading, PeriodicLink& link) {
 
 }  // namespace
 
-void read_periodic(Reading& reading) {
-  Source& source = reading.source;
+void read_periodic(ReadContext& reading) {
+  NumberReader& source = reading.source;
   // version 2.2 writes this section as text in binary files, too
   const bool binary = source.binary;
   if (reading.metadata.is_version_2()) source.binary = false;
@@ -77,18 +78,18 @@ void read_periodic(Reading& reading) {
     missing += read_pairs(reading, link);
     reading.metadata.periodic.push_back(std::move(link));
   }
-  source.expect_end("Periodic");
+  expect_end(source, "Periodic");
   source.binary = binary;
   if (missing > 0) {
     reading.notes.push_back(std::to_string(missing) +
-                            " pairs of $Periodic are left out: they name nodes that the file does not have");
+                            " pairs of $Periodic are ignored: they name nodes that the file does not have");
   }
 }
 
-void write_periodic(Sink& sink, const Output& output) {
+void write_periodic(NumberWriter& sink, const WriteContext& output) {
   const bool version_2 = output.layout.is_version_2();
-  Sink text{sink.out, sink.file};
-  Sink& to = version_2 ? text : sink;
+  NumberWriter text{sink.out, sink.file};
+  NumberWriter& to = version_2 ? text : sink;
   to.size(index_size(output.layout.periodic));
   to.end_line();
   for (const PeriodicLink& link : output.layout.periodic) {
@@ -118,8 +119,8 @@ void write_periodic(Sink& sink, const Output& output) {
 
 // ---- ghost elements
 
-void read_ghosts(Reading& reading) {
-  Source& source = reading.source;
+void read_ghosts(ReadContext& reading) {
+  NumberReader& source = reading.source;
   const Index count = source.count("the number of ghost elements", 6, 20);
   DataArray array;
   array.name = kCellGhosts;
@@ -129,7 +130,7 @@ void read_ghosts(Reading& reading) {
   std::size_t most = 0;
   std::size_t total = 0;
   for (Index i = 0; i < count; ++i) {
-    const std::int64_t id = source.size("the number of a ghost element");
+    const std::int64_t id = source.int64("the number of a ghost element");
     const Index place = reading.elements.find(id);
     if (place < 0) {
       source.fail("$GhostElements names element " + std::to_string(id) + ", which $Elements does not have",
@@ -142,7 +143,7 @@ void read_ghosts(Reading& reading) {
     most = std::max(most, partitions.size());
     total += partitions.size();
   }
-  source.expect_end("GhostElements");
+  expect_end(source, "GhostElements");
   check_distinct(source, array.indices, "GhostElements");
   if (count == 0) return;
   const std::size_t width = 2 + most;
@@ -161,7 +162,7 @@ void read_ghosts(Reading& reading) {
   reading.mesh.data.push_back(std::move(array));
 }
 
-void write_ghosts(Sink& sink, const Output& output) {
+void write_ghosts(NumberWriter& sink, const WriteContext& output) {
   const DataArray* array = find_array(output.mesh, kCellGhosts, Association::cells);
   const auto* values = array ? std::get_if<std::vector<std::int32_t>>(&array->values) : nullptr;
   const Index rows = values ? row_count(*array) : 0;

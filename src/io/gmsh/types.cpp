@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-// The numbers stand in https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format and, for high orders, in
+// For the numbers see https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format and, for high orders, in
 // GmshDefines.h of Gmsh's sources. Left out are types without a fixed number of nodes (polygons 34,
 // polyhedra 35, 67–70 of cut meshes, 133–136), of order 0 (84–89, 132) and trihedra (140).
 

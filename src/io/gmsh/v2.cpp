@@ -20,15 +20,15 @@ struct Tags {
   }
 };
 
-/// What is being read of one element.
+/// The head of one element.
 struct Element {
   std::int64_t id;
   const ElementType* type;
   Index tag_count;
 };
 
-/// Stops at tags that are numbers of elements: parents and domains of cut elements, which follow partitions.
-void refuse_element_tags(const Source& source, double version, std::span<const std::int32_t> tags) {
+/// Fails for tags that are numbers of elements: parents and domains of cut elements, after the partitions.
+void refuse_element_tags(const NumberReader& source, double version, std::span<const std::int32_t> tags) {
   const std::size_t plain =
       version < 2.15 || tags.size() < 4 ? 3 : 3 + static_cast<std::size_t>(std::max(0, tags[2]));
   if (tags.size() > plain) {
@@ -37,8 +37,8 @@ void refuse_element_tags(const Source& source, double version, std::span<const s
   }
 }
 
-void read_element_body(Reading& reading, const Element& element, Tags& tags, std::vector<Index>& nodes) {
-  Source& source = reading.source;
+void read_element_body(ReadContext& reading, const Element& element, Tags& tags, std::vector<Index>& nodes) {
+  NumberReader& source = reading.source;
   for (Index t = 0; t < element.tag_count; ++t) tags.values.push_back(source.int32("a tag"));
   tags.offsets.push_back(static_cast<Offset>(tags.values.size()));
   refuse_element_tags(source, reading.metadata.version, tags[tags.size() - 1]);
@@ -49,8 +49,9 @@ void read_element_body(Reading& reading, const Element& element, Tags& tags, std
   add_cell(reading.mesh, *element.type, nodes);
 }
 
-Index read_tag_count(Source& source) {
-  return source.checked(source.int32("the number of tags"), "the number of tags", source.binary ? 4 : 2);
+Index read_tag_count(NumberReader& source) {
+  return source.checked_count(source.int32("the number of tags"), "the number of tags",
+                              source.binary ? 4 : 2);
 }
 
 /// Tag number `first` … of all cells as an array; cells with fewer have 0.
@@ -65,14 +66,14 @@ DataArray tags_as_array(const Tags& tags, std::string_view name, std::size_t fir
   return {std::string(name), Association::cells, static_cast<Index>(components), std::move(values), {}, {}};
 }
 
-void keep_tags(const Source& source, Mesh& mesh, const Tags& tags) {
+void keep_tags(const NumberReader& source, Mesh& mesh, const Tags& tags) {
   std::size_t most = 0;
   bool even = true;
   for (Index c = 0; c < tags.size(); ++c) {
     most = std::max(most, tags[c].size());
     even = even && tags[c].size() == tags[0].size();
   }
-  // every cell gets room for the most tags that any has; a damaged file may not make that absurd
+  // all rows are as wide as the longest; refuse absurd widths of damaged files
   if (most * static_cast<std::size_t>(tags.size()) > 64 * tags.values.size() + 4096) {
     source.fail("an element has " + std::to_string(most) + " tags, far more than the others",
                 "the file may be damaged");
@@ -120,11 +121,11 @@ class TagsOfMesh {
 
 }  // namespace
 
-void read_nodes_2(Reading& reading, std::string_view section) {
-  Source& source = reading.source;
+void read_nodes_2(ReadContext& reading, std::string_view section) {
+  NumberReader& source = reading.source;
   const bool parametric = section == "ParametricNodes";
-  const Index count = source.checked(source.text_integer("the number of nodes"), "the number of nodes",
-                                     source.binary ? 28 : 8);
+  const Index count = source.checked_count(source.text_integer("the number of nodes"), "the number of nodes",
+                                           source.binary ? 28 : 8);
   source.begin_binary();
   std::vector<std::int64_t> ids(count);
   std::vector<std::int32_t> entities;
@@ -141,19 +142,19 @@ void read_nodes_2(Reading& reading, std::string_view section) {
       parameters.push_back(k < parameters_2(dimension) ? source.real("a parametric coordinate") : 0.0);
     }
   }
-  source.expect_end(section);
-  reading.nodes = Places(source, ids, "node");
-  if (!reading.nodes.consecutive()) reading.mesh.vertex_ids = std::move(ids);
+  expect_end(source, section);
+  reading.nodes = number_ids(source, ids, "node");
+  if (!reading.nodes.runs_from(1)) reading.mesh.vertex_ids = std::move(ids);
   if (!parametric) return;
   reading.mesh.data.push_back(
       {std::string(kNodeEntity), Association::vertices, 2, std::move(entities), {}, {}});
   keep_parameters(reading.mesh, std::move(parameters));
 }
 
-void read_elements_2(Reading& reading) {
-  Source& source = reading.source;
+void read_elements_2(ReadContext& reading) {
+  NumberReader& source = reading.source;
   const Index count =
-      source.checked(source.text_integer("the number of elements"), "the number of elements", 8);
+      source.checked_count(source.text_integer("the number of elements"), "the number of elements", 8);
   source.begin_binary();
   std::vector<std::int64_t> ids;
   std::vector<std::int32_t> types;
@@ -167,10 +168,11 @@ void read_elements_2(Reading& reading) {
     Element element{};
     if (!source.binary) element.id = source.int32("the number of an element");
     element.type = &known_type(source, source.int32("an element's type"));
-    if (source.binary) run = source.checked(source.int32("the length of a run"), "the length of a run", 8);
+    if (source.binary)
+      run = source.checked_count(source.int32("the length of a run"), "the length of a run", 8);
     element.tag_count = read_tag_count(source);
     if (run > count - index_size(ids)) {
-      source.fail("$Elements has more elements than the " + std::to_string(count) + " it promises",
+      source.fail("$Elements has more elements than the " + std::to_string(count) + " in its header",
                   "the count is wrong or the file is damaged");
     }
     for (Index i = 0; i < run; ++i) {
@@ -180,14 +182,14 @@ void read_elements_2(Reading& reading) {
       types.push_back(element.type->number);
     }
   }
-  source.expect_end("Elements");
-  reading.elements = Places(source, ids, "element");
-  if (!reading.elements.consecutive()) reading.mesh.cell_ids = std::move(ids);
+  expect_end(source, "Elements");
+  reading.elements = number_ids(source, ids, "element");
+  if (!reading.elements.runs_from(1)) reading.mesh.cell_ids = std::move(ids);
   keep_tags(source, reading.mesh, tags);
   keep_unusual_types(reading.mesh, types);
 }
 
-void write_nodes_2(Sink& sink, const Output& output) {
+void write_nodes_2(NumberWriter& sink, const WriteContext& output) {
   const Mesh& mesh = output.mesh;
   const std::vector<double>* parameters = parameters_of(mesh);
   sink.text_line(mesh.vertex_count());
@@ -206,7 +208,7 @@ void write_nodes_2(Sink& sink, const Output& output) {
   }
 }
 
-void write_elements_2(Sink& sink, const Output& output) {
+void write_elements_2(NumberWriter& sink, const WriteContext& output) {
   const Mesh& mesh = output.mesh;
   const DataArray* labels = find_array(mesh, kLabel, Association::cells);
   const TagsOfMesh tags(mesh,

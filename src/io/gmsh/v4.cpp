@@ -5,24 +5,24 @@
 #include <limits>
 #include <set>
 
-// Version 4.1: nodes and elements stand in blocks, each of which belongs to an entity of the geometry;
+// Version 4.1: nodes and elements are in blocks, each of which belongs to an entity of the geometry;
 // entities have physical groups. An entity may have several blocks.
 
 namespace meshorder::gmsh {
 namespace {
 
-/// Reads a count and so many ints.
-std::vector<std::int32_t> read_ints(Source& source, std::string_view what) {
+/// Reads a count and that many ints.
+std::vector<std::int32_t> read_ints(NumberReader& source, std::string_view what) {
   std::vector<std::int32_t> result(source.count(what, 2, 4));
   for (std::int32_t& value : result) value = source.int32(what);
   return result;
 }
 
-void skip_reals(Source& source, int count, std::string_view what) {
+void skip_reals(NumberReader& source, int count, std::string_view what) {
   for (int i = 0; i < count; ++i) (void)source.real(what);
 }
 
-std::int32_t read_dimension(Source& source) {
+std::int32_t read_dimension(NumberReader& source) {
   const std::int32_t dimension = source.int32("an entity's dimension");
   if (dimension < 0 || dimension > 3) {
     source.fail("an entity's dimension is " + std::to_string(dimension), "0, 1, 2 and 3 are possible");
@@ -31,11 +31,11 @@ std::int32_t read_dimension(Source& source) {
 }
 
 /// Reads one block of nodes behind its head; `parameters` gets four numbers for each.
-void read_node_block(Reading& reading, const EmptyBlock& head, Index count, std::vector<std::int64_t>& ids,
-                     std::vector<double>& parameters) {
-  Source& source = reading.source;
+void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
+                     std::vector<std::int64_t>& ids, std::vector<double>& parameters) {
+  NumberReader& source = reading.source;
   const bool parametric = head[2] == 1;
-  for (Index i = 0; i < count; ++i) ids.push_back(source.size("the number of a node"));
+  for (Index i = 0; i < count; ++i) ids.push_back(source.int64("the number of a node"));
   for (Index i = 0; i < count; ++i) {
     Point& point = reading.mesh.points.emplace_back();
     for (double& x : point) x = source.finite("a coordinate");
@@ -49,31 +49,31 @@ void read_node_block(Reading& reading, const EmptyBlock& head, Index count, std:
   }
 }
 
-/// What stands before the blocks of nodes or elements.
+/// The heading of a section of blocks.
 struct Head {
   Index blocks;
   Index count;
 };
 
-Head read_head(Source& source, std::string_view what, std::int64_t text_bytes, std::int64_t binary_bytes) {
+Head read_head(NumberReader& source, std::string_view what, std::int64_t text_bytes,
+               std::int64_t binary_bytes) {
   Head head{};
   head.blocks = source.count("the number of blocks", 8, 20);
   head.count = source.count("the number of " + std::string(what), text_bytes, binary_bytes);
-  // the least and the greatest number; Gmsh itself does not rely on them
-  (void)source.size("the least number of " + std::string(what));
-  (void)source.size("the greatest number of " + std::string(what));
+  // the smallest and largest number, on which Gmsh itself does not rely
+  (void)source.int64("the smallest number of " + std::string(what));
+  (void)source.int64("the largest number of " + std::string(what));
   return head;
 }
 
-[[noreturn]] void fail_count(const Source& source, std::string_view section, std::int64_t blocks,
+[[noreturn]] void fail_count(const NumberReader& source, std::string_view section, std::int64_t blocks,
                              std::int64_t promised) {
   source.fail("the blocks of $" + std::string(section) + " have " + std::to_string(blocks) +
-                  (blocks > promised ? " or more" : "") + " instead of the promised " +
-                  std::to_string(promised),
+                  (blocks > promised ? " or more" : "") + " instead of " + std::to_string(promised),
               "the counts must agree");
 }
 
-/// The smallest and greatest number, 0 without any.
+/// Returns the smallest and largest number, 0 if there are none.
 std::pair<std::int64_t, std::int64_t> range_of(const std::vector<std::int64_t>& ids, Index count) {
   if (count == 0) return {0, 0};
   if (ids.empty()) return {1, count};
@@ -81,7 +81,7 @@ std::pair<std::int64_t, std::int64_t> range_of(const std::vector<std::int64_t>& 
   return {*least, *greatest};
 }
 
-void write_head(Sink& sink, std::size_t blocks, Index count, const std::vector<std::int64_t>& ids) {
+void write_head(NumberWriter& sink, std::size_t blocks, Index count, const std::vector<std::int64_t>& ids) {
   const auto [least, greatest] = range_of(ids, count);
   sink.size(static_cast<std::int64_t>(blocks));
   sink.size(count);
@@ -90,13 +90,13 @@ void write_head(Sink& sink, std::size_t blocks, Index count, const std::vector<s
   sink.end_line();
 }
 
-void write_block_head(Sink& sink, const EmptyBlock& head, Index count) {
+void write_block_head(NumberWriter& sink, const EmptyBlock& head, Index count) {
   for (const std::int32_t number : head) sink.int32(number);
   sink.size(count);
   sink.end_line();
 }
 
-/// Where runs of equal heads begin, with the end behind them.
+/// Returns the beginnings of runs of equal heads, and the end of the last.
 template <class Head, class Breaks>
 std::vector<Index> runs(Index count, const Head& head, const Breaks& breaks) {
   std::vector<Index> starts;
@@ -109,10 +109,10 @@ std::vector<Index> runs(Index count, const Head& head, const Breaks& breaks) {
 
 }  // namespace
 
-void read_entities_4(Reading& reading, bool partitioned) {
-  Source& source = reading.source;
+void read_entities_4(ReadContext& reading, bool partitioned) {
+  NumberReader& source = reading.source;
   if (partitioned) {
-    (void)source.size("the number of partitions");
+    (void)source.int64("the number of partitions");
     const Index ghosts = source.count("the number of ghost entities", 4, 8);
     for (Index i = 0; i < ghosts; ++i) {
       (void)source.int32("the tag of a ghost entity");
@@ -132,7 +132,7 @@ void read_entities_4(Reading& reading, bool partitioned) {
       skip_reals(source, dimension == 0 ? 3 : 6, "an entity's extent");
       auto physicals = read_ints(source, "an entity's physical groups");
       if (dimension > 0) (void)read_ints(source, "an entity's boundary");
-      // negative ones tell an orientation
+      // the sign is an orientation
       for (std::int32_t& physical : physicals) {
         if (physical < 0 && physical > std::numeric_limits<std::int32_t>::min()) physical = -physical;
       }
@@ -141,8 +141,8 @@ void read_entities_4(Reading& reading, bool partitioned) {
   }
 }
 
-void read_nodes_4(Reading& reading) {
-  Source& source = reading.source;
+void read_nodes_4(ReadContext& reading) {
+  NumberReader& source = reading.source;
   Mesh& mesh = reading.mesh;
   const Head head = read_head(source, "nodes", 8, 32);
   std::vector<std::int64_t> ids;
@@ -168,15 +168,15 @@ void read_nodes_4(Reading& reading) {
     read_node_block(reading, block, count, ids, parameters);
   }
   if (index_size(ids) != head.count) fail_count(source, "Nodes", index_size(ids), head.count);
-  source.expect_end("Nodes");
-  reading.nodes = Places(source, ids, "node");
-  if (!reading.nodes.consecutive()) mesh.vertex_ids = std::move(ids);
+  expect_end(source, "Nodes");
+  reading.nodes = number_ids(source, ids, "node");
+  if (!reading.nodes.runs_from(1)) mesh.vertex_ids = std::move(ids);
   mesh.data.push_back({std::string(kNodeEntity), Association::vertices, 2, std::move(entities), {}, {}});
   if (!parameters.empty()) keep_parameters(mesh, std::move(parameters));
 }
 
-void read_elements_4(Reading& reading) {
-  Source& source = reading.source;
+void read_elements_4(ReadContext& reading) {
+  NumberReader& source = reading.source;
   Mesh& mesh = reading.mesh;
   const Head head = read_head(source, "elements", 4, 16);
   std::vector<std::int64_t> ids;
@@ -204,10 +204,10 @@ void read_elements_4(Reading& reading) {
     starts.push_back(index_size(ids));
     repeated = !kinds.insert({dimension, tag, type.number}).second || repeated;
     for (Index i = 0; i < count; ++i) {
-      const std::int64_t id = source.size("the number of an element");
+      const std::int64_t id = source.int64("the number of an element");
       nodes.clear();
       for (int k = 0; k < type.nodes; ++k) {
-        nodes.push_back(place_of_node(reading, source.size("a node of an element"), "element", id));
+        nodes.push_back(place_of_node(reading, source.int64("a node of an element"), "element", id));
       }
       add_cell(mesh, type, nodes);
       ids.push_back(id);
@@ -217,11 +217,11 @@ void read_elements_4(Reading& reading) {
     types.insert(types.end(), count, type.number);
   }
   if (index_size(ids) != head.count) fail_count(source, "Elements", index_size(ids), head.count);
-  source.expect_end("Elements");
-  reading.elements = Places(source, ids, "element");
-  if (!reading.elements.consecutive()) mesh.cell_ids = std::move(ids);
+  expect_end(source, "Elements");
+  reading.elements = number_ids(source, ids, "element");
+  if (!reading.elements.runs_from(1)) mesh.cell_ids = std::move(ids);
 
-  // blocks that come back (a converted mesh, whose order counts more than its blocks) do not bind their cells
+  // blocks that repeat (a converted mesh, whose order matters more than its blocks) do not bind their cells
   if (!repeated && starts.size() > 1) mesh.cell_blocks = std::move(starts);
   bool own = true;
   for (Index c = 0; c < mesh.cell_count(); ++c) own = own && dimensions[c] == dimension(mesh.cells.shapes[c]);
@@ -231,7 +231,7 @@ void read_elements_4(Reading& reading) {
   keep_unusual_types(mesh, types);
 }
 
-void write_nodes_4(Sink& sink, const Output& output) {
+void write_nodes_4(NumberWriter& sink, const WriteContext& output) {
   const Mesh& mesh = output.mesh;
   const std::vector<double>* parameters = parameters_of(mesh);
   const auto head = [&](Index v) -> EmptyBlock {
@@ -240,7 +240,7 @@ void write_nodes_4(Sink& sink, const Output& output) {
             parameters && (*parameters)[2 * at] != 0 ? 1 : 0};
   };
 
-  // neighbours of one entity make a block, so that the nodes stand in the mesh's order
+  // successive nodes of one entity make a block, which keeps the order of the mesh
   const std::vector<Index> starts = runs(mesh.vertex_count(), head, [](Index) { return false; });
   const auto& empty = output.layout.empty_node_blocks;
   write_head(sink, starts.size() - 1 + empty.size(), mesh.vertex_count(), output.node_ids);
@@ -262,7 +262,7 @@ void write_nodes_4(Sink& sink, const Output& output) {
   }
 }
 
-void write_elements_4(Sink& sink, const Output& output) {
+void write_elements_4(NumberWriter& sink, const WriteContext& output) {
   const Mesh& mesh = output.mesh;
   const auto head = [&](Index c) -> EmptyBlock {
     return {output.cell_dimensions[c], output.cell_tags[c], output.types[c]->number};

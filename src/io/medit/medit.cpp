@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The cells of each section in their order, the order of the sections, and where each cell stands.
+/// The order of the sections, the cells of each and the position of each cell.
 struct Layout {
   std::array<std::vector<Index>, kCellKinds.size()> cells;
   std::array<Index, kCellKinds.size()> counts{};
@@ -26,8 +26,8 @@ struct Layout {
   std::vector<Index> place;  ///< of each cell in its section
 };
 
-/// Sections follow each other as their first cells do; those of a mesh with interleaved types from volumes to
-/// edges, as group_cells_by_type has them.
+/// Orders sections by their first cells; if types are interleaved, from volumes to edges as
+/// group_cells_by_type does.
 Layout layout_of(const Mesh& mesh) {
   Layout layout;
   layout.place.reserve(mesh.cell_count());
@@ -55,16 +55,16 @@ Layout layout_of(const Mesh& mesh) {
   return layout;
 }
 
-struct Writing {
+struct WriteContext {
   const Mesh& mesh;
-  const MeshMetadata* own;  ///< nullptr when the mesh comes from another format
+  const Metadata* own;  ///< nullptr if the mesh comes from another format
   Layout layout;
   Labels vertex_labels;
   Labels cell_labels;
 };
 
 /// References of 64 bits need version 4.
-std::int64_t version(const Writing& from) {
+std::int64_t version(const WriteContext& from) {
   const std::int64_t wanted = from.own ? from.own->version : 2;
   using Limits = std::numeric_limits<std::int32_t>;
   const auto large = [](std::int64_t x) { return x < Limits::min() || x > Limits::max(); };
@@ -74,7 +74,7 @@ std::int64_t version(const Writing& from) {
   return has_large(from.vertex_labels) || has_large(from.cell_labels) ? 4 : wanted;
 }
 
-void write_vertices(OutputFile& out, const Writing& from) {
+void write_vertices(OutputFile& out, const WriteContext& from) {
   const Mesh& mesh = from.mesh;
   out.print("\nVertices\n{}\n", mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
@@ -83,14 +83,14 @@ void write_vertices(OutputFile& out, const Writing& from) {
   }
 }
 
-/// Where the nodes of a kind stand in the file; empty for VTK's order.
-std::vector<int> places(const Writing& from, std::size_t kind) {
+/// Returns the positions of a kind's nodes in the file; empty for VTK's order.
+std::vector<int> places(const WriteContext& from, std::size_t kind) {
   if (!from.own) return {};
   const auto found = from.own->places.find(kind);
   return found == from.own->places.end() ? std::vector<int>{} : found->second;
 }
 
-void write_cells(OutputFile& out, const Writing& from, std::size_t kind) {
+void write_cells(OutputFile& out, const WriteContext& from, std::size_t kind) {
   const auto& cells = from.layout.cells[kind];
   const std::vector<int> order = places(from, kind);
   std::array<Index, 27> as_given{};
@@ -103,27 +103,29 @@ void write_cells(OutputFile& out, const Writing& from, std::size_t kind) {
   }
 }
 
-/// The order of nodes in second-order cells, so that a reader need not guess.
+/// Writes the order of nodes in second-order cells.
 void write_ordering(OutputFile& out, std::size_t kind) {
   const auto nodes = reference_nodes(kCellKinds[kind].shape);
   out.print("\n{}Ordering\n{}\n", kCellKinds[kind].keyword, nodes.size());
   for (const auto& node : nodes) out.print("{}\n", fmt::join(node, " "));
 }
 
-// ---- sections that count vertices or cells
+// ---- sections that refer to vertices or cells
 
-/// Where a vertex or cell stands in what the positions of a section count; −1 when it is not part of that.
-Index position_in(const Writing& from, const Target& target, Index item) {
+/// Returns the position of a vertex or cell among those that a section refers to; −1 if it is not one of
+/// them.
+Index position_in(const WriteContext& from, const Target& target, Index item) {
   if (!target) return item;
   const std::size_t kind = counted_kind(*target, from.layout.counts);
   const auto& cells = from.mesh.cells;
   return kind_of(cells.shapes[item], cells.vertex_count(item)) == kind ? from.layout.place[item] : -1;
 }
 
-/// The kind of section with that name that all `items` fit, or nullptr.
+/// Returns the kind of section with that name that all `items` fit, or nullptr.
 template <std::size_t N>
-const ListKind* fitting_kind(const std::array<ListKind, N>& kinds, const Writing& from, std::string_view name,
-                             Association association, const std::vector<Index>& items) {
+const ListKind* fitting_kind(const std::array<ListKind, N>& kinds, const WriteContext& from,
+                             std::string_view name, Association association,
+                             const std::vector<Index>& items) {
   const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const ListKind& kind) {
     return kind.keyword == name && (kind.target ? Association::cells : Association::vertices) == association;
   });
@@ -133,9 +135,9 @@ const ListKind* fitting_kind(const std::array<ListKind, N>& kinds, const Writing
   return fit ? &*found : nullptr;
 }
 
-void write_set(OutputFile& out, const Writing& from, const EntitySet& set, Notes& notes) {
+void write_set(OutputFile& out, const WriteContext& from, const EntitySet& set, Notes& notes) {
   const ListKind* kind = fitting_kind(kListKinds, from, set.name, set.association, set.members);
-  if (!kind) return note_set_left_out(set, "Medit", notes);
+  if (!kind) return note_set_unsupported(set, "Medit", notes);
   out.print("\n{}\n{}\n", set.name, set.members.size());
   for (const Index member : set.members) out.print("{}\n", position_in(from, kind->target, member) + 1);
 }
@@ -149,14 +151,14 @@ void print_value(OutputFile& out, const Values& values, Offset at) {
       values);
 }
 
-/// Tables are known by their name, and go with sections that only a mesh of this format has.
-void write_array(OutputFile& out, const Writing& from, const DataArray& array, Notes& notes) {
+/// Writes an array as the table of its name, if the mesh came from this format.
+void write_array(OutputFile& out, const WriteContext& from, const DataArray& array, Notes& notes) {
   const ListKind* kind = nullptr;
   const bool numbers = !std::holds_alternative<std::vector<std::string>>(array.values);
   if (from.own && numbers && !array.is_dense()) {
     kind = fitting_kind(kTableKinds, from, array.name, array.association, array.indices);
   }
-  if (!kind) return note_array_left_out(array, "Medit", notes);
+  if (!kind) return note_array_unsupported(array, "Medit", notes);
   out.print("\n{}\n{}\n", array.name, array.indices.size());
   for (Index row = 0; row < index_size(array.indices); ++row) {
     out.print("{}", position_in(from, kind->target, array.indices[row]) + 1);
@@ -169,9 +171,9 @@ void write_array(OutputFile& out, const Writing& from, const DataArray& array, N
 
 // ---- the file
 
-void write_sections(OutputFile& out, const Writing& from, bool before_vertices) {
+void write_sections(OutputFile& out, const WriteContext& from, bool before_vertices) {
   if (!from.own) return;
-  for (const MeshMetadata::Section& section : from.own->sections) {
+  for (const Metadata::Section& section : from.own->sections) {
     if (section.before_vertices == before_vertices) out.print("\n{}\n", section.text);
   }
 }
@@ -181,7 +183,7 @@ void note_missing_labels(const Labels& labels, std::string_view what, Notes& not
   if (missing > 0) notes.push_back(fmt::format("{} {} have no label and get the reference 0", missing, what));
 }
 
-void write_all_cells(OutputFile& out, const Writing& from) {
+void write_all_cells(OutputFile& out, const WriteContext& from) {
   for (const std::size_t kind : from.layout.kinds) {
     if (!from.own && kind >= kLinearKinds) write_ordering(out, kind);
     write_cells(out, from, kind);
@@ -197,9 +199,9 @@ bool holds(Shape shape, int vertices) { return kind_of(shape, vertices) < kCellK
 }  // namespace
 
 void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  refuse_other_cells(mesh, path, "Medit", holds, "write .msh, .vtu or .vtk instead");
-  const Writing from{mesh, dynamic_cast<const MeshMetadata*>(mesh.format_metadata.get()), layout_of(mesh),
-                     labels_of(mesh, Association::vertices), labels_of(mesh, Association::cells)};
+  require_supported_cells(mesh, path, "Medit", holds, "write .msh, .vtu or .vtk instead");
+  const WriteContext from{mesh, dynamic_cast<const Metadata*>(mesh.format_metadata.get()), layout_of(mesh),
+                          labels_of(mesh, Association::vertices), labels_of(mesh, Association::cells)};
   OutputFile out(path);
   if (from.own) out.write(from.own->comments_before);
   out.print("MeshVersionFormatted {}\nDimension {}\n", version(from), mesh.dimension);
@@ -216,8 +218,8 @@ void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
 
   note_missing_labels(from.vertex_labels, "vertices", notes);
   note_missing_labels(from.cell_labels, "cells", notes);
-  note_ids_left_out(mesh, "Medit", notes);
-  if (!from.own) note_residue_left_out(mesh, "Medit", notes);
+  note_ids_unsupported(mesh, "Medit", notes);
+  if (!from.own) note_metadata_unsupported(mesh, "Medit", notes);
   note_solutions(path, "does not fit the mesh that was just written beside it", notes);
 }
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// What the reader and the writer of Medit's ASCII meshes share: the sections that the format has.
+// Declarations shared by the reader and the writer of Medit's ASCII meshes: the sections of the format.
 //
 // Formats: P. Frey, "MEDIT: An interactive mesh visualization software", INRIA RT-0253 (2001), and the Gamma
 // Mesh Format of L. Maréchal's libMeshb, https://github.com/LoicMarechal/libMeshb (Documentation).
@@ -19,7 +19,7 @@
 
 namespace meshorder::medit {
 
-/// A section of cells: so many vertices each, and a reference.
+/// A section of cells, each with its vertices and a reference.
 struct CellKind {
   std::string_view keyword;
   Shape shape;
@@ -45,7 +45,7 @@ inline constexpr std::array kCellKinds{
 };
 inline constexpr std::size_t kLinearKinds = 7;
 
-/// What the positions in a list or table count: vertices, or the cells of one section.
+/// What positions in a list or table refer to: vertices, or the cells of one section.
 using Target = std::optional<Shape>;  // none: vertices
 
 /// A list of positions: a set of that name.
@@ -64,8 +64,8 @@ inline constexpr std::array kListKinds{
     ListKind{"RequiredTetrahedra", Shape::tetrahedron},
 };
 
-/// Lines that begin with a position; the numbers behind it count normals, tangents or parts of a geometry in
-/// another file, and stay as they are. An array of that name on the positions that occur.
+/// Lines of a position and numbers that refer to normals, tangents or a geometry in another file, which are
+/// kept. Read as an array of that name on the positions that occur.
 inline constexpr std::array kTableKinds{
     ListKind{"NormalAtVertices", {}},
     ListKind{"TangentAtVertices", {}},
@@ -83,36 +83,36 @@ inline constexpr std::array kTableKinds{
     ListKind{"EdgeOnGeometricEdge", Shape::line},
 };
 
-/// What other formats cannot hold and this one keeps.
-struct MeshMetadata final : FormatMetadata {
+/// Data of Medit files beyond the mesh.
+struct Metadata final : FormatMetadata {
   struct Section {
     std::string keyword;
-    std::string text;  ///< from the keyword on, as it stood
+    std::string text;  ///< verbatim, from the keyword on
     bool before_vertices;
   };
   std::int64_t version = 2;
   std::string comments_before;
   std::string after_end;
-  std::vector<Section> sections;            ///< those that do not depend on the order
-  std::vector<std::size_t> empty_sections;  ///< kinds of cells that the file has none of, but names
-  /// Where the nodes of a cell in VTK's order stand in the file, for the kinds of which it tells.
+  std::vector<Section> sections;            ///< independent of the order
+  std::vector<std::size_t> empty_sections;  ///< kinds of cells whose section is empty
+  /// Positions in the file of a cell's nodes in VTK's order, for the kinds that the file describes.
   std::map<std::size_t, std::vector<int>> places;
 
   [[nodiscard]] std::vector<std::string> contents() const override;
 };
 
-/// The kind of a cell type, or the number of kinds when there is none.
+/// Returns the kind of a cell type, or the number of kinds if there is none.
 std::size_t kind_of(Shape shape, int nodes);
 
-/// The section that a section "…Ordering" describes, or the number of kinds.
+/// Returns the kind that a section "…Ordering" describes, or the number of kinds.
 std::size_t kind_of_ordering(std::string_view keyword);
 
-/// The reference coordinates of a second-order cell's nodes, in VTK's order, in halves of an edge;
+/// Returns the reference coordinates of a second-order cell's nodes, in VTK's order, in halves of an edge;
 /// barycentric in triangles, tetrahedra and prisms, as sections "…Ordering" give them.
 std::vector<std::vector<int>> reference_nodes(Shape shape);
 
-/// The kind of cells that positions of a target count: the linear ones, else those of second order; the
-/// number of kinds when the mesh has neither. `counts` are the cells of each kind.
+/// Returns the kind of cells that positions of a target refer to: linear, else second order; the number of
+/// kinds if the mesh has neither. `counts` are the cells of each kind.
 std::size_t counted_kind(Shape target, std::span<const Index> counts);
 
 /// Notes a file of solutions beside the mesh.

@@ -21,15 +21,10 @@ namespace fs = std::filesystem;
 
 constexpr char kComment = '#';
 
-/// A section that depends on none that counts vertices or cells, and is kept as it stands.
+/// A section that refers to no vertices or cells and is kept verbatim.
 struct PlainKind {
   std::string_view keyword;
-  enum Form : std::uint8_t {
-    words,
-    rows,
-    line,
-    lines
-  } form;  ///< rows and lines have their count before them
+  enum Form : std::uint8_t { words, rows, line, lines } form;  ///< rows and lines follow their count
   int words_per_row;
   int words_per_dimension;
 };
@@ -57,7 +52,7 @@ constexpr std::array kPlainKinds{
     PlainKind{"ReferenceStrings", PlainKind::lines, 0, 0},
 };
 
-/// The place of the kind with that keyword, or the size of the table.
+/// Returns the index of the kind with that keyword, or the size of the table.
 template <class Kinds>
 std::size_t find_kind(const Kinds& kinds, std::string_view keyword) {
   const auto found = std::find_if(kinds.begin(), kinds.end(),
@@ -65,7 +60,7 @@ std::size_t find_kind(const Kinds& kinds, std::string_view keyword) {
   return static_cast<std::size_t>(found - kinds.begin());
 }
 
-/// A section to be read when those before it in need are known; it lies at `byte`, behind its keyword.
+/// A section to be read later, when those that it refers to are known; `byte` follows its keyword.
 struct Pending {
   std::size_t kind;
   std::int64_t byte;
@@ -77,14 +72,14 @@ class Reader {
 
   Mesh read() {
     refuse_other_formats();
-    residue_->comments_before = comments_before(in_.all(), kComment);
+    metadata_->comments_before = comments_before(in_.all(), kComment);
     while (!in_.at_end() && read_section()) {
     }
     if (!has_end_) note_missing_end();
     read_pending();
     arrange_nodes();
     set_labels();
-    mesh_.format_metadata = residue_;
+    mesh_.format_metadata = metadata_;
     return std::move(mesh_);
   }
 
@@ -94,11 +89,13 @@ class Reader {
       throw Error(in_.file(), "is binary, perhaps a .meshb file", "convert it to an ASCII .mesh");
     }
     if (in_.at_end() || !same_but_for_case(in_.peek_word(), "MeshVersionFormatted")) {
-      in_.fail("this is no Medit mesh", "its first word must be MeshVersionFormatted");
+      in_.fail(
+          "is not a Medit mesh",
+          "the first word must be MeshVersionFormatted (MFEM and Netgen use .mesh for formats of their own)");
     }
   }
 
-  /// Reads or skips one section; false at the end of the mesh.
+  /// Reads or skips one section; returns false at the end of the mesh.
   bool read_section() {
     begin_ = in_.byte();
     const std::string keyword(in_.word("a keyword"));
@@ -108,14 +105,14 @@ class Reader {
     }
     refuse_numbers(keyword);
     if (!kinds_seen_.insert(lower(keyword)).second) {
-      in_.fail("a second section " + keyword, "each may stand once");
+      in_.fail("a second section " + keyword, "each may appear once");
     }
     last_keyword_ = keyword;
 
     if (same_but_for_case(keyword, "MeshVersionFormatted")) {
-      residue_->version = in_.integer<std::int64_t>("the version");
-      if (residue_->version < 0 || residue_->version > 4) {
-        in_.fail(fmt::format("the version is {}", residue_->version), "1 to 4 are known");
+      metadata_->version = in_.integer<std::int64_t>("the version");
+      if (metadata_->version < 0 || metadata_->version > 4) {
+        in_.fail(fmt::format("the version is {}", metadata_->version), "1 to 4 are known");
       }
     } else if (same_but_for_case(keyword, "Dimension")) {
       mesh_.dimension = in_.integer<std::int32_t>("the dimension");
@@ -124,7 +121,7 @@ class Reader {
       }
       has_dimension_ = true;
     } else if (!has_dimension_) {
-      in_.fail("the section " + keyword + " stands before the Dimension", "Dimension 2 or 3 must come first");
+      in_.fail("the section " + keyword + " comes before the Dimension", "Dimension 2 or 3 must come first");
     } else if (same_but_for_case(keyword, "Vertices")) {
       read_vertices();
     } else {
@@ -144,8 +141,11 @@ class Reader {
     std::string shown = keyword.substr(0, 20);
     std::replace_if(
         shown.begin(), shown.end(), [](unsigned char c) { return std::isprint(c) == 0; }, '?');
-    in_.fail(fmt::format("'{}' stands where a keyword should", shown),
-             fmt::format("the count of {} may be wrong", last_keyword_));
+    in_.fail(
+        fmt::format("expected a keyword, found '{}'", shown),
+        fmt::format("the count of {} may be wrong, or its lines longer (second-order cells under a linear "
+                    "keyword; save those as .msh)",
+                    last_keyword_));
   }
 
   void read_other_section(const std::string& keyword) {
@@ -183,7 +183,7 @@ class Reader {
   // ---- sections that are kept
 
   void keep_section(const std::string& keyword) {
-    residue_->sections.push_back(
+    metadata_->sections.push_back(
         {keyword, std::string(in_.all().substr(begin_, in_.byte() - begin_)), !has_vertices_});
   }
 
@@ -202,7 +202,7 @@ class Reader {
     }
   }
 
-  /// The order of nodes in a kind of cells, by their coordinates in the reference cell.
+  /// Reads the order of nodes in a kind of cells, given by their coordinates in the reference cell.
   void read_ordering(std::size_t kind) {
     const auto nodes = reference_nodes(kCellKinds[kind].shape);
     const Index count = in_.count(what_count(), 2);
@@ -222,7 +222,7 @@ class Reader {
                                    last_keyword_, kCellKinds[kind].keyword));
       return;
     }
-    residue_->places[kind] = std::move(places);
+    metadata_->places[kind] = std::move(places);
   }
 
   // ---- vertices and cells
@@ -241,7 +241,7 @@ class Reader {
         {std::string(kLabel), Association::vertices, 1, label_values(std::move(references)), {}, {}});
   }
 
-  /// A position from 1 to `count`, counted from 0.
+  /// Reads a position from 1 to `count`; returns it counted from 0.
   Index position(Index count, std::string_view what) {
     const auto number = in_.integer<std::int64_t>(what);
     if (number < 1 || number > count) {
@@ -254,7 +254,7 @@ class Reader {
     const auto& [keyword, shape, nodes, alias] = kCellKinds[kind];
     const Index count = in_.count(what_count(), 2 * (nodes + 1));
     if (count == 0) {
-      residue_->empty_sections.push_back(kind);
+      metadata_->empty_sections.push_back(kind);
       return;
     }
     mesh_.cell_blocks.push_back(mesh_.cell_count());
@@ -270,9 +270,9 @@ class Reader {
     }
   }
 
-  // ---- sections that count vertices or cells of others
+  // ---- sections that refer to vertices or cells
 
-  /// Leaves a section for later; without words per row, its first line tells.
+  /// Skips a section that is read later; `words` per row are counted in its first line if 0.
   void skip_rows(std::vector<Pending>& pending, std::size_t kind, int words) {
     pending.push_back({kind, in_.byte()});
     const Index count = in_.count(what_count(), 2 * std::max(words, 1));
@@ -283,7 +283,7 @@ class Reader {
     }
   }
 
-  /// The words of the line of the next word.
+  /// Counts the words in the line of the next word.
   int words_of_line() {
     if (in_.at_end()) return 1;
     std::string_view line = in_.peek_line();
@@ -315,14 +315,15 @@ class Reader {
     last_keyword_ = keyword;
   }
 
-  /// What `needed` positions count: the first of them, and how many there are.
+  /// Returns the first cell that positions of a target refer to, and the number of cells.
   std::pair<Index, Index> range_of(const Target& target, Index needed) {
     if (!target) return {0, mesh_.vertex_count()};
     const std::size_t kind = counted_kind(*target, counts_);
     if (kind < kCellKinds.size()) return {first_[kind], counts_[kind]};
     if (needed > 0) {
-      in_.fail(fmt::format("{} counts cells of type {}, and there are none", last_keyword_, name(*target)),
-               "remove the section");
+      in_.fail(
+          fmt::format("{} counts cells of type {}, and there are none", last_keyword_, to_string(*target)),
+          "remove the section");
     }
     return {0, 0};
   }
@@ -341,7 +342,7 @@ class Reader {
         std::string(kind.keyword), kind.target ? Association::cells : Association::vertices, 1, {}, {}, {}};
     const Index rows = in_.count(what_count(), 2);
     if (rows == 0) {
-      residue_->sections.push_back({array.name, array.name + "\n0", false});
+      metadata_->sections.push_back({array.name, array.name + "\n0", false});
       return;
     }
     array.components = words_of_line() - 1;
@@ -372,7 +373,7 @@ class Reader {
     has_end_ = true;
     const std::string_view rest = in_.all().substr(in_.byte());
     // npos + 1 is 0: nothing but blanks
-    residue_->after_end = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);
+    metadata_->after_end = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);
   }
 
   void note_missing_end() {
@@ -380,15 +381,15 @@ class Reader {
     note_missing_line_end(in_, kComment, notes_);
   }
 
-  /// Brings second-order nodes from the order that the file describes into VTK's.
+  /// Sorts second-order nodes from the order that the file describes into VTK's.
   void arrange_nodes() {
     for (std::size_t kind = kLinearKinds; kind < kCellKinds.size(); ++kind) {
       if (counts_[kind] == 0) continue;
-      const auto order = residue_->places.find(kind);
+      const auto order = metadata_->places.find(kind);
       // libMeshb leaves the order of nodes to the file; for simplices all writers agree
       const Shape shape = kCellKinds[kind].shape;
       const bool simplex = shape == Shape::line || shape == Shape::triangle || shape == Shape::tetrahedron;
-      if (order == residue_->places.end()) {
+      if (order == metadata_->places.end()) {
         if (!simplex) {
           notes_.push_back(
               fmt::format("the nodes of {} are taken to be in VTK's order, as the file does not tell",
@@ -418,7 +419,7 @@ class Reader {
   Scanner in_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<MeshMetadata> residue_ = std::make_shared<MeshMetadata>();
+  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   std::int64_t begin_ = 0;  // of the section
   std::string last_keyword_;
   std::unordered_set<std::string> kinds_seen_;
@@ -436,7 +437,7 @@ class Reader {
 }  // namespace
 
 Mesh read(const fs::path& path, Notes& notes) {
-  note_solutions(path, "is not carried along: its values stand in the original order", notes);
+  note_solutions(path, "is not reordered: its values are in the original order", notes);
   return Reader(path, notes).read();
 }
 

@@ -8,8 +8,7 @@
 namespace meshorder::medit {
 namespace {
 
-/// A reference cell: the coordinates of its corners, and pairs of corners in whose middle the other nodes
-/// lie.
+/// A reference cell: the coordinates of its corners, and the pairs of corners with a node halfway.
 struct Reference {
   std::vector<std::vector<int>> corners;
   std::vector<std::array<int, 2>> middles;
@@ -61,9 +60,9 @@ Reference reference(Shape shape) {
 
 }  // namespace
 
-std::vector<std::string> MeshMetadata::contents() const {
+std::vector<std::string> Metadata::contents() const {
   std::vector<std::string> result;
-  for (const Section& section : sections) result.push_back("the section " + section.keyword);
+  for (const Section& section : sections) result.push_back("Medit's " + section.keyword);
   return result;
 }
 

@@ -11,7 +11,7 @@ namespace meshorder {
 inline constexpr std::string_view kBase64Alphabet =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Characters that so many bytes take, padded.
+/// Returns the number of characters for that many bytes, padding included.
 constexpr std::uint64_t base64_length(std::uint64_t bytes) { return (bytes + 2) / 3 * 4; }
 
 /// Bytes as base64 (RFC 4648), as they come.

@@ -3,14 +3,28 @@
 
 #include "base/error.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <fstream>
+#include <iterator>
 #include <system_error>
+#include <utility>
 
 namespace meshorder {
 namespace fs = std::filesystem;
+namespace {
 
-OutputFile::OutputFile(fs::path target) : target_(std::move(target)) {
+constexpr std::size_t kFlushAt = std::size_t{1} << 20;
+
+}  // namespace
+
+struct OutputFile::Stream {
+  std::ofstream file;
+  fmt::memory_buffer buffer;
+};
+
+OutputFile::OutputFile(fs::path target) : target_(std::move(target)), stream_(std::make_unique<Stream>()) {
   std::error_code code;
   if (fs::is_directory(target_, code)) {
     throw Error(target_.string(), "is a folder", "give a file name for the output");
@@ -22,39 +36,44 @@ OutputFile::OutputFile(fs::path target) : target_(std::move(target)) {
   // the process id keeps two runs with one target apart
   temporary_ = folder / ("." + target_.stem().string() + ".tmp" + std::to_string(::getpid()) +
                          target_.extension().string());
-  stream_.open(temporary_, std::ios::binary | std::ios::trunc);
-  if (!stream_) throw Error(target_.string(), "cannot be written", "check the folder's permissions");
+  stream_->file.open(temporary_, std::ios::binary | std::ios::trunc);
+  if (!stream_->file) throw Error(target_.string(), "cannot be written", "check the folder's permissions");
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : target_(std::move(other.target_)),
       temporary_(std::exchange(other.temporary_, {})),
-      stream_(std::move(other.stream_)),
-      buffer_(std::move(other.buffer_)) {}
+      stream_(std::move(other.stream_)) {}
 
 OutputFile::~OutputFile() {
   if (temporary_.empty()) return;
-  stream_.close();
+  stream_->file.close();
   std::error_code ignored;
   fs::remove(temporary_, ignored);
 }
 
+void OutputFile::print_all(fmt::string_view format, fmt::format_args args) {
+  fmt::vformat_to(std::back_inserter(stream_->buffer), format, args);
+  if (stream_->buffer.size() > kFlushAt) flush();
+}
+
 void OutputFile::write(std::string_view bytes) {
-  buffer_.append(bytes.data(), bytes.data() + bytes.size());
-  if (buffer_.size() > kFlushAt) flush();
+  stream_->buffer.append(bytes.data(), bytes.data() + bytes.size());
+  if (stream_->buffer.size() > kFlushAt) flush();
 }
 
 void OutputFile::flush() {
-  stream_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-  buffer_.clear();
-  if (!stream_) throw Error(target_.string(), "cannot be written to the end", "is the disk full?");
+  auto& [file, buffer] = *stream_;
+  file.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+  buffer.clear();
+  if (!file) throw Error(target_.string(), "cannot be written to the end", "is the disk full?");
 }
 
 void OutputFile::close() {
-  if (!stream_.is_open()) return;
+  if (!stream_->file.is_open()) return;
   flush();
-  stream_.close();
-  if (!stream_) throw Error(target_.string(), "cannot be written to the end", "is the disk full?");
+  stream_->file.close();
+  if (!stream_->file) throw Error(target_.string(), "cannot be written to the end", "is the disk full?");
 }
 
 void OutputFile::commit_all(std::span<OutputFile> files) {

@@ -1,25 +1,23 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <memory>
 #include <span>
 #include <string_view>
-#include <utility>
 
 namespace meshorder {
 
-/// A file that appears whole or not at all: it is written beside its target and renamed into place by
-/// `commit`. Without a commit the temporary is removed and the target stays as it was.
+/// A file that appears complete or not at all: written to a temporary file beside its target, which `commit`
+/// renames into place. Without a commit the temporary is removed and the target stays unchanged.
 class OutputFile {
  public:
-  /// Throws Error when the folder does not exist or cannot be written, or the target is a folder.
+  /// Throws Error if the folder does not exist or cannot be written, or the target is a folder.
   explicit OutputFile(std::filesystem::path target);
   ~OutputFile();
   OutputFile(OutputFile&& other) noexcept;
@@ -27,16 +25,15 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Formatted text; a double written as `{}` reads back to the same bits.
+  /// Writes formatted text; a double written as `{}` reads back to the same bits.
   template <class... Args>
   void print(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(buffer_), format, std::forward<Args>(args)...);
-    if (buffer_.size() > kFlushAt) flush();
+    print_all(format, fmt::make_format_args(args...));
   }
 
   void write(std::string_view bytes);
 
-  /// The number's bytes in the given order.
+  /// Writes the number's bytes in the given order.
   template <class T>
   void binary(T value, std::endian order = std::endian::native) {
     auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
@@ -45,26 +42,26 @@ class OutputFile {
   }
 
   [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
-  /// Where the bytes go until the commit; for libraries that write by path (call `close` before they do).
+  /// Returns the path of the temporary file, for libraries that write by path (call `close` before they do).
   [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
 
-  /// Writes what is buffered and closes the file. Throws Error when the disk is full.
+  /// Writes what is buffered and closes the file. Throws Error if the disk is full.
   void close();
 
-  /// Closes and renames into place.
+  /// Closes the file and renames it into place.
   void commit() { commit_all(std::span(this, 1)); }
 
-  /// Closes all, then renames all: several files that belong together.
+  /// Closes all files, then renames all: for several files that belong together.
   static void commit_all(std::span<OutputFile> files);
 
  private:
-  static constexpr std::size_t kFlushAt = std::size_t{1} << 20;
+  struct Stream;
+  void print_all(fmt::string_view format, fmt::format_args args);
   void flush();
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;
-  std::ofstream stream_;
-  fmt::memory_buffer buffer_;
+  std::unique_ptr<Stream> stream_;
 };
 
 }  // namespace meshorder

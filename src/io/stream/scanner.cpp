@@ -12,14 +12,13 @@ namespace {
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
 
-/// A word as it can be shown in a message: short, and printable.
+}  // namespace
+
 std::string shown(std::string_view text) {
   std::string result;
   for (const char c : text.substr(0, 40)) result += (c >= ' ' && c < 127) ? c : '?';
   return text.size() > 40 ? result + "…" : result;
 }
-
-}  // namespace
 
 Scanner::Scanner(const std::filesystem::path& path, char comment) : file_(path.string()), comment_(comment) {
   std::error_code code;
@@ -108,7 +107,7 @@ std::string_view Scanner::peek_word() {
 std::string_view Scanner::word(std::string_view what) {
   const std::string_view result = peek_word();
   if (result.empty()) {
-    fail("the file ends where " + std::string(what) + " should stand", "it may be cut short");
+    fail("unexpected end of file; expected " + std::string(what), "it may be cut short");
   }
   position_ += result.size();
   return result;
@@ -124,16 +123,16 @@ double Scanner::finite(std::string_view what) {
   return value;
 }
 
-Index Scanner::count(std::string_view what, std::int64_t least_bytes) {
-  return checked_count(integer<std::int64_t>(what), what, least_bytes);
+Index Scanner::count(std::string_view what, std::int64_t min_bytes) {
+  return checked_count(integer<std::int64_t>(what), what, min_bytes);
 }
 
-Index Scanner::checked_count(std::int64_t number, std::string_view what, std::int64_t least_bytes) const {
+Index Scanner::checked_count(std::int64_t number, std::string_view what, std::int64_t min_bytes) const {
   const std::string shown_count = std::string(what) + " is " + std::to_string(number);
   if (number < 0) fail(shown_count, "it cannot be negative");
   if (number > kMaxIndex) fail(shown_count, "at most 2147483647 are possible");
   // the last item of a text file may lack its line end
-  if (number > 0 && number > (bytes_left() + 1) / std::max<std::int64_t>(least_bytes, 1)) {
+  if (number > 0 && number > (bytes_left() + 1) / std::max<std::int64_t>(min_bytes, 1)) {
     fail(shown_count + ", but only " + std::to_string(bytes_left()) + " bytes follow",
          "the count is wrong or the file is cut short");
   }
@@ -167,7 +166,7 @@ std::string_view Scanner::peek_line() const {
 
 std::string_view Scanner::binary_block(std::int64_t bytes, std::string_view what) {
   if (bytes < 0 || bytes > bytes_left()) {
-    fail_at_byte("the file ends within " + std::string(what), "it may be cut short");
+    fail_at_byte("unexpected end of file in " + std::string(what), "it may be cut short");
   }
   const auto result = std::string_view(text_).substr(position_, static_cast<std::size_t>(bytes));
   position_ += result.size();
@@ -206,7 +205,7 @@ double parse_real(const Scanner& at, std::string_view text, std::string_view wha
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = end == digits.data() + digits.size();
   if (code == std::errc::result_out_of_range && whole) {
-    // too small to matter is 0; too large is not a number that we can carry
+    // underflow is 0, overflow an error
     if (digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos) return 0;
     at.fail(std::string(what) + " is " + shown(text), "that is too large");
   }

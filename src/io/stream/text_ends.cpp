@@ -7,7 +7,7 @@ namespace {
 constexpr std::string_view kBlanks = " \t\f\v";
 constexpr std::string_view kLineEnds = "\r\n";
 
-/// The first byte that is neither blank nor line end, at the end of the text if there is none.
+/// Returns the first byte that is neither blank nor line end; the end of the text if there is none.
 std::size_t first_mark(std::string_view text, std::size_t from) {
   while (from < text.size() && (kBlanks.find(text[from]) != std::string_view::npos ||
                                 kLineEnds.find(text[from]) != std::string_view::npos)) {
@@ -16,14 +16,14 @@ std::size_t first_mark(std::string_view text, std::size_t from) {
   return from;
 }
 
-/// The beginning of the line after the one that holds byte `from`.
+/// Returns the beginning of the line after that of byte `from`.
 std::size_t next_line(std::string_view text, std::size_t from) {
   const std::size_t end = text.find_first_of(kLineEnds, from);
   if (end == std::string_view::npos) return text.size();
   return end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
 }
 
-/// The beginning of the line that holds byte `at`.
+/// Returns the beginning of the line of byte `at`.
 std::size_t line_begin(std::string_view text, std::size_t at) {
   const std::size_t end = at == 0 ? std::string_view::npos : text.find_last_of(kLineEnds, at - 1);
   return end == std::string_view::npos ? 0 : end + 1;
@@ -41,7 +41,7 @@ std::string comments_before(std::string_view text, char comment) {
 }
 
 std::string comments_after(std::string_view text, char comment) {
-  // go up line by line, as long as they are blank or comments
+  // go up line by line while they are blank or comments
   std::size_t begin = text.size();
   std::size_t end = text.size();
   while (end > 0) {
@@ -58,7 +58,7 @@ void note_missing_line_end(const Scanner& scanner, char comment, Notes& notes) {
   const std::string_view text = scanner.all();
   const std::size_t line = line_begin(text, text.size());
   if (line == text.size() || text.substr(line).find(comment) != std::string_view::npos) return;
-  notes.push_back(scanner.file() + " ends without a line end: its last number may be cut short");
+  notes.push_back(scanner.file() + " has no final newline: its last number may be cut short");
 }
 
 }  // namespace meshorder

@@ -9,15 +9,15 @@
 
 namespace meshorder {
 
-/// What stands before and after the data of a text file, so that a writer can put it back.
+// Comments before and after the data of a text file, kept for the writer.
 
-/// The lines up to the last comment that stands before the first word, as they are; empty without one.
+/// Returns, verbatim, the lines up to the last comment before the first word; empty if there is none.
 std::string comments_before(std::string_view text, char comment);
 
-/// The lines from the first comment on that stands after the last line with a word, as they are.
+/// Returns, verbatim, the lines from the first comment after the last line with a word.
 std::string comments_after(std::string_view text, char comment);
 
-/// Notes a file whose last line has no end: its last number may have been cut short, which nobody can see.
+/// Notes a missing final newline: the last number may be truncated.
 void note_missing_line_end(const Scanner& scanner, char comment, Notes& notes);
 
 }  // namespace meshorder

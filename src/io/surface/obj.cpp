@@ -20,7 +20,7 @@ namespace meshorder {
 namespace {
 namespace fs = std::filesystem;
 using obj::kStates;
-using obj::ObjMetadata;
+using obj::Metadata;
 
 bool obj_holds(Shape shape, int vertices) {
   if (shape == Shape::polygon) return vertices >= 3;
@@ -28,7 +28,7 @@ bool obj_holds(Shape shape, int vertices) {
   return shape == Shape::poly_vertex || (dimension(shape) <= 2 && vertices == corners(shape, 0));
 }
 
-/// Integers of all cells, whichever type the array has; empty when they do not fit.
+/// Returns the integers of all cells, of any type; none if they do not fit.
 std::vector<std::int32_t> cell_integers(const DataArray& array) {
   if (!array.is_dense() || array.components != 1) return {};
   if (const auto* same = std::get_if<std::vector<std::int32_t>>(&array.values)) return *same;
@@ -44,7 +44,7 @@ class Writer {
   Writer(const Mesh& mesh, const fs::path& path, Notes& notes)
       : mesh_(mesh),
         notes_(notes),
-        native_(dynamic_cast<const ObjMetadata*>(mesh.format_metadata.get())),
+        native_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
         out_(path) {}
 
   void write() {
@@ -69,7 +69,8 @@ class Writer {
     colors_ = gather(mesh_, kColor, Association::vertices);
     if (colors_.width > 0) {
       written_.insert(colors_.from.begin(), colors_.from.end());
-      if (colors_.width == 4) notes_.emplace_back("the alpha of colours is left out: OBJ cannot hold it");
+      if (colors_.width == 4)
+        notes_.emplace_back("the alpha of colours is not written: OBJ has no place for it");
     } else {
       find_partial_colors();
     }
@@ -144,7 +145,7 @@ class Writer {
     }
   }
 
-  /// For each cell the sets that hold it, as positions in the list of sets, rising.
+  /// Returns for each cell the sets that contain it, as ascending positions in the list of sets.
   void find_groups() {
     group_offsets_.assign(mesh_.cells.shapes.size() + 1, 0);
     for (const EntitySet& set : mesh_.sets) {
@@ -164,7 +165,7 @@ class Writer {
     return {groups_.data() + group_offsets_[cell], groups_.data() + group_offsets_[cell + 1]};
   }
 
-  /// A set's name as one word, which a group's name is.
+  /// Returns a set's name as one word, as required of a group's name.
   static std::string group_name(const EntitySet& set) {
     std::string name = set.name.empty() ? "unnamed" : set.name;
     std::replace_if(
@@ -220,7 +221,7 @@ class Writer {
     current_[i] = name;
   }
 
-  /// Names that no cell has are stated once, so that they stay known.
+  /// Writes names that no cell has once, to preserve them.
   void write_unused_names() {
     for (const EntitySet& set : mesh_.sets) {
       if (set.association != Association::cells || !set.members.empty()) continue;
@@ -279,22 +280,22 @@ class Writer {
 
   void note_losses() {
     for (const DataArray& array : mesh_.data) {
-      if (!written_.contains(&array)) note_array_left_out(array, "OBJ", notes_);
+      if (!written_.contains(&array)) note_array_unsupported(array, "OBJ", notes_);
     }
     for (const EntitySet& set : mesh_.sets) {
       if (set.association == Association::vertices) {
-        note_set_left_out(set, "OBJ", notes_);
+        note_set_unsupported(set, "OBJ", notes_);
       } else if (group_name(set) != set.name) {
         notes_.push_back(fmt::format("the set '{}' is written as the group '{}'", set.name, group_name(set)));
       }
     }
-    note_ids_left_out(mesh_, "OBJ", notes_);
-    if (!native_) note_residue_left_out(mesh_, "OBJ", notes_);
+    note_ids_unsupported(mesh_, "OBJ", notes_);
+    if (!native_) note_metadata_unsupported(mesh_, "OBJ", notes_);
   }
 
   const Mesh& mesh_;
   Notes& notes_;
-  const ObjMetadata* native_;
+  const Metadata* native_;
   OutputFile out_;
   std::set<const DataArray*> written_;
   GatheredVector colors_;
@@ -313,7 +314,7 @@ class Writer {
 };
 
 void write_obj(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  refuse_other_cells(mesh, path, "OBJ", obj_holds, "write .vtu or .msh");
+  require_supported_cells(mesh, path, "OBJ", obj_holds, "write .vtu or .msh");
   Writer(mesh, path, notes).write();
 }
 

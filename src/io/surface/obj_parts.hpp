@@ -12,12 +12,11 @@
 #include <string_view>
 #include <vector>
 
-/// What the reader and the writer of OBJ files share.
+/// Declarations shared by the reader and the writer of OBJ files.
 namespace meshorder::obj {
 
-/// A statement that holds for the cells after it until the next of its kind, and the array that keeps for
-/// each cell which one held: 0 for none, else a number that the residue gives a name. Smoothing groups are
-/// numbers themselves.
+/// A statement that applies to the cells after it until the next of its kind, and the cell array of the ones
+/// that applied: 0 for none, else a number whose name is in the metadata. Smoothing groups are numbers.
 struct State {
   std::string_view keyword;
   std::string_view array;
@@ -37,13 +36,13 @@ inline constexpr std::size_t kSmoothing = 2;
 /// The homogeneous coordinate of vertices that have one.
 inline constexpr std::string_view kWeight = "obj:weight";
 
-/// Places in the list of texture coordinates (or normals), from 0, of the corners of all cells that have
-/// `corners` corners: lists that reordering leaves alone.
+/// Name of the array of positions, from 0, in the list of texture coordinates (or normals) for the corners of
+/// cells with `corners` corners. Reordering leaves the lists unchanged.
 inline std::string corner_array(std::string_view what, Index corners) {
   return "obj:" + std::string(what) + std::to_string(corners);
 }
 
-struct ObjMetadata : FormatMetadata {
+struct Metadata : FormatMetadata {
   std::string comments;   ///< whole lines, all of the file
   std::string libraries;  ///< whole lines: mtllib, maplib, shadow_obj, trace_obj
   std::string texture;    ///< the lines vt

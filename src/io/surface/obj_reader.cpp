@@ -18,7 +18,7 @@
 namespace meshorder::obj {
 namespace {
 
-/// Which name holds for each cell.
+/// The name that applies to each cell.
 struct Named {
   std::vector<std::string> names;  ///< by first appearance; cells count them from 1
   std::unordered_map<std::string, std::int32_t> number_of;
@@ -51,7 +51,7 @@ std::optional<std::int32_t> as_integer(const std::string& text) {
   return value;
 }
 
-/// The numbers that names get: those that they are, when all are whole numbers, else by the alphabet, so that
+/// Returns the numbers of names: their values if all are integers, else their alphabetical ranks, so that
 /// they do not depend on the order of cells.
 std::map<std::int32_t, std::string> numbered(const Named& named, bool are_numbers) {
   std::map<std::int32_t, std::string> result;
@@ -69,7 +69,7 @@ std::map<std::int32_t, std::string> numbered(const Named& named, bool are_number
   return result;
 }
 
-/// Indices of corners, apart for each number of corners.
+/// Indices of corners, separately for each number of corners.
 struct CornerIndices {
   struct OfWidth {
     std::vector<Index> cells;
@@ -85,7 +85,7 @@ struct CornerIndices {
   }
 };
 
-/// A list (v, vt or vn) and the highest place named before the file gave it.
+/// A list (v, vt or vn) and the highest position named before it was read.
 struct List {
   std::string_view name;
   Index count = 0;
@@ -105,12 +105,12 @@ class Reader {
     add_corner_arrays("normal", normal_indices_);
     add_states();
     add_groups();
-    mesh_.format_metadata = residue_;
+    mesh_.format_metadata = metadata_;
     return std::move(mesh_);
   }
 
  private:
-  /// One line, or several that end in a backslash; taken when it is done, so that errors name it.
+  /// Reads one line, or several joined by backslashes. Takes it at the end, so that errors name its line.
   void read_statement() {
     std::string_view line = trimmed(scanner_.peek_line());
     if (!line.empty() && line.back() == '\\') return read_long_statement();
@@ -141,15 +141,15 @@ class Reader {
   void read_line(std::string_view line) {
     if (line.empty()) return;
     if (line.front() == '#') {
-      residue_->comments.append(line).append("\n");
+      metadata_->comments.append(line).append("\n");
       return;
     }
     std::string_view rest = line;
     const std::string_view keyword = next_word(rest);
     const std::string_view numbers = rest.substr(0, rest.find('#'));
     if (keyword == "v") return read_vertex(numbers);
-    if (keyword == "vt") return read_listed(line, numbers, 1, 3, texture_, residue_->texture);
-    if (keyword == "vn") return read_listed(line, numbers, 3, 3, normals_, residue_->normals);
+    if (keyword == "vt") return read_listed(line, numbers, 1, 3, texture_, metadata_->texture);
+    if (keyword == "vn") return read_listed(line, numbers, 3, 3, normals_, metadata_->normals);
     if (keyword == "f") return read_cell(numbers, 2);
     if (keyword == "l") return read_cell(numbers, 1);
     if (keyword == "p") return read_cell(numbers, 0);
@@ -159,7 +159,7 @@ class Reader {
     }
     for (const std::string_view library : {"mtllib", "maplib", "shadow_obj", "trace_obj"}) {
       if (keyword != library) continue;
-      residue_->libraries.append(line).append("\n");
+      metadata_->libraries.append(line).append("\n");
       return;
     }
     refuse(keyword);
@@ -210,7 +210,7 @@ class Reader {
     }
   }
 
-  /// A line of vt or vn, kept as it stands.
+  /// Reads a line of vt or vn, kept verbatim.
   void read_listed(std::string_view line, std::string_view numbers, int least, int most, List& list,
                    std::string& text) {
     int count = 0;
@@ -227,7 +227,7 @@ class Reader {
     ++list.count;
   }
 
-  /// The place, from 0, in the list that a number means: from 1, or from the last one back.
+  /// Returns the position, from 0, for a number that counts from 1, or back from the last if negative.
   Index place(std::string_view text, List& list) {
     const auto number = parse_integer<Index>(scanner_, text, "a number of " + std::string(list.name));
     if (number < 0 && -static_cast<std::int64_t>(number) <= list.count) return list.count + number;
@@ -244,7 +244,7 @@ class Reader {
                   fmt::format("there are {} so far, counted from 1 or back from -1", list.count));
   }
 
-  /// Numbers may point ahead, but not behind the end of the file.
+  /// Checks that numbers that point ahead stay within the list.
   void check_ahead(const List& list) const {
     if (list.highest_ahead < list.count) return;
     throw Error(Location{scanner_.file(), list.line_ahead, -1},
@@ -342,13 +342,13 @@ class Reader {
     for (std::size_t i = 0; i < kStates.size(); ++i) {
       Named& state = states_[i];
       if (!state.is_used || (state.names.empty() && i != kSmoothing)) continue;
-      residue_->names[i] = numbered(state, i == kSmoothing);
+      metadata_->names[i] = numbered(state, i == kSmoothing);
       std::unordered_map<std::string, std::int32_t> number_of;
-      for (const auto& [number, name] : residue_->names[i]) number_of[name] = number;
+      for (const auto& [number, name] : metadata_->names[i]) number_of[name] = number;
       std::vector<std::int32_t> numbers(state.names.size() + 1, 0);
       for (std::size_t k = 0; k < state.names.size(); ++k) numbers[k + 1] = number_of[state.names[k]];
       for (std::int32_t& value : state.of_cell) value = numbers[value];
-      if (i == kSmoothing) residue_->names[i].clear();  // numbers are their own names
+      if (i == kSmoothing) metadata_->names[i].clear();  // numbers are their own names
       mesh_.data.push_back(
           {std::string(kStates[i].array), Association::cells, 1, std::move(state.of_cell), {}, {}});
     }
@@ -372,7 +372,7 @@ class Reader {
 
   Scanner scanner_;
   Mesh mesh_;
-  std::shared_ptr<ObjMetadata> residue_ = std::make_shared<ObjMetadata>();
+  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   List vertices_{"v"};
   List texture_{"vt"};
   List normals_{"vn"};

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct OffMetadata : FormatMetadata {
-  std::string comments;    ///< whole lines that stood before the counts
+  std::string comments;    ///< whole lines before the counts
   std::int64_t edges = 0;  ///< a count that readers ignore
 
   [[nodiscard]] std::vector<std::string> contents() const override { return {}; }
@@ -52,7 +52,7 @@ bool is_count(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Reads the keyword up to the first count, which may follow without a blank. The keyword may be missing.
+/// Reads the optional keyword up to the first count, which may follow without a blank.
 Layout read_keyword(Scanner& scanner) {
   Layout layout;
   const std::string_view word = scanner.peek_word();
@@ -104,7 +104,7 @@ void measure_vertices(Scanner& scanner, Layout& layout) {
   }
 }
 
-/// Numbers of which it is known whether all were written as whole ones.
+/// Numbers, and whether all were written as integers.
 struct Numbers {
   std::vector<double> values;
   bool integers = true;
@@ -115,7 +115,7 @@ struct Numbers {
     values.push_back(parse_real(scanner, word, what));
   }
 
-  /// As 32-bit integers if all were whole and fit.
+  /// Returns 32-bit integers if all were written as integers and fit.
   [[nodiscard]] Values typed() && {
     const bool fit = std::all_of(values.begin(), values.end(), [](double x) { return std::abs(x) < 2e9; });
     if (integers && fit) return std::vector<std::int32_t>(values.begin(), values.end());
@@ -232,10 +232,10 @@ Mesh read_off(const fs::path& path, Notes&) {
   Layout layout = read_keyword(scanner);
   if (scanner.at_line_end()) take_comment_lines(scanner, metadata->comments);
 
-  constexpr int kLeastVertex = 6;  // "0 0 0" and a line end
-  constexpr int kLeastFace = 4;    // "1 0" and a line end
-  const Index vertices = scanner.count("the number of vertices", kLeastVertex);
-  const Index faces = scanner.count("the number of faces", kLeastFace);
+  constexpr int kMinVertex = 6;  // "0 0 0" and a line end
+  constexpr int kMinFace = 4;    // "1 0" and a line end
+  const Index vertices = scanner.count("the number of vertices", kMinVertex);
+  const Index faces = scanner.count("the number of faces", kMinFace);
   if (!scanner.at_line_end()) metadata->edges = scanner.integer<std::int64_t>("the number of edges");
 
   Mesh mesh;
@@ -243,7 +243,7 @@ Mesh read_off(const fs::path& path, Notes&) {
   read_vertices(scanner, vertices, layout, mesh);
   read_faces(scanner, faces, mesh);
   if (!scanner.at_end()) {
-    scanner.fail("more follows after " + std::to_string(faces) + " faces", "the counts may be wrong");
+    scanner.fail("unexpected data after " + std::to_string(faces) + " faces", "the counts may be wrong");
   }
   mesh.format_metadata = std::move(metadata);
   return mesh;
@@ -256,7 +256,7 @@ bool off_holds(Shape shape, int vertices) {
                                      shape != Shape::polyline && vertices == corners(shape, 0));
 }
 
-/// What of the mesh's arrays goes into the file.
+/// The arrays of a mesh that the file holds.
 struct Content {
   GatheredVector normals;
   GatheredVector colors;
@@ -302,18 +302,18 @@ Content content_of(const Mesh& mesh) {
 void note_losses(const Mesh& mesh, const Content& content, Notes& notes) {
   for (const DataArray& array : mesh.data) {
     if (std::find(content.written.begin(), content.written.end(), &array) != content.written.end()) continue;
-    note_array_left_out(array, "OFF", notes);
+    note_array_unsupported(array, "OFF", notes);
   }
-  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "OFF", notes);
-  note_ids_left_out(mesh, "OFF", notes);
-  note_residue_left_out(mesh, "OFF", notes);
+  for (const EntitySet& set : mesh.sets) note_set_unsupported(set, "OFF", notes);
+  note_ids_unsupported(mesh, "OFF", notes);
+  note_metadata_unsupported(mesh, "OFF", notes);
 }
 
 void write_numbers(OutputFile& out, std::span<const double> numbers) {
   for (const double x : numbers) out.print(" {}", x);
 }
 
-/// A real colour keeps its point, as 1 and 1.0 differ in OFF.
+/// Writes a real colour with a decimal point, as 1 and 1.0 differ in OFF.
 void write_color(OutputFile& out, std::span<const double> color, bool integers) {
   for (const double x : color) {
     std::string text = fmt::format("{}", x);
@@ -342,7 +342,7 @@ void write_face_color(OutputFile& out, const Content& content, Index face) {
 }
 
 void write_off(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  refuse_other_cells(mesh, path, "OFF", off_holds, "write .vtu or .msh");
+  require_supported_cells(mesh, path, "OFF", off_holds, "write .vtu or .msh");
   const Content content = content_of(mesh);
   const auto* metadata = dynamic_cast<const OffMetadata*>(mesh.format_metadata.get());
   OutputFile out(path);

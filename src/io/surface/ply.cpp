@@ -25,23 +25,23 @@ namespace {
 namespace fs = std::filesystem;
 using ply::Element;
 using ply::Encoding;
-using ply::PlyMetadata;
+using ply::Metadata;
 using ply::Property;
 using ply::Role;
 using ply::Type;
 using ply::TypeWord;
 
-/// Where a property's numbers come from.
-struct Source {
+/// The source of a property's numbers.
+struct ArraySource {
   const DataArray* array = nullptr;
   Index component = 0;        ///< of a property that is no list
-  std::vector<Index> row_of;  ///< the row of each vertex or cell, −1 for none; empty when it is itself
+  std::vector<Index> row_of;  ///< the row of each vertex or cell, −1 for none; empty if row i belongs to i
 };
 
 /// A property to be written; without a source its numbers are coordinates or vertices of cells.
 struct Column {
   Property property;
-  std::vector<Source> sources;  ///< several for a list whose lengths differ
+  std::vector<ArraySource> sources;  ///< several for a list whose lengths differ
 };
 
 /// An element to be written.
@@ -64,7 +64,7 @@ TypeWord word_of(const Values& values) {
   return i < kWords.size() ? TypeWord{std::string(kWords[i].first), kWords[i].second} : TypeWord{};
 }
 
-/// The type in which 64-bit integers can be written: PLY has none.
+/// Returns the type in which 64-bit integers are written, as PLY has none for them.
 TypeWord word_for_wide(const Values& values) {
   const std::vector<double> numbers = as_reals(values);
   const bool fit = std::all_of(numbers.begin(), numbers.end(), [](double x) {
@@ -83,15 +83,17 @@ Index item_count(const Mesh& mesh, Association association) {
   return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
 }
 
-Source source_of(const Mesh& mesh, const DataArray& array, Index component) {
-  Source source{&array, component, {}};
+ArraySource source_of(const Mesh& mesh, const DataArray& array, Index component) {
+  ArraySource source{&array, component, {}};
   if (array.is_dense()) return source;
   source.row_of.assign(item_count(mesh, array.association), -1);
   for (Index row = 0; row < index_size(array.indices); ++row) source.row_of[array.indices[row]] = row;
   return source;
 }
 
-Index row_in(const Source& source, Index item) { return source.row_of.empty() ? item : source.row_of[item]; }
+Index row_in(const ArraySource& source, Index item) {
+  return source.row_of.empty() ? item : source.row_of[item];
+}
 
 // ---- which elements, with which cells
 
@@ -99,8 +101,8 @@ Role usual_role(Shape shape) {
   return shape == Shape::tetrahedron ? Role::tetrahedra : shape == Shape::line ? Role::edges : Role::faces;
 }
 
-/// Whether the elements of the file fit the cells of the mesh, block by block.
-bool elements_fit(const PlyMetadata& metadata, const Mesh& mesh) {
+/// Returns whether the elements of the file fit the cells of the mesh, block by block.
+bool elements_fit(const Metadata& metadata, const Mesh& mesh) {
   Index cell = 0;
   for (const Element& element : metadata.elements) {
     if (element.role == Role::vertices && element.count != mesh.vertex_count()) return false;
@@ -116,7 +118,7 @@ bool elements_fit(const PlyMetadata& metadata, const Mesh& mesh) {
   return cell == mesh.cell_count();
 }
 
-std::vector<Table> tables_of_file(const PlyMetadata& metadata) {
+std::vector<Table> tables_of_file(const Metadata& metadata) {
   std::vector<Table> tables;
   Index cell = 0;
   for (const Element& element : metadata.elements) {
@@ -168,7 +170,7 @@ std::vector<Table> usual_tables(const Mesh& mesh) {
 
 // ---- which properties
 
-/// Gathers the columns of one table, and remembers which arrays went into them.
+/// Collects the columns of one table and the arrays that they use.
 class Columns {
  public:
   Columns(const Mesh& mesh, Table& table, std::vector<const DataArray*>& written, Notes& notes)
@@ -190,7 +192,7 @@ class Columns {
   }
 
  private:
-  /// How many rows of the array belong to things of this table.
+  /// Counts the rows of the array that belong to items of this table.
   [[nodiscard]] Index rows_inside(const DataArray& array) const {
     if (array.is_dense()) return index_size(table_.items);
     return static_cast<Index>(
@@ -222,7 +224,7 @@ class Columns {
     }
   }
 
-  /// A property that the file had, with the arrays of its name.
+  /// Adds a property that the file had, with the arrays of its name.
   void add_known(const Property& property) {
     Column column{property, {}};
     if (is_geometry(property)) return table_.columns.push_back(widened(std::move(column)));
@@ -234,7 +236,7 @@ class Columns {
       column.sources.push_back(source_of(mesh_, array, 0));
       use(array);
     }
-    // a list may be empty everywhere; another property without an array is gone
+    // only a list can be empty everywhere; other properties without an array were removed
     if (property.is_list || !column.sources.empty() || table_.items.empty()) {
       table_.columns.push_back(std::move(column));
     }
@@ -244,7 +246,7 @@ class Columns {
     return array.components == 1 && rows_inside(array) == index_size(table_.items);
   }
 
-  /// Vertices of cells need types that hold every vertex's number after reordering, and every cell's length.
+  /// Widens the types of a cell's vertices, if needed, to hold every vertex and every cell's length.
   [[nodiscard]] Column widened(Column column) const {
     if (table_.element.role == Role::vertices) return column;
     constexpr std::array<std::int64_t, 6> kLargest{127, 255, 32767, 65535, 2147483647, 4294967295};
@@ -261,7 +263,7 @@ class Columns {
     return column;
   }
 
-  /// A normal, colour or texture coordinates of several components, as single properties of the usual names.
+  /// Adds a normal, colour or texture coordinates as one property a component, of the usual names.
   void add_vector(const SurfaceVector& vector) {
     const GatheredVector gathered = gather(mesh_, vector, on_);
     if (gathered.from.size() != 1 || is_used(*gathered.from[0]) || table_.items.empty()) return;
@@ -282,7 +284,7 @@ class Columns {
     use(array);
   }
 
-  /// Any other array: a property of its name, or a list where it has several components or gaps.
+  /// Adds any other array: a property of its name, or a list if it has several components or gaps.
   void add_other(const DataArray& array) {
     if (std::holds_alternative<std::vector<std::string>>(array.values)) return;
     std::string name = array.name;
@@ -305,7 +307,7 @@ class Columns {
     use(array);
   }
 
-  /// Notes once what concerns several elements.
+  /// Adds a note once, also if it concerns several elements.
   void note(const std::string& text) {
     if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
   }
@@ -327,7 +329,7 @@ void write_property(OutputFile& out, const Property& property) {
   out.print("{} {}\n", property.type.word, property.name);
 }
 
-void write_header(OutputFile& out, Encoding encoding, const PlyMetadata* metadata,
+void write_header(OutputFile& out, Encoding encoding, const Metadata* metadata,
                   const std::vector<Table>& tables) {
   constexpr std::array<std::string_view, 3> kNames{"ascii", "binary_little_endian", "binary_big_endian"};
   out.print("ply\nformat {} 1.0\n", kNames[static_cast<std::size_t>(encoding)]);
@@ -345,9 +347,9 @@ void write_header(OutputFile& out, Encoding encoding, const PlyMetadata* metadat
 }
 
 /// Writes the body's numbers in the encoding, each line of text with blanks between them.
-class Body {
+class NumberWriter {
  public:
-  Body(OutputFile& out, Encoding encoding) : out_(out), encoding_(encoding) {}
+  NumberWriter(OutputFile& out, Encoding encoding) : out_(out), encoding_(encoding) {}
 
   template <class T>
   void number(Type type, T value) {
@@ -371,7 +373,7 @@ class Body {
     }
   }
 
-  /// Text keeps the digits that a coordinate has, whatever its type.
+  /// Writes a coordinate; text keeps all its digits, whatever its type.
   void coordinate(Type type, double value) {
     if (encoding_ == Encoding::ascii) return put(value);
     if (type == Type::float32) rounded_ = rounded_ || static_cast<double>(static_cast<float>(value)) != value;
@@ -403,52 +405,52 @@ class Body {
   bool rounded_ = false;
 };
 
-/// `count` numbers of the array from that entry on.
-void write_values(Body& body, Type type, const DataArray& array, Offset first, Index count) {
+/// Writes `count` numbers of the array from entry `first` on.
+void write_values(NumberWriter& to, Type type, const DataArray& array, Offset first, Index count) {
   std::visit(
       [&](const auto& values) {
         if constexpr (std::is_arithmetic_v<typename std::decay_t<decltype(values)>::value_type>) {
-          for (Index k = 0; k < count; ++k) body.number(type, values[first + k]);
+          for (Index k = 0; k < count; ++k) to.number(type, values[first + k]);
         }
       },
       array.values);
 }
 
-void write_attached(Body& body, const Column& column, Index item) {
+void write_attached(NumberWriter& to, const Column& column, Index item) {
   const Property& property = column.property;
-  for (const Source& source : column.sources) {
+  for (const ArraySource& source : column.sources) {
     const Index row = row_in(source, item);
     if (row < 0) continue;
     const Offset first = static_cast<Offset>(row) * source.array->components;
     if (!property.is_list) {
-      return write_values(body, property.type.type, *source.array, first + source.component, 1);
+      return write_values(to, property.type.type, *source.array, first + source.component, 1);
     }
-    body.number(property.count_type.type, source.array->components);
-    return write_values(body, property.type.type, *source.array, first, source.array->components);
+    to.number(property.count_type.type, source.array->components);
+    return write_values(to, property.type.type, *source.array, first, source.array->components);
   }
-  body.number(property.count_type.type, 0);  // an empty list
+  to.number(property.count_type.type, 0);  // an empty list
 }
 
-void write_corners(Body& body, const Property& property, std::span<const Index> corners) {
-  body.number(property.count_type.type, index_size(corners));
-  for (const Index v : corners) body.number(property.type.type, v);
+void write_corners(NumberWriter& to, const Property& property, std::span<const Index> corners) {
+  to.number(property.count_type.type, index_size(corners));
+  for (const Index v : corners) to.number(property.type.type, v);
 }
 
-void write_item(Body& body, const Mesh& mesh, const Table& table, Index item) {
+void write_item(NumberWriter& to, const Mesh& mesh, const Table& table, Index item) {
   for (const Column& column : table.columns) {
     const Property& property = column.property;
     const Role role = table.element.role;
     if (role == Role::vertices && ply::coordinate_of(property) >= 0) {
-      body.coordinate(property.type.type, mesh.points[item][ply::coordinate_of(property)]);
+      to.coordinate(property.type.type, mesh.points[item][ply::coordinate_of(property)]);
     } else if (role == Role::edges && ply::end_of(property) >= 0) {
-      body.number(property.type.type, mesh.cells[item][ply::end_of(property)]);
+      to.number(property.type.type, mesh.cells[item][ply::end_of(property)]);
     } else if (role != Role::vertices && role != Role::edges && ply::is_corner_list(property)) {
-      write_corners(body, property, mesh.cells[item]);
+      write_corners(to, property, mesh.cells[item]);
     } else {
-      write_attached(body, column, item);
+      write_attached(to, column, item);
     }
   }
-  body.end_line();
+  to.end_line();
 }
 
 bool ply_holds(Shape shape, int vertices) {
@@ -459,15 +461,15 @@ bool ply_holds(Shape shape, int vertices) {
 void note_losses(const Mesh& mesh, const std::vector<const DataArray*>& written, Notes& notes) {
   for (const DataArray& array : mesh.data) {
     if (std::find(written.begin(), written.end(), &array) == written.end())
-      note_array_left_out(array, "PLY", notes);
+      note_array_unsupported(array, "PLY", notes);
   }
-  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "PLY", notes);
-  note_ids_left_out(mesh, "PLY", notes);
+  for (const EntitySet& set : mesh.sets) note_set_unsupported(set, "PLY", notes);
+  note_ids_unsupported(mesh, "PLY", notes);
 }
 
 void write_ply(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  refuse_other_cells(mesh, path, "PLY", ply_holds, "write .vtu or .msh");
-  const auto* metadata = dynamic_cast<const PlyMetadata*>(mesh.format_metadata.get());
+  require_supported_cells(mesh, path, "PLY", ply_holds, "write .vtu or .msh");
+  const auto* metadata = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   const bool as_file = metadata && elements_fit(*metadata, mesh);
   std::vector<Table> tables = as_file ? tables_of_file(*metadata) : usual_tables(mesh);
   std::vector<const DataArray*> written;
@@ -478,15 +480,15 @@ void write_ply(const Mesh& mesh, const fs::path& path, Notes& notes) {
   const Encoding encoding = metadata ? metadata->encoding : Encoding::little_endian;
   OutputFile out(path);
   write_header(out, encoding, metadata, tables);
-  Body body(out, encoding);
+  NumberWriter to(out, encoding);
   for (const Table& table : tables) {
     if (table.element.role == Role::other) out.write(table.element.content);
-    for (const Index item : table.items) write_item(body, mesh, table, item);
+    for (const Index item : table.items) write_item(to, mesh, table, item);
   }
   out.commit();
-  if (body.rounded()) notes.emplace_back("coordinates are rounded to 32 bits, as the file has them");
+  if (to.rounded()) notes.emplace_back("coordinates are rounded to 32 bits, as the file has them");
   note_losses(mesh, written, notes);
-  if (!as_file) note_residue_left_out(mesh, "PLY", notes);
+  if (!as_file) note_metadata_unsupported(mesh, "PLY", notes);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-/// What the reader and the writer of PLY files share.
+/// Declarations shared by the reader and the writer of PLY files.
 namespace meshorder::ply {
 
 enum class Encoding : std::uint8_t { ascii, little_endian, big_endian };
@@ -32,7 +32,7 @@ struct Property {
   TypeWord count_type;  ///< of a list
 };
 
-/// What the things of an element are: vertices, cells of some kind, or none of our business.
+/// Meaning of an element: vertices, a kind of cells, or other (kept verbatim).
 enum class Role : std::uint8_t { vertices, faces, edges, tetrahedra, other };
 
 struct Element {
@@ -40,14 +40,14 @@ struct Element {
   Index count = 0;
   std::vector<Property> properties;
   Role role = Role::other;
-  std::string content;  ///< of others: the lines or bytes as they stand
+  std::string content;  ///< of others: the lines or bytes, verbatim
 };
 
 inline bool holds_cells(const Element& element) {
   return element.role != Role::vertices && element.role != Role::other;
 }
 
-struct PlyMetadata : FormatMetadata {
+struct Metadata : FormatMetadata {
   Encoding encoding = Encoding::ascii;
   std::vector<std::string> comments;  ///< whole lines, obj_info as well
   std::vector<Element> elements;
@@ -61,19 +61,19 @@ struct PlyMetadata : FormatMetadata {
   }
 };
 
-/// Whether the property is the list of a cell's vertices.
+/// Returns whether the property is the list of a cell's vertices.
 inline bool is_corner_list(const Property& property) {
   return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-/// 0, 1, 2 for x, y, z; −1 for others.
+/// Returns 0, 1, 2 for x, y, z; −1 for others.
 inline int coordinate_of(const Property& property) {
   if (property.is_list || property.name.size() != 1) return -1;
   const auto place = std::string_view("xyz").find(property.name);
   return place == std::string_view::npos ? -1 : static_cast<int>(place);
 }
 
-/// 0 or 1 for the ends of an edge; −1 for others.
+/// Returns 0 or 1 for the ends of an edge; −1 for others.
 inline int end_of(const Property& property) {
   if (property.is_list) return -1;
   return property.name == "vertex1" ? 0 : property.name == "vertex2" ? 1 : -1;

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/stream/scanner.hpp"
+#include "io/stream/number_reader.hpp"
 #include "io/surface/ply_parts.hpp"
 
 #include <fmt/format.h>
@@ -82,7 +82,7 @@ Property parse_property(const Scanner& scanner, std::string_view line) {
   if (property.is_list) {
     property.count_type = parse_type(scanner, next_word(line));
     if (!is_integer(property.count_type.type)) {
-      scanner.fail("a list with a count that is no whole number", "uchar or int is usual");
+      scanner.fail("a list whose length is not an integer", "uchar or int is usual");
     }
     word = next_word(line);
   }
@@ -92,7 +92,7 @@ Property parse_property(const Scanner& scanner, std::string_view line) {
   return property;
 }
 
-/// Numbers as wide as this could be those of vertices or faces.
+/// Returns whether numbers of this type could refer to vertices or faces.
 bool could_be_indices(const Property& property) {
   return is_integer(property.type.type) && property.type.type != Type::int8 &&
          property.type.type != Type::uint8;
@@ -115,7 +115,7 @@ void check_cells_element(const Scanner& scanner, const Element& element) {
   }
 }
 
-/// Stops where reordering could falsify what we do not understand, or what we need is missing.
+/// Fails if a required property is missing, or an unknown one could refer to vertices or faces.
 void check_element(const Scanner& scanner, const Element& element) {
   for (std::size_t i = 0; i < element.properties.size(); ++i) {
     const Property& property = element.properties[i];
@@ -146,7 +146,7 @@ void check_element(const Scanner& scanner, const Element& element) {
   }
 }
 
-/// Moves behind the line of end_header, in a binary file to the first byte of data.
+/// Moves to the first byte after the line of end_header.
 void leave_header(Scanner& scanner) {
   const std::string_view all = scanner.all();
   const bool only_cr = all.size() > 4 && all[3] == '\r' && all[4] != '\n';
@@ -158,14 +158,14 @@ void leave_header(Scanner& scanner) {
   }
 }
 
-void check_elements(const Scanner& scanner, const PlyMetadata& header) {
+void check_elements(const Scanner& scanner, const Metadata& header) {
   const auto vertices = std::count_if(header.elements.begin(), header.elements.end(),
                                       [](const Element& e) { return e.role == Role::vertices; });
   if (vertices != 1) scanner.fail("the header has no element vertex, or several", "one is needed");
   for (const Element& element : header.elements) check_element(scanner, element);
 }
 
-void read_header(Scanner& scanner, PlyMetadata& header) {
+void read_header(Scanner& scanner, Metadata& header) {
   if (trimmed(scanner.peek_line()) != "ply")
     scanner.fail("the file does not begin with 'ply'", "PLY files do");
   (void)scanner.raw_line();
@@ -189,36 +189,25 @@ void read_header(Scanner& scanner, PlyMetadata& header) {
     } else if (keyword == "property" && !header.elements.empty()) {
       header.elements.back().properties.push_back(parse_property(scanner, line));
     } else if (!keyword.empty()) {
-      scanner.fail("'" + whole.substr(0, 40) + "' does not belong into a header", std::string(kRemedy));
+      scanner.fail("'" + whole.substr(0, 40) + "' is not a header line", std::string(kRemedy));
     }
     (void)scanner.raw_line();
   }
-  scanner.fail("the file ends within the header", "it may be cut short");
+  scanner.fail("unexpected end of file in the header", "it may be cut short");
 }
 
 // ---- body
 
-/// The numbers of the body, in whichever encoding.
-class Body {
- public:
-  Body(Scanner& scanner, Encoding encoding) : scanner_(scanner), encoding_(encoding) {}
-
-  [[nodiscard]] bool is_ascii() const { return encoding_ == Encoding::ascii; }
-  [[nodiscard]] Scanner& scanner() { return scanner_; }
-
-  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
-    if (is_ascii()) scanner_.fail(what, remedy);
-    scanner_.fail_at_byte(what, remedy);
-  }
+/// Reads the numbers of the body.
+struct BodyReader : NumberReader {
+  using NumberReader::NumberReader;
 
   template <class T>
   T number(std::string_view what) {
-    if (is_ascii()) return text_number<T>(what);
-    return scanner_.binary<T>(what,
-                              encoding_ == Encoding::big_endian ? std::endian::big : std::endian::little);
+    return binary ? scanner.binary<T>(what, order) : text_number<T>(what);
   }
 
-  /// A number of that type, as T.
+  /// Reads a number of that type and converts it to T.
   template <class T>
   T number_as(Type type, std::string_view what) {
     switch (type) {
@@ -236,17 +225,17 @@ class Body {
         return static_cast<T>(number<std::uint32_t>(what));
       case Type::float32:
         // text keeps more digits than the type has
-        return is_ascii() ? static_cast<T>(number<double>(what)) : static_cast<T>(number<float>(what));
+        return static_cast<T>(binary ? number<float>(what) : number<double>(what));
       case Type::float64:
         break;
     }
     return static_cast<T>(number<double>(what));
   }
 
-  /// The length of a list; each entry takes at least one byte of what is left.
+  /// Reads the length of a list, at most the number of bytes that are left.
   Index list_length(const Property& property) {
     const auto length = number_as<std::int64_t>(property.count_type.type, "the length of a list");
-    if (length < 0 || length > scanner_.bytes_left()) {
+    if (length < 0 || length > scanner.bytes_left()) {
       fail("the list " + property.name + " has the length " + std::to_string(length),
            "the file is damaged or cut short");
     }
@@ -256,24 +245,21 @@ class Body {
  private:
   template <class T>
   T text_number(std::string_view what) {
-    const std::string_view word = scanner_.word(what);
+    const std::string_view word = scanner.word(what);
     if constexpr (std::is_integral_v<T>) {
-      const auto value = parse_integer<std::int64_t>(scanner_, word, what);
+      const auto value = parse_integer<std::int64_t>(scanner, word, what);
       if (!std::in_range<T>(value)) {
-        scanner_.fail(std::string(what) + " is " + std::to_string(value),
-                      "it does not fit the property's type");
+        scanner.fail(std::string(what) + " is " + std::to_string(value),
+                     "it does not fit the property's type");
       }
       return static_cast<T>(value);
     } else {
       T value{};
       const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (code == std::errc{} && end == word.data() + word.size()) return value;
-      return static_cast<T>(parse_real(scanner_, word, what));
+      return static_cast<T>(parse_real(scanner, word, what));
     }
   }
-
-  Scanner& scanner_;
-  Encoding encoding_;
 };
 
 Values values_of(Type type) {
@@ -298,7 +284,7 @@ Values values_of(Type type) {
   return std::vector<double>();
 }
 
-void append(Values& values, Body& body, Index count, const Property& property) {
+void append(Values& values, BodyReader& body, Index count, const Property& property) {
   std::visit(
       [&](auto& list) {
         using T = typename std::decay_t<decltype(list)>::value_type;
@@ -309,7 +295,7 @@ void append(Values& values, Body& body, Index count, const Property& property) {
       values);
 }
 
-/// The values of one property: of a list, those of each length apart.
+/// The values of one property; those of a list separately for each length.
 struct Column {
   struct OfLength {
     std::vector<Index> rows;
@@ -317,7 +303,7 @@ struct Column {
   };
   std::map<Index, OfLength> by_length;
 
-  void read(Body& body, const Property& property, Index row) {
+  void read(BodyReader& body, const Property& property, Index row) {
     const Index length = property.is_list ? body.list_length(property) : 1;
     auto found = by_length.find(length);
     if (found == by_length.end())
@@ -327,21 +313,23 @@ struct Column {
   }
 };
 
-/// Bytes, or characters with a blank, that a thing of the element takes at least.
-std::int64_t least_bytes(const Element& element, const Body& body) {
+/// Returns the minimum number of bytes (in text: digits and blanks) of an item of the element.
+std::int64_t min_bytes(const Element& element, const BodyReader& body) {
   constexpr std::array<int, 8> kBytes{1, 1, 2, 2, 4, 4, 4, 8};
   std::int64_t bytes = 0;
   for (const Property& property : element.properties) {
     const TypeWord& first = property.is_list ? property.count_type : property.type;
-    bytes += body.is_ascii() ? 2 : kBytes[static_cast<std::size_t>(first.type)];
+    bytes += !body.binary ? 2 : kBytes[static_cast<std::size_t>(first.type)];
   }
   return bytes;
 }
 
 class Reader {
  public:
-  Reader(Scanner& scanner, std::shared_ptr<PlyMetadata> header)
-      : header_(std::move(header)), body_(scanner, header_->encoding) {
+  explicit Reader(const std::filesystem::path& path) : body_(path) {
+    read_header(body_.scanner, *header_);
+    body_.binary = header_->encoding != Encoding::ascii;
+    body_.order = header_->encoding == Encoding::big_endian ? std::endian::big : std::endian::little;
     for (const Element& element : header_->elements) {
       if (element.role == Role::vertices) vertex_count_ = element.count;
       if (holds_cells(element) && element.count > 0) ++cell_elements_;
@@ -350,16 +338,16 @@ class Reader {
 
   Mesh read() {
     for (Element& element : header_->elements) {
-      (void)body_.scanner().checked_count(element.count, "the number of " + element.name,
-                                          least_bytes(element, body_));
+      (void)body_.scanner.checked_count(element.count, "the number of " + element.name,
+                                        min_bytes(element, body_));
       if (element.role == Role::other) {
         read_other(element);
       } else {
         read_element(element);
       }
     }
-    const bool more = body_.is_ascii() ? !body_.scanner().at_end() : body_.scanner().bytes_left() > 0;
-    if (more) body_.fail("more follows than the header promises", "the numbers of elements may be wrong");
+    const bool more = !body_.binary ? !body_.scanner.at_end() : body_.scanner.bytes_left() > 0;
+    if (more) body_.fail("unexpected data after the last element", "the numbers of elements may be wrong");
     join_arrays_of_all_cells();
     mesh_.format_metadata = header_;
     return std::move(mesh_);
@@ -384,7 +372,7 @@ class Reader {
     }
   }
 
-  /// Reads a coordinate or vertices of a cell; false for every other property.
+  /// Reads a coordinate or vertices of a cell; returns false for every other property.
   bool read_geometry(const Element& element, const Property& property, Index i) {
     if (element.role == Role::vertices) {
       const int k = coordinate_of(property);
@@ -441,7 +429,7 @@ class Reader {
     }
   }
 
-  /// A property that all cells have, faces and edges, is one array.
+  /// Joins the arrays of a property that all cells have, faces and edges, into one.
   void join_arrays_of_all_cells() {
     if (cell_elements_ < 2) return;
     for (std::size_t i = 0; i < mesh_.data.size(); ++i) {
@@ -470,7 +458,7 @@ class Reader {
     });
   }
 
-  /// Appends the later parts to the first; the rows of all follow each other.
+  /// Appends the later parts to the first.
   void join(const std::vector<std::size_t>& parts) {
     DataArray& whole = mesh_.data[parts[0]];
     std::visit(
@@ -487,30 +475,30 @@ class Reader {
     }
   }
 
-  /// Passes over an element that is kept as it stands.
+  /// Reads an element that is kept verbatim.
   void read_other(Element& element) {
-    const std::int64_t begin = body_.scanner().byte();
+    const std::int64_t begin = body_.scanner.byte();
     for (Index i = 0; i < element.count; ++i) {
       for (const Property& property : element.properties) {
         const Index length = property.is_list ? body_.list_length(property) : 1;
-        if (body_.is_ascii() && property.is_list) element.content += std::to_string(length) + " ";
+        if (!body_.binary && property.is_list) element.content += std::to_string(length) + " ";
         for (Index k = 0; k < length; ++k) {
-          if (body_.is_ascii()) {
-            element.content += std::string(body_.scanner().word(property.name)) + " ";
+          if (!body_.binary) {
+            element.content += std::string(body_.scanner.word(property.name)) + " ";
           } else {
             (void)body_.number_as<double>(property.type.type, property.name);
           }
         }
       }
-      if (body_.is_ascii()) element.content.back() = '\n';
+      if (!body_.binary) element.content.back() = '\n';
     }
-    if (!body_.is_ascii()) {
-      element.content = body_.scanner().all().substr(begin, body_.scanner().byte() - begin);
+    if (body_.binary) {
+      element.content = body_.scanner.all().substr(begin, body_.scanner.byte() - begin);
     }
   }
 
-  std::shared_ptr<PlyMetadata> header_;
-  Body body_;
+  std::shared_ptr<Metadata> header_ = std::make_shared<Metadata>();
+  BodyReader body_;
   Mesh mesh_;
   Index vertex_count_ = 0;
   int cell_elements_ = 0;
@@ -520,11 +508,6 @@ class Reader {
 
 }  // namespace
 
-Mesh read(const std::filesystem::path& path, Notes&) {
-  Scanner scanner(path);
-  auto header = std::make_shared<PlyMetadata>();
-  read_header(scanner, *header);
-  return Reader(scanner, header).read();
-}
+Mesh read(const std::filesystem::path& path, Notes&) { return Reader(path).read(); }
 
 }  // namespace meshorder::ply

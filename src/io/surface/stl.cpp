@@ -47,7 +47,7 @@ struct StlMetadata : FormatMetadata {
 
 // ---- reading
 
-/// Gives equal points one number, in order of first appearance: open addressing in a table of point numbers.
+/// Numbers points by first appearance, equal ones alike: a hash table with open addressing.
 class PointTable {
  public:
   explicit PointTable(std::vector<Point>& points) : points_(points), slots_(1024, -1) {}
@@ -88,7 +88,7 @@ class PointTable {
   std::vector<Index> slots_;
 };
 
-/// The unit normal of a triangle, zero for a degenerate one.
+/// Returns the unit normal of a triangle, zero for a degenerate one.
 Point normal_of(const Point& a, const Point& b, const Point& c) {
   const Point u{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
   const Point v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
@@ -120,7 +120,7 @@ struct Builder {
   }
 };
 
-/// The bytes that a binary file has by its own count; −1 for a file that is too short to have one.
+/// Returns the size in bytes that a binary file has by its own count; −1 if it is too short for a count.
 std::int64_t promised_bytes(const Scanner& scanner) {
   const std::string_view all = scanner.all();
   if (all.size() < kHeaderBytes + 4) return -1;
@@ -176,7 +176,7 @@ void read_facet(Scanner& scanner, Builder& builder) {
   expect_word(scanner, "normal");
   Point normal;
   for (double& x : normal) {
-    // programs print what they like for a degenerate triangle; only a sound number is looked at
+    // the normal of a degenerate triangle may be anything; words that are not numbers are ignored
     const std::string_view word = scanner.word("a normal");
     if (std::from_chars(word.data(), word.data() + word.size(), x).ec != std::errc{}) x = 0;
   }
@@ -192,7 +192,7 @@ void read_facet(Scanner& scanner, Builder& builder) {
   builder.add(normal, corners);
 }
 
-/// The labels of solids: their names where all are different whole numbers, else 1, 2, …
+/// Returns the labels of solids: their names if all are distinct integers, else 1, 2, …
 std::vector<std::int64_t> labels_of(const std::vector<std::string>& names) {
   std::vector<std::int64_t> labels;
   for (const std::string& name : names) {
@@ -249,7 +249,7 @@ Mesh read_stl(const fs::path& path, Notes& notes) {
              scanner.all().find('\0') == std::string_view::npos) {
     mesh = read_ascii(scanner, *metadata, notes);
   } else if (promised < 0 || scanner.all().find('\0') == std::string_view::npos) {
-    throw Error(scanner.file(), "is no STL file: it does not begin with 'solid' and is not binary",
+    throw Error(scanner.file(), "is not an STL file: it does not begin with 'solid' and is not binary",
                 "give an ASCII or binary STL file");
   } else {
     throw Error(Location{scanner.file(), 0, static_cast<std::int64_t>(kHeaderBytes)},
@@ -273,7 +273,7 @@ const DataArray* binary_attribute(const Mesh& mesh, const StlMetadata* metadata)
   return fits ? array : nullptr;
 }
 
-/// The labels of all cells, by which an ASCII file has solids; empty when the mesh has none.
+/// Returns the labels of all cells, which become the solids of an ASCII file; empty if the mesh has none.
 std::vector<std::int64_t> solid_labels(const Mesh& mesh) {
   const DataArray* array = find_array(mesh, kLabel, Association::cells);
   if (!array || !array->is_dense() || array->components != 1) return {};
@@ -289,15 +289,15 @@ void note_losses(const Mesh& mesh, const DataArray* attribute, bool has_solids, 
   std::vector<bool> used(mesh.points.size(), false);
   for (const Index v : mesh.cells.vertices) used[v] = true;
   const auto unused = std::count(used.begin(), used.end(), false);
-  if (unused > 0) notes.push_back(fmt::format("vertices that no cell uses are left out: {}", unused));
+  if (unused > 0) notes.push_back(fmt::format("vertices without cells are not written: {}", unused));
   for (const DataArray& array : mesh.data) {
     const bool is_label = has_solids && array.association == Association::cells && array.name == kLabel;
-    if (&array != attribute && !is_label) note_array_left_out(array, "STL", notes);
+    if (&array != attribute && !is_label) note_array_unsupported(array, "STL", notes);
   }
-  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "STL", notes);
-  note_ids_left_out(mesh, "STL", notes);
+  for (const EntitySet& set : mesh.sets) note_set_unsupported(set, "STL", notes);
+  note_ids_unsupported(mesh, "STL", notes);
   if (!dynamic_cast<const StlMetadata*>(mesh.format_metadata.get()))
-    note_residue_left_out(mesh, "STL", notes);
+    note_metadata_unsupported(mesh, "STL", notes);
 }
 
 void write_binary(const Mesh& mesh, const StlMetadata& metadata, const DataArray* attribute, OutputFile& out,
@@ -359,8 +359,8 @@ void write_ascii(const Mesh& mesh, const StlMetadata* metadata, const std::vecto
 }
 
 void write_stl(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  refuse_other_cells(mesh, path, "STL", stl_holds, "STL has triangles only; write .off, .vtu or .msh");
-  // what comes from elsewhere is written as text, which keeps every bit
+  require_supported_cells(mesh, path, "STL", stl_holds, "STL has triangles only; write .off, .vtu or .msh");
+  // meshes of other formats are written as text, which keeps every bit
   const auto* metadata = dynamic_cast<const StlMetadata*>(mesh.format_metadata.get());
   const DataArray* attribute = binary_attribute(mesh, metadata);
   const bool binary = metadata && metadata->binary;

@@ -9,20 +9,20 @@
 
 namespace meshorder {
 
-/// Normals, colours and texture coordinates: the arrays of a surface for which OFF, OBJ and PLY have places
-/// of their own. A mesh holds each as one array of several components ("normal") or, as PLY does, as arrays
-/// of one ("nx", "ny", "nz").
+/// Normals, colours and texture coordinates: the arrays of a surface for which OFF, OBJ and PLY have fields.
+/// A mesh holds each as one array of several components ("normal") or, as PLY does, as arrays of one ("nx",
+/// "ny", "nz").
 struct SurfaceVector {
   std::string_view name;
   std::vector<std::string_view> components;
-  int least;  ///< components that must be there; the others may be missing
+  int least;  ///< required components; the others may be missing
 };
 
 inline const SurfaceVector kNormal{"normal", {"nx", "ny", "nz"}, 3};
 inline const SurfaceVector kColor{"color", {"red", "green", "blue", "alpha"}, 3};
 inline const SurfaceVector kTexture{"texture", {"s", "t"}, 2};
 
-/// The rows of such a vector, gathered from the arrays that hold it.
+/// The rows of a SurfaceVector, gathered from its arrays.
 struct GatheredVector {
   int width = 0;          ///< components; 0 when the mesh has no such vector
   bool integers = false;  ///< whether the arrays are of an integer type

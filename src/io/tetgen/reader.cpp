@@ -2,7 +2,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/labels.hpp"
-#include "io/numbering.hpp"
+#include "io/stream/id_map.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/tetgen/tetgen.hpp"
@@ -22,20 +22,20 @@ namespace fs = std::filesystem;
 
 constexpr char kComment = '#';
 
-/// What one of the files with cells gave.
+/// The content of one file of cells.
 struct Part {
   Index count = 0;
-  Numbering numbering;
+  IdMap numbering;
   std::vector<std::int64_t> markers;  // one for each cell, or none
   std::vector<double> attributes;
   Index attributes_per_cell = 0;
 };
 
-struct Reading {
+struct ReadContext {
   Mesh mesh;
-  Numbering points;
+  IdMap points;
   std::array<Part, 4> parts;
-  std::shared_ptr<FilesMetadata> metadata = std::make_shared<FilesMetadata>();
+  std::shared_ptr<Metadata> metadata = std::make_shared<Metadata>();
   bool second_order = false;
 };
 
@@ -44,28 +44,27 @@ struct Reading {
 /// Moves to the next record, which begins on a line of its own.
 void begin_record(Scanner& in, std::string_view what) {
   if (in.at_end()) {
-    in.fail(fmt::format("the file ends where {} should stand", what),
-            "it may be cut short, or its header promise too much");
+    in.fail(fmt::format("unexpected end of file; expected {}", what),
+            "it may be cut short, or the count in its header is wrong");
   }
 }
 
-/// The next number of a record, which must stand on the same line.
+/// Takes the next number of a record, which must be on the same line.
 std::string_view column(Scanner& in, std::string_view what) {
   if (in.at_line_end()) {
-    in.fail(fmt::format("the line ends where {} should stand", what),
-            "the header announces more columns, or the file is cut short");
+    in.fail(fmt::format("unexpected end of line; expected {}", what),
+            "the header gives more columns, or the file is cut short");
   }
   return in.word(what);
 }
 
 void end_record(Scanner& in) {
   if (!in.at_line_end()) {
-    in.fail("the line goes on after the columns that the header announces",
-            "correct the header or remove the rest");
+    in.fail("the line has more columns than the header gives", "correct the header or remove the rest");
   }
 }
 
-/// A whole number; 2.0 is one, as some writers print markers so.
+/// Reads an integer; accepts 2.0, as some writers print markers so.
 std::int64_t whole(Scanner& in, std::string_view what) {
   const std::string_view text = column(in, what);
   if (text.find_first_of(".eE") == std::string_view::npos) return parse_integer<std::int64_t>(in, text, what);
@@ -76,7 +75,7 @@ std::int64_t whole(Scanner& in, std::string_view what) {
   return static_cast<std::int64_t>(value);
 }
 
-/// The numbers of a header line, `standard` where the line leaves some out.
+/// Reads the numbers of a header line; missing ones are those of `standard`.
 template <std::size_t N>
 std::array<std::int64_t, N> header(Scanner& in, std::array<std::int64_t, N> standard) {
   begin_record(in, "the header");
@@ -88,14 +87,14 @@ std::array<std::int64_t, N> header(Scanner& in, std::array<std::int64_t, N> stan
   return standard;
 }
 
-/// The number of records, which must fit what is left of the file.
+/// Checks the number of records, which must fit the rest of the file.
 Index checked_records(Scanner& in, std::int64_t records, std::string_view what, std::int64_t columns) {
   return in.checked_count(records, what, 2 * columns);
 }
 
 std::int64_t checked_attributes(Scanner& in, std::int64_t attributes) {
   if (attributes < 0 || attributes > in.bytes_left()) {
-    in.fail(fmt::format("the header announces {} attributes", attributes),
+    in.fail(fmt::format("the header gives {} attributes", attributes),
             "0 or as many as each line has are possible");
   }
   return attributes;
@@ -103,19 +102,20 @@ std::int64_t checked_attributes(Scanner& in, std::int64_t attributes) {
 
 bool checked_markers(Scanner& in, std::int64_t markers) {
   if (markers != 0 && markers != 1) {
-    in.fail(fmt::format("the header announces {} boundary markers", markers), "0 or 1 are possible");
+    in.fail(fmt::format("the header gives {} boundary markers", markers), "0 or 1 are possible");
   }
   return markers == 1;
 }
 
-void add_number(Scanner& in, Numbering& numbering, std::string_view what) {
+void add_number(Scanner& in, IdMap& numbering, std::string_view what) {
   const auto number = parse_integer<std::int64_t>(in, column(in, what), what);
-  if (!numbering.add(number)) in.fail(fmt::format("{} {} stands twice", what, number), "each must be unique");
+  if (!numbering.add(number))
+    in.fail(fmt::format("{} {} is given twice", what, number), "each must be unique");
 }
 
-/// The rest of the file must be comments; takes them along.
-void end_file(Scanner& in, FilesMetadata::Part& part, Notes& notes) {
-  if (!in.at_end()) in.fail("the file goes on after its last record", "correct the number in the header");
+/// Keeps the comments at the end of the file; fails for anything else.
+void end_file(Scanner& in, Metadata::Part& part, Notes& notes) {
+  if (!in.at_end()) in.fail("unexpected text after the last record", "correct the number in the header");
   part.present = true;
   part.comments_before = comments_before(in.all(), kComment);
   part.comments_after = comments_after(in.all(), kComment);
@@ -124,7 +124,7 @@ void end_file(Scanner& in, FilesMetadata::Part& part, Notes& notes) {
 
 // ---- points
 
-void read_points(Scanner& in, Reading& to) {
+void read_points(Scanner& in, ReadContext& to) {
   auto [records, dimension, attributes, has_markers] = header<4>(in, {0, 3, 0, 0});
   if (dimension != 2 && dimension != 3) {
     in.fail(fmt::format("the dimension is {}", dimension), "2 or 3 are possible");
@@ -172,8 +172,8 @@ void read_points(Scanner& in, Reading& to) {
 
 // ---- cells
 
-/// The points of a cell, from the file's order into VTK's.
-void read_cell_points(Scanner& in, const Numbering& points, std::span<const int> places,
+/// Reads the points of a cell, from the file's order into VTK's.
+void read_cell_points(Scanner& in, const IdMap& points, std::span<const int> places,
                       std::array<Index, 10>& cell) {
   std::array<Index, 10> as_given{};
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -189,8 +189,8 @@ void read_cell_points(Scanner& in, const Numbering& points, std::span<const int>
   for (std::size_t k = 0; k < places.size(); ++k) cell[k] = as_given[places[k]];
 }
 
-/// Reads all cells of a file behind its header; every line has `nodes` points, attributes and a marker.
-void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, Reading& to) {
+/// Reads all cells of a file after its header; every line has `nodes` points, attributes and a marker.
+void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, ReadContext& to) {
   Part& part = to.parts[file];
   const std::span<const int> order = places(file, nodes, false);
   Cells& cells = to.mesh.cells;
@@ -222,7 +222,7 @@ void take_regions_as_markers(Part& part) {
   part.attributes_per_cell = 0;
 }
 
-void read_ele(Scanner& in, Reading& to) {
+void read_ele(Scanner& in, ReadContext& to) {
   const bool plane = to.mesh.dimension == 2;
   const auto [records, nodes, attributes] = header<3>(in, {0, plane ? 3 : 4, 0});
   const bool triangles = nodes == 3 || nodes == 6;
@@ -240,7 +240,7 @@ void read_ele(Scanner& in, Reading& to) {
   take_regions_as_markers(part);
 }
 
-/// The words of the first record's line, after its number; the scanner stays where it is.
+/// Counts the words of the first record's line after its number, without taking them.
 int columns_of_first_record(Scanner& in) {
   if (in.at_end()) return 0;
   std::string_view line = in.peek_line();
@@ -254,12 +254,12 @@ int columns_of_first_record(Scanner& in) {
 [[noreturn]] void fail_neighbours(const Scanner& in) {
   in.fail(
       "the last columns are the numbers of neighbouring tetrahedra (TetGen's switch -nn), which reordering "
-      "would falsify",
+      "would invalidate",
       "remove them, or let TetGen write the file without -nn");
 }
 
-/// Faces and edges: their header does not say how many points a cell has, the first line does.
-void read_boundary(Scanner& in, File file, Reading& to) {
+/// Reads faces and edges; their header lacks the number of points of a cell, which the first line shows.
+void read_boundary(Scanner& in, File file, ReadContext& to) {
   const auto [records, has_markers] = header<2>(in, {0, 0});
   const bool marked = checked_markers(in, has_markers);
   const int least = file == kFace ? 3 : 2;
@@ -284,7 +284,7 @@ void read_boundary(Scanner& in, File file, Reading& to) {
   read_cells(in, file, file == kFace ? Shape::triangle : Shape::line, nodes, marked, to);
 }
 
-/// The two ends of the edge on which each second-order node of the tetrahedra lies, the lower first.
+/// Returns, for each second-order node of the tetrahedra, the ends of its edge, the lower first.
 std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahedra) {
   constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
   std::vector<std::array<Index, 2>> result(mesh.points.size(), {-1, -1});
@@ -300,8 +300,8 @@ std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahe
 }
 
 /// TetGen 1.5 writes the second-order nodes of faces in two orders: with -f that of the opposite edges, else
-/// that of VTK, in which they were read. The tetrahedra, which know the edge of every node, tell which it is.
-void settle_face_order(Reading& to) {
+/// that of VTK, in which they were read. The tetrahedra, which have the edge of every node, decide.
+void settle_face_order(ReadContext& to) {
   const Index tetrahedra = to.parts[kEle].count;
   const Index end = tetrahedra + to.parts[kFace].count;
   Cells& cells = to.mesh.cells;
@@ -328,10 +328,10 @@ void settle_face_order(Reading& to) {
   }
 }
 
-// ---- what all files of cells together give
+// ---- all files of cells together
 
-/// Cells are numbered in each file anew; the mesh keeps the numbers when one file's are not consecutive.
-void set_cell_ids(Reading& to) {
+/// Sets the ids of cells if those of a file are not consecutive. Each file numbers its cells separately.
+void set_cell_ids(ReadContext& to) {
   const int base = to.metadata->base;
   if (std::all_of(to.parts.begin(), to.parts.end(),
                   [&](const Part& part) { return part.numbering.runs_from(base); })) {
@@ -343,7 +343,7 @@ void set_cell_ids(Reading& to) {
   }
 }
 
-void set_cell_data(Reading& to) {
+void set_cell_data(ReadContext& to) {
   Mesh& mesh = to.mesh;
 
   // attributes are those of the first file's cells
@@ -371,7 +371,7 @@ void set_cell_data(Reading& to) {
       {std::string(kLabel), Association::cells, 1, label_values(std::move(labels)), std::move(rows), {}});
 }
 
-void set_blocks(Reading& to) {
+void set_blocks(ReadContext& to) {
   Index first = 0;
   for (const File file : kCellFiles) {
     if (to.parts[file].count > 0) to.mesh.cell_blocks.push_back(first);
@@ -379,7 +379,7 @@ void set_blocks(Reading& to) {
   }
 }
 
-void read_cell_file(const fs::path& path, File file, Reading& to, Notes& notes) {
+void read_cell_file(const fs::path& path, File file, ReadContext& to, Notes& notes) {
   Scanner in(path, kComment);
   const int nodes_in_ele = to.metadata->nodes_in_ele;
   if (file == kFace && (to.mesh.dimension == 2 || nodes_in_ele == 3 || nodes_in_ele == 6)) {
@@ -403,7 +403,7 @@ Mesh read(const fs::path& path, Notes& notes) {
     throw Error(path.string(), "has no .node file beside it", node_path.filename().string() + " is needed");
   }
 
-  Reading reading;
+  ReadContext reading;
   {
     Scanner in(node_path, kComment);
     read_points(in, reading);
@@ -414,15 +414,14 @@ Mesh read(const fs::path& path, Notes& notes) {
     if (is_there(cell_path)) read_cell_file(cell_path, file, reading, notes);
   }
   if (reading.mesh.cell_count() == 0) {
-    throw Error(path.string(), "has no cells",
-                "an .ele, .face or .edge file with cells must stand beside it");
+    throw Error(path.string(), "has no cells", "an .ele, .face or .edge file with cells must be beside it");
   }
 
   settle_face_order(reading);
   set_cell_ids(reading);
   set_cell_data(reading);
   set_blocks(reading);
-  note_other_companions(path, "is not carried along: its numbers hold for the original order only", notes);
+  note_other_companions(path, "is not reordered: its numbers refer to the original order", notes);
   reading.mesh.format_metadata = reading.metadata;
   return std::move(reading.mesh);
 }

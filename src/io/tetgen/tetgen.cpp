@@ -33,7 +33,7 @@ bool is_there(const fs::path& path) {
 
 namespace {
 
-/// Whether a .poly or .smesh file has no points of its own but refers to those of the .node file.
+/// Returns whether a .poly or .smesh file has no points of its own but refers to those of the .node file.
 bool refers_to_points(const fs::path& path) {
   std::ifstream in(path);
   for (std::string line; std::getline(in, line);) {
@@ -59,7 +59,7 @@ void note_other_companions(const fs::path& path, std::string_view what, Notes& n
 
 namespace {
 
-// ---- which cell goes where
+// ---- the cells of each file
 
 /// The cells of each file, in their order, and how many points each has.
 struct Layout {
@@ -74,7 +74,7 @@ bool holds(Shape shape, int vertices) {
          (shape == Shape::line && (vertices == 2 || vertices == 3));
 }
 
-Layout layout_of(const Mesh& mesh, const FilesMetadata& metadata, const fs::path& path) {
+Layout layout_of(const Mesh& mesh, const Metadata& metadata, const fs::path& path) {
   const auto& shapes = mesh.cells.shapes;
   const bool solid = std::find(shapes.begin(), shapes.end(), Shape::tetrahedron) != shapes.end();
   Layout layout;
@@ -105,15 +105,15 @@ Layout layout_of(const Mesh& mesh, const FilesMetadata& metadata, const fs::path
   return layout;
 }
 
-/// A file of an earlier mesh would be read as part of this one.
-void refuse_leftovers(const Layout& layout, const FilesMetadata& metadata, const fs::path& path) {
+/// Fails if a file of an earlier mesh would be read as part of this one.
+void refuse_leftovers(const Layout& layout, const Metadata& metadata, const fs::path& path) {
   for (const File file : kCellFiles) {
     const fs::path other = beside(path, kExtensions[file]);
     if (!layout.cells[file].empty() || metadata.parts[file].present || !is_there(other)) continue;
-    throw Error(path.string(),
-                fmt::format("{} stands beside it from another mesh and would be read with this one",
-                            other.filename().string()),
-                "remove that file or choose another name");
+    throw Error(
+        path.string(),
+        fmt::format("{} is beside it and would be read as part of this mesh", other.filename().string()),
+        "remove that file or choose another name");
   }
 }
 
@@ -139,7 +139,7 @@ void print_value(OutputFile& out, const Column& column, Index item) {
       column.array->values);
 }
 
-/// Where the array has the row of each vertex or cell; −1 where it has none.
+/// Returns the row of each vertex or cell in the array; −1 for none.
 std::vector<Index> rows_of(const DataArray& array, Index count) {
   std::vector<Index> result;
   if (array.is_dense()) return result;
@@ -177,12 +177,11 @@ std::vector<Column> attribute_columns(const Mesh& mesh, Association association,
     if (array == labels && given == 0) continue;  // they are markers of other cells
     const bool text = std::holds_alternative<std::vector<std::string>>(array->values);
     if (text || items.empty() || (given < index_size(items) && array != labels)) {
-      note_array_left_out(*array, "TetGen", notes);
+      note_array_unsupported(*array, "TetGen", notes);
       continue;
     }
     if (array != labels && row_count(*array) > given) {
-      notes.push_back(
-          fmt::format("the array '{}' is left out on cells that .ele does not hold", array->name));
+      notes.push_back(fmt::format("the array '{}' is not written for cells outside .ele", array->name));
     }
     if (given < index_size(items)) note_missing_labels(index_size(items) - given, ".ele", notes);
     for (Index k = 0; k < array->components; ++k) columns.push_back({array, k, row_of});
@@ -190,7 +189,7 @@ std::vector<Column> attribute_columns(const Mesh& mesh, Association association,
   return columns;
 }
 
-/// Says which array became which columns, where the reader could not know.
+/// Notes the mapping of arrays to attribute columns if it is not the default.
 void note_lost_names(const std::vector<Column>& columns, std::string_view file, Notes& notes) {
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const DataArray& array = *columns[k].array;
@@ -206,7 +205,7 @@ void note_lost_names(const std::vector<Column>& columns, std::string_view file, 
 
 // ---- files
 
-/// Whether the items of a file have markers; those without one get 0.
+/// Returns whether the items of a file have markers; notes those without one, which get 0.
 bool has_markers(const Labels& labels, const std::vector<Index>& items, std::string_view file, Notes& notes) {
   if (!labels.any()) return false;
   const auto given =
@@ -215,24 +214,24 @@ bool has_markers(const Labels& labels, const std::vector<Index>& items, std::str
   return given > 0;
 }
 
-struct Writing {
+struct WriteContext {
   const Mesh& mesh;
-  const FilesMetadata& metadata;
+  const Metadata& metadata;
   Layout layout;
-  bool own_ids;  // the numbers came from such files; others than TetGen's own are counted anew
+  bool own_ids;  // the ids came from TetGen's files; others are not written
   Labels vertex_labels;
   Labels cell_labels;
 
   [[nodiscard]] std::int64_t vertex_number(Index v) const {
     return own_ids && !mesh.vertex_ids.empty() ? mesh.vertex_ids[v] : v + std::int64_t{metadata.base};
   }
-  /// Of the cell that stands at `place` in its file.
+  /// Returns the number of the cell at position `place` of its file.
   [[nodiscard]] std::int64_t cell_number(Index c, Index place) const {
     return own_ids && !mesh.cell_ids.empty() ? mesh.cell_ids[c] : place + std::int64_t{metadata.base};
   }
 };
 
-void write_points(OutputFile& out, const Writing& from, Notes& notes) {
+void write_points(OutputFile& out, const WriteContext& from, Notes& notes) {
   const Mesh& mesh = from.mesh;
   std::vector<Index> all(mesh.vertex_count());
   std::iota(all.begin(), all.end(), Index{0});
@@ -250,7 +249,7 @@ void write_points(OutputFile& out, const Writing& from, Notes& notes) {
   }
 }
 
-void write_cells(OutputFile& out, File file, const Writing& from, const std::vector<Column>& columns,
+void write_cells(OutputFile& out, File file, const WriteContext& from, const std::vector<Column>& columns,
                  bool marked) {
   const Mesh& mesh = from.mesh;
   const auto& cells = from.layout.cells[file];
@@ -267,7 +266,7 @@ void write_cells(OutputFile& out, File file, const Writing& from, const std::vec
   }
 }
 
-void write_ele(OutputFile& out, const Writing& from, Notes& notes) {
+void write_ele(OutputFile& out, const WriteContext& from, Notes& notes) {
   const auto& cells = from.layout.cells[kEle];
   const auto columns = attribute_columns(from.mesh, Association::cells, cells, notes);
   note_lost_names(columns, ".ele", notes);
@@ -275,7 +274,7 @@ void write_ele(OutputFile& out, const Writing& from, Notes& notes) {
   write_cells(out, kEle, from, columns, false);
 }
 
-void write_boundary(OutputFile& out, File file, const Writing& from, Notes& notes) {
+void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes& notes) {
   const auto& cells = from.layout.cells[file];
   const bool marked = has_markers(from.cell_labels, cells, kExtensions[file], notes);
   out.print("{}  {}\n", cells.size(), marked ? 1 : 0);
@@ -285,22 +284,22 @@ void write_boundary(OutputFile& out, File file, const Writing& from, Notes& note
 }  // namespace
 
 void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
-  const FilesMetadata standard;
-  const auto* own = dynamic_cast<const FilesMetadata*>(mesh.format_metadata.get());
-  refuse_other_cells(mesh, path, "TetGen", holds, "write .msh, .vtu or .mesh instead");
-  Writing from{mesh,
-               own ? *own : standard,
-               {},
-               own != nullptr,
-               labels_of(mesh, Association::vertices),
-               labels_of(mesh, Association::cells)};
+  const Metadata standard;
+  const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  require_supported_cells(mesh, path, "TetGen", holds, "write .msh, .vtu or .mesh instead");
+  WriteContext from{mesh,
+                    own ? *own : standard,
+                    {},
+                    own != nullptr,
+                    labels_of(mesh, Association::vertices),
+                    labels_of(mesh, Association::cells)};
   from.layout = layout_of(mesh, from.metadata, path);
   refuse_leftovers(from.layout, from.metadata, path);
 
   std::vector<OutputFile> files;
   files.reserve(kExtensions.size());
   for (const File file : {kNode, kEle, kFace, kEdge}) {
-    const FilesMetadata::Part& part = from.metadata.parts[file];
+    const Metadata::Part& part = from.metadata.parts[file];
     if (file != kNode && !part.present && from.layout.cells[file].empty()) continue;
     OutputFile& out = files.emplace_back(beside(path, kExtensions[file]));
     out.write(part.comments_before);
@@ -316,10 +315,10 @@ void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
   OutputFile::commit_all(files);
 
   if (!own) {
-    note_ids_left_out(mesh, "TetGen", notes);
-    note_residue_left_out(mesh, "TetGen", notes);
+    note_ids_unsupported(mesh, "TetGen", notes);
+    note_metadata_unsupported(mesh, "TetGen", notes);
   }
-  for (const EntitySet& set : mesh.sets) note_set_left_out(set, "TetGen", notes);
+  for (const EntitySet& set : mesh.sets) note_set_unsupported(set, "TetGen", notes);
   note_other_companions(path, "does not fit the mesh that was just written beside it", notes);
 }
 

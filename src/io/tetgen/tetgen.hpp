@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// What the reader and the writer of TetGen's files share.
+// Declarations shared by the reader and the writer of TetGen's files.
 //
 // Formats: H. Si, "TetGen, a Quality Tetrahedral Mesh Generator, User's Manual", version 1.5, section 5.2,
 // https://wias-berlin.de/software/tetgen/1.5/doc/manual/manual006.html; for two dimensions J. R. Shewchuk's
@@ -18,13 +18,13 @@
 
 namespace meshorder::tetgen {
 
-/// The files of one mesh: the points, and beside them those that hold cells.
+/// The files of one mesh: points, and the files of cells beside it.
 enum File : std::uint8_t { kNode, kEle, kFace, kEdge };
 inline constexpr std::array<std::string_view, 4> kExtensions{".node", ".ele", ".face", ".edge"};
 inline constexpr std::array kCellFiles{kEle, kFace, kEdge};
 
-/// What other formats cannot hold and this one keeps.
-struct FilesMetadata final : FormatMetadata {
+/// Data of TetGen's files beyond the mesh.
+struct Metadata final : FormatMetadata {
   struct Part {
     bool present = false;
     std::string comments_before;
@@ -39,27 +39,28 @@ struct FilesMetadata final : FormatMetadata {
   [[nodiscard]] std::vector<std::string> contents() const override { return {}; }
 };
 
-/// Where the nodes of a cell in VTK's order stand in TetGen's line. In the tetrahedra that TetGen's -o2
+/// Positions in TetGen's line of a cell's nodes in VTK's order. In the tetrahedra that TetGen's -o2
 /// writes, nodes 5 to 10 are those of the edges (3,4) (1,4) (1,2) (2,3) (2,4) (1,3).
 inline constexpr std::array<int, 10> kTetrahedron{0, 1, 2, 3, 6, 7, 9, 5, 8, 4};
 /// Triangle's order: nodes 4 to 6 are those of the edges opposite to corners 1 to 3.
 inline constexpr std::array<int, 6> kTriangleOpposite{0, 1, 2, 5, 3, 4};
 inline constexpr std::array<int, 6> kTriangle{0, 1, 2, 3, 4, 5};
 
-/// For a cell of so many nodes in that file.
+/// Returns those positions for cells of `nodes` nodes in that file.
 inline std::span<const int> places(File file, int nodes, bool faces_name_opposite_edges) {
   if (nodes == 4 || nodes == 10) return {kTetrahedron.data(), static_cast<std::size_t>(nodes)};
   const bool opposite = file == kEle || (file == kFace && faces_name_opposite_edges);
   return {(opposite ? kTriangleOpposite : kTriangle).data(), static_cast<std::size_t>(nodes)};
 }
 
-/// The path of a companion, "mesh.ele" for "mesh.node"; a path that has this extension (in any case) stays.
+/// Returns the path of a companion, "mesh.ele" for "mesh.node"; `path` itself if it has this extension (in
+/// any case).
 std::filesystem::path beside(const std::filesystem::path& path, std::string_view extension);
 
-/// Whether there is something at that path; false too where the system does not let us look.
+/// Returns whether the path exists; false also if the system denies access.
 bool is_there(const std::filesystem::path& path);
 
-/// Notes files beside `path` that count the points or cells of the mesh and are not ours to rewrite.
+/// Notes files beside `path` that refer to the points or cells of the mesh but are not rewritten.
 void note_other_companions(const std::filesystem::path& path, std::string_view what, Notes& notes);
 
 Mesh read(const std::filesystem::path& path, Notes& notes);

@@ -12,24 +12,23 @@
 
 namespace meshorder {
 
-/// The lines of a Vega file, with those of the files that it includes in their places, without comments and
-/// blank lines.
+/// The lines of a Vega file and, in place, of the files that it includes, without comments and blank lines.
 class VegaLines {
  public:
   explicit VegaLines(const std::filesystem::path& path);
 
-  /// The next line, trimmed and not taken, so that an error still names it; false at the end of all. The
-  /// line is valid until the next peek.
+  /// Gives the next line, trimmed, without taking it; returns false at the end. The line is valid until the
+  /// next peek.
   bool peek(std::string_view& line);
   void take() { (void)at().raw_line(); }
 
-  /// Where errors are reported.
+  /// The scanner whose position errors report.
   [[nodiscard]] Scanner& at() { return *files_.back().scanner; }
 
-  /// The comments met since the last call, whole lines.
+  /// Returns the comments since the last call, whole lines.
   std::string take_comments() { return std::exchange(comments_, {}); }
 
-  /// The names of the files included so far.
+  /// Returns the names of the files included so far.
   [[nodiscard]] const std::vector<std::string>& included() const noexcept { return included_; }
 
  private:

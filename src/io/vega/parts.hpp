@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-/// What the reader and the writer of Vega files share.
+/// Declarations shared by the reader and the writer of Vega files.
 namespace meshorder::vega {
 
 inline constexpr std::string_view kAllElements = "allElements";
@@ -18,18 +18,18 @@ inline constexpr std::string_view kAttributes = "attributes";
 
 enum class Kind : std::uint8_t { vertices, elements, material, set, region, other };
 
-/// A section of the file, with the comments that stood before it.
+/// A section of the file and the comments before it.
 struct Section {
   Kind kind = Kind::other;
   std::string comments;            ///< whole lines
-  std::string title;               ///< the keyword's line, where it is kept as it stands
+  std::string title;               ///< the keyword's line, if kept verbatim
   std::vector<std::string> lines;  ///< of materials and unknown sections
   std::size_t set = 0;             ///< its place in Mesh::sets
   std::string region_set;
   std::string region_material;
 };
 
-struct VegaMetadata : FormatMetadata {
+struct Metadata : FormatMetadata {
   std::vector<Section> sections;
   std::string closing_comments;
   std::string element_word = "TET";
@@ -53,8 +53,9 @@ struct VegaMetadata : FormatMetadata {
   }
 };
 
-/// For each cell the number, from 1, of the last region that it lies in; 0 for none. Empty without regions.
-std::vector<std::int32_t> region_numbers(const VegaMetadata& metadata, const Mesh& mesh);
+/// Returns for each cell the number, from 1, of the last region that contains it, 0 for none. Empty without
+/// regions.
+std::vector<std::int32_t> region_numbers(const Metadata& metadata, const Mesh& mesh);
 
 Mesh read(const std::filesystem::path& path, Notes& notes);
 

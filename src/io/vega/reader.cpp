@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/numbering.hpp"
+#include "io/stream/id_map.hpp"
 #include "io/vega/lines.hpp"
 #include "io/vega/parts.hpp"
 
@@ -36,21 +36,21 @@ class Reader {
       }
       read_section(line);
     }
-    residue_->closing_comments = lines_.take_comments();
+    metadata_->closing_comments = lines_.take_comments();
     if (!has_elements_) {
       lines_.at().fail(std::string("the file has no ") + (has_vertices_ ? "*ELEMENTS" : "*VERTICES"),
                        "it may be cut short");
     }
     label_by_region();
-    mesh_.vertex_ids = vertices_.ids_unless_from(residue_->vertex_base);
-    mesh_.cell_ids = elements_.ids_unless_from(residue_->element_base);
+    mesh_.vertex_ids = vertices_.ids_unless_from(metadata_->vertex_base);
+    mesh_.cell_ids = elements_.ids_unless_from(metadata_->element_base);
     if (!mesh_.vertex_ids.empty() || !mesh_.cell_ids.empty()) {
       notes_.emplace_back(
           "vertices or elements have numbers of their own, by which they are named here; Vega itself would "
           "count lines");
     }
-    residue_->included = lines_.included();
-    mesh_.format_metadata = residue_;
+    metadata_->included = lines_.included();
+    mesh_.format_metadata = metadata_;
     return std::move(mesh_);
   }
 
@@ -76,17 +76,17 @@ class Reader {
     } else {
       read_other(section, std::string(line));
     }
-    residue_->sections.push_back(std::move(section));
+    metadata_->sections.push_back(std::move(section));
   }
 
-  /// The next line that is no keyword, without its comment; Error when there is none.
+  /// Takes the next line that is not a keyword, without its comment; fails if there is none.
   std::string_view data_line(const std::string& what) {
     std::string_view line;
     if (!lines_.peek(line)) {
-      lines_.at().fail("the file ends where " + what + " should stand", "it may be cut short");
+      lines_.at().fail("unexpected end of file; expected " + what, "it may be cut short");
     }
     if (line.front() == '*') {
-      lines_.at().fail(std::string(line.substr(0, 40)) + " stands where " + what + " should be",
+      lines_.at().fail("expected " + what + ", found " + std::string(line.substr(0, 40)),
                        "lines are missing");
     }
     lines_.take_comments();
@@ -112,8 +112,7 @@ class Reader {
 
   std::string_view required_word(std::string_view& line, std::string_view what) {
     const std::string_view word = next_word(line, kSeparators);
-    if (word.empty())
-      lines_.at().fail("the line ends where " + std::string(what) + " should stand", "add it");
+    if (word.empty()) lines_.at().fail("unexpected end of line; expected " + std::string(what), "add it");
     return word;
   }
 
@@ -134,7 +133,7 @@ class Reader {
     std::string_view line = data_line("the number of " + what);
     Header header;
     const std::int64_t count = integer(line, "the number of " + what);
-    // lines may come from an included file, so the bytes left here are no bound
+    // lines may come from an included file, so the bytes left are not a bound
     if (count < 0 || count > kMaxIndex) {
       lines_.at().fail("the number of " + what + " is " + std::to_string(count),
                        "0 to 2147483647 are possible");
@@ -157,12 +156,12 @@ class Reader {
 
   static std::string_view trimmed_all(std::string_view line) { return next_word(line, kSeparators); }
 
-  /// No more is reserved than the rest of this file could fill; included files grow the rest.
+  /// Returns how many items to reserve: no more than the rest of this file can hold.
   std::size_t reservable(Index count) {
     return static_cast<std::size_t>(std::min<std::int64_t>(count, lines_.at().bytes_left() / 8));
   }
 
-  void add_id(Numbering& numbering, std::int64_t id, const std::string& what) {
+  void add_id(IdMap& numbering, std::int64_t id, const std::string& what) {
     if (id < 0) lines_.at().fail(what + " has the number " + std::to_string(id), "numbers are not negative");
     if (!numbering.add(id)) {
       lines_.at().fail(what + " " + std::to_string(id) + " is given twice", "numbers must differ");
@@ -175,8 +174,8 @@ class Reader {
     lines_.take();
     const Header header = read_header("vertices", 3);
     if (header.columns[1] > 1) lines_.at().fail("more than one column of markers", "0 or 1 is possible");
-    residue_->vertex_attributes = static_cast<int>(header.columns[0]);
-    residue_->vertex_markers = header.columns[1] == 1;
+    metadata_->vertex_attributes = static_cast<int>(header.columns[0]);
+    metadata_->vertex_markers = header.columns[1] == 1;
     std::vector<double> attributes;
     std::vector<std::int32_t> markers;
     mesh_.points.reserve(reservable(header.count));
@@ -186,15 +185,15 @@ class Reader {
       Point point;
       for (double& x : point) x = real(line, "a coordinate");
       mesh_.points.push_back(point);
-      for (int a = 0; a < residue_->vertex_attributes; ++a) attributes.push_back(real(line, "an attribute"));
-      if (residue_->vertex_markers) {
+      for (int a = 0; a < metadata_->vertex_attributes; ++a) attributes.push_back(real(line, "an attribute"));
+      if (metadata_->vertex_markers) {
         markers.push_back(
             parse_integer<std::int32_t>(lines_.at(), required_word(line, "a marker"), "a marker"));
       }
       expect_line_end(line, "the vertex");
       lines_.take();
     }
-    residue_->vertex_base = vertices_.find(0) >= 0 ? 0 : 1;
+    metadata_->vertex_base = vertices_.find(0) >= 0 ? 0 : 1;
     if (!attributes.empty()) add_attributes(Association::vertices, std::move(attributes));
     if (!markers.empty()) {
       mesh_.data.push_back({std::string(kLabel), Association::vertices, 1, std::move(markers), {}, {}});
@@ -203,7 +202,7 @@ class Reader {
 
   void add_attributes(Association association, std::vector<double> values) {
     const int width =
-        association == Association::vertices ? residue_->vertex_attributes : residue_->element_attributes;
+        association == Association::vertices ? metadata_->vertex_attributes : metadata_->element_attributes;
     mesh_.data.push_back({std::string(kAttributes), association, width, std::move(values), {}, {}});
   }
 
@@ -219,11 +218,11 @@ class Reader {
       lines_.at().fail("elements of type '" + type.substr(0, 40) + "'", "TET and CUBIC are possible");
     }
     lines_.take();
-    residue_->element_word = type;
+    metadata_->element_word = type;
 
     const int width = tets ? 4 : 8;
     const Header header = read_header("elements", width);
-    residue_->element_attributes = static_cast<int>(header.columns[0]);
+    metadata_->element_attributes = static_cast<int>(header.columns[0]);
     std::vector<double> attributes;
     mesh_.cells.reserve(static_cast<Offset>(reservable(header.count)),
                         static_cast<Offset>(reservable(header.count)) * width);
@@ -234,15 +233,16 @@ class Reader {
       for (Index& corner : corners)
         corner = find(vertices_, integer(line, "a vertex of the element"), "vertex");
       mesh_.cells.push_back(tets ? Shape::tetrahedron : Shape::hexahedron, corners);
-      for (int a = 0; a < residue_->element_attributes; ++a) attributes.push_back(real(line, "an attribute"));
+      for (int a = 0; a < metadata_->element_attributes; ++a)
+        attributes.push_back(real(line, "an attribute"));
       expect_line_end(line, "the element");
       lines_.take();
     }
-    residue_->element_base = elements_.find(0) >= 0 ? 0 : 1;
+    metadata_->element_base = elements_.find(0) >= 0 ? 0 : 1;
     if (!attributes.empty()) add_attributes(Association::cells, std::move(attributes));
   }
 
-  Index find(const Numbering& numbering, std::int64_t id, const std::string& what) {
+  Index find(const IdMap& numbering, std::int64_t id, const std::string& what) {
     const Index place = numbering.find(id);
     if (place < 0) {
       lines_.at().fail(what + " " + std::to_string(id) + " does not exist",
@@ -251,7 +251,7 @@ class Reader {
     return place;
   }
 
-  /// Lines up to the next keyword, as they stand.
+  /// Reads the lines up to the next keyword, verbatim.
   void read_lines(Section& section) {
     std::string_view line;
     while (lines_.peek(line) && line.front() != '*') {
@@ -313,7 +313,7 @@ class Reader {
     lines_.take();
   }
 
-  /// A section that Vega does not know is kept as it stands, unless it could name elements or vertices.
+  /// Keeps an unknown section verbatim, provided it cannot name elements or vertices.
   void read_other(Section& section, const std::string& title) {
     section.title = title;
     const std::int64_t where = lines_.at().line();
@@ -339,24 +339,23 @@ class Reader {
   VegaLines lines_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<VegaMetadata> residue_ = std::make_shared<VegaMetadata>();
-  Numbering vertices_;
-  Numbering elements_;
+  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  IdMap vertices_;
+  IdMap elements_;
   std::set<std::string> materials_;
   bool has_vertices_ = false;
   bool has_elements_ = false;
 };
 
 void Reader::label_by_region() {
-  auto labels = region_numbers(*residue_, mesh_);
+  auto labels = region_numbers(*metadata_, mesh_);
   if (labels.empty()) return;
   mesh_.data.push_back({std::string(kLabel), Association::cells, 1, std::move(labels), {}, {}});
 }
 
 }  // namespace
 
-/// For each cell the number, from 1, of the last region that it lies in; 0 for none. Empty without regions.
-std::vector<std::int32_t> region_numbers(const VegaMetadata& metadata, const Mesh& mesh) {
+std::vector<std::int32_t> region_numbers(const Metadata& metadata, const Mesh& mesh) {
   std::vector<std::int32_t> numbers;
   std::int32_t number = 0;
   for (const Section& section : metadata.sections) {

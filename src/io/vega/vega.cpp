@@ -20,8 +20,8 @@ namespace meshorder {
 namespace {
 namespace fs = std::filesystem;
 using vega::Kind;
+using vega::Metadata;
 using vega::Section;
-using vega::VegaMetadata;
 
 bool vega_holds(Shape shape, int vertices) {
   return (shape == Shape::tetrahedron && vertices == 4) || (shape == Shape::hexahedron && vertices == 8);
@@ -33,7 +33,7 @@ class Writer {
   Writer(const Mesh& mesh, const fs::path& path, Notes& notes)
       : mesh_(mesh),
         notes_(notes),
-        native_(dynamic_cast<const VegaMetadata*>(mesh.format_metadata.get())),
+        native_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
         out_(path) {}
 
   void write() {
@@ -51,7 +51,8 @@ class Writer {
       for (const Section& section : native_->sections) {
         if (section.kind == Kind::set && !is_cell_set(section.set)) continue;
         if (section.kind == Kind::region && !has_set(section.region_set)) {
-          notes_.push_back("the region of the set '" + section.region_set + "' is left out: the set is gone");
+          notes_.push_back("the region of the set '" + section.region_set +
+                           "' is not written: the mesh no longer has the set");
           continue;
         }
         if (section.kind == Kind::set) has_section[section.set] = true;
@@ -85,7 +86,7 @@ class Writer {
 
   void note_losses() {
     for (const EntitySet& set : mesh_.sets) {
-      if (set.association == Association::vertices) note_set_left_out(set, "Vega", notes_);
+      if (set.association == Association::vertices) note_set_unsupported(set, "Vega", notes_);
     }
     for (const DataArray& array : mesh_.data) {
       if (&array == vertex_attributes() || &array == element_attributes() || &array == markers()) continue;
@@ -94,7 +95,7 @@ class Writer {
       if (!native_ && is_cell_label(array)) {
         write_labels_as_sets(array);
       } else {
-        note_array_left_out(array, "Vega", notes_);
+        note_array_unsupported(array, "Vega", notes_);
       }
     }
     if (native_) {
@@ -102,8 +103,8 @@ class Writer {
         notes_.push_back("the file '" + name + "', which was included, is written inline");
       }
     } else {
-      note_ids_left_out(mesh_, "Vega", notes_);
-      note_residue_left_out(mesh_, "Vega", notes_);
+      note_ids_unsupported(mesh_, "Vega", notes_);
+      note_metadata_unsupported(mesh_, "Vega", notes_);
     }
   }
 
@@ -243,7 +244,7 @@ class Writer {
 
   const Mesh& mesh_;
   Notes& notes_;
-  const VegaMetadata* native_;
+  const Metadata* native_;
   OutputFile out_;
   std::vector<Section> sections_;
   std::vector<EntitySet> label_sets_;
@@ -251,7 +252,7 @@ class Writer {
 
 void write_vega(const Mesh& mesh, const fs::path& path, Notes& notes) {
   const std::string remedy = "write .vtu or .msh";
-  refuse_other_cells(mesh, path, "Vega", vega_holds, remedy);
+  require_supported_cells(mesh, path, "Vega", vega_holds, remedy);
   for (Index c = 1; c < mesh.cell_count(); ++c) {
     if (mesh.cells.shapes[c] == mesh.cells.shapes[0]) continue;
     throw Error(path.string(), "a Vega file cannot hold both tetrahedra and hexahedra", remedy);

@@ -2,7 +2,7 @@
 //
 // Cell types of VTK's file formats: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html and
 // vtkCellType.h.
-#include "io/vtk/cells.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,16 +10,16 @@
 #include <type_traits>
 #include <utility>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
-struct VtkType {
+struct CellType {
   int number;
   std::string_view name;
   Shape shape;
   int vertices;  // exactly so many, or at least −vertices
 
-  // places whose vertices a Mesh has the other way round; {0, 0} is none
+  // positions whose vertices are swapped in a Mesh; {0, 0} is none
   std::array<std::pair<int, int>, 2> swapped{};
 };
 
@@ -30,70 +30,69 @@ constexpr int kVoxel = 11;
 // it faces inward. Shape functions do not mind, but faces, normals and volumes do. Quadratic wedges have the
 // order of a Mesh, as in the files of Gmsh and meshio: VTK 9.1 sees their faces from inside, a mistake by
 // the notes of a later version. By its release notes VTK 9.7 takes linear wedges, too, in the order of a
-// Mesh, but files do not tell which order they have, and those of Gmsh, meshio and VTK up to 9.6 have this
-// one.
+// Mesh, but files do not record their order, and those of Gmsh, meshio and VTK up to 9.6 have this one.
 constexpr std::array<std::pair<int, int>, 2> kWedge{{{1, 2}, {4, 5}}};
 
 // in the order in which a type is chosen for a shape and its vertices
 constexpr std::array kTypes{
-    VtkType{1, "VTK_VERTEX", Shape::vertex, 1},
-    VtkType{2, "VTK_POLY_VERTEX", Shape::poly_vertex, -1},
-    VtkType{3, "VTK_LINE", Shape::line, 2},
-    VtkType{4, "VTK_POLY_LINE", Shape::polyline, -1},
-    VtkType{5, "VTK_TRIANGLE", Shape::triangle, 3},
-    VtkType{6, "VTK_TRIANGLE_STRIP", Shape::triangle_strip, -3},
-    VtkType{7, "VTK_POLYGON", Shape::polygon, -1},
-    VtkType{9, "VTK_QUAD", Shape::quad, 4},
-    VtkType{10, "VTK_TETRA", Shape::tetrahedron, 4},
-    VtkType{12, "VTK_HEXAHEDRON", Shape::hexahedron, 8},
-    VtkType{13, "VTK_WEDGE", Shape::wedge, 6, kWedge},
-    VtkType{14, "VTK_PYRAMID", Shape::pyramid, 5},
-    VtkType{21, "VTK_QUADRATIC_EDGE", Shape::line, 3},
-    VtkType{22, "VTK_QUADRATIC_TRIANGLE", Shape::triangle, 6},
-    VtkType{23, "VTK_QUADRATIC_QUAD", Shape::quad, 8},
-    VtkType{24, "VTK_QUADRATIC_TETRA", Shape::tetrahedron, 10},
-    VtkType{25, "VTK_QUADRATIC_HEXAHEDRON", Shape::hexahedron, 20},
-    VtkType{26, "VTK_QUADRATIC_WEDGE", Shape::wedge, 15},
-    VtkType{27, "VTK_QUADRATIC_PYRAMID", Shape::pyramid, 13},
-    VtkType{28, "VTK_BIQUADRATIC_QUAD", Shape::quad, 9},
-    VtkType{29, "VTK_TRIQUADRATIC_HEXAHEDRON", Shape::hexahedron, 27},
-    VtkType{30, "VTK_QUADRATIC_LINEAR_QUAD", Shape::quad, 6},
-    VtkType{31, "VTK_QUADRATIC_LINEAR_WEDGE", Shape::wedge, 12},
-    VtkType{32, "VTK_BIQUADRATIC_QUADRATIC_WEDGE", Shape::wedge, 18},
-    VtkType{33, "VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON", Shape::hexahedron, 24},
-    VtkType{34, "VTK_BIQUADRATIC_TRIANGLE", Shape::triangle, 7},
-    VtkType{35, "VTK_CUBIC_LINE", Shape::line, 4},
-    VtkType{37, "VTK_TRIQUADRATIC_PYRAMID", Shape::pyramid, 19},
-    VtkType{68, "VTK_LAGRANGE_CURVE", Shape::line, -2},
-    VtkType{69, "VTK_LAGRANGE_TRIANGLE", Shape::triangle, -3},
-    VtkType{70, "VTK_LAGRANGE_QUADRILATERAL", Shape::quad, -4},
-    VtkType{71, "VTK_LAGRANGE_TETRAHEDRON", Shape::tetrahedron, -4},
-    VtkType{72, "VTK_LAGRANGE_HEXAHEDRON", Shape::hexahedron, -8},
-    VtkType{73, "VTK_LAGRANGE_WEDGE", Shape::wedge, -6},
-    VtkType{74, "VTK_LAGRANGE_PYRAMID", Shape::pyramid, -5},
-    VtkType{kPixel, "VTK_PIXEL", Shape::quad, 4, {{{2, 3}}}},
-    VtkType{kVoxel, "VTK_VOXEL", Shape::hexahedron, 8, {{{2, 3}, {6, 7}}}},
-    VtkType{36, "VTK_QUADRATIC_POLYGON", Shape::polygon, -3},
-    VtkType{60, "VTK_HIGHER_ORDER_EDGE", Shape::line, -2},
-    VtkType{61, "VTK_HIGHER_ORDER_TRIANGLE", Shape::triangle, -3},
-    VtkType{62, "VTK_HIGHER_ORDER_QUAD", Shape::quad, -4},
-    VtkType{64, "VTK_HIGHER_ORDER_TETRAHEDRON", Shape::tetrahedron, -4},
-    VtkType{65, "VTK_HIGHER_ORDER_WEDGE", Shape::wedge, -6},
-    VtkType{66, "VTK_HIGHER_ORDER_PYRAMID", Shape::pyramid, -5},
-    VtkType{67, "VTK_HIGHER_ORDER_HEXAHEDRON", Shape::hexahedron, -8},
-    VtkType{75, "VTK_BEZIER_CURVE", Shape::line, -2},
-    VtkType{76, "VTK_BEZIER_TRIANGLE", Shape::triangle, -3},
-    VtkType{77, "VTK_BEZIER_QUADRILATERAL", Shape::quad, -4},
-    VtkType{78, "VTK_BEZIER_TETRAHEDRON", Shape::tetrahedron, -4},
-    VtkType{79, "VTK_BEZIER_HEXAHEDRON", Shape::hexahedron, -8},
-    VtkType{80, "VTK_BEZIER_WEDGE", Shape::wedge, -6},
-    VtkType{81, "VTK_BEZIER_PYRAMID", Shape::pyramid, -5},
+    CellType{1, "VTK_VERTEX", Shape::vertex, 1},
+    CellType{2, "VTK_POLY_VERTEX", Shape::poly_vertex, -1},
+    CellType{3, "VTK_LINE", Shape::line, 2},
+    CellType{4, "VTK_POLY_LINE", Shape::polyline, -1},
+    CellType{5, "VTK_TRIANGLE", Shape::triangle, 3},
+    CellType{6, "VTK_TRIANGLE_STRIP", Shape::triangle_strip, -3},
+    CellType{7, "VTK_POLYGON", Shape::polygon, -1},
+    CellType{9, "VTK_QUAD", Shape::quad, 4},
+    CellType{10, "VTK_TETRA", Shape::tetrahedron, 4},
+    CellType{12, "VTK_HEXAHEDRON", Shape::hexahedron, 8},
+    CellType{13, "VTK_WEDGE", Shape::wedge, 6, kWedge},
+    CellType{14, "VTK_PYRAMID", Shape::pyramid, 5},
+    CellType{21, "VTK_QUADRATIC_EDGE", Shape::line, 3},
+    CellType{22, "VTK_QUADRATIC_TRIANGLE", Shape::triangle, 6},
+    CellType{23, "VTK_QUADRATIC_QUAD", Shape::quad, 8},
+    CellType{24, "VTK_QUADRATIC_TETRA", Shape::tetrahedron, 10},
+    CellType{25, "VTK_QUADRATIC_HEXAHEDRON", Shape::hexahedron, 20},
+    CellType{26, "VTK_QUADRATIC_WEDGE", Shape::wedge, 15},
+    CellType{27, "VTK_QUADRATIC_PYRAMID", Shape::pyramid, 13},
+    CellType{28, "VTK_BIQUADRATIC_QUAD", Shape::quad, 9},
+    CellType{29, "VTK_TRIQUADRATIC_HEXAHEDRON", Shape::hexahedron, 27},
+    CellType{30, "VTK_QUADRATIC_LINEAR_QUAD", Shape::quad, 6},
+    CellType{31, "VTK_QUADRATIC_LINEAR_WEDGE", Shape::wedge, 12},
+    CellType{32, "VTK_BIQUADRATIC_QUADRATIC_WEDGE", Shape::wedge, 18},
+    CellType{33, "VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON", Shape::hexahedron, 24},
+    CellType{34, "VTK_BIQUADRATIC_TRIANGLE", Shape::triangle, 7},
+    CellType{35, "VTK_CUBIC_LINE", Shape::line, 4},
+    CellType{37, "VTK_TRIQUADRATIC_PYRAMID", Shape::pyramid, 19},
+    CellType{68, "VTK_LAGRANGE_CURVE", Shape::line, -2},
+    CellType{69, "VTK_LAGRANGE_TRIANGLE", Shape::triangle, -3},
+    CellType{70, "VTK_LAGRANGE_QUADRILATERAL", Shape::quad, -4},
+    CellType{71, "VTK_LAGRANGE_TETRAHEDRON", Shape::tetrahedron, -4},
+    CellType{72, "VTK_LAGRANGE_HEXAHEDRON", Shape::hexahedron, -8},
+    CellType{73, "VTK_LAGRANGE_WEDGE", Shape::wedge, -6},
+    CellType{74, "VTK_LAGRANGE_PYRAMID", Shape::pyramid, -5},
+    CellType{kPixel, "VTK_PIXEL", Shape::quad, 4, {{{2, 3}}}},
+    CellType{kVoxel, "VTK_VOXEL", Shape::hexahedron, 8, {{{2, 3}, {6, 7}}}},
+    CellType{36, "VTK_QUADRATIC_POLYGON", Shape::polygon, -3},
+    CellType{60, "VTK_HIGHER_ORDER_EDGE", Shape::line, -2},
+    CellType{61, "VTK_HIGHER_ORDER_TRIANGLE", Shape::triangle, -3},
+    CellType{62, "VTK_HIGHER_ORDER_QUAD", Shape::quad, -4},
+    CellType{64, "VTK_HIGHER_ORDER_TETRAHEDRON", Shape::tetrahedron, -4},
+    CellType{65, "VTK_HIGHER_ORDER_WEDGE", Shape::wedge, -6},
+    CellType{66, "VTK_HIGHER_ORDER_PYRAMID", Shape::pyramid, -5},
+    CellType{67, "VTK_HIGHER_ORDER_HEXAHEDRON", Shape::hexahedron, -8},
+    CellType{75, "VTK_BEZIER_CURVE", Shape::line, -2},
+    CellType{76, "VTK_BEZIER_TRIANGLE", Shape::triangle, -3},
+    CellType{77, "VTK_BEZIER_QUADRILATERAL", Shape::quad, -4},
+    CellType{78, "VTK_BEZIER_TETRAHEDRON", Shape::tetrahedron, -4},
+    CellType{79, "VTK_BEZIER_HEXAHEDRON", Shape::hexahedron, -8},
+    CellType{80, "VTK_BEZIER_WEDGE", Shape::wedge, -6},
+    CellType{81, "VTK_BEZIER_PYRAMID", Shape::pyramid, -5},
 };
 
-/// By their numbers, the types of which vertices are swapped; nullptr for the others.
-constexpr std::array<const VtkType*, 256> kSwappedTypes = [] {
-  std::array<const VtkType*, 256> types{};
-  for (const VtkType& type : kTypes) {
+/// Types with swapped vertices, by number; nullptr for the others.
+constexpr std::array<const CellType*, 256> kSwappedTypes = [] {
+  std::array<const CellType*, 256> types{};
+  for (const CellType& type : kTypes) {
     if (type.swapped != decltype(type.swapped){}) types[static_cast<std::size_t>(type.number)] = &type;
   }
   return types;
@@ -102,32 +101,32 @@ constexpr std::array<const VtkType*, 256> kSwappedTypes = [] {
 constexpr int kFirstLagrange = 68;
 constexpr int kLastLagrange = 74;
 
-const VtkType* type_of(int number) {
+const CellType* type_of(int number) {
   const auto found =
-      std::find_if(kTypes.begin(), kTypes.end(), [&](const VtkType& t) { return t.number == number; });
+      std::find_if(kTypes.begin(), kTypes.end(), [&](const CellType& t) { return t.number == number; });
   return found == kTypes.end() ? nullptr : &*found;
 }
 
-bool fits(const VtkType& type, Offset vertices) {
+bool fits(const CellType& type, Offset vertices) {
   return type.vertices > 0 ? vertices == type.vertices : vertices >= -type.vertices;
 }
 
-void swap_vertices(const VtkType& type, Index* vertices) {
+void swap_vertices(const CellType& type, Index* vertices) {
   for (const auto& [a, b] : type.swapped) std::swap(vertices[a], vertices[b]);
 }
 
-/// The type that a shape with so many vertices has, when nothing else is known; nullptr when there is none.
-const VtkType* default_type(Shape shape, int vertices) {
-  const auto found = std::find_if(kTypes.begin(), kTypes.end(), [&](const VtkType& type) {
+/// Returns the default type of a shape with that number of vertices, or nullptr.
+const CellType* default_type(Shape shape, int vertices) {
+  const auto found = std::find_if(kTypes.begin(), kTypes.end(), [&](const CellType& type) {
     return type.shape == shape && fits(type, vertices);
   });
   return found == kTypes.end() ? nullptr : &*found;
 }
 
-/// Types of all pairs met so far, since a mesh asks for the same few again and again.
+/// Caches default types, as a mesh has few.
 class DefaultTypes {
  public:
-  const VtkType* operator()(Shape shape, int vertices) {
+  const CellType* operator()(Shape shape, int vertices) {
     if (vertices >= kRemembered) return default_type(shape, vertices);
     auto& [known, type] = types_[static_cast<std::size_t>(shape)][static_cast<std::size_t>(vertices)];
     if (!known) type = default_type(shape, vertices);
@@ -137,10 +136,10 @@ class DefaultTypes {
 
  private:
   static constexpr int kRemembered = 32;
-  std::array<std::array<std::pair<bool, const VtkType*>, kRemembered>, kShapes> types_{};
+  std::array<std::array<std::pair<bool, const CellType*>, kRemembered>, kShapes> types_{};
 };
 
-Error unknown_type(int number, Index cell, const VtkError& error) {
+Error unknown_type(int number, Index cell, const ErrorAt& error) {
   std::string what = "cell " + std::to_string(cell) + " (counted from 0) ";
   if (number == 42) {
     what += "is a polyhedron (VTK_POLYHEDRON)";
@@ -154,17 +153,17 @@ Error unknown_type(int number, Index cell, const VtkError& error) {
 
 }  // namespace
 
-void take_vtk_cells(Mesh& mesh, VtkCells cells, const VtkError& error, Notes& notes) {
-  std::array<const VtkType*, 256> known{};
-  for (const VtkType& type : kTypes) known[static_cast<std::size_t>(type.number)] = &type;
+void take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes) {
+  std::array<const CellType*, 256> known{};
+  for (const CellType& type : kTypes) known[static_cast<std::size_t>(type.number)] = &type;
 
   DefaultTypes defaults;
   Index converted = 0;
-  bool plain = true;  // shapes and vertices tell all types
+  bool plain = true;  // shapes and vertices determine all types
   const Index count = index_size(cells.types);
   mesh.cells.shapes.resize(count);
   for (Index c = 0; c < count; ++c) {
-    const VtkType* type = known[cells.types[c]];
+    const CellType* type = known[cells.types[c]];
     if (type == nullptr) throw unknown_type(cells.types[c], c, error);
     const Offset vertices = cells.offsets[c + 1] - cells.offsets[c];
     if (!fits(*type, vertices) || vertices > kMaxIndex) {
@@ -193,13 +192,13 @@ void take_vtk_cells(Mesh& mesh, VtkCells cells, const VtkError& error, Notes& no
     if (cells.types[c] == kVoxel) cells.types[c] = 12;
   }
   std::erase_if(mesh.data, [](const DataArray& a) {
-    return a.association == Association::cells && a.name == kVtkTypes;
+    return a.association == Association::cells && a.name == kCellTypes;
   });
-  mesh.data.push_back({std::string(kVtkTypes), Association::cells, 1, std::move(cells.types), {}, {}});
+  mesh.data.push_back({std::string(kCellTypes), Association::cells, 1, std::move(cells.types), {}, {}});
 }
 
-std::vector<std::uint8_t> vtk_types(const Mesh& mesh, const std::string& file, bool higher_orders) {
-  const DataArray* kept = find_array(mesh, kVtkTypes, Association::cells);
+std::vector<std::uint8_t> cell_types(const Mesh& mesh, const std::string& file, bool higher_orders) {
+  const DataArray* kept = find_array(mesh, kCellTypes, Association::cells);
   const auto* numbers = kept != nullptr ? std::get_if<std::vector<std::uint8_t>>(&kept->values) : nullptr;
   if (numbers != nullptr && (!kept->is_dense() || kept->components != 1)) numbers = nullptr;
 
@@ -208,9 +207,9 @@ std::vector<std::uint8_t> vtk_types(const Mesh& mesh, const std::string& file, b
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const Shape shape = mesh.cells.shapes[c];
     const int vertices = mesh.cells.vertex_count(c);
-    const VtkType* type = defaults(shape, vertices);
+    const CellType* type = defaults(shape, vertices);
     if (numbers != nullptr) {
-      const VtkType* own = type_of((*numbers)[c]);
+      const CellType* own = type_of((*numbers)[c]);
       if (own != nullptr && own->shape == shape && fits(*own, vertices)) {
         types[c] = static_cast<std::uint8_t>(own->number);
         continue;
@@ -227,14 +226,6 @@ std::vector<std::uint8_t> vtk_types(const Mesh& mesh, const std::string& file, b
     types[c] = static_cast<std::uint8_t>(type->number);
   }
   return types;
-}
-
-bool has_order_of_its_own(std::uint8_t type) { return kSwappedTypes[type] != nullptr; }
-
-void swap_to_vtk(const std::vector<std::uint8_t>& types, Cells& cells) {
-  for (Index c = 0; c < cells.size(); ++c) {
-    if (const VtkType* type = kSwappedTypes[types[c]]) swap_vertices(*type, cells[c].data());
-  }
 }
 
 bool is_higher_order_hexahedron(std::uint8_t type) { return type == 67 || type == 72 || type == 79; }
@@ -269,4 +260,16 @@ void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& ty
   }
 }
 
-}  // namespace meshorder
+const Cells& WriteContext::cells(bool old_hexahedra) {
+  const bool swapped =
+      std::any_of(types.begin(), types.end(), [](std::uint8_t t) { return kSwappedTypes[t] != nullptr; });
+  if (!swapped && !old_hexahedra) return mesh.cells;
+  changed_ = mesh.cells;
+  for (Index c = 0; swapped && c < changed_.size(); ++c) {
+    if (const CellType* type = kSwappedTypes[types[c]]) swap_vertices(*type, changed_[c].data());
+  }
+  if (old_hexahedra) swap_hexahedron_edges(mesh, types, changed_);
+  return changed_;
+}
+
+}  // namespace meshorder::vtk

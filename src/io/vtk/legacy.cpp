@@ -3,14 +3,10 @@
 // VTK's legacy files: https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
 //
 // VTK's own writer is not used: in text it keeps 11 digits of a double, and it cuts ids to 32 bits.
-#include "io/vtk/legacy.hpp"
-
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/vtk/cells.hpp"
-#include "io/vtk/numbers.hpp"
-#include "io/vtk/vtu.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <fmt/format.h>
 
@@ -23,10 +19,10 @@
 #include <type_traits>
 #include <utility>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
-/// Unusual characters of names and texts as %XX, as VTK writes them.
+/// Returns names and strings with unusual characters as %XX, as VTK writes them.
 std::string encoded(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -40,7 +36,7 @@ std::string encoded(std::string_view text) {
   return result;
 }
 
-/// The section of a POLYDATA file that holds cells of this type, or −1.
+/// Returns the section of a POLYDATA file for cells of this type, or −1.
 int polydata_section(std::uint8_t type) {
   switch (type) {
     case 1:
@@ -60,7 +56,7 @@ int polydata_section(std::uint8_t type) {
   }
 }
 
-/// Whether the cells stand in the order of the sections of a POLYDATA file, which also tell their types.
+/// Returns whether the cells are in the order of the sections of a POLYDATA file, which imply their types.
 bool fits_polydata(const Cells& cells, const std::vector<std::uint8_t>& types) {
   int last = 0;
   for (Index c = 0; c < cells.size(); ++c) {
@@ -77,23 +73,16 @@ bool fits_polydata(const Cells& cells, const std::vector<std::uint8_t>& types) {
 class Writer {
  public:
   Writer(const Mesh& mesh, const std::filesystem::path& path, Notes& notes)
-      : mesh_(mesh),
-        notes_(notes),
-        residue_(vtk_residue(mesh, notes)),
-        layout_(residue_.legacy.value_or(VtkLegacyLayout{})),
-        types_(vtk_types(mesh, path.string(),
-                         dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get()) != nullptr)),
-        arrays_(vtk_arrays(mesh, notes)),
-        out_(path) {}
+      : from_(mesh, path, notes), layout_(from_.metadata.legacy.value_or(LegacyLayout{})), out_(path) {}
 
   void write() {
     choose_layout();
     out_.print("# vtk DataFile Version {}\n{}\n{}\nDATASET {}\n", layout_.version,
                layout_.title.substr(0, 255), layout_.binary ? "BINARY" : "ASCII",
                layout_.polydata ? "POLYDATA" : "UNSTRUCTURED_GRID");
-    if (!residue_.fields.empty()) {
-      out_.print("FIELD FieldData {}\n", residue_.fields.size());
-      for (const DataArray& field : residue_.fields) write_field_array(field, {});
+    if (!from_.metadata.fields.empty()) {
+      out_.print("FIELD FieldData {}\n", from_.metadata.fields.size());
+      for (const DataArray& field : from_.metadata.fields) write_field_array(field, {});
     }
     write_points();
     write_cells();
@@ -103,29 +92,30 @@ class Writer {
 
  private:
   void choose_layout() {
-    const std::int64_t numbers = mesh_.cell_count() + static_cast<std::int64_t>(mesh_.cells.vertices.size());
+    const std::int64_t numbers =
+        from_.mesh.cell_count() + static_cast<std::int64_t>(from_.mesh.cells.vertices.size());
     if (numbers > kMaxIndex) layout_.version = "5.1";  // older versions count with 32 bits
     offsets_ = layout_.version.front() == '5';
-    layout_.polydata = layout_.polydata && fits_polydata(mesh_.cells, types_);
-    if (residue_.legacy && residue_.legacy->polydata && !layout_.polydata) {
-      notes_.push_back(
+    layout_.polydata = layout_.polydata && fits_polydata(from_.mesh.cells, from_.types);
+    if (from_.metadata.legacy && from_.metadata.legacy->polydata && !layout_.polydata) {
+      from_.notes.push_back(
           "the file becomes an UNSTRUCTURED_GRID: POLYDATA cannot hold these cells in this order");
     }
     note_xml_parts();
   }
 
   void note_xml_parts() {
-    for (const VtkRoleOfArray& role : residue_.roles) {
-      const bool known = std::any_of(kVtkLegacyAttributes.begin(), kVtkLegacyAttributes.end(),
-                                     [&](const VtkLegacyAttribute& a) { return a.role == role.role; });
+    for (const ArrayRole& role : from_.metadata.roles) {
+      const bool known = std::any_of(kLegacyAttributes.begin(), kLegacyAttributes.end(),
+                                     [&](const LegacyAttribute& a) { return a.role == role.role; });
       if (known) continue;
-      notes_.push_back(fmt::format("the array '{}' loses its role: legacy files have no {}", role.array,
-                                   kVtuRoles[static_cast<std::size_t>(role.role)]));
+      from_.notes.push_back(fmt::format("the array '{}' loses its role: legacy files have no {}", role.array,
+                                        kXmlRoles[static_cast<std::size_t>(role.role)]));
     }
-    for (const VtkArrayFacts& fact : residue_.facts) {
+    for (const ArrayFacts& fact : from_.metadata.facts) {
       if (fact.xml_information.empty()) continue;
-      notes_.push_back(fmt::format(
-          "left out, as VTK has it in another form: the information of the array '{}'", fact.array));
+      from_.notes.push_back(fmt::format(
+          "not written (legacy files store it differently): the information of the array '{}'", fact.array));
     }
   }
 
@@ -171,7 +161,7 @@ class Writer {
       out_.print("{}\n", encoded(text));
       return;
     }
-    // the length's first two bits tell its bytes
+    // the first two bits encode the size of the length
     const std::uint64_t length = text.size();
     if (length < 1U << 6U) {
       out_.binary(static_cast<std::uint8_t>(0xC0U | length));
@@ -187,10 +177,10 @@ class Writer {
 
   // ---- arrays
 
-  /// The number type under which an array is written: the file's own, while it can hold the values.
+  /// Returns the number type of an array: that of its file if it can hold the values.
   std::string type_of(const DataArray& array, std::optional<Association> association) const {
-    const VtkArrayFacts* facts = find_facts(residue_, association, array.name);
-    std::string usual(kVtkTypeNames[array.values.index()]);
+    const ArrayFacts* facts = find_facts(from_.metadata, association, array.name);
+    std::string usual(kLegacyTypeNames[array.values.index()]);
     if (facts == nullptr || facts->type.empty()) return usual;
     const auto is = [&](std::string_view name) { return same_but_for_case(facts->type, name); };
     if (const auto* wide = std::get_if<std::vector<std::int64_t>>(&array.values)) {
@@ -223,7 +213,7 @@ class Writer {
   }
 
   void write_metadata(const DataArray& array, std::optional<Association> association, std::string_view name) {
-    const VtkArrayFacts* facts = find_facts(residue_, association, name);
+    const ArrayFacts* facts = find_facts(from_.metadata, association, name);
     const bool information = facts != nullptr && !facts->information.empty();
     if (array.component_names.empty() && !information) return;
     out_.write("METADATA\n");
@@ -252,47 +242,38 @@ class Writer {
   // ---- points and cells
 
   void write_points() {
-    const bool floats = points_are_floats(mesh_, residue_);
-    out_.print("POINTS {} {}\n", mesh_.vertex_count(), floats ? "float" : "double");
-    const std::span<const double> numbers(mesh_.points.empty() ? nullptr : mesh_.points.front().data(),
-                                          3 * mesh_.points.size());
+    const bool floats = from_.points_are_floats();
+    out_.print("POINTS {} {}\n", from_.mesh.vertex_count(), floats ? "float" : "double");
+    const std::span<const double> numbers(
+        from_.mesh.points.empty() ? nullptr : from_.mesh.points.front().data(), 3 * from_.mesh.points.size());
     if (floats && layout_.binary) {
       write_binary<float>(numbers);
     } else if (floats) {
-      for (const Point& p : mesh_.points)
+      for (const Point& p : from_.mesh.points)
         out_.print("{} {} {}\n", static_cast<float>(p[0]), static_cast<float>(p[1]),
                    static_cast<float>(p[2]));
     } else {
       write_numbers<double>(numbers, 3);
     }
-    write_metadata({}, {}, kVtkPoints);
+    write_metadata({}, {}, kPoints);
   }
 
   void write_cells() {
-    const bool swapped = std::any_of(types_.begin(), types_.end(), has_order_of_its_own);
     // VTK numbered the nodes of some hexahedra differently before version 5.1
-    const bool old_order =
-        layout_.version != "5.1" && std::any_of(types_.begin(), types_.end(), is_higher_order_hexahedron);
-    Cells changed;
-    const Cells* cells = &mesh_.cells;
-    if (swapped || old_order) {
-      changed = mesh_.cells;
-      if (swapped) swap_to_vtk(types_, changed);
-      if (old_order) swap_hexahedron_edges(mesh_, types_, changed);
-      cells = &changed;
-    }
+    const Cells& cells =
+        from_.cells(layout_.version != "5.1" &&
+                    std::any_of(from_.types.begin(), from_.types.end(), is_higher_order_hexahedron));
     if (!layout_.polydata) {
-      write_section("CELLS", *cells, 0, cells->size());
-      out_.print("CELL_TYPES {}\n", types_.size());
-      write_numbers<std::int32_t>(std::span<const std::uint8_t>(types_), 1);
+      write_section("CELLS", cells, 0, cells.size());
+      out_.print("CELL_TYPES {}\n", from_.types.size());
+      write_numbers<std::int32_t>(std::span<const std::uint8_t>(from_.types), 1);
       return;
     }
     Index begin = 0;
     for (int section = 0; section < 4; ++section) {
       Index end = begin;
-      while (end < cells->size() && polydata_section(types_[end]) == section) ++end;
-      if (end > begin)
-        write_section(kVtkPolydataSections[static_cast<std::size_t>(section)], *cells, begin, end);
+      while (end < cells.size() && polydata_section(from_.types[end]) == section) ++end;
+      if (end > begin) write_section(kPolydataSections[static_cast<std::size_t>(section)], cells, begin, end);
       begin = end;
     }
   }
@@ -326,19 +307,19 @@ class Writer {
   // ---- data
 
   void write_data() {
-    // points first, unless the arrays say otherwise
+    // points first, unless the first array is of cells
     std::array order{Association::vertices, Association::cells};
-    if (!arrays_.all.empty() && arrays_.all.front()->association == Association::cells)
+    if (!from_.arrays.empty() && from_.arrays.front()->association == Association::cells)
       std::swap(order[0], order[1]);
     for (const Association association : order) {
       std::vector<const DataArray*> own;
-      std::copy_if(arrays_.all.begin(), arrays_.all.end(), std::back_inserter(own),
+      std::copy_if(from_.arrays.begin(), from_.arrays.end(), std::back_inserter(own),
                    [&](const DataArray* array) { return array->association == association; });
       const bool tables = std::any_of(layout_.lookup_tables.begin(), layout_.lookup_tables.end(),
                                       [&](const auto& table) { return table.association == association; });
       if (own.empty() && !tables) continue;
       out_.print("{} {}\n", association == Association::vertices ? "POINT_DATA" : "CELL_DATA",
-                 association == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count());
+                 association == Association::vertices ? from_.mesh.vertex_count() : from_.mesh.cell_count());
       write_arrays(own, association);
       for (const auto& table : layout_.lookup_tables) {
         if (table.association == association)
@@ -348,7 +329,7 @@ class Writer {
     }
   }
 
-  /// Arrays in a role by its keyword, runs of others as a FIELD.
+  /// Writes arrays with a role by its keyword, runs of others as a FIELD.
   void write_arrays(const std::vector<const DataArray*>& arrays, Association association) {
     for (std::size_t i = 0; i < arrays.size();) {
       if (write_attribute(*arrays[i])) {
@@ -362,27 +343,27 @@ class Writer {
     }
   }
 
-  /// The keyword of an array's role, where it fits, and the role.
-  [[nodiscard]] std::pair<const VtkLegacyAttribute*, const VtkRoleOfArray*> attribute_of(
+  /// Returns the keyword of an array's role, if it fits, and the role.
+  [[nodiscard]] std::pair<const LegacyAttribute*, const ArrayRole*> attribute_of(
       const DataArray& array) const {
     if (array.name.empty()) return {};
     const auto role = std::find_if(
-        residue_.roles.begin(), residue_.roles.end(),
-        [&](const VtkRoleOfArray& r) { return r.association == array.association && r.array == array.name; });
-    if (role == residue_.roles.end()) return {};
+        from_.metadata.roles.begin(), from_.metadata.roles.end(),
+        [&](const ArrayRole& r) { return r.association == array.association && r.array == array.name; });
+    if (role == from_.metadata.roles.end()) return {};
     const bool text = std::holds_alternative<std::vector<std::string>>(array.values);
-    if (text && role->role != VtkRole::pedigree_ids) return {};
-    if (role->role == VtkRole::texture_coordinates && array.components > 3) return {};
-    if (role->role == VtkRole::color_scalars) {
+    if (text && role->role != Role::pedigree_ids) return {};
+    if (role->role == Role::texture_coordinates && array.components > 3) return {};
+    if (role->role == Role::color_scalars) {
       const bool fits = layout_.binary ? std::holds_alternative<std::vector<std::uint8_t>>(array.values)
                                        : std::holds_alternative<std::vector<float>>(array.values);
       if (!fits) return {};
     }
-    const auto attribute = std::find_if(
-        kVtkLegacyAttributes.begin(), kVtkLegacyAttributes.end(), [&](const VtkLegacyAttribute& a) {
+    const auto attribute =
+        std::find_if(kLegacyAttributes.begin(), kLegacyAttributes.end(), [&](const LegacyAttribute& a) {
           return a.role == role->role && (a.components == 0 || a.components == array.components);
         });
-    if (attribute == kVtkLegacyAttributes.end()) return {};
+    if (attribute == kLegacyAttributes.end()) return {};
     return {&*attribute, &*role};
   }
 
@@ -392,14 +373,14 @@ class Writer {
     const std::string type = type_of(array, array.association);
     out_.print("{} {}", attribute->keyword, encoded(array.name));
     switch (attribute->role) {
-      case VtkRole::scalars:
+      case Role::scalars:
         out_.print(" {} {}\nLOOKUP_TABLE {}\n", type, array.components,
                    role->lookup_table.empty() ? "default" : role->lookup_table);
         break;
-      case VtkRole::color_scalars:
+      case Role::color_scalars:
         out_.print(" {}\n", array.components);
         break;
-      case VtkRole::texture_coordinates:
+      case Role::texture_coordinates:
         out_.print(" {} {}\n", array.components, type);
         break;
       default:
@@ -409,26 +390,19 @@ class Writer {
     return true;
   }
 
-  const Mesh& mesh_;
-  Notes& notes_;
-  const VtkMetadata& residue_;
-  VtkLegacyLayout layout_;
-  std::vector<std::uint8_t> types_;
-  VtkArrays arrays_;
+  WriteContext from_;
+  LegacyLayout layout_;
   OutputFile out_;
   bool offsets_ = false;  // cells by their offsets, as from version 5 on
 };
 
-}  // namespace
-
-Format vtk_format() {
-  return {"VTK",
-          {".vtk"},
-          false,
-          read_vtk_legacy,
-          [](const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
-            Writer(mesh, path, notes).write();
-          }};
+void write_legacy(const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
+  Writer(mesh, path, notes).write();
 }
 
-}  // namespace meshorder
+}  // namespace
+}  // namespace meshorder::vtk
+
+meshorder::Format meshorder::vtk_format() {
+  return {"VTK", {".vtk"}, false, vtk::read_legacy, vtk::write_legacy};
+}

@@ -2,7 +2,7 @@
 #include "io/vtk/legacy_input.hpp"
 
 #include "base/text.hpp"
-#include "io/vtk/numbers.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <fmt/format.h>
 
@@ -16,16 +16,16 @@
 #include <type_traits>
 #include <utility>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
-/// A number type as files name it.
+/// A number type and its name in files.
 struct TypeName {
   std::string_view name;
   std::size_t alternative;  // of Values
 };
 
-// without those of kVtkTypeNames
+// besides those of kLegacyTypeNames
 constexpr std::array kOtherTypeNames{TypeName{"signed_char", 2},   TypeName{"long", 8},
                                      TypeName{"unsigned_long", 9}, TypeName{"vtkidtype", 8},
                                      TypeName{"long_long", 8},     TypeName{"unsigned_long_long", 9},
@@ -45,12 +45,6 @@ std::string lower_case(std::string_view text) {
   return result;
 }
 
-std::string shown(std::string_view text) {
-  std::string result;
-  for (const char c : text.substr(0, 40)) result += (c >= ' ' && c < 127) ? c : '?';
-  return result;
-}
-
 std::string percent_decoded(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -66,41 +60,19 @@ std::string percent_decoded(std::string_view text) {
   return result;
 }
 
-void VtkLegacyInput::fail(const std::string& what, const std::string& remedy) const {
-  if (binary) scanner.fail_at_byte(what, remedy);
-  scanner.fail(what, remedy);
-}
-
-Error VtkLegacyInput::section_error(std::int64_t line, const std::string& what,
-                                    const std::string& remedy) const {
+Error LegacyInput::section_error(std::int64_t line, const std::string& what,
+                                 const std::string& remedy) const {
   return {Location{scanner.file(), binary ? 0 : line, -1}, what, remedy};
 }
 
-std::string_view VtkLegacyInput::word(std::string_view what) {
-  if (binary && scanner.at_end())
-    fail(fmt::format("the file ends where {} should stand", what), "it may be cut short");
-  return scanner.word(what);
-}
-
-std::int64_t VtkLegacyInput::integer(std::string_view what) { return parsed(word(what), what); }
-
-std::int64_t VtkLegacyInput::parsed(std::string_view text, std::string_view what) const {
-  if (!binary) return parse_integer<std::int64_t>(scanner, text, what);
-  std::int64_t value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc{} || end != text.data() + text.size())
-    fail(fmt::format("{} is '{}'", what, shown(text)), "a whole number is needed");
-  return value;
-}
-
-std::int64_t VtkLegacyInput::count(std::string_view what) {
-  const std::int64_t value = integer(what);
+std::int64_t LegacyInput::count(std::string_view what) {
+  const std::int64_t value = text_integer(what);
   if (value < 0) fail(fmt::format("{} is {}", what, value), "it cannot be negative");
   if (value > kMaxIndex) fail(fmt::format("{} is {}", what, value), "at most 2147483647 are possible");
   return value;
 }
 
-void VtkLegacyInput::check_room(std::int64_t entries, std::int64_t bytes, const std::string& what) const {
+void LegacyInput::check_room(std::int64_t entries, std::int64_t bytes, const std::string& what) const {
   const std::int64_t least = binary ? bytes : 2;
   if (entries > (scanner.bytes_left() + 1) / least) {
     fail(fmt::format("{} of {} numbers cannot be in the {} bytes that follow", what, entries,
@@ -109,22 +81,14 @@ void VtkLegacyInput::check_room(std::int64_t entries, std::int64_t bytes, const 
   }
 }
 
-void VtkLegacyInput::end_heading() {
-  if (binary) scanner.raw_line();
-}
-
-std::int32_t VtkLegacyInput::list_entry(const std::string& what) {
-  return binary ? scanner.binary<std::int32_t>(what, std::endian::big) : scanner.integer<std::int32_t>(what);
-}
-
 // ---- numbers
 
 template <class Number>
-Number VtkLegacyInput::number(const std::string& what) {
+Number LegacyInput::number(const std::string& what) {
   if constexpr (std::is_same_v<Number, double>) {
     return finite_only ? scanner.finite(what) : scanner.real(what);
   } else if constexpr (std::is_same_v<Number, float>) {
-    // a float in its own digits: a detour over double would round twice
+    // parsed as float, since a conversion from double would round twice
     const std::string_view digits = scanner.peek_word();
     float value = 0;
     const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -147,7 +111,7 @@ Number VtkLegacyInput::number(const std::string& what) {
 }
 
 template <class Number, class Stored>
-void VtkLegacyInput::numbers(std::vector<Number>& values, std::int64_t count, const std::string& what) {
+void LegacyInput::numbers(std::vector<Number>& values, std::int64_t count, const std::string& what) {
   check_room(count, sizeof(Stored), what);
   values.resize(static_cast<std::size_t>(count));
   if (!binary) {
@@ -165,7 +129,7 @@ void VtkLegacyInput::numbers(std::vector<Number>& values, std::int64_t count, co
   }
 }
 
-void VtkLegacyInput::bits(std::vector<std::uint8_t>& values, std::int64_t count, const std::string& what) {
+void LegacyInput::bits(std::vector<std::uint8_t>& values, std::int64_t count, const std::string& what) {
   if (!binary) return numbers(values, count, what);
   if (count == 0) return;
   const std::string_view bytes = scanner.binary_block((count + 7) / 8, what);
@@ -175,7 +139,7 @@ void VtkLegacyInput::bits(std::vector<std::uint8_t>& values, std::int64_t count,
   }
 }
 
-void VtkLegacyInput::texts(std::vector<std::string>& values, std::int64_t count, const std::string& what) {
+void LegacyInput::texts(std::vector<std::string>& values, std::int64_t count, const std::string& what) {
   if (count > scanner.bytes_left() + 1)
     fail(what + " of " + std::to_string(count) + " texts cannot be in what follows",
          "the count is wrong or the file is cut short");
@@ -184,14 +148,14 @@ void VtkLegacyInput::texts(std::vector<std::string>& values, std::int64_t count,
     if (binary) {
       values.emplace_back(scanner.binary_block(text_length(what), what));
     } else {
-      if (scanner.bytes_left() == 0) fail("the file ends within " + what, "it may be cut short");
+      if (scanner.bytes_left() == 0) fail("unexpected end of file in " + what, "it may be cut short");
       values.push_back(percent_decoded(scanner.raw_line()));
     }
   }
 }
 
-/// The first two bits of a length tell its bytes.
-std::int64_t VtkLegacyInput::text_length(const std::string& what) {
+/// Reads a length, whose first two bits encode its size.
+std::int64_t LegacyInput::text_length(const std::string& what) {
   std::uint64_t length = scanner.binary<std::uint8_t>(what);
   constexpr std::array kFollowing{7, 3, 1, 0};
   const int following = kFollowing[length >> 6U];
@@ -202,8 +166,8 @@ std::int64_t VtkLegacyInput::text_length(const std::string& what) {
 
 // ---- arrays
 
-DataArray VtkLegacyInput::array(const std::string& name, std::optional<Association> association,
-                                std::int64_t tuples, std::int64_t components, const std::string& given_type) {
+DataArray LegacyInput::array(const std::string& name, std::optional<Association> association,
+                             std::int64_t tuples, std::int64_t components, const std::string& given_type) {
   DataArray result;
   result.name = name;
   result.association = association.value_or(Association::vertices);
@@ -213,24 +177,24 @@ DataArray VtkLegacyInput::array(const std::string& name, std::optional<Associati
   result.components = static_cast<Index>(components);
 
   const std::string type = lower_case(given_type);
-  const auto usual = std::find(kVtkTypeNames.begin(), kVtkTypeNames.end(), type);
+  const auto usual = std::find(kLegacyTypeNames.begin(), kLegacyTypeNames.end(), type);
   const auto other = std::find_if(kOtherTypeNames.begin(), kOtherTypeNames.end(),
                                   [&](const TypeName& t) { return t.name == type; });
-  if (usual == kVtkTypeNames.end() && other == kOtherTypeNames.end()) {
+  if (usual == kLegacyTypeNames.end() && other == kOtherTypeNames.end()) {
     fail(what + " is of type '" + shown(given_type) + "'",
          "a number type such as float, double or int is needed");
   }
-  result.values =
-      values_of_type(usual != kVtkTypeNames.end() ? static_cast<std::size_t>(usual - kVtkTypeNames.begin())
-                                                  : other->alternative);
+  result.values = values_of_type(usual != kLegacyTypeNames.end()
+                                     ? static_cast<std::size_t>(usual - kLegacyTypeNames.begin())
+                                     : other->alternative);
 
-  // the tuples begin in the next line, those of a binary file with its very first byte
+  // tuples begin on the next line; in a binary file at its first byte
   const bool text = std::holds_alternative<std::vector<std::string>>(result.values);
   const std::int64_t count = tuples * components;
   if (count > 0 && (binary || text)) scanner.raw_line();
   if (type == "bit") {
     bits(std::get<std::vector<std::uint8_t>>(result.values), count, what);
-    notes.push_back(what + " holds bits, which are carried as bytes");
+    notes.push_back(what + " holds bits, which are stored as bytes");
   } else if (type == "vtkidtype") {
     numbers<std::int64_t, std::int32_t>(std::get<std::vector<std::int64_t>>(result.values), count, what);
   } else {
@@ -244,7 +208,7 @@ DataArray VtkLegacyInput::array(const std::string& name, std::optional<Associati
         },
         result.values);
   }
-  if (usual == kVtkTypeNames.end() && type != "bit") facts_of(association, name).type = given_type;
+  if (usual == kLegacyTypeNames.end() && type != "bit") facts_of(association, name).type = given_type;
   if (upper_case(scanner.peek_word()) == "METADATA") {
     word("METADATA");
     metadata(result, association);
@@ -252,15 +216,15 @@ DataArray VtkLegacyInput::array(const std::string& name, std::optional<Associati
   return result;
 }
 
-VtkArrayFacts& VtkLegacyInput::facts_of(std::optional<Association> association, const std::string& name) {
-  const auto found = std::find_if(facts.begin(), facts.end(), [&](const VtkArrayFacts& fact) {
+ArrayFacts& LegacyInput::facts_of(std::optional<Association> association, const std::string& name) {
+  const auto found = std::find_if(facts.begin(), facts.end(), [&](const ArrayFacts& fact) {
     return fact.association == association && fact.array == name;
   });
   if (found != facts.end()) return *found;
-  return facts.emplace_back(VtkArrayFacts{association, name, {}, {}, {}});
+  return facts.emplace_back(ArrayFacts{association, name, {}, {}, {}});
 }
 
-void VtkLegacyInput::metadata(DataArray& array, std::optional<Association> association) {
+void LegacyInput::metadata(DataArray& array, std::optional<Association> association) {
   scanner.raw_line();
   while (scanner.bytes_left() > 0) {
     std::string_view line = scanner.raw_line();
@@ -269,7 +233,8 @@ void VtkLegacyInput::metadata(DataArray& array, std::optional<Association> assoc
     if (key == "COMPONENT_NAMES") {
       array.component_names.clear();
       for (Index i = 0; i < array.components; ++i) {
-        if (scanner.bytes_left() == 0) fail("the file ends within COMPONENT_NAMES", "it may be cut short");
+        if (scanner.bytes_left() == 0)
+          fail("unexpected end of file in COMPONENT_NAMES", "it may be cut short");
         array.component_names.push_back(percent_decoded(scanner.raw_line()));
       }
     } else if (key == "INFORMATION") {
@@ -281,14 +246,14 @@ void VtkLegacyInput::metadata(DataArray& array, std::optional<Association> assoc
   }
 }
 
-/// Keys are kept as they stand but for the norms, which VTK finds itself.
-void VtkLegacyInput::information(std::int64_t keys, const DataArray& array,
-                                 std::optional<Association> association) {
+/// Keeps keys verbatim except for norms, which VTK computes.
+void LegacyInput::information(std::int64_t keys, const DataArray& array,
+                              std::optional<Association> association) {
   std::string kept;
   bool keep = false;
   while (true) {
     if (scanner.bytes_left() == 0) {
-      if (keys > 0) fail("the file ends within INFORMATION", "it may be cut short");
+      if (keys > 0) fail("unexpected end of file in INFORMATION", "it may be cut short");
       break;
     }
     const std::string_view line = scanner.raw_line();
@@ -305,4 +270,4 @@ void VtkLegacyInput::information(std::int64_t keys, const DataArray& array,
   if (!kept.empty() && !array.name.empty()) facts_of(association, array.name).information = kept;
 }
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

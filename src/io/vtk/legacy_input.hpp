@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "io/stream/scanner.hpp"
-#include "io/vtk/metadata.hpp"
+#include "io/stream/number_reader.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -11,53 +11,41 @@
 #include <string_view>
 #include <vector>
 
-namespace meshorder {
+namespace meshorder::vtk {
 
-/// "SCALARS" for "scalars".
+/// Returns "SCALARS" for "scalars".
 std::string upper_case(std::string_view text);
-/// "float" for "FLOAT".
+/// Returns "float" for "FLOAT".
 std::string lower_case(std::string_view text);
-/// Some of a text of the file, as it can stand in a message.
-std::string shown(std::string_view text);
-/// Names and texts carry unusual characters as %XX.
+/// Decodes %XX in names and strings.
 std::string percent_decoded(std::string_view text);
 
-/// Words, counts and arrays of a legacy file of VTK, text or binary.
-class VtkLegacyInput {
+/// Reads words, counts and arrays of a legacy file, text or binary.
+class LegacyInput : public NumberReader {
  public:
-  explicit VtkLegacyInput(const std::filesystem::path& path) : scanner(path) {}
+  explicit LegacyInput(const std::filesystem::path& path) : NumberReader(path) { order = std::endian::big; }
 
-  /// Stops with an Error; text is located by line, binary by byte.
-  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
-  /// The same for a fault that is seen after a section that began at that line.
+  /// Makes the Error for a fault in a section that began at that line.
   [[nodiscard]] Error section_error(std::int64_t line, const std::string& what,
                                     const std::string& remedy) const;
 
-  std::string_view word(std::string_view what);
-  std::int64_t integer(std::string_view what);
-  /// A number of things, 0 … kMaxIndex.
+  /// Reads a count, 0 … kMaxIndex.
   std::int64_t count(std::string_view what);
-  /// Stops unless `count` numbers of `bytes` bytes (in text: a digit and a blank) can follow.
+  /// Fails unless the rest of the file has room for `entries` numbers of `bytes` bytes (in text: a digit and
+  /// a blank).
   void check_room(std::int64_t entries, std::int64_t bytes, const std::string& what) const;
-  /// Goes to the line, in binary files the byte, after a heading.
-  void end_heading();
-  /// A 32-bit integer of a list whose heading has ended.
-  std::int32_t list_entry(const std::string& what);
 
-  /// An array of tuples, and the METADATA that may follow it.
+  /// Reads an array of tuples and the METADATA that may follow it.
   DataArray array(const std::string& name, std::optional<Association> association, std::int64_t tuples,
                   std::int64_t components, const std::string& type);
-  /// COMPONENT_NAMES and INFORMATION, up to an empty line.
+  /// Reads COMPONENT_NAMES and INFORMATION, up to an empty line.
   void metadata(DataArray& array, std::optional<Association> association);
 
-  Scanner scanner;
-  bool binary = false;
-  bool finite_only = false;  ///< in text, real numbers that are not finite are refused
-  std::vector<VtkArrayFacts> facts;
+  bool finite_only = false;  ///< fail for real numbers in text that are not finite
+  std::vector<ArrayFacts> facts;
   Notes notes;
 
  private:
-  [[nodiscard]] std::int64_t parsed(std::string_view text, std::string_view what) const;
   template <class Number>
   Number number(const std::string& what);
   template <class Number, class Stored = Number>
@@ -66,7 +54,7 @@ class VtkLegacyInput {
   void texts(std::vector<std::string>& values, std::int64_t count, const std::string& what);
   std::int64_t text_length(const std::string& what);
   void information(std::int64_t keys, const DataArray& array, std::optional<Association> association);
-  VtkArrayFacts& facts_of(std::optional<Association> association, const std::string& name);
+  ArrayFacts& facts_of(std::optional<Association> association, const std::string& name);
 };
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

@@ -3,13 +3,11 @@
 // Reader of VTK's legacy files, versions 1.0 to 5.1, UNSTRUCTURED_GRID and POLYDATA, text and binary:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
 //
-// VTK's own reader is not used: it reads past the end of cell lists that promise too many vertices, allocates
-// what a header promises, cannot read `nan`, and changes the locale of the whole program.
+// VTK's own reader is not used: it reads past the end of damaged cell lists, trusts the sizes in a header
+// when it allocates, cannot read `nan`, and changes the locale of the whole program.
 #include "base/text.hpp"
-#include "io/vtk/cells.hpp"
-#include "io/vtk/legacy.hpp"
 #include "io/vtk/legacy_input.hpp"
-#include "io/vtk/numbers.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -18,7 +16,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
 constexpr int kFirstVersionWithOffsets = 50;  // ten times the version
@@ -46,8 +44,8 @@ class Reader {
     const char* const end = version.data() + version.size();
     const auto dot = std::from_chars(version.data(), end, major).ptr;
     if (version.empty() || dot == end || *dot != '.' || std::from_chars(dot + 1, end, minor).ptr != end) {
-      throw Error(Location{in_.scanner.file(), 1, -1}, "this is no legacy file of VTK",
-                  "'# vtk DataFile Version 4.2' stands in the first line of one");
+      throw Error(Location{in_.scanner.file(), 1, -1}, "is not a legacy VTK file",
+                  "the first line of one is like '# vtk DataFile Version 4.2'");
     }
     version_ = major > 9 || minor > 9 || minor < 0 ? kLastVersion + 1 : 10 * major + minor;
     if (version_ > kLastVersion || version_ < 10) {
@@ -65,11 +63,11 @@ class Reader {
     const std::string kind = dataset == "dataset" ? lower_case(in_.word("the kind of the dataset")) : "";
     if (kind == "structured_points" || kind == "structured_grid" || kind == "rectilinear_grid" ||
         kind == "image_data") {
-      in_.fail("the dataset " + upper_case(kind) + " is structured: its order is its grid's",
-               "UNSTRUCTURED_GRID and POLYDATA can be ordered");
+      in_.fail("the dataset " + upper_case(kind) + " is structured and cannot be reordered",
+               "UNSTRUCTURED_GRID and POLYDATA can be");
     }
     if (kind != "unstructured_grid" && kind != "polydata") {
-      in_.fail("no mesh is here but '" + shown(kind.empty() ? dataset : kind) + "'",
+      in_.fail("expected a mesh, found '" + shown(kind.empty() ? dataset : kind) + "'",
                "DATASET UNSTRUCTURED_GRID or DATASET POLYDATA is needed");
     }
     layout_.polydata = kind == "polydata";
@@ -78,11 +76,11 @@ class Reader {
 
   void read_section(std::string_view name) {
     const std::string key = upper_case(name);
-    const auto section = std::find(kVtkPolydataSections.begin(), kVtkPolydataSections.end(), key);
+    const auto section = std::find(kPolydataSections.begin(), kPolydataSections.end(), key);
     if (key == "POINTS") {
       read_points();
-    } else if (layout_.polydata && section != kVtkPolydataSections.end()) {
-      read_cells(static_cast<std::size_t>(section - kVtkPolydataSections.begin()), key);
+    } else if (layout_.polydata && section != kPolydataSections.end()) {
+      read_cells(static_cast<std::size_t>(section - kPolydataSections.begin()), key);
     } else if (!layout_.polydata && key == "CELLS") {
       read_cells(0, key);
     } else if (!layout_.polydata && key == "CELL_TYPES") {
@@ -105,7 +103,8 @@ class Reader {
   }
 
   void read_points() {
-    if (has_points_ || on_) in_.fail("POINTS stands here late", "there is one, before the data");
+    if (on_) in_.fail("POINTS after the data", "move it before POINT_DATA and CELL_DATA");
+    if (has_points_) in_.fail("a second section POINTS", "a file has one");
     has_points_ = true;
     const std::int64_t count = in_.count("the number of points");
     const std::string type(in_.word("the type of the points"));
@@ -113,11 +112,11 @@ class Reader {
       in_.fail("the points are of type " + type, "numbers are needed");
     const std::int64_t start = in_.scanner.line();
     in_.finite_only = true;
-    const DataArray array = in_.array(std::string(kVtkPoints), {}, count, 3, type);
+    const DataArray array = in_.array(std::string(kPoints), {}, count, 3, type);
     in_.finite_only = false;
-    residue_->float_points = std::holds_alternative<std::vector<float>>(array.values);
-    if (!residue_->float_points && !std::holds_alternative<std::vector<double>>(array.values)) {
-      in_.notes.push_back("the points are of type " + type + " and are carried as double");
+    metadata_->float_points = std::holds_alternative<std::vector<float>>(array.values);
+    if (!metadata_->float_points && !std::holds_alternative<std::vector<double>>(array.values)) {
+      in_.notes.push_back("the points are of type " + type + " and are stored as double");
     }
     mesh_.points.resize(static_cast<std::size_t>(count));
     std::visit(
@@ -141,9 +140,9 @@ class Reader {
   // ---- cells
 
   void read_cells(std::size_t section, const std::string& key) {
-    VtkCells& cells = sections_[section];
-    if (on_) in_.fail(key + " stands after the data", "points and cells come first");
-    if (!cells.vertices.empty()) in_.fail(key + " stands here a second time", "one is needed");
+    FileCells& cells = sections_[section];
+    if (on_) in_.fail(key + " comes after the data", "points and cells come first");
+    if (!cells.vertices.empty()) in_.fail(key + " is given twice", "one is needed");
     cells_line_ = in_.scanner.line();
     const std::int64_t count = in_.count("the number of " + key);
     const std::int64_t size = in_.count("the size of " + key);
@@ -154,18 +153,18 @@ class Reader {
     }
   }
 
-  /// Before version 5: the number of vertices before those of each cell.
-  void read_counted_cells(VtkCells& cells, std::int64_t count, std::int64_t size, const std::string& key) {
+  /// Reads cells as before version 5: each cell's number of vertices before its vertices.
+  void read_counted_cells(FileCells& cells, std::int64_t count, std::int64_t size, const std::string& key) {
     in_.check_room(size, 4, key);
     if (count > size)
       in_.fail(key + " has " + std::to_string(count) + " cells in " + std::to_string(size) + " numbers",
                "each cell takes 2 at least");
-    if (size > 0) in_.end_heading();
+    if (size > 0) in_.begin_binary();
     cells.offsets.reserve(static_cast<std::size_t>(count) + 1);
     cells.vertices.reserve(static_cast<std::size_t>(size - count));
     std::int64_t left = size;
     for (std::int64_t c = 0; c < count; ++c) {
-      const std::int32_t vertices = left > 0 ? in_.list_entry(key) : 0;
+      const std::int32_t vertices = left > 0 ? in_.int32(key) : 0;
       if (left == 0 || vertices < 0 || vertices > --left) {
         in_.fail("cell " + std::to_string(c) + " (counted from 0) of " + key + " has " +
                      std::to_string(vertices) + " vertices where " + std::to_string(left) +
@@ -173,8 +172,7 @@ class Reader {
                  "the size of " + key + " counts all numbers that follow");
       }
       left -= vertices;
-      for (std::int32_t i = 0; i < vertices; ++i)
-        cells.vertices.push_back(checked_vertex(in_.list_entry(key), c));
+      for (std::int32_t i = 0; i < vertices; ++i) cells.vertices.push_back(checked_vertex(in_.int32(key), c));
       cells.offsets.push_back(static_cast<Offset>(cells.vertices.size()));
     }
     if (left != 0)
@@ -191,17 +189,17 @@ class Reader {
     return static_cast<Index>(vertex);
   }
 
-  /// From version 5 on: where each cell begins, then all vertices.
-  void read_offsets_and_vertices(VtkCells& cells, std::int64_t count, std::int64_t size,
+  /// Reads cells as from version 5 on: offsets, then vertices.
+  void read_offsets_and_vertices(FileCells& cells, std::int64_t count, std::int64_t size,
                                  const std::string& key) {
     if (count == 0) return;
     const auto read_part = [&](const char* name, std::int64_t entries) {
       if (upper_case(in_.word(name)) != name)
-        in_.fail(std::string(name) + " is missing in " + key, "it stands before its numbers");
+        in_.fail(std::string(name) + " is missing in " + key, "it comes before its numbers");
       const std::string type(in_.word("the type of the numbers"));
       DataArray part = in_.array(name, {}, entries, 1, type);
       std::erase_if(in_.facts,
-                    [&](const VtkArrayFacts& fact) { return !fact.association && fact.array == name; });
+                    [&](const ArrayFacts& fact) { return !fact.association && fact.array == name; });
       return part;
     };
     in_.check_room(count, 1, key);
@@ -209,7 +207,7 @@ class Reader {
     if (cells.offsets.empty() || cells.offsets.front() != 0 || cells.offsets.back() != size ||
         !std::is_sorted(cells.offsets.begin(), cells.offsets.end())) {
       throw in_.section_error(cells_line_,
-                              "the OFFSETS of " + key + " do not rise from 0 to " + std::to_string(size),
+                              "the OFFSETS of " + key + " do not ascend from 0 to " + std::to_string(size),
                               "each is where a cell begins, the last is the size of CONNECTIVITY");
     }
     const DataArray vertices = read_part("CONNECTIVITY", size);
@@ -227,7 +225,7 @@ class Reader {
               }
             }
           } else {
-            throw in_.section_error(cells_line_, "the CONNECTIVITY of " + key + " is no list of integers",
+            throw in_.section_error(cells_line_, "the CONNECTIVITY of " + key + " is not a list of integers",
                                     "an integer type is needed");
           }
         },
@@ -238,12 +236,12 @@ class Reader {
     types_line_ = in_.scanner.line();
     const std::int64_t count = in_.count("the number of CELL_TYPES");
     in_.check_room(count, 4, "CELL_TYPES");
-    if (count > 0) in_.end_heading();
+    if (count > 0) in_.begin_binary();
     std::vector<std::uint8_t>& types = sections_[0].types;
     types.clear();
     types.reserve(static_cast<std::size_t>(count));
     for (std::int64_t c = 0; c < count; ++c) {
-      const std::int32_t type = in_.list_entry("CELL_TYPES");
+      const std::int32_t type = in_.int32("CELL_TYPES");
       if (type < 0 || type > 255)
         in_.fail("cell " + std::to_string(c) + " (counted from 0) has the type " + std::to_string(type),
                  "VTK's types run from 0 to 81");
@@ -265,44 +263,44 @@ class Reader {
   [[nodiscard]] std::int64_t owner_count() const {
     if (on_ == Association::vertices) return mesh_.vertex_count();
     std::int64_t cells = 0;
-    for (const VtkCells& section : sections_) cells += static_cast<std::int64_t>(section.offsets.size()) - 1;
+    for (const FileCells& section : sections_) cells += static_cast<std::int64_t>(section.offsets.size()) - 1;
     return cells;
   }
 
   void keep(DataArray array) {
     for (const DataArray& other : mesh_.data) {
       if (other.association == array.association && other.name == array.name)
-        in_.fail("the array '" + shown(array.name) + "' stands here a second time", "names must differ");
+        in_.fail("the array '" + shown(array.name) + "' is given twice", "names must differ");
     }
-    add_vtk_array(mesh_, std::move(array));
+    add_array(mesh_, std::move(array));
   }
 
-  /// SCALARS, VECTORS and their like; false for another keyword.
+  /// Reads SCALARS, VECTORS and similar; returns false for another keyword.
   bool read_attribute(const std::string& key) {
-    const auto attribute = std::find_if(kVtkLegacyAttributes.begin(), kVtkLegacyAttributes.end(),
-                                        [&](const VtkLegacyAttribute& a) { return a.keyword == key; });
-    if (attribute == kVtkLegacyAttributes.end()) return false;
+    const auto attribute = std::find_if(kLegacyAttributes.begin(), kLegacyAttributes.end(),
+                                        [&](const LegacyAttribute& a) { return a.keyword == key; });
+    if (attribute == kLegacyAttributes.end()) return false;
     const std::string name = percent_decoded(in_.word("the name of " + key));
     std::int64_t components = attribute->components;
-    if (attribute->role == VtkRole::texture_coordinates || attribute->role == VtkRole::color_scalars)
-      components = in_.integer("the components of " + key);
+    if (attribute->role == Role::texture_coordinates || attribute->role == Role::color_scalars)
+      components = in_.text_integer("the components of " + key);
 
-    VtkRoleOfArray role{attribute->role, *on_, name, {}};
+    ArrayRole role{attribute->role, *on_, name, {}};
     std::string type = in_.binary ? "unsigned_char" : "float";
-    if (attribute->role != VtkRole::color_scalars) type = in_.word("the type of " + key);
-    if (attribute->role == VtkRole::scalars) {
-      components = in_.scanner.at_line_end() ? 1 : in_.integer("the components of SCALARS");
+    if (attribute->role != Role::color_scalars) type = in_.word("the type of " + key);
+    if (attribute->role == Role::scalars) {
+      components = in_.scanner.at_line_end() ? 1 : in_.text_integer("the components of SCALARS");
       if (upper_case(in_.word("LOOKUP_TABLE")) != "LOOKUP_TABLE")
         in_.fail("SCALARS '" + shown(name) + "' has no LOOKUP_TABLE",
                  "'LOOKUP_TABLE default' follows its name and type");
       role.lookup_table = in_.word("the name of the lookup table");
     }
-    residue_->roles.push_back(std::move(role));
+    metadata_->roles.push_back(std::move(role));
     keep(in_.array(name, on_, owner_count(), components, type));
     return true;
   }
 
-  /// Arrays of points or cells, or of the whole mesh before both.
+  /// Reads arrays of points or cells; before both, arrays of the whole mesh.
   void read_field() {
     in_.word("the name of the FIELD");
     const std::int64_t arrays = in_.count("the number of arrays of the FIELD");
@@ -320,7 +318,7 @@ class Reader {
       if (on_) {
         keep(std::move(array));
       } else {
-        residue_->fields.push_back(std::move(array));
+        metadata_->fields.push_back(std::move(array));
       }
     }
   }
@@ -330,7 +328,7 @@ class Reader {
     const std::int64_t size = in_.count("the size of the lookup table");
     std::string content;
     if (in_.binary) {
-      in_.end_heading();
+      in_.begin_binary();
       content = in_.scanner.binary_block(4 * size, "the lookup table");
     } else {
       in_.check_room(4 * size, 1, "the lookup table");
@@ -343,11 +341,11 @@ class Reader {
     layout_.lookup_tables.push_back({*on_, name, static_cast<Index>(size), std::move(content)});
   }
 
-  // ---- the whole
+  // ---- the end
 
   void finish() {
-    if (!has_points_) in_.fail("there are no POINTS", "the file may be cut short");
-    VtkCells all = layout_.polydata ? polydata_cells() : std::move(sections_[0]);
+    if (!has_points_) in_.fail("the file has no POINTS", "the file may be cut short");
+    FileCells all = layout_.polydata ? polydata_cells() : std::move(sections_[0]);
     if (all.types.size() + 1 != all.offsets.size()) {
       throw in_.section_error(types_line_,
                               "there are " + std::to_string(all.types.size()) + " CELL_TYPES for " +
@@ -362,7 +360,7 @@ class Reader {
     const bool old_order = version_ < kLastVersion &&
                            std::any_of(all.types.begin(), all.types.end(), is_higher_order_hexahedron);
     const std::vector<std::uint8_t> types = old_order ? all.types : std::vector<std::uint8_t>{};
-    take_vtk_cells(
+    take_cells(
         mesh_, std::move(all),
         [&](const std::string& what, const std::string& remedy) {
           return in_.section_error(types_line_, what, remedy);
@@ -371,17 +369,17 @@ class Reader {
     if (old_order) swap_hexahedron_edges(mesh_, types, mesh_.cells);
 
     layout_.binary = in_.binary;
-    residue_->facts = std::move(in_.facts);
-    residue_->legacy = std::move(layout_);
-    mesh_.format_metadata = residue_;
+    metadata_->facts = std::move(in_.facts);
+    metadata_->legacy = std::move(layout_);
+    mesh_.format_metadata = metadata_;
   }
 
-  /// The cells of all sections of a POLYDATA file; each section is a block.
-  VtkCells polydata_cells() {
-    VtkCells all;
+  /// Returns the cells of all sections of a POLYDATA file; each section is a block.
+  FileCells polydata_cells() {
+    FileCells all;
     std::vector<Index> blocks;
     for (std::size_t s = 0; s < sections_.size(); ++s) {
-      VtkCells& section = sections_[s];
+      FileCells& section = sections_[s];
       const std::size_t count = section.offsets.size() - 1;
       if (count > 0) blocks.push_back(index_size(all.types));
       const auto shift = static_cast<Offset>(all.vertices.size());
@@ -409,20 +407,20 @@ class Reader {
     }
   }
 
-  VtkLegacyInput in_;
+  LegacyInput in_;
   Mesh mesh_;
-  std::shared_ptr<VtkMetadata> residue_ = std::make_shared<VtkMetadata>();
-  VtkLegacyLayout layout_;
+  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  LegacyLayout layout_;
   int version_ = 0;
   bool has_points_ = false;
-  std::array<VtkCells, 4> sections_;  // an unstructured grid has the first alone
+  std::array<FileCells, 4> sections_;  // an unstructured grid has the first alone
   std::int64_t cells_line_ = 0;
   std::int64_t types_line_ = 0;
-  std::optional<Association> on_;  // what the arrays that follow belong to
+  std::optional<Association> on_;  // the owner of the arrays that follow
 };
 
 }  // namespace
 
-Mesh read_vtk_legacy(const std::filesystem::path& path, Notes& notes) { return Reader(path).read(notes); }
+Mesh read_legacy(const std::filesystem::path& path, Notes& notes) { return Reader(path).read(notes); }
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

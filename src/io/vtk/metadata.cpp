@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/vtk/metadata.hpp"
-
 #include "io/labels.hpp"
 #include "io/unsupported.hpp"
-#include "io/vtk/cells.hpp"
+#include "io/vtk/vtk.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
 constexpr std::string_view kSetPrefix = "set:";
@@ -20,7 +20,7 @@ Index owner_count(const Mesh& mesh, Association association) {
   return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
 }
 
-/// The members that an array of marks or ranks names, or nothing when it is neither.
+/// Returns the members of a set that an array of marks or ranks gives; nothing if the array is neither.
 template <class Number>
 std::optional<std::vector<Index>> members_of(const std::vector<Number>& marks) {
   Index count = 0;
@@ -41,7 +41,8 @@ std::optional<std::vector<Index>> members_of(const std::vector<Number>& marks) {
   return members;
 }
 
-/// Membership as an array: 1 for a member when they rise, else the rank of each, so that their order stays.
+/// Returns membership as an array: 1 for each member if they ascend, else their ranks, which keep their
+/// order.
 Values marks_of(const EntitySet& set, Index count) {
   if (std::adjacent_find(set.members.begin(), set.members.end(), std::greater_equal<>()) ==
       set.members.end()) {
@@ -70,18 +71,18 @@ std::vector<Number> filled(const DataArray& array, const std::vector<Number>& va
   return result;
 }
 
-/// Hands out names that no other array of the same owner has; VTK keeps arrays by name.
+/// Makes array names distinct, as VTK looks arrays up by name.
 class Names {
  public:
   std::string unused(const std::string& wanted, Association association, Notes& notes) {
     std::string name = wanted.empty() ? "array" : wanted;
     for (char& c : name) {
-      if (static_cast<unsigned char>(c) < ' ') c = '_';  // XML has no such characters
+      if (static_cast<unsigned char>(c) < ' ') c = '_';  // not allowed in XML
     }
     for (int i = 2; !taken_.emplace(association, name).second; ++i) name = wanted + "_" + std::to_string(i);
     if (name != wanted)
-      notes.push_back("the array '" + wanted + "' on " + std::string(meshorder::name(association)) +
-                      " is written as '" + name + "'");
+      notes.push_back(
+          fmt::format("the array '{}' on {} is written as '{}'", wanted, to_string(association), name));
     return name;
   }
 
@@ -103,32 +104,44 @@ bool filled_with_nan(const DataArray& array) {
          std::holds_alternative<std::vector<float>>(array.values);
 }
 
+bool is_from_vtk(const Mesh& mesh) {
+  return dynamic_cast<const Metadata*>(mesh.format_metadata.get()) != nullptr;
+}
+
+/// Returns the metadata of a mesh that came from VTK, or empty ones; notes those of another format.
+const Metadata& metadata_of(const Mesh& mesh, Notes& notes) {
+  static const Metadata none;
+  if (!mesh.format_metadata) return none;
+  if (const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get())) return *own;
+  note_metadata_unsupported(mesh, "VTK", notes);
+  return none;
+}
+
 }  // namespace
 
-std::vector<std::string> VtkMetadata::contents() const {
+std::vector<std::string> Metadata::contents() const {
   std::vector<std::string> result;
   for (const DataArray& field : fields) result.push_back("the field '" + field.name + "' of the whole mesh");
   if (legacy) {
     for (const auto& table : legacy->lookup_tables) result.push_back("the lookup table '" + table.name + "'");
   }
-  for (const VtkArrayFacts& fact : facts) {
+  for (const ArrayFacts& fact : facts) {
     if (!fact.information.empty() || !fact.xml_information.empty())
       result.push_back("the information of the array '" + fact.array + "'");
   }
   return result;
 }
 
-const VtkArrayFacts* find_facts(const VtkMetadata& metadata, std::optional<Association> association,
-                                std::string_view array) {
-  const auto found = std::find_if(
-      metadata.facts.begin(), metadata.facts.end(),
-      [&](const VtkArrayFacts& fact) { return fact.association == association && fact.array == array; });
+const ArrayFacts* find_facts(const Metadata& metadata, std::optional<Association> association,
+                             std::string_view array) {
+  const auto found = std::find_if(metadata.facts.begin(), metadata.facts.end(), [&](const ArrayFacts& fact) {
+    return fact.association == association && fact.array == array;
+  });
   return found == metadata.facts.end() ? nullptr : &*found;
 }
 
-void add_vtk_array(Mesh& mesh, DataArray array) {
-  if (array.name == kVtkTypes && find_array(mesh, kVtkTypes, array.association) != nullptr)
-    return;  // known already
+void add_array(Mesh& mesh, DataArray array) {
+  if (array.name == kCellTypes && find_array(mesh, kCellTypes, array.association) != nullptr) return;
   if (array.name.starts_with(kSetPrefix) && array.components == 1 && array.is_dense()) {
     auto members = std::visit(
         [](const auto& values) -> std::optional<std::vector<Index>> {
@@ -145,66 +158,62 @@ void add_vtk_array(Mesh& mesh, DataArray array) {
   mesh.data.push_back(std::move(array));
 }
 
-VtkArrays vtk_arrays(const Mesh& mesh, Notes& notes) {
-  VtkArrays result;
-  Names names;
-  const auto make = [&](DataArray array) {
-    result.made.push_back(std::make_shared<DataArray>(std::move(array)));
-    result.all.push_back(result.made.back().get());
-  };
+WriteContext::WriteContext(const Mesh& mesh_, const std::filesystem::path& path, Notes& notes_)
+    : mesh(mesh_),
+      notes(notes_),
+      metadata(metadata_of(mesh, notes)),
+      types(cell_types(mesh, path.string(), is_from_vtk(mesh))) {
+  collect_arrays();
+}
 
+void WriteContext::add_made(DataArray array) {
+  made_.push_back(std::make_unique<DataArray>(std::move(array)));
+  arrays.push_back(made_.back().get());
+}
+
+void WriteContext::collect_arrays() {
+  Names names;
   for (const DataArray& array : mesh.data) {
-    if (array.association == Association::cells && array.name == kVtkTypes) continue;  // the types say it
+    // written as the cell types
+    if (array.association == Association::cells && array.name == kCellTypes) continue;
     const std::string name = names.unused(array.name, array.association, notes);
     if (array.is_dense() && name == array.name) {
-      result.all.push_back(&array);
+      arrays.push_back(&array);
       continue;
     }
     if (!array.is_dense()) {
-      notes.push_back("the array '" + array.name + "' is given for some " +
-                      std::string(meshorder::name(array.association)) + "; the others get " +
-                      (filled_with_nan(array) ? "NaN" : "0"));
+      notes.push_back(fmt::format("the array '{}' is given for some {}; the others get {}", array.name,
+                                  to_string(array.association), filled_with_nan(array) ? "NaN" : "0"));
     }
-    make(full_copy(array, owner_count(mesh, array.association)));
-    result.made.back()->name = name;
+    add_made(full_copy(array, owner_count(mesh, array.association)));
+    made_.back()->name = name;
   }
 
-  const bool from_vtk = dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get()) != nullptr;
   for (const EntitySet& set : mesh.sets) {
     const std::string name = names.unused(std::string(kSetPrefix) + set.name, set.association, notes);
-    if (!from_vtk) {
-      notes.push_back("the set '" + set.name + "' of " + std::string(meshorder::name(set.association)) +
-                      " is written as the array '" + name + "'");
+    if (!is_from_vtk(mesh)) {
+      notes.push_back(fmt::format("the set '{}' of {} is written as the array '{}'", set.name,
+                                  to_string(set.association), name));
     }
-    make({name, set.association, 1, marks_of(set, owner_count(mesh, set.association)), {}, {}});
+    add_made({name, set.association, 1, marks_of(set, owner_count(mesh, set.association)), {}, {}});
   }
 
   const auto add_ids = [&](const std::vector<std::int64_t>& ids, const char* wanted,
                            Association association) {
     if (ids.empty()) return;
     const std::string name = names.unused(wanted, association, notes);
-    notes.push_back("the ids of " + std::string(meshorder::name(association)) +
-                    " are written as the array '" + name + "'");
-    make({name, association, 1, label_values(ids), {}, {}});
+    notes.push_back(fmt::format("the ids of {} are written as the array '{}'", to_string(association), name));
+    add_made({name, association, 1, label_values(ids), {}, {}});
   };
   add_ids(mesh.vertex_ids, "vertex_id", Association::vertices);
   add_ids(mesh.cell_ids, "cell_id", Association::cells);
-  return result;
 }
 
-const VtkMetadata& vtk_residue(const Mesh& mesh, Notes& notes) {
-  static const VtkMetadata none;
-  if (!mesh.format_metadata) return none;
-  if (const auto* own = dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get())) return *own;
-  note_residue_left_out(mesh, "VTK", notes);
-  return none;
-}
-
-bool points_are_floats(const Mesh& mesh, const VtkMetadata& metadata) {
+bool WriteContext::points_are_floats() const {
   return metadata.float_points && std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& point) {
            return std::all_of(point.begin(), point.end(),
                               [](double x) { return double{static_cast<float>(x)} == x; });
          });
 }
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

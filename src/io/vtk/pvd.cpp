@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/vtk/pvd.hpp"
-
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/vtu.hpp"
 
 #include <cmath>
 

@@ -3,17 +3,13 @@
 // Writer of VTK's XML files of unstructured grids:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 //
-// VTK's own writer (9.1) is not used: it writes names with & or < as they are, which is no XML, crashes over
-// pedigree ids that are texts, and does not notice that a disk is full when it closes a file.
-#include "io/vtk/vtu.hpp"
-
+// VTK's own writer (9.1) is not used: it writes names with & or < as they are, which is not XML, crashes on
+// pedigree ids that are strings, and does not notice a full disk when it closes a file.
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/base64.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/vtk/cells.hpp"
-#include "io/vtk/metadata.hpp"
-#include "io/vtk/numbers.hpp"
+#include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +23,7 @@
 #include <utility>
 #include <variant>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 20;  // bytes that are swapped and compressed at once
@@ -41,7 +37,7 @@ using Numbers =
                  std::span<const std::int32_t>, std::span<const std::uint32_t>, std::span<const std::int64_t>,
                  std::span<const std::uint64_t>, std::span<const char>>;
 
-/// An array of the file: its tag and its numbers; texts as their characters.
+/// An array of the file: its tag and its numbers; strings as their characters.
 struct Array {
   std::string tag;  // without format and end
   Numbers numbers;
@@ -50,7 +46,7 @@ struct Array {
   std::uint64_t offset = 0;
 };
 
-/// The part of the file that an array stands in, and its attributes.
+/// A part of the file with arrays: its opening and closing tags.
 struct Section {
   std::string begin;
   std::string end;
@@ -60,14 +56,7 @@ struct Section {
 class Writer {
  public:
   Writer(const Mesh& mesh, const std::filesystem::path& path, Notes& notes)
-      : mesh_(mesh),
-        notes_(notes),
-        residue_(vtk_residue(mesh, notes)),
-        encoding_(residue_.vtu.value_or(VtuEncoding{})),
-        types_(vtk_types(mesh, path.string(),
-                         dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get()) != nullptr)),
-        data_(vtk_arrays(mesh, notes)),
-        out_(path) {}
+      : from_(mesh, path, notes), encoding_(from_.metadata.vtu.value_or(VtuEncoding{})), out_(path) {}
 
   void write() {
     note_legacy_parts();
@@ -90,23 +79,23 @@ class Writer {
   [[nodiscard]] std::size_t header_size() const { return encoding_.wide_headers ? 8 : 4; }
 
   void note_legacy_parts() {
-    if (residue_.legacy) {
-      for (const auto& table : residue_.legacy->lookup_tables)
-        notes_.push_back("left out, as VTU cannot hold it: the lookup table '" + table.name + "'");
+    if (from_.metadata.legacy) {
+      for (const auto& table : from_.metadata.legacy->lookup_tables)
+        from_.notes.push_back("not written (VTU has no place for it): the lookup table '" + table.name + "'");
     }
-    for (const VtkArrayFacts& fact : residue_.facts) {
+    for (const ArrayFacts& fact : from_.metadata.facts) {
       if (!fact.information.empty())
-        notes_.push_back("left out, as VTU has it in another form: the information of the array '" +
-                         fact.array + "'");
+        from_.notes.push_back("not written (VTU files store it differently): the information of the array '" +
+                              fact.array + "'");
     }
   }
 
-  // ---- what is written
+  // ---- arrays
 
   void collect() {
-    if (!residue_.fields.empty()) {
+    if (!from_.metadata.fields.empty()) {
       Section& fields = sections_.emplace_back(Section{"    <FieldData>\n", "    </FieldData>\n", {}});
-      for (const DataArray& field : residue_.fields) fields.arrays.push_back(array_of(field, {}));
+      for (const DataArray& field : from_.metadata.fields) fields.arrays.push_back(array_of(field, {}));
     }
     collect_data(Association::vertices);
     collect_data(Association::cells);
@@ -119,26 +108,27 @@ class Writer {
     const std::string_view name = association == Association::vertices ? "PointData" : "CellData";
     section.begin = fmt::format("      <{}{}>\n", name, roles(association));
     section.end = fmt::format("      </{}>\n", name);
-    for (const DataArray* array : data_.all) {
+    for (const DataArray* array : from_.arrays) {
       if (array->association == association) section.arrays.push_back(array_of(*array, association));
     }
     sections_.push_back(std::move(section));
   }
 
-  /// The attributes that name the arrays in roles.
+  /// Returns the attributes that name the arrays with roles.
   [[nodiscard]] std::string roles(Association association) const {
     std::string result;
-    for (std::size_t role = 0; role < kVtuRoles.size(); ++role) {
+    for (std::size_t role = 0; role < kXmlRoles.size(); ++role) {
       const auto found =
-          std::find_if(residue_.roles.begin(), residue_.roles.end(), [&](const VtkRoleOfArray& r) {
-            const VtkRole kind = r.role == VtkRole::color_scalars ? VtkRole::scalars : r.role;
-            const bool there = std::any_of(data_.all.begin(), data_.all.end(), [&](const DataArray* array) {
-              return array->association == association && array->name == r.array;
-            });
-            return r.association == association && kind == static_cast<VtkRole>(role) && there;
+          std::find_if(from_.metadata.roles.begin(), from_.metadata.roles.end(), [&](const ArrayRole& r) {
+            const Role kind = r.role == Role::color_scalars ? Role::scalars : r.role;
+            const bool there =
+                std::any_of(from_.arrays.begin(), from_.arrays.end(), [&](const DataArray* array) {
+                  return array->association == association && array->name == r.array;
+                });
+            return r.association == association && kind == static_cast<Role>(role) && there;
           });
-      if (found != residue_.roles.end())
-        result += fmt::format(" {}=\"{}\"", kVtuRoles[role], xml_escaped(found->array));
+      if (found != from_.metadata.roles.end())
+        result += fmt::format(" {}=\"{}\"", kXmlRoles[role], xml_escaped(found->array));
     }
     return result;
   }
@@ -146,9 +136,9 @@ class Writer {
   Array array_of(const DataArray& array, std::optional<Association> association) {
     Array result;
     const bool text = std::holds_alternative<std::vector<std::string>>(array.values);
-    const VtkArrayFacts* facts = find_facts(residue_, association, array.name);
+    const ArrayFacts* facts = find_facts(from_.metadata, association, array.name);
     result.tag =
-        fmt::format("<{} type=\"{}\"", text ? "Array" : "DataArray", kVtuTypeNames[array.values.index()]);
+        fmt::format("<{} type=\"{}\"", text ? "Array" : "DataArray", kXmlTypeNames[array.values.index()]);
     if (facts != nullptr && facts->type == "vtkIdType" &&
         std::holds_alternative<std::vector<std::int64_t>>(array.values))
       result.tag += " IdType=\"1\"";
@@ -180,9 +170,9 @@ class Writer {
 
   Array points() {
     Array result;
-    const bool floats = points_are_floats(mesh_, residue_);
-    const std::span<const double> numbers(mesh_.points.empty() ? nullptr : mesh_.points.front().data(),
-                                          3 * mesh_.points.size());
+    const bool floats = from_.points_are_floats();
+    const std::span<const double> numbers(
+        from_.mesh.points.empty() ? nullptr : from_.mesh.points.front().data(), 3 * from_.mesh.points.size());
     result.numbers = numbers;
     if (floats) {
       for (const double x : numbers) float_points_.push_back(static_cast<float>(x));
@@ -193,14 +183,9 @@ class Writer {
     return result;
   }
 
-  /// Vertices, ends and types of the cells; VTK wants the first two in one type.
+  /// Returns the vertices, ends and types of the cells; VTK requires one number type for the first two.
   std::vector<Array> cells() {
-    const bool swapped = std::any_of(types_.begin(), types_.end(), has_order_of_its_own);
-    if (swapped) {
-      changed_ = mesh_.cells;
-      swap_to_vtk(types_, changed_);
-    }
-    const Cells& cells = swapped ? changed_ : mesh_.cells;
+    const Cells& cells = from_.cells();
     const bool narrow = cells.offsets.back() <= kMaxIndex;
     std::vector<Array> result(3);
     if (narrow) {
@@ -212,7 +197,7 @@ class Writer {
       result[0].numbers = std::span<const std::int64_t>(wide_vertices_);
       result[1].numbers = std::span<const std::int64_t>(cells.offsets).subspan(1);
     }
-    result[2].numbers = std::span<const std::uint8_t>(types_);
+    result[2].numbers = std::span<const std::uint8_t>(from_.types);
     const char* const type = narrow ? "Int32" : "Int64";
     result[0].tag = fmt::format("<DataArray type=\"{}\" Name=\"connectivity\"", type);
     result[1].tag = fmt::format("<DataArray type=\"{}\" Name=\"offsets\"", type);
@@ -226,7 +211,7 @@ class Writer {
     return std::visit([](const auto& numbers) { return std::uint64_t{numbers.size_bytes()}; }, array.numbers);
   }
 
-  /// Hands out the bytes of an array, in the byte order of the file, block by block.
+  /// Calls `take` with the bytes of an array, in the byte order of the file, block by block.
   template <class Take>
   void for_blocks(const Array& array, const Take& take) const {
     std::visit(
@@ -257,7 +242,7 @@ class Writer {
     return blocks;
   }
 
-  /// Words of a header, in the byte order of the file.
+  /// Returns words of a header in the byte order of the file.
   [[nodiscard]] std::string words(const std::vector<std::uint64_t>& values) const {
     std::string result;
     for (const std::uint64_t value : values) {
@@ -269,8 +254,8 @@ class Writer {
     return result;
   }
 
-  /// The header of compressed blocks: how many, the bytes of each, of the last where it has fewer, and the
-  /// compressed bytes.
+  /// Returns the header of compressed blocks: their number, the bytes of each and of a shorter last one, and
+  /// the compressed bytes of each.
   [[nodiscard]] std::string block_header(const Array& array, const std::vector<std::string>& blocks) const {
     std::vector<std::uint64_t> values{blocks.size(), kBlock, byte_count(array) % kBlock};
     for (const std::string& block : blocks) values.push_back(block.size());
@@ -292,7 +277,7 @@ class Writer {
     }
   }
 
-  /// What `produce` puts, as it is or as base64 with an end of its own.
+  /// Writes the bytes that `produce` puts, raw or as one base64 text.
   template <class Produce>
   void write_coded(const Produce& produce) {
     if (!coded()) {
@@ -304,7 +289,7 @@ class Writer {
     out_.write(base64.finish());
   }
 
-  /// Numbers as text, six in a line.
+  /// Writes numbers as text, six a line.
   void write_text(const Array& array) {
     std::visit(
         [&](const auto& numbers) {
@@ -330,7 +315,7 @@ class Writer {
     }
   }
 
-  /// Finds where appended arrays begin.
+  /// Computes the offsets of appended arrays.
   void place() {
     std::uint64_t offset = 0;
     for (Section& section : sections_) {
@@ -350,8 +335,8 @@ class Writer {
   }
 
   void write_header() {
-    // 2.1 and later tell of the order of nodes of VTK 9, 1.0 of wide headers
-    const bool order = std::any_of(types_.begin(), types_.end(), is_higher_order_hexahedron);
+    // 2.1 and later imply VTK 9's order of nodes, 1.0 and later allow wide headers
+    const bool order = std::any_of(from_.types.begin(), from_.types.end(), is_higher_order_hexahedron);
     out_.print(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"{}\" byte_order=\"{}\" "
         "header_type=\"{}\"",
@@ -361,14 +346,14 @@ class Writer {
         encoding_.order == std::endian::big ? "BigEndian" : "LittleEndian",
         encoding_.wide_headers ? "UInt64" : "UInt32");
     if (encoding_.compressor != Compressor::none)
-      out_.print(" compressor=\"{}\"", kVtuCompressors[static_cast<std::size_t>(encoding_.compressor)]);
+      out_.print(" compressor=\"{}\"", kCompressors[static_cast<std::size_t>(encoding_.compressor)]);
     out_.write(">\n  <UnstructuredGrid>\n");
-    if (residue_.fields.empty()) begin_piece();
+    if (from_.metadata.fields.empty()) begin_piece();
   }
 
   void begin_piece() {
-    out_.print("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", mesh_.vertex_count(),
-               mesh_.cell_count());
+    out_.print("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", from_.mesh.vertex_count(),
+               from_.mesh.cell_count());
   }
 
   void write_section(const Section& section) {
@@ -405,21 +390,16 @@ class Writer {
     out_.write("\n  </AppendedData>\n");
   }
 
-  const Mesh& mesh_;
-  Notes& notes_;
-  const VtkMetadata& residue_;
+  WriteContext from_;
   VtuEncoding encoding_;
-  std::vector<std::uint8_t> types_;
-  VtkArrays data_;
   OutputFile out_;
   std::vector<Section> sections_;
 
-  // what arrays show that the mesh does not have
+  // numbers of arrays that the mesh does not have
   std::vector<std::shared_ptr<std::string>> texts_;
   std::vector<float> float_points_;
   std::vector<std::int32_t> ends_;
   std::vector<std::int64_t> wide_vertices_;
-  Cells changed_;
 };
 
 }  // namespace
@@ -428,6 +408,6 @@ void write_vtu(const Mesh& mesh, const std::filesystem::path& path, Notes& notes
   Writer(mesh, path, notes).write();
 }
 
-Format vtu_format() { return {"VTU", {".vtu"}, false, read_vtu, write_vtu}; }
+}  // namespace meshorder::vtk
 
-}  // namespace meshorder
+meshorder::Format meshorder::vtu_format() { return {"VTU", {".vtu"}, false, vtk::read_vtu, vtk::write_vtu}; }

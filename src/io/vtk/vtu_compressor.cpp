@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
 constexpr int kLevel = 5;  // VTK's default, of 1 to 9
@@ -86,4 +86,4 @@ bool VtuCompressor::uncompress(std::span<const char> bytes, std::span<char> targ
          written == target.size();
 }
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

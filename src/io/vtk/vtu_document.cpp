@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/vtk/vtu_document.hpp"
 
-#include "io/vtk/vtu.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <array>
 #include <charconv>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -20,7 +20,7 @@ bool is_name_character(char c) {
          c == '-' || c == '.';
 }
 
-/// One entity of XML, "lt" or "#65"; empty when it is none.
+/// Decodes one entity of XML, "lt" or "#65"; empty if it is none.
 std::string entity(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, char>, 5> kNamed{
       {{"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}}};
@@ -110,12 +110,10 @@ std::int64_t VtuDocument::count(const VtuElement& element, std::string_view name
   return value;
 }
 
-/// Reads a start tag at `at`; returns where it ends.
+/// Parses a start tag at `at`; returns its end.
 std::size_t VtuDocument::parse_tag(std::size_t at, VtuElement& element, bool& closed) const {
   const std::string_view all = scanner_.all();
-  const auto broken = [&] {
-    return error_at(at, "a tag is broken here", "the file is no XML or is cut short");
-  };
+  const auto broken = [&] { return error_at(at, "malformed tag", "the file is not XML or is cut short"); };
   element.at = at;
   std::size_t p = at + 1;
   const auto take_name = [&] {
@@ -173,15 +171,16 @@ void VtuDocument::parse() {
   while (!finished) {
     const std::size_t tag = all.find('<', p);
     if (tag == std::string_view::npos) {
-      if (open.empty()) throw error_at(0, "this is no XML", "a file of VTK begins with <VTKFile …>");
-      throw error_at(all.size(), "the file ends within <" + open.back().name + ">", "it may be cut short");
+      if (open.empty()) throw error_at(0, "is not XML", "a file of VTK begins with <VTKFile …>");
+      throw error_at(all.size(), "unexpected end of file in <" + open.back().name + ">",
+                     "it may be cut short");
     }
     if (!open.empty() && open.back().text.data() == nullptr) open.back().text = all.substr(p, tag - p);
     const std::string_view rest = all.substr(tag);
     const auto skip_to = [&](std::string_view end) {
       const std::size_t found = all.find(end, tag);
       if (found == std::string_view::npos)
-        throw error_at(tag, "a tag is broken here", "the file is no XML or is cut short");
+        throw error_at(tag, "malformed tag", "the file is not XML or is cut short");
       p = found + end.size();
     };
     if (rest.starts_with("<?")) {
@@ -189,7 +188,7 @@ void VtuDocument::parse() {
     } else if (rest.starts_with("<!--")) {
       skip_to("-->");
     } else if (rest.starts_with("<!")) {
-      throw error_at(tag, "a declaration stands here", "elements alone are understood");
+      throw error_at(tag, "unexpected declaration", "only elements are supported");
     } else if (rest.starts_with("</")) {
       const std::size_t end = all.find('>', tag);
       const std::string_view name = end == std::string_view::npos ? "" : all.substr(tag + 2, end - tag - 2);
@@ -207,7 +206,7 @@ void VtuDocument::parse() {
       p = element.end = parse_tag(tag, element, closed);
       if (element.name == "AppendedData") {
         if (open.size() != 1)
-          throw error_at(tag, "<AppendedData> stands at a wrong place", "it is the last in <VTKFile>");
+          throw error_at(tag, "<AppendedData> is misplaced", "it must be the last in <VTKFile>");
         begin_appended(element, p);
         VtuElement root = std::move(open.back());
         open.pop_back();
@@ -268,12 +267,12 @@ void VtuDocument::read_root() {
   encoding_.wide_headers = header != nullptr && *header == "UInt64";
   if (const std::string* compressor = root_.attribute("compressor");
       compressor != nullptr && !compressor->empty()) {
-    const auto found = std::find(kVtuCompressors.begin(), kVtuCompressors.end(), *compressor);
-    if (found == kVtuCompressors.end())
+    const auto found = std::find(kCompressors.begin(), kCompressors.end(), *compressor);
+    if (found == kCompressors.end())
       throw error(root_, "the compressor is '" + compressor->substr(0, 40) + "'",
                   "zlib, LZ4 and LZMA are understood");
-    encoding_.compressor = static_cast<VtuEncoding::Compressor>(found - kVtuCompressors.begin());
+    encoding_.compressor = static_cast<VtuEncoding::Compressor>(found - kCompressors.begin());
   }
 }
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

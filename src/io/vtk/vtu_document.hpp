@@ -2,7 +2,7 @@
 #pragma once
 
 #include "io/stream/scanner.hpp"
-#include "io/vtk/metadata.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace meshorder {
+namespace meshorder::vtk {
 
 /// An element of a .vtu file.
 struct VtuElement {
@@ -21,45 +21,45 @@ struct VtuElement {
   std::vector<std::pair<std::string, std::string>> attributes;
   std::size_t at = 0;     ///< byte of its <
   std::size_t end = 0;    ///< byte after it
-  std::string_view text;  ///< what stands before the first element in it
+  std::string_view text;  ///< its text up to its first child
   std::vector<VtuElement> children;
 
-  /// The value of an attribute, or nullptr.
+  /// Returns the value of an attribute, or nullptr.
   [[nodiscard]] const std::string* attribute(std::string_view wanted) const;
-  /// The first child of that name, or nullptr.
+  /// Returns the first child of that name, or nullptr.
   [[nodiscard]] const VtuElement* child(std::string_view wanted) const;
 };
 
-/// A .vtu file taken apart: its elements, and where its arrays' bytes are.
+/// A parsed .vtu file: its elements and the bytes of its arrays.
 class VtuDocument {
  public:
-  /// Throws Error for a file that is no XML, ends early or is not of the type UnstructuredGrid.
+  /// Throws Error for a file that is not XML, ends early or is not of the type UnstructuredGrid.
   explicit VtuDocument(const std::filesystem::path& path);
 
   [[nodiscard]] const VtuElement& root() const noexcept { return root_; }
   [[nodiscard]] const VtuEncoding& encoding() const noexcept { return encoding_; }
-  /// Ten times the version.
+  /// Returns ten times the version.
   [[nodiscard]] int version() const noexcept { return version_; }
 
-  /// An Error at the line of that element.
+  /// Makes an Error at the line of that element.
   [[nodiscard]] Error error(const VtuElement& at, const std::string& what, const std::string& remedy) const {
     return error_at(at.at, what, remedy);
   }
 
-  /// An element as it stands in the file.
+  /// Returns an element verbatim.
   [[nodiscard]] std::string source(const VtuElement& element) const {
     return std::string(scanner_.all().substr(element.at, element.end - element.at));
   }
 
-  /// An attribute that must be there.
+  /// Returns a required attribute.
   [[nodiscard]] const std::string& required(const VtuElement& element, std::string_view name) const;
-  /// A number of things in an attribute, 0 … kMaxIndex.
+  /// Returns a count in an attribute, 0 … kMaxIndex.
   [[nodiscard]] std::int64_t count(const VtuElement& element, std::string_view name) const;
 
-  /// The values of an array, `count` in all, in the number type that it names. Nothing is allocated beyond
-  /// what the file's size allows. Throws Error when there are more or fewer.
+  /// Returns the `count` values of an array in its number type. Throws Error if there are more or fewer;
+  /// allocates no more than the size of the file allows.
   [[nodiscard]] Values values(const VtuElement& array, std::int64_t count) const;
-  /// How that array is stored.
+  /// Returns how that array is stored.
   [[nodiscard]] VtuEncoding::Mode mode(const VtuElement& array) const;
 
  private:
@@ -90,4 +90,4 @@ class VtuDocument {
   bool appended_base64_ = false;
 };
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

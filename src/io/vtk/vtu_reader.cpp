@@ -3,11 +3,9 @@
 // Reader of VTK's XML files of unstructured grids:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 //
-// VTK's own reader is not used: it allocates what a header promises, reads past the end of damaged arrays,
-// cannot read the NaN that VTK writes as text, and tells of faults on the standard error output.
-#include "io/vtk/cells.hpp"
-#include "io/vtk/metadata.hpp"
-#include "io/vtk/vtu.hpp"
+// VTK's own reader is not used: it trusts the sizes in a header when it allocates, reads past the end of
+// damaged arrays, cannot read the NaN that VTK writes as text, and reports faults on standard error.
+#include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
 
 #include <fmt/format.h>
@@ -18,10 +16,10 @@
 #include <type_traits>
 #include <utility>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
-/// Appends what one piece has to what others had, of the same type.
+/// Appends the values of one piece to those of others, of the same type.
 void append(Values& values, Values more) {
   std::visit(
       [&](auto& all) {
@@ -39,7 +37,7 @@ class Reader {
     const VtuElement* grid = file_.root().child("UnstructuredGrid");
     if (grid == nullptr)
       throw file_.error(file_.root(), "there is no <UnstructuredGrid>", "the file may be cut short");
-    residue_->vtu = file_.encoding();
+    metadata_->vtu = file_.encoding();
     int pieces = 0;
     for (const VtuElement& element : grid->children) {
       if (element.name == "FieldData") {
@@ -57,14 +55,14 @@ class Reader {
 
  private:
   void note_unknown(const VtuElement& element) {
-    notes_.push_back("the element <" + element.name + "> is left out");
+    notes_.push_back("the element <" + element.name + "> is ignored");
   }
 
   static bool is_array(const VtuElement& element) {
     return element.name == "DataArray" || element.name == "Array";
   }
 
-  /// False for a piece without anything.
+  /// Returns false for an empty piece.
   bool read_piece(const VtuElement& piece) {
     const std::int64_t points = file_.count(piece, "NumberOfPoints");
     const std::int64_t cells = file_.count(piece, "NumberOfCells");
@@ -101,8 +99,8 @@ class Reader {
                         "3 are needed");
     const Values values = file_.values(array, 3 * count);
     if (mesh_.points.empty()) {
-      residue_->float_points = std::holds_alternative<std::vector<float>>(values);
-      residue_->vtu->mode = file_.mode(array);
+      metadata_->float_points = std::holds_alternative<std::vector<float>>(values);
+      metadata_->vtu->mode = file_.mode(array);
     }
     const std::size_t first = mesh_.points.size();
     mesh_.points.resize(first + static_cast<std::size_t>(count));
@@ -110,10 +108,10 @@ class Reader {
         [&](const auto& numbers) {
           using Number = typename std::decay_t<decltype(numbers)>::value_type;
           if constexpr (std::is_same_v<Number, std::string>) {
-            throw file_.error(array, "the points are texts", "Float32 or Float64 is needed");
+            throw file_.error(array, "the points are strings", "Float32 or Float64 is needed");
           } else {
             if constexpr (!std::is_floating_point_v<Number>)
-              notes_.push_back("the points are integers and are carried as Float64");
+              notes_.push_back("the points are integers and are stored as Float64");
             for (std::size_t i = 0; i < numbers.size(); ++i) {
               const auto x = static_cast<double>(numbers[i]);
               if (!std::isfinite(x))
@@ -159,7 +157,7 @@ class Reader {
       if (!std::in_range<Offset>(end) || std::cmp_less(end, last)) {
         throw file_.error(
             offsets, fmt::format("cell {} (counted from 0) ends at {}, before it begins at {}", c, end, last),
-            "offsets rise");
+            "offsets must ascend");
       }
       last = static_cast<Offset>(end);
       return first_entry + last;
@@ -184,7 +182,7 @@ class Reader {
     });
   }
 
-  /// Appends `checked(i, number)` of every number of an array.
+  /// Appends `checked(i, number)` for every number of an array.
   template <class Number, class Checked>
   void append_integers(const VtuElement& array, std::int64_t count, std::vector<Number>& target,
                        const Checked& checked) {
@@ -199,7 +197,7 @@ class Reader {
             std::int64_t i = 0;
             for (const Stored number : numbers) target.push_back(checked(i++, number));
           } else {
-            throw file_.error(array, "the array holds no integers", "Int32 or Int64 is usual");
+            throw file_.error(array, "the array does not hold integers", "Int32 or Int64 is usual");
           }
         },
         values);
@@ -210,7 +208,7 @@ class Reader {
       throw file_.error(array, "the file holds several time steps", "save each step as a file of its own");
   }
 
-  /// An array of PointData, CellData or FieldData with what belongs to it.
+  /// Reads an array of PointData, CellData or FieldData.
   DataArray read_array(const VtuElement& element, std::optional<Association> association,
                        std::int64_t tuples) {
     refuse_time_steps(element);
@@ -222,7 +220,7 @@ class Reader {
     array.components = static_cast<Index>(components);
     array.values = file_.values(element, tuples * components);
     if (*element.attribute("type") == "Bit")
-      notes_.push_back("the array '" + array.name + "' holds bits, which are carried as bytes");
+      notes_.push_back("the array '" + array.name + "' holds bits, which are stored as bytes");
     for (std::int64_t i = 0; i < components && i < 64; ++i) {
       const std::string* name = element.attribute("ComponentName" + std::to_string(i));
       if (name == nullptr) continue;
@@ -234,7 +232,7 @@ class Reader {
   }
 
   void read_facts(const VtuElement& element, std::optional<Association> association, const DataArray& array) {
-    VtkArrayFacts facts{association, array.name, {}, {}, {}};
+    ArrayFacts facts{association, array.name, {}, {}, {}};
     const std::string* id = element.attribute("IdType");
     if (id != nullptr && *id == "1" && std::holds_alternative<std::vector<std::int64_t>>(array.values))
       facts.type = "vtkIdType";
@@ -244,8 +242,8 @@ class Reader {
       facts.xml_information += file_.source(key) + "\n";
     }
     if ((!facts.type.empty() || !facts.xml_information.empty()) &&
-        find_facts(*residue_, association, array.name) == nullptr)
-      residue_->facts.push_back(std::move(facts));
+        find_facts(*metadata_, association, array.name) == nullptr)
+      metadata_->facts.push_back(std::move(facts));
   }
 
   void read_fields(const VtuElement& fields) {
@@ -254,20 +252,19 @@ class Reader {
         note_unknown(element);
         continue;
       }
-      residue_->fields.push_back(read_array(element, {}, file_.count(element, "NumberOfTuples")));
+      metadata_->fields.push_back(read_array(element, {}, file_.count(element, "NumberOfTuples")));
     }
   }
 
   void read_data(const VtuElement& section, Association association, std::int64_t tuples) {
-    for (std::size_t role = 0; role < kVtuRoles.size(); ++role) {
-      const std::string* name = section.attribute(kVtuRoles[role]);
+    for (std::size_t role = 0; role < kXmlRoles.size(); ++role) {
+      const std::string* name = section.attribute(kXmlRoles[role]);
       if (name == nullptr || name->empty()) continue;
-      const auto kind = static_cast<VtkRole>(role);
-      const bool known =
-          std::any_of(residue_->roles.begin(), residue_->roles.end(), [&](const VtkRoleOfArray& other) {
-            return other.role == kind && other.association == association;
-          });
-      if (!known) residue_->roles.push_back({kind, association, *name, {}});
+      const auto kind = static_cast<Role>(role);
+      const bool known = std::any_of(
+          metadata_->roles.begin(), metadata_->roles.end(),
+          [&](const ArrayRole& other) { return other.role == kind && other.association == association; });
+      if (!known) metadata_->roles.push_back({kind, association, *name, {}});
     }
     std::vector<std::string> names;
     for (const VtuElement& element : section.children) {
@@ -277,8 +274,7 @@ class Reader {
       }
       DataArray array = read_array(element, association, tuples);
       if (std::find(names.begin(), names.end(), array.name) != names.end())
-        throw file_.error(element, "the array '" + array.name + "' stands here a second time",
-                          "names must differ");
+        throw file_.error(element, "the array '" + array.name + "' is given twice", "names must differ");
       names.push_back(array.name);
       const auto before = std::find_if(arrays_.begin(), arrays_.end(), [&](const DataArray& other) {
         return other.association == association && other.name == array.name;
@@ -300,7 +296,7 @@ class Reader {
                            std::any_of(cells_.types.begin(), cells_.types.end(), is_higher_order_hexahedron);
     const std::vector<std::uint8_t> types = old_order ? cells_.types : std::vector<std::uint8_t>{};
     const VtuElement& at = types_ != nullptr ? *types_ : grid;
-    take_vtk_cells(
+    take_cells(
         mesh_, std::move(cells_),
         [&](const std::string& what, const std::string& remedy) { return file_.error(at, what, remedy); },
         notes_);
@@ -310,18 +306,18 @@ class Reader {
       if (row_count(array) != needed)
         throw file_.error(grid, "the array '" + array.name + "' is missing in a piece",
                           "all pieces have the same arrays");
-      add_vtk_array(mesh_, std::move(array));
+      add_array(mesh_, std::move(array));
     }
     if (old_order) swap_hexahedron_edges(mesh_, types, mesh_.cells);
-    mesh_.format_metadata = residue_;
+    mesh_.format_metadata = metadata_;
   }
 
   VtuDocument file_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<VtkMetadata> residue_ = std::make_shared<VtkMetadata>();
+  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   std::vector<DataArray> arrays_;
-  VtkCells cells_;
+  FileCells cells_;
   const VtuElement* types_ = nullptr;
 };
 
@@ -329,4 +325,4 @@ class Reader {
 
 Mesh read_vtu(const std::filesystem::path& path, Notes& notes) { return Reader(path, notes).read(); }
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

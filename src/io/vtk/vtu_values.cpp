@@ -3,7 +3,7 @@
 // Arrays of .vtu files: text, base64 and raw bytes, plain or in compressed blocks.
 #include "base/text.hpp"
 #include "io/stream/base64.hpp"
-#include "io/vtk/numbers.hpp"
+#include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include "io/vtk/vtu_document.hpp"
 
@@ -17,7 +17,7 @@
 #include <limits>
 #include <type_traits>
 
-namespace meshorder {
+namespace meshorder::vtk {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -33,7 +33,7 @@ constexpr std::array<std::uint8_t, 256> kBase64 = [] {
 
 }  // namespace
 
-/// Where the bytes of an array are.
+/// Location of the bytes of an array.
 struct VtuDocument::Stored {
   std::uint64_t size = 0;                 // when uncompressed
   std::string decoded;                    // of base64
@@ -54,7 +54,7 @@ VtuEncoding::Mode VtuDocument::mode(const VtuElement& array) const {
   return appended_base64_ ? VtuEncoding::Mode::appended_base64 : VtuEncoding::Mode::appended_raw;
 }
 
-/// `bytes` bytes out of the characters that `text` begins with.
+/// Decodes `bytes` bytes from the beginning of `text`.
 std::string VtuDocument::base64(const VtuElement& array, std::string_view text, std::uint64_t bytes) const {
   if (base64_length(bytes) > text.size())
     throw error(array, "the array's bytes end early", "the file may be cut short");
@@ -67,7 +67,7 @@ std::string VtuDocument::base64(const VtuElement& array, std::string_view text, 
       const std::uint32_t value = kBase64[static_cast<unsigned char>(c)];
       // padding fills the last group alone
       if (value == 64 && (c != '=' || i <= used))
-        throw error(array, "the array is no base64", "letters, digits, + and / are needed");
+        throw error(array, "the array is not base64", "letters, digits, + and / are needed");
       packed = (packed << 6U) | (value & 63U);
     }
     for (std::size_t i = 0; i < used; ++i)
@@ -107,7 +107,7 @@ VtuDocument::Stored VtuDocument::locate(const VtuElement& array) const {
     locate_blocks(array, data, coded, stored);
     return stored;
   }
-  // a word that tells the bytes, and the bytes
+  // a word with the number of bytes, then the bytes
   const std::string head =
       coded ? base64(array, data, header_size()) : std::string(data.substr(0, header_size()));
   if (head.size() < header_size())
@@ -128,8 +128,8 @@ VtuDocument::Stored VtuDocument::locate(const VtuElement& array) const {
   return stored;
 }
 
-/// Words that tell the number of blocks, the bytes of each and of the last, and the compressed bytes of each;
-/// then the blocks.
+/// Locates compressed blocks. Words give the number of blocks, the bytes of each and of the last, and the
+/// compressed bytes of each; the blocks follow.
 void VtuDocument::locate_blocks(const VtuElement& array, std::string_view data, bool coded,
                                 Stored& stored) const {
   const auto early = [&] { return error(array, "the array's bytes end early", "the file may be cut short"); };
@@ -157,7 +157,7 @@ void VtuDocument::locate_blocks(const VtuElement& array, std::string_view data, 
         stored.compressed.back() * VtuCompressor::greatest_ratio(encoding_.compressor) + 1024;
     if (stored.uncompressed.back() > most) {
       throw error(array,
-                  fmt::format("a block of {} bytes promises {}", stored.compressed.back(),
+                  fmt::format("a block of {} bytes cannot hold {}", stored.compressed.back(),
                               stored.uncompressed.back()),
                   "the array is damaged");
     }
@@ -171,7 +171,7 @@ void VtuDocument::locate_blocks(const VtuElement& array, std::string_view data, 
   }
 }
 
-/// Puts the bytes, uncompressed, where they are wanted.
+/// Copies the uncompressed bytes to `target`.
 void VtuDocument::copy(const VtuElement& array, const Stored& stored, char* target) const {
   if (stored.compressed.empty()) {
     if (!stored.bytes.empty()) std::memcpy(target, stored.bytes.data(), stored.bytes.size());
@@ -205,7 +205,7 @@ std::vector<Number> VtuDocument::words(const VtuElement& array, std::int64_t cou
     Number value{};
     const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
     const bool whole = end == word.data() + word.size();
-    // a real number that is too small to matter is 0
+    // underflow is 0
     const bool tiny = std::is_floating_point_v<Number> && code == std::errc::result_out_of_range && whole &&
                       word.find_first_of("eE") != std::string_view::npos &&
                       word[word.find_first_of("eE") + 1] == '-';
@@ -243,7 +243,7 @@ std::vector<Number> VtuDocument::numbers(const VtuElement& array, std::int64_t c
   return result;
 }
 
-/// Bits of an array of type Bit, eight in a byte, the first the highest; in text as numbers.
+/// Reads the bits of an array of type Bit: eight a byte, the first the highest; in text as numbers.
 std::vector<std::uint8_t> VtuDocument::bits(const VtuElement& array, std::int64_t count) const {
   if (mode(array) == VtuEncoding::Mode::ascii) return words<std::uint8_t>(array, count);
   const std::vector<std::uint8_t> packed = numbers<std::uint8_t>(array, (count + 7) / 8);
@@ -252,7 +252,7 @@ std::vector<std::uint8_t> VtuDocument::bits(const VtuElement& array, std::int64_
   return result;
 }
 
-/// Texts that end with a zero byte.
+/// Reads strings that end with a zero byte.
 std::vector<std::string> VtuDocument::strings(const VtuElement& array, std::int64_t count) const {
   std::string bytes;
   if (mode(array) == VtuEncoding::Mode::ascii) {
@@ -288,11 +288,11 @@ std::vector<std::string> VtuDocument::strings(const VtuElement& array, std::int6
 Values VtuDocument::values(const VtuElement& array, std::int64_t count) const {
   const std::string& type = required(array, "type");
   if (type == "Bit") return bits(array, count);
-  const auto found = std::find(kVtuTypeNames.begin(), kVtuTypeNames.end(), type);
-  if (found == kVtuTypeNames.end())
+  const auto found = std::find(kXmlTypeNames.begin(), kXmlTypeNames.end(), type);
+  if (found == kXmlTypeNames.end())
     throw error(array, "the type is '" + type.substr(0, 40) + "'",
                 "Int8 … UInt64, Float32, Float64 or String is needed");
-  Values values = values_of_type(static_cast<std::size_t>(found - kVtuTypeNames.begin()));
+  Values values = values_of_type(static_cast<std::size_t>(found - kXmlTypeNames.begin()));
   std::visit(
       [&](auto& result) {
         using Number = typename std::decay_t<decltype(result)>::value_type;
@@ -306,4 +306,4 @@ Values VtuDocument::values(const VtuElement& array, std::int64_t count) const {
   return values;
 }
 
-}  // namespace meshorder
+}  // namespace meshorder::vtk

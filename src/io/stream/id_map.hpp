@@ -10,12 +10,12 @@
 
 namespace meshorder {
 
-/// The numbers that a file gives to its vertices or cells, in file order, and the way back from such a number
-/// to its position (counted from 0). Numbers that run without gaps cost no memory, others a table while they
-/// are dense, else a hash map.
-class Numbering {
+/// The ids that a file gives to its vertices or cells, in file order, and a map from ids back to positions,
+/// counted from 0. Consecutive ids take no memory, others a table while they are dense, else a hash map.
+class IdMap {
  public:
-  /// The number of the next position. False, and nothing added, when that number was given before. O(1).
+  /// Appends the id of the next position. Returns false and leaves the map unchanged if `id` is already
+  /// present. O(1).
   bool add(std::int64_t id) {
     if (ids_.empty() &&
         (size_ == 0 || (id > first_ && above_first(id) == static_cast<std::uint64_t>(size_)))) {
@@ -25,7 +25,7 @@ class Numbering {
     }
     if (find(id) >= 0) return false;
     if (ids_.empty()) {
-      // the run ends here: from now on every number is kept
+      // no longer consecutive: from now on every id is kept
       for (Index i = 0; i < size_; ++i) keep(first_ + i, i);
     }
     keep(id, size_);
@@ -33,7 +33,7 @@ class Numbering {
     return true;
   }
 
-  /// The position of that number, −1 when there is none. O(1).
+  /// Returns the position of `id`, −1 if it is not present. O(1).
   [[nodiscard]] Index find(std::int64_t id) const {
     if (ids_.empty()) {
       const bool within = id >= first_ && above_first(id) < static_cast<std::uint64_t>(size_);
@@ -46,17 +46,17 @@ class Numbering {
 
   [[nodiscard]] Index size() const noexcept { return size_; }
 
-  /// The number at that position. O(1).
+  /// Returns the id at that position. O(1).
   [[nodiscard]] std::int64_t id(Index position) const {
     return ids_.empty() ? first_ + position : ids_[position];
   }
 
-  /// Whether the numbers are base, base + 1, … (or there are none).
+  /// Returns whether the ids are base, base + 1, … (or there are none).
   [[nodiscard]] bool runs_from(std::int64_t base) const noexcept {
     return size_ == 0 || (ids_.empty() && first_ == base);
   }
 
-  /// All numbers; empty when they are base, base + 1, …
+  /// Returns all ids; none if they are base, base + 1, …
   [[nodiscard]] std::vector<std::int64_t> ids_unless_from(std::int64_t base) const {
     std::vector<std::int64_t> result;
     if (runs_from(base)) return result;
@@ -73,7 +73,7 @@ class Numbering {
 
   void keep(std::int64_t id, Index position) {
     ids_.push_back(id);
-    // a table of a few entries for each number so far; what lies beyond goes into the map
+    // a table of a few entries for each id so far; ids beyond it go into the map
     const std::int64_t dense = 4 * std::int64_t{size_} + 1024;
     if (id < 0 || id >= dense || id >= kMaxIndex / 2) {
       sparse_.emplace(id, position);
@@ -85,7 +85,7 @@ class Numbering {
 
   Index size_ = 0;
   std::int64_t first_ = 0;
-  std::vector<std::int64_t> ids_;  // empty as long as they run without gaps
+  std::vector<std::int64_t> ids_;  // empty as long as they are consecutive
   std::vector<Index> table_;       // id → position or −1
   std::unordered_map<std::int64_t, Index> sparse_;
 };

@@ -1,0 +1,46 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/stream/scanner.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace meshorder {
+
+/// Reads numbers that are text or binary, as the file's header says. Errors name the line of a text file, the
+/// byte of a binary one. `what` names the number in an error.
+struct NumberReader {
+  explicit NumberReader(const std::filesystem::path& path) : scanner(path) {}
+
+  /// Throws an Error at the current line or byte.
+  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
+
+  std::int32_t int32(std::string_view what);
+  std::int64_t int64(std::string_view what);
+  double real(std::string_view what);
+  double finite(std::string_view what);
+
+  /// Reads a count of items that take at least that many bytes each (see Scanner::count).
+  Index count(std::string_view what, std::int64_t text_bytes, std::int64_t binary_bytes);
+  /// Checks a count that was read already; `bytes` is the minimum in the file's encoding.
+  [[nodiscard]] Index checked_count(std::int64_t number, std::string_view what, std::int64_t bytes) const;
+
+  // ---- text, also in binary files
+  std::string_view word(std::string_view what);
+  std::int64_t text_integer(std::string_view what);
+  double text_real(std::string_view what);
+  /// Returns the integer that `text` is.
+  [[nodiscard]] std::int64_t parsed(std::string_view text, std::string_view what) const;
+  /// In a binary file, moves to the line after this one, where binary numbers begin.
+  void begin_binary();
+
+  Scanner scanner;
+  bool binary = false;
+  std::endian order = std::endian::native;  ///< of binary numbers
+};
+
+}  // namespace meshorder

@@ -1,0 +1,235 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/error.hpp"
+#include "io/format.hpp"
+#include "io/vtu.hpp"
+#include "mesh/mesh.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+/// Declarations shared by the readers and writers of VTK's two formats, .vtu and legacy .vtk.
+namespace meshorder::vtk {
+
+// ---- number types
+
+/// Names of number types in .vtu files and in legacy files, in the order of the alternatives of Values.
+inline constexpr std::array<std::string_view, std::variant_size_v<Values>> kXmlTypeNames{
+    "Float64", "Float32", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "String"};
+inline constexpr std::array<std::string_view, std::variant_size_v<Values>> kLegacyTypeNames{
+    "double", "float",        "char",         "unsigned_char", "short", "unsigned_short",
+    "int",    "unsigned_int", "vtktypeint64", "vtktypeuint64", "string"};
+
+/// Returns no values of the number type with that index.
+inline Values values_of_type(std::size_t alternative) {
+  Values result;
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (void)((I == alternative && (result.emplace<I>(), true)) || ...);
+  }
+  (std::make_index_sequence<std::variant_size_v<Values>>());
+  return result;
+}
+
+/// Converts integers to the type Target; returns none if the values are not integers.
+template <class Target>
+std::vector<Target> integers_of(const Values& values) {
+  return std::visit(
+      [](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        std::vector<Target> result;
+        if constexpr (std::is_integral_v<Number>) result.assign(numbers.begin(), numbers.end());
+        return result;
+      },
+      values);
+}
+
+// ---- metadata
+
+/// The uses of arrays that VTK distinguishes: the scalars that a viewer colours by, and so on.
+enum class Role : std::uint8_t {
+  scalars,
+  vectors,
+  normals,
+  texture_coordinates,
+  tensors,
+  global_ids,
+  pedigree_ids,
+  edge_flag,
+  tangents,
+  rational_weights,
+  higher_order_degrees,
+  color_scalars,  ///< in legacy files only
+};
+
+/// XML attributes that name the array of a role, in the order of Role.
+inline constexpr std::array<std::string_view, 11> kXmlRoles{
+    "Scalars",     "Vectors",  "Normals",  "TCoords",         "Tensors",           "GlobalIds",
+    "PedigreeIds", "EdgeFlag", "Tangents", "RationalWeights", "HigherOrderDegrees"};
+
+/// A keyword of legacy files that gives an array a role.
+struct LegacyAttribute {
+  std::string_view keyword;
+  Role role;
+  int components;  ///< required; 0: any
+};
+
+inline constexpr std::array kLegacyAttributes{
+    LegacyAttribute{"SCALARS", Role::scalars, 0},
+    LegacyAttribute{"COLOR_SCALARS", Role::color_scalars, 0},
+    LegacyAttribute{"VECTORS", Role::vectors, 3},
+    LegacyAttribute{"NORMALS", Role::normals, 3},
+    LegacyAttribute{"TEXTURE_COORDINATES", Role::texture_coordinates, 0},
+    LegacyAttribute{"TENSORS", Role::tensors, 9},
+    LegacyAttribute{"TENSORS6", Role::tensors, 6},
+    LegacyAttribute{"GLOBAL_IDS", Role::global_ids, 1},
+    LegacyAttribute{"PEDIGREE_IDS", Role::pedigree_ids, 1},
+    LegacyAttribute{"EDGE_FLAGS", Role::edge_flag, 1},
+};
+
+/// Sections of cells in legacy POLYDATA files, in the order in which cell data counts them.
+inline constexpr std::array<std::string_view, 4> kPolydataSections{"VERTICES", "LINES", "POLYGONS",
+                                                                   "TRIANGLE_STRIPS"};
+
+/// The array name under which facts about the coordinates are kept.
+inline constexpr std::string_view kPoints = "POINTS";
+
+/// XML names of compressors, in the order of VtuEncoding::Compressor.
+inline constexpr std::array<std::string_view, 4> kCompressors{
+    "", "vtkZLibDataCompressor", "vtkLZ4DataCompressor", "vtkLZMADataCompressor"};
+
+/// An array and its role. If a legacy file has several of one role, the first counts.
+struct ArrayRole {
+  Role role;
+  Association association;
+  std::string array;
+  std::string lookup_table;  ///< legacy scalars: the name of their table
+};
+
+/// Properties of an array that DataArray does not hold.
+struct ArrayFacts {
+  std::optional<Association> association;  ///< none: an array of the whole mesh
+  std::string array;
+  std::string type;             ///< a number type that Values does not tell: "vtkIdType", "long"
+  std::string information;      ///< legacy: the lines of its INFORMATION
+  std::string xml_information;  ///< .vtu: its InformationKey elements
+};
+
+/// Layout of a legacy file.
+struct LegacyLayout {
+  std::string version = "4.2";
+  std::string title = "written by meshorder";
+  bool binary = true;
+  bool polydata = false;
+  struct LookupTable {
+    Association association;
+    std::string name;
+    Index size;
+    std::string content;  ///< verbatim, text or bytes
+  };
+  std::vector<LookupTable> lookup_tables;
+};
+
+/// Data of VTK's files beyond the mesh, kept by both readers for both writers.
+struct Metadata : FormatMetadata {
+  std::vector<DataArray> fields;  ///< arrays of the whole mesh; their association and indices mean nothing
+  std::vector<ArrayRole> roles;
+  std::vector<ArrayFacts> facts;
+  bool float_points = false;
+  std::optional<VtuEncoding> vtu;
+  std::optional<LegacyLayout> legacy;
+
+  [[nodiscard]] std::vector<std::string> contents() const override;
+};
+
+/// Returns the facts of an array, or nullptr.
+const ArrayFacts* find_facts(const Metadata& metadata, std::optional<Association> association,
+                             std::string_view array);
+
+// ---- cells
+
+/// The cell array of VTK's cell types, kept where shape and number of vertices do not determine them: a
+/// Lagrange tetrahedron of 10 nodes is not a quadratic one.
+inline constexpr std::string_view kCellTypes = "vtk:type";
+
+/// Cells as in VTK's files: type numbers of vtkCellType.h; cell c has the vertices from `offsets[c]` on.
+struct FileCells {
+  std::vector<std::uint8_t> types;
+  std::vector<Offset> offsets{0};
+  std::vector<Index> vertices;
+};
+
+/// Makes the Error for a fault of the cell types: (what, remedy).
+using ErrorAt = std::function<Error(const std::string&, const std::string&)>;
+
+/// Gives `mesh` these cells, with their vertices in the order of a Mesh. Pixels and voxels become quads and
+/// hexahedra (noted); type numbers that shape and vertices do not determine are kept as the array kCellTypes.
+/// Throws `error` for types without a Shape and for cells with a wrong number of vertices. O(vertex entries).
+void take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes);
+
+/// Returns VTK's type number of every cell. Throws Error that names the first cell that VTK's files cannot
+/// hold; node orders above second order are known for meshes from VTK only (`higher_orders`).
+std::vector<std::uint8_t> cell_types(const Mesh& mesh, const std::string& file, bool higher_orders);
+
+/// Returns true for higher-order hexahedra, whose nodes VTK numbered differently before VTK 9 (files before
+/// XML version 2.1 and legacy version 5.1).
+bool is_higher_order_hexahedron(std::uint8_t type);
+
+/// Swaps the two edges that VTK 9 numbers differently in all higher-order hexahedra of `cells`; its own
+/// inverse. Degrees come from the array HigherOrderDegrees of the mesh, if any.
+void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& types, Cells& cells);
+
+// ---- reading
+
+/// Adds an array of a file to the mesh. Integers named "set:NAME" that mark members (by 1, or by their rank
+/// from 1) become the set NAME.
+void add_array(Mesh& mesh, DataArray array);
+
+Mesh read_legacy(const std::filesystem::path& path, Notes& notes);
+Mesh read_vtu(const std::filesystem::path& path, Notes& notes);
+
+// ---- writing
+
+/// The input of both writers, made from a mesh. Borrows the mesh and the notes.
+///
+/// VTK's formats hold full arrays only: partial arrays are filled up, sets become arrays "set:NAME" and ids
+/// arrays "vertex_id" and "cell_id"; all of it noted. O(size of the arrays that are made).
+struct WriteContext {
+  /// Throws Error for cells that VTK's formats do not have.
+  WriteContext(const Mesh& mesh, const std::filesystem::path& path, Notes& notes);
+
+  /// Returns the cells in VTK's order of vertices; of VTK before version 9 if `old_hexahedra`. The result
+  /// belongs to the mesh or to this object.
+  const Cells& cells(bool old_hexahedra = false);
+
+  /// Whether the points were floats in their file and still can be written so without loss.
+  [[nodiscard]] bool points_are_floats() const;
+
+  const Mesh& mesh;
+  Notes& notes;
+  const Metadata& metadata;              ///< of a mesh that came from VTK; else empty
+  std::vector<std::uint8_t> types;       ///< of the cells
+  std::vector<const DataArray*> arrays;  ///< full arrays with distinct names, in order
+
+ private:
+  void collect_arrays();
+  void add_made(DataArray array);
+
+  std::vector<std::unique_ptr<DataArray>> made_;  // arrays that are not the mesh's
+  Cells changed_;
+};
+
+void write_vtu(const Mesh& mesh, const std::filesystem::path& path, Notes& notes);
+
+}  // namespace meshorder::vtk

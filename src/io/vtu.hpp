@@ -1,0 +1,33 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace meshorder {
+
+/// How a .vtu file stores its arrays.
+struct VtuEncoding {
+  enum class Mode : std::uint8_t { ascii, base64, appended_base64, appended_raw };
+  enum class Compressor : std::uint8_t { none, zlib, lz4, lzma };
+  Mode mode = Mode::appended_raw;
+  Compressor compressor = Compressor::none;
+  std::endian order = std::endian::native;
+  bool wide_headers = true;  ///< UInt64 rather than UInt32
+};
+
+/// One file of a .pvd collection.
+struct PvdEntry {
+  double time = 0;   ///< s
+  std::string file;  ///< its path, relative to the folder of the collection
+};
+
+/// Writes a collection of files of several times (.pvd), which ParaView opens as an animation. Throws Error
+/// if it cannot be written, InvalidArgument for a time that is not finite; leaves no partial file.
+/// O(entries). https://www.paraview.org/Wiki/ParaView/Data_formats
+void write_pvd(std::span<const PvdEntry> entries, const std::filesystem::path& path);
+
+}  // namespace meshorder
