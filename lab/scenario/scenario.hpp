@@ -147,9 +147,6 @@ inline constexpr std::array kLocalModels{
     std::pair(std::string_view("stvk"), LocalModel::stvk),
     std::pair(std::string_view("neo-hookean"), LocalModel::neo_hookean),
     std::pair(std::string_view("log-neo-hookean"), LocalModel::log_neo_hookean)};
-inline constexpr std::array kContactSolvers{
-    std::pair(std::string_view("uzawa"), ContactSolverKind::uzawa),
-    std::pair(std::string_view("gauss-seidel"), ContactSolverKind::gauss_seidel)};
 inline constexpr std::array kTangents{std::pair(std::string_view("exact"), Tangent::exact),
                                       std::pair(std::string_view("approximate"), Tangent::approximate),
                                       std::pair(std::string_view("projected"), Tangent::projected)};

@@ -3,7 +3,6 @@
 
 #include "base/error.hpp"
 #include "lab/contact/solve/dual_contact_solver.hpp"
-#include "lab/contact/solve/gauss_seidel.hpp"
 
 namespace meshorder {
 
@@ -13,12 +12,9 @@ std::unique_ptr<ContactSolver<Real>> ContactSolver<Real>::make(const SparseMatri
                                                                const ContactSolverOptions& options) {
   if (!(options.tolerance > 0.0)) throw InvalidArgument("ContactSolver: tolerance must be positive");
   if (options.max_iterations < 0) throw InvalidArgument("ContactSolver: max_iterations must not be negative");
-  if (!(options.over_relaxation > 0.0 && options.over_relaxation < 2.0))
-    throw InvalidArgument("ContactSolver: over_relaxation must be between 0 and 2");
   if (matrix.size() != factor.size())
     throw InvalidArgument("ContactSolver: the factor must be that of the matrix");
-  if (options.kind == ContactSolverKind::uzawa) return make_uzawa(matrix, factor, options);
-  return make_gauss_seidel(matrix, factor, options);
+  return make_uzawa(matrix, factor, options);
 }
 
 template class ContactSolver<double>;

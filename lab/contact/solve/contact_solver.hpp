@@ -4,20 +4,15 @@
 #include "lab/contact/search/contact.hpp"
 #include "lab/linear/cholesky/cholesky.hpp"
 
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace meshorder {
 
-enum class ContactSolverKind : std::uint8_t { uzawa, gauss_seidel };
-
 struct ContactSolverOptions {
-  ContactSolverKind kind = ContactSolverKind::uzawa;
-  double tolerance = 1e-3;       ///< > 0, relative, of the residual; see make_uzawa and make_gauss_seidel
-  int max_iterations = 200;      ///< of one call: multiplications by A⁻¹ at contacts, or sweeps
-  double over_relaxation = 1.9;  ///< of Gauss–Seidel, between 0 and 2
+  double tolerance = 1e-3;   ///< > 0, relative, of the residual; see make_uzawa
+  int max_iterations = 200;  ///< of one call: multiplications by A⁻¹ at contacts
 };
 
 struct ContactSolveReport {
