@@ -3,6 +3,7 @@
 
 #include "base/index.hpp"
 #include "base/point.hpp"
+#include "base/polymorphic.hpp"
 
 #include <cstddef>
 #include <span>
@@ -63,15 +64,8 @@ struct Balance {
 
 /// A body in time. It takes vertices and elements in the order in which they come. Vertices that no element
 /// uses stay where they are. The same bits on every run and for any number of threads.
-class Integrator {
+class Integrator : public detail::Polymorphic {
  public:
-  Integrator() = default;
-  Integrator(const Integrator&) = delete;
-  Integrator(Integrator&&) = delete;
-  Integrator& operator=(const Integrator&) = delete;
-  Integrator& operator=(Integrator&&) = delete;
-  virtual ~Integrator() = default;
-
   [[nodiscard]] virtual MotionState state() const = 0;
   /// Goes on from there. Throws InvalidArgument when the sizes differ or a number is not finite. A state
   /// without memory is one of a body that begins.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/point.hpp"
+#include "base/polymorphic.hpp"
 
 #include <array>
 #include <memory>
@@ -20,15 +21,8 @@ struct SurfacePoint {
 
 /// A rigid body at rest that others must stay outside of. Immutable; all functions may be called by several
 /// threads at a time.
-class Obstacle {
+class Obstacle : public detail::Polymorphic {
  public:
-  Obstacle() = default;
-  Obstacle(const Obstacle&) = delete;
-  Obstacle(Obstacle&&) = delete;
-  Obstacle& operator=(const Obstacle&) = delete;
-  Obstacle& operator=(Obstacle&&) = delete;
-  virtual ~Obstacle() = default;
-
   /// The nearest point of the surface, if it is within `reach` of `x` or x is inside. A vertex that was at
   /// `from`, outside, when the step began must be led back to the side that it came from: where x has passed
   /// through a thin wall, the point is on the wall's first side, and `distance` is negative.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/index.hpp"
+#include "base/polymorphic.hpp"
 
 #include <span>
 #include <vector>
@@ -18,15 +19,8 @@ struct ForceBounds {
 };
 
 /// How forces move contacts: a symmetric positive semidefinite matrix S.
-class ForceOperator {
+class ForceOperator : public detail::Polymorphic {
  public:
-  ForceOperator() = default;
-  ForceOperator(const ForceOperator&) = delete;
-  ForceOperator(ForceOperator&&) = delete;
-  ForceOperator& operator=(const ForceOperator&) = delete;
-  ForceOperator& operator=(ForceOperator&&) = delete;
-  virtual ~ForceOperator() = default;
-
   /// result = S forces
   virtual void multiply(std::span<const double> forces, std::span<double> result) = 0;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/point.hpp"
+#include "base/polymorphic.hpp"
 #include "kernels/block_csr.hpp"
 
 #include <cstddef>
@@ -14,15 +15,8 @@ namespace meshorder {
 
 /// Approximates the inverse of a symmetric positive definite matrix of 3×3 blocks. Symmetric and positive
 /// definite itself; the same bits for any number of threads.
-class Preconditioner {
+class Preconditioner : public detail::Polymorphic {
  public:
-  Preconditioner() = default;
-  Preconditioner(const Preconditioner&) = delete;
-  Preconditioner(Preconditioner&&) = delete;
-  Preconditioner& operator=(const Preconditioner&) = delete;
-  Preconditioner& operator=(Preconditioner&&) = delete;
-  virtual ~Preconditioner() = default;
-
   /// Takes over the numbers of a matrix of the pattern that it was made for. To be called before `apply`,
   /// and again when the matrix has changed.
   virtual void update(const BlockCsr& matrix) = 0;
