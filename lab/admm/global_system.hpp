@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lab/linear/cholesky/cholesky.hpp"
-#include "lab/motion/held_vertices.hpp"
+#include "lab/motion/loads.hpp"
 
 #include <optional>
 #include <span>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lab/admm/local_pass.hpp"
-#include "lab/linear/cholesky/sparse_matrix.hpp"
+#include "lab/linear/cholesky/ldl.hpp"
 
 #include <span>
 

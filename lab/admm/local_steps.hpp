@@ -5,7 +5,7 @@
 #include "kernels/owned_batches.hpp"
 #include "kernels/simplices.hpp"
 #include "lab/admm/local_elements.hpp"
-#include "lab/linear/cholesky/sparse_matrix.hpp"
+#include "lab/linear/cholesky/ldl.hpp"
 
 #include <cstdint>
 #include <span>

@@ -6,7 +6,7 @@
 #include "base/stopwatch.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/spmv.hpp"
-#include "lab/linear/cg/refinement.hpp"
+#include "lab/linear/cg/solve.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,6 @@
 #include "base/parallel.hpp"
 #include "kernels/positions.hpp"
 #include "lab/contact/geometry/box_tree.hpp"
-#include "lab/contact/geometry/halving.hpp"
 #include "lab/contact/search/body_surface.hpp"
 #include "lab/contact/search/self_contact.hpp"
 

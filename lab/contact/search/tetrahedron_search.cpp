@@ -3,7 +3,7 @@
 
 #include "base/parallel.hpp"
 #include "kernels/positions.hpp"
-#include "lab/contact/geometry/halving.hpp"
+#include "lab/contact/geometry/box_tree.hpp"
 #include "lab/contact/geometry/inside_tetrahedron.hpp"
 #include "lab/contact/search/branch_motions.hpp"
 #include "lab/contact/search/clearances.hpp"

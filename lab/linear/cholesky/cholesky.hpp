@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/aligned.hpp"
-#include "lab/linear/cholesky/sparse_matrix.hpp"
+#include "lab/linear/cholesky/ldl.hpp"
 
 #include <memory>
 #include <span>

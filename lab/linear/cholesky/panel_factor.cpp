@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/cholesky/panel_factor.hpp"
 
-#include "lab/linear/cholesky/solve_tasks.hpp"
 #include "lab/linear/cholesky/supernodes.hpp"
 
 #include <algorithm>
