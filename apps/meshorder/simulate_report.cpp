@@ -82,10 +82,10 @@ nlohmann::ordered_json to_json(const Balance& balance) {
 nlohmann::ordered_json material_json(const Scenario& scenario) {
   nlohmann::ordered_json json;
   if (scenario.is_implicit()) {
-    json["model"] = name_in(kMaterialModels, scenario.model);
-    json["tangent"] = name_in(kTangents, scenario.tangent);
+    json["model"] = to_string(scenario.model);
+    json["tangent"] = to_string(scenario.tangent);
   } else {
-    json["model"] = name_in(kLocalModels, scenario.projective().model);
+    json["model"] = to_string(scenario.projective().model);
   }
   if (!scenario.is_implicit() && has_stiffness(scenario.projective().model)) {
     json["stiffness"] = scenario.material.young;
@@ -101,7 +101,7 @@ nlohmann::ordered_json material_json(const Scenario& scenario) {
 nlohmann::ordered_json integrator_json(const ImplicitOptions& options) {
   return {{"method", "backward-euler"},
           {"time_step", options.time_step},
-          {"mass", name_in(kMasses, options.mass)},
+          {"mass", to_string(options.mass)},
           {"alpha", options.mass_damping},
           {"beta", options.stiffness_damping},
           {"gravity", options.gravity},
@@ -120,14 +120,14 @@ nlohmann::ordered_json integrator_json(const ProjectiveScenario& options) {
 }
 
 nlohmann::ordered_json solver_json(const ImplicitOptions& options) {
-  return {{"preconditioner", name_in(kPreconditioners, options.preconditioner)},
+  return {{"preconditioner", to_string(options.preconditioner)},
           {"tolerance", options.solve.tolerance},
           {"max_iterations", options.solve.max_iterations},
-          {"precision", name_in(kPrecisions, options.precision)}};
+          {"precision", to_string(options.precision)}};
 }
 
 nlohmann::ordered_json solver_json(const ProjectiveScenario& options) {
-  nlohmann::ordered_json json{{"precision", name_in(kPrecisions, options.precision)}};
+  nlohmann::ordered_json json{{"precision", to_string(options.precision)}};
   if (touches(options)) {
     json["contact"] = {{"method", "uzawa"},
                        {"tolerance", options.contact_solver.tolerance},
@@ -142,14 +142,13 @@ std::string material_in_words(const Scenario& scenario) {
   const Material& material = scenario.material;
   std::string words;
   if (scenario.is_implicit()) {
-    words = fmt::format("{} ({} tangent), E {:g} Pa, nu {:g}", name_in(kMaterialModels, scenario.model),
-                        name_in(kTangents, scenario.tangent), material.young, material.poisson);
+    words = fmt::format("{} ({} tangent), E {:g} Pa, nu {:g}", to_string(scenario.model),
+                        to_string(scenario.tangent), material.young, material.poisson);
   } else if (const LocalModel model = scenario.projective().model; has_stiffness(model)) {
-    words = fmt::format("{}, k {:g} {}", name_in(kLocalModels, model), material.young,
+    words = fmt::format("{}, k {:g} {}", to_string(model), material.young,
                         model == LocalModel::springs ? "N/m" : "Pa");
   } else {
-    words =
-        fmt::format("{}, E {:g} Pa, nu {:g}", name_in(kLocalModels, model), material.young, material.poisson);
+    words = fmt::format("{}, E {:g} Pa, nu {:g}", to_string(model), material.young, material.poisson);
   }
   words += fmt::format(", rho {:g} kg/m³", material.density);
   if (!scenario.regions.empty()) words += fmt::format(", {} regions", scenario.regions.size());
@@ -157,8 +156,8 @@ std::string material_in_words(const Scenario& scenario) {
 }
 
 std::string method_in_words(const ImplicitOptions& options) {
-  return fmt::format("backward Euler, CG with {} to {:g}{}",
-                     name_in(kPreconditioners, options.preconditioner), options.solve.tolerance,
+  return fmt::format("backward Euler, CG with {} to {:g}{}", to_string(options.preconditioner),
+                     options.solve.tolerance,
                      options.precision == MatrixPrecision::single ? " in single" : "");
 }
 

@@ -43,8 +43,8 @@ HWY_INLINE void pass_any(const LocalPass<typename Lanes::Number>& pass) {
   using Value = typename Lanes::Value;
   constexpr Index kBatchOf = kLocalBatch<Number>;
   // squares between these bounds have full precision
-  constexpr double kLeast = std::is_same_v<Number, float> ? 1e-30 : 1e-280;
-  constexpr double kMost = 1.0 / kLeast;
+  constexpr double kMin = std::is_same_v<Number, float> ? 1e-30 : 1e-280;
+  constexpr double kMax = 1.0 / kMin;
   const Value half = Lanes::set(0.5);
   const Value factor = Lanes::set(pass.scale * pass.stiffness);
   const auto count = static_cast<Offset>(pass.share.batches.size());
@@ -64,7 +64,7 @@ HWY_INLINE void pass_any(const LocalPass<typename Lanes::Number>& pass) {
       for (int c = 0; c < 3; ++c) q[c] = q[c] - b[c] + Lanes::load(duals + c * kBatchOf + lane);
       Value direction[3];
       const Value square = squared_length<Lanes>(q);
-      if (Lanes::all_at_most(square, kMost) && Lanes::all_at_most(Lanes::set(kLeast) - square, 0.0)) {
+      if (Lanes::all_at_most(square, kMax) && Lanes::all_at_most(Lanes::set(kMin) - square, 0.0)) {
         const Value inverse = Lanes::set(1.0) / Lanes::square_root(square);
         MESHORDER_UNROLL
         for (int c = 0; c < 3; ++c) direction[c] = inverse * q[c];

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "kernels/material.hpp"
 #include "kernels/owned_batches.hpp"
 #include "kernels/simplices.hpp"
@@ -27,6 +28,15 @@ enum class LocalModel : std::uint8_t {
   stvk,         ///< D x = F, U = VΨ(F) of MaterialModel::stvk, w² = V times the bulk modulus
   neo_hookean,  ///< the same of MaterialModel::neo_hookean
   log_neo_hookean,  ///< ½μ(‖F‖² − 3) − μ log J + ½λ log² J, infinite for J ≤ 0 (Bonet, Wood 1997)
+};
+
+template <>
+struct EnumNames<LocalModel> {
+  static constexpr std::string_view kind = "material model";
+  static constexpr std::array names{
+      std::pair{LocalModel::springs, "springs"}, std::pair{LocalModel::strain, "strain"},
+      std::pair{LocalModel::stvk, "stvk"}, std::pair{LocalModel::neo_hookean, "neo-hookean"},
+      std::pair{LocalModel::log_neo_hookean, "log-neo-hookean"}};
 };
 
 struct LocalLaw {

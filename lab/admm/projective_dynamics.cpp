@@ -70,7 +70,8 @@ ProjectiveDynamics<Real>::ProjectiveDynamics(std::span<const Point> points, cons
   if (options_.acceleration > 0) acceleration_.emplace(options_.acceleration);
   if (options_.contact.obstacles.empty() && !options_.contact.with_itself) return;
   contacts_.emplace(ContactFinder(body.simplices, points, options_.contact));
-  contact_solver_ = ContactSolver<Real>::make(system_.matrix(), system_.factor(), options_.contact_solver);
+  contact_solver_ =
+      DualContactSolver<Real>::make(system_.matrix(), system_.factor(), options_.contact_solver);
 }
 
 template <class Real>
@@ -111,7 +112,8 @@ StepReport ProjectiveDynamics<Real>::step() {
   StepReport report;
   collect_loads(options_, steps_, masses_, loads_, held_);
   if (system_.hold(held_) && contacts_)
-    contact_solver_ = ContactSolver<Real>::make(system_.matrix(), system_.factor(), options_.contact_solver);
+    contact_solver_ =
+        DualContactSolver<Real>::make(system_.matrix(), system_.factor(), options_.contact_solver);
   if (!options_.keep_duals) local_.reset_duals();
   if (contacts_) {
     contacts_->begin(positions_);

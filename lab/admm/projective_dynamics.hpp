@@ -5,7 +5,7 @@
 #include "lab/admm/global_system.hpp"
 #include "lab/admm/local_steps.hpp"
 #include "lab/contact/search/contact_set.hpp"
-#include "lab/contact/solve/contact_solver.hpp"
+#include "lab/contact/solve/dual_contact_solver.hpp"
 #include "lab/motion/integrator.hpp"
 #include "lab/motion/loads.hpp"
 
@@ -78,7 +78,7 @@ class ProjectiveDynamics final : public Integrator {
   LocalSteps<Real> local_;
   GlobalSystem<Real> system_;
   std::optional<ContactSet> contacts_;  ///< where there is something to touch
-  std::unique_ptr<ContactSolver<Real>> contact_solver_;
+  std::unique_ptr<DualContactSolver<Real>> contact_solver_;
   std::optional<AcceleratedIteration<Real>> acceleration_;
   HeldVertices held_;
 

@@ -258,7 +258,7 @@ void BackwardEuler::solve(Iterate& iterate, StepReport& report) {
     report.warnings.push_back(
         fmt::format("CG ended after {} iterations at the residual {:.1e}: {}, largest at "
                     "vertex {}",
-                    solved.iterations, solved.residual, name(solved.status), solved.vertex));
+                    solved.iterations, solved.residual, to_string(solved.status), solved.vertex));
   }
 }
 

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "lab/implicit/elastic_system.hpp"
 #include "lab/linear/cg/solve.hpp"
 #include "lab/linear/preconditioners/preconditioner.hpp"
@@ -14,8 +15,15 @@
 namespace meshorder {
 
 enum class MatrixPrecision : std::uint8_t {
-  exact,   ///< double
-  single,  ///< CG reads the matrix in float, to the same residual (see refined_conjugate_gradients)
+  double_,  ///< all in double
+  single,   ///< CG reads the matrix in float, to the same residual (see refined_conjugate_gradients)
+};
+
+template <>
+struct EnumNames<MatrixPrecision> {
+  static constexpr std::string_view kind = "precision";
+  static constexpr std::array names{std::pair{MatrixPrecision::double_, "double"},
+                                    std::pair{MatrixPrecision::single, "single"}};
 };
 
 struct ImplicitOptions : MotionOptions {
@@ -25,7 +33,7 @@ struct ImplicitOptions : MotionOptions {
   int newton_iterations = 1;       ///< 1: one linearised step (Baraff, Witkin 1998)
   double newton_tolerance = 1e-6;  ///< on ‖g‖ / ‖g at rest‖, where more iterations are allowed
   PreconditionerKind preconditioner = PreconditionerKind::jacobi;
-  MatrixPrecision precision = MatrixPrecision::exact;
+  MatrixPrecision precision = MatrixPrecision::double_;
   SolveOptions solve;
 };
 

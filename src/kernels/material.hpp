@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "kernels/aligned.hpp"
 
 #include <cstdint>
@@ -17,11 +18,27 @@ enum class MaterialModel : std::uint8_t {
   neo_hookean,
 };
 
+template <>
+struct EnumNames<MaterialModel> {
+  static constexpr std::string_view kind = "material model";
+  static constexpr std::array names{std::pair{MaterialModel::corotational, "corotational"},
+                                    std::pair{MaterialModel::stvk, "stvk"},
+                                    std::pair{MaterialModel::neo_hookean, "neo-hookean"}};
+};
+
 /// What stands for the Hessian.
 enum class Tangent : std::uint8_t {
   exact,        ///< the Hessian; indefinite under compression
   approximate,  ///< corotational alone: R held, so that it is semi-definite (Müller, Gross 2004)
   projected,    ///< the semi-definite part of ∂²Ψ/∂F², simplex by simplex; tetrahedra only
+};
+
+template <>
+struct EnumNames<Tangent> {
+  static constexpr std::string_view kind = "tangent";
+  static constexpr std::array names{std::pair{Tangent::exact, "exact"},
+                                    std::pair{Tangent::approximate, "approximate"},
+                                    std::pair{Tangent::projected, "projected"}};
 };
 
 /// Lamé's parameters of an isotropic material, in units of stress.

@@ -67,7 +67,7 @@ TEST(Scenario, HasTheDocumentedDefaults) {
   EXPECT_EQ(s.implicit().mass_damping, 0);
   EXPECT_EQ(s.implicit().newton_iterations, 1);
   EXPECT_EQ(s.implicit().preconditioner, PreconditionerKind::jacobi);
-  EXPECT_EQ(s.implicit().precision, MatrixPrecision::exact);
+  EXPECT_EQ(s.implicit().precision, MatrixPrecision::double_);
   EXPECT_EQ(s.implicit().solve.tolerance, 1e-6);
   EXPECT_EQ(s.implicit().solve.max_iterations, 10'000);
   EXPECT_TRUE(s.forces.empty());

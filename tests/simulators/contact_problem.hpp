@@ -3,7 +3,7 @@
 
 #include "base/random.hpp"
 #include "kernels/positions.hpp"
-#include "lab/contact/solve/contact_solver.hpp"
+#include "lab/contact/solve/dual_contact_solver.hpp"
 #include "mesh/graphs.hpp"
 
 #include <Eigen/Dense>

@@ -99,10 +99,10 @@ TEST(Bowl, IsWhatIsWithinHalfTheThicknessOfACap) {
     }
     for (int i = 0; i < 200; ++i) {
       const Point x = test::random_point(random, 1.5);
-      double least = kFar;
-      for (const Point& p : cap) least = std::min(least, norm(minus(x, p)));
-      EXPECT_NEAR(shell->distance(x), least - 0.5 * thickness, 0.003 / (0.1 + least)) << opening;
-      EXPECT_LE(shell->distance(x), least - 0.5 * thickness + 1e-12);
+      double smallest = kFar;
+      for (const Point& p : cap) smallest = std::min(smallest, norm(minus(x, p)));
+      EXPECT_NEAR(shell->distance(x), smallest - 0.5 * thickness, 0.003 / (0.1 + smallest)) << opening;
+      EXPECT_LE(shell->distance(x), smallest - 0.5 * thickness + 1e-12);
     }
     expect_consistent(*bowl({0, 0, 0}, axis, radius, thickness, opening), 1.5, 4);
   }

@@ -171,7 +171,7 @@ TEST(ProjectiveContact, TheEndsOfARingMeetAndDoNotPass) {
     look.with_itself = true;
     ContactFinder finder(body.simplices, points, look);
     std::vector<int> standing(points.size(), 0);
-    Index most = 0;
+    Index largest = 0;
     int longest = 0;
     double energy = test::total(simulator.balance());
     const double first = energy;
@@ -180,7 +180,7 @@ TEST(ProjectiveContact, TheEndsOfARingMeetAndDoNotPass) {
       const AlignedVector<double> positions = padded_positions(simulator.state().positions);
       std::vector<Contact> inside;
       finder.find(positions, positions, inside);
-      most = std::max(most, index_size(inside));
+      largest = std::max(largest, index_size(inside));
       std::vector<char> is_inside(points.size(), 0);
       for (const Contact& contact : inside) {
         // corners touch without being apart: 1 % of the ring's thickness
@@ -199,7 +199,7 @@ TEST(ProjectiveContact, TheEndsOfARingMeetAndDoNotPass) {
       EXPECT_LT(energy, first);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(simulator.balance().momentum[c], momentum[c], 1e-6);
     } else {
-      EXPECT_GT(most, 10);  // the test would see it
+      EXPECT_GT(largest, 10);  // the test would see it
     }
   }
 }

@@ -32,9 +32,10 @@ class Clearances {
 
  private:
   struct Cluster {
-    std::vector<Index> branches;                                                ///< near by, rising
-    AlignedVector<float> clearances;                                            ///< kMost for each of these
-    alignas(64) std::array<std::array<double, PointCluster::kMost>, 3> rest{};  ///< x, y, z of each point
+    std::vector<Index> branches;      ///< near by, rising
+    AlignedVector<float> clearances;  ///< kMaxPoints for each of these
+    alignas(
+        64) std::array<std::array<double, PointCluster::kMaxPoints>, 3> rest{};  ///< x, y, z of each point
   };
 
   std::vector<Cluster> clusters_;

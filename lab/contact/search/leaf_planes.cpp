@@ -126,9 +126,9 @@ struct LeafLanes {
 /// The points of a task, relative to the leaf's centre.
 struct TaskPoints {
   Index count = 0;
-  Index points[PointCluster::kMost];
-  Index vertices[PointCluster::kMost];
-  float at[3][PointCluster::kMost];
+  Index points[PointCluster::kMaxPoints];
+  Index vertices[PointCluster::kMaxPoints];
+  float at[3][PointCluster::kMaxPoints];
 
   HWY_INLINE TaskPoints(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
                         const LeafTask& task, const double* positions) {
@@ -147,7 +147,7 @@ void hits_of_task(const TetrahedronLeaves& tetrahedra, const PointCluster& clust
                   const double* positions, std::vector<LeafHit>& hits) {
   const Floats d;
   const TaskPoints task_points(tetrahedra, cluster, task, positions);
-  std::uint32_t lanes[PointCluster::kMost] = {};
+  std::uint32_t lanes[PointCluster::kMaxPoints] = {};
   for (Index lane = 0; lane < kLeaf; lane += kFloats) {
     const LeafLanes leaf(tetrahedra, task.leaf, lane);
     for (Index i = 0; i < task_points.count; ++i) {

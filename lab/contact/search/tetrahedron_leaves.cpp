@@ -29,7 +29,7 @@ HWY_INLINE Value greater(Value a, Value b) {
 }
 
 /// The least of all lanes, or the greatest.
-HWY_INLINE double least_lane(ManyLanes::Value value) {
+HWY_INLINE double min_lane(ManyLanes::Value value) {
   alignas(64) double lanes[kBatch];
   ManyLanes::store(value, lanes);
   return *std::min_element(lanes, lanes + ManyLanes::kCount);
@@ -70,7 +70,7 @@ void boxes_of_branch(TetrahedronLeaves& tetrahedra, Index branch, const double* 
     for (Index lane = 0; lane < kLeaf; lane += ManyLanes::kCount)
       corner_boxes(corners, positions, lane, lower, upper);
     for (int c = 0; c < 3; ++c) {
-      boxes[kLeaf * c + l] = rounded_to_float(least_lane(lower[c]));
+      boxes[kLeaf * c + l] = rounded_to_float(min_lane(lower[c]));
       boxes[kLeaf * (3 + c) + l] = rounded_to_float(greatest_lane(upper[c]));
     }
   }
@@ -85,7 +85,7 @@ void read_points(PointCluster& cluster, const double* positions) {
     lower[c] = ManyLanes::set(infinity);
     upper[c] = ManyLanes::set(-infinity);
   }
-  for (Index i = 0; i < PointCluster::kMost; i += ManyLanes::kCount) {
+  for (Index i = 0; i < PointCluster::kMaxPoints; i += ManyLanes::kCount) {
     ManyLanes::Value p[3];
     ManyLanes::gather(positions, cluster.vertices.data() + i, p);
     MESHORDER_UNROLL
@@ -96,9 +96,9 @@ void read_points(PointCluster& cluster, const double* positions) {
     }
   }
   for (int c = 0; c < 3; ++c) {
-    for (Index i = 0; i < PointCluster::kMost; ++i)
+    for (Index i = 0; i < PointCluster::kMaxPoints; ++i)
       cluster.coordinates[c][i] = rounded_to_float(cluster.positions[c][i]);
-    cluster.lower[c] = rounded_to_float(least_lane(lower[c]));
+    cluster.lower[c] = rounded_to_float(min_lane(lower[c]));
     cluster.upper[c] = rounded_to_float(greatest_lane(upper[c]));
   }
 }
@@ -137,7 +137,7 @@ void leaves_meeting(const TetrahedronLeaves& tetrahedra, Index branch, const Poi
   for (; met != 0; met &= met - 1) {
     const Index leaf = std::countr_zero(met);
     std::uint64_t inside = 0;
-    for (Index lane = 0; lane < PointCluster::kMost; lane += kFloats) {
+    for (Index lane = 0; lane < PointCluster::kMaxPoints; lane += kFloats) {
       const auto between = [&](int c) {
         const auto x = hn::Load(d, cluster.coordinates[c].data() + lane);
         return hn::And(hn::Le(hn::Set(d, boxes[kLeaf * c + leaf]), x),
@@ -199,7 +199,8 @@ void update_boxes(TetrahedronLeaves& tetrahedra, Index branch, std::span<const d
   HWY_DYNAMIC_DISPATCH(boxes_of_branch)(tetrahedra, branch, positions.data());
 }
 
-PointCluster::PointCluster(std::span<const Index> some) : points(~std::uint64_t{0} >> (kMost - some.size())) {
+PointCluster::PointCluster(std::span<const Index> some)
+    : points(~std::uint64_t{0} >> (kMaxPoints - some.size())) {
   std::fill(std::copy(some.begin(), some.end(), vertices.begin()), vertices.end(), some.back());
 }
 

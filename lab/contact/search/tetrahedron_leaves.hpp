@@ -29,15 +29,15 @@ inline float rounded_to_float(double a) {
 
 /// Points that are looked for together: at most 64 neighbours, for each a bit of a mask.
 struct PointCluster {
-  static constexpr Index kMost = 64;
+  static constexpr Index kMaxPoints = 64;
 
-  std::uint64_t points = 0;                                           ///< the bits of all that there are
-  std::array<Index, kMost> vertices{};                                ///< behind the last one it again
-  alignas(64) std::array<std::array<double, kMost>, 3> positions{};   ///< x, y, z of each
-  alignas(64) std::array<std::array<float, kMost>, 3> coordinates{};  ///< the same, rounded
+  std::uint64_t points = 0;                                                ///< the bits of all that there are
+  std::array<Index, kMaxPoints> vertices{};                                ///< behind the last one it again
+  alignas(64) std::array<std::array<double, kMaxPoints>, 3> positions{};   ///< x, y, z of each
+  alignas(64) std::array<std::array<float, kMaxPoints>, 3> coordinates{};  ///< the same, rounded
   std::array<float, 3> lower{}, upper{};  ///< around them; an upper end below the lower one for none
 
-  /// Of 1 … kMost vertices.
+  /// Of 1 … kMaxPoints vertices.
   explicit PointCluster(std::span<const Index> some);
 };
 

@@ -69,10 +69,10 @@ SortedTetrahedra sorted_tetrahedra(const Simplices& simplices, std::span<const P
 
 std::vector<PointCluster> clusters_of(std::span<const Index> vertices, std::span<const Point> points) {
   std::vector<Index> sorted(vertices.begin(), vertices.end());
-  sort_into_runs(sorted, PointCluster::kMost, points);
+  sort_into_runs(sorted, PointCluster::kMaxPoints, points);
   std::vector<PointCluster> clusters;
-  for (std::size_t first = 0; first < sorted.size(); first += PointCluster::kMost) {
-    const std::size_t count = std::min(sorted.size() - first, std::size_t{PointCluster::kMost});
+  for (std::size_t first = 0; first < sorted.size(); first += PointCluster::kMaxPoints) {
+    const std::size_t count = std::min(sorted.size() - first, std::size_t{PointCluster::kMaxPoints});
     clusters.emplace_back(std::span(sorted).subspan(first, count));
   }
   return clusters;

@@ -16,7 +16,7 @@ struct ContactRows {
   std::vector<std::array<Index, 4>> places;    ///< of each contact's vertices among those; −1 where absent
   std::vector<std::array<double, 4>> weights;  ///< of each contact; 0 where absent
   std::vector<Point> directions;               ///< of each row
-  std::vector<Index> rubbing;                  ///< contacts with friction: number k has rows `row_of(k)`, + 1
+  std::vector<Index> frictional;               ///< contacts with friction: number k has rows `row_of(k)`, + 1
 
   [[nodiscard]] Index contacts() const noexcept { return static_cast<Index>(places.size()); }
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(directions.size()); }
@@ -43,10 +43,6 @@ void multiply_touched(const ContactRows& rows, std::span<const double> x, std::s
 
 /// result = Cᵀ forces, 3 numbers for each of rows.vertices.
 void multiply_transposed(const ContactRows& rows, std::span<const double> forces, std::span<double> result);
-
-/// The place of a contact, Σ w x, of positions with kPaddedStride numbers for each vertex.
-template <class Real>
-Point place(const Contact& contact, std::span<const Real> x);
 
 /// How far the place Σ w x of a contact is inside of what its normal leads out of: offset − normal · Σ w x,
 /// m.

@@ -17,7 +17,7 @@ constexpr double kFaceTolerance = 0.1;
 constexpr int kPatience = 10;
 // of the fall of the energy that the gradient promises, what a careful step must keep (Armijo)
 constexpr double kEnoughFall = 1e-4;
-constexpr double kLeastWay = 1e-9;
+constexpr double kMinWay = 1e-9;
 
 using Pair = std::array<double, 2>;
 
@@ -217,7 +217,7 @@ class Minimiser {
 
   /// Goes the step and back within the bounds; a careful one is halved until it lowers the energy.
   bool take_step(bool careful) {
-    for (double way = 1.0; way >= kLeastWay; way *= 0.5) {
+    for (double way = 1.0; way >= kMinWay; way *= 0.5) {
       for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] = x_[i] + way * step_[i];
       project(bounds_, trial_);
       bool inside = way == 1.0 && !careful;

@@ -262,22 +262,6 @@ Index largest_vertex(std::span<const double> vector) {
   return vertex;
 }
 
-std::string_view name(SolveStatus status) {
-  switch (status) {
-    case SolveStatus::converged:
-      return "converged";
-    case SolveStatus::iteration_limit:
-      return "iteration limit";
-    case SolveStatus::negative_curvature:
-      return "negative curvature";
-    case SolveStatus::breakdown:
-      return "breakdown";
-    case SolveStatus::not_finite:
-      return "not finite";
-  }
-  return "";
-}
-
 SolveReport conjugate_gradients(const BlockCsr& matrix, const Preconditioner& preconditioner,
                                 std::span<const double> b, std::span<double> x, const SolveOptions& options) {
   return checked_solve(matrix, preconditioner, b, x, options);

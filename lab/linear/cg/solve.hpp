@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "kernels/block_csr.hpp"
 
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 namespace meshorder {
 
@@ -20,8 +20,15 @@ enum class SolveStatus : std::uint8_t {
   not_finite,  ///< NaN or infinity in the matrix, the right-hand side or an iterate
 };
 
-/// "converged", "iteration limit", …
-std::string_view name(SolveStatus status);
+template <>
+struct EnumNames<SolveStatus> {
+  static constexpr std::string_view kind = "solve status";
+  static constexpr std::array names{std::pair{SolveStatus::converged, "converged"},
+                                    std::pair{SolveStatus::iteration_limit, "iteration limit"},
+                                    std::pair{SolveStatus::negative_curvature, "negative curvature"},
+                                    std::pair{SolveStatus::breakdown, "breakdown"},
+                                    std::pair{SolveStatus::not_finite, "not finite"}};
+};
 
 struct SolveOptions {
   double tolerance = 1e-6;  ///< on ‖b − A x‖ / ‖b − A x₀‖

@@ -12,7 +12,7 @@ namespace meshorder {
 namespace {
 
 /// A reach of fewer entries is not worth the start of other threads' tasks.
-constexpr Offset kLeastShared = 100'000;
+constexpr Offset kMinShared = 100'000;
 
 template <class Real>
 Real* at(Real* x, Index place) {
@@ -30,7 +30,7 @@ class Solve {
         b_(b),
         x_(x),
         work_(work),
-        shared_(thread_count() > 1 && (reach == nullptr || reach->entries >= kLeastShared)) {}
+        shared_(thread_count() > 1 && (reach == nullptr || reach->entries >= kMinShared)) {}
 
   void run() const {
     if (factor_.tasks.empty()) return;

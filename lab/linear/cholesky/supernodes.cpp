@@ -27,11 +27,11 @@ Index add_task(SolveTasks& tasks, Index parent) {
 
 /// Branches that are small by themselves, together worth a task; the last bundle may be worth less.
 std::vector<std::vector<Index>> bundles_of(const std::vector<Index>& branches,
-                                           const std::vector<double>& cost, double least) {
+                                           const std::vector<double>& cost, double min_cost) {
   std::vector<std::vector<Index>> bundles;
-  double sum = least;
+  double sum = min_cost;
   for (const Index branch : branches) {
-    if (sum >= least) {
+    if (sum >= min_cost) {
       bundles.emplace_back();
       sum = 0;
     }
@@ -86,7 +86,7 @@ Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs) {
   return supernodes;
 }
 
-SolveTasks make_solve_tasks(const Supernodes& supernodes, double least) {
+SolveTasks make_solve_tasks(const Supernodes& supernodes, double min_cost) {
   const Index n = supernodes.count();
   std::vector<double> cost = supernodes.cost;                 // of a supernode and all below it
   std::vector<std::vector<Index>> below(std::size_t(n) + 1);  // the last is that of all roots
@@ -103,7 +103,7 @@ SolveTasks make_solve_tasks(const Supernodes& supernodes, double least) {
     std::vector<Index> light;
     std::vector<std::vector<Index>> branches;
     for (const Index child : below[s]) {
-      if (cost[child] >= least) {
+      if (cost[child] >= min_cost) {
         branches.push_back({child});
       } else {
         light.push_back(child);
@@ -111,8 +111,9 @@ SolveTasks make_solve_tasks(const Supernodes& supernodes, double least) {
     }
     double rest = 0;
     for (const Index child : light) rest += cost[child];
-    if (rest >= least) {
-      for (std::vector<Index>& bundle : bundles_of(light, cost, least)) branches.push_back(std::move(bundle));
+    if (rest >= min_cost) {
+      for (std::vector<Index>& bundle : bundles_of(light, cost, min_cost))
+        branches.push_back(std::move(bundle));
       light.clear();
     }
     for (const Index child : light) task_of[child] = task;

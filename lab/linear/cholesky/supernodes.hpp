@@ -44,8 +44,8 @@ struct SolveTasks {
   [[nodiscard]] Index count() const noexcept { return static_cast<Index>(parent.size()); }
 };
 
-/// Cuts the forest wherever two branches or more are worth a task: each costs at least `least`; small
+/// Cuts the forest wherever two branches or more are worth a task: each costs at least `min_cost`; small
 /// branches are bundled. Does not depend on the number of threads. O(supernodes).
-SolveTasks make_solve_tasks(const Supernodes& supernodes, double least);
+SolveTasks make_solve_tasks(const Supernodes& supernodes, double min_cost);
 
 }  // namespace meshorder

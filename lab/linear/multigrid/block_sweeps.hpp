@@ -24,12 +24,12 @@ inline constexpr Index kNodeStride = R == 3 ? 4 : 8;
 template <int R>
 class BlockSweeps {
  public:
-  static constexpr Index kLeastRows = 512;  ///< fewer take less than the start of a thread's task
+  static constexpr Index kMinRows = 512;  ///< fewer take less than the start of a thread's task
 
   BlockSweeps() = default;
 
   /// For the pattern of A, with the numbers to come; chunks have at least `least_rows` rows.
-  explicit BlockSweeps(const BlockView<R>& pattern, Index least_rows = kLeastRows);
+  explicit BlockSweeps(const BlockView<R>& pattern, Index min_rows = kMinRows);
 
   /// Takes over the numbers. D is made positive definite where it is not. On all threads.
   void update(const BlockView<R>& matrix);

@@ -31,9 +31,9 @@ void subtract_product(double* a, const double* b, const Value* block) {
 
 /// Whether a pivot is no rounding error of the diagonal block that it began as.
 bool is_large_enough(const double* pivot, const double* diagonal) {
-  constexpr double kLeast = 1e-3;
+  constexpr double kMin = 1e-3;
   for (int c = 0; c < 3; ++c) {
-    if (!(pivot[4 * c] > kLeast * diagonal[4 * c])) return false;
+    if (!(pivot[4 * c] > kMin * diagonal[4 * c])) return false;
   }
   return true;
 }
@@ -57,8 +57,8 @@ IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern) : offsets_{0} {
   const Index n = pattern.size();
   // enough for a thread to work on, not so many that most vertices join chunks, and a power of two, which any
   // usual number of threads shares evenly
-  constexpr Index kRows = 8'000, kMostChunks = 16;
-  const auto count = static_cast<std::uint32_t>(std::clamp<Index>(n / kRows, 1, kMostChunks));
+  constexpr Index kRows = 8'000, kMaxChunks = 16;
+  const auto count = static_cast<std::uint32_t>(std::clamp<Index>(n / kRows, 1, kMaxChunks));
   const std::vector<Index> chunks =
       balanced_ranges(pattern.offsets, static_cast<Index>(std::bit_floor(count)));
   const std::vector<bool> joins = joining_vertices(pattern, chunks);
@@ -103,12 +103,12 @@ void IncompleteCholesky::update(const BlockCsr& matrix) {
                           " vertices, the matrix has " + std::to_string(matrix.size()));
   }
   // elastic solids take about an eighth
-  constexpr double kFirst = 1.0 / 64.0, kFactor = std::numbers::sqrt2, kMost = 64.0;
+  constexpr double kFirst = 1.0 / 64.0, kFactor = std::numbers::sqrt2, kMax = 64.0;
   shift_ = 0.0;
   while (!factor(matrix, shift_)) {
     shift_ = std::max(kFirst, kFactor * shift_);
     // hardly a positive definite matrix
-    if (shift_ > kMost) return keep_diagonal(matrix);
+    if (shift_ > kMax) return keep_diagonal(matrix);
   }
 }
 

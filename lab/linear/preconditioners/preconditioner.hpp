@@ -3,13 +3,13 @@
 
 #include "base/point.hpp"
 #include "base/polymorphic.hpp"
+#include "base/text.hpp"
 #include "kernels/block_csr.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string_view>
 
 namespace meshorder {
 
@@ -35,8 +35,14 @@ enum class PreconditionerKind : std::uint8_t {
   multigrid,            ///< a cycle over aggregates with rigid-body modes (see make_multigrid)
 };
 
-/// "jacobi", "block-jacobi", "incomplete-cholesky", "multigrid".
-std::string_view name(PreconditionerKind kind);
+template <>
+struct EnumNames<PreconditionerKind> {
+  static constexpr std::string_view kind = "preconditioner";
+  static constexpr std::array names{std::pair{PreconditionerKind::jacobi, "jacobi"},
+                                    std::pair{PreconditionerKind::block_jacobi, "block-jacobi"},
+                                    std::pair{PreconditionerKind::incomplete_cholesky, "incomplete-cholesky"},
+                                    std::pair{PreconditionerKind::multigrid, "multigrid"}};
+};
 
 /// A preconditioner for matrices of this pattern, the vertices at rest at `points` (of which multigrid makes
 /// its rigid-body modes). Throws InvalidArgument when these are not as many as the pattern has rows; it or

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/contact/solve/contact_solver.hpp"
-
 #include "base/error.hpp"
+#include "lab/contact/solve/dual_contact_solver.hpp"
 #include "mesh/procedural.hpp"
 #include "simulators/contact_problem.hpp"
 
@@ -21,13 +20,13 @@ using test::ContactProblem;
 template <class Real>
 struct Solved {
   CholeskyFactor<Real> factor;
-  std::unique_ptr<ContactSolver<Real>> solver;
+  std::unique_ptr<DualContactSolver<Real>> solver;
   AlignedVector<Real> x;
   ContactSolveReport report;
 
   explicit Solved(const ContactProblem& problem, const ContactSolverOptions& options = {})
       : factor(problem.matrix),
-        solver(ContactSolver<Real>::make(problem.matrix, factor, options)),
+        solver(DualContactSolver<Real>::make(problem.matrix, factor, options)),
         x(problem.rest.begin(), problem.rest.end()) {
     again(problem);
   }
@@ -48,7 +47,7 @@ void expect_near(const Eigen::VectorXd& actual, const Eigen::VectorXd& expected,
   EXPECT_LE((actual - expected).cwiseAbs().maxCoeff(), tolerance);
 }
 
-TEST(ContactSolver, FindsTheSetOfPushingContactsThatEnumerationFinds) {
+TEST(ContactSolution, FindsTheSetOfPushingContactsThatEnumerationFinds) {
   int pushing = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     ContactProblem problem = test::contact_problem(make_grid({.size = 2}), 3.0, seed);
@@ -68,7 +67,7 @@ TEST(ContactSolver, FindsTheSetOfPushingContactsThatEnumerationFinds) {
   EXPECT_LT(pushing, 140);
 }
 
-TEST(ContactSolver, SolvesProblemsOfManyContactsAsCoordinateDescentDoes) {
+TEST(ContactSolution, SolvesProblemsOfManyContactsAsCoordinateDescentDoes) {
   for (const bool with_itself : {false, true}) {
     ContactProblem problem = test::contact_problem(make_ball({.size = 4}), 5.0);
     test::add_random_contacts(problem, 50, with_itself, 7);
@@ -80,7 +79,7 @@ TEST(ContactSolver, SolvesProblemsOfManyContactsAsCoordinateDescentDoes) {
   }
 }
 
-TEST(ContactSolver, PushesOnlyWhereTheyTouchAndNeverPull) {
+TEST(ContactSolution, PushesOnlyWhereTheyTouchAndNeverPull) {
   ContactProblem problem = test::contact_problem(make_ball({.size = 8}), 20.0);
   problem.push({0, -1, 0});
   problem.add_plane({0, 1, 0}, -1.0, 1.0, 0);
@@ -94,7 +93,7 @@ TEST(ContactSolver, PushesOnlyWhereTheyTouchAndNeverPull) {
   EXPECT_LT(run.report.pushing, heights.size() / 2);
 }
 
-TEST(ContactSolver, SolvesWithTheFactorAloneWhereNothingTouches) {
+TEST(ContactSolution, SolvesWithTheFactorAloneWhereNothingTouches) {
   ContactProblem problem = test::contact_problem(make_grid({.size = 3}), 5.0);
   problem.push({1, 2, 3});
   Solved<double> run(problem);
@@ -107,7 +106,7 @@ TEST(ContactSolver, SolvesWithTheFactorAloneWhereNothingTouches) {
   EXPECT_TRUE(run.solver->forces().empty());
 }
 
-TEST(ContactSolver, LeavesContactsAloneThatAreFarAway) {
+TEST(ContactSolution, LeavesContactsAloneThatAreFarAway) {
   ContactProblem problem = test::contact_problem(make_grid({.size = 3}), 5.0);
   problem.add_plane({0, 1, 0}, -5.0, 10.0, 0);
   Solved<double> run(problem, kExact);
@@ -117,7 +116,7 @@ TEST(ContactSolver, LeavesContactsAloneThatAreFarAway) {
   EXPECT_EQ(run.report.violation, 0.0);
 }
 
-TEST(ContactSolver, SharesTheForceAmongContactsThatRepeatEachOther) {
+TEST(ContactSolution, SharesTheForceAmongContactsThatRepeatEachOther) {
   ContactProblem problem = test::contact_problem(make_grid({.size = 3}), 5.0);
   problem.push({0, -1, 0});
   problem.add_plane({0, 1, 0}, 0.0, 0.1, 0);
@@ -130,7 +129,7 @@ TEST(ContactSolver, SharesTheForceAmongContactsThatRepeatEachOther) {
   EXPECT_NEAR(thrice.forces().sum(), once.forces().sum(), 1e-6 * once.forces().sum());
 }
 
-TEST(ContactSolver, EndsAndSaysSoWhereContactsContradictEachOther) {
+TEST(ContactSolution, EndsAndSaysSoWhereContactsContradictEachOther) {
   ContactProblem problem = test::contact_problem(make_grid({.size = 3}), 5.0);
   problem.push({0, -1, 0});
   problem.add_plane({0, 1, 0}, 0.2, 0.3, 0);
@@ -150,7 +149,7 @@ TEST(ContactSolver, EndsAndSaysSoWhereContactsContradictEachOther) {
   EXPECT_TRUE(run.report.converged);
 }
 
-TEST(ContactSolver, KeepsTheMomentumOfABodyThatTouchesItself) {
+TEST(ContactSolution, KeepsTheMomentumOfABodyThatTouchesItself) {
   ContactProblem problem = test::contact_problem(make_grid({.size = 4}), 5.0);
   test::add_random_contacts(problem, 40, true, 3);
   std::erase_if(problem.contacts, [](const Contact& contact) { return !contact.is_with_itself(); });
@@ -174,7 +173,7 @@ ContactProblem block_on_slope(double angle, double friction) {
   return problem;
 }
 
-TEST(ContactSolver, HoldsABlockOnASlopeThatIsLessSteepThanTheFriction) {
+TEST(ContactSolution, HoldsABlockOnASlopeThatIsLessSteepThanTheFriction) {
   const double angle = 0.3;
   ContactProblem problem = block_on_slope(angle, 1.1 * std::tan(angle));
   Solved<double> run(problem, kExact);
@@ -190,7 +189,7 @@ TEST(ContactSolver, HoldsABlockOnASlopeThatIsLessSteepThanTheFriction) {
   EXPECT_LE(moved.cwiseAbs().maxCoeff(), 0.01 * 9.81 * 1e-4);
 }
 
-TEST(ContactSolver, LetsABlockSlideDownASlopeThatIsSteeperThanTheFriction) {
+TEST(ContactSolution, LetsABlockSlideDownASlopeThatIsSteeperThanTheFriction) {
   const double angle = 0.5;
   const double friction = 0.6 * std::tan(angle);
   ContactProblem problem = block_on_slope(angle, friction);
@@ -212,7 +211,7 @@ TEST(ContactSolver, LetsABlockSlideDownASlopeThatIsSteeperThanTheFriction) {
   EXPECT_NEAR(along / total, rigid, 0.02 * rigid);
 }
 
-TEST(ContactSolver, KeepsForcesWithinTheConeOfFrictionAndAgainstTheMotion) {
+TEST(ContactSolution, KeepsForcesWithinTheConeOfFrictionAndAgainstTheMotion) {
   for (const double friction : {0.1, 0.5, 2.0}) {
     ContactProblem problem = test::contact_problem(make_ball({.size = 6}), 20.0);
     problem.push({0.3, -1, 0.1});
@@ -244,7 +243,7 @@ TEST(ContactSolver, KeepsForcesWithinTheConeOfFrictionAndAgainstTheMotion) {
   }
 }
 
-TEST(ContactSolver, ConvergesForStiffBodies) {
+TEST(ContactSolution, ConvergesForStiffBodies) {
   for (const double stiffness : {1e3, 1e5}) {
     ContactProblem problem = test::contact_problem(make_grid({.size = 4}), stiffness);
     problem.push({0, -1, 0});
@@ -257,7 +256,7 @@ TEST(ContactSolver, ConvergesForStiffBodies) {
   }
 }
 
-TEST(ContactSolver, GivesTheSameBitsForAnyNumberOfThreads) {
+TEST(ContactSolution, GivesTheSameBitsForAnyNumberOfThreads) {
   ContactProblem problem = test::contact_problem(make_grid({.size = 16}), 30.0);
   problem.push({0, -1, 0.2});
   problem.add_plane({0, 1, 0}, 0.0, 0.05, 0, 0.2);
@@ -271,7 +270,7 @@ TEST(ContactSolver, GivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(ContactSolver, WorksInSinglePrecision) {
+TEST(ContactSolution, WorksInSinglePrecision) {
   ContactProblem problem = test::contact_problem(make_ball({.size = 6}), 20.0);
   problem.push({0.2, -1, 0});
   problem.add_plane({0, 1, 0}, -1.0, 0.7, 0, 0.3);
@@ -283,7 +282,7 @@ TEST(ContactSolver, WorksInSinglePrecision) {
   EXPECT_LE(run.report.violation, 1e-3);
 }
 
-TEST(ContactSolver, ForgetsForcesWhenAskedTo) {
+TEST(ContactSolution, ForgetsForcesWhenAskedTo) {
   ContactProblem problem = test::contact_problem(make_ball({.size = 6}), 20.0);
   problem.push({0, -1, 0});
   problem.add_plane({0, 1, 0}, -1.0, 0.7, 0, 0.3);
@@ -299,7 +298,7 @@ TEST(ContactSolver, ForgetsForcesWhenAskedTo) {
   EXPECT_EQ(run.x, first);
 }
 
-TEST(ContactSolver, RefusesContactsThatAreNone) {
+TEST(ContactSolution, RefusesContactsThatAreNone) {
   ContactProblem problem = test::contact_problem(make_grid({.size = 2}), 5.0);
   problem.add_plane({0, 1, 0}, 0.0, 0.1, 0);
   const auto refused = [&](const auto& spoil) {
@@ -316,7 +315,7 @@ TEST(ContactSolver, RefusesContactsThatAreNone) {
   refused([](Contact& contact) { contact.friction = -0.1; });
 }
 
-TEST(ContactSolver, RefusesVectorsOfAnotherSize) {
+TEST(ContactSolution, RefusesVectorsOfAnotherSize) {
   const ContactProblem problem = test::contact_problem(make_grid({.size = 2}), 5.0);
   Solved<double> run(problem);
   AlignedVector<double> wrong(problem.b.size() - 4);
@@ -325,7 +324,7 @@ TEST(ContactSolver, RefusesVectorsOfAnotherSize) {
   EXPECT_THROW(run.solver->solve({}, problem.b, problem.rest, wrong), InvalidArgument);
 }
 
-TEST(ContactSolver, RefusesOptionsThatAreOutOfRange) {
+TEST(ContactSolution, RefusesOptionsThatAreOutOfRange) {
   const ContactProblem problem = test::contact_problem(make_grid({.size = 2}), 5.0);
   for (const ContactSolverOptions& options :
        {ContactSolverOptions{.tolerance = 0.0}, ContactSolverOptions{.tolerance = -1.0},
