@@ -115,8 +115,7 @@ nlohmann::ordered_json integrator_json(const ProjectiveScenario& options) {
           {"gravity", options.gravity},
           {"iterations", options.iterations},
           {"tolerance", options.tolerance},
-          {"duals", options.keep_duals ? "kept" : "reset"},
-          {"acceleration", options.acceleration}};
+          {"duals", options.keep_duals ? "kept" : "reset"}};
 }
 
 nlohmann::ordered_json solver_json(const ImplicitOptions& options) {

@@ -28,11 +28,6 @@ const ProjectiveOptions& checked(const ProjectiveOptions& options, Index vertex_
   require(options.iterations >= 1, "the number of ADMM iterations", options.iterations, "1 or more");
   require(options.tolerance >= 0.0 && options.tolerance < 1.0, "the tolerance of ADMM", options.tolerance,
           "0 or more, and below 1");
-  const bool touches = !options.contact.obstacles.empty() || options.contact.with_itself;
-  require(options.acceleration >= 0 &&
-              options.acceleration <= (touches ? 0 : AndersonMixer<double>::kWidestWindow),
-          "the number of iterates that are mixed", options.acceleration,
-          touches ? "0 with contacts" : "0 to 10");
   return options;
 }
 
@@ -67,7 +62,6 @@ ProjectiveDynamics<Real>::ProjectiveDynamics(std::span<const Point> points, cons
   if (options_.tolerance > 0.0) last_right_side_ = x_;
   collect_loads(options_, steps_, masses_, loads_, held_);
   system_.hold(held_);
-  if (options_.acceleration > 0) acceleration_.emplace(options_.acceleration);
   if (options_.contact.obstacles.empty() && !options_.contact.with_itself) return;
   contacts_.emplace(ContactFinder(body.simplices, points, options_.contact));
   contact_solver_ =
@@ -120,14 +114,10 @@ StepReport ProjectiveDynamics<Real>::step() {
     contact_solver_->forget();
     contact_forces_.clear();
   }
-  if (acceleration_) acceleration_->reset();
   predict();
   const double h = options_.time_step;
   while (report.admm_iterations < options_.iterations) {
     const bool last = report.admm_iterations + 1 == options_.iterations;
-    // the last iterate is not mixed: it solves the global step
-    const bool accelerates = acceleration_ && !last;
-    if (accelerates) acceleration_->begin(x_, local_.duals());
     const Stopwatch local_time;
     const LocalResidual residual = local_.pass(x_, static_cast<Real>(h * h), right_side_);
     report.seconds.local += local_time.seconds();
@@ -135,20 +125,11 @@ StepReport ProjectiveDynamics<Real>::step() {
     ++report.admm_iterations;
     complete_right_side();
     solve(last, report);
-    if (accelerates) accelerate();
   }
   if (contacts_ && report.admm_iterations < options_.iterations) solve(true, report);
   finish(report);
   report.seconds.total = stopwatch.seconds();
   return report;
-}
-
-template <class Real>
-void ProjectiveDynamics<Real>::accelerate() {
-  std::vector<Real> duals = local_.duals();
-  acceleration_->finish(x_, duals);
-  const auto is_finite = [](Real number) { return std::isfinite(number); };
-  if (std::all_of(duals.begin(), duals.end(), is_finite)) local_.set_duals(duals);
 }
 
 /// x = x̄ and M x̄.
@@ -323,10 +304,9 @@ Balance ProjectiveDynamics<Real>::balance() const {
 template <class Real>
 std::size_t ProjectiveDynamics<Real>::bytes() const {
   const auto of = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
-  return local_.bytes() + system_.bytes() + (acceleration_ ? acceleration_->bytes() : 0) +
-         (contacts_ ? contacts_->bytes() + contact_solver_->bytes() : 0) + of(masses_) + of(positions_) +
-         of(velocities_) + of(loads_) + of(x_) + of(inertia_) + of(right_side_) + of(last_right_side_) +
-         of(widened_) + of(free_contacts_) + of(contact_forces_);
+  return local_.bytes() + system_.bytes() + (contacts_ ? contacts_->bytes() + contact_solver_->bytes() : 0) +
+         of(masses_) + of(positions_) + of(velocities_) + of(loads_) + of(x_) + of(inertia_) +
+         of(right_side_) + of(last_right_side_) + of(widened_) + of(free_contacts_) + of(contact_forces_);
 }
 
 template class ProjectiveDynamics<double>;

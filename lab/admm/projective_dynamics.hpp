@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "lab/admm/accelerated_iteration.hpp"
 #include "lab/admm/global_system.hpp"
 #include "lab/admm/local_steps.hpp"
 #include "lab/contact/search/contact_set.hpp"
@@ -20,7 +19,6 @@ struct ProjectiveOptions : MotionOptions {
   int iterations = 20;     ///< of a step; at most, with a tolerance
   double tolerance = 0.0;  ///< 0, or ends a step when both residuals (see ProjectiveDynamics) are below it
   bool keep_duals = true;  ///< from step to step; or each step starts with zero ones
-  int acceleration = 0;    ///< earlier iterates that Anderson acceleration mixes, 0 … 10; 0 with contacts
   ContactOptions contact;
   ContactSolverOptions contact_solver;
 };
@@ -66,7 +64,6 @@ class ProjectiveDynamics final : public Integrator {
   void complete_right_side();
   bool has_converged(const LocalResidual& local, StepReport& report);
   void solve(bool last, StepReport& report);
-  void accelerate();
   void solve_with_contacts(bool last, StepReport& report);
   std::span<const double> in_double();
   void drop_held_contacts();
@@ -79,7 +76,6 @@ class ProjectiveDynamics final : public Integrator {
   GlobalSystem<Real> system_;
   std::optional<ContactSet> contacts_;  ///< where there is something to touch
   std::unique_ptr<DualContactSolver<Real>> contact_solver_;
-  std::optional<AcceleratedIteration<Real>> acceleration_;
   HeldVertices held_;
 
   Index steps_ = 0;

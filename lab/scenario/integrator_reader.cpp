@@ -141,12 +141,10 @@ void read_projective_material(const JsonValue& value, ProjectiveScenario& option
 }
 
 void read_projective(const JsonValue& value, ProjectiveScenario& options) {
-  value.expect_keys({"method", "time_step", "gravity", "iterations", "tolerance", "duals", "acceleration"});
+  value.expect_keys({"method", "time_step", "gravity", "iterations", "tolerance", "duals"});
   read_count(value, "iterations", kMostIterations, options.iterations);
   if (const auto tolerance = value.find("tolerance"))
     options.tolerance = tolerance->number({.least = 0, .most = 1, .most_open = true});
-  if (const auto window = value.find("acceleration"))
-    options.acceleration = static_cast<int>(window->whole(0, AndersonMixer<double>::kWidestWindow));
   if (const auto duals = value.find("duals")) options.keep_duals = duals->one_of(kDuals);
 }
 
@@ -241,8 +239,6 @@ void read_integrator(const JsonValue& root, Scenario& scenario) {
       options.precision = read_enum<MatrixPrecision>(*precision);
   }
   if (contact) read_contact(*contact, options);
-  if (options.acceleration > 0 && (!options.obstacles.empty() || options.contact.with_itself))
-    throw integrator["acceleration"].error("is not for contacts", "leave out one of them");
   scenario.integrator = std::move(options);
 }
 
