@@ -93,8 +93,8 @@ HWY_INLINE void pass_any(const LocalPass<typename Lanes::Number>& pass) {
   }
 }
 
-void pass_doubles(const LocalPass<double>& pass) { pass_any<ManyLanes>(pass); }
-void pass_floats(const LocalPass<float>& pass) { pass_any<ManyFloatLanes>(pass); }
+void springs_doubles(const LocalPass<double>& pass) { pass_any<ManyLanes>(pass); }
+void springs_floats(const LocalPass<float>& pass) { pass_any<ManyFloatLanes>(pass); }
 
 }  // namespace
 }  // namespace meshorder::HWY_NAMESPACE
@@ -102,15 +102,8 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace meshorder {
-namespace {
 
-HWY_EXPORT(pass_doubles);
-HWY_EXPORT(pass_floats);
-
-}  // namespace
-
-void pass_springs(const LocalPass<double>& pass) { HWY_DYNAMIC_DISPATCH(pass_doubles)(pass); }
-void pass_springs(const LocalPass<float>& pass) { HWY_DYNAMIC_DISPATCH(pass_floats)(pass); }
+MESHORDER_EXPORT_LOCAL_PASS(springs)
 
 }  // namespace meshorder
 #endif
