@@ -12,9 +12,8 @@ inline constexpr Index kLocalBatch = 64 / sizeof(Real);
 /// Numbers of a tetrahedron in LocalElements::rest: Dₘ⁻¹ row by row in the frame of the world, and w².
 inline constexpr Index kTetrahedronNumbers = 10;
 
-/// What a pass over one share of the batches reads and writes, checked: for local_steps.cpp and the kernels
-/// alone. Quantity q of the element in lane l of a batch stands at `q · kLocalBatch + l` of what the batch
-/// has.
+/// Input and output of a pass over one share of the batches, already checked. Internal to local_steps.cpp and
+/// the kernels. Quantity q of the element in lane l of a batch is entry `q · kLocalBatch + l` of the batch.
 template <class Real>
 struct LocalPass {
   const OwnedBatches& share;

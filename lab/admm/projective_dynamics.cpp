@@ -17,10 +17,10 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kVertices = 4096;  // of a chunk that a thread takes
-/// The last global step is taken so many times at most, where vertices go on to meet something.
+constexpr Index kVertices = 4096;  // in a chunk
+/// Maximum number of repetitions of the last global step while vertices have new contacts.
 constexpr int kLastRounds = 8;
-/// What of ContactOptions::reach a vertex may be left inside.
+/// Part of ContactOptions::reach that a vertex may remain inside.
 constexpr double kAllowedDepth = 1e-2;
 
 const ProjectiveOptions& checked(const ProjectiveOptions& options, Index vertex_count) {
@@ -155,7 +155,7 @@ void ProjectiveDynamics<Real>::predict() {
   });
 }
 
-/// Both residuals of the last iteration, whose place the local steps were taken at.
+/// Computes both residuals of the last iteration, at whose positions the local steps were taken.
 template <class Real>
 bool ProjectiveDynamics<Real>::has_converged(const LocalResidual& local, StepReport& report) {
   const std::span<const Real> forces(right_side_.data(), x_.size());
@@ -171,7 +171,7 @@ bool ProjectiveDynamics<Real>::has_converged(const LocalResidual& local, StepRep
   return report.admm_iterations > 0 && report.residual <= options_.tolerance;
 }
 
-/// Adds M x̄ to the right-hand side, and what is held.
+/// Adds M x̄ and the influence of held vertices to the right-hand side.
 template <class Real>
 void ProjectiveDynamics<Real>::complete_right_side() {
   for_each_chunk(static_cast<Index>(x_.size()), kPaddedStride * kVertices,
@@ -214,7 +214,7 @@ void ProjectiveDynamics<Real>::solve_with_contacts(bool last, StepReport& report
   }
 }
 
-/// The iterate in double.
+/// Returns the iterate in double.
 template <class Real>
 std::span<const double> ProjectiveDynamics<Real>::in_double() {
   if constexpr (std::is_same_v<Real, double>) {
@@ -225,7 +225,7 @@ std::span<const double> ProjectiveDynamics<Real>::in_double() {
   }
 }
 
-/// The contacts without those of held vertices, which are where they are whatever they touch.
+/// Collects the contacts of vertices that are not held.
 template <class Real>
 void ProjectiveDynamics<Real>::drop_held_contacts() {
   free_contacts_.assign(contacts_->contacts().begin(), contacts_->contacts().end());
@@ -244,7 +244,7 @@ void ProjectiveDynamics<Real>::drop_held_contacts() {
   }
 }
 
-/// The solver's forces on all contacts, 0 on those that were dropped.
+/// Stores the solver's forces on all contacts, 0 on those that were dropped.
 template <class Real>
 void ProjectiveDynamics<Real>::spread_forces() {
   const std::span<const double> forces = contact_solver_->forces();
@@ -255,7 +255,7 @@ void ProjectiveDynamics<Real>::spread_forces() {
   }
 }
 
-/// Takes the iterate for the new place.
+/// Takes the iterate as the new positions.
 template <class Real>
 void ProjectiveDynamics<Real>::finish(StepReport& report) {
   const auto wrong = std::find_if(x_.begin(), x_.end(), [](Real x) { return !std::isfinite(x); });
@@ -275,7 +275,7 @@ void ProjectiveDynamics<Real>::finish(StepReport& report) {
       }
     }
   });
-  // where they were exactly, in whatever precision the iterations were
+  // the exact velocities, whatever the precision of the iterations
   held_.for_each([&](Index v, const Point& velocity) {
     for (int c = 0; c < 3; ++c) velocities_[Offset{3} * v + c] = velocity[c];
   });

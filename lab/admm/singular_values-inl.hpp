@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Singular values beyond are taken for this one: no energy overflows.
+/// Upper bound of singular values, so that no energy overflows.
 inline constexpr double kLargestStretch = 1e4;
 
 /// x with (L D Lᵀ) x = −g of a symmetric matrix, of which the upper triangle is read, with the size of each
@@ -133,7 +133,7 @@ HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[
       slope = Lanes::mul_add(gradient[k], direction[k], slope);
       longest = Lanes::max(longest, Lanes::abs(direction[k]));
     }
-    // a lane's step is halved until it goes down, but for rounding
+    // a lane's step is halved until the objective decreases, up to rounding
     const Value slack = Lanes::set(kRounding) * (one + Lanes::abs(here));
     Value length = one;
     Value next[3];

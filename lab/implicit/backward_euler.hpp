@@ -37,22 +37,22 @@ struct ImplicitOptions : MotionOptions {
   SolveOptions solve;
 };
 
-/// An elastic body in time by backward Euler.
+/// Integrates the motion of an elastic body by backward Euler.
 ///
 /// A step solves g(v) = M(v − vₙ) − h(f_ext − f_int(xₙ + h v)) + h C v = 0 by Newton's method from v = 0,
 /// whose first iterate is the linearised step (M + hC + h²K) Δv = h (f_ext − f_int − h K vₙ − C vₙ). Where
 /// more iterations are allowed each is damped by a line search on the potential of which g is the gradient.
 class BackwardEuler final : public Integrator {
  public:
-  /// The body at rest at `points`. Throws InvalidArgument, which names what is wrong, for a body that is not
-  /// of tetrahedra, a vertex without mass, numbers that are not finite or out of range.
+  /// The body at rest at `points`. Throws InvalidArgument, naming the problem, for a body that does not
+  /// consist of tetrahedra, a vertex without mass, numbers that are not finite or out of range.
   BackwardEuler(std::span<const Point> points, const Body& body, ImplicitOptions options);
 
   [[nodiscard]] MotionState state() const override;
   void set_state(const MotionState& state) override;
 
-  /// Where CG meets negative curvature the step is taken with the tangent's semi-definite part instead, and
-  /// says so.
+  /// If CG meets negative curvature, the step uses the positive semi-definite part of the tangent instead and
+  /// adds a warning.
   StepReport step() override;
 
   [[nodiscard]] Balance balance() const override;

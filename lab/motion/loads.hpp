@@ -10,18 +10,18 @@
 
 namespace meshorder {
 
-/// The vertices whose motion in a step is given, and with what velocity they move.
+/// The vertices whose motion in a step is prescribed, with their velocities in m/s.
 class HeldVertices {
  public:
   void clear();
-  /// Held twice, a vertex has the later velocity.
+  /// Holds a vertex. If it is held twice, the later velocity counts.
   void hold(Index vertex, const Point& velocity);
 
-  /// Gives the held vertices their velocities, in 3 doubles for each vertex. O(held).
+  /// Sets the velocities of the held vertices in a vector of 3 doubles for each vertex. O(held).
   void set(std::span<double> velocities) const;
   /// Sets their entries to 0. O(held).
   void set_zero(std::span<double> vector) const;
-  /// Those held, in the order in which they were given.
+  /// Returns the held vertices, in the order in which they were given.
   [[nodiscard]] std::span<const Index> vertices() const noexcept { return vertices_; }
 
   /// Calls `work(vertex, velocity)` for them in that order.
@@ -30,8 +30,9 @@ class HeldVertices {
     for (std::size_t i = 0; i < vertices_.size(); ++i) work(vertices_[i], velocities_[i]);
   }
 
-  /// Takes their rows and columns out of a symmetric matrix: zero but for the diagonal, a multiple of the
-  /// identity. With zeros on the right-hand side they take no part. O(their blocks · log row length).
+  /// Removes the rows and columns of the held vertices from a symmetric matrix: sets them to zero except for
+  /// the diagonal, a multiple of the identity. With zeros on the right-hand side they do not influence the
+  /// solution. O(their blocks · log row length).
   void remove_from(BlockCsr& matrix) const;
 
  private:
@@ -39,24 +40,24 @@ class HeldVertices {
   std::vector<Point> velocities_;  ///< of `vertices_`
 };
 
-/// Vertices and when: from the step that begins at `from` to the last one that begins before `until`.
+/// Vertices and a time span: from the step that begins at `from` to the last one that begins before `until`.
 struct Selection {
   std::vector<Index> vertices;
   double from = 0.0;  ///< s
   double until = std::numeric_limits<double>::infinity();
 };
 
-/// The same force on each of some vertices.
+/// A force on each of the selected vertices.
 struct VertexForce : Selection {
   Point newtons{};
 };
 
-/// Vertices that move by rule: fixed where they are when the velocity is 0.
+/// A prescribed motion of vertices; a velocity of 0 fixes them.
 struct PrescribedMotion : Selection {
   Point velocity{};  ///< m/s
 };
 
-/// What every integrator is told of the motion.
+/// Options of the motion that all integrators share.
 struct MotionOptions {
   double time_step = 0.01;  ///< h, s
   Point gravity{};          ///< m/s²
@@ -64,10 +65,10 @@ struct MotionOptions {
   std::vector<PrescribedMotion> prescribed;
 };
 
-/// Throws InvalidArgument, which names it, for a number that is out of range or not finite and for a vertex
-/// that is none of the mesh's.
+/// Throws InvalidArgument, naming the value, for a number that is out of range or not finite and for a vertex
+/// that the mesh does not have.
 void check_options(const MotionOptions& options, Index vertex_count);
-/// Throws InvalidArgument that tells what `value` `name` has, unless it is `good`.
+/// Throws InvalidArgument with `name`, `value` and `remedy` unless `good`.
 void require(bool good, const char* name, double value, const char* remedy);
 
 /// Sets the forces, 3 numbers for each vertex, and the vertices that are held in the step after `steps` ones.

@@ -35,7 +35,7 @@ AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix) {
 
 OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const BlockCsr& matrix,
                          const OwnedBatches& share, Index part) {
-  // the most that a simplex has, on cache lines of their own
+  // the largest number of blocks of a simplex, on separate cache lines
   constexpr Offset kSpareBlocks = 16 + 2;
   const Index corners = rest.dimension + 1;
   const Offset first_spare = matrix.block_count() + 2 + kSpareBlocks * part;

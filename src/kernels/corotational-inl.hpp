@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Singular values add up to so much at least in a tangent, where the Hessian is infinite when two add up to
-/// none: far below all but elements that are all but collapsed.
+/// Lower bound of the sum of two singular values in a tangent; the Hessian is infinite where a sum is 0. Only
+/// nearly collapsed elements reach it.
 inline constexpr double kMinSum = 1e-6;
 
 /// Corotational linear elasticity: P = 2μ (F − R) + λ tr(RᵀF − I) R.

@@ -69,7 +69,7 @@ void check(const RestShapes& rest, const Stiffness& stiffness, Offset room) {
   }
 }
 
-/// The pass over everything that only reads, its arguments checked.
+/// Returns the pass over all batches that only reads, after checking the arguments.
 ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity, const UniformLame& uniform,
                          std::span<const double> positions) {
   check(rest, elasticity);
@@ -85,7 +85,7 @@ ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity, c
   return pass;
 }
 
-/// The pass over everything, its arguments checked.
+/// Returns the pass over all batches, after checking the arguments.
 ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity, const UniformLame& uniform,
                          std::span<const double> positions, std::span<double> forces,
                          const Stiffness* stiffness) {

@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-/// Isotropic energies per rest volume, with σ the signed singular values of the deformation gradient F.
+/// Isotropic energies per rest volume, in J/m³; F is the deformation gradient.
 enum class MaterialModel : std::uint8_t {
   corotational,  ///< μ‖F − R‖² + ½λ tr²(RᵀF − I), R the rotation closest to F (Müller, Gross 2004)
   stvk,          ///< Saint Venant–Kirchhoff: μ E:E + ½λ tr(E)², E = ½(FᵀF − I)
@@ -26,7 +26,7 @@ struct EnumNames<MaterialModel> {
                                     std::pair{MaterialModel::neo_hookean, "neo-hookean"}};
 };
 
-/// What stands for the Hessian.
+/// The matrix used as the Hessian of the energy.
 enum class Tangent : std::uint8_t {
   exact,        ///< the Hessian; indefinite under compression
   approximate,  ///< corotational alone: R held, so that it is semi-definite (Müller, Gross 2004)

@@ -52,7 +52,7 @@ std::optional<std::size_t> find_group(const Grouping& grouping, const std::vecto
 }
 
 std::string list_of_regions(const Grouping& grouping, const std::vector<bool>& has) {
-  // enough to recognise a slip of the pen
+  // enough to recognise a misspelt name
   constexpr int kListed = 20;
   std::string list;
   int listed = 0;

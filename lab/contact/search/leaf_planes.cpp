@@ -89,7 +89,7 @@ using FloatVector = hn::Vec<Floats>;
 using Integers = hn::RebindToSigned<Floats>;
 using IntegerVector = hn::Vec<Integers>;
 
-/// The planes and corners of a register's tetrahedra of a leaf.
+/// The planes and corners of as many tetrahedra of a leaf as a register holds.
 struct LeafLanes {
   FloatVector planes[4][4];
   IntegerVector corners[4];
@@ -105,7 +105,7 @@ struct LeafLanes {
     }
   }
 
-  /// The least height over the four planes.
+  /// Returns the smallest height over the four planes.
   HWY_INLINE FloatVector height(float x, float y, float z) const {
     const Floats d;
     const FloatVector p[3] = {hn::Set(d, x), hn::Set(d, y), hn::Set(d, z)};

@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-/// The lesser of both in each lane, `a` where b is NaN.
+/// Returns the smaller number in each lane, `a` where b is NaN.
 template <class Value>
 HWY_INLINE Value lesser(Value a, Value b) {
   return ManyLanes::choose(a - b, b, a);
@@ -28,7 +28,7 @@ HWY_INLINE Value greater(Value a, Value b) {
   return ManyLanes::choose(b - a, b, a);
 }
 
-/// The least of all lanes, or the greatest.
+/// Returns the smallest lane; the largest lane.
 HWY_INLINE double min_lane(ManyLanes::Value value) {
   alignas(64) double lanes[kBatch];
   ManyLanes::store(value, lanes);
@@ -40,7 +40,7 @@ HWY_INLINE double greatest_lane(ManyLanes::Value value) {
   return *std::max_element(lanes, lanes + ManyLanes::kCount);
 }
 
-/// Takes in the box of some lanes' corners.
+/// Extends the box by the corners of some lanes.
 HWY_INLINE void corner_boxes(const Index* corners, const double* positions, Index lane,
                              ManyLanes::Value (&lower)[3], ManyLanes::Value (&upper)[3]) {
   for (int k = 0; k < 4; ++k) {
@@ -179,7 +179,7 @@ TetrahedronLeaves::TetrahedronLeaves(std::span<const std::array<Index, 4>> tetra
     for (int k = 0; k < 4; ++k) corners[kLeaf * (4 * (i / kLeaf) + k) + i % kLeaf] = tetrahedron[k];
     if (real) numbers[i] = tetrahedron_numbers[i];
   }
-  // boxes that nothing meets, for those that fill up
+  // empty boxes for the lanes that fill up a leaf
   const auto fill_up = [](AlignedVector<float>& boxes, Index groups) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     boxes.resize(Offset{6} * kLeaf * groups);

@@ -19,7 +19,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kBranchesAtOnce = 16;  // and clusters: what a thread takes together
+constexpr Index kBranchesAtOnce = 16;  // and clusters in a task
 constexpr Index kLeavesAtOnce = 256;
 
 /// The tetrahedra that are not flat at `points`, their corners turning like the unit tetrahedron's, in the
@@ -107,7 +107,7 @@ struct TetrahedronSearch::State {
     Index branch = 0;
     std::uint64_t points = 0;
   };
-  /// What is to be done for a cluster, and what it found.
+  /// Work for a cluster and its results.
   struct Search {
     std::vector<Index> branches;
     std::vector<BranchTask> branch_tasks;

@@ -14,11 +14,11 @@
 namespace meshorder {
 namespace {
 
-// of the tolerance: what contacts give way does not count beside it
+// part of the tolerance: small enough not to affect the result
 constexpr double kSoftness = 0.01;
-// rounds of bounds of tangential forces that bring them no nearer to each other, before the last one
+// rounds of tangential bounds without progress before the last one
 constexpr int kMaxFailures = 3;
-// the last round has this part of the multiplications; rounds before it take half of what there is
+// part of the multiplications reserved for the last round; earlier rounds take half of the rest
 constexpr int kPartOfLast = 8;
 
 /// S of the contacts of one call.
@@ -136,7 +136,7 @@ class ContactOperator final : public ForceOperator {
 
   const SparseMatrix& matrix_;
   const CholeskyFactor<Real>& factor_;
-  AlignedVector<Real> load_, moved_;  ///< of all vertices; 0 in what nothing reaches
+  AlignedVector<Real> load_, moved_;  ///< of all vertices; 0 outside the reach
   std::vector<Index> place_of_;       ///< of all vertices: −1 but within take_submatrix
   std::vector<double> diagonal_;      ///< of A
   ContactRows rows_;
@@ -144,7 +144,7 @@ class ContactOperator final : public ForceOperator {
   std::vector<Offset> offsets_;  ///< of the part of A at contacts' vertices
   std::vector<Index> columns_;
   std::vector<double> values_;
-  std::vector<double> scale_;                       ///< of each row: what D⁻¹ moves it under a force of 1
+  std::vector<double> scale_;  ///< of each row: displacement by D⁻¹ under a force of 1
   std::vector<double> touched_, pulled_, weighed_;  ///< scratch
 };
 
@@ -193,7 +193,7 @@ class Solver final : public DualContactSolver<Real> {
  private:
   [[nodiscard]] const ContactRows& rows() const noexcept { return operator_.rows(); }
 
-  /// g: for normal rows how deep contacts are at x; for others against what they have moved since `from`.
+  /// Computes g: the depth at x for normal rows; minus the displacement since `from` for the others.
   void take_depths(std::span<const Contact> contacts, std::span<const double> from, std::span<const Real> x) {
     depths_.resize(rows().size());
     multiply(rows(), x, std::span<double>(depths_));
@@ -232,7 +232,7 @@ class Solver final : public DualContactSolver<Real> {
       depth_square += std::max(depths_[k], 0.0) * std::max(depths_[k], 0.0);
     const double depth_norm = std::sqrt(depth_square);
     if (depth_norm == 0.0) {
-      // nothing is touched: no force is the solution
+      // no contact is violated: the solution has no forces
       std::fill(forces_.begin(), forces_.end(), 0.0);
       return;
     }
@@ -250,7 +250,7 @@ class Solver final : public DualContactSolver<Real> {
       report.converged = residual <= options.tolerance;
       const int left = options_.max_iterations - report.iterations;
       if (report.converged || left <= 0) break;
-      // bounds and forces may drive each other up without end: then bounds stay as they are
+      // bounds and forces may increase each other without end: then the bounds are kept
       if (residual >= best) ++failures;
       best = std::min(best, residual);
       last = last || failures >= kMaxFailures || left <= options_.max_iterations / kPartOfLast;
@@ -260,7 +260,8 @@ class Solver final : public DualContactSolver<Real> {
       report.converged = !friction && solved.residual <= options.tolerance;
       if (last) break;
     }
-    // the softness is no excuse: where contacts contradict each other it is all that ends the solve
+    // measure the residual without the softness: for contradictory contacts that alone makes the solve
+    // converge
     for (std::size_t i = 0; i < forces_.size(); ++i)
       gradient_[i] += options.softness * options.scale[i] * forces_[i];
     report.residual = projected_gradient(bounds_, options.scale, forces_, gradient_) / depth_norm;

@@ -20,7 +20,7 @@ struct ContactSolveReport {
   int iterations = 0;
   double residual = 0.0;  ///< relative
   bool converged = false;
-  double violation = 0.0;  ///< the deepest that a contact is left violated, m
+  double violation = 0.0;  ///< largest remaining depth of a contact, m
   Index pushing = 0;       ///< contacts with a force
 };
 
@@ -54,18 +54,17 @@ class DualContactSolver : public detail::Polymorphic {
                                                  const CholeskyFactor<Real>& factor,
                                                  const ContactSolverOptions& options);
 
-  /// x, which holds a first guess, becomes the solution; without contacts A⁻¹b exactly. Vectors have
-  /// kPaddedStride numbers for each vertex. Forces of the last call serve as a first guess for contacts with
-  /// the same vertex and obstacle, until `forget`. Throws InvalidArgument for contacts of vertices that do
-  /// not exist and numbers that are out of range. Whatever the contacts are, it ends and says in the report
-  /// what is left.
+  /// Replaces x, a first guess, by the solution; without contacts A⁻¹b exactly. Vectors have kPaddedStride
+  /// numbers for each vertex. The forces of the last call are the first guess for contacts with the same
+  /// vertex and obstacle, until `forget`. Throws InvalidArgument for contacts of vertices that do not exist
+  /// and numbers that are out of range. Always terminates; the report gives the remaining residual.
   virtual ContactSolveReport solve(std::span<const Contact> contacts, std::span<const Real> b,
                                    std::span<const double> from, std::span<Real> x) = 0;
 
-  /// The normal force of each contact of the last call, in units of A x, none negative.
+  /// Returns the normal force of each contact of the last call, in units of A x, none negative.
   [[nodiscard]] virtual std::span<const double> forces() const = 0;
 
-  /// Starts a step: forces of earlier ones are forgotten.
+  /// Forgets the forces of earlier calls; to be called at the start of a step.
   virtual void forget() = 0;
 
   [[nodiscard]] virtual std::size_t bytes() const = 0;

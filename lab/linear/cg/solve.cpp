@@ -19,23 +19,23 @@
 namespace meshorder {
 namespace {
 
-/// The rows of a matrix for an iterative solver, which passes over them again and again: in chunks of about
-/// as many blocks each, which depend on the matrix alone, so that sums over chunks are the same for any
-/// number of threads. A thread has the same chunks in every pass. Each pass goes the other way than the one
-/// before and so begins with what the caches still hold.
+/// Repeated passes over the rows of a matrix, in chunks of about equal numbers of blocks. The chunks depend
+/// only on the matrix, so that sums over them are the same for any number of threads. A thread has the same
+/// chunks in every pass. Passes alternate their direction, so that each begins with the rows that are still
+/// in the caches.
 class RowSweeps {
  public:
   /// `offsets` are those of the matrix's compressed rows. O(chunks · log rows).
   explicit RowSweeps(std::span<const Offset> offsets)
       : bounds_(balanced_ranges(offsets, static_cast<Index>(1 + offsets.back() / kChunkBlocks))) {}
 
-  /// One pass: `work(begin, end)` for the rows of each chunk, on all threads.
+  /// Calls `work(begin, end)` for the rows of each chunk, on all threads.
   template <class Work>
   void run(Work work) {
     run_chunks([&](Index chunk) { work(bounds_[chunk], bounds_[chunk + 1]); });
   }
 
-  /// One pass: the sum of `part(begin, end)` over the chunks in their order.
+  /// Returns the sum of `part(begin, end)` over the chunks, in their order.
   template <class Sum, class Part>
   Sum sum(Part part) {
     std::vector<Sum> parts(bounds_.size() - 1);
@@ -57,7 +57,7 @@ class RowSweeps {
     const auto run_some = [&](Index begin, Index end) {
       for (Index i = begin; i < end; ++i) work(backwards ? end - 1 - (i - begin) : i);
     };
-    // a thread with one chunk would wait longer than it works
+    // with one chunk a thread would spend most of its time on start-up
     const Index parts = std::clamp<Index>(chunks / 2, 1, tbb::this_task_arena::max_concurrency());
     if (parts == 1) return run_some(0, chunks);
     const auto bound = [&](Index part) { return static_cast<Index>(Offset{chunks} * part / parts); };
@@ -197,15 +197,15 @@ class ConjugateGradients {
     return {status, iterations_, residual(), converged ? Index{-1} : largest_vertex(v_.r)};
   }
 
-  /// Looks for the vertex where it began: in what was given, then in what was computed of it, where a bad row
-  /// of the matrix shows first.
+  /// Finds the vertex where it began: first in the arguments, then in the vectors computed from them, in
+  /// which a bad row of the matrix shows first.
   [[nodiscard]] SolveReport not_finite() const {
     Index vertex = first_not_finite(b_);
     if (vertex < 0) vertex = first_not_finite(x_);
     for (const auto* vector : {&v_.p, &v_.q, &v_.r, &v_.z}) {
       if (vertex < 0) vertex = first_not_finite(*vector);
     }
-    // sums alone outgrew the numbers
+    // only sums overflowed
     if (vertex < 0) vertex = largest_vertex(v_.r);
     return {SolveStatus::not_finite, iterations_, residual(), vertex};
   }
@@ -276,7 +276,7 @@ SolveReport refined_conjugate_gradients(const BlockCsr& matrix, const BlockCsrOf
                                         const Preconditioner& preconditioner, std::span<const double> b,
                                         std::span<double> x, const SolveOptions& options) {
   constexpr int kCorrections = 10;
-  constexpr double kMargin = 0.9;  // so that rounding seldom asks for another correction
+  constexpr double kMargin = 0.9;  // so that rounding seldom requires another correction
   std::vector<double> residual(b.size());
   std::vector<double> correction(b.size());
   const double start = compute_residual(matrix, b, x, residual);

@@ -10,7 +10,7 @@
 namespace meshorder {
 namespace {
 
-/// A task is worth at least so many entries, and this part of all.
+/// Smallest cost of a task: so many entries, and this part of the whole factor.
 constexpr double kMinCost = 40'000;
 constexpr double kMinPart = 1.0 / 32;
 

@@ -7,7 +7,7 @@
 namespace meshorder {
 namespace {
 
-/// Of a supernode with so many columns and rows below them.
+/// Returns the cost of a supernode of `columns` columns with `rows` rows below them.
 double cost_of(Index columns, Offset rows, const PanelCosts& costs) {
   const Index panels = panel_count(columns, costs.widest);
   const double width = columns;
@@ -25,7 +25,7 @@ Index add_task(SolveTasks& tasks, Index parent) {
   return task;
 }
 
-/// Branches that are small by themselves, together worth a task; the last bundle may be worth less.
+/// Groups small branches into bundles that cost at least `min_cost`; the last bundle may cost less.
 std::vector<std::vector<Index>> bundles_of(const std::vector<Index>& branches,
                                            const std::vector<double>& cost, double min_cost) {
   std::vector<std::vector<Index>> bundles;
@@ -55,7 +55,7 @@ Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs) {
   std::vector<std::vector<Index>> children(n);
   for (Index j = 0; j < n; ++j) {
     cost[j] = cost_of(1, rows_below(j), costs);
-    // those first that lack the fewest rows
+    // first those with the most rows in common
     std::stable_sort(children[j].begin(), children[j].end(),
                      [&](Index a, Index b) { return rows_below(a) > rows_below(b); });
     for (const Index child : children[j]) {

@@ -34,8 +34,8 @@ namespace {
 
 constexpr int kBytesAhead = 2048;
 
-/// Gives the rows before row `i` their part of x there. What chunks on either side give to one chunk at the
-/// same time goes to places of their own.
+/// Adds the contributions of row `i` to the rows before it. Simultaneous contributions of two chunks to one
+/// chunk go to separate memory.
 template <int R>
 HWY_INLINE void give(const SweptRows& rows, Index i, const Node<R>& x) {
   for (Offset k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
@@ -57,8 +57,8 @@ HWY_INLINE Node<R> solve_diagonal(const SweptRows& rows, Index i, const Node<R>&
   return x;
 }
 
-/// L x in row i. Asks for blocks `Ahead` bytes from those of the row, which processors do not do by
-/// themselves where rows go down.
+/// L x in row i. Prefetches blocks `Ahead` bytes from those of the row; hardware does not prefetch descending
+/// rows.
 template <int R, int Ahead>
 HWY_INLINE Node<R> left_product(const SweptRows& rows, Index i) {
   auto product = ProductSum<R, R>::zero();
@@ -138,7 +138,7 @@ HWY_EXPORT(backwards_6);
 HWY_EXPORT(residual_3);
 HWY_EXPORT(residual_6);
 
-/// Whether no row has a neighbour beyond the chunks next to its own.
+/// Returns whether all neighbours of every row are in its own or an adjacent chunk.
 bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
   bool result = true;
   for (Index i = 0; i < graph.size(); ++i) {
@@ -149,7 +149,7 @@ bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
   return result;
 }
 
-/// Chunks that two threads can share evenly, or one chunk where that is not to be had.
+/// Returns chunks that two threads can share evenly, or one chunk if there are none.
 RowChunks sweep_chunks(const Laplacian& graph, Index min_rows) {
   for (Index rows = min_rows; rows < graph.size(); rows *= 2) {
     RowChunks chunks(graph, rows);

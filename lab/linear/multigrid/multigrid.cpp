@@ -33,7 +33,7 @@ CsrGraph graph_of(const BlockCsr& pattern) {
   return graph;
 }
 
-/// The inverse of a symmetric matrix; where that is not positive definite, of one that is.
+/// Returns the inverse of a symmetric matrix, with eigenvalues made positive where they are not.
 Eigen::MatrixXf dense_inverse(const CoarseMatrix& matrix) {
   constexpr double kMin = 1e-12;  // of the largest eigenvalue
   const Eigen::Index n = Eigen::Index{kRigidModes} * matrix.rows();
@@ -165,7 +165,7 @@ class Multigrid final : public Preconditioner {
       coarse_vectors_.emplace_back(last->rows());
       coarse_.push_back(make_level(view(*last), Coarsening::smoothed, modes));
       MultigridLevel<kRigidModes>& level = coarse_.back();
-      // growing moves the levels
+      // growth of the vector moves the levels
       last = coarse_.size() > 1 ? &coarse_[coarse_.size() - 2].coarse : &finest_.coarse;
       update_level(view(*last), level);
       last->values = std::vector<double>();

@@ -21,7 +21,7 @@ Square orthonormalise(Modes& columns) {
   constexpr double kMin = 1e-4;
   Square upper = Square::Zero();
   const auto project_out = [&](int from, int j) {
-    for (int pass = 0; pass < 2; ++pass) {  // twice is enough (Kahan)
+    for (int pass = 0; pass < 2; ++pass) {  // two passes are enough (Kahan)
       for (int i = from; i < j && i < (from < kTranslations ? kTranslations : j); ++i) {
         const double share = columns.col(i).dot(columns.col(j));
         upper(i, j) += share;
@@ -49,7 +49,7 @@ Square orthonormalise(Modes& columns) {
     const double before = columns.col(j).norm();
     project_out(0, j);
     const double after = columns.col(j).norm();
-    if (after <= 1e-10 * before) columns.col(j).setZero();  // nothing but rounding is left
+    if (after <= 1e-10 * before) columns.col(j).setZero();  // only rounding errors are left
     widest = std::max(widest, columns.col(j).norm());
   }
   for (int j = kTranslations; j < kRigidModes; ++j) {

@@ -6,11 +6,11 @@
 
 namespace meshorder {
 
-/// A preconditioner whose z at a vertex depends on r at that vertex alone, so that a solver may apply it a
-/// few rows at a time, while it has them at hand.
+/// A preconditioner whose z at a vertex depends only on r at that vertex, so that a solver can apply it to a
+/// few rows at a time while they are in the cache.
 class LocalPreconditioner : public Preconditioner {
  public:
-  /// Throws InvalidArgument when a size does not fit.
+  /// Throws InvalidArgument if a size differs.
   void apply(std::span<const double> r, std::span<double> z) const final;
 
   /// z ≈ A⁻¹ r for the vertices begin … end − 1; r and z as in `apply`.
@@ -18,7 +18,8 @@ class LocalPreconditioner : public Preconditioner {
 
  protected:
   explicit LocalPreconditioner(Index vertices) : vertices_(vertices) {}
-  /// Throws InvalidArgument, unless the matrix has as many rows of blocks as the one it was made for.
+  /// Throws InvalidArgument unless the matrix has as many block rows as the one the preconditioner was made
+  /// for.
   void check_size(const BlockCsr& matrix) const;
   [[nodiscard]] Index vertices() const noexcept { return vertices_; }
 
@@ -27,7 +28,7 @@ class LocalPreconditioner : public Preconditioner {
 };
 
 /// z_i = r_i / |a_ii|. A diagonal entry that is 0 or not finite counts as 1, so that the preconditioner stays
-/// positive definite and the solver finds out about the matrix.
+/// positive definite and the solver detects the bad matrix.
 class Jacobi final : public LocalPreconditioner {
  public:
   explicit Jacobi(Index vertices) : LocalPreconditioner(vertices) {}

@@ -17,14 +17,14 @@ namespace meshorder {
 /// definite itself; the same bits for any number of threads.
 class Preconditioner : public detail::Polymorphic {
  public:
-  /// Takes over the numbers of a matrix of the pattern that it was made for. To be called before `apply`,
-  /// and again when the matrix has changed.
+  /// Takes the values of a matrix that has the pattern it was made for. Call it before `apply`, and again
+  /// after the matrix has changed.
   virtual void update(const BlockCsr& matrix) = 0;
 
   /// z ≈ A⁻¹ r, 3 doubles for each vertex.
   virtual void apply(std::span<const double> r, std::span<double> z) const = 0;
 
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
@@ -44,9 +44,9 @@ struct EnumNames<PreconditionerKind> {
                                     std::pair{PreconditionerKind::multigrid, "multigrid"}};
 };
 
-/// A preconditioner for matrices of this pattern, the vertices at rest at `points` (of which multigrid makes
-/// its rigid-body modes). Throws InvalidArgument when these are not as many as the pattern has rows; it or
-/// `update` where a row lacks its diagonal.
+/// Returns a preconditioner for matrices of this pattern, the vertices at rest at `points` (from which
+/// multigrid computes its rigid-body modes). Throws InvalidArgument if the numbers of points and rows differ;
+/// it or `update` throws if a row lacks its diagonal.
 std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const BlockCsr& pattern,
                                                     std::span<const Point> points);
 
