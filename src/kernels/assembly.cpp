@@ -43,7 +43,7 @@ OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const B
   result.room = first_spare + kSpareBlocks;
   if (result.room > kMaxIndex) {
     throw InvalidArgument("assembly: " + std::to_string(result.room) +
-                          " blocks, spare ones included; at most 2,147,483,647 can be numbered");
+                          " blocks, including spare ones; at most 2,147,483,647 can be numbered");
   }
   for (std::size_t i = 0; i < share.batches.size(); ++i) {
     if (share.boundary[i] < 0) continue;

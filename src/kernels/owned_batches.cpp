@@ -71,7 +71,7 @@ std::vector<OwnedBatches> owned_batches(std::span<const Index> vertices, Index c
 void check_room(std::span<const double> forces, const OwnedBatches& share, const char* function) {
   if (forces.size() < static_cast<std::size_t>(kPaddedStride) * static_cast<std::size_t>(share.room)) {
     throw InvalidArgument(std::string(function) + ": the forces must have room for " +
-                          std::to_string(share.room) + " vertices, spare ones included");
+                          std::to_string(share.room) + " vertices, including spare ones");
   }
 }
 

@@ -85,11 +85,10 @@ class ClosedSurface : public Obstacle {
                     cross(minus(points_[t[1]], origin), minus(points_[t[2]], origin)));
     }
     if (!(volume > 0.0)) {
-      throw InvalidArgument(
-          fmt::format("closed_surface: the triangle with the edge from point {} to point {} (counted from "
-                      "0), and all in all "
-                      "the surface, is inside out; triangles must turn counterclockwise seen from outside",
-                      triangles_.front()[0], triangles_.front()[1]));
+      throw InvalidArgument(fmt::format(
+          "closed_surface: the triangle with the edge from point {} to point {} (counted from 0), and with "
+          "it the surface as a whole, is inside out; triangles must turn counterclockwise seen from outside",
+          triangles_.front()[0], triangles_.front()[1]));
     }
     touching_ = 1e-9 * norm(minus(all.upper, all.lower));
   }

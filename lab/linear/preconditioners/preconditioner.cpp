@@ -26,7 +26,7 @@ std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, con
     case PreconditionerKind::multigrid:
       return make_multigrid(pattern, points);
   }
-  throw InvalidArgument("preconditioner: none of the known ones");
+  throw InvalidArgument("preconditioner: unknown kind");
 }
 
 }  // namespace meshorder
