@@ -14,7 +14,7 @@
 
 namespace meshorder::test {
 
-/// A body whose energy is ½xᵀA x − bᵀx, and what it must not enter.
+/// A body with the energy ½xᵀA x − bᵀx, and its contacts.
 struct ContactProblem {
   SparseMatrix matrix;
   std::vector<double> masses;

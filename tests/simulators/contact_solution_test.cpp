@@ -182,7 +182,7 @@ TEST(ContactSolution, HoldsABlockOnASlopeThatIsLessSteepThanTheFriction) {
   const Eigen::VectorXd moved = compact(run.x) - compact(problem.rest);
   const Eigen::VectorXd pull = test::dense(problem.matrix) * compact(run.x) - compact(problem.b);
   const Eigen::Vector3d force = pull.reshaped(3, pull.size() / 3).rowwise().sum();
-  // what a block that does not move at all is held by, up to what it gives way
+  // the forces that hold a block at rest, up to the solver's softness
   const double weight = total * 9.81 * 1e-4;
   EXPECT_NEAR(force.x(), -weight * std::sin(angle), 0.02 * weight);
   EXPECT_NEAR(force.y(), weight * std::cos(angle), 0.02 * weight);
@@ -206,7 +206,7 @@ TEST(ContactSolution, LetsABlockSlideDownASlopeThatIsSteeperThanTheFriction) {
     along += problem.masses[v] * moved(3 * v);
     total += problem.masses[v];
   }
-  // it keeps to the plane, so that the centre of mass moves as that of a rigid block would
+  // it stays on the plane, so the centre of mass moves like that of a rigid block
   const double rigid = 9.81 * 1e-4 * (std::sin(angle) - friction * std::cos(angle));
   EXPECT_NEAR(along / total, rigid, 0.02 * rigid);
 }

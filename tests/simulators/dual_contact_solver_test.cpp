@@ -17,7 +17,7 @@ using test::ContactProblem;
 ContactProblem pushed_block(double stiffness) {
   ContactProblem problem = test::contact_problem(make_grid({.size = test::kSanitized ? 10 : 20}), stiffness);
   problem.push({0.02, -0.1, 0});
-  // a floor that is no plane, or all would touch
+  // a curved floor; a plane would touch all vertices
   for (Index v = 0; v < problem.size(); ++v) {
     const double* const x = problem.rest.data() + Offset{kPaddedStride} * v;
     if (x[1] > 0.02) continue;
@@ -39,7 +39,7 @@ TEST(DualContactSolver, NeedsFewMultiplicationsOnABlockThatIsPushedOntoTheFloor)
     EXPECT_GE(cold.pushing, test::kSanitized ? 1 : 10);
     EXPECT_LT(cold.pushing, 400);
     EXPECT_LE(cold.iterations, 60);
-    // what pushes it changes a little
+    // the load changes a little
     problem.push({0, -0.001, 0.0005});
     const ContactSolveReport warm = solver->solve(problem.contacts, problem.b, problem.rest, x);
     EXPECT_TRUE(warm.converged);

@@ -37,7 +37,7 @@ std::vector<double> applied(const Preconditioner& preconditioner, const std::vec
   return z;
 }
 
-/// What it multiplies by.
+/// Returns the preconditioner as a dense matrix.
 Eigen::MatrixXd dense(const Preconditioner& preconditioner, Index vertices) {
   Eigen::MatrixXd result(3 * vertices, 3 * vertices);
   for (Index i = 0; i < 3 * vertices; ++i) {

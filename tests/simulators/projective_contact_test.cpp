@@ -199,7 +199,7 @@ TEST(ProjectiveContact, TheEndsOfARingMeetAndDoNotPass) {
       EXPECT_LT(energy, first);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(simulator.balance().momentum[c], momentum[c], 1e-6);
     } else {
-      EXPECT_GT(largest, 10);  // the test would see it
+      EXPECT_GT(largest, 10);  // so that the test is not trivial
     }
   }
 }

@@ -232,7 +232,7 @@ TEST(ProjectiveDynamics, GoesOnFromAStateBitForBit) {
     EXPECT_EQ(part.state().positions, whole.state().positions);
     EXPECT_EQ(part.state().velocities, whole.state().velocities);
     EXPECT_EQ(part.state().step, 8);
-    // what it kept matters
+    // the memory matters
     MotionState forgetful = middle;
     forgetful.memory.clear();
     part.set_state(forgetful);
