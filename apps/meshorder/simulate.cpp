@@ -68,11 +68,10 @@ Scenario scenario_of(const SimulateArguments& arguments) {
     if (!scenario.is_implicit())
       throw InvalidArgument("--preconditioner is of the implicit method, and " + scenario.name +
                             " has none: ADMM factors its matrix once");
-    scenario.implicit().preconditioner =
-        meaning_in(kPreconditioners, arguments.preconditioner, "preconditioner");
+    scenario.implicit().preconditioner = parse<PreconditionerKind>(arguments.preconditioner);
   }
   if (!arguments.precision.empty()) {
-    const MatrixPrecision precision = meaning_in(kPrecisions, arguments.precision, "precision");
+    const MatrixPrecision precision = parse<MatrixPrecision>(arguments.precision);
     std::visit([&](auto& options) { options.precision = precision; }, scenario.integrator);
   }
   return scenario;

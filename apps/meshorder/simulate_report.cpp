@@ -82,10 +82,10 @@ nlohmann::ordered_json to_json(const Balance& balance) {
 nlohmann::ordered_json material_json(const Scenario& scenario) {
   nlohmann::ordered_json json;
   if (scenario.is_implicit()) {
-    json["model"] = name_in(kMaterialModels, scenario.model);
-    json["tangent"] = name_in(kTangents, scenario.tangent);
+    json["model"] = to_string(scenario.model);
+    json["tangent"] = to_string(scenario.tangent);
   } else {
-    json["model"] = name_in(kLocalModels, scenario.projective().model);
+    json["model"] = to_string(scenario.projective().model);
   }
   if (!scenario.is_implicit() && has_stiffness(scenario.projective().model)) {
     json["stiffness"] = scenario.material.young;
@@ -101,7 +101,7 @@ nlohmann::ordered_json material_json(const Scenario& scenario) {
 nlohmann::ordered_json integrator_json(const ImplicitOptions& options) {
   return {{"method", "backward-euler"},
           {"time_step", options.time_step},
-          {"mass", name_in(kMasses, options.mass)},
+          {"mass", to_string(options.mass)},
           {"alpha", options.mass_damping},
           {"beta", options.stiffness_damping},
           {"gravity", options.gravity},
@@ -115,21 +115,20 @@ nlohmann::ordered_json integrator_json(const ProjectiveScenario& options) {
           {"gravity", options.gravity},
           {"iterations", options.iterations},
           {"tolerance", options.tolerance},
-          {"duals", options.keep_duals ? "kept" : "reset"},
-          {"acceleration", options.acceleration}};
+          {"duals", options.keep_duals ? "kept" : "reset"}};
 }
 
 nlohmann::ordered_json solver_json(const ImplicitOptions& options) {
-  return {{"preconditioner", name_in(kPreconditioners, options.preconditioner)},
+  return {{"preconditioner", to_string(options.preconditioner)},
           {"tolerance", options.solve.tolerance},
           {"max_iterations", options.solve.max_iterations},
-          {"precision", name_in(kPrecisions, options.precision)}};
+          {"precision", to_string(options.precision)}};
 }
 
 nlohmann::ordered_json solver_json(const ProjectiveScenario& options) {
-  nlohmann::ordered_json json{{"precision", name_in(kPrecisions, options.precision)}};
+  nlohmann::ordered_json json{{"precision", to_string(options.precision)}};
   if (touches(options)) {
-    json["contact"] = {{"method", name_in(kContactSolvers, options.contact_solver.kind)},
+    json["contact"] = {{"method", "uzawa"},
                        {"tolerance", options.contact_solver.tolerance},
                        {"max_iterations", options.contact_solver.max_iterations},
                        {"obstacles", options.obstacles.size()},
@@ -142,14 +141,13 @@ std::string material_in_words(const Scenario& scenario) {
   const Material& material = scenario.material;
   std::string words;
   if (scenario.is_implicit()) {
-    words = fmt::format("{} ({} tangent), E {:g} Pa, nu {:g}", name_in(kMaterialModels, scenario.model),
-                        name_in(kTangents, scenario.tangent), material.young, material.poisson);
+    words = fmt::format("{} ({} tangent), E {:g} Pa, nu {:g}", to_string(scenario.model),
+                        to_string(scenario.tangent), material.young, material.poisson);
   } else if (const LocalModel model = scenario.projective().model; has_stiffness(model)) {
-    words = fmt::format("{}, k {:g} {}", name_in(kLocalModels, model), material.young,
+    words = fmt::format("{}, k {:g} {}", to_string(model), material.young,
                         model == LocalModel::springs ? "N/m" : "Pa");
   } else {
-    words =
-        fmt::format("{}, E {:g} Pa, nu {:g}", name_in(kLocalModels, model), material.young, material.poisson);
+    words = fmt::format("{}, E {:g} Pa, nu {:g}", to_string(model), material.young, material.poisson);
   }
   words += fmt::format(", rho {:g} kg/m³", material.density);
   if (!scenario.regions.empty()) words += fmt::format(", {} regions", scenario.regions.size());
@@ -157,8 +155,8 @@ std::string material_in_words(const Scenario& scenario) {
 }
 
 std::string method_in_words(const ImplicitOptions& options) {
-  return fmt::format("backward Euler, CG with {} to {:g}{}",
-                     name_in(kPreconditioners, options.preconditioner), options.solve.tolerance,
+  return fmt::format("backward Euler, CG with {} to {:g}{}", to_string(options.preconditioner),
+                     options.solve.tolerance,
                      options.precision == MatrixPrecision::single ? " in single" : "");
 }
 
@@ -176,7 +174,7 @@ std::string contact_in_words(const ProjectiveScenario& options) {
     if (obstacle.friction > 0) words += fmt::format(" (friction {:g})", obstacle.friction);
   }
   if (options.contact.with_itself) words += words.empty() ? "with itself" : ", and with itself";
-  return words + fmt::format(", by {}", name_in(kContactSolvers, options.contact_solver.kind));
+  return words + ", by uzawa";
 }
 
 void print_steps(const Console& console, const Scenario& scenario, const MotionRecord& record) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lab/linear/cholesky/cholesky.hpp"
-#include "lab/motion/held_vertices.hpp"
+#include "lab/motion/loads.hpp"
 
 #include <optional>
 #include <span>
@@ -11,7 +11,7 @@
 namespace meshorder {
 
 /// The matrix A = M + h² Σ Dᵀw²D of ADMM's global step, the same for x, y and z, with its factor. Held
-/// vertices are no unknowns: their rows are those of the identity, and what they do to others goes to the
+/// vertices are not unknowns: their rows are those of the identity, and their influence on others goes to the
 /// right-hand side.
 template <class Real>
 class GlobalSystem {
@@ -19,17 +19,18 @@ class GlobalSystem {
   /// `stiffness` is Σ Dᵀw²D and `squared_step` h². Vertices of mass 0 must be held.
   GlobalSystem(SparseMatrix stiffness, std::span<const double> masses, double squared_step);
 
-  /// Holds these vertices, and factors anew where they are others than before. True where that was so.
+  /// Holds these vertices. Refactors and returns true if they differ from the ones held before.
   bool hold(const HeldVertices& held);
 
-  /// Puts the places of held vertices, taken from x, into the right-hand side b, and what they do to others.
-  /// Vectors have kPaddedStride numbers for each vertex. O(entries in the rows of held vertices).
+  /// Sets the held vertices' positions, taken from x, in the right-hand side b and adds their influence on
+  /// other vertices. Vectors have kPaddedStride numbers for each vertex. O(entries in the rows of held
+  /// vertices).
   void apply_held(std::span<const Real> x, std::span<Real> b) const;
 
   [[nodiscard]] const SparseMatrix& matrix() const noexcept { return matrix_; }
   [[nodiscard]] const CholeskyFactor<Real>& factor() const noexcept { return *factor_; }
   [[nodiscard]] bool is_held(Index v) const { return held_[v] != 0; }
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

@@ -19,7 +19,7 @@ bool is_hyperelastic(LocalModel model) { return model != LocalModel::springs && 
 
 void check_positive(double value, const std::string& what) {
   if (!(value > 0.0) || !std::isfinite(value))
-    throw InvalidArgument(fmt::format("local steps: {} is {}; a positive number would do", what, value));
+    throw InvalidArgument(fmt::format("local steps: {} is {}; it must be positive", what, value));
 }
 
 void check_lame(const Lame& lame, const std::string& whose) {
@@ -31,7 +31,7 @@ void check_lame(const Lame& lame, const std::string& whose) {
 
 void check_simplices(const Simplices& simplices, std::span<const Point> points) {
   if (simplices.dimension != 3 || simplices.vertices.empty() || simplices.vertices.size() % 4 != 0)
-    throw InvalidArgument("local steps: a body of tetrahedra is needed, of four vertices each");
+    throw InvalidArgument("local steps: the simplices must be tetrahedra, with four vertices each");
   for (const Index v : simplices.vertices) {
     if (v < 0 || v >= index_size(points)) {
       throw InvalidArgument(
@@ -48,7 +48,7 @@ void check_law(const LocalLaw& law, std::size_t count) {
   const auto check_size = [&](const std::vector<double>& values, const char* what) {
     if (values.empty() || values.size() == count) return;
     throw InvalidArgument(
-        fmt::format("local steps: {} values of {} for {} tetrahedra; none would do, or one "
+        fmt::format("local steps: {} values of {} for {} tetrahedra; give none or one "
                     "for each",
                     values.size(), what, count));
   };

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lab/admm/local_pass.hpp"
-#include "lab/linear/cholesky/sparse_matrix.hpp"
+#include "lab/linear/cholesky/ldl.hpp"
 
 #include <span>
 
@@ -10,11 +10,11 @@ namespace meshorder {
 
 struct LocalLaw;
 
-/// What the local steps need of elements at rest: springs on two corners or tetrahedra on four, in batches as
-/// LocalPass has them. The last batch is filled up with elements of no weight, which have no force.
+/// Rest data of elements for the local steps: springs on two corners or tetrahedra on four, in the batches of
+/// LocalPass. The last batch is filled up with elements without weight, which have no force.
 ///
 /// A tetrahedron that is flat to rounding (see RestShapes) has no deformation gradient: it gets the corners
-/// and shape of one nearby that has, and no weight.
+/// and shape of a nearby one that has one, and no weight.
 template <class Real>
 struct LocalElements {
   Offset count = 0;

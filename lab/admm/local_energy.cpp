@@ -92,7 +92,7 @@ double energy_of_element(LocalModel model, const LocalElements<Real>& elements, 
     const double stretch = length - static_cast<double>(elements.rest[s]);
     return 0.5 * weight * stretch * stretch;
   }
-  // what has no weight has no energy, not even an infinite one
+  // elements without weight have no energy, not even an infinite one
   if (weight <= 0.0) return 0.0;
   for (Index a = 1; a < 4; ++a) {
     for (int c = 0; c < 3; ++c) {

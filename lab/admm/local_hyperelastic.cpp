@@ -35,27 +35,10 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace meshorder {
-namespace {
 
-HWY_EXPORT(stvk_doubles);
-HWY_EXPORT(stvk_floats);
-HWY_EXPORT(neo_hookean_doubles);
-HWY_EXPORT(neo_hookean_floats);
-HWY_EXPORT(log_neo_hookean_doubles);
-HWY_EXPORT(log_neo_hookean_floats);
-
-}  // namespace
-
-void pass_stvk(const LocalPass<double>& pass) { HWY_DYNAMIC_DISPATCH(stvk_doubles)(pass); }
-void pass_stvk(const LocalPass<float>& pass) { HWY_DYNAMIC_DISPATCH(stvk_floats)(pass); }
-void pass_neo_hookean(const LocalPass<double>& pass) { HWY_DYNAMIC_DISPATCH(neo_hookean_doubles)(pass); }
-void pass_neo_hookean(const LocalPass<float>& pass) { HWY_DYNAMIC_DISPATCH(neo_hookean_floats)(pass); }
-void pass_log_neo_hookean(const LocalPass<double>& pass) {
-  HWY_DYNAMIC_DISPATCH(log_neo_hookean_doubles)(pass);
-}
-void pass_log_neo_hookean(const LocalPass<float>& pass) {
-  HWY_DYNAMIC_DISPATCH(log_neo_hookean_floats)(pass);
-}
+MESHORDER_EXPORT_LOCAL_PASS(stvk)
+MESHORDER_EXPORT_LOCAL_PASS(neo_hookean)
+MESHORDER_EXPORT_LOCAL_PASS(log_neo_hookean)
 
 }  // namespace meshorder
 #endif

@@ -12,9 +12,8 @@ inline constexpr Index kLocalBatch = 64 / sizeof(Real);
 /// Numbers of a tetrahedron in LocalElements::rest: Dₘ⁻¹ row by row in the frame of the world, and w².
 inline constexpr Index kTetrahedronNumbers = 10;
 
-/// What a pass over one share of the batches reads and writes, checked: for local_steps.cpp and the kernels
-/// alone. Quantity q of the element in lane l of a batch stands at `q · kLocalBatch + l` of what the batch
-/// has.
+/// Input and output of a pass over one share of the batches, already checked. Internal to local_steps.cpp and
+/// the kernels. Quantity q of the element in lane l of a batch is entry `q · kLocalBatch + l` of the batch.
 template <class Real>
 struct LocalPass {
   const OwnedBatches& share;
@@ -46,3 +45,11 @@ void pass_log_neo_hookean(const LocalPass<double>& pass);
 void pass_log_neo_hookean(const LocalPass<float>& pass);
 
 }  // namespace meshorder
+
+/// Defines both functions pass_<law> by the kernels <law>_doubles and <law>_floats of all instruction sets;
+/// to be used in namespace meshorder where HWY_ONCE.
+#define MESHORDER_EXPORT_LOCAL_PASS(law)                                                        \
+  HWY_EXPORT(law##_doubles);                                                                    \
+  HWY_EXPORT(law##_floats);                                                                     \
+  void pass_##law(const LocalPass<double>& pass) { HWY_DYNAMIC_DISPATCH(law##_doubles)(pass); } \
+  void pass_##law(const LocalPass<float>& pass) { HWY_DYNAMIC_DISPATCH(law##_floats)(pass); }

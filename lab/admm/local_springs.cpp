@@ -43,8 +43,8 @@ HWY_INLINE void pass_any(const LocalPass<typename Lanes::Number>& pass) {
   using Value = typename Lanes::Value;
   constexpr Index kBatchOf = kLocalBatch<Number>;
   // squares between these bounds have full precision
-  constexpr double kLeast = std::is_same_v<Number, float> ? 1e-30 : 1e-280;
-  constexpr double kMost = 1.0 / kLeast;
+  constexpr double kMin = std::is_same_v<Number, float> ? 1e-30 : 1e-280;
+  constexpr double kMax = 1.0 / kMin;
   const Value half = Lanes::set(0.5);
   const Value factor = Lanes::set(pass.scale * pass.stiffness);
   const auto count = static_cast<Offset>(pass.share.batches.size());
@@ -64,7 +64,7 @@ HWY_INLINE void pass_any(const LocalPass<typename Lanes::Number>& pass) {
       for (int c = 0; c < 3; ++c) q[c] = q[c] - b[c] + Lanes::load(duals + c * kBatchOf + lane);
       Value direction[3];
       const Value square = squared_length<Lanes>(q);
-      if (Lanes::all_at_most(square, kMost) && Lanes::all_at_most(Lanes::set(kLeast) - square, 0.0)) {
+      if (Lanes::all_at_most(square, kMax) && Lanes::all_at_most(Lanes::set(kMin) - square, 0.0)) {
         const Value inverse = Lanes::set(1.0) / Lanes::square_root(square);
         MESHORDER_UNROLL
         for (int c = 0; c < 3; ++c) direction[c] = inverse * q[c];
@@ -93,8 +93,8 @@ HWY_INLINE void pass_any(const LocalPass<typename Lanes::Number>& pass) {
   }
 }
 
-void pass_doubles(const LocalPass<double>& pass) { pass_any<ManyLanes>(pass); }
-void pass_floats(const LocalPass<float>& pass) { pass_any<ManyFloatLanes>(pass); }
+void springs_doubles(const LocalPass<double>& pass) { pass_any<ManyLanes>(pass); }
+void springs_floats(const LocalPass<float>& pass) { pass_any<ManyFloatLanes>(pass); }
 
 }  // namespace
 }  // namespace meshorder::HWY_NAMESPACE
@@ -102,15 +102,8 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace meshorder {
-namespace {
 
-HWY_EXPORT(pass_doubles);
-HWY_EXPORT(pass_floats);
-
-}  // namespace
-
-void pass_springs(const LocalPass<double>& pass) { HWY_DYNAMIC_DISPATCH(pass_doubles)(pass); }
-void pass_springs(const LocalPass<float>& pass) { HWY_DYNAMIC_DISPATCH(pass_floats)(pass); }
+MESHORDER_EXPORT_LOCAL_PASS(springs)
 
 }  // namespace meshorder
 #endif

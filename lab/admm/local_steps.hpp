@@ -1,11 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "kernels/material.hpp"
 #include "kernels/owned_batches.hpp"
 #include "kernels/simplices.hpp"
 #include "lab/admm/local_elements.hpp"
-#include "lab/linear/cholesky/sparse_matrix.hpp"
+#include "lab/linear/cholesky/ldl.hpp"
 
 #include <cstdint>
 #include <span>
@@ -13,12 +14,12 @@
 
 namespace meshorder {
 
-/// What the elements of a body in ADMM projective dynamics are made of: an energy U of a linear function D x
-/// of the positions, and the weight w² of its step.
+/// Element models of ADMM projective dynamics: an energy U of a linear function D x of the positions, and the
+/// weight w² of its local step.
 ///
 /// Springs and strain have their one minimum in closed form, halfway to the rest length or the closest
-/// rotation; where q = 0, along the rest edge and to the identity, so that a body rises from a point. Of the
-/// hyperelastic models it is the minimum near rest as far as the objective is convex, to about 1e-13 (of
+/// rotation; where q = 0, along the rest edge and to the identity, so that a body can unfold from a point. Of
+/// the hyperelastic models it is the minimum near rest as far as the objective is convex, to about 1e-13 (of
 /// floats 2e-6; of stvk 1e-5 at Poisson's ratio 0.3 and 1e-4 at 0), and a local one elsewhere; singular
 /// values beyond 1e4 are taken for 1e4. Nothing is NaN for finite q.
 enum class LocalModel : std::uint8_t {
@@ -29,6 +30,15 @@ enum class LocalModel : std::uint8_t {
   log_neo_hookean,  ///< ½μ(‖F‖² − 3) − μ log J + ½λ log² J, infinite for J ≤ 0 (Bonet, Wood 1997)
 };
 
+template <>
+struct EnumNames<LocalModel> {
+  static constexpr std::string_view kind = "material model";
+  static constexpr std::array names{
+      std::pair{LocalModel::springs, "springs"}, std::pair{LocalModel::strain, "strain"},
+      std::pair{LocalModel::stvk, "stvk"}, std::pair{LocalModel::neo_hookean, "neo-hookean"},
+      std::pair{LocalModel::log_neo_hookean, "log-neo-hookean"}};
+};
+
 struct LocalLaw {
   LocalModel model = LocalModel::strain;
   double stiffness = 0.0;  ///< k of all springs, N/m, or of the strain, Pa, where `stiffnesses` is empty
@@ -37,15 +47,15 @@ struct LocalLaw {
   std::vector<double> mu, lambda;   ///< of each simplex
 };
 
-/// What one pass of local steps leaves between its elements and the positions; sums over elements.
+/// Residual of one pass of local steps; sums over elements.
 struct LocalResidual {
   double primal = 0.0;     ///< Σ w²‖D x − z‖²
-  double magnitude = 0.0;  ///< Σ w²‖z‖², to which that compares
+  double magnitude = 0.0;  ///< Σ w²‖z‖², the scale of `primal`
 };
 
-/// The local steps of all elements, with their dual variables u. Elements are taken in the order of the
-/// simplices (springs by their edges, see springs_on_edges), and vertices as they are numbered. The same bits
-/// on every run and for any number of threads.
+/// The local steps of all elements, with their dual variables u. Elements are processed in the order of the
+/// simplices (springs by their edges, see springs_on_edges). The same bits on every run and for any number of
+/// threads.
 ///
 /// Each thread adds to a range of vertices of its own, by all elements that touch it (see owned_batches), of
 /// which those on a boundary have a copy of their duals for each thread. Tetrahedra that are flat to rounding
@@ -55,7 +65,7 @@ template <class Real>
 class LocalSteps {
  public:
   /// The elements of `simplices` (tetrahedra) at rest at `points`, with duals 0. Throws InvalidArgument,
-  /// which names what is wrong, for simplices that are no tetrahedra and numbers that are out of range or not
+  /// naming the problem, for simplices that are not tetrahedra and numbers that are out of range or not
   /// finite. O(simplices · log degree).
   LocalSteps(const LocalLaw& law, const Simplices& simplices, std::span<const Point> points);
 
@@ -68,25 +78,26 @@ class LocalSteps {
   /// scratch. O(elements).
   LocalResidual pass(std::span<const Real> positions, Real scale, std::span<Real> right_hand_side);
 
-  /// Vertices that the right-hand side has room for, at least n.
+  /// Returns the number of vertices that the right-hand side must hold, at least n.
   [[nodiscard]] Index room() const noexcept;
 
   void reset_duals();
-  /// The duals, 9 of each tetrahedron (row by row) and 3 of each spring, in an order that does not depend on
-  /// the number of threads, for a checkpoint.
+  /// Returns the duals, 9 of each tetrahedron (row by row) and 3 of each spring, in an order that does not
+  /// depend on the number of threads, for a checkpoint.
   [[nodiscard]] std::vector<Real> duals() const;
   /// Throws InvalidArgument unless there are as many as `duals` returns and all are finite.
   void set_duals(std::span<const Real> duals);
 
-  /// Σ U(D x), infinite where a law is. O(elements).
+  /// Returns Σ U(D x) in J, infinite if a law is. O(elements).
   [[nodiscard]] double energy(std::span<const Real> positions) const;
 
   [[nodiscard]] Offset element_count() const noexcept;
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  /// Where the duals of copy c of a batch begin: batches that several shares compute have one for each.
+  /// Returns the position of the duals of copy c of a batch; batches that several shares compute have one
+  /// copy for each.
   [[nodiscard]] Offset duals_of(Offset copy) const noexcept {
     return copy * elements_.rows() * kLocalBatch<Real>;
   }

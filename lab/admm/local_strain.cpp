@@ -26,10 +26,10 @@ struct LinearStrain {
   }
 };
 
-void pass_doubles(const LocalPass<double>& pass) {
+void strain_doubles(const LocalPass<double>& pass) {
   pass_tetrahedra<ManyLanes, LinearStrain<ManyLanes>>(pass);
 }
-void pass_floats(const LocalPass<float>& pass) {
+void strain_floats(const LocalPass<float>& pass) {
   pass_tetrahedra<ManyFloatLanes, LinearStrain<ManyFloatLanes>>(pass);
 }
 
@@ -39,15 +39,8 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace meshorder {
-namespace {
 
-HWY_EXPORT(pass_doubles);
-HWY_EXPORT(pass_floats);
-
-}  // namespace
-
-void pass_strain(const LocalPass<double>& pass) { HWY_DYNAMIC_DISPATCH(pass_doubles)(pass); }
-void pass_strain(const LocalPass<float>& pass) { HWY_DYNAMIC_DISPATCH(pass_floats)(pass); }
+MESHORDER_EXPORT_LOCAL_PASS(strain)
 
 }  // namespace meshorder
 #endif

@@ -17,10 +17,10 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kVertices = 4096;  // of a chunk that a thread takes
-/// The last global step is taken so many times at most, where vertices go on to meet something.
+constexpr Index kVertices = 4096;  // in a chunk
+/// Maximum number of repetitions of the last global step while vertices have new contacts.
 constexpr int kLastRounds = 8;
-/// What of ContactOptions::reach a vertex may be left inside.
+/// Part of ContactOptions::reach that a vertex may remain inside.
 constexpr double kAllowedDepth = 1e-2;
 
 const ProjectiveOptions& checked(const ProjectiveOptions& options, Index vertex_count) {
@@ -28,11 +28,6 @@ const ProjectiveOptions& checked(const ProjectiveOptions& options, Index vertex_
   require(options.iterations >= 1, "the number of ADMM iterations", options.iterations, "1 or more");
   require(options.tolerance >= 0.0 && options.tolerance < 1.0, "the tolerance of ADMM", options.tolerance,
           "0 or more, and below 1");
-  const bool touches = !options.contact.obstacles.empty() || options.contact.with_itself;
-  require(options.acceleration >= 0 &&
-              options.acceleration <= (touches ? 0 : AndersonMixer<double>::kWidestWindow),
-          "the number of iterates that are mixed", options.acceleration,
-          touches ? "0 with contacts" : "0 to 10");
   return options;
 }
 
@@ -67,10 +62,10 @@ ProjectiveDynamics<Real>::ProjectiveDynamics(std::span<const Point> points, cons
   if (options_.tolerance > 0.0) last_right_side_ = x_;
   collect_loads(options_, steps_, masses_, loads_, held_);
   system_.hold(held_);
-  if (options_.acceleration > 0) acceleration_.emplace(options_.acceleration);
   if (options_.contact.obstacles.empty() && !options_.contact.with_itself) return;
   contacts_.emplace(ContactFinder(body.simplices, points, options_.contact));
-  contact_solver_ = ContactSolver<Real>::make(system_.matrix(), system_.factor(), options_.contact_solver);
+  contact_solver_ =
+      DualContactSolver<Real>::make(system_.matrix(), system_.factor(), options_.contact_solver);
 }
 
 template <class Real>
@@ -111,21 +106,18 @@ StepReport ProjectiveDynamics<Real>::step() {
   StepReport report;
   collect_loads(options_, steps_, masses_, loads_, held_);
   if (system_.hold(held_) && contacts_)
-    contact_solver_ = ContactSolver<Real>::make(system_.matrix(), system_.factor(), options_.contact_solver);
+    contact_solver_ =
+        DualContactSolver<Real>::make(system_.matrix(), system_.factor(), options_.contact_solver);
   if (!options_.keep_duals) local_.reset_duals();
   if (contacts_) {
     contacts_->begin(positions_);
     contact_solver_->forget();
     contact_forces_.clear();
   }
-  if (acceleration_) acceleration_->reset();
   predict();
   const double h = options_.time_step;
   while (report.admm_iterations < options_.iterations) {
     const bool last = report.admm_iterations + 1 == options_.iterations;
-    // the last iterate is not mixed: it solves the global step
-    const bool accelerates = acceleration_ && !last;
-    if (accelerates) acceleration_->begin(x_, local_.duals());
     const Stopwatch local_time;
     const LocalResidual residual = local_.pass(x_, static_cast<Real>(h * h), right_side_);
     report.seconds.local += local_time.seconds();
@@ -133,20 +125,11 @@ StepReport ProjectiveDynamics<Real>::step() {
     ++report.admm_iterations;
     complete_right_side();
     solve(last, report);
-    if (accelerates) accelerate();
   }
   if (contacts_ && report.admm_iterations < options_.iterations) solve(true, report);
   finish(report);
   report.seconds.total = stopwatch.seconds();
   return report;
-}
-
-template <class Real>
-void ProjectiveDynamics<Real>::accelerate() {
-  std::vector<Real> duals = local_.duals();
-  acceleration_->finish(x_, duals);
-  const auto is_finite = [](Real number) { return std::isfinite(number); };
-  if (std::all_of(duals.begin(), duals.end(), is_finite)) local_.set_duals(duals);
 }
 
 /// x = x̄ and M x̄.
@@ -172,7 +155,7 @@ void ProjectiveDynamics<Real>::predict() {
   });
 }
 
-/// Both residuals of the last iteration, whose place the local steps were taken at.
+/// Computes both residuals of the last iteration, at whose positions the local steps were taken.
 template <class Real>
 bool ProjectiveDynamics<Real>::has_converged(const LocalResidual& local, StepReport& report) {
   const std::span<const Real> forces(right_side_.data(), x_.size());
@@ -188,7 +171,7 @@ bool ProjectiveDynamics<Real>::has_converged(const LocalResidual& local, StepRep
   return report.admm_iterations > 0 && report.residual <= options_.tolerance;
 }
 
-/// Adds M x̄ to the right-hand side, and what is held.
+/// Adds M x̄ and the influence of held vertices to the right-hand side.
 template <class Real>
 void ProjectiveDynamics<Real>::complete_right_side() {
   for_each_chunk(static_cast<Index>(x_.size()), kPaddedStride * kVertices,
@@ -231,7 +214,7 @@ void ProjectiveDynamics<Real>::solve_with_contacts(bool last, StepReport& report
   }
 }
 
-/// The iterate in double.
+/// Returns the iterate in double.
 template <class Real>
 std::span<const double> ProjectiveDynamics<Real>::in_double() {
   if constexpr (std::is_same_v<Real, double>) {
@@ -242,7 +225,7 @@ std::span<const double> ProjectiveDynamics<Real>::in_double() {
   }
 }
 
-/// The contacts without those of held vertices, which are where they are whatever they touch.
+/// Collects the contacts of vertices that are not held.
 template <class Real>
 void ProjectiveDynamics<Real>::drop_held_contacts() {
   free_contacts_.assign(contacts_->contacts().begin(), contacts_->contacts().end());
@@ -261,7 +244,7 @@ void ProjectiveDynamics<Real>::drop_held_contacts() {
   }
 }
 
-/// The solver's forces on all contacts, 0 on those that were dropped.
+/// Stores the solver's forces on all contacts, 0 on those that were dropped.
 template <class Real>
 void ProjectiveDynamics<Real>::spread_forces() {
   const std::span<const double> forces = contact_solver_->forces();
@@ -272,7 +255,7 @@ void ProjectiveDynamics<Real>::spread_forces() {
   }
 }
 
-/// Takes the iterate for the new place.
+/// Takes the iterate as the new positions.
 template <class Real>
 void ProjectiveDynamics<Real>::finish(StepReport& report) {
   const auto wrong = std::find_if(x_.begin(), x_.end(), [](Real x) { return !std::isfinite(x); });
@@ -292,7 +275,7 @@ void ProjectiveDynamics<Real>::finish(StepReport& report) {
       }
     }
   });
-  // where they were exactly, in whatever precision the iterations were
+  // the exact velocities, whatever the precision of the iterations
   held_.for_each([&](Index v, const Point& velocity) {
     for (int c = 0; c < 3; ++c) velocities_[Offset{3} * v + c] = velocity[c];
   });
@@ -321,10 +304,9 @@ Balance ProjectiveDynamics<Real>::balance() const {
 template <class Real>
 std::size_t ProjectiveDynamics<Real>::bytes() const {
   const auto of = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
-  return local_.bytes() + system_.bytes() + (acceleration_ ? acceleration_->bytes() : 0) +
-         (contacts_ ? contacts_->bytes() + contact_solver_->bytes() : 0) + of(masses_) + of(positions_) +
-         of(velocities_) + of(loads_) + of(x_) + of(inertia_) + of(right_side_) + of(last_right_side_) +
-         of(widened_) + of(free_contacts_) + of(contact_forces_);
+  return local_.bytes() + system_.bytes() + (contacts_ ? contacts_->bytes() + contact_solver_->bytes() : 0) +
+         of(masses_) + of(positions_) + of(velocities_) + of(loads_) + of(x_) + of(inertia_) +
+         of(right_side_) + of(last_right_side_) + of(widened_) + of(free_contacts_) + of(contact_forces_);
 }
 
 template class ProjectiveDynamics<double>;

@@ -179,17 +179,17 @@ struct InvariantSteps {
   /// two singular vectors turn against each other, those along with each other, which have the signs of
   /// zᵢ + zⱼ, and those of the stretches, whose product has the sign of the determinant.
   [[nodiscard]] HWY_INLINE bool is_minimum(Value determinant) const {
-    constexpr double kLeast = 0.02;
+    constexpr double kMin = 0.02;
     const Value& a = factors.a;
     const Value& b = factors.b;
-    const Value least = Lanes::set(kLeast);
+    const Value limit = Lanes::set(kMin);
     const Value sum = Lanes::set(3.0) * a - b * p[0];
     const Value pairs = Lanes::mul_add(a, Lanes::set(3.0) * a - (b + b) * p[0], b * b * p[1]);
     Value smallest = Lanes::min(Lanes::min(Lanes::min(sum, pairs), discriminant()),
                                 Lanes::min(determinant, Lanes::min(p[0], p[0] * p[1] - p[2])));
     // a law that resists being turned inside out no more than being flat has other minima there
     if constexpr (Law::kShift) smallest = Lanes::min(smallest, Lanes::set(0.2) * p[2]);
-    return Lanes::all_at_most(least - smallest, 0.0);
+    return Lanes::all_at_most(limit - smallest, 0.0);
   }
 };
 

@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Singular values beyond are taken for this one: no energy overflows.
+/// Upper bound of singular values, so that no energy overflows.
 inline constexpr double kLargestStretch = 1e4;
 
 /// x with (L D Lᵀ) x = −g of a symmetric matrix, of which the upper triangle is read, with the size of each
@@ -24,16 +24,16 @@ template <class Lanes>
 HWY_INLINE void descent_direction(const typename Lanes::Value (&h)[3][3], const typename Lanes::Value (&g)[3],
                                   typename Lanes::Value (&x)[3]) {
   using Value = typename Lanes::Value;
-  constexpr double kLeastPivot = 1e-2;
+  constexpr double kMinPivot = 1e-2;
   const Value one = Lanes::set(1.0);
-  const Value least = Lanes::set(kLeastPivot);
-  const Value d0 = one / Lanes::max(Lanes::abs(h[0][0]), least);
+  const Value min_pivot = Lanes::set(kMinPivot);
+  const Value d0 = one / Lanes::max(Lanes::abs(h[0][0]), min_pivot);
   const Value l10 = h[0][1] * d0;
   const Value l20 = h[0][2] * d0;
-  const Value d1 = one / Lanes::max(Lanes::abs(h[1][1] - l10 * h[0][1]), least);
+  const Value d1 = one / Lanes::max(Lanes::abs(h[1][1] - l10 * h[0][1]), min_pivot);
   const Value h12 = h[1][2] - l10 * h[0][2];
   const Value l21 = h12 * d1;
-  const Value d2 = one / Lanes::max(Lanes::abs(h[2][2] - l20 * h[0][2] - l21 * h12), least);
+  const Value d2 = one / Lanes::max(Lanes::abs(h[2][2] - l20 * h[0][2] - l21 * h12), min_pivot);
   const Value y0 = Lanes::set(0.0) - g[0];
   const Value y1 = Lanes::set(0.0) - g[1] - l10 * y0;
   const Value y2 = Lanes::set(0.0) - g[2] - l20 * y0 - l21 * y1;
@@ -95,7 +95,7 @@ HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[
   constexpr double kRounding = 8 * static_cast<double>(std::numeric_limits<Number>::epsilon());
   // the error after a step of that size is its square
   constexpr double kNear = std::is_same_v<Number, float> ? 1e-4 : 1e-9;
-  constexpr double kLeastStart = 0.2;
+  constexpr double kMinStart = 0.2;
   const Value zero = Lanes::set(0.0);
   const Value one = Lanes::set(1.0);
   Value s;
@@ -104,7 +104,7 @@ HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[
   Value other[3];
   MESHORDER_UNROLL
   for (int k = 0; k < 3; ++k) {
-    z[k] = Law::kBarrier ? Lanes::max(sigma[k], Lanes::set(kLeastStart)) : sigma[k];
+    z[k] = Law::kBarrier ? Lanes::max(sigma[k], Lanes::set(kMinStart)) : sigma[k];
     other[k] = Lanes::mul_add(s, sigma[k], c);
   }
   Value here = objective<Lanes>(law, sigma, z);
@@ -133,7 +133,7 @@ HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[
       slope = Lanes::mul_add(gradient[k], direction[k], slope);
       longest = Lanes::max(longest, Lanes::abs(direction[k]));
     }
-    // a lane's step is halved until it goes down, but for rounding
+    // a lane's step is halved until the objective decreases, up to rounding
     const Value slack = Lanes::set(kRounding) * (one + Lanes::abs(here));
     Value length = one;
     Value next[3];
@@ -194,11 +194,11 @@ HWY_NOINLINE void step_by_singular_values(const Law& law, const typename Lanes::
   Value sigma[3];
   Value v[3][3];
   symmetric_eigen<3, Lanes>(s, sigma, v);
-  const Value most = Lanes::set(kLargestStretch);
+  const Value limit = Lanes::set(kLargestStretch);
   MESHORDER_UNROLL
   for (Value& stretch : sigma) {
     stretch = largest * stretch;
-    stretch = Lanes::choose(Lanes::abs(stretch) - most, Lanes::with_sign_of(most, stretch), stretch);
+    stretch = Lanes::choose(Lanes::abs(stretch) - limit, Lanes::with_sign_of(limit, stretch), stretch);
   }
   Value values[3];
   minimise<Lanes>(law, sigma, values);

@@ -6,7 +6,7 @@
 #include "base/stopwatch.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/spmv.hpp"
-#include "lab/linear/cg/refinement.hpp"
+#include "lab/linear/cg/solve.hpp"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kVertices = 4096;  // of a chunk that a thread takes
+constexpr Index kVertices = 4096;  // in a chunk
 
 double dot(std::span<const double> a, std::span<const double> b) {
   return sum_over_chunks<double>(static_cast<Index>(a.size() / 3), kVertices, [&](Index begin, Index end) {
@@ -43,7 +43,7 @@ void check_options(const ImplicitOptions& options, Index vertex_count) {
 
 }  // namespace
 
-/// Where Newton's method is: v, the gradient there and the way on.
+/// State of Newton's method: v, the gradient there and the next step.
 struct BackwardEuler::Iterate {
   std::vector<double> velocities;
   std::vector<double> gradient;  ///< 0 at held vertices
@@ -66,7 +66,7 @@ BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, Im
   if (options_.stiffness_damping > 0.0 && (options_.newton_iterations > 1 || moves)) {
     damping_ = system_.matrix();
   }
-  // what a preconditioner keeps of the first numbers that it sees must not depend on where a run is resumed
+  // a preconditioner may keep parts of its first matrix, which must not depend on where a run is resumed
   StepReport report;
   collect_loads(options_, steps_, system_.mass().vertices, loads_, held_);
   assemble(0, system_.elasticity().tangent, report);
@@ -258,13 +258,13 @@ void BackwardEuler::solve(Iterate& iterate, StepReport& report) {
     report.warnings.push_back(
         fmt::format("CG ended after {} iterations at the residual {:.1e}: {}, largest at "
                     "vertex {}",
-                    solved.iterations, solved.residual, name(solved.status), solved.vertex));
+                    solved.iterations, solved.residual, to_string(solved.status), solved.vertex));
   }
 }
 
-/// Shortens the step until the potential falls (Armijo). False, and a step of 0, where it does not.
+/// Shortens the step until the potential decreases (Armijo). Returns false, with a step of 0, if it does not.
 bool BackwardEuler::search_line(Iterate& iterate, StepReport& report) {
-  constexpr double kEnough = 1e-4;     // of the fall that the slope promises
+  constexpr double kEnough = 1e-4;     // of the decrease that the slope predicts
   constexpr double kRounding = 1e-13;  // of the potential's terms
   constexpr int kHalvings = 30;
   const double slope = dot(iterate.gradient, iterate.step);

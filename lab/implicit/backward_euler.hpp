@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "lab/implicit/elastic_system.hpp"
 #include "lab/linear/cg/solve.hpp"
 #include "lab/linear/preconditioners/preconditioner.hpp"
@@ -14,8 +15,15 @@
 namespace meshorder {
 
 enum class MatrixPrecision : std::uint8_t {
-  exact,   ///< double
-  single,  ///< CG reads the matrix in float, to the same residual (see refined_conjugate_gradients)
+  double_,  ///< all in double
+  single,   ///< CG reads the matrix in float, to the same residual (see refined_conjugate_gradients)
+};
+
+template <>
+struct EnumNames<MatrixPrecision> {
+  static constexpr std::string_view kind = "precision";
+  static constexpr std::array names{std::pair{MatrixPrecision::double_, "double"},
+                                    std::pair{MatrixPrecision::single, "single"}};
 };
 
 struct ImplicitOptions : MotionOptions {
@@ -25,26 +33,26 @@ struct ImplicitOptions : MotionOptions {
   int newton_iterations = 1;       ///< 1: one linearised step (Baraff, Witkin 1998)
   double newton_tolerance = 1e-6;  ///< on ‖g‖ / ‖g at rest‖, where more iterations are allowed
   PreconditionerKind preconditioner = PreconditionerKind::jacobi;
-  MatrixPrecision precision = MatrixPrecision::exact;
+  MatrixPrecision precision = MatrixPrecision::double_;
   SolveOptions solve;
 };
 
-/// An elastic body in time by backward Euler.
+/// Integrates the motion of an elastic body by backward Euler.
 ///
 /// A step solves g(v) = M(v − vₙ) − h(f_ext − f_int(xₙ + h v)) + h C v = 0 by Newton's method from v = 0,
 /// whose first iterate is the linearised step (M + hC + h²K) Δv = h (f_ext − f_int − h K vₙ − C vₙ). Where
 /// more iterations are allowed each is damped by a line search on the potential of which g is the gradient.
 class BackwardEuler final : public Integrator {
  public:
-  /// The body at rest at `points`. Throws InvalidArgument, which names what is wrong, for a body that is not
-  /// of tetrahedra, a vertex without mass, numbers that are not finite or out of range.
+  /// The body at rest at `points`. Throws InvalidArgument, naming the problem, for a body that does not
+  /// consist of tetrahedra, a vertex without mass, numbers that are not finite or out of range.
   BackwardEuler(std::span<const Point> points, const Body& body, ImplicitOptions options);
 
   [[nodiscard]] MotionState state() const override;
   void set_state(const MotionState& state) override;
 
-  /// Where CG meets negative curvature the step is taken with the tangent's semi-definite part instead, and
-  /// says so.
+  /// If CG meets negative curvature, the step uses the positive semi-definite part of the tangent instead and
+  /// adds a warning.
   StepReport step() override;
 
   [[nodiscard]] Balance balance() const override;

@@ -11,7 +11,7 @@
 
 namespace meshorder {
 
-/// What a mesh is made of: one law for all its simplices, with the densities.
+/// Simplices, their elastic law and their densities.
 struct Body {
   Simplices simplices;  ///< tetrahedra
   Elasticity elasticity;
@@ -41,7 +41,7 @@ class ElasticSystem {
   [[nodiscard]] const Elasticity& elasticity() const noexcept { return elasticity_; }
   [[nodiscard]] Index vertex_count() const noexcept { return matrix_.size(); }
 
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

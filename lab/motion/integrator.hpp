@@ -3,6 +3,7 @@
 
 #include "base/index.hpp"
 #include "base/point.hpp"
+#include "base/polymorphic.hpp"
 
 #include <cstddef>
 #include <span>
@@ -11,17 +12,17 @@
 
 namespace meshorder {
 
-/// Where everything is and how fast.
+/// The state of a motion after a step.
 struct MotionState {
   Index step = 0;                 ///< steps done
   double time = 0;                ///< s
   std::vector<Point> positions;   ///< m
   std::vector<Point> velocities;  ///< m/s
-  /// What else an integrator keeps from step to step, empty where that is nothing.
+  /// Further numbers that an integrator keeps from step to step; may be empty.
   std::vector<double> memory = {};
 };
 
-/// What a step took. Numbers of other methods than the integrator's are 0.
+/// Timings and iteration counts of one step. Numbers that the integrator's method does not have are 0.
 struct StepReport {
   // implicit
   int newton_iterations = 0;
@@ -29,13 +30,13 @@ struct StepReport {
   double newton_residual = 0.0;  ///< ‖g‖ / ‖g at rest‖ at the end, where more iterations are allowed
   // ADMM
   int admm_iterations = 0;
-  int contact_iterations = 0;    ///< of the solver of the global step with contacts
-  Index contacts = 0;            ///< vertices that something pushes at, at the step's end
-  double penetration = 0.0;      ///< the deepest surface vertex in an obstacle at the step's end, m
+  int contact_iterations = 0;  ///< of the solver of the global step with contacts
+  Index contacts = 0;          ///< contacts with a force at the end of the step
+  double penetration = 0.0;    ///< largest depth of a surface vertex in an obstacle at the end of the step, m
   Index vertices_in_itself = 0;  ///< surface vertices inside the body at the step's end
 
   double residual = 0.0;              ///< of the last linear solve, or of the last ADMM iteration; relative
-  std::vector<std::string> warnings;  ///< sentences that say which vertex
+  std::vector<std::string> warnings;  ///< messages, which name the vertex
   struct Seconds {
     double total = 0.0;
     double assembly = 0.0, solve = 0.0;                 // implicit
@@ -61,36 +62,30 @@ struct Balance {
   Point angular_momentum{};                              ///< kg m²/s, about the origin
 };
 
-/// A body in time. It takes vertices and elements in the order in which they come. Vertices that no element
+/// Time integration of a body. Processes vertices and elements in the given order. Vertices that no element
 /// uses stay where they are. The same bits on every run and for any number of threads.
-class Integrator {
+class Integrator : public detail::Polymorphic {
  public:
-  Integrator() = default;
-  Integrator(const Integrator&) = delete;
-  Integrator(Integrator&&) = delete;
-  Integrator& operator=(const Integrator&) = delete;
-  Integrator& operator=(Integrator&&) = delete;
-  virtual ~Integrator() = default;
-
   [[nodiscard]] virtual MotionState state() const = 0;
-  /// Goes on from there. Throws InvalidArgument when the sizes differ or a number is not finite. A state
-  /// without memory is one of a body that begins.
+  /// Continues from `state`. Throws InvalidArgument if the sizes differ or a number is not finite. A state
+  /// without memory starts a motion.
   virtual void set_state(const MotionState& state) = 0;
 
-  /// One time step. Throws Error, which says which vertex, when the motion is not finite any more. The state
-  /// is then that before the step.
+  /// Takes one time step. Throws Error, naming the vertex, if the motion is not finite; the state is then
+  /// that before the step.
   virtual StepReport step() = 0;
 
   [[nodiscard]] virtual Balance balance() const = 0;
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
 /// Throws InvalidArgument unless the state is one of n vertices and finite.
 void check_state(const MotionState& state, Index n);
 
-/// The balance of a body whose vertices have these masses, places (kPaddedStride numbers for each vertex, see
-/// padded_positions), velocities and momenta (3 numbers), but for its elastic energy. O(vertices).
+/// Returns the conserved quantities of a body whose vertices have these masses, positions (kPaddedStride
+/// numbers for each vertex, see padded_positions), velocities and momenta (3 numbers), without its elastic
+/// energy. O(vertices).
 Balance balance_of(std::span<const double> masses, std::span<const double> positions,
                    std::span<const double> velocities, std::span<const double> momenta, const Point& gravity);
 

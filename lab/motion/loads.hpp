@@ -1,7 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "lab/motion/held_vertices.hpp"
+#include "base/point.hpp"
+#include "kernels/block_csr.hpp"
 
 #include <limits>
 #include <span>
@@ -9,24 +10,54 @@
 
 namespace meshorder {
 
-/// Vertices and when: from the step that begins at `from` to the last one that begins before `until`.
+/// The vertices whose motion in a step is prescribed, with their velocities in m/s.
+class HeldVertices {
+ public:
+  void clear();
+  /// Holds a vertex. If it is held twice, the later velocity counts.
+  void hold(Index vertex, const Point& velocity);
+
+  /// Sets the velocities of the held vertices in a vector of 3 doubles for each vertex. O(held).
+  void set(std::span<double> velocities) const;
+  /// Sets their entries to 0. O(held).
+  void set_zero(std::span<double> vector) const;
+  /// Returns the held vertices, in the order in which they were given.
+  [[nodiscard]] std::span<const Index> vertices() const noexcept { return vertices_; }
+
+  /// Calls `work(vertex, velocity)` for them in that order.
+  template <class Work>
+  void for_each(Work work) const {
+    for (std::size_t i = 0; i < vertices_.size(); ++i) work(vertices_[i], velocities_[i]);
+  }
+
+  /// Removes the rows and columns of the held vertices from a symmetric matrix: sets them to zero except for
+  /// the diagonal, a multiple of the identity. With zeros on the right-hand side they do not influence the
+  /// solution. O(their blocks · log row length).
+  void remove_from(BlockCsr& matrix) const;
+
+ private:
+  std::vector<Index> vertices_;
+  std::vector<Point> velocities_;  ///< of `vertices_`
+};
+
+/// Vertices and a time span: from the step that begins at `from` to the last one that begins before `until`.
 struct Selection {
   std::vector<Index> vertices;
   double from = 0.0;  ///< s
   double until = std::numeric_limits<double>::infinity();
 };
 
-/// The same force on each of some vertices.
+/// A force on each of the selected vertices.
 struct VertexForce : Selection {
   Point newtons{};
 };
 
-/// Vertices that move by rule: fixed where they are when the velocity is 0.
+/// A prescribed motion of vertices; a velocity of 0 fixes them.
 struct PrescribedMotion : Selection {
   Point velocity{};  ///< m/s
 };
 
-/// What every integrator is told of the motion.
+/// Options of the motion that all integrators share.
 struct MotionOptions {
   double time_step = 0.01;  ///< h, s
   Point gravity{};          ///< m/s²
@@ -34,10 +65,10 @@ struct MotionOptions {
   std::vector<PrescribedMotion> prescribed;
 };
 
-/// Throws InvalidArgument, which names it, for a number that is out of range or not finite and for a vertex
-/// that is none of the mesh's.
+/// Throws InvalidArgument, naming the value, for a number that is out of range or not finite and for a vertex
+/// that the mesh does not have.
 void check_options(const MotionOptions& options, Index vertex_count);
-/// Throws InvalidArgument that tells what `value` `name` has, unless it is `good`.
+/// Throws InvalidArgument with `name`, `value` and `remedy` unless `good`.
 void require(bool good, const char* name, double value, const char* remedy);
 
 /// Sets the forces, 3 numbers for each vertex, and the vertices that are held in the step after `steps` ones.

@@ -8,7 +8,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kRows = 4096;  // of a chunk that a thread takes
+constexpr Index kRows = 4096;  // in a chunk
 
 double mass_of(Offset simplex, const RestShapes& rest, std::span<const double> densities) {
   return (densities.size() == 1 ? densities.front() : densities[simplex]) * rest.volume(simplex);

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "kernels/assembly.hpp"
 
 #include <cstdint>
@@ -12,6 +13,13 @@ namespace meshorder {
 enum class Mass : std::uint8_t {
   lumped,      ///< a quarter of each tetrahedron's mass on each of its corners
   consistent,  ///< ∫ρ φ_a φ_b: a matrix with the pattern of the stiffness
+};
+
+template <>
+struct EnumNames<Mass> {
+  static constexpr std::string_view kind = "mass";
+  static constexpr std::array names{std::pair{Mass::lumped, "lumped"},
+                                    std::pair{Mass::consistent, "consistent"}};
 };
 
 /// The lumped masses of `vertex_count` vertices, kg. `densities` in kg/m³ are one, or one for each simplex.

@@ -14,8 +14,19 @@ constexpr int kMostIterations = 1'000'000;
 enum class Method : std::uint8_t { backward_euler, admm };
 constexpr std::array kMethods{std::pair(std::string_view("backward-euler"), Method::backward_euler),
                               std::pair(std::string_view("admm"), Method::admm)};
+constexpr std::array kContactSolvers{std::pair(std::string_view("uzawa"), true)};  // the only one
 constexpr std::array kDuals{std::pair(std::string_view("kept"), true),
                             std::pair(std::string_view("reset"), false)};
+
+/// Returns the value that a text names.
+template <NamedEnum Enum>
+Enum read_enum(const JsonValue& value) {
+  const std::string given = value.text();
+  for (const auto& [result, name] : EnumNames<Enum>::names) {
+    if (given == name) return result;
+  }
+  throw value.error("'" + given + "' is unknown", "known are " + names_of<Enum>());
+}
 
 void read_count(const JsonValue& owner, std::string_view key, int most, int& count) {
   if (const auto value = owner.find(key)) count = static_cast<int>(value->whole(1, most));
@@ -75,9 +86,9 @@ void read_numbers(const JsonValue& value, Elastic elastic, Scenario& scenario) {
 
 void read_implicit_material(const JsonValue& value, Scenario& scenario) {
   value.expect_keys({"model", "tangent", "young", "poisson", "density", "regions"});
-  scenario.model = value["model"].one_of(kMaterialModels);
+  scenario.model = read_enum<MaterialModel>(value["model"]);
   if (const auto tangent = value.find("tangent")) {
-    scenario.tangent = tangent->one_of(kTangents);
+    scenario.tangent = read_enum<Tangent>(*tangent);
     if (scenario.tangent == Tangent::approximate && scenario.model != MaterialModel::corotational)
       throw tangent->error("'approximate' is of the corotational model alone", "give exact or projected");
   }
@@ -86,7 +97,7 @@ void read_implicit_material(const JsonValue& value, Scenario& scenario) {
 
 void read_implicit(const JsonValue& value, ImplicitOptions& options) {
   value.expect_keys({"method", "time_step", "mass", "rayleigh", "gravity", "newton"});
-  if (const auto mass = value.find("mass")) options.mass = mass->one_of(kMasses);
+  if (const auto mass = value.find("mass")) options.mass = read_enum<Mass>(*mass);
   if (const auto rayleigh = value.find("rayleigh")) {
     rayleigh->expect_keys({"alpha", "beta"});
     if (const auto alpha = rayleigh->find("alpha")) options.mass_damping = alpha->number(kNotNegative);
@@ -103,16 +114,17 @@ void read_implicit(const JsonValue& value, ImplicitOptions& options) {
 void read_implicit_solver(const JsonValue& value, ImplicitOptions& options) {
   value.expect_keys({"preconditioner", "tolerance", "max_iterations", "precision"});
   if (const auto preconditioner = value.find("preconditioner"))
-    options.preconditioner = preconditioner->one_of(kPreconditioners);
+    options.preconditioner = read_enum<PreconditionerKind>(*preconditioner);
   if (const auto tolerance = value.find("tolerance")) options.solve.tolerance = tolerance->number(kTolerance);
   read_count(value, "max_iterations", kMostIterations, options.solve.max_iterations);
-  if (const auto precision = value.find("precision")) options.precision = precision->one_of(kPrecisions);
+  if (const auto precision = value.find("precision"))
+    options.precision = read_enum<MatrixPrecision>(*precision);
 }
 
 // ---- ADMM
 
 void read_projective_material(const JsonValue& value, ProjectiveScenario& options, Scenario& scenario) {
-  options.model = value["model"].one_of(kLocalModels);
+  options.model = read_enum<LocalModel>(value["model"]);
   switch (options.model) {
     case LocalModel::springs:
       value.expect_keys({"model", "stiffness", "density"});
@@ -129,12 +141,10 @@ void read_projective_material(const JsonValue& value, ProjectiveScenario& option
 }
 
 void read_projective(const JsonValue& value, ProjectiveScenario& options) {
-  value.expect_keys({"method", "time_step", "gravity", "iterations", "tolerance", "duals", "acceleration"});
+  value.expect_keys({"method", "time_step", "gravity", "iterations", "tolerance", "duals"});
   read_count(value, "iterations", kMostIterations, options.iterations);
   if (const auto tolerance = value.find("tolerance"))
     options.tolerance = tolerance->number({.least = 0, .most = 1, .most_open = true});
-  if (const auto window = value.find("acceleration"))
-    options.acceleration = static_cast<int>(window->whole(0, AndersonMixer<double>::kWidestWindow));
   if (const auto duals = value.find("duals")) options.keep_duals = duals->one_of(kDuals);
 }
 
@@ -184,8 +194,7 @@ ScenarioObstacle obstacle(const JsonValue& value) {
 }
 
 void read_contact(const JsonValue& value, ProjectiveScenario& options) {
-  value.expect_keys(
-      {"obstacles", "with_itself", "friction", "solver", "tolerance", "max_iterations", "over_relaxation"});
+  value.expect_keys({"obstacles", "with_itself", "friction", "solver", "tolerance", "max_iterations"});
   if (const auto obstacles = value.find("obstacles")) {
     for (const JsonValue& entry : obstacles->items()) options.obstacles.push_back(obstacle(entry));
   }
@@ -193,12 +202,9 @@ void read_contact(const JsonValue& value, ProjectiveScenario& options) {
   if (const auto friction = value.find("friction"))
     options.contact.friction_with_itself = friction->number(kNotNegative);
   ContactSolverOptions& solver = options.contact_solver;
-  if (const auto kind = value.find("solver")) solver.kind = kind->one_of(kContactSolvers);
+  if (const auto kind = value.find("solver")) (void)kind->one_of(kContactSolvers);
   if (const auto tolerance = value.find("tolerance")) solver.tolerance = tolerance->number(kTolerance);
   read_count(value, "max_iterations", kMostIterations, solver.max_iterations);
-  if (const auto relaxation = value.find("over_relaxation"))
-    solver.over_relaxation =
-        relaxation->number({.least = 0, .most = 2, .least_open = true, .most_open = true});
 }
 
 }  // namespace
@@ -229,11 +235,10 @@ void read_integrator(const JsonValue& root, Scenario& scenario) {
   read_common(options);
   if (solver) {
     solver->expect_keys({"precision"});
-    if (const auto precision = solver->find("precision")) options.precision = precision->one_of(kPrecisions);
+    if (const auto precision = solver->find("precision"))
+      options.precision = read_enum<MatrixPrecision>(*precision);
   }
   if (contact) read_contact(*contact, options);
-  if (options.acceleration > 0 && (!options.obstacles.empty() || options.contact.with_itself))
-    throw integrator["acceleration"].error("is not for contacts", "leave out one of them");
   scenario.integrator = std::move(options);
 }
 

@@ -80,7 +80,7 @@ struct ScenarioObstacle {
 /// ADMM projective dynamics, its options without obstacles, which are bound to the mesh.
 struct ProjectiveScenario : ProjectiveOptions {
   LocalModel model = LocalModel::strain;
-  MatrixPrecision precision = MatrixPrecision::exact;
+  MatrixPrecision precision = MatrixPrecision::double_;
   std::vector<ScenarioObstacle> obstacles;
 };
 
@@ -128,56 +128,6 @@ struct Scenario {
                       integrator);
   }
 };
-
-// Names in files and on the command line, and what they mean.
-inline constexpr std::array kPreconditioners{
-    std::pair(std::string_view("jacobi"), PreconditionerKind::jacobi),
-    std::pair(std::string_view("block-jacobi"), PreconditionerKind::block_jacobi),
-    std::pair(std::string_view("incomplete-cholesky"), PreconditionerKind::incomplete_cholesky),
-    std::pair(std::string_view("multigrid"), PreconditionerKind::multigrid)};
-inline constexpr std::array kPrecisions{std::pair(std::string_view("double"), MatrixPrecision::exact),
-                                        std::pair(std::string_view("single"), MatrixPrecision::single)};
-inline constexpr std::array kMaterialModels{
-    std::pair(std::string_view("corotational"), MaterialModel::corotational),
-    std::pair(std::string_view("stvk"), MaterialModel::stvk),
-    std::pair(std::string_view("neo-hookean"), MaterialModel::neo_hookean)};
-inline constexpr std::array kLocalModels{
-    std::pair(std::string_view("springs"), LocalModel::springs),
-    std::pair(std::string_view("strain"), LocalModel::strain),
-    std::pair(std::string_view("stvk"), LocalModel::stvk),
-    std::pair(std::string_view("neo-hookean"), LocalModel::neo_hookean),
-    std::pair(std::string_view("log-neo-hookean"), LocalModel::log_neo_hookean)};
-inline constexpr std::array kContactSolvers{
-    std::pair(std::string_view("uzawa"), ContactSolverKind::uzawa),
-    std::pair(std::string_view("gauss-seidel"), ContactSolverKind::gauss_seidel)};
-inline constexpr std::array kTangents{std::pair(std::string_view("exact"), Tangent::exact),
-                                      std::pair(std::string_view("approximate"), Tangent::approximate),
-                                      std::pair(std::string_view("projected"), Tangent::projected)};
-inline constexpr std::array kMasses{std::pair(std::string_view("lumped"), Mass::lumped),
-                                    std::pair(std::string_view("consistent"), Mass::consistent)};
-
-/// The name of a meaning in one of these lists.
-template <class Meaning, std::size_t N>
-constexpr std::string_view name_in(const std::array<std::pair<std::string_view, Meaning>, N>& names,
-                                   Meaning meaning) {
-  for (const auto& [word, known] : names) {
-    if (known == meaning) return word;
-  }
-  return "";
-}
-
-/// The meaning of a name in one of these lists. Throws InvalidArgument that lists them for others; `what`
-/// is what it names.
-template <class Meaning, std::size_t N>
-Meaning meaning_in(const std::array<std::pair<std::string_view, Meaning>, N>& names, std::string_view given,
-                   std::string_view what) {
-  std::string known;
-  for (const auto& [word, meaning] : names) {
-    if (word == given) return meaning;
-    known += (known.empty() ? "" : ", ") + std::string(word);
-  }
-  throw InvalidArgument("unknown " + std::string(what) + " '" + std::string(given) + "'; known are " + known);
-}
 
 /// Whether a scenario's mesh, or what a user gives in its place, names a model rather than a file: it has no
 /// extension.

@@ -35,7 +35,7 @@ AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix) {
 
 OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const BlockCsr& matrix,
                          const OwnedBatches& share, Index part) {
-  // the most that a simplex has, on cache lines of their own
+  // the largest number of blocks of a simplex, on separate cache lines
   constexpr Offset kSpareBlocks = 16 + 2;
   const Index corners = rest.dimension + 1;
   const Offset first_spare = matrix.block_count() + 2 + kSpareBlocks * part;
@@ -43,7 +43,7 @@ OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const B
   result.room = first_spare + kSpareBlocks;
   if (result.room > kMaxIndex) {
     throw InvalidArgument("assembly: " + std::to_string(result.room) +
-                          " blocks, spare ones included; at most 2,147,483,647 can be numbered");
+                          " blocks, including spare ones; at most 2,147,483,647 can be numbered");
   }
   for (std::size_t i = 0; i < share.batches.size(); ++i) {
     if (share.boundary[i] < 0) continue;

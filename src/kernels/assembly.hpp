@@ -6,26 +6,26 @@
 
 namespace meshorder {
 
-/// Where the blocks of each simplex stand in a matrix: block (a, b) of simplex s, which couples its corners a
+/// The positions of each simplex's blocks in a matrix: block (a, b) of simplex s, which couples its corners a
 /// and b, is block `blocks[(D + 1)² s + (D + 1) a + b]`; one cache line for a tetrahedron.
 struct AssemblyMap {
   int dimension = 0;
   AlignedVector<Index> blocks;
 };
 
-/// The map of the simplices into a matrix of that pattern. Throws InvalidArgument when the pattern lacks a
-/// block. O(simplices · log row length).
+/// Returns the map of the simplices into a matrix of that pattern. Throws InvalidArgument if the pattern
+/// lacks a block. O(simplices · log row length).
 AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix);
 
 /// The map of one share of `owned_batches` (of rest.vertices): for its boundary batches, in their order, the
 /// blocks of the map, with spare blocks in place of those in rows that are not owned.
 struct OwnedBlocks {
   AlignedVector<Index> blocks;
-  Offset room = 0;  ///< blocks that the matrix's values must hold, spare ones included
+  Offset room = 0;  ///< blocks that the matrix's values must hold, including spare ones
 };
 
 /// The map of share number `part`, whose spare blocks stand behind the matrix's and those of the shares
-/// before it. Throws InvalidArgument when they cannot be numbered. O(boundary simplices).
+/// before it. Throws InvalidArgument if their numbers exceed an Index. O(boundary simplices).
 OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const BlockCsr& matrix,
                          const OwnedBatches& share, Index part);
 

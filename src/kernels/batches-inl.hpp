@@ -36,7 +36,7 @@ HWY_INLINE LameLanes<Lanes> load_lame(const ElasticPass& pass, Offset batch, Ind
   return {Lanes::load(pass.mu + place), Lanes::load(pass.lambda + place)};
 }
 
-/// Where a batch of a pass goes in the matrix, and where the next one will.
+/// The blocks of the matrix that a batch of a pass adds to, and those of the next batch.
 struct BatchBlocks {
   const Index* blocks = nullptr;
   const Index* next = nullptr;
@@ -44,7 +44,7 @@ struct BatchBlocks {
   Index next_count = 0;
 };
 
-/// Those of number i of the pass's `batches`.
+/// Returns the blocks of batch number i of the pass's `batches`.
 template <int D>
 HWY_INLINE BatchBlocks blocks_of(const ElasticPass& pass, Offset i, Offset batches) {
   constexpr Offset kBlocks = kBatch * (D + 1) * (D + 1);
@@ -60,7 +60,8 @@ HWY_INLINE BatchBlocks blocks_of(const ElasticPass& pass, Offset i, Offset batch
   return result;
 }
 
-/// A batch of simplices, which adds its forces to `targets`: its vertices, or spare ones in place of them.
+/// Computes a batch of simplices and adds its forces to `targets`: its vertices, or spare vertices instead of
+/// them.
 ///
 /// A Law is made of a deformation and its parameters, and gives stress(P) and energy(). A Tangent is made of
 /// a deformation, its law, parameters and a weight, and gives block(a, b, K), weight · gₐ·∂P/∂F·g_b for the
@@ -98,7 +99,7 @@ HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* ta
   }
 }
 
-/// All batches, or those of a share, whose boundary batches have targets and blocks of their own.
+/// Computes all batches, or those of a share, whose boundary batches have targets and blocks of their own.
 template <int D, class Lanes, class Law, class Tangent>
 HWY_INLINE void add_batches(const ElasticPass& pass) {
   const OwnedBatches* const share = pass.share;
@@ -113,7 +114,7 @@ HWY_INLINE void add_batches(const ElasticPass& pass) {
   }
 }
 
-/// Σ V Ψ of some batches.
+/// Returns Σ V Ψ of the batches begin … end − 1, in J.
 template <int D, class Lanes, class Law>
 HWY_INLINE double energy_of_batches(const ElasticPass& pass, Index begin, Index end) {
   typename Lanes::Value sum = Lanes::set(0.0);

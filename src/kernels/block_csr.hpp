@@ -10,9 +10,9 @@
 namespace meshorder {
 
 /// A sparse matrix of 3×3 blocks in compressed rows, one block row for each vertex: the stiffness matrix of a
-/// mesh. The blocks of row v are `offsets[v] … offsets[v + 1] − 1`, their columns rising, the diagonal among
-/// them. Block k holds `values[9 k] … values[9 k + 8]`, row by row: in double 76 bytes with its column, in
-/// float 40.
+/// mesh. The blocks of row v are `offsets[v] … offsets[v + 1] − 1`, their columns ascending and including the
+/// diagonal. Block k holds `values[9 k] … values[9 k + 8]`, row by row: in double 76 bytes with its column,
+/// in float 40.
 template <class Value>
 struct BlockCsrOf {
   std::vector<Offset> offsets{0};  ///< n + 1
@@ -23,7 +23,7 @@ struct BlockCsrOf {
   [[nodiscard]] Offset block_count() const noexcept { return static_cast<Offset>(columns.size()); }
   void set_zero() { std::fill(values.begin(), values.end(), Value{0}); }
 
-  /// The number of the block in that row and column, −1 where the pattern has none. O(log row length).
+  /// Returns the number of the block in that row and column, −1 if the pattern has none. O(log row length).
   [[nodiscard]] Offset find(Index row, Index column) const {
     const auto begin = columns.begin() + offsets[row];
     const auto end = columns.begin() + offsets[row + 1];
@@ -34,10 +34,11 @@ struct BlockCsrOf {
 
 using BlockCsr = BlockCsrOf<double>;
 
-/// The zero matrix with a block for every vertex and for both directions of every edge. O(n + edges).
+/// Returns the zero matrix with a block for every vertex and for both directions of every edge. O(n + edges).
 BlockCsr zero_block_csr(const CsrGraph& graph);
 
-/// The matrix with its values rounded to float, in the memory that `result` holds. On all threads. O(blocks).
+/// Copies the matrix to `result` with its values rounded to float, reusing the memory of `result`. On all
+/// threads. O(blocks).
 void round_to_single(const BlockCsr& matrix, BlockCsrOf<float>& result);
 
 }  // namespace meshorder

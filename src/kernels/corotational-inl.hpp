@@ -14,9 +14,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Singular values add up to so much at least in a tangent, where the Hessian is infinite when two add up to
-/// none: far below all but elements that are all but collapsed.
-inline constexpr double kLeastSum = 1e-6;
+/// Lower bound of the sum of two singular values in a tangent; the Hessian is infinite where a sum is 0. Only
+/// nearly collapsed elements reach it.
+inline constexpr double kMinSum = 1e-6;
 
 /// Corotational linear elasticity: P = 2μ (F − R) + λ tr(RᵀF − I) R.
 template <class Lanes>
@@ -68,7 +68,7 @@ struct Corotational {
     const Value two_mu = lame.mu + lame.mu;
     MESHORDER_UNROLL
     for (int k = 0; k < 3; ++k) {
-      const Value sum = Lanes::max(sigma[(k + 1) % 3] + sigma[(k + 2) % 3], Lanes::set(kLeastSum));
+      const Value sum = Lanes::max(sigma[(k + 1) % 3] + sigma[(k + 2) % 3], Lanes::set(kMinSum));
       hessian.twist[k] = two_mu + (coefficient + coefficient) / sum;
       hessian.flip[k] = two_mu;
       MESHORDER_UNROLL
@@ -181,8 +181,9 @@ struct CorotationalTangent {
     determinant = Lanes::mul_add(g[0][1], turn[0][1], determinant);
     determinant = Lanes::mul_add(g[0][2], turn[0][2], determinant);
     // the two larger eigenvalues have a product of about tr²(S), or all are next to nothing
-    const Value least = Lanes::mul_add(Lanes::set(kLeastSum) * law.trace, law.trace, Lanes::set(1e-280));
-    const Value factor = weight / Lanes::max(determinant, least);
+    const Value min_determinant =
+        Lanes::mul_add(Lanes::set(kMinSum) * law.trace, law.trace, Lanes::set(1e-280));
+    const Value factor = weight / Lanes::max(determinant, min_determinant);
     MESHORDER_UNROLL
     for (int i = 0; i < 3; ++i) {
       MESHORDER_UNROLL

@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// How Lanes::kCount simplices of dimension D are deformed.
+/// The deformation of Lanes::kCount simplices of dimension D.
 template <int D, class Lanes>
 struct Deformation {
   using Value = typename Lanes::Value;
@@ -93,7 +93,7 @@ struct Deformation {
   }
 };
 
-/// Lamé's parameters of the simplices at hand, perhaps weighted.
+/// Lamé's parameters of the current simplices, possibly multiplied by a weight.
 template <class Lanes>
 struct LameLanes {
   typename Lanes::Value mu, lambda;

@@ -24,7 +24,7 @@ HWY_INLINE void rotate_plane(int p, int q, typename Lanes::Value (&a)[N][N],
   const Value one = Lanes::set(1.0);
   const Value twice = a[p][q] + a[p][q];
   const Value difference = a[q][q] - a[p][p];
-  // the smaller root of t² + t (a_qq − a_pp) / a_pq − 1 = 0; 0 where there is nothing to do
+  // the smaller root of t² + t (a_qq − a_pp) / a_pq − 1 = 0; 0 if a_pq is 0 already
   const Value root = Lanes::square_root(Lanes::mul_add(difference, difference, twice * twice));
   const Value t = Lanes::with_sign_of(one, difference) * twice /
                   Lanes::max(Lanes::abs(difference) + root, Lanes::set(kSmallest));
@@ -55,7 +55,7 @@ template <int N, class Lanes>
 HWY_INLINE void symmetric_eigen(typename Lanes::Value (&a)[N][N], typename Lanes::Value (&values)[N],
                                 typename Lanes::Value (&vectors)[N][N]) {
   using Value = typename Lanes::Value;
-  // convergence is quadratic: three or four sweeps as a rule, and twice as many never seen
+  // convergence is quadratic: usually three or four sweeps; twice as many were never observed
   constexpr int kSweeps = 10;
   constexpr double kNegligible = std::is_same_v<typename Lanes::Number, float> ? 1e-16 : 1e-34;
   MESHORDER_UNROLL

@@ -42,9 +42,8 @@ void check(const RestShapes& rest, const Elasticity& elasticity) {
   const std::size_t mus = elasticity.mu.size();
   if (mus != elasticity.lambda.size() || (mus != 0 && mus != lanes)) {
     throw InvalidArgument("elasticity: " + std::to_string(mus) + " values of mu and " +
-                          std::to_string(elasticity.lambda.size()) +
-                          " of lambda; none of each would do, or " + std::to_string(lanes) +
-                          ", whole batches");
+                          std::to_string(elasticity.lambda.size()) + " of lambda; give none of each, or " +
+                          std::to_string(lanes) + ", whole batches");
   }
 }
 
@@ -65,11 +64,11 @@ void check(const RestShapes& rest, const Stiffness& stiffness, Offset room) {
   }
   if (static_cast<Offset>(stiffness.matrix.values.size()) < 9 * room) {
     throw InvalidArgument("elasticity: the matrix must have room for " + std::to_string(room) +
-                          " blocks, spare ones included");
+                          " blocks, including spare ones");
   }
 }
 
-/// The pass over everything that only reads, its arguments checked.
+/// Returns the pass over all batches that only reads, after checking the arguments.
 ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity, const UniformLame& uniform,
                          std::span<const double> positions) {
   check(rest, elasticity);
@@ -85,7 +84,7 @@ ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity, c
   return pass;
 }
 
-/// The pass over everything, its arguments checked.
+/// Returns the pass over all batches, after checking the arguments.
 ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity, const UniformLame& uniform,
                          std::span<const double> positions, std::span<double> forces,
                          const Stiffness* stiffness) {

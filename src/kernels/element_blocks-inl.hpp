@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// The stiffness blocks of a batch of simplices. They are computed for many simplices at a time and added for
-/// one at a time, since that is how they lie in the matrix; in between they stand here.
+/// The stiffness blocks of a batch of simplices. They are computed for many simplices at a time but added for
+/// one at a time, as they lie in the matrix; this buffer holds them in between.
 template <int D>
 struct ElementBlocks {
   static constexpr int kBlocks = (D + 1) * (D + 1);
@@ -36,8 +36,8 @@ struct ElementBlocks {
     Lanes::store(k[8], last[ba] + lane);
   }
 
-  /// Asks for the blocks that a simplex will add to. They lie about the matrix where no hardware looks ahead;
-  /// asked for a batch in advance, assembly waits for memory half as long.
+  /// Prefetches the blocks that a simplex will add to, one batch in advance. They are scattered over the
+  /// matrix, so that hardware does not prefetch them; measured, assembly waits for memory half as long.
   static HWY_INLINE void fetch(const Index* blocks, const double* values) {
     for (int block = 0; block < kBlocks; ++block) {
       const double* const place = values + Offset{9} * blocks[block];
@@ -71,8 +71,9 @@ struct ElementBlocks {
   }
 };
 
-/// All blocks of some simplices, of those that `tangent` gives for the corners 1 … D (counted from 0): moving
-/// all corners alike changes no force, so that every row of blocks adds up to zero.
+/// Computes all blocks of some simplices from those that `tangent` gives for the corners 1 … D (counted from
+/// 0). A translation changes no force, so every row of blocks adds up to zero, which gives the blocks of
+/// corner 0.
 template <int D, class Lanes, class Tangent>
 HWY_INLINE void compute_blocks(const Tangent& tangent, Index lane, ElementBlocks<D>& out) {
   using Value = typename Lanes::Value;

@@ -43,7 +43,7 @@ struct OneLaneOf {
   static HWY_INLINE Value abs(Value a) { return std::abs(a); }
   static HWY_INLINE Value with_sign_of(Value value, Value sign) { return std::copysign(value, sign); }
   static HWY_INLINE Value log(Value a) { return std::log(a); }
-  /// Whether every lane is; not when one is NaN.
+  /// Returns whether every lane is at most the bound; false if one is NaN.
   static HWY_INLINE bool all_at_most(Value a, double bound) { return a <= static_cast<Real>(bound); }
   /// The sum of the lanes.
   static HWY_INLINE Real sum(Value a) { return a; }
@@ -65,7 +65,7 @@ using OneLane = OneLaneOf<double>;
 #if HWY_TARGET == HWY_SCALAR
 using ManyLanes = OneLane;
 #else
-/// The arithmetic of as many numbers as a register holds, at most so many.
+/// The arithmetic of as many numbers as a register holds, up to a maximum.
 template <class Real, Index Most>
 struct LaneArithmetic {
   using Number = Real;

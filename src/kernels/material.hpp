@@ -1,13 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "kernels/aligned.hpp"
 
 #include <cstdint>
 
 namespace meshorder {
 
-/// Isotropic energies per rest volume, with σ the signed singular values of the deformation gradient F.
+/// Isotropic energies per rest volume, in J/m³; F is the deformation gradient.
 enum class MaterialModel : std::uint8_t {
   corotational,  ///< μ‖F − R‖² + ½λ tr²(RᵀF − I), R the rotation closest to F (Müller, Gross 2004)
   stvk,          ///< Saint Venant–Kirchhoff: μ E:E + ½λ tr(E)², E = ½(FᵀF − I)
@@ -17,11 +18,27 @@ enum class MaterialModel : std::uint8_t {
   neo_hookean,
 };
 
-/// What stands for the Hessian.
+template <>
+struct EnumNames<MaterialModel> {
+  static constexpr std::string_view kind = "material model";
+  static constexpr std::array names{std::pair{MaterialModel::corotational, "corotational"},
+                                    std::pair{MaterialModel::stvk, "stvk"},
+                                    std::pair{MaterialModel::neo_hookean, "neo-hookean"}};
+};
+
+/// The matrix used as the Hessian of the energy.
 enum class Tangent : std::uint8_t {
   exact,        ///< the Hessian; indefinite under compression
   approximate,  ///< corotational alone: R held, so that it is semi-definite (Müller, Gross 2004)
   projected,    ///< the semi-definite part of ∂²Ψ/∂F², simplex by simplex; tetrahedra only
+};
+
+template <>
+struct EnumNames<Tangent> {
+  static constexpr std::string_view kind = "tangent";
+  static constexpr std::array names{std::pair{Tangent::exact, "exact"},
+                                    std::pair{Tangent::approximate, "approximate"},
+                                    std::pair{Tangent::projected, "projected"}};
 };
 
 /// Lamé's parameters of an isotropic material, in units of stress.

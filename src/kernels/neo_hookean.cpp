@@ -5,49 +5,25 @@
 #define HWY_TARGET_INCLUDE "kernels/neo_hookean.cpp"
 #include <hwy/foreach_target.h>
 // from here on once for each instruction set
-#include "kernels/batches-inl.hpp"
 #include "kernels/neo_hookean-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-template <class Lanes>
-HWY_INLINE void add_any(const ElasticPass& pass) {
+struct LawOfFile {
+  static constexpr bool kVolumesOnly = true;
+  template <int, class Lanes>
   using Law = NeoHookean<Lanes>;
-  if (!pass.values) return add_batches<3, Lanes, Law, NoTangent>(pass);
-  if (pass.tangent == Tangent::projected) {
-    return add_batches<3, Lanes, Law, ProjectedTangent<Lanes, Law>>(pass);
-  }
-  add_batches<3, Lanes, Law, NeoHookeanTangent<Lanes>>(pass);
-}
-
-void add(const ElasticPass& pass) { add_any<ManyLanes>(pass); }
-
-double energy(const ElasticPass& pass, Index begin, Index end) {
-  return energy_of_batches<3, ManyLanes, NeoHookean<ManyLanes>>(pass, begin, end);
-}
-
-#if HWY_ONCE
-void add_one_by_one(const ElasticPass& pass) { add_any<OneLane>(pass); }
-#endif
+  template <int, class Lanes>
+  using ExactTangent = NeoHookeanTangent<Lanes>;
+  template <int, class Lanes>
+  using ApproximateTangent = NeoHookeanTangent<Lanes>;
+};
 
 }  // namespace
 }  // namespace meshorder::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#if HWY_ONCE
-namespace meshorder {
-namespace {
-
-HWY_EXPORT(add);
-HWY_EXPORT(energy);
-
-}  // namespace
-
-ElasticKernels neo_hookean_kernels() {
-  return {HWY_DYNAMIC_DISPATCH(add), HWY_STATIC_DISPATCH(add_one_by_one), HWY_DYNAMIC_DISPATCH(energy)};
-}
-
-}  // namespace meshorder
-#endif
+#define MESHORDER_LAW_KERNELS neo_hookean_kernels
+#include "kernels/law_dispatch-inl.hpp"

@@ -22,7 +22,7 @@ void append(OwnedBatches& share, Index batch, std::span<const Index> vertices, I
   }
   share.boundary.push_back(static_cast<Index>(share.targets.size() / vertices.size()));
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    // a spare vertex for each lane, so that lanes need not wait for each other's sums
+    // a spare vertex for each lane, so that the sums of lanes do not depend on each other
     const Index spare_of_lane = spare + static_cast<Index>(i % kBatch);
     share.targets.push_back(owned(vertices[i]) ? vertices[i] : spare_of_lane);
   }
@@ -71,7 +71,7 @@ std::vector<OwnedBatches> owned_batches(std::span<const Index> vertices, Index c
 void check_room(std::span<const double> forces, const OwnedBatches& share, const char* function) {
   if (forces.size() < static_cast<std::size_t>(kPaddedStride) * static_cast<std::size_t>(share.room)) {
     throw InvalidArgument(std::string(function) + ": the forces must have room for " +
-                          std::to_string(share.room) + " vertices, spare ones included");
+                          std::to_string(share.room) + " vertices, including spare ones");
   }
 }
 

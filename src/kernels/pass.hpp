@@ -6,27 +6,28 @@
 
 namespace meshorder {
 
-/// What a pass over the simplices reads and adds to, checked: for elasticity.cpp and the laws' kernels alone.
+/// Input and output of a pass over the simplices, already checked. Internal to elasticity.cpp and the laws'
+/// kernels.
 struct ElasticPass {
   const RestShapes& rest;
   Tangent tangent = Tangent::exact;
-  /// Lamé's parameters of batch b from mu[lame_stride · b] on: of each simplex, or one batch of equal ones
-  /// for all, which spares the kernels a question.
+  /// Lamé's parameters of batch b from mu[lame_stride · b] on: of each simplex, or (stride 0) one batch of
+  /// equal values for all, so that kernels need no branch.
   const double* mu = nullptr;
   const double* lambda = nullptr;
   Offset lame_stride = 0;
   const double* positions = nullptr;
-  double* forces = nullptr;  ///< none where only the stiffness is asked for
-  /// The matrix's; none where only forces are asked for.
+  double* forces = nullptr;  ///< null if only the stiffness is wanted
+  /// The values of the matrix; null if only forces are wanted.
   double* values = nullptr;
   double scale = 1.0;             ///< of the stiffness
   const Index* blocks = nullptr;  ///< of AssemblyMap
-  /// One share of the batches, where it is not all of them, with OwnedBlocks::blocks.
+  /// One share of the batches, with OwnedBlocks::blocks; null for all batches.
   const OwnedBatches* share = nullptr;
   const Index* boundary_blocks = nullptr;
 };
 
-/// One law's kernels.
+/// The kernels of one law.
 struct ElasticKernels {
   void (*add)(const ElasticPass& pass);
   void (*add_one_by_one)(const ElasticPass& pass);

@@ -15,22 +15,22 @@ namespace meshorder {
 /// and one that stays 0, so that a vertex never straddles a cache line and is read by aligned vector loads.
 inline constexpr Index kPaddedStride = 4;
 
-/// The points in that layout. O(n).
+/// Returns the points in that layout. O(n).
 AlignedVector<double> padded_positions(std::span<const Point> points);
 
-/// n vertices at zero in that layout. O(n).
+/// Returns n vertices at zero in that layout. O(n).
 AlignedVector<double> padded_zeros(Index n);
 
 /// Throws InvalidArgument, naming `function`, unless positions and forces have the same size.
 void check_same_size(std::span<const double> positions, std::span<const double> forces, const char* function);
 
-/// Vertex v of padded positions.
+/// Returns vertex v of padded positions.
 inline Point point_of(std::span<const double> positions, Index v) {
   const double* const x = positions.data() + Offset{kPaddedStride} * v;
   return {x[0], x[1], x[2]};
 }
 
-/// The direction that a triangle of moved vertices faces, of length 1; none where it has no area.
+/// Returns the unit normal of a triangle of moved vertices; none if it has no area.
 inline std::optional<Point> triangle_normal(std::span<const double> positions, Index a, Index b, Index c) {
   const Point origin = point_of(positions, a);
   const Point normal = cross(minus(point_of(positions, b), origin), minus(point_of(positions, c), origin));

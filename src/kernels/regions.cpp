@@ -21,13 +21,13 @@ namespace {
 /// `whose` is empty or " of region 'steel'".
 void check(const Material& material, const std::string& whose) {
   if (!(material.young > 0.0) || !std::isfinite(material.young)) {
-    refuse(whose, "Young's modulus", material.young, "a positive number of Pa would do");
+    refuse(whose, "Young's modulus", material.young, "it must be positive, in Pa");
   }
   if (!(material.poisson > -1.0 && material.poisson < 0.5)) {
     refuse(whose, "Poisson's ratio", material.poisson, "it must be above -1 and below 0.5");
   }
   if (!(material.density > 0.0) || !std::isfinite(material.density)) {
-    refuse(whose, "the density", material.density, "a positive number of kg/m³ would do");
+    refuse(whose, "the density", material.density, "it must be positive, in kg/m³");
   }
 }
 
@@ -52,7 +52,7 @@ std::optional<std::size_t> find_group(const Grouping& grouping, const std::vecto
 }
 
 std::string list_of_regions(const Grouping& grouping, const std::vector<bool>& has) {
-  // enough to recognise a slip of the pen
+  // enough to recognise a misspelt name
   constexpr int kListed = 20;
   std::string list;
   int listed = 0;
@@ -67,7 +67,7 @@ std::string list_of_regions(const Grouping& grouping, const std::vector<bool>& h
 void check(const Simplices& simplices, const Grouping& grouping) {
   if (grouping.association != Association::cells) {
     throw InvalidArgument("materials: '" + grouping.name +
-                          "' groups vertices; an array or sets on cells would do");
+                          "' groups vertices; give an array or sets on cells");
   }
   const Offset corners = simplices.dimension + 1;
   if (static_cast<Offset>(simplices.cells.size()) * corners !=
@@ -96,7 +96,7 @@ std::vector<Material> materials_of_groups(const Grouping& grouping, const std::v
                             grouping.name + "'; " + list_of_regions(grouping, has));
     }
     if (given[*group]) {
-      throw InvalidArgument("materials: region '" + region.region + "' is given twice; once is enough");
+      throw InvalidArgument("materials: region '" + region.region + "' is given twice");
     }
     given[*group] = true;
     materials[*group] = region.material;

@@ -10,7 +10,7 @@
 
 namespace meshorder {
 
-/// What a part of a body is made of.
+/// The material of a part of a body.
 struct Material {
   double young = 1e6;       ///< Young's modulus E > 0, Pa
   double poisson = 0.45;    ///< Poisson's ratio, −1 < ν < ½
@@ -23,25 +23,25 @@ struct RegionMaterial {
   Material material;
 };
 
-/// The materials of all simplices, as Elasticity has them.
+/// The materials of all simplices, in the form that Elasticity takes.
 struct SimplexMaterials {
-  Lame lame;                         ///< of all, where the two below are empty
+  Lame lame;                         ///< of all simplices, if the two below are empty
   AlignedVector<double> mu, lambda;  ///< of each, filled up to whole batches
   std::vector<double> densities;     ///< one, or one for each simplex
 };
 
-/// The material that is the same everywhere. Throws InvalidArgument, which says what would be right, for
-/// numbers that are out of range or not finite.
+/// Returns one material for all simplices. Throws InvalidArgument, which states the valid range, for numbers
+/// that are out of range or not finite.
 SimplexMaterials uniform_material(const Material& material);
 
-/// The materials of simplices whose cells are grouped: `regions` where they say so, `elsewhere` in all other
-/// cells. Throws InvalidArgument for numbers out of range, for a grouping of vertices or of another mesh, for
-/// a region given twice and for one without simplices; it lists those that have some.
-/// O(simplices + regions · groups).
+/// The materials of simplices whose cells are grouped: those of `regions` for their cells, `elsewhere` for
+/// all others. Throws InvalidArgument for numbers out of range, for a grouping of vertices or of another
+/// mesh, for a region given twice and for one without simplices; the message lists the regions that have
+/// simplices. O(simplices + regions · groups).
 SimplexMaterials materials_by_region(const Simplices& simplices, const Grouping& grouping,
                                      const Material& elsewhere, const std::vector<RegionMaterial>& regions);
 
-/// The law of a body of those materials.
+/// Returns the elastic law of a body of these materials.
 Elasticity elasticity_of(SimplexMaterials materials, MaterialModel model, Tangent tangent);
 
 }  // namespace meshorder

@@ -80,7 +80,7 @@ HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3
   }
 }
 
-/// What the formula below finds on its way.
+/// Intermediate results of the formula below.
 template <class Lanes>
 struct RotationTerms {
   typename Lanes::Value cof[3][3];    ///< cof F
@@ -89,8 +89,8 @@ struct RotationTerms {
   typename Lanes::Value trace;        ///< of RᵀF: the sum of the signed singular values
 };
 
-/// The rotations closest to matrices that are far from having several, by a formula; false, and nothing
-/// usable, where one of them is not.
+/// Computes the closest rotations by a formula, for matrices whose closest rotation is well separated from
+/// others. Returns false, with unusable results, if one matrix is not.
 ///
 /// The largest eigenvalue of N is λ = tr S, the largest root of λ⁴ − 2aλ² − 8dλ + a² − 4b with a = ‖F‖²,
 /// b = ‖cof F‖² and d = det F. Halley's method falls to it from √3 ‖F‖ without passing it, since all roots

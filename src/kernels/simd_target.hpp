@@ -5,7 +5,8 @@
 
 namespace meshorder {
 
-/// Highway's name for the instructions that the kernels take on this processor: "AVX3", "AVX2", "NEON".
+/// Returns Highway's name of the instruction set that the kernels use on this processor: "AVX3", "AVX2",
+/// "NEON".
 std::string simd_target();
 
 }  // namespace meshorder

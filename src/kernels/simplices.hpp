@@ -12,14 +12,13 @@ namespace meshorder {
 /// Simplices are computed eight at a time, the doubles of an AVX-512 register.
 inline constexpr Index kBatch = 8;
 
-/// What the element kernels need of simplices at rest, in batches of kBatch: quantity q of simplex s stands
-/// at
+/// Rest data of simplices for the element kernels, in batches of kBatch: quantity q of simplex s is at
 /// `(quantities · (s / kBatch) + q) · kBatch + s % kBatch`. The last batch is filled up with copies of the
 /// last simplex that have no volume and so no force.
 ///
 /// With X₀ … X_D the rest corners, Dₘ is the matrix of the columns X_a − X₀ in the simplex's own orthonormal
 /// frame, which Gram–Schmidt builds of them: upper triangular, and so is its inverse. An isotropic material
-/// does not see the frame, and a tetrahedron takes 56 bytes instead of 80. In space the frame is
+/// does not depend on the frame, and a tetrahedron takes 56 bytes instead of 80. In space the frame is
 /// right-handed: of a tetrahedron whose corners turn the other way the last entry on the diagonal is
 /// negative, so that det F > 0 says for every tetrahedron that it is not turned inside out. A simplex that is
 /// flat to rounding gets the volume 0 and the inverse 0. Volumes are never negative.
@@ -34,7 +33,7 @@ struct RestShapes {
   [[nodiscard]] int quantities() const noexcept { return dimension * (dimension + 1) / 2 + 1; }
   [[nodiscard]] Offset batches() const noexcept { return (count + kBatch - 1) / kBatch; }
 
-  /// Corner `a` of simplex s, and its volume.
+  /// Returns corner `a` of simplex s; the volume of simplex s.
   [[nodiscard]] Index vertex(Offset s, Index a) const {
     return vertices[(s / kBatch * (dimension + 1) + a) * kBatch + s % kBatch];
   }
@@ -43,7 +42,7 @@ struct RestShapes {
   }
 };
 
-/// The rest shapes of the simplices at the given points. O(simplices).
+/// Returns the rest shapes of the simplices at the given points. O(simplices).
 RestShapes rest_shapes(const Simplices& simplices, std::span<const Point> points);
 
 }  // namespace meshorder

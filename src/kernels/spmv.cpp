@@ -16,10 +16,10 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-// blocks from a request to its use: the processor by itself looks less far ahead
+// blocks from a prefetch to its use; hardware prefetches less far ahead
 constexpr Offset kAhead = 128;
 
-/// With `Gather` the entries of x are asked for early too: kAhead blocks must follow the last row.
+/// With `Gather` the entries of x are prefetched too: kAhead blocks must follow the last row.
 template <bool Gather, class Value>
 double product_rows(const BlockCsrOf<Value>& matrix, const double* x, double* y, Index begin, Index end) {
   const Value* const values = matrix.values.data();
@@ -43,7 +43,7 @@ double product_rows(const BlockCsrOf<Value>& matrix, const double* x, double* y,
 
 template <class Value>
 double product(const BlockCsrOf<Value>& matrix, const double* x, double* y, Index begin, Index end) {
-  // a vector that the second-level cache holds needs no requests
+  // a vector that fits into the second-level cache needs no prefetch
   constexpr Index kNearVertices = (Index{3} << 20) / (2 * 3 * sizeof(double));
   if (matrix.size() <= kNearVertices) return product_rows<false>(matrix, x, y, begin, end);
   const auto row_ends = matrix.offsets.begin() + 1;

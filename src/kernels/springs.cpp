@@ -11,7 +11,7 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-/// A batch of springs, which adds to `targets`: its ends, or spare vertices in place of them.
+/// Computes a batch of springs and adds to `targets`: its ends, or spare vertices instead of them.
 template <class Lanes>
 HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const Index* targets,
                           double stiffness, const double* positions, double* forces) {
@@ -37,7 +37,7 @@ HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const In
   }
 }
 
-/// All batches, or those of a share.
+/// Computes all batches, or those of a share.
 template <class Lanes>
 HWY_INLINE void add_forces(const Springs& springs, double stiffness, const double* positions, double* forces,
                            const OwnedBatches* share) {
@@ -90,7 +90,7 @@ Springs springs_on_edges(const CsrGraph& graph, std::span<const Point> points) {
   Offset s = 0;
   for (Index b = 0; b < graph.size(); ++b) {
     for (const Index a : graph[b]) {
-      if (a > b) break;  // rows rise
+      if (a > b) break;  // columns are ascending
       Index* const ends = springs.ends.data() + 2 * (s / kBatch) * kBatch + s % kBatch;
       ends[0] = a;
       ends[kBatch] = b;

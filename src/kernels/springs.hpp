@@ -17,17 +17,17 @@ struct Springs {
   AlignedVector<double> rest_lengths;
 };
 
-/// Every edge of the graph once, from its smaller end to its larger one, at rest at the given points. Sorted
-/// by the larger end and then the smaller, as `lexmax` sorts elements: whatever the order of the vertices,
-/// each is then met for the first time in the order in which they lie in memory. O(n + edges).
+/// Returns a spring for every edge of the graph, from its smaller to its larger end, at rest at the given
+/// points. Sorted by the larger end and then the smaller, as `lexmax` sorts elements: whatever the order of
+/// the vertices, vertices are then first visited in the order in which they lie in memory. O(n + edges).
 Springs springs_on_edges(const CsrGraph& graph, std::span<const Point> points);
 
-/// The energy Σ ½ k (‖d‖ − ℓ₀)² of springs of stiffness k, d = x_b − x_a. O(springs).
+/// Returns the energy Σ ½ k (‖d‖ − ℓ₀)² of springs of stiffness k, d = x_b − x_a. O(springs).
 double spring_energy(const Springs& springs, double stiffness, std::span<const double> positions);
 
 /// forces += −∂/∂x of that energy: k (‖d‖ − ℓ₀) d/‖d‖ on end a and its opposite on end b. A spring whose ends
 /// coincide has no direction and no force. Positions and forces have the layout of padded_positions. Throws
-/// InvalidArgument when the sizes differ. Spring after spring, in batches, as add_elasticity. O(springs).
+/// InvalidArgument if the sizes differ. In batches, as add_elasticity. O(springs).
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces);
 
@@ -35,7 +35,7 @@ void add_spring_forces(const Springs& springs, double stiffness, std::span<const
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces, const OwnedBatches& share);
 
-/// The same from the same source, one spring at a time and without vector instructions: the reference.
+/// The scalar reference: the same source, one spring at a time and without vector instructions.
 void add_spring_forces_scalar(const Springs& springs, double stiffness, std::span<const double> positions,
                               std::span<double> forces);
 

@@ -103,7 +103,7 @@ def test_json_keys_of_admm(command, tmp_path):
     assert result["contacts"][0] == 0 and max(result["contacts"]) > 0
     assert max(result["penetration"]) <= 1e-3 * 0.1 and max(result["vertices_in_itself"]) == 0
     assert result["integrator"] == {"method": "admm", "time_step": 0.005, "gravity": [0, -9.81, 0], "iterations": 12,
-                                    "tolerance": 0, "duals": "reset", "acceleration": 0}
+                                    "tolerance": 0, "duals": "reset"}
     assert result["solver"]["precision"] == "double" and result["solver"]["contact"]["method"] == "uzawa"
     assert result["material"]["model"] == "neo-hookean" and result["material"]["young"] == 5e4
     assert not {"cg_iterations", "newton_iterations"} & set(result)

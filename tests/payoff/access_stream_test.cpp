@@ -15,7 +15,7 @@
 namespace meshorder {
 namespace {
 
-/// What a kernel works on, prepared as KernelBench does.
+/// Input of a kernel, prepared as KernelBench does.
 struct Prepared {
   explicit Prepared(const Mesh& mesh)
       : graph(vertex_graph(mesh)),
@@ -56,7 +56,7 @@ class Recorder {
   void touch(Memory array, Offset byte, Offset bytes) {
     for (Offset line = byte / 64; line <= (byte + bytes - 1) / 64; ++line) lines.emplace_back(array, line);
   }
-  /// The same, but only what has not been touched so.
+  /// The same, but only addresses that were not touched before.
   void read(Memory array, Offset byte, Offset bytes) {
     for (Offset line = byte / 64; line <= (byte + bytes - 1) / 64; ++line) {
       if (read_.insert({array, line}).second) lines.emplace_back(array, line);

@@ -165,7 +165,7 @@ inline Eigen::Matrix3d some_rotation(std::uint64_t seed) {
   return q.normalized().toRotationMatrix();
 }
 
-/// A deformation gradient with those singular values.
+/// Returns a deformation gradient with these singular values.
 inline Eigen::Matrix3d gradient_of(const State& state, std::uint64_t seed = 3) {
   return some_rotation(seed) * state.sigma.asDiagonal() * some_rotation(seed + 1).transpose();
 }

@@ -163,7 +163,7 @@ TEST_P(ElasticLaw, TakesParametersOfEachSimplex) {
   elasticity.lambda.assign(24, test::kSteel.lambda);
   elasticity.lame = {};
   EXPECT_EQ(forces_of(patch, elasticity, patch.positions), forces);
-  // the forces of some simplices and those of the others are the forces of all
+  // the forces of two groups of simplices add up to those of all
   Elasticity others = elasticity;
   for (std::size_t s = 0; s < 24; ++s) {
     Elasticity& without = s % 3 == 0 ? elasticity : others;

@@ -83,7 +83,7 @@ TEST(KernelBench, ComputesTheSameBitsOnAnyNumberOfThreads) {
         SCOPED_TRACE(std::string(name(kernel)) + " on " + std::to_string(threads));
         serial.run(kernel);
         shared.run(kernel);
-        shared.run(kernel);  // what the first run left must be cleared
+        shared.run(kernel);  // results of the first run must be cleared
         const auto expected = serial.result(kernel);
         const auto actual = shared.result(kernel);
         ASSERT_EQ(actual.size(), expected.size());

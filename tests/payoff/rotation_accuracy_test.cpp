@@ -136,7 +136,7 @@ double defect(const Eigen::Matrix3d& f, const Eigen::Matrix3d& r) {
                    std::abs(r.determinant() - 1.0), (s - s.transpose()).cwiseAbs().maxCoeff(), negative});
 }
 
-/// The greatest defect of the rotations closest to all those matrices.
+/// Returns the largest defect of the rotations closest to these matrices.
 template <class Real>
 double greatest_defect() {
   LocalLaw law = test::law_of(LocalModel::strain);
@@ -159,7 +159,7 @@ TEST(RotationsOfDoubles, AreClosestForAMillionMatrices) { EXPECT_LT(greatest_def
 
 TEST(RotationsOfFloats, AreClosestForAMillionMatrices) { EXPECT_LT(greatest_defect<float>(), 1.5e-4); }
 
-/// The greatest error relative to what rounding of F alone makes: σ₁ / (σ₂ + σ₃), at least 1, of those that
+/// Returns the largest error relative to that of rounding F alone: σ₁ / (σ₂ + σ₃), at least 1, of those that
 /// have a rotation of their own.
 template <class Real>
 double greatest_error() {

@@ -70,7 +70,7 @@ TEST(ClosestRotation, DoesNotSeeTheScale) {
   const Eigen::Matrix3d f = test::gradient_of({"", {1.2, 0.9, -0.3}});
   const Eigen::Matrix3d r = rotation_of(f);
   for (const double scale : {1e-320, 1e-300, 1e-160, 1e-100, 1e-61, 1e-30, 1e30, 1e70, 1e80, 1e160, 1e307}) {
-    // what denormals keep of f
+    // the part of f that denormals can represent
     const double tolerance = scale < 1e-310 ? 1e-2 : 1e-12;
     EXPECT_LT((rotation_of(scale * f) - r).cwiseAbs().maxCoeff(), tolerance) << scale;
   }

@@ -44,7 +44,7 @@ TEST(BlockCsr, HasABlockForEveryVertexAndBothDirectionsOfEveryEdge) {
 template <class Value>
 void expect_dense_product(const BlockCsrOf<Value>& matrix) {
   const auto n = 3 * static_cast<std::size_t>(matrix.size());
-  // exactly as long as they are, so that a sanitizer sees what is read behind them
+  // allocated at their exact size, so that a sanitizer detects reads past the end
   std::vector<double> x(n);
   Random random(6);
   for (double& value : x) value = random.unit() - 0.5;

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/geometry/box_tree.hpp"
 
-#include "lab/contact/geometry/halving.hpp"
 #include "lab/contact/geometry/triangle_point.hpp"
 #include "simulators/surfaces.hpp"
 
@@ -31,14 +30,14 @@ TEST(BoxTree, FindsTheNearestOfAnyNumberOfBoxes) {
     Random random(2);
     for (int i = 0; i < 200; ++i) {
       const Point x = test::random_point(random, 1.5);
-      double least = Box::kInfinity;
-      for (const Box& box : boxes) least = std::min(least, box.squared_distance(x));
+      double smallest = Box::kInfinity;
+      for (const Box& box : boxes) smallest = std::min(smallest, box.squared_distance(x));
       double found = Box::kInfinity;
       tree.visit_nearest(x, [&](Index thing) {
         found = std::min(found, boxes[thing].squared_distance(x));
         return found;
       });
-      EXPECT_EQ(found, least) << count;
+      EXPECT_EQ(found, smallest) << count;
     }
   }
 }

@@ -117,7 +117,7 @@ TEST(ConjugateGradients, GoOnFromTheStartGiven) {
   const std::vector<double> b = test::random_vector(matrix.size(), 5);
   std::vector<double> x(b.size());
   const SolveReport first = conjugate_gradients(matrix, *jacobi, b, x, {.tolerance = 1e-10});
-  // what is left is rounding, relative to which no start is good
+  // only rounding errors are left, which no start improves
   const SolveReport again = conjugate_gradients(matrix, *jacobi, b, x, {.tolerance = 1e-2});
   EXPECT_EQ(again.status, SolveStatus::converged);
   EXPECT_LT(again.iterations, first.iterations);

@@ -3,7 +3,7 @@
 
 #include "base/random.hpp"
 #include "kernels/positions.hpp"
-#include "lab/contact/solve/contact_solver.hpp"
+#include "lab/contact/solve/dual_contact_solver.hpp"
 #include "mesh/graphs.hpp"
 
 #include <Eigen/Dense>
@@ -14,7 +14,7 @@
 
 namespace meshorder::test {
 
-/// A body whose energy is ½xᵀA x − bᵀx, and what it must not enter.
+/// A body with the energy ½xᵀA x − bᵀx, and its contacts.
 struct ContactProblem {
   SparseMatrix matrix;
   std::vector<double> masses;

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/contact/solve/contact_solver.hpp"
+#include "lab/contact/solve/dual_contact_solver.hpp"
+
 #include "lab/contact/solve/remembered_forces.hpp"
 #include "mesh/procedural.hpp"
 #include "simulators/contact_problem.hpp"
@@ -16,7 +17,7 @@ using test::ContactProblem;
 ContactProblem pushed_block(double stiffness) {
   ContactProblem problem = test::contact_problem(make_grid({.size = test::kSanitized ? 10 : 20}), stiffness);
   problem.push({0.02, -0.1, 0});
-  // a floor that is no plane, or all would touch
+  // a curved floor; a plane would touch all vertices
   for (Index v = 0; v < problem.size(); ++v) {
     const double* const x = problem.rest.data() + Offset{kPaddedStride} * v;
     if (x[1] > 0.02) continue;
@@ -26,19 +27,19 @@ ContactProblem pushed_block(double stiffness) {
   return problem;
 }
 
-TEST(Uzawa, NeedsFewMultiplicationsOnABlockThatIsPushedOntoTheFloor) {
+TEST(DualContactSolver, NeedsFewMultiplicationsOnABlockThatIsPushedOntoTheFloor) {
   for (const double stiffness : {1.0, 100.0, 10'000.0}) {
     ContactProblem problem = pushed_block(stiffness);
     ASSERT_GT(problem.contacts.size(), test::kSanitized ? 100U : 400U);
     const CholeskyFactor<double> factor(problem.matrix);
-    const auto solver = ContactSolver<double>::make(problem.matrix, factor, {.tolerance = 1e-4});
+    const auto solver = DualContactSolver<double>::make(problem.matrix, factor, {.tolerance = 1e-4});
     AlignedVector<double> x = problem.rest;
     const ContactSolveReport cold = solver->solve(problem.contacts, problem.b, problem.rest, x);
     EXPECT_TRUE(cold.converged);
     EXPECT_GE(cold.pushing, test::kSanitized ? 1 : 10);
     EXPECT_LT(cold.pushing, 400);
     EXPECT_LE(cold.iterations, 60);
-    // what pushes it changes a little
+    // the load changes a little
     problem.push({0, -0.001, 0.0005});
     const ContactSolveReport warm = solver->solve(problem.contacts, problem.b, problem.rest, x);
     EXPECT_TRUE(warm.converged);
@@ -51,7 +52,7 @@ TEST(Uzawa, NeedsFewMultiplicationsOnABlockThatIsPushedOntoTheFloor) {
   }
 }
 
-TEST(Uzawa, LeavesNoMoreDepthThanItsTolerance) {
+TEST(DualContactSolver, LeavesNoMoreDepthThanItsTolerance) {
   const ContactProblem problem = pushed_block(100.0);
   const CholeskyFactor<double> factor(problem.matrix);
   AlignedVector<double> x(problem.b.size());
@@ -62,7 +63,7 @@ TEST(Uzawa, LeavesNoMoreDepthThanItsTolerance) {
     norm += depth * depth;
   }
   for (const double tolerance : {1e-1, 1e-3, 1e-6}) {
-    const auto solver = ContactSolver<double>::make(problem.matrix, factor, {.tolerance = tolerance});
+    const auto solver = DualContactSolver<double>::make(problem.matrix, factor, {.tolerance = tolerance});
     const ContactSolveReport report = solver->solve(problem.contacts, problem.b, problem.rest, x);
     EXPECT_TRUE(report.converged);
     EXPECT_LE(report.violation, 2 * tolerance * std::sqrt(norm));
@@ -70,12 +71,12 @@ TEST(Uzawa, LeavesNoMoreDepthThanItsTolerance) {
   }
 }
 
-TEST(Uzawa, StopsAtTheLimitOfMultiplicationsAndSaysSo) {
+TEST(DualContactSolver, StopsAtTheLimitOfMultiplicationsAndSaysSo) {
   const ContactProblem problem = pushed_block(100.0);
   const CholeskyFactor<double> factor(problem.matrix);
   for (const int limit : {0, 1, 5}) {
     const auto solver =
-        ContactSolver<double>::make(problem.matrix, factor, {.tolerance = 1e-9, .max_iterations = limit});
+        DualContactSolver<double>::make(problem.matrix, factor, {.tolerance = 1e-9, .max_iterations = limit});
     AlignedVector<double> x = problem.rest;
     const ContactSolveReport report = solver->solve(problem.contacts, problem.b, problem.rest, x);
     EXPECT_EQ(report.iterations, limit);
@@ -84,10 +85,10 @@ TEST(Uzawa, StopsAtTheLimitOfMultiplicationsAndSaysSo) {
   }
 }
 
-TEST(Uzawa, TakesForcesAlongWhereContactsComeAndGo) {
+TEST(DualContactSolver, TakesForcesAlongWhereContactsComeAndGo) {
   ContactProblem problem = pushed_block(100.0);
   const CholeskyFactor<double> factor(problem.matrix);
-  const auto solver = ContactSolver<double>::make(problem.matrix, factor, {.tolerance = 1e-4});
+  const auto solver = DualContactSolver<double>::make(problem.matrix, factor, {.tolerance = 1e-4});
   AlignedVector<double> x = problem.rest;
   const int cold = solver->solve(problem.contacts, problem.b, problem.rest, x).iterations;
   // contacts in another order, some gone
@@ -97,12 +98,12 @@ TEST(Uzawa, TakesForcesAlongWhereContactsComeAndGo) {
   EXPECT_LE(2 * warm, cold);
 }
 
-TEST(Uzawa, StaysWhereItIsWhenABodyJams) {
+TEST(DualContactSolver, StaysWhereItIsWhenABodyJams) {
   ContactProblem problem = test::contact_problem(make_grid({.size = 4}), 100.0);
   test::add_random_contacts(problem, 100, true, 11);
   for (Contact& contact : problem.contacts) contact.friction = 0.3;
   const CholeskyFactor<double> factor(problem.matrix);
-  const auto solver = ContactSolver<double>::make(problem.matrix, factor, {.max_iterations = 4000});
+  const auto solver = DualContactSolver<double>::make(problem.matrix, factor, {.max_iterations = 4000});
   AlignedVector<double> x = problem.rest;
   const ContactSolveReport report = solver->solve(problem.contacts, problem.b, problem.rest, x);
   EXPECT_FALSE(report.converged);

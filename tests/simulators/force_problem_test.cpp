@@ -62,7 +62,7 @@ struct Problem {
       : matrix(some_matrix(normals + 2 * discs, rank, spread, random)) {
     bounds.normals = normals;
     for (Index k = 0; k < discs; ++k) bounds.radii.push_back(k % 5 == 0 ? 0.0 : 3 * random.unit());
-    // in the range of S, so that there is a least energy whatever its rank
+    // in the range of S, so that the energy has a minimum for any rank
     Vector aim(normals + 2 * discs);
     for (double& a : aim) a = 8 * random.unit() - 3;
     g = matrix.matrix() * aim;

@@ -103,7 +103,7 @@ TEST(GlobalSystem, FactorsAnewWhenOthersAreHeld) {
   held.hold(3, {});
   EXPECT_TRUE(system.hold(held));
   held.clear();
-  held.hold(3, {4, 5, 6});  // the same vertices, whatever their velocities
+  held.hold(3, {4, 5, 6});  // the same vertices with other velocities
   EXPECT_FALSE(system.hold(held));
   held.hold(0, {});
   EXPECT_TRUE(system.hold(held));

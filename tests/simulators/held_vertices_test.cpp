@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/motion/held_vertices.hpp"
-
 #include "elastic_system.hpp"
+#include "lab/motion/loads.hpp"
 #include "mesh/procedural.hpp"
 
 #include <gtest/gtest.h>

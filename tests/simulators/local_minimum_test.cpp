@@ -34,11 +34,11 @@ Eigen::Vector3d best_values(const LocalLaw& law, const Eigen::Vector3d& sigma) {
   };
   constexpr double kSpacing = 0.2;
   Eigen::Vector3d best(1, 1, 1);
-  double least = cost(best);
+  double smallest = cost(best);
   const auto take = [&](const Eigen::Vector3d& z) {
     const double there = cost(z);
-    if (!(there < least)) return false;
-    least = there;
+    if (!(there < smallest)) return false;
+    smallest = there;
     best = z;
     return true;
   };

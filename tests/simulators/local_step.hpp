@@ -48,7 +48,7 @@ inline double weight_of(const LocalLaw& law) {
   return law.model == LocalModel::strain ? law.stiffness : law.lame.lambda + 2.0 / 3.0 * law.lame.mu;
 }
 
-/// The kernels' local steps of any matrices q: what tetrahedra of unit shape add to their corners.
+/// Computes the kernels' local steps of any matrices q, from the forces of unit tetrahedra on their corners.
 template <class Real>
 class UnitSteps {
  public:
@@ -100,7 +100,7 @@ LocalSteps<Real> steps_of(const LocalLaw& law, const Patch& patch) {
 
 template <class Real = double>
 AlignedVector<Real> sums_for(const LocalSteps<Real>& steps) {
-  // what the pass does not set must not survive
+  // detects entries that the pass does not set
   return AlignedVector<Real>(kPaddedStride * static_cast<std::size_t>(steps.room()), Real{17});
 }
 
@@ -123,7 +123,7 @@ inline LocalLaw law_of(LocalModel model, double poisson = 0.3) {
   return law;
 }
 
-/// The signed singular values, falling in size.
+/// Returns the signed singular values, in descending order of size.
 inline Eigen::Vector3d singular_values(const Eigen::Matrix3d& f) {
   Eigen::Vector3d sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(f).singularValues();
   if (f.determinant() < 0.0) sigma[2] = -sigma[2];
@@ -160,7 +160,7 @@ inline double density(const LocalLaw& law, const Eigen::Vector3d& sigma) {
   return 0.0;
 }
 
-/// What a local step minimises, over w².
+/// Returns the objective of a local step, over w².
 inline double objective(const LocalLaw& law, const Eigen::Matrix3d& z, const Eigen::Matrix3d& q) {
   return density(law, singular_values(z)) / weight_of(law) + 0.5 * (z - q).squaredNorm();
 }

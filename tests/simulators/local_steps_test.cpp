@@ -174,7 +174,7 @@ TEST_P(LocalPasses, HaveTheStiffnessOfDenseMatrices) {
   }
 }
 
-/// What a few passes leave.
+/// Residuals after a few passes.
 struct Outcome {
   std::vector<double> sums;
   std::vector<double> duals;
@@ -338,7 +338,7 @@ TEST_P(LocalPasses, UnfoldWhatIsSquashedToAPoint) {
   AlignedVector<double> sums = test::sums_for(steps);
   const LocalResidual residual = steps.pass(at_point, 1.0, sums);
   EXPECT_GT(residual.primal, 0.0);
-  // z − u is what it is at rest: the identity, and the springs' rest edges
+  // z − u has its value at rest: the identity, and the springs' rest edges
   const auto end = kPaddedStride * static_cast<std::ptrdiff_t>(patch.points.size());
   test::expect_near({sums.data(), static_cast<std::size_t>(end)},
                     {at_rest_sums.data(), static_cast<std::size_t>(end)}, 1e-13);

@@ -15,8 +15,8 @@ namespace {
 constexpr double kFar = 1e9;
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// EXPECTs that what `nearest` and `distance` say around the origin fits together: the place is on the
-/// surface at that distance along the normal, and the distance grows along the normal by what one goes.
+/// EXPECTs that `nearest` and `distance` agree around the origin: the point is on the surface at that
+/// distance along the normal, and the distance grows along the normal by the path length.
 void expect_consistent(const Obstacle& obstacle, double size, std::uint64_t seed) {
   constexpr double kStep = 1e-6;
   Random random(seed);
@@ -99,10 +99,10 @@ TEST(Bowl, IsWhatIsWithinHalfTheThicknessOfACap) {
     }
     for (int i = 0; i < 200; ++i) {
       const Point x = test::random_point(random, 1.5);
-      double least = kFar;
-      for (const Point& p : cap) least = std::min(least, norm(minus(x, p)));
-      EXPECT_NEAR(shell->distance(x), least - 0.5 * thickness, 0.003 / (0.1 + least)) << opening;
-      EXPECT_LE(shell->distance(x), least - 0.5 * thickness + 1e-12);
+      double smallest = kFar;
+      for (const Point& p : cap) smallest = std::min(smallest, norm(minus(x, p)));
+      EXPECT_NEAR(shell->distance(x), smallest - 0.5 * thickness, 0.003 / (0.1 + smallest)) << opening;
+      EXPECT_LE(shell->distance(x), smallest - 0.5 * thickness + 1e-12);
     }
     expect_consistent(*bowl({0, 0, 0}, axis, radius, thickness, opening), 1.5, 4);
   }
@@ -147,7 +147,7 @@ TEST(ClosedSurface, IsTheCubeThatItEncloses) {
   for (int i = 0; i < 5000; ++i) {
     Point x = test::random_point(random, 1.5);
     for (int c = 0; c < 3; ++c) x[c] += 0.5;
-    if (i % 10 == 0) x[i / 10 % 3] = 0.5;  // along what the triangles share
+    if (i % 10 == 0) x[i / 10 % 3] = 0.5;  // along the shared edge
     double outside = 0.0;
     double inside = -kFar;
     for (const double c : x) {
@@ -212,7 +212,7 @@ TEST(ClosedSurface, LeadsBackWhatWentThroughIt) {
       EXPECT_EQ(place->normal, (Point{0, 1, 0}));
       EXPECT_NEAR(place->distance, to - 0.01, 1e-8);
     }
-    // what leaves or slides along is let go
+    // vertices that leave or slide along are not stopped
     EXPECT_FALSE(wall->nearest({x, 0.02, 0.3}, {x, from, 0.3}, 0.0)) << from;
     EXPECT_FALSE(wall->nearest({0.9, 0.0101, 0.9}, {x, from, 0.3}, 0.0)) << from;
   }
@@ -231,7 +231,7 @@ TEST(ClosedSurface, TakesRoundingForNoPassage) {
   EXPECT_TRUE(box->nearest({2.0, 1 - 5e-6, 0.5}, from, 0.0)) << "by 1e-6";
 }
 
-/// What an attempt to build the surface is refused with.
+/// Returns the message of the error that building the surface throws.
 std::string refusal(const test::Surface& surface) {
   try {
     closed_surface(surface.points, surface.triangles);

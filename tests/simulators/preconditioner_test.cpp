@@ -37,7 +37,7 @@ std::vector<double> applied(const Preconditioner& preconditioner, const std::vec
   return z;
 }
 
-/// What it multiplies by.
+/// Returns the preconditioner as a dense matrix.
 Eigen::MatrixXd dense(const Preconditioner& preconditioner, Index vertices) {
   Eigen::MatrixXd result(3 * vertices, 3 * vertices);
   for (Index i = 0; i < 3 * vertices; ++i) {
@@ -133,10 +133,10 @@ TEST_P(AnyPreconditioner, RefusesWhatDoesNotFit) {
 }
 
 TEST(Preconditioners, HaveNames) {
-  EXPECT_EQ(name(PreconditionerKind::jacobi), "jacobi");
-  EXPECT_EQ(name(PreconditionerKind::block_jacobi), "block-jacobi");
-  EXPECT_EQ(name(PreconditionerKind::incomplete_cholesky), "incomplete-cholesky");
-  EXPECT_EQ(name(PreconditionerKind::multigrid), "multigrid");
+  EXPECT_EQ(to_string(PreconditionerKind::jacobi), "jacobi");
+  EXPECT_EQ(to_string(PreconditionerKind::block_jacobi), "block-jacobi");
+  EXPECT_EQ(to_string(PreconditionerKind::incomplete_cholesky), "incomplete-cholesky");
+  EXPECT_EQ(to_string(PreconditionerKind::multigrid), "multigrid");
 }
 
 TEST(Jacobi, InvertsTheDiagonal) {

@@ -1,8 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/linear/cg/refinement.hpp"
-
 #include "elastic_system.hpp"
 #include "kernels/spmv.hpp"
+#include "lab/linear/cg/solve.hpp"
 #include "mesh/procedural.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/linear/cholesky/solve_tasks.hpp"
-
+#include "lab/linear/cholesky/supernodes.hpp"
 #include "simulators/sparse.hpp"
 #include "support/sample_graphs.hpp"
 

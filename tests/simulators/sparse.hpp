@@ -2,7 +2,7 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
-#include "lab/linear/cholesky/sparse_matrix.hpp"
+#include "lab/linear/cholesky/ldl.hpp"
 
 #include <Eigen/Dense>
 

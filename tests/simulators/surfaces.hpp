@@ -68,31 +68,31 @@ inline double winding_number(const Surface& surface, const Point& x) {
 
 /// The distance from x to a triangle, by the plane and the three edges.
 inline double distance_to_triangle(const Point& x, const Point& a, const Point& b, const Point& c) {
-  double least = 1e300;
+  double smallest = 1e300;
   for (const auto& [p, q] : {std::pair{a, b}, {b, c}, {c, a}}) {
     const Point way = minus(q, p);
     const double square = dot(way, way);
     const double part = square > 0.0 ? std::clamp(dot(minus(x, p), way) / square, 0.0, 1.0) : 0.0;
-    least = std::min(least, norm(minus(x, plus_scaled(p, part, way))));
+    smallest = std::min(smallest, norm(minus(x, plus_scaled(p, part, way))));
   }
   const Point normal = cross(minus(b, a), minus(c, a));
   const double area = norm(normal);
-  if (area == 0.0) return least;
+  if (area == 0.0) return smallest;
   const double height = dot(minus(x, a), normal) / area;
   const Point foot = plus_scaled(x, -height / area, normal);
   bool inside = true;
   for (const auto& [p, q] : {std::pair{a, b}, {b, c}, {c, a}})
     inside = inside && dot(cross(minus(q, p), minus(foot, p)), normal) >= 0.0;
-  return inside ? std::abs(height) : least;
+  return inside ? std::abs(height) : smallest;
 }
 
 inline double distance_to_surface(const Surface& surface, const Point& x) {
-  double least = 1e300;
+  double smallest = 1e300;
   for (const auto& t : surface.triangles) {
-    least = std::min(
-        least, distance_to_triangle(x, surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]));
+    smallest = std::min(
+        smallest, distance_to_triangle(x, surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]));
   }
-  return least;
+  return smallest;
 }
 
 }  // namespace meshorder::test

@@ -61,7 +61,7 @@ void expect_same(const std::vector<VertexInside>& actual, const std::vector<Vert
   }
 }
 
-/// Rolls what lies along x up to a scroll whose layers overlap.
+/// Rolls a body along x up to a scroll whose layers overlap.
 Point rolled(const Point& p) {
   const double angle = 9.0 * p[0];
   const double radius = 0.3 - 0.05 * p[0] + 0.5 * p[1];
@@ -109,7 +109,7 @@ TEST(TetrahedronSearch, FindsWhatAllPairsFind) {
   std::size_t found = 0;
   for (const SoftBody* body : {&torus, &grid, &small}) {
     TetrahedronSearch search(body->simplices, body->points, body->surface);
-    std::vector<VertexInside> inside{{7, 7, {}}};  // what was there goes
+    std::vector<VertexInside> inside{{7, 7, {}}};  // earlier entries are removed
     // from one to the other, so that nothing of an earlier motion may stay
     for (const Motion& motion : std::vector<Motion>{
              [](const Point& p) { return p; }, turned, rolled, pressed, shaken(0.03, 1), shaken(0.5, 2),

@@ -19,7 +19,7 @@ struct Box {
   Point lower{kInfinity, kInfinity, kInfinity};
   Point upper{-kInfinity, -kInfinity, -kInfinity};
 
-  /// Grows it to contain x. Coordinates that are NaN are passed over.
+  /// Extends the box to contain x. Coordinates that are NaN are ignored.
   void include(const Point& x) {
     for (int c = 0; c < 3; ++c) {
       lower[c] = std::min(lower[c], x[c]);
@@ -31,7 +31,7 @@ struct Box {
     for (int c = 0; c < 3; ++c) result = result && lower[c] <= x[c] && x[c] <= upper[c];
     return result;
   }
-  /// The square of the distance from x, 0 within.
+  /// Returns the squared distance from x, 0 inside.
   [[nodiscard]] double squared_distance(const Point& x) const {
     double sum = 0.0;
     for (int c = 0; c < 3; ++c) {
@@ -43,18 +43,18 @@ struct Box {
   [[nodiscard]] bool meets_segment(const Point& a, const Point& b) const;
 };
 
-/// A tree of boxes over things at rest: halved by count along the longest axis of their centres.
+/// A tree of boxes over items at rest: halved by count along the longest axis of their centres.
 class BoxTree {
  public:
-  /// One box for each thing. O(n log n).
+  /// Builds the tree over one box for each item. O(n log n).
   explicit BoxTree(std::span<const Box> boxes);
 
-  /// Numbers the things in the order of the tree from now on, in which neighbours stand side by side, and
-  /// returns which they were.
+  /// Renumbers the items in the order of the tree, in which neighbours are adjacent, and returns their former
+  /// numbers.
   std::vector<Index> renumber();
 
-  /// Calls `visit(thing)` for the things that may be nearest to x: those whose box is nearer than the square
-  /// root of the bound, which is what the last visit returned. Nearer boxes come first as a rule.
+  /// Calls `visit(item)` for the items that may be nearest to x: those whose squared distance from x is below
+  /// `bound`, which each visit returns anew. Nearer boxes usually come first.
   template <class Visit>
   void visit_nearest(const Point& x, Visit visit, double bound = Box::kInfinity) const {
     struct Open {
@@ -81,7 +81,7 @@ class BoxTree {
     }
   }
 
-  /// Calls `visit(thing)` for all things whose box the segment from a to b meets, or nearly.
+  /// Calls `visit(item)` for all items whose box the segment from a to b meets, or nearly meets.
   template <class Visit>
   void visit_on_segment(const Point& a, const Point& b, Visit visit) const {
     std::array<Index, kDeepest> open{};
@@ -99,22 +99,30 @@ class BoxTree {
     }
   }
 
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
   static constexpr Index kInLeaf = 4;
   static constexpr double kAboveRounding = 1.0 + 1e-12;
-  static constexpr int kDeepest = 64;  // halving 2³¹ things takes 31 levels
+  static constexpr int kDeepest = 64;  // halving 2³¹ items takes 31 levels
 
   struct Node {
     Box box;
-    Index first = 0;  // of the things of a leaf; of the two children of another node
-    Index count = 0;  // things of a leaf; 0 for another node
+    Index first = 0;  // of the items of a leaf; of the two children of an inner node
+    Index count = 0;  // items of a leaf; 0 for an inner node
   };
 
   std::vector<Node> nodes_;
   std::vector<Index> things_;
 };
+
+/// Moves the `left` items with the smallest coordinates to the front, along the longest axis of all centres;
+/// ties by number. O(n).
+void halve(std::span<Index> things, Index left, std::span<const Point> centers);
+
+/// Orders items so that each run of `size` is compact, by repeated halving at multiples of `size`. O(n log
+/// n).
+void sort_into_runs(std::span<Index> things, Index size, std::span<const Point> centers);
 
 }  // namespace meshorder

@@ -24,10 +24,10 @@ std::optional<std::array<double, 4>> weights_inside(const Point& x, const std::a
   std::array<double, 4> volumes{dot(to[1], cross(to[2], to[3])), dot(to[0], cross(to[3], to[2])),
                                 dot(to[0], cross(to[1], to[3])), dot(to[0], cross(to[2], to[1]))};
   const double all = volumes[0] + volumes[1] + volumes[2] + volumes[3];
-  const double least = kPart * all + kRounding * longest * longest * longest;
+  const double min_volume = kPart * all + kRounding * longest * longest * longest;
   bool inside = true;
   for (double& volume : volumes) {
-    inside = inside && volume > least;
+    inside = inside && volume > min_volume;
     volume /= all;
   }
   if (!inside) return std::nullopt;

@@ -8,9 +8,10 @@
 
 namespace meshorder {
 
-/// The point of a triangle that is nearest to another point.
+/// The point of a triangle nearest to another point.
 struct TrianglePoint {
-  /// What of the triangle it lies on: corner 0 … 2, the edge from corner 0, 1 or 2 to the next, the inside.
+  /// Feature of the triangle it lies on: corner 0 … 2, the edge from corner 0, 1 or 2 to the next, or the
+  /// interior.
   enum class On : std::uint8_t { corner0, corner1, corner2, edge0, edge1, edge2, face };
 
   Point at{};

@@ -22,58 +22,57 @@ Point unit_or_zero(const Point& a) {
   return length > 0.0 ? scaled(1.0 / length, a) : Point{};
 }
 
-/// An edge of a triangle: the one from its corner k to the next.
-struct Side {
+/// An edge of a triangle: from its corner k to the next corner.
+struct HalfEdge {
   int from = 0;
   int to = 0;
   int triangle = 0;
   int k = 0;
 };
 
-/// The sides sorted by their two ends. Throws InvalidArgument unless each has exactly one of the opposite
-/// direction.
-std::vector<Side> matched_sides(std::span<const Triangle> triangles) {
-  const auto ends = [](const Side& side) { return std::pair(side.from, side.to); };
-  std::vector<Side> sides;
+/// Returns the half-edges, sorted by their two ends. Throws InvalidArgument unless each has exactly one
+/// opposite.
+std::vector<HalfEdge> matched_half_edges(std::span<const Triangle> triangles) {
+  const auto ends = [](const HalfEdge& half_edge) { return std::pair(half_edge.from, half_edge.to); };
+  std::vector<HalfEdge> half_edges;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k)
-      sides.push_back({triangles[t][k], triangles[t][(k + 1) % 3], static_cast<int>(t), k});
+      half_edges.push_back({triangles[t][k], triangles[t][(k + 1) % 3], static_cast<int>(t), k});
   }
-  std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) { return ends(a) < ends(b); });
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const Side& side = sides[i];
-    if (side.from == side.to) {
+  std::sort(half_edges.begin(), half_edges.end(),
+            [&](const HalfEdge& a, const HalfEdge& b) { return ends(a) < ends(b); });
+  for (std::size_t i = 0; i < half_edges.size(); ++i) {
+    const HalfEdge& half_edge = half_edges[i];
+    if (half_edge.from == half_edge.to) {
       throw InvalidArgument(
           fmt::format("closed_surface: triangle {} has point {} at two corners (counted from 0)",
-                      side.triangle, side.from));
+                      half_edge.triangle, half_edge.from));
     }
-    if (i + 1 < sides.size() && ends(sides[i + 1]) == ends(side)) {
+    if (i + 1 < half_edges.size() && ends(half_edges[i + 1]) == ends(half_edge)) {
       throw InvalidArgument(
           fmt::format("closed_surface: more than one triangle has the edge from point {} to point {} "
-                      "(counted from 0); two "
-                      "triangles must meet at each edge and turn the same way",
-                      side.from, side.to));
+                      "(counted from 0); two triangles must meet at each edge and turn the same way",
+                      half_edge.from, half_edge.to));
     }
     const auto opposite =
-        std::lower_bound(sides.begin(), sides.end(), std::pair(side.to, side.from),
-                         [&](const Side& a, const std::pair<int, int>& key) { return ends(a) < key; });
-    if (opposite == sides.end() || ends(*opposite) != std::pair(side.to, side.from)) {
+        std::lower_bound(half_edges.begin(), half_edges.end(), std::pair(half_edge.to, half_edge.from),
+                         [&](const HalfEdge& a, const std::pair<int, int>& key) { return ends(a) < key; });
+    if (opposite == half_edges.end() || ends(*opposite) != std::pair(half_edge.to, half_edge.from)) {
       throw InvalidArgument(
           fmt::format("closed_surface: only one triangle has the edge between points {} and {} (counted from "
-                      "0); the surface "
-                      "must be closed",
-                      side.from, side.to));
+                      "0); the surface must be closed",
+                      half_edge.from, half_edge.to));
     }
   }
-  return sides;
+  return half_edges;
 }
 
 class ClosedSurface : public Obstacle {
  public:
   ClosedSurface(std::vector<Point> points, std::vector<Triangle> triangles)
       : points_(std::move(points)), triangles_(std::move(triangles)), tree_(boxes(points_, triangles_)) {
-    const std::vector<Side> sides = matched_sides(triangles_);
-    find_normals(sides);
+    const std::vector<HalfEdge> half_edges = matched_half_edges(triangles_);
+    find_normals(half_edges);
     Box all;
     double volume = 0.0;
     for (const Triangle& t : triangles_) {
@@ -85,11 +84,10 @@ class ClosedSurface : public Obstacle {
                     cross(minus(points_[t[1]], origin), minus(points_[t[2]], origin)));
     }
     if (!(volume > 0.0)) {
-      throw InvalidArgument(
-          fmt::format("closed_surface: the triangle with the edge from point {} to point {} (counted from "
-                      "0), and all in all "
-                      "the surface, is inside out; triangles must turn counterclockwise seen from outside",
-                      triangles_.front()[0], triangles_.front()[1]));
+      throw InvalidArgument(fmt::format(
+          "closed_surface: the triangle with the edge from point {} to point {} (counted from 0), and with "
+          "it the surface as a whole, is inside out; triangles must turn counterclockwise seen from outside",
+          triangles_.front()[0], triangles_.front()[1]));
     }
     touching_ = 1e-9 * norm(minus(all.upper, all.lower));
   }
@@ -134,7 +132,7 @@ class ClosedSurface : public Obstacle {
   }
 
   /// Of faces, edges (the sum of their two faces) and corners (weighted by angles), for the sign.
-  void find_normals(std::span<const Side> sides) {
+  void find_normals(std::span<const HalfEdge> half_edges) {
     face_normals_.resize(triangles_.size());
     edge_normals_.resize(triangles_.size());
     corner_normals_.resize(points_.size());
@@ -150,13 +148,13 @@ class ClosedSurface : public Obstacle {
         normal = plus_scaled(normal, angle, face_normals_[t]);
       }
     }
-    for (const Side& side : sides) {
-      const auto opposite =
-          std::lower_bound(sides.begin(), sides.end(), side, [](const Side& a, const Side& key) {
-            return std::pair(a.from, a.to) < std::pair(key.to, key.from);
-          });
-      edge_normals_[side.triangle][side.k] =
-          unit_or_zero(plus_scaled(face_normals_[side.triangle], 1.0, face_normals_[opposite->triangle]));
+    for (const HalfEdge& half_edge : half_edges) {
+      const auto opposite = std::lower_bound(half_edges.begin(), half_edges.end(), half_edge,
+                                             [](const HalfEdge& a, const HalfEdge& key) {
+                                               return std::pair(a.from, a.to) < std::pair(key.to, key.from);
+                                             });
+      edge_normals_[half_edge.triangle][half_edge.k] = unit_or_zero(
+          plus_scaled(face_normals_[half_edge.triangle], 1.0, face_normals_[opposite->triangle]));
     }
     for (Point& normal : corner_normals_) normal = unit_or_zero(normal);
   }
@@ -187,10 +185,10 @@ class ClosedSurface : public Obstacle {
     const Point& normal = pseudonormal(triangle, best.on);
     const Point way = minus(x, best.at);
     const double length = std::sqrt(best.squared_distance);
-    const double side = dot(way, normal) >= 0.0 ? 1.0 : -1.0;
+    const double sign = dot(way, normal) >= 0.0 ? 1.0 : -1.0;
     // a direction of a length that rounding made is none
-    if (best.on == TrianglePoint::On::face || length <= touching_) return {best.at, normal, side * length};
-    return {best.at, scaled(side / length, way), side * length};
+    if (best.on == TrianglePoint::On::face || length <= touching_) return {best.at, normal, sign * length};
+    return {best.at, scaled(sign / length, way), sign * length};
   }
 
   /// The crossings of the segment from a to b, from its beginning.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/point.hpp"
+#include "base/polymorphic.hpp"
 
 #include <array>
 #include <memory>
@@ -11,27 +12,20 @@
 
 namespace meshorder {
 
-/// The nearest place on an obstacle's surface.
+/// The nearest point on an obstacle's surface.
 struct SurfacePoint {
   Point at{};
   Point normal{};         ///< of length 1, out of the obstacle
   double distance = 0.0;  ///< signed: negative inside
 };
 
-/// A rigid body at rest that others must stay outside of. Immutable; all functions may be called by several
-/// threads at a time.
-class Obstacle {
+/// A rigid body at rest that the simulated body must stay outside of. Immutable; all functions are
+/// thread-safe.
+class Obstacle : public detail::Polymorphic {
  public:
-  Obstacle() = default;
-  Obstacle(const Obstacle&) = delete;
-  Obstacle(Obstacle&&) = delete;
-  Obstacle& operator=(const Obstacle&) = delete;
-  Obstacle& operator=(Obstacle&&) = delete;
-  virtual ~Obstacle() = default;
-
-  /// The nearest point of the surface, if it is within `reach` of `x` or x is inside. A vertex that was at
-  /// `from`, outside, when the step began must be led back to the side that it came from: where x has passed
-  /// through a thin wall, the point is on the wall's first side, and `distance` is negative.
+  /// Returns the nearest point of the surface if it is within `reach` (m) of `x` or x is inside. A vertex
+  /// that was at `from`, outside, when the step began must be led back to the side that it came from: where x
+  /// has passed through a thin wall, the point is on the wall's first side, and `distance` is negative.
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest(const Point& x, const Point& from,
                                                             double reach) const = 0;
 
@@ -39,16 +33,16 @@ class Obstacle {
   [[nodiscard]] virtual double distance(const Point& x) const = 0;
 };
 
-/// All points below a plane: normal · (x − point) < 0.
+/// Returns the half-space below a plane: normal · (x − point) < 0.
 std::unique_ptr<Obstacle> half_space(const Point& point, const Point& normal);
 std::unique_ptr<Obstacle> sphere(const Point& center, double radius);
-/// A spherical shell of a thickness about `radius`, cut open around +axis by a cone of the half angle
+/// Returns a spherical shell of a thickness about `radius`, cut open around +axis by a cone of the half angle
 /// `opening` (radians, 0 … π), with a rounded rim. The axis need not have length 1.
 std::unique_ptr<Obstacle> bowl(const Point& center, const Point& axis, double radius, double thickness,
                                double opening);
-/// What a closed surface encloses, by signed distance to its triangles; `triangles` turn counterclockwise
-/// seen from outside. Throws InvalidArgument, which names an edge, for a surface that is not closed and
-/// oriented.
+/// Returns the solid that a closed surface encloses, by signed distance to its triangles; `triangles` turn
+/// counterclockwise seen from outside. Throws InvalidArgument, which names an edge, for a surface that is not
+/// closed and oriented.
 std::unique_ptr<Obstacle> closed_surface(std::vector<Point> points,
                                          std::vector<std::array<int, 3>> triangles);
 

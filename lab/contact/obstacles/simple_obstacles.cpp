@@ -42,7 +42,7 @@ class Sphere : public Obstacle {
     const double length = norm(out);
     const double d = length - radius_;
     if (!(d <= reach)) return std::nullopt;
-    // at the centre every direction is as good
+    // at the centre all directions are equivalent
     const Point normal = length > 0.0 ? scaled(1.0 / length, out) : Point{0.0, 0.0, 1.0};
     return SurfacePoint{plus_scaled(center_, radius_, normal), normal, d};
   }

@@ -14,7 +14,7 @@ namespace meshorder {
 struct BodySurface {
   std::vector<std::array<Index, 3>>
       triangles;                ///< counterclockwise seen from outside, in the order of tetrahedra
-  std::vector<Index> vertices;  ///< of these triangles, rising
+  std::vector<Index> vertices;  ///< of these triangles, ascending
 };
 
 /// The surface of all of the body's components, of their cavities too. Where a tetrahedron's corners turn the

@@ -49,7 +49,7 @@ struct Padded {
       result.parts[i] = hn::MulAdd(hn::Set(Part(), factor), other.parts[i], parts[i]);
     return result;
   }
-  /// Takes the lesser or the greater ones, of those that are numbers.
+  /// Takes the smaller or larger numbers, ignoring NaN.
   HWY_INLINE void lower_to(const Padded& other) {
     MESHORDER_UNROLL
     for (Index i = 0; i < kParts; ++i)

@@ -9,15 +9,15 @@
 
 namespace meshorder {
 
-/// How branches of tetrahedra move from their rest shape: each nearly by an affine map, which keeps inside
-/// what was inside and outside what was outside. What is left of the motion bounds what can have changed.
+/// Motions of branches of tetrahedra from their rest shape: each nearly an affine map, which preserves inside
+/// and outside. The deviation from it bounds the possible changes.
 class BranchMotions {
  public:
   /// x = constant + columns · X for a corner at X at rest, to within the deviation.
   struct Motion {
     alignas(64) std::array<std::array<double, 4>, 3> columns{};  ///< the fourth of each is 0
     std::array<double, 4> constant{};
-    double deviation = 0.0;     ///< with what rounding may add to it
+    double deviation = 0.0;     ///< including rounding errors
     double inverse_norm = 0.0;  ///< at least the norm of the inverse matrix; not finite where there is none
   };
 
@@ -27,7 +27,7 @@ class BranchMotions {
   void update(Index branch, std::span<const double> positions, TetrahedronLeaves& tetrahedra);
 
   [[nodiscard]] const Motion& motion(Index branch) const { return motions_[branch]; }
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
   /// A corner relative to the branch's centre, rounded.

@@ -22,7 +22,7 @@ std::uint64_t points_in_doubt(const PointCluster& cluster, const double* rest, c
   const Doubles d;
   const hn::Rebind<float, Doubles> floats;
   std::uint64_t known = 0;
-  for (Index i = 0; i < PointCluster::kMost; i += kDoubles) {
+  for (Index i = 0; i < PointCluster::kMaxPoints; i += kDoubles) {
     auto square = hn::Zero(d);
     MESHORDER_UNROLL
     for (int c = 0; c < 3; ++c) {
@@ -30,7 +30,7 @@ std::uint64_t points_in_doubt(const PointCluster& cluster, const double* rest, c
       MESHORDER_UNROLL
       for (int k = 0; k < 3; ++k)
         apart = hn::NegMulAdd(hn::Set(d, motion.columns[k][c]),
-                              hn::Load(d, rest + PointCluster::kMost * k + i), apart);
+                              hn::Load(d, rest + PointCluster::kMaxPoints * k + i), apart);
       square = hn::MulAdd(apart, apart, square);
     }
     const auto moved =
@@ -117,11 +117,12 @@ Clearances::Clearances(TetrahedronLeaves& tetrahedra, BranchMotions& motions,
       known.rest = clusters[c].positions;
       const PointCluster around = grown(clusters[c], margin);
       branches_at(tetrahedra, around, known.branches);
-      known.clearances.assign(static_cast<std::size_t>(PointCluster::kMost) * known.branches.size(),
+      known.clearances.assign(static_cast<std::size_t>(PointCluster::kMaxPoints) * known.branches.size(),
                               known_margin);
       for (std::size_t b = 0; b < known.branches.size(); ++b) {
         const Index first = kBranch * known.branches[b];
-        const std::span clearances(known.clearances.data() + PointCluster::kMost * b, PointCluster::kMost);
+        const std::span clearances(known.clearances.data() + PointCluster::kMaxPoints * b,
+                                   PointCluster::kMaxPoints);
         for (Index leaf = first; leaf < first + tetrahedra.leaves_of(known.branches[b]); ++leaf) {
           if (meets_box(around, tetrahedra, leaf))
             lower_clearances(tetrahedra, around, {leaf, around.points}, positions, clearances);
@@ -137,7 +138,7 @@ std::uint64_t Clearances::in_doubt(Index c, Index branch, const PointCluster& cl
   const auto place = std::lower_bound(known.branches.begin(), known.branches.end(), branch);
   if (place == known.branches.end() || *place != branch) return cluster.points;
   const float* const clearances =
-      known.clearances.data() + PointCluster::kMost * (place - known.branches.begin());
+      known.clearances.data() + PointCluster::kMaxPoints * (place - known.branches.begin());
   return cluster.points & HWY_DYNAMIC_DISPATCH(points_in_doubt)(cluster, known.rest[0].data(), clearances,
                                                                 motions.motion(branch));
 }

@@ -10,7 +10,7 @@
 
 namespace meshorder {
 
-/// How far vertices are at rest from the tetrahedra around them, which tells of most in motion that they are
+/// Distances at rest between vertices and tetrahedra, which show for most vertices in motion that they are
 /// still outside.
 ///
 /// A vertex with a clearance c from a tetrahedron has a plane between them, at a distance c from the vertex.
@@ -27,14 +27,15 @@ class Clearances {
   [[nodiscard]] std::uint64_t in_doubt(Index c, Index branch, const PointCluster& cluster,
                                        const BranchMotions& motions) const;
 
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
   struct Cluster {
-    std::vector<Index> branches;                                                ///< near by, rising
-    AlignedVector<float> clearances;                                            ///< kMost for each of these
-    alignas(64) std::array<std::array<double, PointCluster::kMost>, 3> rest{};  ///< x, y, z of each point
+    std::vector<Index> branches;      ///< near by, ascending
+    AlignedVector<float> clearances;  ///< kMaxPoints for each of these
+    alignas(
+        64) std::array<std::array<double, PointCluster::kMaxPoints>, 3> rest{};  ///< x, y, z of each point
   };
 
   std::vector<Cluster> clusters_;

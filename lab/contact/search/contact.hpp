@@ -9,7 +9,8 @@
 
 namespace meshorder {
 
-/// Something that a vertex must stay outside of, linearised: normal · Σ weights[k] x[vertices[k]] ≥ offset.
+/// A linearised constraint of a vertex against an obstacle or the body itself: normal · Σ weights[k]
+/// x[vertices[k]] ≥ offset.
 ///
 /// Against an obstacle one vertex has the weight 1 and the rest are absent. In contact with the body itself
 /// the first vertex has the weight 1 and the others, the corners of a triangle of the body's surface, those
@@ -19,7 +20,7 @@ struct Contact {
 
   std::array<Index, 4> vertices{kAbsent, kAbsent, kAbsent, kAbsent};
   std::array<double, 4> weights{};
-  Point normal{};         ///< of length 1, the way out
+  Point normal{};         ///< of length 1, out of the obstacle
   double offset = 0.0;    ///< m
   double friction = 0.0;  ///< Coulomb's coefficient
   std::int32_t with = 0;  ///< number of the obstacle; −1 for the body itself

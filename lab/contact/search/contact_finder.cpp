@@ -5,7 +5,6 @@
 #include "base/parallel.hpp"
 #include "kernels/positions.hpp"
 #include "lab/contact/geometry/box_tree.hpp"
-#include "lab/contact/geometry/halving.hpp"
 #include "lab/contact/search/body_surface.hpp"
 #include "lab/contact/search/self_contact.hpp"
 
@@ -17,7 +16,7 @@
 namespace meshorder {
 namespace {
 
-/// Neighbours that are looked at together, so that one distance tells that all of them are out of reach.
+/// Neighbours in a cluster: one distance can show that all of them are out of reach.
 constexpr Index kInCluster = 64;
 
 Contact contact_with(Index vertex, const SurfacePoint& place, double friction, std::int32_t obstacle) {
@@ -37,8 +36,8 @@ bool comes_before(const Contact& a, const Contact& b) {
   return !a.is_with_itself() && (b.is_with_itself() || a.with < b.with);
 }
 
-/// Whether nothing of an obstacle is within reach of the box around some vertices and where they were, so
-/// that none is near it nor went through it: distances change by no more than the way.
+/// Returns whether no part of an obstacle is within reach of the box around some vertices and where they
+/// were, so that none is near it nor went through it: a distance changes by at most the path length.
 bool out_of_reach(const Obstacle& obstacle, const Box& box, double reach) {
   constexpr double kAboveRounding = 1.0 + 1e-9;
   const Point center = scaled(0.5, plus_scaled(box.lower, 1.0, box.upper));

@@ -25,7 +25,7 @@ struct ContactOptions {
   double reach = 0.0;
 };
 
-/// How deep a body is in what it must stay outside of.
+/// The depth of a body in obstacles and in itself.
 struct Penetration {
   double into_obstacles = 0.0;  ///< the deepest surface vertex, m
   double into_itself = 0.0;     ///< the deepest, in the rest shape, m
@@ -33,7 +33,7 @@ struct Penetration {
 };
 
 /// Finds where a body of tetrahedra touches obstacles and itself. Same result on every run, for any number of
-/// threads, and whatever was asked before.
+/// threads, independent of earlier calls.
 class ContactFinder {
  public:
   /// The body at rest at `points`. Throws InvalidArgument for simplices that are no tetrahedra.
@@ -45,14 +45,14 @@ class ContactFinder {
   ContactFinder& operator=(const ContactFinder&) = delete;
 
   /// The contacts of the surface's vertices at `positions`, which were at `from` when the step began (both
-  /// kPaddedStride numbers for each vertex, see padded_positions), by rising first vertex and then obstacle,
-  /// the body itself last. A vertex inside a tetrahedron that it is no corner of is in contact with the point
-  /// of the surface that is nearest to its place in the rest shape.
+  /// kPaddedStride numbers for each vertex, see padded_positions), by ascending first vertex and then
+  /// obstacle, the body itself last. A vertex inside a tetrahedron that it is no corner of is in contact with
+  /// the point of the surface that is nearest to its place in the rest shape.
   void find(std::span<const double> positions, std::span<const double> from, std::vector<Contact>& contacts);
 
   [[nodiscard]] Penetration penetration(std::span<const double> positions);
 
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

@@ -13,15 +13,15 @@
 namespace meshorder {
 namespace {
 
-/// Of its depth in the body itself, what a vertex that was inside when the step began must get out of in the
-/// step. All of it would throw vertices out with any speed, and the body would gain energy.
+/// Part of its depth in the body itself that a vertex which was inside at the start of a step must leave in
+/// the step. The full depth would give vertices arbitrary speeds, and the body would gain energy.
 constexpr double kWayOut = 0.5;
 /// Of the tolerance, how far beside the body's own surface vertices are held, so that they are not inside by
 /// rounding.
 constexpr double kClearance = 0.1;
 
-/// The gap to the body itself that a vertex must have at the end of a step which it begins with `gap`: halves
-/// of depths would never end.
+/// The gap to the body itself that a vertex must have at the end of a step which it begins with `gap`:
+/// halving the depth would never reach 0.
 double required_gap(double gap, double tolerance) {
   return std::min(kClearance * tolerance, (gap < 0.0 ? (1.0 - kWayOut) * gap : gap) + tolerance);
 }
@@ -33,7 +33,7 @@ std::pair<Index, std::int32_t> key(const Contact& contact) {
 
 bool comes_before(const Contact& a, const Contact& b) { return key(a) < key(b); }
 
-/// Turns a contact with the body itself as its triangle has turned. False where that is flat.
+/// Rotates a contact with the body itself with its triangle. Returns false if the triangle is flat.
 bool follow_triangle(std::span<const double> positions, Contact& contact) {
   const std::optional<Point> normal =
       triangle_normal(positions, contact.vertices[1], contact.vertices[2], contact.vertices[3]);

@@ -9,7 +9,7 @@
 namespace meshorder {
 
 /// The contacts of a body during a step. A vertex that was pushed out of the body itself lies on its surface
-/// and is found no more; its contact is kept for as long as it pushes, or it would sink in again.
+/// and is not found again; its contact is kept as long as it has a force, or the vertex would sink in again.
 class ContactSet {
  public:
   explicit ContactSet(ContactFinder finder) : finder_(std::move(finder)) {}
@@ -19,13 +19,13 @@ class ContactSet {
   void begin(std::span<const double> from);
 
   /// Finds the contacts at these positions, in ContactFinder's order. `forces` are those of the contacts so
-  /// far, none where nothing was solved since `begin`. Returns whether a vertex has one that was without, and
-  /// is beyond it by more than `tolerance`, m. Vertices are held a tenth of that beside the body itself.
+  /// far, none where nothing was solved since `begin`. Returns whether a vertex has a new contact that it
+  /// violates by more than `tolerance`, m. Vertices are held a tenth of that beside the body itself.
   bool update(std::span<const double> positions, std::span<const double> forces, double tolerance);
 
   [[nodiscard]] std::span<const Contact> contacts() const noexcept { return contacts_; }
   [[nodiscard]] ContactFinder& finder() noexcept { return finder_; }
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

@@ -89,7 +89,7 @@ using FloatVector = hn::Vec<Floats>;
 using Integers = hn::RebindToSigned<Floats>;
 using IntegerVector = hn::Vec<Integers>;
 
-/// The planes and corners of a register's tetrahedra of a leaf.
+/// The planes and corners of as many tetrahedra of a leaf as a register holds.
 struct LeafLanes {
   FloatVector planes[4][4];
   IntegerVector corners[4];
@@ -105,7 +105,7 @@ struct LeafLanes {
     }
   }
 
-  /// The least height over the four planes.
+  /// Returns the smallest height over the four planes.
   HWY_INLINE FloatVector height(float x, float y, float z) const {
     const Floats d;
     const FloatVector p[3] = {hn::Set(d, x), hn::Set(d, y), hn::Set(d, z)};
@@ -126,9 +126,9 @@ struct LeafLanes {
 /// The points of a task, relative to the leaf's centre.
 struct TaskPoints {
   Index count = 0;
-  Index points[PointCluster::kMost];
-  Index vertices[PointCluster::kMost];
-  float at[3][PointCluster::kMost];
+  Index points[PointCluster::kMaxPoints];
+  Index vertices[PointCluster::kMaxPoints];
+  float at[3][PointCluster::kMaxPoints];
 
   HWY_INLINE TaskPoints(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
                         const LeafTask& task, const double* positions) {
@@ -147,7 +147,7 @@ void hits_of_task(const TetrahedronLeaves& tetrahedra, const PointCluster& clust
                   const double* positions, std::vector<LeafHit>& hits) {
   const Floats d;
   const TaskPoints task_points(tetrahedra, cluster, task, positions);
-  std::uint32_t lanes[PointCluster::kMost] = {};
+  std::uint32_t lanes[PointCluster::kMaxPoints] = {};
   for (Index lane = 0; lane < kLeaf; lane += kFloats) {
     const LeafLanes leaf(tetrahedra, task.leaf, lane);
     for (Index i = 0; i < task_points.count; ++i) {

@@ -35,7 +35,7 @@ RestSurface::Place RestSurface::nearest(const Point& x, Index left_out, double w
     TrianglePoint point;
   };
   std::vector<Candidate> candidates;
-  double least = std::numeric_limits<double>::infinity();
+  double smallest = std::numeric_limits<double>::infinity();
   tree_.visit_nearest(
       x,
       [&](Index t) {
@@ -43,17 +43,17 @@ RestSurface::Place RestSurface::nearest(const Point& x, Index left_out, double w
         if (std::find(triangle.corners.begin(), triangle.corners.end(), left_out) == triangle.corners.end()) {
           const auto& [a, b, c] = triangle.points;
           const TrianglePoint point = nearest_on_triangle(x, a, b, c);
-          if (point.squared_distance <= kEqual * least) candidates.push_back({&triangle, point});
-          least = std::min(least, point.squared_distance);
+          if (point.squared_distance <= kEqual * smallest) candidates.push_back({&triangle, point});
+          smallest = std::min(smallest, point.squared_distance);
         }
-        return kEqual * std::min(least, within * within);
+        return kEqual * std::min(smallest, within * within);
       },
       kEqual * within * within);
 
   Place best;
   double best_facing = -1.0;
   for (const Candidate& candidate : candidates) {
-    if (!(candidate.point.squared_distance <= kEqual * least)) continue;
+    if (!(candidate.point.squared_distance <= kEqual * smallest)) continue;
     const auto& [a, b, c] = candidate.triangle->points;
     const Index number = candidate.triangle->number;
     const Point normal = cross(minus(b, a), minus(c, a));

@@ -11,7 +11,7 @@
 
 namespace meshorder {
 
-/// A body's surface in its rest shape, in which the way out of the body is looked up.
+/// A body's surface in its rest shape, for finding the shortest way out of the body.
 class RestSurface {
  public:
   static constexpr Index kNone = -1;
@@ -27,12 +27,12 @@ class RestSurface {
   /// The point of the surface nearest to x, among triangles without the corner `left_out`. Of triangles that
   /// are equally near (to 1e-9), which meet there, it is the one that faces x most, and then the first; so
   /// the numbering of triangles decides only between mirror images. The triangle is kNone where there is
-  /// none. A `within` that is at least its distance saves time.
+  /// none. An upper bound `within` of its distance saves time.
   [[nodiscard]] Place nearest(const Point& x, Index left_out = kNone,
                               double within = std::numeric_limits<double>::infinity()) const;
 
   [[nodiscard]] const std::array<Index, 3>& triangle(Index t) const { return triangles_[t]; }
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

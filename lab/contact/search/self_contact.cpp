@@ -11,7 +11,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kPlacesAtOnce = 64;  // whose nearest surface points a thread finds together
+constexpr Index kPlacesAtOnce = 64;  // vertices in a task of finding nearest surface points
 
 /// The contact of a vertex with a place of the surface. False where the deformed triangle has no area.
 bool make_contact(Index vertex, const std::array<Index, 3>& triangle, const std::array<double, 3>& weights,

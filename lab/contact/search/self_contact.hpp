@@ -18,8 +18,8 @@ class SelfContact {
  public:
   SelfContact(const Simplices& simplices, std::span<const Point> points, const BodySurface& surface);
 
-  /// Appends a contact for each vertex of the surface inside a tetrahedron that it is no corner of, by rising
-  /// vertex. Of several tetrahedra it is the one where the vertex is deepest, and then the first.
+  /// Appends a contact for each vertex of the surface inside a tetrahedron that it is no corner of, by
+  /// ascending vertex. Of several tetrahedra it is the one where the vertex is deepest, and then the first.
   ///
   /// The way out is through the triangle of the surface that is nearest in the rest shape, of those without
   /// the vertex: a contact with its own triangle would ask nothing of it. Its normal is that of the triangle
@@ -32,7 +32,7 @@ class SelfContact {
   };
   [[nodiscard]] Depth depth(std::span<const double> positions);
 
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-/// The lesser of both in each lane, `a` where b is NaN.
+/// Returns the smaller number in each lane, `a` where b is NaN.
 template <class Value>
 HWY_INLINE Value lesser(Value a, Value b) {
   return ManyLanes::choose(a - b, b, a);
@@ -28,8 +28,8 @@ HWY_INLINE Value greater(Value a, Value b) {
   return ManyLanes::choose(b - a, b, a);
 }
 
-/// The least of all lanes, or the greatest.
-HWY_INLINE double least_lane(ManyLanes::Value value) {
+/// Returns the smallest lane; the largest lane.
+HWY_INLINE double min_lane(ManyLanes::Value value) {
   alignas(64) double lanes[kBatch];
   ManyLanes::store(value, lanes);
   return *std::min_element(lanes, lanes + ManyLanes::kCount);
@@ -40,7 +40,7 @@ HWY_INLINE double greatest_lane(ManyLanes::Value value) {
   return *std::max_element(lanes, lanes + ManyLanes::kCount);
 }
 
-/// Takes in the box of some lanes' corners.
+/// Extends the box by the corners of some lanes.
 HWY_INLINE void corner_boxes(const Index* corners, const double* positions, Index lane,
                              ManyLanes::Value (&lower)[3], ManyLanes::Value (&upper)[3]) {
   for (int k = 0; k < 4; ++k) {
@@ -70,7 +70,7 @@ void boxes_of_branch(TetrahedronLeaves& tetrahedra, Index branch, const double* 
     for (Index lane = 0; lane < kLeaf; lane += ManyLanes::kCount)
       corner_boxes(corners, positions, lane, lower, upper);
     for (int c = 0; c < 3; ++c) {
-      boxes[kLeaf * c + l] = rounded_to_float(least_lane(lower[c]));
+      boxes[kLeaf * c + l] = rounded_to_float(min_lane(lower[c]));
       boxes[kLeaf * (3 + c) + l] = rounded_to_float(greatest_lane(upper[c]));
     }
   }
@@ -85,7 +85,7 @@ void read_points(PointCluster& cluster, const double* positions) {
     lower[c] = ManyLanes::set(infinity);
     upper[c] = ManyLanes::set(-infinity);
   }
-  for (Index i = 0; i < PointCluster::kMost; i += ManyLanes::kCount) {
+  for (Index i = 0; i < PointCluster::kMaxPoints; i += ManyLanes::kCount) {
     ManyLanes::Value p[3];
     ManyLanes::gather(positions, cluster.vertices.data() + i, p);
     MESHORDER_UNROLL
@@ -96,9 +96,9 @@ void read_points(PointCluster& cluster, const double* positions) {
     }
   }
   for (int c = 0; c < 3; ++c) {
-    for (Index i = 0; i < PointCluster::kMost; ++i)
+    for (Index i = 0; i < PointCluster::kMaxPoints; ++i)
       cluster.coordinates[c][i] = rounded_to_float(cluster.positions[c][i]);
-    cluster.lower[c] = rounded_to_float(least_lane(lower[c]));
+    cluster.lower[c] = rounded_to_float(min_lane(lower[c]));
     cluster.upper[c] = rounded_to_float(greatest_lane(upper[c]));
   }
 }
@@ -137,7 +137,7 @@ void leaves_meeting(const TetrahedronLeaves& tetrahedra, Index branch, const Poi
   for (; met != 0; met &= met - 1) {
     const Index leaf = std::countr_zero(met);
     std::uint64_t inside = 0;
-    for (Index lane = 0; lane < PointCluster::kMost; lane += kFloats) {
+    for (Index lane = 0; lane < PointCluster::kMaxPoints; lane += kFloats) {
       const auto between = [&](int c) {
         const auto x = hn::Load(d, cluster.coordinates[c].data() + lane);
         return hn::And(hn::Le(hn::Set(d, boxes[kLeaf * c + leaf]), x),
@@ -179,7 +179,7 @@ TetrahedronLeaves::TetrahedronLeaves(std::span<const std::array<Index, 4>> tetra
     for (int k = 0; k < 4; ++k) corners[kLeaf * (4 * (i / kLeaf) + k) + i % kLeaf] = tetrahedron[k];
     if (real) numbers[i] = tetrahedron_numbers[i];
   }
-  // boxes that nothing meets, for those that fill up
+  // empty boxes for the lanes that fill up a leaf
   const auto fill_up = [](AlignedVector<float>& boxes, Index groups) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     boxes.resize(Offset{6} * kLeaf * groups);
@@ -199,7 +199,8 @@ void update_boxes(TetrahedronLeaves& tetrahedra, Index branch, std::span<const d
   HWY_DYNAMIC_DISPATCH(boxes_of_branch)(tetrahedra, branch, positions.data());
 }
 
-PointCluster::PointCluster(std::span<const Index> some) : points(~std::uint64_t{0} >> (kMost - some.size())) {
+PointCluster::PointCluster(std::span<const Index> some)
+    : points(~std::uint64_t{0} >> (kMaxPoints - some.size())) {
   std::fill(std::copy(some.begin(), some.end(), vertices.begin()), vertices.end(), some.back());
 }
 

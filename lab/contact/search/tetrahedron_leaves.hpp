@@ -17,32 +17,32 @@ namespace meshorder {
 
 /// Tetrahedra and boxes are tested sixteen at a time, the floats of an AVX-512 register.
 inline constexpr Index kLeaf = 16;
-/// Leaves in a branch, at most kLeaf: the fewer, the better is its motion an affine one, and the more
-/// branches there are to look at.
+/// Leaves in a branch, at most kLeaf: fewer leaves make its motion closer to affine, but there are more
+/// branches.
 inline constexpr Index kBranch = 8;
 
-/// The nearest float; the largest where there is none.
+/// Returns the nearest float; the largest finite one on overflow.
 inline float rounded_to_float(double a) {
   constexpr double kLargest = std::numeric_limits<float>::max();
   return static_cast<float>(std::clamp(a, -kLargest, kLargest));
 }
 
-/// Points that are looked for together: at most 64 neighbours, for each a bit of a mask.
+/// Points that are searched together: at most 64 neighbours, one bit of a mask each.
 struct PointCluster {
-  static constexpr Index kMost = 64;
+  static constexpr Index kMaxPoints = 64;
 
-  std::uint64_t points = 0;                                           ///< the bits of all that there are
-  std::array<Index, kMost> vertices{};                                ///< behind the last one it again
-  alignas(64) std::array<std::array<double, kMost>, 3> positions{};   ///< x, y, z of each
-  alignas(64) std::array<std::array<float, kMost>, 3> coordinates{};  ///< the same, rounded
+  std::uint64_t points = 0;                  ///< the bits of all points
+  std::array<Index, kMaxPoints> vertices{};  ///< the last one repeats up to the end
+  alignas(64) std::array<std::array<double, kMaxPoints>, 3> positions{};   ///< x, y, z of each
+  alignas(64) std::array<std::array<float, kMaxPoints>, 3> coordinates{};  ///< the same, rounded
   std::array<float, 3> lower{}, upper{};  ///< around them; an upper end below the lower one for none
 
-  /// Of 1 … kMost vertices.
+  /// Of 1 … kMaxPoints vertices.
   explicit PointCluster(std::span<const Index> some);
 };
 
-/// Tetrahedra in leaves of sixteen that are neighbours at rest, and branches of kBranch leaves: what a search
-/// among them needs in motion. Ends of boxes and points are rounded alike, which keeps their order. Vertices
+/// Tetrahedra in leaves of sixteen that are neighbours at rest, and branches of kBranch leaves: the data that
+/// a search needs in motion. Ends of boxes and points are rounded alike, which keeps their order. Vertices
 /// and tetrahedra that are not finite are never met.
 struct TetrahedronLeaves {
   Index leaves = 0;
@@ -70,7 +70,7 @@ struct TetrahedronLeaves {
   [[nodiscard]] const float* branch_box(Index branch) const {
     return branch_boxes.data() + Offset{6} * kLeaf * (branch / kLeaf) + branch % kLeaf;
   }
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 };
 
@@ -82,9 +82,9 @@ struct LeafTask {
 
 /// The boxes of the branch's leaves at `positions`. O(tetrahedra of the branch).
 void update_boxes(TetrahedronLeaves& tetrahedra, Index branch, std::span<const double> positions);
-/// Reads where the cluster's points are.
+/// Reads the positions of the cluster's points.
 void update_points(PointCluster& cluster, std::span<const double> positions);
-/// The branches whose box meets the cluster's, rising.
+/// Appends the branches whose box meets the cluster's, ascending.
 void branches_at(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
                  std::vector<Index>& branches);
 /// Appends the branch's leaves in whose box points of the cluster are, of those in the mask.

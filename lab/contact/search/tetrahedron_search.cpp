@@ -3,7 +3,7 @@
 
 #include "base/parallel.hpp"
 #include "kernels/positions.hpp"
-#include "lab/contact/geometry/halving.hpp"
+#include "lab/contact/geometry/box_tree.hpp"
 #include "lab/contact/geometry/inside_tetrahedron.hpp"
 #include "lab/contact/search/branch_motions.hpp"
 #include "lab/contact/search/clearances.hpp"
@@ -19,7 +19,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kBranchesAtOnce = 16;  // and clusters: what a thread takes together
+constexpr Index kBranchesAtOnce = 16;  // and clusters in a task
 constexpr Index kLeavesAtOnce = 256;
 
 /// The tetrahedra that are not flat at `points`, their corners turning like the unit tetrahedron's, in the
@@ -69,10 +69,10 @@ SortedTetrahedra sorted_tetrahedra(const Simplices& simplices, std::span<const P
 
 std::vector<PointCluster> clusters_of(std::span<const Index> vertices, std::span<const Point> points) {
   std::vector<Index> sorted(vertices.begin(), vertices.end());
-  sort_into_runs(sorted, PointCluster::kMost, points);
+  sort_into_runs(sorted, PointCluster::kMaxPoints, points);
   std::vector<PointCluster> clusters;
-  for (std::size_t first = 0; first < sorted.size(); first += PointCluster::kMost) {
-    const std::size_t count = std::min(sorted.size() - first, std::size_t{PointCluster::kMost});
+  for (std::size_t first = 0; first < sorted.size(); first += PointCluster::kMaxPoints) {
+    const std::size_t count = std::min(sorted.size() - first, std::size_t{PointCluster::kMaxPoints});
     clusters.emplace_back(std::span(sorted).subspan(first, count));
   }
   return clusters;
@@ -107,7 +107,7 @@ struct TetrahedronSearch::State {
     Index branch = 0;
     std::uint64_t points = 0;
   };
-  /// What is to be done for a cluster, and what it found.
+  /// Work for a cluster and its results.
   struct Search {
     std::vector<Index> branches;
     std::vector<BranchTask> branch_tasks;

@@ -18,12 +18,12 @@ struct VertexInside {
 };
 
 /// Finds the vertices that are inside tetrahedra, in any motion of the body. Exactly those which a test of
-/// every vertex against every tetrahedron finds, with the same bits, for any number of threads and whatever
-/// was asked before.
+/// every vertex against every tetrahedron finds, with the same bits, for any number of threads independent of
+/// earlier calls.
 class TetrahedronSearch {
  public:
-  /// `vertices`, rising, are those that are looked for. Tetrahedra whose corners turn the other way at
-  /// `points`, where the body is at rest, are turned; those that are flat there contain nothing.
+  /// Searches for `vertices`, ascending. Tetrahedra whose corners turn the other way at `points`, where the
+  /// body is at rest, are turned; those that are flat there contain nothing.
   TetrahedronSearch(const Simplices& simplices, std::span<const Point> points,
                     std::span<const Index> vertices);
   ~TetrahedronSearch();
@@ -32,12 +32,13 @@ class TetrahedronSearch {
   TetrahedronSearch(const TetrahedronSearch&) = delete;
   TetrahedronSearch& operator=(const TetrahedronSearch&) = delete;
 
-  /// All of them at `positions` (kPaddedStride numbers for each vertex), by vertex and then tetrahedron.
+  /// Returns all of them at `positions` (kPaddedStride numbers for each vertex), by vertex and then
+  /// tetrahedron.
   void find(std::span<const double> positions, std::vector<VertexInside>& inside);
 
   /// The corners of a tetrahedron that is not flat at rest, of positive volume there.
   [[nodiscard]] std::array<Index, 4> corners(Index tetrahedron) const;
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

@@ -53,15 +53,15 @@ Point weighted_sum(const std::array<Index, 4>& vertices, const std::array<double
   return sum;
 }
 
-/// The rows of C times what `place_of` says of each contact.
+/// Multiplies the rows of C by the vector that `place_of` returns for each contact.
 template <class PlaceOf>
 void multiply_places(const ContactRows& rows, PlaceOf place_of, std::span<double> result) {
-  Index rubbing = 0;
+  Index frictional = 0;
   for (Index k = 0; k < rows.contacts(); ++k) {
     const Point x = place_of(k);
     result[k] = dot(rows.directions[k], x);
-    if (rubbing == index_size(rows.rubbing) || rows.rubbing[rubbing] != k) continue;
-    const Index row = rows.row_of(rubbing++);
+    if (frictional == index_size(rows.frictional) || rows.frictional[frictional] != k) continue;
+    const Index row = rows.row_of(frictional++);
     result[row] = dot(rows.directions[row], x);
     result[row + 1] = dot(rows.directions[row + 1], x);
   }
@@ -76,7 +76,7 @@ void check_contacts(std::span<const Contact> contacts, Index n) {
 void check_vectors(Index n, std::size_t b, std::size_t from, std::size_t x) {
   const std::size_t size = kPaddedStride * static_cast<std::size_t>(n);
   if (b != size || from != size || x != size) {
-    throw InvalidArgument("ContactSolver: b, from and x must hold 4 numbers for each of " +
+    throw InvalidArgument("DualContactSolver: b, from and x must hold 4 numbers for each of " +
                           std::to_string(n) + " vertices");
   }
 }
@@ -88,7 +88,7 @@ ContactRows contact_rows(std::span<const Contact> contacts) {
       if (v != Contact::kAbsent) rows.vertices.push_back(v);
     }
     rows.directions.push_back(contacts[k].normal);
-    if (contacts[k].friction > 0.0) rows.rubbing.push_back(static_cast<Index>(k));
+    if (contacts[k].friction > 0.0) rows.frictional.push_back(static_cast<Index>(k));
   }
   std::sort(rows.vertices.begin(), rows.vertices.end());
   rows.vertices.erase(std::unique(rows.vertices.begin(), rows.vertices.end()), rows.vertices.end());
@@ -104,7 +104,7 @@ ContactRows contact_rows(std::span<const Contact> contacts) {
     rows.places.push_back(places);
     rows.weights.push_back(weights);
   }
-  for (const Index k : rows.rubbing) {
+  for (const Index k : rows.frictional) {
     for (const Point& tangent : tangents(contacts[k].normal)) rows.directions.push_back(tangent);
   }
   return rows;
@@ -129,15 +129,15 @@ void multiply_touched(const ContactRows& rows, std::span<const double> x, std::s
 
 void multiply_transposed(const ContactRows& rows, std::span<const double> forces, std::span<double> result) {
   std::fill(result.begin(), result.end(), 0.0);
-  Index rubbing = 0;
+  Index frictional = 0;
   for (Index k = 0; k < rows.contacts(); ++k) {
     Point force{};
     const auto add_row = [&](Index row) {
       for (std::size_t c = 0; c < 3; ++c) force[c] += forces[row] * rows.directions[row][c];
     };
     add_row(k);
-    if (rubbing < index_size(rows.rubbing) && rows.rubbing[rubbing] == k) {
-      const Index row = rows.row_of(rubbing++);
+    if (frictional < index_size(rows.frictional) && rows.frictional[frictional] == k) {
+      const Index row = rows.row_of(frictional++);
       add_row(row);
       add_row(row + 1);
     }
@@ -151,19 +151,13 @@ void multiply_transposed(const ContactRows& rows, std::span<const double> forces
 }
 
 template <class Real>
-Point place(const Contact& contact, std::span<const Real> x) {
-  return weighted_sum(contact.vertices, contact.weights, x.data(), kPaddedStride);
-}
-
-template <class Real>
 double depth(const Contact& contact, std::span<const Real> x) {
-  return contact.offset - dot(contact.normal, place(contact, x));
+  const Point place = weighted_sum(contact.vertices, contact.weights, x.data(), kPaddedStride);
+  return contact.offset - dot(contact.normal, place);
 }
 
 template void multiply(const ContactRows&, std::span<const double>, std::span<double>);
 template void multiply(const ContactRows&, std::span<const float>, std::span<double>);
-template Point place(const Contact&, std::span<const double>);
-template Point place(const Contact&, std::span<const float>);
 template double depth(const Contact&, std::span<const double>);
 template double depth(const Contact&, std::span<const float>);
 

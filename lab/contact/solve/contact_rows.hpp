@@ -12,11 +12,11 @@ namespace meshorder {
 /// normal, Σ w normal · x, then for each contact with friction the two along its surface. Cᵀ makes forces on
 /// vertices of forces of contacts.
 struct ContactRows {
-  std::vector<Index> vertices;                 ///< that contacts touch, rising
+  std::vector<Index> vertices;                 ///< of all contacts, ascending
   std::vector<std::array<Index, 4>> places;    ///< of each contact's vertices among those; −1 where absent
   std::vector<std::array<double, 4>> weights;  ///< of each contact; 0 where absent
   std::vector<Point> directions;               ///< of each row
-  std::vector<Index> rubbing;                  ///< contacts with friction: number k has rows `row_of(k)`, + 1
+  std::vector<Index> frictional;               ///< contacts with friction: number k has rows `row_of(k)`, + 1
 
   [[nodiscard]] Index contacts() const noexcept { return static_cast<Index>(places.size()); }
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(directions.size()); }
@@ -31,7 +31,7 @@ void check_contacts(std::span<const Contact> contacts, Index n);
 /// vertices.
 void check_vectors(Index n, std::size_t b, std::size_t from, std::size_t x);
 
-/// The rows of `contacts`, which must pass check_contacts. O(contacts · log contacts).
+/// Returns the rows of `contacts`, which must pass check_contacts. O(contacts · log contacts).
 ContactRows contact_rows(std::span<const Contact> contacts);
 
 /// result = C x, of positions with kPaddedStride numbers for each of the n vertices.
@@ -44,12 +44,7 @@ void multiply_touched(const ContactRows& rows, std::span<const double> x, std::s
 /// result = Cᵀ forces, 3 numbers for each of rows.vertices.
 void multiply_transposed(const ContactRows& rows, std::span<const double> forces, std::span<double> result);
 
-/// The place of a contact, Σ w x, of positions with kPaddedStride numbers for each vertex.
-template <class Real>
-Point place(const Contact& contact, std::span<const Real> x);
-
-/// How far the place Σ w x of a contact is inside of what its normal leads out of: offset − normal · Σ w x,
-/// m.
+/// Returns the depth of a contact, offset − normal · Σ w x, in m; positive if it is violated.
 template <class Real>
 double depth(const Contact& contact, std::span<const Real> x);
 

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/solve/dual_contact_solver.hpp"
 
+#include "base/error.hpp"
 #include "kernels/positions.hpp"
 #include "lab/contact/solve/contact_rows.hpp"
 #include "lab/contact/solve/force_problem.hpp"
@@ -13,11 +14,11 @@
 namespace meshorder {
 namespace {
 
-// of the tolerance: what contacts give way does not count beside it
+// part of the tolerance: small enough not to affect the result
 constexpr double kSoftness = 0.01;
-// rounds of bounds of tangential forces that bring them no nearer to each other, before the last one
-constexpr int kMostFailures = 3;
-// the last round has this part of the multiplications; rounds before it take half of what there is
+// rounds of tangential bounds without progress before the last one
+constexpr int kMaxFailures = 3;
+// part of the multiplications reserved for the last round; earlier rounds take half of the rest
 constexpr int kPartOfLast = 8;
 
 /// S of the contacts of one call.
@@ -57,8 +58,8 @@ class ContactOperator final : public ForceOperator {
         if (v >= 0) scale_[k] += w * w / diagonal_[rows_.vertices[v]];
       }
     }
-    for (Index k = 0; k < index_size(rows_.rubbing); ++k) {
-      scale_[rows_.row_of(k)] = scale_[rows_.row_of(k) + 1] = scale_[rows_.rubbing[k]];
+    for (Index k = 0; k < index_size(rows_.frictional); ++k) {
+      scale_[rows_.row_of(k)] = scale_[rows_.row_of(k) + 1] = scale_[rows_.frictional[k]];
     }
     weighed_.resize(rows_.size());
   }
@@ -135,7 +136,7 @@ class ContactOperator final : public ForceOperator {
 
   const SparseMatrix& matrix_;
   const CholeskyFactor<Real>& factor_;
-  AlignedVector<Real> load_, moved_;  ///< of all vertices; 0 in what nothing reaches
+  AlignedVector<Real> load_, moved_;  ///< of all vertices; 0 outside the reach
   std::vector<Index> place_of_;       ///< of all vertices: −1 but within take_submatrix
   std::vector<double> diagonal_;      ///< of A
   ContactRows rows_;
@@ -143,14 +144,14 @@ class ContactOperator final : public ForceOperator {
   std::vector<Offset> offsets_;  ///< of the part of A at contacts' vertices
   std::vector<Index> columns_;
   std::vector<double> values_;
-  std::vector<double> scale_;                       ///< of each row: what D⁻¹ moves it under a force of 1
+  std::vector<double> scale_;  ///< of each row: displacement by D⁻¹ under a force of 1
   std::vector<double> touched_, pulled_, weighed_;  ///< scratch
 };
 
 template <class Real>
-class Uzawa final : public ContactSolver<Real> {
+class Solver final : public DualContactSolver<Real> {
  public:
-  Uzawa(const SparseMatrix& matrix, const CholeskyFactor<Real>& factor, const ContactSolverOptions& options)
+  Solver(const SparseMatrix& matrix, const CholeskyFactor<Real>& factor, const ContactSolverOptions& options)
       : options_(options),
         factor_(factor),
         operator_(matrix, factor),
@@ -192,12 +193,12 @@ class Uzawa final : public ContactSolver<Real> {
  private:
   [[nodiscard]] const ContactRows& rows() const noexcept { return operator_.rows(); }
 
-  /// g: for normal rows how deep contacts are at x; for others against what they have moved since `from`.
+  /// Computes g: the depth at x for normal rows; minus the displacement since `from` for the others.
   void take_depths(std::span<const Contact> contacts, std::span<const double> from, std::span<const Real> x) {
     depths_.resize(rows().size());
     multiply(rows(), x, std::span<double>(depths_));
     for (std::size_t k = 0; k < contacts.size(); ++k) depths_[k] = contacts[k].offset - depths_[k];
-    if (rows().rubbing.empty()) return;
+    if (rows().frictional.empty()) return;
     std::vector<double> places(rows().size());
     multiply(rows(), from, std::span<double>(places));
     for (Index row = rows().contacts(); row < rows().size(); ++row) depths_[row] = places[row] - depths_[row];
@@ -206,10 +207,10 @@ class Uzawa final : public ContactSolver<Real> {
   void start_from_remembered(std::span<const Contact> contacts) {
     forces_.assign(rows().size(), 0.0);
     bounds_.normals = rows().contacts();
-    bounds_.radii.assign(rows().rubbing.size(), 0.0);
+    bounds_.radii.assign(rows().frictional.size(), 0.0);
     for (Index k = 0; k < rows().contacts(); ++k) forces_[k] = remembered_.of(contacts[k]).normal;
-    for (Index k = 0; k < index_size(rows().rubbing); ++k) {
-      const Point along = remembered_.of(contacts[rows().rubbing[k]]).along;
+    for (Index k = 0; k < index_size(rows().frictional); ++k) {
+      const Point along = remembered_.of(contacts[rows().frictional[k]]).along;
       for (const Index row : {rows().row_of(k), rows().row_of(k) + 1}) {
         for (std::size_t c = 0; c < 3; ++c) forces_[row] += along[c] * rows().directions[row][c];
       }
@@ -218,8 +219,8 @@ class Uzawa final : public ContactSolver<Real> {
 
   /// Sets the bounds of tangential forces to what normal forces allow, and the forces within them.
   void set_radii(std::span<const Contact> contacts) {
-    for (Index k = 0; k < index_size(rows().rubbing); ++k) {
-      const Index contact = rows().rubbing[k];
+    for (Index k = 0; k < index_size(rows().frictional); ++k) {
+      const Index contact = rows().frictional[k];
       bounds_.radii[k] = contacts[contact].friction * forces_[contact];
     }
     project(bounds_, forces_);
@@ -231,7 +232,7 @@ class Uzawa final : public ContactSolver<Real> {
       depth_square += std::max(depths_[k], 0.0) * std::max(depths_[k], 0.0);
     const double depth_norm = std::sqrt(depth_square);
     if (depth_norm == 0.0) {
-      // nothing is touched: no force is the solution
+      // no contact is violated: the solution has no forces
       std::fill(forces_.begin(), forces_.end(), 0.0);
       return;
     }
@@ -239,7 +240,7 @@ class Uzawa final : public ContactSolver<Real> {
     options.tolerance = options_.tolerance * depth_norm;
     options.scale = operator_.scale();
     options.softness = kSoftness * options_.tolerance;
-    const bool friction = !rows().rubbing.empty();
+    const bool friction = !rows().frictional.empty();
     double best = std::numeric_limits<double>::infinity();
     int failures = 0;
     for (bool last = !friction;;) {
@@ -249,17 +250,18 @@ class Uzawa final : public ContactSolver<Real> {
       report.converged = residual <= options.tolerance;
       const int left = options_.max_iterations - report.iterations;
       if (report.converged || left <= 0) break;
-      // bounds and forces may drive each other up without end: then bounds stay as they are
+      // bounds and forces may increase each other without end: then the bounds are kept
       if (residual >= best) ++failures;
       best = std::min(best, residual);
-      last = last || failures >= kMostFailures || left <= options_.max_iterations / kPartOfLast;
+      last = last || failures >= kMaxFailures || left <= options_.max_iterations / kPartOfLast;
       options.max_multiplications = last ? left : left / 2;
       const ForceSolveReport solved = minimise_forces(operator_, bounds_, options, forces_, gradient_);
       report.iterations += solved.multiplications;
       report.converged = !friction && solved.residual <= options.tolerance;
       if (last) break;
     }
-    // the softness is no excuse: where contacts contradict each other it is all that ends the solve
+    // measure the residual without the softness: for contradictory contacts that alone makes the solve
+    // converge
     for (std::size_t i = 0; i < forces_.size(); ++i)
       gradient_[i] += options.softness * options.scale[i] * forces_[i];
     report.residual = projected_gradient(bounds_, options.scale, forces_, gradient_) / depth_norm;
@@ -280,10 +282,10 @@ class Uzawa final : public ContactSolver<Real> {
   void remember(std::span<const Contact> contacts) {
     std::vector<ContactForce> found(contacts.size());
     for (std::size_t k = 0; k < contacts.size(); ++k) found[k].normal = normal_forces_[k] = forces_[k];
-    for (Index k = 0; k < index_size(rows().rubbing); ++k) {
+    for (Index k = 0; k < index_size(rows().frictional); ++k) {
       for (const Index row : {rows().row_of(k), rows().row_of(k) + 1}) {
         for (std::size_t c = 0; c < 3; ++c)
-          found[rows().rubbing[k]].along[c] += forces_[row] * rows().directions[row][c];
+          found[rows().frictional[k]].along[c] += forces_[row] * rows().directions[row][c];
       }
     }
     remembered_.remember(contacts, found);
@@ -302,15 +304,18 @@ class Uzawa final : public ContactSolver<Real> {
 }  // namespace
 
 template <class Real>
-std::unique_ptr<ContactSolver<Real>> make_uzawa(const SparseMatrix& matrix,
-                                                const CholeskyFactor<Real>& factor,
-                                                const ContactSolverOptions& options) {
-  return std::make_unique<Uzawa<Real>>(matrix, factor, options);
+std::unique_ptr<DualContactSolver<Real>> DualContactSolver<Real>::make(const SparseMatrix& matrix,
+                                                                       const CholeskyFactor<Real>& factor,
+                                                                       const ContactSolverOptions& options) {
+  if (!(options.tolerance > 0.0)) throw InvalidArgument("DualContactSolver: tolerance must be positive");
+  if (options.max_iterations < 0)
+    throw InvalidArgument("DualContactSolver: max_iterations must not be negative");
+  if (matrix.size() != factor.size())
+    throw InvalidArgument("DualContactSolver: the factor must be that of the matrix");
+  return std::make_unique<Solver<Real>>(matrix, factor, options);
 }
 
-template std::unique_ptr<ContactSolver<double>> make_uzawa(const SparseMatrix&, const CholeskyFactor<double>&,
-                                                           const ContactSolverOptions&);
-template std::unique_ptr<ContactSolver<float>> make_uzawa(const SparseMatrix&, const CholeskyFactor<float>&,
-                                                          const ContactSolverOptions&);
+template class DualContactSolver<double>;
+template class DualContactSolver<float>;
 
 }  // namespace meshorder

@@ -1,31 +1,73 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "lab/contact/solve/contact_solver.hpp"
+#include "base/polymorphic.hpp"
+#include "lab/contact/search/contact.hpp"
+#include "lab/linear/cholesky/cholesky.hpp"
 
 #include <memory>
+#include <span>
+#include <vector>
 
 namespace meshorder {
 
-/// The global step with contacts by its dual problem, after Uzawa: the forces λ of contacts minimise
-/// ½λᵀSλ − gᵀλ with S = C A⁻¹Cᵀ and g how deep contacts are without forces, and x = A⁻¹(b + Cᵀλ). A
-/// multiplication by S takes one solve with the factor on what contacts reach of it, and minimise_forces
-/// needs few, since forces start from the last call's and its preconditioner is the part of A at contacts'
-/// vertices (the lumped one of FETI: Farhat, Roux 1991). Beside these a call takes two solves with the whole
-/// factor.
+struct ContactSolverOptions {
+  double tolerance = 1e-3;   ///< > 0, relative, of the residual; see DualContactSolver
+  int max_iterations = 200;  ///< of one call: multiplications by A⁻¹ at contacts
+};
+
+struct ContactSolveReport {
+  int iterations = 0;
+  double residual = 0.0;  ///< relative
+  bool converged = false;
+  double violation = 0.0;  ///< largest remaining depth of a contact, m
+  Index pushing = 0;       ///< contacts with a force
+};
+
+/// Solves the global step with contacts: minimises ½xᵀA x − bᵀx over normal · Σ w x ≥ offset of every
+/// contact. Contacts push and never pull. With friction the force along the surface is at most the
+/// coefficient times the force across it, and opposes the motion since `from`.
 ///
-/// `tolerance` is that of the projected gradient's norm relative to that of the depths g > 0: about the error
-/// of places of contacts relative to the depth without forces. Where contacts contradict or repeat each
-/// other, each gives way by tolerance / 100 of what its force moves its own vertex: repeated ones share the
-/// force, contradicting ones end between each other, with `converged` false and the rest in `violation`.
+/// Solves the dual problem: the contact forces λ minimise ½λᵀSλ − gᵀλ with S = C A⁻¹Cᵀ and g the depths of
+/// the contacts without forces; then x = A⁻¹(b + Cᵀλ). ("Uzawa" in scenarios stands for "dual".) A
+/// multiplication by S takes one solve with the part of the factor that contacts reach. minimise_forces needs
+/// few of them, since forces start from the last call's and the preconditioner is the part of A at the
+/// contacts' vertices (the lumped one of FETI: Farhat, Roux 1991). A call takes two more solves with the
+/// whole factor.
 ///
-/// With friction the bounds of tangential forces are those of the last round's normal forces (Tresca's fixed
-/// point; Haslinger 1983), until forces are within `tolerance` with the bounds that they make themselves.
-/// Where rounds do not get there (a body may jam), the last bounds stay for good: tangential forces may then
-/// be beyond their cones, and `converged` is false.
+/// `tolerance` bounds the norm of the projected gradient relative to that of the depths g > 0: about the
+/// error of the contacts' positions relative to the depth without forces. Where contacts contradict or repeat
+/// each other, each yields by tolerance / 100 of the distance that its force moves its own vertex: repeated
+/// contacts share the force; contradicting ones end between each other, with `converged` false and the
+/// remaining depth in `violation`.
+///
+/// With friction the bounds of tangential forces follow from the last round's normal forces (Tresca's fixed
+/// point; Haslinger 1983), until forces are within `tolerance` for the bounds that they imply themselves.
+/// Where the rounds do not converge (a body may jam), the last bounds are kept: tangential forces may then
+/// lie outside their cones, and `converged` is false.
 template <class Real>
-std::unique_ptr<ContactSolver<Real>> make_uzawa(const SparseMatrix& matrix,
-                                                const CholeskyFactor<Real>& factor,
-                                                const ContactSolverOptions& options);
+class DualContactSolver : public detail::Polymorphic {
+ public:
+  /// `matrix` and its `factor` must outlive it. Throws InvalidArgument for options that are out of range and
+  /// for a factor of another size.
+  static std::unique_ptr<DualContactSolver> make(const SparseMatrix& matrix,
+                                                 const CholeskyFactor<Real>& factor,
+                                                 const ContactSolverOptions& options);
+
+  /// Replaces x, a first guess, by the solution; without contacts A⁻¹b exactly. Vectors have kPaddedStride
+  /// numbers for each vertex. The forces of the last call are the first guess for contacts with the same
+  /// vertex and obstacle, until `forget`. Throws InvalidArgument for contacts of vertices that do not exist
+  /// and numbers that are out of range. Always terminates; the report gives the remaining residual.
+  virtual ContactSolveReport solve(std::span<const Contact> contacts, std::span<const Real> b,
+                                   std::span<const double> from, std::span<Real> x) = 0;
+
+  /// Returns the normal force of each contact of the last call, in units of A x, none negative.
+  [[nodiscard]] virtual std::span<const double> forces() const = 0;
+
+  /// Forgets the forces of earlier calls; to be called at the start of a step.
+  virtual void forget() = 0;
+
+  [[nodiscard]] virtual std::size_t bytes() const = 0;
+};
 
 }  // namespace meshorder

@@ -9,15 +9,15 @@
 namespace meshorder {
 namespace {
 
-// forces this close to a disc's rim are on it
+// relative squared radius from which a force counts as on its disc's rim
 constexpr double kOnRim = 1.0 - 1e-9;
-// a face is solved on to this part of its residual, since the next face is another one
+// part of the residual to which a face is solved, since the face changes afterwards
 constexpr double kFaceTolerance = 0.1;
-// leaps that may go by without a new lowest energy
+// steps allowed without a new minimum of the energy
 constexpr int kPatience = 10;
-// of the fall of the energy that the gradient promises, what a careful step must keep (Armijo)
+// part of the decrease predicted by the gradient that a careful step must reach (Armijo)
 constexpr double kEnoughFall = 1e-4;
-constexpr double kLeastWay = 1e-9;
+constexpr double kMinWay = 1e-9;
 
 using Pair = std::array<double, 2>;
 
@@ -106,7 +106,7 @@ class Minimiser {
     energy_ = 0.0;
   }
 
-  /// Whether forces at 0 that want to push have more to gain than the others.
+  /// Returns whether forces at 0 that would grow gain more than the positive ones.
   [[nodiscard]] bool new_ones_gain_most() const {
     double pushing = 0.0;
     double wanting = 0.0;
@@ -121,7 +121,7 @@ class Minimiser {
     return wanting > pushing;
   }
 
-  /// Whether the gradient alone would lead a normal force that pushes to its bound.
+  /// Returns whether a gradient step would take a positive normal force to its bound.
   [[nodiscard]] bool leaves(Index row) const {
     return x_[row] > 0.0 && x_[row] + g_[row] / options_.scale[row] <= 0.0;
   }
@@ -145,7 +145,7 @@ class Minimiser {
         });
   }
 
-  /// Leaves the part of a vector along which forces are free.
+  /// Removes the components of a vector along which forces are fixed.
   void keep_free(std::span<double> vector) const {
     for (std::size_t i = 0; i < vector.size(); ++i) {
       if (freedom_[i] == Freedom::none) vector[i] = 0.0;
@@ -167,7 +167,7 @@ class Minimiser {
     ++report_.multiplications;
   }
 
-  /// z ≈ (S + stiffening)⁻¹ r on the face. The preconditioner knows nothing of what stiffens along rims.
+  /// z ≈ (S + stiffening)⁻¹ r on the face. The preconditioner ignores the stiffening along rims.
   void precondition() {
     for (std::size_t i = 0; i < r_.size(); ++i) product_[i] = freedom_[i] == Freedom::all ? r_[i] : 0.0;
     matrix_.precondition(product_, z_);
@@ -177,8 +177,8 @@ class Minimiser {
     keep_free(z_);
   }
 
-  /// step = about the way to the least energy on the face, by conjugate gradients; step_product = S step. A
-  /// force that goes along the rim of its disc leaves its tangent, which stiffens S there.
+  /// Computes step, approximately to the minimum of the energy on the face, by conjugate gradients, and
+  /// step_product = S step. The rim of a disc is curved, which adds to S for forces that move along it.
   void solve_on_face() {
     std::fill(step_.begin(), step_.end(), 0.0);
     std::fill(step_product_.begin(), step_product_.end(), 0.0);
@@ -208,16 +208,16 @@ class Minimiser {
     }
   }
 
-  /// What is about to leave would cut a careful step short again and again: it goes by itself.
+  /// Releases forces that are about to reach their bounds: they would limit every careful step.
   void follow_gradient_to_bounds() {
     for (Index row = 0; row < bounds_.normals; ++row) {
       if (leaves(row)) step_[row] = g_[row] / options_.scale[row];
     }
   }
 
-  /// Goes the step and back within the bounds; a careful one is halved until it lowers the energy.
+  /// Takes the step and projects onto the bounds; a careful step is halved until it lowers the energy.
   bool take_step(bool careful) {
-    for (double way = 1.0; way >= kLeastWay; way *= 0.5) {
+    for (double way = 1.0; way >= kMinWay; way *= 0.5) {
       for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] = x_[i] + way * step_[i];
       project(bounds_, trial_);
       bool inside = way == 1.0 && !careful;
@@ -257,7 +257,8 @@ class Minimiser {
   std::vector<double> stiffening_;           ///< by the rim's curvature
   std::vector<double> step_, step_product_;  ///< S step
   std::vector<double> trial_, r_, z_, direction_, product_;
-  double energy_ = 0.0;  ///< less that of the best: sums of all falls would round the last ones away
+  double energy_ =
+      0.0;  ///< relative to the best one: an absolute sum would lose the last decreases to rounding
   std::vector<double> best_, best_gradient_;
   ForceSolveReport report_;
 };

@@ -2,14 +2,15 @@
 #pragma once
 
 #include "base/index.hpp"
+#include "base/polymorphic.hpp"
 
 #include <span>
 #include <vector>
 
 namespace meshorder {
 
-/// What forces of contacts may be: first one number for each contact, its force along the normal, at least 0;
-/// then for each contact with friction two, its force along the surface, in a disc about 0.
+/// Bounds of contact forces: first one number for each contact, its force along the normal, at least 0; then
+/// two for each contact with friction, its force along the surface, in a disc about 0.
 struct ForceBounds {
   Index normals = 0;
   std::vector<double> radii;  ///< of the discs, each at least 0
@@ -17,16 +18,9 @@ struct ForceBounds {
   [[nodiscard]] Index size() const noexcept { return normals + 2 * index_size(radii); }
 };
 
-/// How forces move contacts: a symmetric positive semidefinite matrix S.
-class ForceOperator {
+/// The symmetric positive semidefinite matrix S that maps contact forces to displacements.
+class ForceOperator : public detail::Polymorphic {
  public:
-  ForceOperator() = default;
-  ForceOperator(const ForceOperator&) = delete;
-  ForceOperator(ForceOperator&&) = delete;
-  ForceOperator& operator=(const ForceOperator&) = delete;
-  ForceOperator& operator=(ForceOperator&&) = delete;
-  virtual ~ForceOperator() = default;
-
   /// result = S forces
   virtual void multiply(std::span<const double> forces, std::span<double> result) = 0;
 
@@ -39,8 +33,7 @@ struct ForceSolveOptions {
   int max_multiplications = 0;  ///< by S
   /// A positive scale of each row of S, such as about its diagonal.
   std::span<const double> scale;
-  /// Each force gives way by this part of scale · force: where S is singular the problem still has one
-  /// solution.
+  /// Adds this part of `scale` to the diagonal of S, so that the solution is unique even if S is singular.
   double softness = 0.0;
 };
 
@@ -51,24 +44,24 @@ struct ForceSolveReport {
 
 /// Minimises ½λᵀSλ − gᵀλ within the bounds, from λ (feasible) to λ; `gradient` is g − S λ before and after.
 ///
-/// Again and again it takes forces that push, and those that want to where these have more to gain, solves
-/// for them by conjugate gradients as though they had no bounds, to a tenth of the residual, and goes to the
-/// nearest forces within the bounds: a primal–dual active set (Hintermüller, Ito, Kunisch 2003) with the
-/// proportioning of Dostál and Schöberl (2005). Energy may rise on the way. Where it has not fallen below its
-/// lowest for some steps, the next one starts from there and is halved until it falls by enough (a projected
-/// Newton step: Bertsekas 1982), so that the energy converges whatever S is. A force on the rim of its disc
-/// moves along the rim. If it does not get there within the multiplications, or numbers fail, λ is the best
-/// so far. Serial, O(size) beside S.
+/// Repeatedly selects the positive forces, and those at 0 that would grow if these gain more; solves for them
+/// by conjugate gradients without bounds, to a tenth of the residual; and projects onto the bounds: a
+/// primal–dual active set (Hintermüller, Ito, Kunisch 2003) with the proportioning of Dostál and Schöberl
+/// (2005). The energy may increase temporarily. After some steps without a new minimum, the next one starts
+/// from the minimum and is halved until the energy decreases enough (a projected Newton step: Bertsekas
+/// 1982), so that the energy converges for any S. A force on the rim of its disc moves along the rim. If it
+/// does not converge within the multiplications or a number is not finite, λ is the best so far. Serial;
+/// O(size) besides S.
 ForceSolveReport minimise_forces(ForceOperator& matrix, const ForceBounds& bounds,
                                  const ForceSolveOptions& options, std::span<double> forces,
                                  std::span<double> gradient);
 
-/// The nearest forces within the bounds.
+/// Replaces the forces by the nearest ones within the bounds.
 void project(const ForceBounds& bounds, std::span<double> forces);
 
-/// How far forces are from the least energy, in units of S λ; 0 there alone. A normal force counts the part
-/// of its gradient g − S λ along which it can move; one in a disc counts scale · ‖λ − P(λ + gradient /
-/// scale)‖ with P the projection, which does not jump where forces leave the rim.
+/// Returns the norm of the projected gradient, in units of S λ; 0 only at the minimum. A normal force counts
+/// the part of its gradient g − S λ along which it can move; one in a disc counts scale · ‖λ − P(λ + gradient
+/// / scale)‖ with P the projection, which does not jump where forces leave the rim.
 double projected_gradient(const ForceBounds& bounds, std::span<const double> scale,
                           std::span<const double> forces, std::span<const double> gradient);
 

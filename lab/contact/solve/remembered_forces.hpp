@@ -21,7 +21,7 @@ class RememberedForces {
   void remember(std::span<const Contact> contacts, std::span<const ContactForce> forces);
   void forget() { entries_.clear(); }
 
-  /// The force of the contact with that key, 0 where there was none. O(log contacts).
+  /// Returns the force of the contact with that key, 0 if there was none. O(log contacts).
   [[nodiscard]] ContactForce of(const Contact& contact) const;
 
   [[nodiscard]] std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }

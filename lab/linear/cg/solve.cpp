@@ -2,17 +2,71 @@
 #include "lab/linear/cg/solve.hpp"
 
 #include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "kernels/owned_batches.hpp"
 #include "kernels/spmv.hpp"
-#include "lab/linear/cg/row_sweeps.hpp"
 #include "lab/linear/cg/vector_passes.hpp"
-#include "lab/linear/preconditioners/local_preconditioner.hpp"
+#include "lab/linear/preconditioners/jacobi.hpp"
+
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace meshorder {
 namespace {
+
+/// Repeated passes over the rows of a matrix, in chunks of about equal numbers of blocks. The chunks depend
+/// only on the matrix, so that sums over them are the same for any number of threads. A thread has the same
+/// chunks in every pass. Passes alternate their direction, so that each begins with the rows that are still
+/// in the caches.
+class RowSweeps {
+ public:
+  /// `offsets` are those of the matrix's compressed rows. O(chunks · log rows).
+  explicit RowSweeps(std::span<const Offset> offsets)
+      : bounds_(balanced_ranges(offsets, static_cast<Index>(1 + offsets.back() / kChunkBlocks))) {}
+
+  /// Calls `work(begin, end)` for the rows of each chunk, on all threads.
+  template <class Work>
+  void run(Work work) {
+    run_chunks([&](Index chunk) { work(bounds_[chunk], bounds_[chunk + 1]); });
+  }
+
+  /// Returns the sum of `part(begin, end)` over the chunks, in their order.
+  template <class Sum, class Part>
+  Sum sum(Part part) {
+    std::vector<Sum> parts(bounds_.size() - 1);
+    run_chunks([&](Index chunk) { parts[chunk] = part(bounds_[chunk], bounds_[chunk + 1]); });
+    Sum sum{};
+    for (const Sum& p : parts) sum += p;
+    return sum;
+  }
+
+ private:
+  // 0.6 MB of a matrix in double: few enough chunks to cost nothing, many enough for any number of threads
+  static constexpr Offset kChunkBlocks = 8192;
+
+  template <class Work>
+  void run_chunks(Work work) {
+    const bool backwards = backwards_;
+    backwards_ = !backwards_;
+    const Index chunks = index_size(bounds_) - 1;
+    const auto run_some = [&](Index begin, Index end) {
+      for (Index i = begin; i < end; ++i) work(backwards ? end - 1 - (i - begin) : i);
+    };
+    // with one chunk a thread would spend most of its time on start-up
+    const Index parts = std::clamp<Index>(chunks / 2, 1, tbb::this_task_arena::max_concurrency());
+    if (parts == 1) return run_some(0, chunks);
+    const auto bound = [&](Index part) { return static_cast<Index>(Offset{chunks} * part / parts); };
+    for_each_part(parts, [&](Index part) { run_some(bound(part), bound(part + 1)); });
+  }
+
+  std::vector<Index> bounds_;
+  bool backwards_ = false;
+};
 
 /// rᵀr and rᵀz of a residual r.
 struct Norms {
@@ -143,15 +197,15 @@ class ConjugateGradients {
     return {status, iterations_, residual(), converged ? Index{-1} : largest_vertex(v_.r)};
   }
 
-  /// Looks for the vertex where it began: in what was given, then in what was computed of it, where a bad row
-  /// of the matrix shows first.
+  /// Finds the vertex where it began: first in the arguments, then in the vectors computed from them, in
+  /// which a bad row of the matrix shows first.
   [[nodiscard]] SolveReport not_finite() const {
     Index vertex = first_not_finite(b_);
     if (vertex < 0) vertex = first_not_finite(x_);
     for (const auto* vector : {&v_.p, &v_.q, &v_.r, &v_.z}) {
       if (vertex < 0) vertex = first_not_finite(*vector);
     }
-    // sums alone outgrew the numbers
+    // only sums overflowed
     if (vertex < 0) vertex = largest_vertex(v_.r);
     return {SolveStatus::not_finite, iterations_, residual(), vertex};
   }
@@ -183,6 +237,18 @@ SolveReport checked_solve(const BlockCsrOf<Value>& matrix, const Preconditioner&
   return ConjugateGradients(matrix, preconditioner, b, x, options).run();
 }
 
+/// r = b − A x; its norm.
+double compute_residual(const BlockCsr& matrix, std::span<const double> b, std::span<const double> x,
+                        std::span<double> r) {
+  multiply(matrix, x, r);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    r[i] = b[i] - r[i];
+    sum += r[i] * r[i];
+  }
+  return std::sqrt(sum);
+}
+
 }  // namespace
 
 Index largest_vertex(std::span<const double> vector) {
@@ -196,22 +262,6 @@ Index largest_vertex(std::span<const double> vector) {
   return vertex;
 }
 
-std::string_view name(SolveStatus status) {
-  switch (status) {
-    case SolveStatus::converged:
-      return "converged";
-    case SolveStatus::iteration_limit:
-      return "iteration limit";
-    case SolveStatus::negative_curvature:
-      return "negative curvature";
-    case SolveStatus::breakdown:
-      return "breakdown";
-    case SolveStatus::not_finite:
-      return "not finite";
-  }
-  return "";
-}
-
 SolveReport conjugate_gradients(const BlockCsr& matrix, const Preconditioner& preconditioner,
                                 std::span<const double> b, std::span<double> x, const SolveOptions& options) {
   return checked_solve(matrix, preconditioner, b, x, options);
@@ -220,6 +270,34 @@ SolveReport conjugate_gradients(const BlockCsr& matrix, const Preconditioner& pr
 SolveReport conjugate_gradients(const BlockCsrOf<float>& matrix, const Preconditioner& preconditioner,
                                 std::span<const double> b, std::span<double> x, const SolveOptions& options) {
   return checked_solve(matrix, preconditioner, b, x, options);
+}
+
+SolveReport refined_conjugate_gradients(const BlockCsr& matrix, const BlockCsrOf<float>& rounded,
+                                        const Preconditioner& preconditioner, std::span<const double> b,
+                                        std::span<double> x, const SolveOptions& options) {
+  constexpr int kCorrections = 10;
+  constexpr double kMargin = 0.9;  // so that rounding seldom requires another correction
+  std::vector<double> residual(b.size());
+  std::vector<double> correction(b.size());
+  const double start = compute_residual(matrix, b, x, residual);
+  double norm = start;
+  SolveReport total;
+  if (start == 0.0) return total;
+  for (int i = 0; i < kCorrections; ++i) {
+    SolveOptions inner = options;
+    inner.tolerance = std::min(0.5, kMargin * options.tolerance * start / norm);
+    inner.max_iterations = options.max_iterations - total.iterations;
+    std::fill(correction.begin(), correction.end(), 0.0);
+    SolveReport report = conjugate_gradients(rounded, preconditioner, residual, correction, inner);
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] += correction[k];
+    report.iterations += total.iterations;
+    norm = compute_residual(matrix, b, x, residual);
+    report.residual = norm / start;
+    total = report;
+    if (report.status != SolveStatus::converged || norm <= options.tolerance * start) return total;
+  }
+  total.status = SolveStatus::iteration_limit;
+  return total;
 }
 
 }  // namespace meshorder

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "kernels/block_csr.hpp"
 
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 namespace meshorder {
 
@@ -14,14 +14,21 @@ class Preconditioner;
 /// How a linear solve ended.
 enum class SolveStatus : std::uint8_t {
   converged,
-  iteration_limit,     ///< x is the last iterate, the best so far in the norm of the energy
+  iteration_limit,     ///< x is the last iterate, the best so far in the energy norm
   negative_curvature,  ///< pᵀAp ≤ 0 for the search direction p: A is not positive definite
   breakdown,   ///< rᵀM⁻¹r ≤ 0 for the residual r: the preconditioner M is not positive definite
   not_finite,  ///< NaN or infinity in the matrix, the right-hand side or an iterate
 };
 
-/// "converged", "iteration limit", …
-std::string_view name(SolveStatus status);
+template <>
+struct EnumNames<SolveStatus> {
+  static constexpr std::string_view kind = "solve status";
+  static constexpr std::array names{std::pair{SolveStatus::converged, "converged"},
+                                    std::pair{SolveStatus::iteration_limit, "iteration limit"},
+                                    std::pair{SolveStatus::negative_curvature, "negative curvature"},
+                                    std::pair{SolveStatus::breakdown, "breakdown"},
+                                    std::pair{SolveStatus::not_finite, "not finite"}};
+};
 
 struct SolveOptions {
   double tolerance = 1e-6;  ///< on ‖b − A x‖ / ‖b − A x₀‖
@@ -36,24 +43,33 @@ struct SolveReport {
   Index vertex = -1;
 };
 
-/// The vertex with the largest entry of a vector of 3 doubles for each vertex; −1 where it has none. O(n).
+/// Returns the vertex with the largest absolute entry of a vector of 3 doubles for each vertex; −1 if the
+/// vector is empty. O(n).
 Index largest_vertex(std::span<const double> vector);
 
 /// Solves A x = b by preconditioned conjugate gradients (Hestenes, Stiefel 1952), A symmetric and positive
 /// definite, x the start and the result; 3 doubles for each vertex. The preconditioner must have been updated
-/// with the matrix. However it ends, x is the last iterate before that: on negative curvature the one whose
-/// search direction had it. The same bits for any number of threads. O(blocks) an iteration; vectors of 4
-/// times the size of b. Numbers whose squares are too small for a double count as 0. Throws InvalidArgument
-/// when sizes differ or an option is negative.
+/// with the matrix. In all cases x is the last valid iterate: on negative curvature the one before that
+/// search direction. The same bits for any number of threads. O(blocks) an iteration; vectors of 4 times the
+/// size of b. Numbers whose squares are too small for a double count as 0. Throws InvalidArgument when sizes
+/// differ or an option is negative.
 SolveReport conjugate_gradients(const BlockCsr& matrix, const Preconditioner& preconditioner,
                                 std::span<const double> b, std::span<double> x,
                                 const SolveOptions& options = {});
 
 /// The same with the matrix in single precision, all vectors and sums in double: an iteration reads about
-/// half as much. What is solved is the rounded matrix's system, whose solution differs by up to 6e-8 times
-/// the matrix's condition.
+/// half as many bytes. Solves the system of the rounded matrix, whose solution differs by up to 6e-8 times
+/// the condition number.
 SolveReport conjugate_gradients(const BlockCsrOf<float>& matrix, const Preconditioner& preconditioner,
                                 std::span<const double> b, std::span<double> x,
                                 const SolveOptions& options = {});
+
+/// Solves A x = b to the same residual as conjugate_gradients(matrix, …), while its iterations read
+/// `rounded`, the same matrix in single precision: while the residual of A itself is too large, it solves for
+/// a correction in the same way (iterative refinement, Wilkinson 1963). Reports the iterations of all
+/// corrections. Measured in docs/benchmarks.md.
+SolveReport refined_conjugate_gradients(const BlockCsr& matrix, const BlockCsrOf<float>& rounded,
+                                        const Preconditioner& preconditioner, std::span<const double> b,
+                                        std::span<double> x, const SolveOptions& options = {});
 
 }  // namespace meshorder

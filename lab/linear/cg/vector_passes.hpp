@@ -7,8 +7,8 @@
 
 namespace meshorder::passes {
 
-// What conjugate gradients do to vectors of 3 doubles for each vertex, for the vertices begin … end − 1. Each
-// sum is in an order that depends on begin and end alone.
+// Vector operations of conjugate gradients for the vertices begin … end − 1, 3 doubles for each vertex. The
+// order of each sum depends only on begin and end.
 
 /// aᵀb
 double dot(std::span<const double> a, std::span<const double> b, Index begin, Index end);

@@ -24,7 +24,7 @@ class CholeskyFactor<Real>::Factor {
     idle_.push_back(std::make_unique<PanelWorkspace<Real>>(panels));
   }
 
-  /// A workspace that no other solve has until it is given back.
+  /// Returns a workspace that no other solve uses until it is given back.
   [[nodiscard]] std::unique_ptr<PanelWorkspace<Real>> take_workspace() const {
     {
       const std::lock_guard lock(mutex_);

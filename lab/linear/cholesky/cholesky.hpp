@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/aligned.hpp"
-#include "lab/linear/cholesky/sparse_matrix.hpp"
+#include "lab/linear/cholesky/ldl.hpp"
 
 #include <memory>
 #include <span>
@@ -10,27 +10,26 @@
 
 namespace meshorder {
 
-/// Where a right-hand side that is 0 but at some vertices meets the factor: the columns on their paths to the
-/// roots of the elimination tree (Gilbert 1994), by the panels in which these stand.
+/// The part of the factor that a right-hand side reaches which is 0 except at some vertices: the columns on
+/// their paths to the roots of the elimination tree (Gilbert 1994), as panels.
 struct FactorReach {
   std::vector<Index> vertices;  ///< as given
-  std::vector<Index> panels;    ///< rising
+  std::vector<Index> panels;    ///< ascending
   Offset entries = 0;           ///< of the factor in these panels
 };
 
 /// The Cholesky factor L D Lᵀ of a symmetric positive definite matrix, which solves A X = B for the
-/// coordinates of all vertices at once. The factor's own fill-reducing order (nested dissection) is its own
-/// affair: vectors have the order of the matrix. `Real` is the precision of the factor and of vectors, double
-/// or float; the factor is computed in double. Solves run on all threads, with the same bits for any number
-/// of them; threads may share a factor.
+/// coordinates of all vertices at once. The factor has a fill-reducing order of its own (nested dissection);
+/// vectors are in the order of the matrix. `Real` is the precision of the factor and of vectors, double or
+/// float; the factor is computed in double. Solves run on all threads, with the same bits for any number of
+/// them; threads may share a factor.
 template <class Real>
 class CholeskyFactor {
  public:
   using Reach = FactorReach;
 
-  /// Reads the upper half of the matrix. Throws InvalidArgument where it is not positive definite, or only by
-  /// what rounding leaves of zero, with a row where that shows. For meshes O(n^3/2) operations in the plane
-  /// and O(n²) in space.
+  /// Reads the upper half of the matrix. Throws InvalidArgument, naming a row, if it is not positive definite
+  /// or singular to rounding. For meshes O(n^3/2) operations in the plane and O(n²) in space.
   explicit CholeskyFactor(const SparseMatrix& matrix);
 
   /// x = A⁻¹ b, kPaddedStride numbers for each vertex (see padded_positions) of which the last is 0 in both.
@@ -38,9 +37,9 @@ class CholeskyFactor {
   /// O(entries).
   void solve(std::span<const Real> b, std::span<Real> x) const;
 
-  /// For right-hand sides that vanish outside of these vertices, where solutions are wanted at them alone.
-  /// They may be in any order and repeat. Throws InvalidArgument for a vertex that does not exist. O(panels
-  /// reached, times the logarithm of their number).
+  /// Returns the part of the factor needed for right-hand sides that are 0 except at these vertices, if
+  /// solutions are wanted only there. The vertices may be in any order and repeat. Throws InvalidArgument for
+  /// a vertex that does not exist. O(panels reached, times the logarithm of their number).
   [[nodiscard]] Reach reach_of(std::span<const Index> vertices) const;
 
   /// The same solution at the vertices given to reach_of, where b may be other than 0: b and x, of the same
@@ -51,7 +50,7 @@ class CholeskyFactor {
   [[nodiscard]] Index size() const noexcept;
   /// Entries of the factor that are not 0 by its pattern, diagonal included.
   [[nodiscard]] Offset entries() const noexcept;
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

@@ -27,7 +27,7 @@ struct Cholmod {
     common.final_ll = 0;
     common.nmethods = 1;
     common.method[0].ordering = CHOLMOD_NESDIS;
-    // parts that are no longer cut: smaller ones take longer and save hardly an entry
+    // size of the parts that are not dissected: smaller ones take longer and save hardly any entries
     common.method[0].nd_small = 400;
   }
   ~Cholmod() { cholmod_finish(&common); }
@@ -36,7 +36,7 @@ struct Cholmod {
   Cholmod(Cholmod&&) = delete;
   Cholmod& operator=(Cholmod&&) = delete;
 
-  /// Throws for what went wrong, but for a matrix that is not positive definite, which is a warning.
+  /// Throws if CHOLMOD reports an error; a matrix that is not positive definite is only a warning.
   void check() const {
     if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
     if (common.status == CHOLMOD_TOO_LARGE) {
@@ -55,7 +55,7 @@ double diagonal_entry(const SparseMatrix& matrix, Index row) {
   return place != end && *place == row ? matrix.values[place - matrix.columns.begin()] : 0.0;
 }
 
-/// What rounding may leave of zero, relative to what a pivot was before others were subtracted.
+/// Largest rounding error of a pivot that should be 0, relative to the diagonal entry of the matrix.
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
 
 Ldl copy_of(const cholmod_factor& factor, const SparseMatrix& matrix) {

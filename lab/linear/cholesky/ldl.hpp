@@ -1,17 +1,27 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "lab/linear/cholesky/sparse_matrix.hpp"
+#include "base/index.hpp"
 
 #include <vector>
 
 namespace meshorder {
 
+/// A square sparse matrix of numbers in compressed rows: both halves where it is symmetric. The columns of a
+/// row are ascending and include the diagonal.
+struct SparseMatrix {
+  std::vector<Offset> offsets{0};  ///< n + 1
+  std::vector<Index> columns;
+  std::vector<double> values;
+
+  [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
+};
+
 /// P A Pᵀ = L D Lᵀ with L unit lower triangular, by columns.
 struct Ldl {
   std::vector<Index> new_to_old;   ///< row i of L is row new_to_old[i] of A
   std::vector<Offset> offsets{0};  ///< of the columns of L below their diagonals, n + 1
-  std::vector<Index> rows;         ///< rising in a column
+  std::vector<Index> rows;         ///< ascending in a column
   std::vector<double> values;
   std::vector<double> pivots;  ///< D, positive
 
@@ -20,8 +30,8 @@ struct Ldl {
 
 /// Factors a symmetric positive definite matrix, of which it reads the upper half, in an order that keeps L
 /// sparse: nested dissection (George 1973), by METIS and CHOLMOD (Chen, Davis, Hager, Rajamanickam 2008). The
-/// same on every run. Throws InvalidArgument with the row where a pivot is not positive, or so small that it
-/// is what rounding leaves of zero. For meshes O(n log n) entries in the plane and O(n^4/3) in space.
+/// same on every run. Throws InvalidArgument, naming the row, if a pivot is not positive or within rounding
+/// errors of 0. For meshes O(n log n) entries in the plane and O(n^4/3) in space.
 Ldl factor_ldl(const SparseMatrix& matrix);
 
 }  // namespace meshorder

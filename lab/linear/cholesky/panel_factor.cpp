@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/cholesky/panel_factor.hpp"
 
-#include "lab/linear/cholesky/solve_tasks.hpp"
 #include "lab/linear/cholesky/supernodes.hpp"
 
 #include <algorithm>
@@ -11,9 +10,9 @@
 namespace meshorder {
 namespace {
 
-/// A task is worth at least so many entries, and this part of all.
-constexpr double kLeastCost = 40'000;
-constexpr double kLeastPart = 1.0 / 32;
+/// Smallest cost of a task: so many entries, and this part of the whole factor.
+constexpr double kMinCost = 40'000;
+constexpr double kMinPart = 1.0 / 32;
 
 /// The factor while it is made: first all columns are numbered, then rows and values are filled in.
 template <class Real>
@@ -24,7 +23,7 @@ class Builder {
     std::vector<std::vector<Index>> columns(supernodes.count());
     for (Index j = 0; j < ldl.size(); ++j) columns[supernodes.of_column[j]].push_back(j);
     const double cost = std::accumulate(supernodes.cost.begin(), supernodes.cost.end(), 0.0);
-    const SolveTasks tasks = make_solve_tasks(supernodes, std::max(kLeastCost, kLeastPart * cost));
+    const SolveTasks tasks = make_solve_tasks(supernodes, std::max(kMinCost, kMinPart * cost));
 
     factor_.column_of_vertex.resize(ldl.size());
     // those below others first

@@ -11,8 +11,8 @@
 namespace meshorder {
 namespace {
 
-/// A reach of fewer entries is not worth the start of other threads' tasks.
-constexpr Offset kLeastShared = 100'000;
+/// Entries of a reach that are worth tasks on other threads.
+constexpr Offset kMinShared = 100'000;
 
 template <class Real>
 Real* at(Real* x, Index place) {
@@ -30,7 +30,7 @@ class Solve {
         b_(b),
         x_(x),
         work_(work),
-        shared_(thread_count() > 1 && (reach == nullptr || reach->entries >= kLeastShared)) {}
+        shared_(thread_count() > 1 && (reach == nullptr || reach->entries >= kMinShared)) {}
 
   void run() const {
     if (factor_.tasks.empty()) return;
@@ -55,7 +55,8 @@ class Solve {
     return {panels.data() + (begin - panels.begin()), 0, static_cast<Index>(end - begin)};
   }
 
-  /// Whether any of its panels takes part. With one of a task's panels the paths go through those above.
+  /// Returns whether any panel of the task takes part. The path from one panel goes through the later ones of
+  /// its task.
   [[nodiscard]] bool takes_part(Index task) const { return panels_of(factor_.tasks[task]).count > 0; }
 
   template <class Work>
@@ -86,8 +87,7 @@ class Solve {
     sweep_forwards(factor_.view(), panels_of(task), work_);
   }
 
-  /// Calls `copy` for all columns of a task and their vertices, whose numbers in `vector` are asked for
-  /// early.
+  /// Calls `copy` for all columns of a task and their vertices, whose numbers in `vector` are prefetched.
   template <class Vector, class Copy>
   void for_columns(const PanelTask& task, Vector vector, Copy copy) const {
     constexpr Index kAhead = 24;

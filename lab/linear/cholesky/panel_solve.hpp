@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// What solves at the same time may not share.
+/// Scratch memory of one solve; concurrent solves need one each.
 template <class Real>
 struct PanelWorkspace {
   explicit PanelWorkspace(const PanelFactor<Real>& factor);

@@ -60,7 +60,7 @@ HWY_INLINE void panel_forwards(const Index* rows, Index row_count, const Real* v
   }
 }
 
-/// Processors look less far ahead by themselves, and hardly where addresses fall.
+/// Hardware prefetches less far ahead, and hardly at all for descending addresses.
 template <int Bytes, class Real>
 HWY_INLINE void ask_for_those_before(const Real* values) {
   constexpr int kBytesAhead = 4096;
@@ -75,7 +75,7 @@ HWY_INLINE void panel_backwards(const Index* rows, Index row_count, const Real* 
                                 const Real* x) {
   using Several = Vertices<Real>;
   constexpr int kTriangle = Width * (Width - 1) / 2;
-  // rows in turn to sums of their own: additions to one sum would wait for each other
+  // rows alternate between sums, since additions to one sum depend on each other
   constexpr int kSums = HWY_MIN(kGroup / Several::kCount, Width >= 4 ? 1 : Width >= 2 ? 2 : 4);
   Several sums[kSums][Width];
   MESHORDER_UNROLL

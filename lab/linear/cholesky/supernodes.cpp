@@ -7,7 +7,7 @@
 namespace meshorder {
 namespace {
 
-/// Of a supernode with so many columns and rows below them.
+/// Returns the cost of a supernode of `columns` columns with `rows` rows below them.
 double cost_of(Index columns, Offset rows, const PanelCosts& costs) {
   const Index panels = panel_count(columns, costs.widest);
   const double width = columns;
@@ -15,6 +15,30 @@ double cost_of(Index columns, Offset rows, const PanelCosts& costs) {
   const double rows_read = panels * static_cast<double>(rows) + (panels - 1) * width / 2;
   const double entries = width * static_cast<double>(rows) + width * (width - 1) / 2;
   return panels * costs.panel + rows_read * costs.row + entries;
+}
+
+Index add_task(SolveTasks& tasks, Index parent) {
+  const Index task = tasks.count();
+  tasks.parent.push_back(parent);
+  tasks.children.emplace_back();
+  if (parent >= 0) tasks.children[parent].push_back(task);
+  return task;
+}
+
+/// Groups small branches into bundles that cost at least `min_cost`; the last bundle may cost less.
+std::vector<std::vector<Index>> bundles_of(const std::vector<Index>& branches,
+                                           const std::vector<double>& cost, double min_cost) {
+  std::vector<std::vector<Index>> bundles;
+  double sum = min_cost;
+  for (const Index branch : branches) {
+    if (sum >= min_cost) {
+      bundles.emplace_back();
+      sum = 0;
+    }
+    bundles.back().push_back(branch);
+    sum += cost[branch];
+  }
+  return bundles;
 }
 
 }  // namespace
@@ -31,7 +55,7 @@ Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs) {
   std::vector<std::vector<Index>> children(n);
   for (Index j = 0; j < n; ++j) {
     cost[j] = cost_of(1, rows_below(j), costs);
-    // those first that lack the fewest rows
+    // first those with the most rows in common
     std::stable_sort(children[j].begin(), children[j].end(),
                      [&](Index a, Index b) { return rows_below(a) > rows_below(b); });
     for (const Index child : children[j]) {
@@ -60,6 +84,53 @@ Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs) {
     supernodes.parent.push_back(parent_of(top) < 0 ? -1 : supernodes.of_column[parent_of(top)]);
   }
   return supernodes;
+}
+
+SolveTasks make_solve_tasks(const Supernodes& supernodes, double min_cost) {
+  const Index n = supernodes.count();
+  std::vector<double> cost = supernodes.cost;                 // of a supernode and all below it
+  std::vector<std::vector<Index>> below(std::size_t(n) + 1);  // the last is that of all roots
+  for (Index s = 0; s < n; ++s) {
+    const Index parent = supernodes.parent[s];
+    if (parent >= 0) cost[parent] += cost[s];
+    below[parent >= 0 ? parent : n].push_back(s);
+  }
+
+  SolveTasks tasks;
+  std::vector<Index> task_of(std::size_t(n) + 1, add_task(tasks, -1));
+  for (Index s = n; s >= 0; --s) {
+    const Index task = task_of[s];
+    std::vector<Index> light;
+    std::vector<std::vector<Index>> branches;
+    for (const Index child : below[s]) {
+      if (cost[child] >= min_cost) {
+        branches.push_back({child});
+      } else {
+        light.push_back(child);
+      }
+    }
+    double rest = 0;
+    for (const Index child : light) rest += cost[child];
+    if (rest >= min_cost) {
+      for (std::vector<Index>& bundle : bundles_of(light, cost, min_cost))
+        branches.push_back(std::move(bundle));
+      light.clear();
+    }
+    for (const Index child : light) task_of[child] = task;
+    for (const std::vector<Index>& branch : branches) {
+      const Index own = branches.size() > 1 ? add_task(tasks, task) : task;
+      for (const Index child : branch) task_of[child] = own;
+    }
+  }
+
+  tasks.supernodes.resize(tasks.count());
+  tasks.cost.assign(tasks.count(), 0.0);
+  for (Index s = 0; s < n; ++s) {
+    tasks.supernodes[task_of[s]].push_back(s);
+    tasks.cost[task_of[s]] += supernodes.cost[s];
+  }
+  for (Index task = tasks.count() - 1; task > 0; --task) tasks.cost[tasks.parent[task]] += tasks.cost[task];
+  return tasks;
 }
 
 }  // namespace meshorder

@@ -7,16 +7,16 @@
 
 namespace meshorder {
 
-/// What a triangular solve takes, in units of one entry of L, where the entries stand in panels: some columns
-/// side by side with the rows that any of them has.
+/// Costs of a triangular solve in units of one entry of L. The entries are stored in panels: neighbouring
+/// columns with the union of their rows.
 struct PanelCosts {
   Index widest = 8;     ///< columns of a panel at most
-  double panel = 30.0;  ///< to begin with one
-  double row = 2.0;     ///< to read a row's number and to load and store it
+  double panel = 30.0;  ///< to start a panel
+  double row = 2.0;     ///< to read a row's index and to load and store the row
 };
 
-/// The columns of L in groups whose patterns are so nearly alike that they are stored as one (relaxed
-/// supernodes, Ashcraft and Grimes 1989), as the forest that the elimination tree makes of them.
+/// Groups of columns of L with similar patterns, stored as one pattern (relaxed supernodes, Ashcraft and
+/// Grimes 1989), and the forest that they inherit from the elimination tree.
 struct Supernodes {
   std::vector<Index> of_column;  ///< the supernode of each column of L
   std::vector<Index> parent;     ///< greater than the supernode, or −1
@@ -26,11 +26,28 @@ struct Supernodes {
   [[nodiscard]] Index count() const noexcept { return static_cast<Index>(parent.size()); }
 };
 
-/// Panels of the same width, but for one column, that a supernode of so many columns is cut into.
+/// Returns the number of panels of a supernode with `columns` columns; their widths differ by at most one
+/// column.
 constexpr Index panel_count(Index columns, Index widest) { return (columns + widest - 1) / widest; }
 
 /// Joins each column with those of its children in the elimination tree where that makes the solve cheaper.
 /// O(columns log columns).
 Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs = {});
+
+/// A tree of tasks over a forest of supernodes: a task can start when its children are done, which are
+/// independent of each other. Task 0 is the root; a task's number is greater than its parent's.
+struct SolveTasks {
+  std::vector<Index> parent;                 ///< −1 for task 0
+  std::vector<std::vector<Index>> children;  ///< ascending
+  std::vector<std::vector<Index>>
+      supernodes;            ///< of each task, ascending: children come before their parents
+  std::vector<double> cost;  ///< of a task and all below it
+
+  [[nodiscard]] Index count() const noexcept { return static_cast<Index>(parent.size()); }
+};
+
+/// Cuts the forest wherever two or more branches are worth a task, that is, cost at least `min_cost` each;
+/// smaller branches are bundled. Does not depend on the number of threads. O(supernodes).
+SolveTasks make_solve_tasks(const Supernodes& supernodes, double min_cost);
 
 }  // namespace meshorder

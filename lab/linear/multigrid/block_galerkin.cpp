@@ -20,8 +20,8 @@ using FloatBlock = Eigen::Matrix<float, R, C, Eigen::RowMajor>;
 template <class Work>
 void for_each_share(Index rows, Work work) {
   constexpr Index kShares = 16;
-  constexpr Index kLeastRows = 64;
-  for_each_chunk(rows, std::max(kLeastRows, chunk_count(rows, kShares)),
+  constexpr Index kMinRows = 64;
+  for_each_chunk(rows, std::max(kMinRows, chunk_count(rows, kShares)),
                  [&](Index, Index begin, Index end) { work(begin, end); });
 }
 

@@ -8,7 +8,7 @@
 namespace meshorder {
 
 /// Where the blocks of each column of a prolongation stand: those of column a are blocks `blocks[k]`, in the
-/// rows `rows[k]`, offsets[a] ≤ k < offsets[a + 1], rows rising.
+/// rows `rows[k]`, offsets[a] ≤ k < offsets[a + 1], rows ascending.
 struct ColumnBlocks {
   std::vector<Offset> offsets{0};
   std::vector<Index> rows;
@@ -19,15 +19,15 @@ struct ColumnBlocks {
 template <int R>
 ColumnBlocks column_blocks(const Prolongation<R>& prolongation);
 
-/// The pattern of Pᵀ A P, its diagonal and its columns in rising order, without values.
-/// O(multiplications) without the blocks' factor.
+/// The pattern of Pᵀ A P, with its diagonal and ascending columns, without values. O(multiplications) without
+/// the blocks' factor.
 template <int R>
 CoarseMatrix galerkin_pattern(const BlockView<R>& fine, const Prolongation<R>& p,
                               const ColumnBlocks& transposed);
 
 /// Pᵀ A P into that pattern, for symmetric A, in double. Unknowns that P leaves out (columns of zeros) get
-/// the largest entry of the diagonal of their block there, or 1, so that the product is as definite as A.
-/// O(multiplications), on all threads; the same bits for any number of them.
+/// the largest entry of their block's diagonal, or 1, on the diagonal, so that the product is as definite as
+/// A. O(multiplications), on all threads; the same bits for any number of them.
 template <int R>
 void galerkin_product(const BlockView<R>& fine, const Prolongation<R>& p, const ColumnBlocks& transposed,
                       CoarseMatrix& coarse);

@@ -20,7 +20,7 @@ struct BlockRows {
 
   Index columns_count = 0;
   std::vector<Offset> offsets{0};  ///< rows + 1
-  std::vector<Index> columns;      ///< of a row, rising
+  std::vector<Index> columns;      ///< of a row, ascending
   std::vector<Number> values;      ///< and `kRoom` more
 
   [[nodiscard]] Index rows() const noexcept { return static_cast<Index>(offsets.size() - 1); }
@@ -39,8 +39,8 @@ using Prolongation = BlockRows<float, R, kRigidModes>;
 /// The operator of a coarse level.
 using CoarseMatrix = BlockRows<double, kRigidModes, kRigidModes>;
 
-/// A square matrix of R×R blocks that somebody else holds: row i of it is row `order[i]` there, and column j
-/// there is column `number[j]` of it.
+/// A reordered view of a square matrix of R×R blocks: row i of the view is row `order[i]` of the matrix, and
+/// column j of the matrix is column `number[j]` of the view.
 template <int R>
 struct BlockView {
   std::span<const Offset> offsets;

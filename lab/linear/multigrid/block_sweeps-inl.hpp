@@ -124,8 +124,8 @@ struct Node {
   }
 };
 
-/// Sums of products with blocks of R×C numbers, column by column. Each column has a sum of its own, since the
-/// additions of one would wait for each other.
+/// Sums of products with blocks of R×C numbers, column by column. Each column has a sum of its own, since
+/// additions to one sum depend on each other.
 template <int R, int C>
 struct ProductSum {
   Node<R> of_column[C];

@@ -34,8 +34,8 @@ namespace {
 
 constexpr int kBytesAhead = 2048;
 
-/// Gives the rows before row `i` their part of x there. What chunks on either side give to one chunk at the
-/// same time goes to places of their own.
+/// Adds the contributions of row `i` to the rows before it. Simultaneous contributions of two chunks to one
+/// chunk go to separate memory.
 template <int R>
 HWY_INLINE void give(const SweptRows& rows, Index i, const Node<R>& x) {
   for (Offset k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
@@ -57,8 +57,8 @@ HWY_INLINE Node<R> solve_diagonal(const SweptRows& rows, Index i, const Node<R>&
   return x;
 }
 
-/// L x in row i. Asks for blocks `Ahead` bytes from those of the row, which processors do not do by
-/// themselves where rows go down.
+/// L x in row i. Prefetches blocks `Ahead` bytes from those of the row; hardware does not prefetch descending
+/// rows.
 template <int R, int Ahead>
 HWY_INLINE Node<R> left_product(const SweptRows& rows, Index i) {
   auto product = ProductSum<R, R>::zero();
@@ -138,7 +138,7 @@ HWY_EXPORT(backwards_6);
 HWY_EXPORT(residual_3);
 HWY_EXPORT(residual_6);
 
-/// Whether no row has a neighbour beyond the chunks next to its own.
+/// Returns whether all neighbours of every row are in its own or an adjacent chunk.
 bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
   bool result = true;
   for (Index i = 0; i < graph.size(); ++i) {
@@ -149,10 +149,10 @@ bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
   return result;
 }
 
-/// Chunks that two threads can share evenly, or one chunk where that is not to be had.
-RowChunks sweep_chunks(const Laplacian& graph, Index least_rows) {
-  for (Index least = least_rows; least < graph.size(); least *= 2) {
-    RowChunks chunks(graph, least);
+/// Returns chunks that two threads can share evenly, or one chunk if there are none.
+RowChunks sweep_chunks(const Laplacian& graph, Index min_rows) {
+  for (Index rows = min_rows; rows < graph.size(); rows *= 2) {
+    RowChunks chunks(graph, rows);
     if (chunks.count() > 1 && touch_only_the_next(graph, chunks)) return chunks;
   }
   return RowChunks::whole(graph.size());
@@ -162,25 +162,25 @@ RowChunks sweep_chunks(const Laplacian& graph, Index least_rows) {
 template <int R>
 Eigen::Matrix<double, R, R> positive_inverse(const Eigen::Matrix<double, R, R>& block) {
   using Block = Eigen::Matrix<double, R, R>;
-  constexpr double kLeast = 1e-9;  // of the largest eigenvalue
+  constexpr double kMin = 1e-9;  // of the largest eigenvalue
   const Eigen::LLT<Block> factor(block);
   if (factor.info() == Eigen::Success) {
     const auto pivots = factor.matrixLLT().diagonal();
-    if (std::pow(pivots.minCoeff() / pivots.maxCoeff(), 2) > kLeast) return factor.solve(Block::Identity());
+    if (std::pow(pivots.minCoeff() / pivots.maxCoeff(), 2) > kMin) return factor.solve(Block::Identity());
   }
   if (!block.allFinite()) return Block::Zero();
   const Eigen::SelfAdjointEigenSolver<Block> solver(block);
   Eigen::Matrix<double, R, 1> values = solver.eigenvalues().cwiseAbs();
   const double largest = values.maxCoeff();
   if (!(largest > 0)) return Block::Identity();
-  values = values.cwiseMax(kLeast * largest).cwiseInverse();
+  values = values.cwiseMax(kMin * largest).cwiseInverse();
   return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
 }
 
 }  // namespace
 
 template <int R>
-BlockSweeps<R>::BlockSweeps(const BlockView<R>& pattern, Index least_rows) {
+BlockSweeps<R>::BlockSweeps(const BlockView<R>& pattern, Index min_rows) {
   const Index n = pattern.rows();
   Laplacian graph;
   graph.offsets.reserve(Offset{n} + 1);
@@ -191,7 +191,7 @@ BlockSweeps<R>::BlockSweeps(const BlockView<R>& pattern, Index least_rows) {
     graph.offsets.push_back(static_cast<Offset>(graph.neighbours.size()));
   }
   graph.diagonal.assign(n, 1.0);
-  chunks_ = sweep_chunks(graph, least_rows);
+  chunks_ = sweep_chunks(graph, min_rows);
   std::vector<Index> colour_of(std::max(chunks_.count(), 1));
   for (Index colour = 0; colour < index_size(chunks_.colours()); ++colour) {
     for (const Index chunk : chunks_.colours()[colour]) colour_of[chunk] = colour;

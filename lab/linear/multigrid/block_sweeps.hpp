@@ -16,25 +16,25 @@ template <int R>
 inline constexpr Index kNodeStride = R == 3 ? 4 : 8;
 
 /// Gauss–Seidel by blocks on a symmetric matrix A = L + D + Lᵀ of R×R blocks, of which only L, in float, and
-/// the inverses of D are kept: half of A serves both triangles, since what a row takes from those before it
-/// gives them their part of A x as well.
+/// the inverses of D are kept: one half of A serves both triangles, since the blocks that couple a row to
+/// earlier rows also give those rows their part of A x.
 ///
-/// The rows go in chunks, those of a colour at the same time (see RowChunks), where every chunk touches only
-/// the next ones; L is what stands to the left of D in that order. The same bits for any number of threads.
+/// Rows are processed in chunks, those of one colour at the same time (see RowChunks); every chunk touches
+/// only adjacent ones. L is the part to the left of D in that order. The same bits for any number of threads.
 template <int R>
 class BlockSweeps {
  public:
-  static constexpr Index kLeastRows = 512;  ///< fewer take less than the start of a thread's task
+  static constexpr Index kMinRows = 512;  ///< fewer rows are not worth a task
 
   BlockSweeps() = default;
 
-  /// For the pattern of A, with the numbers to come; chunks have at least `least_rows` rows.
-  explicit BlockSweeps(const BlockView<R>& pattern, Index least_rows = kLeastRows);
+  /// Takes the pattern of A; the values follow by `update`. Chunks have at least `min_rows` rows.
+  explicit BlockSweeps(const BlockView<R>& pattern, Index min_rows = kMinRows);
 
-  /// Takes over the numbers. D is made positive definite where it is not. On all threads.
+  /// Takes the values. D is made positive definite where it is not. On all threads.
   void update(const BlockView<R>& matrix);
 
-  /// Room for what rows give to the rows before them: kNodeStride floats a node each.
+  /// Scratch memory for contributions of rows to earlier rows: kNodeStride floats a node each.
   struct Given {
     AlignedVector<float> from_below, from_above;
   };

@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-/// One level of a multigrid hierarchy with R unknowns a node, and the way to the next coarser.
+/// One level of a multigrid hierarchy with R unknowns a node, and the transfer to the next coarser level.
 template <int R>
 struct MultigridLevel {
   BlockSweeps<R> sweeps;
@@ -27,11 +27,11 @@ enum class Coarsening : std::uint8_t { plain, smoothed };
 
 /// The level of a matrix, and the way to the next: aggregates by the norms of the blocks, of which `modes`
 /// (R×6 numbers a node, in the order of the view) gives those of the coarse nodes back. The level is the
-/// coarsest where coarsening would keep most nodes.
+/// coarsest if coarsening would keep most nodes.
 template <int R>
 MultigridLevel<R> make_level(const BlockView<R>& matrix, Coarsening coarsening, std::vector<double>& modes);
 
-/// Takes over the numbers of a matrix of the same pattern, for the sweeps and for `coarse`.
+/// Takes the values of a matrix of the same pattern, for the sweeps and for `coarse`.
 template <int R>
 void update_level(const BlockView<R>& matrix, MultigridLevel<R>& level);
 

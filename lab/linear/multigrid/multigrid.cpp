@@ -33,9 +33,9 @@ CsrGraph graph_of(const BlockCsr& pattern) {
   return graph;
 }
 
-/// The inverse of a symmetric matrix; where that is not positive definite, of one that is.
+/// Returns the inverse of a symmetric matrix, with eigenvalues made positive where they are not.
 Eigen::MatrixXf dense_inverse(const CoarseMatrix& matrix) {
-  constexpr double kLeast = 1e-12;  // of the largest eigenvalue
+  constexpr double kMin = 1e-12;  // of the largest eigenvalue
   const Eigen::Index n = Eigen::Index{kRigidModes} * matrix.rows();
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
   for (Index i = 0; i < matrix.rows(); ++i) {
@@ -46,13 +46,13 @@ Eigen::MatrixXf dense_inverse(const CoarseMatrix& matrix) {
     }
   }
   const Eigen::LLT<Eigen::MatrixXd> factor(dense);
-  if (factor.info() == Eigen::Success && factor.rcond() > kLeast) {
+  if (factor.info() == Eigen::Success && factor.rcond() > kMin) {
     return factor.solve(Eigen::MatrixXd::Identity(n, n)).cast<float>();
   }
   if (!dense.allFinite()) return Eigen::MatrixXf::Zero(n, n);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense);
   Eigen::VectorXd values = solver.eigenvalues().cwiseAbs();
-  values = values.cwiseMax(kLeast * values.maxCoeff()).cwiseInverse();
+  values = values.cwiseMax(kMin * values.maxCoeff()).cwiseInverse();
   return (solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose()).cast<float>();
 }
 
@@ -165,7 +165,7 @@ class Multigrid final : public Preconditioner {
       coarse_vectors_.emplace_back(last->rows());
       coarse_.push_back(make_level(view(*last), Coarsening::smoothed, modes));
       MultigridLevel<kRigidModes>& level = coarse_.back();
-      // growing moves the levels
+      // growth of the vector moves the levels
       last = coarse_.size() > 1 ? &coarse_[coarse_.size() - 2].coarse : &finest_.coarse;
       update_level(view(*last), level);
       last->values = std::vector<double>();

@@ -20,15 +20,16 @@ namespace meshorder {
 /// order outside.
 ///
 /// The aggregates are made in the first `update`, from its numbers; later ones only recompute numbers, and
-/// take a third to a half of the time. A matrix that changes slowly need not be taken over each time: with
-/// old numbers the cycle stays symmetric and positive definite, and only iterations are lost. Whoever steps
-/// in time does best to update when iterations have grown by a third since the last update. Vertices without
-/// neighbours, as fixed ones are, stay on the finest level; one that loses its neighbours after the first
-/// update does no harm.
+/// take a third to a half of the time. A matrix that changes slowly need not be taken each time: with old
+/// values the cycle stays symmetric and positive definite, and only takes more iterations. In time stepping,
+/// update when iterations have grown by a third since the last update. Vertices without neighbours, as fixed
+/// ones are, stay on the finest level; one that loses its neighbours after the first update is handled
+/// correctly.
 ///
 /// Memory: 0.6 to 0.9 times the matrix. O(blocks) for set-up, update and cycle, on all threads but for the
-/// aggregates. `apply` uses room of its own: not from two threads at a time. Throws InvalidArgument unless
-/// there is a point for each row.
+/// aggregates. `apply` uses scratch memory of the object and must not be called by two threads at a time.
+/// Measured against Jacobi in docs/benchmarks.md. Throws InvalidArgument unless there is a point for each
+/// row.
 std::unique_ptr<Preconditioner> make_multigrid(const BlockCsr& pattern, std::span<const Point> points);
 
 }  // namespace meshorder

@@ -18,10 +18,10 @@ using Square = Eigen::Matrix<double, kRigidModes, kRigidModes, Eigen::RowMajor>;
 Square orthonormalise(Modes& columns) {
   constexpr int kTranslations = 3;
   // of the widest rotation: an aggregate thinner than this is a line
-  constexpr double kLeast = 1e-4;
+  constexpr double kMin = 1e-4;
   Square upper = Square::Zero();
   const auto project_out = [&](int from, int j) {
-    for (int pass = 0; pass < 2; ++pass) {  // twice is enough (Kahan)
+    for (int pass = 0; pass < 2; ++pass) {  // two passes are enough (Kahan)
       for (int i = from; i < j && i < (from < kTranslations ? kTranslations : j); ++i) {
         const double share = columns.col(i).dot(columns.col(j));
         upper(i, j) += share;
@@ -29,9 +29,9 @@ Square orthonormalise(Modes& columns) {
       }
     }
   };
-  const auto normalise = [&](int j, double least) {
+  const auto normalise = [&](int j, double min_norm) {
     const double norm = columns.col(j).norm();
-    if (norm > least) {
+    if (norm > min_norm) {
       upper(j, j) = norm;
       columns.col(j) /= norm;
     } else {
@@ -42,19 +42,19 @@ Square orthonormalise(Modes& columns) {
   for (int j = 0; j < kTranslations; ++j) {
     const double before = columns.col(j).norm();
     project_out(0, j);
-    normalise(j, kLeast * before);
+    normalise(j, kMin * before);
   }
   double widest = 0;
   for (int j = kTranslations; j < kRigidModes; ++j) {
     const double before = columns.col(j).norm();
     project_out(0, j);
     const double after = columns.col(j).norm();
-    if (after <= 1e-10 * before) columns.col(j).setZero();  // nothing but rounding is left
+    if (after <= 1e-10 * before) columns.col(j).setZero();  // only rounding errors are left
     widest = std::max(widest, columns.col(j).norm());
   }
   for (int j = kTranslations; j < kRigidModes; ++j) {
     project_out(kTranslations, j);
-    normalise(j, kLeast * widest);
+    normalise(j, kMin * widest);
   }
   return upper;
 }

@@ -9,7 +9,8 @@
 
 namespace meshorder {
 
-/// Vertices or nodes by aggregate: those of a are `members[starts[a]] … members[starts[a + 1] − 1]`, rising.
+/// Vertices or nodes by aggregate: those of a are `members[starts[a]] … members[starts[a + 1] − 1]`,
+/// ascending.
 struct Aggregates {
   std::vector<Index> starts{0};
   std::vector<Index> members;
@@ -21,7 +22,7 @@ struct Aggregates {
 /// a point, row by row: translations along x, y, z, rotations about x, y, z. O(points).
 std::vector<double> rigid_modes(std::span<const Point> points);
 
-/// What aggregation makes of the modes.
+/// Result of aggregation: the prolongation and the modes of the coarse nodes.
 template <int R>
 struct RigidProlongation {
   Prolongation<R> prolongation;

@@ -29,21 +29,21 @@ void subtract_product(double* a, const double* b, const Value* block) {
   }
 }
 
-/// Whether a pivot is no rounding error of the diagonal block that it began as.
+/// Returns whether a pivot exceeds the rounding errors of the original diagonal block.
 bool is_large_enough(const double* pivot, const double* diagonal) {
-  constexpr double kLeast = 1e-3;
+  constexpr double kMin = 1e-3;
   for (int c = 0; c < 3; ++c) {
-    if (!(pivot[4 * c] > kLeast * diagonal[4 * c])) return false;
+    if (!(pivot[4 * c] > kMin * diagonal[4 * c])) return false;
   }
   return true;
 }
 
-/// For each vertex whether it joins its chunk to an earlier one.
+/// Returns for each vertex whether it connects its chunk to an earlier one.
 std::vector<bool> joining_vertices(const BlockCsr& pattern, const std::vector<Index>& bounds) {
   std::vector<bool> joins(static_cast<std::size_t>(pattern.size()), false);
   for (Index chunk = 0; chunk + 1 < index_size(bounds); ++chunk) {
     for (Index v = bounds[chunk]; v < bounds[chunk + 1]; ++v) {
-      // columns rise
+      // columns are ascending
       joins[v] =
           pattern.offsets[v] < pattern.offsets[v + 1] && pattern.columns[pattern.offsets[v]] < bounds[chunk];
     }
@@ -57,8 +57,8 @@ IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern) : offsets_{0} {
   const Index n = pattern.size();
   // enough for a thread to work on, not so many that most vertices join chunks, and a power of two, which any
   // usual number of threads shares evenly
-  constexpr Index kRows = 8'000, kMostChunks = 16;
-  const auto count = static_cast<std::uint32_t>(std::clamp<Index>(n / kRows, 1, kMostChunks));
+  constexpr Index kRows = 8'000, kMaxChunks = 16;
+  const auto count = static_cast<std::uint32_t>(std::clamp<Index>(n / kRows, 1, kMaxChunks));
   const std::vector<Index> chunks =
       balanced_ranges(pattern.offsets, static_cast<Index>(std::bit_floor(count)));
   const std::vector<bool> joins = joining_vertices(pattern, chunks);
@@ -76,7 +76,7 @@ IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern) : offsets_{0} {
   for (Index i = 0; i < n; ++i) rows_[vertices_[i]] = i;
   for (const Index v : vertices_) {
     diagonals_.push_back(diagonal_block(pattern, v));
-    // inner vertices before the others, each by rising numbers
+    // inner vertices before the others, each in ascending order
     for (const bool joining : {false, true}) {
       if (joining && !joins[v]) continue;
       for (Offset k = pattern.offsets[v]; k < pattern.offsets[v + 1]; ++k) {
@@ -103,12 +103,12 @@ void IncompleteCholesky::update(const BlockCsr& matrix) {
                           " vertices, the matrix has " + std::to_string(matrix.size()));
   }
   // elastic solids take about an eighth
-  constexpr double kFirst = 1.0 / 64.0, kFactor = std::numbers::sqrt2, kMost = 64.0;
+  constexpr double kFirst = 1.0 / 64.0, kFactor = std::numbers::sqrt2, kMax = 64.0;
   shift_ = 0.0;
   while (!factor(matrix, shift_)) {
     shift_ = std::max(kFirst, kFactor * shift_);
-    // hardly a positive definite matrix
-    if (shift_ > kMost) return keep_diagonal(matrix);
+    // the matrix is hardly positive definite
+    if (shift_ > kMax) return keep_diagonal(matrix);
   }
 }
 

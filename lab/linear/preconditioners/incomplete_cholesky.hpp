@@ -10,8 +10,9 @@
 namespace meshorder {
 
 /// A ≈ L D Lᵀ by 3×3 blocks in the pattern of A (Meijerink, van der Vorst 1977), L unit lower triangular and
-/// in float, which is exact enough for what is incomplete. Where a pivot is not positive definite, the blocks
-/// of the diagonal are enlarged and the factorisation begins again (Manteuffel 1980).
+/// in float, which is accurate enough for an incomplete factor. If a pivot is not positive definite, the
+/// diagonal blocks are enlarged and the factorisation restarts (Manteuffel 1980). Measured against Jacobi in
+/// docs/benchmarks.md.
 ///
 /// Vertices are eliminated in their order, but for those that join a chunk of rows to one before it: they
 /// come last. What is within chunks is then factored and solved on threads. The chunks depend on the pattern
@@ -26,7 +27,7 @@ class IncompleteCholesky final : public Preconditioner {
   void apply(std::span<const double> r, std::span<double> z) const override;
   [[nodiscard]] std::size_t bytes() const override;
 
-  /// By which part of themselves the blocks of the diagonal were enlarged; 0 where that was not needed.
+  /// Returns the relative enlargement of the diagonal blocks; 0 if none was needed.
   [[nodiscard]] double shift() const noexcept { return shift_; }
 
  private:
@@ -45,7 +46,7 @@ class IncompleteCholesky final : public Preconditioner {
   std::vector<Index> columns_;      ///< their vertices, in the order of elimination
   std::vector<Offset> sources_;     ///< which blocks of the matrix they come from
   std::vector<Offset> diagonals_;   ///< the matrix's blocks on the diagonal, for each row
-  AlignedVector<float> values_;     ///< L's blocks, and one number more that vectors may read
+  AlignedVector<float> values_;     ///< L's blocks, and one more number, since vector loads read past the end
   AlignedVector<double> inverses_;  ///< D⁻¹, 6 for each vertex: 00 01 02 11 12 22
   double shift_ = 0.0;
 };

@@ -11,7 +11,7 @@
 namespace meshorder {
 namespace {
 
-// as many as threads are worth
+// rows of a chunk: worth the start of a task
 constexpr Index kRows = 4096;
 
 }  // namespace

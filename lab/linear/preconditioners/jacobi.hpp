@@ -2,12 +2,33 @@
 #pragma once
 
 #include "kernels/aligned.hpp"
-#include "lab/linear/preconditioners/local_preconditioner.hpp"
+#include "lab/linear/preconditioners/preconditioner.hpp"
 
 namespace meshorder {
 
+/// A preconditioner whose z at a vertex depends only on r at that vertex, so that a solver can apply it to a
+/// few rows at a time while they are in the cache.
+class LocalPreconditioner : public Preconditioner {
+ public:
+  /// Throws InvalidArgument if a size differs.
+  void apply(std::span<const double> r, std::span<double> z) const final;
+
+  /// z ≈ A⁻¹ r for the vertices begin … end − 1; r and z as in `apply`.
+  virtual void apply_rows(const double* r, double* z, Index begin, Index end) const = 0;
+
+ protected:
+  explicit LocalPreconditioner(Index vertices) : vertices_(vertices) {}
+  /// Throws InvalidArgument unless the matrix has as many block rows as the one the preconditioner was made
+  /// for.
+  void check_size(const BlockCsr& matrix) const;
+  [[nodiscard]] Index vertices() const noexcept { return vertices_; }
+
+ private:
+  Index vertices_;
+};
+
 /// z_i = r_i / |a_ii|. A diagonal entry that is 0 or not finite counts as 1, so that the preconditioner stays
-/// positive definite and the solver finds out about the matrix.
+/// positive definite and the solver detects the bad matrix.
 class Jacobi final : public LocalPreconditioner {
  public:
   explicit Jacobi(Index vertices) : LocalPreconditioner(vertices) {}

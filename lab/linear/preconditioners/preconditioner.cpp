@@ -10,20 +10,6 @@
 
 namespace meshorder {
 
-std::string_view name(PreconditionerKind kind) {
-  switch (kind) {
-    case PreconditionerKind::jacobi:
-      return "jacobi";
-    case PreconditionerKind::block_jacobi:
-      return "block-jacobi";
-    case PreconditionerKind::incomplete_cholesky:
-      return "incomplete-cholesky";
-    case PreconditionerKind::multigrid:
-      return "multigrid";
-  }
-  return "";
-}
-
 std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const BlockCsr& pattern,
                                                     std::span<const Point> points) {
   if (points.size() != static_cast<std::size_t>(pattern.size())) {
@@ -40,7 +26,7 @@ std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, con
     case PreconditionerKind::multigrid:
       return make_multigrid(pattern, points);
   }
-  throw InvalidArgument("preconditioner: none of the known ones");
+  throw InvalidArgument("preconditioner: unknown kind");
 }
 
 }  // namespace meshorder

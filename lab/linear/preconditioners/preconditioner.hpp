@@ -2,35 +2,29 @@
 #pragma once
 
 #include "base/point.hpp"
+#include "base/polymorphic.hpp"
+#include "base/text.hpp"
 #include "kernels/block_csr.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string_view>
 
 namespace meshorder {
 
 /// Approximates the inverse of a symmetric positive definite matrix of 3×3 blocks. Symmetric and positive
 /// definite itself; the same bits for any number of threads.
-class Preconditioner {
+class Preconditioner : public detail::Polymorphic {
  public:
-  Preconditioner() = default;
-  Preconditioner(const Preconditioner&) = delete;
-  Preconditioner(Preconditioner&&) = delete;
-  Preconditioner& operator=(const Preconditioner&) = delete;
-  Preconditioner& operator=(Preconditioner&&) = delete;
-  virtual ~Preconditioner() = default;
-
-  /// Takes over the numbers of a matrix of the pattern that it was made for. To be called before `apply`,
-  /// and again when the matrix has changed.
+  /// Takes the values of a matrix that has the pattern it was made for. Call it before `apply`, and again
+  /// after the matrix has changed.
   virtual void update(const BlockCsr& matrix) = 0;
 
   /// z ≈ A⁻¹ r, 3 doubles for each vertex.
   virtual void apply(std::span<const double> r, std::span<double> z) const = 0;
 
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
@@ -41,12 +35,18 @@ enum class PreconditionerKind : std::uint8_t {
   multigrid,            ///< a cycle over aggregates with rigid-body modes (see make_multigrid)
 };
 
-/// "jacobi", "block-jacobi", "incomplete-cholesky", "multigrid".
-std::string_view name(PreconditionerKind kind);
+template <>
+struct EnumNames<PreconditionerKind> {
+  static constexpr std::string_view kind = "preconditioner";
+  static constexpr std::array names{std::pair{PreconditionerKind::jacobi, "jacobi"},
+                                    std::pair{PreconditionerKind::block_jacobi, "block-jacobi"},
+                                    std::pair{PreconditionerKind::incomplete_cholesky, "incomplete-cholesky"},
+                                    std::pair{PreconditionerKind::multigrid, "multigrid"}};
+};
 
-/// A preconditioner for matrices of this pattern, the vertices at rest at `points` (of which multigrid makes
-/// its rigid-body modes). Throws InvalidArgument when these are not as many as the pattern has rows; it or
-/// `update` where a row lacks its diagonal.
+/// Returns a preconditioner for matrices of this pattern, the vertices at rest at `points` (from which
+/// multigrid computes its rigid-body modes). Throws InvalidArgument if the numbers of points and rows differ;
+/// it or `update` throws if a row lacks its diagonal.
 std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const BlockCsr& pattern,
                                                     std::span<const Point> points);
 

@@ -16,7 +16,8 @@ inline SymmetricBlock upper_triangle(const double* block) {
   return {block[0], block[1], block[2], block[4], block[5], block[8]};
 }
 
-/// The inverse of a positive definite block; nothing for another one, or one that is singular to rounding.
+/// The inverse of a positive definite block; none if the block is not positive definite or singular to
+/// rounding.
 std::optional<SymmetricBlock> inverse_of_definite(const SymmetricBlock& block);
 
 /// 1 / |entry|, or 1 where that or the entry is not finite.

@@ -1,0 +1,19 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+namespace meshorder::detail {
+
+/// Base of abstract classes: a virtual destructor, neither copied nor moved.
+class Polymorphic {
+ public:
+  Polymorphic(const Polymorphic&) = delete;
+  Polymorphic(Polymorphic&&) = delete;
+  Polymorphic& operator=(const Polymorphic&) = delete;
+  Polymorphic& operator=(Polymorphic&&) = delete;
+  virtual ~Polymorphic() = default;
+
+ protected:
+  Polymorphic() = default;
+};
+
+}  // namespace meshorder::detail
