@@ -7,6 +7,7 @@
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include "payoff/access_stream.hpp"
+#include "payoff/machine.hpp"
 
 #include <fmt/core.h>
 #include <tbb/global_control.h>

@@ -10,6 +10,7 @@
 #include "metrics/edge_span.hpp"
 #include "payoff/band.hpp"
 #include "payoff/kernel_timing.hpp"
+#include "payoff/machine.hpp"
 #include "progress.hpp"
 #include "reuse_report.hpp"
 #include "wording.hpp"

@@ -7,6 +7,7 @@
 #include "mesh/check.hpp"
 #include "mesh/graphs.hpp"
 #include "metrics/edge_span.hpp"
+#include "payoff/machine.hpp"
 #include "progress.hpp"
 #include "reuse_report.hpp"
 #include "verdict.hpp"

@@ -15,6 +15,7 @@
 #include "mesh/reorder.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/kernel_timing.hpp"
+#include "payoff/machine.hpp"
 
 #include <fmt/format.h>
 

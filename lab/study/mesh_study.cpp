@@ -7,6 +7,7 @@
 #include "mesh/reorder.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/cost_model.hpp"
+#include "payoff/machine.hpp"
 
 #include <tbb/task_arena.h>
 

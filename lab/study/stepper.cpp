@@ -9,7 +9,7 @@
 #include "lab/scenario/motion_record.hpp"
 #include "lab/scenario/simulation.hpp"
 #include "lab/scenario/vertex_choice.hpp"
-#include "payoff/processors.hpp"
+#include "payoff/machine.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -9,7 +9,7 @@
 #include "lab/scenario/simulation.hpp"
 #include "lab/study/study_store.hpp"
 #include "lab/study/study_turns.hpp"
-#include "payoff/processors.hpp"
+#include "payoff/machine.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include "base/text.hpp"
 #include "kernels/simd_target.hpp"
 #include "payoff/bandwidth.hpp"
-#include "payoff/memory.hpp"
+#include "payoff/machine.hpp"
 
 #include <sys/utsname.h>
 #include <unistd.h>

@@ -5,6 +5,7 @@
 #include "mesh/mesh_ordering.hpp"
 #include "payoff/cost_model.hpp"
 #include "payoff/kernel_timing.hpp"
+#include "payoff/machine.hpp"
 
 #include <array>
 #include <cstddef>

@@ -2,7 +2,7 @@
 #include "payoff/kernel_timing.hpp"
 
 #include "base/stopwatch.hpp"
-#include "payoff/memory.hpp"
+#include "payoff/machine.hpp"
 
 #include <algorithm>
 #include <cmath>

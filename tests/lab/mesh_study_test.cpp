@@ -6,6 +6,7 @@
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
 #include "payoff/access_stream.hpp"
+#include "payoff/machine.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "lab/support/json_text.hpp"
+#include "payoff/machine.hpp"
 #include "support/files.hpp"
 
 #include <gtest/gtest.h>
