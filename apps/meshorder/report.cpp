@@ -7,7 +7,7 @@
 #include "lab/report/page/study_page.hpp"
 #include "lab/study/mesh_study.hpp"
 #include "lab/study/results_json.hpp"
-#include "lab/study/timestamp.hpp"
+#include "lab/study/folder.hpp"
 #include "lab/support/machine.hpp"
 #include "progress.hpp"
 #include "verdict.hpp"

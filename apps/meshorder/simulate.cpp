@@ -8,7 +8,7 @@
 #include "lab/models/catalogue.hpp"
 #include "lab/scenario/checkpoint.hpp"
 #include "lab/scenario/frames.hpp"
-#include "lab/scenario/shape.hpp"
+#include "lab/scenario/motion_metrics.hpp"
 #include "lab/scenario/simulation.hpp"
 #include "progress.hpp"
 #include "simulate_report.hpp"

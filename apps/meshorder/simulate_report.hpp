@@ -2,7 +2,7 @@
 #pragma once
 
 #include "console.hpp"
-#include "lab/scenario/motion_record.hpp"
+#include "lab/scenario/motion_file.hpp"
 #include "lab/scenario/simulation.hpp"
 
 #include <nlohmann/json.hpp>

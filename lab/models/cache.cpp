@@ -75,14 +75,14 @@ MakingLock::MakingLock(const fs::path& folder, std::string_view name)
 
 MakingLock::~MakingLock() { ::close(file_); }
 
-Workshop::Workshop(const fs::path& folder, std::string_view name)
+ScratchFolder::ScratchFolder(const fs::path& folder, std::string_view name)
     : path_(folder / ("." + std::string(name) + ".making")) {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
   make_folder(path_);
 }
 
-Workshop::~Workshop() {
+ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
 }

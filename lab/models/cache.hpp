@@ -33,14 +33,14 @@ class MakingLock {
 
 /// An empty folder for what is being made, `folder/.NAME.making`; to be used under the lock of that name.
 /// It is removed in the end, and what an interrupted process left in it is removed at the start.
-class Workshop {
+class ScratchFolder {
  public:
-  Workshop(const std::filesystem::path& folder, std::string_view name);
-  ~Workshop();
-  Workshop(const Workshop&) = delete;
-  Workshop(Workshop&&) = delete;
-  Workshop& operator=(const Workshop&) = delete;
-  Workshop& operator=(Workshop&&) = delete;
+  ScratchFolder(const std::filesystem::path& folder, std::string_view name);
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder(ScratchFolder&&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(ScratchFolder&&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 

@@ -138,7 +138,7 @@ void make_kept(const std::string& name, bool force, const Progress& progress, co
   models::make_folder(folder);
   const models::MakingLock lock(folder, name);
   if (!force && models::counts_of(folder / (name + ".node")).vertices > 0) return;
-  const models::Workshop workshop(folder, name);
+  const models::ScratchFolder workshop(folder, name);
   const fs::path made = make(workshop.path());
   if (models::counts_of(made.string() + ".node").vertices == 0) {
     throw Error("model " + name, "its last step left no mesh behind", "is the disk full?");

@@ -76,7 +76,7 @@ std::string downloaded_package(std::string_view model, const fs::path& folder) {
 void run_tool(std::string_view model, std::string_view program, const std::vector<std::string>& arguments,
               const fs::path& folder) {
   const fs::path path = require_tool(model, program);
-  const Ended ended = run_process(path, arguments, folder, folder / "log");
+  const ExitStatus ended = run_process(path, arguments, folder, folder / "log");
   if (ended.code == 0) return;
   throw Error(model_named(model),
               fmt::format("{} failed with status {}: {}", program, ended.code,
@@ -99,7 +99,7 @@ void fetch_surfaces(std::string_view model) {
   if (complete) return;  // another process was faster
 
   require_tools(model, {"apt-get", "dpkg-deb", "tar"});
-  const Workshop workshop(folder, "surfaces");
+  const ScratchFolder workshop(folder, "surfaces");
   download_package(model, workshop.path());
   run_tool(model, "dpkg-deb", {"--extract", downloaded_package(model, workshop.path()), "demo"},
            workshop.path());

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "lab/scenario/motion_record.hpp"
+#include "lab/scenario/motion_file.hpp"
 #include "lab/scenario/simulation.hpp"
 
 #include <filesystem>

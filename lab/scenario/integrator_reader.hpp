@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lab/scenario/scenario.hpp"
-#include "lab/support/json_value.hpp"
+#include "lab/support/json.hpp"
 
 namespace meshorder {
 

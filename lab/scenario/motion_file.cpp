@@ -7,11 +7,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace meshorder {
@@ -20,6 +23,15 @@ namespace {
 /// As long for any number of frames, so that it can be written when that is known.
 std::string header_of(Index frames, Index vertices) {
   return npy_header("<f4", std::array<std::int64_t, 3>{frames, vertices, 3});
+}
+
+/// A sentence without what numbers are written with, so that those that differ in numbers alone are the same.
+std::string without_numbers(std::string_view sentence) {
+  constexpr std::string_view kOfNumbers = "0123456789.,+-einfa";
+  std::string result;
+  std::copy_if(sentence.begin(), sentence.end(), std::back_inserter(result),
+               [&](char c) { return kOfNumbers.find(c) == std::string_view::npos; });
+  return result;
 }
 
 }  // namespace
@@ -77,6 +89,25 @@ Motion read_motion(const std::filesystem::path& path) {
     }
   }
   return motion;
+}
+
+bool add_warning(const std::string& warning, Index step, std::vector<WarningRecord>& warnings) {
+  const auto known = std::find_if(warnings.begin(), warnings.end(), [&](const WarningRecord& w) {
+    return without_numbers(w.first) == without_numbers(warning);
+  });
+  if (known != warnings.end()) {
+    ++known->count;
+    return false;
+  }
+  warnings.push_back({warning, step, 1});
+  return true;
+}
+
+void add(StepReport report, double shape_distance, const Balance& balance, MotionRecord& record) {
+  const std::vector<std::string> warnings = std::exchange(report.warnings, {});
+  record.steps.push_back({std::move(report), shape_distance});
+  record.balances.push_back(balance);
+  for (const std::string& warning : warnings) add_warning(warning, index_size(record.steps), record.warnings);
 }
 
 }  // namespace meshorder

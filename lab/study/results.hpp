@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lab/motion/integrator.hpp"
-#include "lab/scenario/motion_difference.hpp"
+#include "lab/scenario/motion_metrics.hpp"
 #include "lab/support/machine.hpp"
 #include "metrics/cache.hpp"
 #include "metrics/edge_span.hpp"

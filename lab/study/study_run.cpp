@@ -4,7 +4,7 @@
 #include "base/error.hpp"
 #include "io/format.hpp"
 #include "lab/models/catalogue.hpp"
-#include "lab/scenario/motion_difference.hpp"
+#include "lab/scenario/motion_metrics.hpp"
 #include "lab/scenario/scenario_obstacles.hpp"
 #include "lab/scenario/simulation.hpp"
 #include "lab/study/study_store.hpp"

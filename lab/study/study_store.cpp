@@ -4,9 +4,9 @@
 #include "base/error.hpp"
 #include "io/format.hpp"
 #include "io/npy.hpp"
+#include "lab/study/folder.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/study/statistics.hpp"
-#include "lab/study/timestamp.hpp"
 #include "lab/support/machine.hpp"
 
 #include <fmt/format.h>

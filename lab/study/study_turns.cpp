@@ -2,7 +2,7 @@
 #include "lab/study/study_turns.hpp"
 
 #include "base/error.hpp"
-#include "lab/study/timestamp.hpp"
+#include "lab/study/folder.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/report/tables/tables.hpp"
+#include "lab/report/findings/findings.hpp"
+
 #include "support/sample_results.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include "lab/study/results_json.hpp"
 
 #include "base/error.hpp"
-#include "lab/support/json_text.hpp"
+#include "lab/support/json.hpp"
 #include "payoff/machine.hpp"
 #include "support/files.hpp"
 

@@ -26,4 +26,14 @@ bool can_draw_figures();
 /// names the package, when gnuplot is not installed or fails.
 std::vector<Figure> figures_of(const StudyResults& results);
 
+// The figures of each section of the page, as gnuplot draws them; none where the results hold nothing.
+
+std::vector<Figure> speedup_figures(const StudyResults& results);
+/// The paper's Figure 10, one for each mesh.
+std::vector<Figure> span_figures(const StudyResults& results);
+/// One for each mesh.
+std::vector<Figure> cache_figures(const StudyResults& results);
+std::vector<Figure> phase_figures(const StudyResults& results);
+std::vector<Figure> prediction_figures(const StudyResults& results);
+
 }  // namespace meshorder

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/report/figures/figure_groups.hpp"
 #include "lab/report/figures/figure_style.hpp"
+#include "lab/report/figures/figures.hpp"
 #include "lab/report/figures/gnuplot.hpp"
 #include "lab/report/findings/lookup.hpp"
 

@@ -6,7 +6,6 @@
 #include "io/stream/base64.hpp"
 #include "io/stream/output_file.hpp"
 #include "lab/report/page/packed_arrays.hpp"
-#include "lab/report/page/template.hpp"
 #include "lab/report/page/viewer_sources.hpp"
 #include "lab/study/results_json.hpp"
 
@@ -131,6 +130,24 @@ std::string findings_in(const Page& page) {
   std::string html;
   for (const std::string& finding : page.findings) html += "<p>" + prose(finding) + "</p>\n";
   return html;
+}
+
+/// Returns `text` with each placeholder `{{words}}` replaced by `value_of(words)`; values are not searched
+/// for placeholders. Throws InvalidArgument for a placeholder without end. O(size of the result).
+std::string fill_template(std::string_view text,
+                          const std::function<std::string(std::string_view)>& value_of) {
+  std::string result;
+  for (;;) {
+    const auto begin = text.find("{{");
+    result += text.substr(0, begin);
+    if (begin == std::string_view::npos) return result;
+    text.remove_prefix(begin + 2);
+    const auto end = text.find("}}");
+    if (end == std::string_view::npos)
+      throw InvalidArgument("a placeholder has no end: {{" + std::string(text.substr(0, 40)));
+    result += value_of(text.substr(0, end));
+    text.remove_prefix(end + 2);
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "io/npy.hpp"
 #include "io/stream/output_file.hpp"
+#include "lab/report/findings/findings.hpp"
 #include "lab/study/results_json.hpp"
 
 #include <fmt/format.h>

@@ -40,11 +40,6 @@ struct Table {
 /// results, or what follows from numbers there; its text is rounded.
 std::vector<Table> tables_of(const StudyResults& results);
 
-/// What the results say, in a few sentences for the top of the page and of tables.md: where the order pays
-/// and how much, where the noise swallows it, where it loses, how that compares with the paper. Made from the
-/// numbers alone.
-std::vector<std::string> findings_of(const StudyResults& results);
-
 /// All of them, one after another.
 std::string to_markdown(const std::vector<Table>& tables);
 /// One row for each cell: table,row,column,text,value. (RFC 4180)

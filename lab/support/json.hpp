@@ -6,10 +6,12 @@
 #include "base/point.hpp"
 
 #include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <initializer_list>
 #include <limits>
 #include <optional>
@@ -102,5 +104,12 @@ class JsonValue {
   std::string_view guide_;
   std::string path_;
 };
+
+/// JSON for people and for version control: what is short, and every list of numbers, stands in one line;
+/// the rest is indented. Doubles read back to the same bits. Ends with a line break. O(size · depth).
+std::string json_text(const nlohmann::ordered_json& json);
+
+/// Writes that to a file, whole or not at all. Throws Error when it cannot be written.
+void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
 }  // namespace meshorder

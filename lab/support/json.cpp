@@ -1,7 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/support/json_value.hpp"
+#include "lab/support/json.hpp"
+
+#include "io/stream/output_file.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -45,6 +48,35 @@ std::string joined(std::span<const std::string_view> words) {
   std::string result;
   for (const std::string_view word : words) result += (result.empty() ? "" : ", ") + std::string(word);
   return result;
+}
+
+constexpr std::size_t kShort = 100;
+
+bool is_list_of_plain_values(const nlohmann::ordered_json& json) {
+  return json.is_array() && std::all_of(json.begin(), json.end(), [](const auto& item) {
+           return item.is_number() || item.is_boolean() || item.is_null();
+         });
+}
+
+void append(const nlohmann::ordered_json& json, std::size_t indentation, std::string& text) {
+  std::string in_one_line = json.dump();
+  if (!json.is_structured() || in_one_line.size() <= kShort || is_list_of_plain_values(json)) {
+    text += in_one_line;
+    return;
+  }
+  const bool object = json.is_object();
+  text += object ? '{' : '[';
+  bool first = true;
+  for (const auto& [key, value] : json.items()) {
+    text += first ? "\n" : ",\n";
+    text.append(indentation + 1, ' ');
+    if (object) text += nlohmann::ordered_json(key).dump() + ": ";
+    append(value, indentation + 1, text);
+    first = false;
+  }
+  text += '\n';
+  text.append(indentation, ' ');
+  text += object ? '}' : ']';
 }
 
 }  // namespace
@@ -157,6 +189,18 @@ bool JsonValue::truth() const {
 Point JsonValue::vector() const {
   const std::vector<JsonValue> numbers = items(3, 3);
   return {numbers[0].number(), numbers[1].number(), numbers[2].number()};
+}
+
+std::string json_text(const nlohmann::ordered_json& json) {
+  std::string text;
+  append(json, 0, text);
+  return text + "\n";
+}
+
+void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path) {
+  OutputFile file(path);
+  file.write(json_text(json));
+  file.commit();
 }
 
 }  // namespace meshorder

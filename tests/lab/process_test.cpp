@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/support/child_process.hpp"
+#include "lab/support/process.hpp"
 
 #include "base/error.hpp"
 
