@@ -2,13 +2,12 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)   # dense linear algebra
 find_package(TBB REQUIRED)                    # threads
 find_package(fmt REQUIRED)                    # text
-find_package(spdlog REQUIRED)                 # log
 find_package(nlohmann_json REQUIRED)          # --json
 find_package(hwy REQUIRED)                    # SIMD chosen at run time
 find_package(ZLIB REQUIRED)                   # compressed arrays of .vtu
 find_package(LibLZMA REQUIRED)
 find_package(meshoptimizer REQUIRED)          # fewer triangles for what is only looked at
-find_path(CLI11_INCLUDE_DIR CLI/CLI.hpp REQUIRED)
+find_package(CLI11 REQUIRED)                  # command line
 
 # METIS and LZ4 ship without a CMake file
 find_path(METIS_INCLUDE_DIR metis.h REQUIRED)

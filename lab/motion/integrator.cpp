@@ -4,18 +4,9 @@
 #include "base/error.hpp"
 #include "kernels/positions.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace meshorder {
-namespace {
-
-bool is_finite(const Point& point) {
-  return std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
-}
-
-}  // namespace
 
 void check_state(const MotionState& state, Index n) {
   if (!std::cmp_equal(state.positions.size(), n) || !std::cmp_equal(state.velocities.size(), n) ||

@@ -12,10 +12,9 @@ constexpr NumberRange kTolerance{.least = 0, .most = 1, .least_open = true, .mos
 constexpr int kMostIterations = 1'000'000;
 
 enum class Method : std::uint8_t { backward_euler, admm };
-constexpr std::array kMethods{std::pair(std::string_view("backward-euler"), Method::backward_euler),
-                              std::pair(std::string_view("admm"), Method::admm)};
-constexpr std::array kDuals{std::pair(std::string_view("kept"), true),
-                            std::pair(std::string_view("reset"), false)};
+constexpr std::array kMethods{std::pair{Method::backward_euler, "backward-euler"},
+                              std::pair{Method::admm, "admm"}};
+constexpr std::array kDuals{std::pair{true, "kept"}, std::pair{false, "reset"}};
 
 void read_count(const JsonValue& owner, std::string_view key, int most, int& count) {
   if (const auto value = owner.find(key)) count = static_cast<int>(value->whole(1, most));
@@ -75,9 +74,9 @@ void read_numbers(const JsonValue& value, Elastic elastic, Scenario& scenario) {
 
 void read_implicit_material(const JsonValue& value, Scenario& scenario) {
   value.expect_keys({"model", "tangent", "young", "poisson", "density", "regions"});
-  scenario.model = value["model"].one_of(kMaterialModels);
+  scenario.model = value["model"].one_of<MaterialModel>();
   if (const auto tangent = value.find("tangent")) {
-    scenario.tangent = tangent->one_of(kTangents);
+    scenario.tangent = tangent->one_of<Tangent>();
     if (scenario.tangent == Tangent::approximate && scenario.model != MaterialModel::corotational)
       throw tangent->error("'approximate' is of the corotational model alone", "give exact or projected");
   }
@@ -86,7 +85,7 @@ void read_implicit_material(const JsonValue& value, Scenario& scenario) {
 
 void read_implicit(const JsonValue& value, ImplicitOptions& options) {
   value.expect_keys({"method", "time_step", "mass", "rayleigh", "gravity", "newton"});
-  if (const auto mass = value.find("mass")) options.mass = mass->one_of(kMasses);
+  if (const auto mass = value.find("mass")) options.mass = mass->one_of<Mass>();
   if (const auto rayleigh = value.find("rayleigh")) {
     rayleigh->expect_keys({"alpha", "beta"});
     if (const auto alpha = rayleigh->find("alpha")) options.mass_damping = alpha->number(kNotNegative);
@@ -103,16 +102,17 @@ void read_implicit(const JsonValue& value, ImplicitOptions& options) {
 void read_implicit_solver(const JsonValue& value, ImplicitOptions& options) {
   value.expect_keys({"preconditioner", "tolerance", "max_iterations", "precision"});
   if (const auto preconditioner = value.find("preconditioner"))
-    options.preconditioner = preconditioner->one_of(kPreconditioners);
+    options.preconditioner = preconditioner->one_of<PreconditionerKind>();
   if (const auto tolerance = value.find("tolerance")) options.solve.tolerance = tolerance->number(kTolerance);
   read_count(value, "max_iterations", kMostIterations, options.solve.max_iterations);
-  if (const auto precision = value.find("precision")) options.precision = precision->one_of(kPrecisions);
+  if (const auto precision = value.find("precision"))
+    options.precision = precision->one_of<MatrixPrecision>();
 }
 
 // ---- ADMM
 
 void read_projective_material(const JsonValue& value, ProjectiveScenario& options, Scenario& scenario) {
-  options.model = value["model"].one_of(kLocalModels);
+  options.model = value["model"].one_of<LocalModel>();
   switch (options.model) {
     case LocalModel::springs:
       value.expect_keys({"model", "stiffness", "density"});
@@ -193,7 +193,7 @@ void read_contact(const JsonValue& value, ProjectiveScenario& options) {
   if (const auto friction = value.find("friction"))
     options.contact.friction_with_itself = friction->number(kNotNegative);
   ContactSolverOptions& solver = options.contact_solver;
-  if (const auto kind = value.find("solver")) solver.kind = kind->one_of(kContactSolvers);
+  if (const auto kind = value.find("solver")) solver.kind = kind->one_of<ContactSolverKind>();
   if (const auto tolerance = value.find("tolerance")) solver.tolerance = tolerance->number(kTolerance);
   read_count(value, "max_iterations", kMostIterations, solver.max_iterations);
   if (const auto relaxation = value.find("over_relaxation"))
@@ -229,7 +229,8 @@ void read_integrator(const JsonValue& root, Scenario& scenario) {
   read_common(options);
   if (solver) {
     solver->expect_keys({"precision"});
-    if (const auto precision = solver->find("precision")) options.precision = precision->one_of(kPrecisions);
+    if (const auto precision = solver->find("precision"))
+      options.precision = precision->one_of<MatrixPrecision>();
   }
   if (contact) read_contact(*contact, options);
   if (options.acceleration > 0 && (!options.obstacles.empty() || options.contact.with_itself))

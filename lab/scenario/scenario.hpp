@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/point.hpp"
+#include "base/text.hpp"
 #include "kernels/material.hpp"
 #include "kernels/regions.hpp"
 #include "lab/admm/projective_dynamics.hpp"
@@ -129,55 +130,61 @@ struct Scenario {
   }
 };
 
-// Names in files and on the command line, and what they mean.
-inline constexpr std::array kPreconditioners{
-    std::pair(std::string_view("jacobi"), PreconditionerKind::jacobi),
-    std::pair(std::string_view("block-jacobi"), PreconditionerKind::block_jacobi),
-    std::pair(std::string_view("incomplete-cholesky"), PreconditionerKind::incomplete_cholesky),
-    std::pair(std::string_view("multigrid"), PreconditionerKind::multigrid)};
-inline constexpr std::array kPrecisions{std::pair(std::string_view("double"), MatrixPrecision::exact),
-                                        std::pair(std::string_view("single"), MatrixPrecision::single)};
-inline constexpr std::array kMaterialModels{
-    std::pair(std::string_view("corotational"), MaterialModel::corotational),
-    std::pair(std::string_view("stvk"), MaterialModel::stvk),
-    std::pair(std::string_view("neo-hookean"), MaterialModel::neo_hookean)};
-inline constexpr std::array kLocalModels{
-    std::pair(std::string_view("springs"), LocalModel::springs),
-    std::pair(std::string_view("strain"), LocalModel::strain),
-    std::pair(std::string_view("stvk"), LocalModel::stvk),
-    std::pair(std::string_view("neo-hookean"), LocalModel::neo_hookean),
-    std::pair(std::string_view("log-neo-hookean"), LocalModel::log_neo_hookean)};
-inline constexpr std::array kContactSolvers{
-    std::pair(std::string_view("uzawa"), ContactSolverKind::uzawa),
-    std::pair(std::string_view("gauss-seidel"), ContactSolverKind::gauss_seidel)};
-inline constexpr std::array kTangents{std::pair(std::string_view("exact"), Tangent::exact),
-                                      std::pair(std::string_view("approximate"), Tangent::approximate),
-                                      std::pair(std::string_view("projected"), Tangent::projected)};
-inline constexpr std::array kMasses{std::pair(std::string_view("lumped"), Mass::lumped),
-                                    std::pair(std::string_view("consistent"), Mass::consistent)};
+// Names in scenario files and on the command line.
+template <>
+struct EnumNames<PreconditionerKind> {
+  static constexpr std::string_view kind = "preconditioner";
+  static constexpr std::array names{std::pair{PreconditionerKind::jacobi, "jacobi"},
+                                    std::pair{PreconditionerKind::block_jacobi, "block-jacobi"},
+                                    std::pair{PreconditionerKind::incomplete_cholesky, "incomplete-cholesky"},
+                                    std::pair{PreconditionerKind::multigrid, "multigrid"}};
+};
 
-/// The name of a meaning in one of these lists.
-template <class Meaning, std::size_t N>
-constexpr std::string_view name_in(const std::array<std::pair<std::string_view, Meaning>, N>& names,
-                                   Meaning meaning) {
-  for (const auto& [word, known] : names) {
-    if (known == meaning) return word;
-  }
-  return "";
-}
+template <>
+struct EnumNames<MatrixPrecision> {
+  static constexpr std::string_view kind = "precision";
+  static constexpr std::array names{std::pair{MatrixPrecision::exact, "double"},
+                                    std::pair{MatrixPrecision::single, "single"}};
+};
 
-/// The meaning of a name in one of these lists. Throws InvalidArgument that lists them for others; `what`
-/// is what it names.
-template <class Meaning, std::size_t N>
-Meaning meaning_in(const std::array<std::pair<std::string_view, Meaning>, N>& names, std::string_view given,
-                   std::string_view what) {
-  std::string known;
-  for (const auto& [word, meaning] : names) {
-    if (word == given) return meaning;
-    known += (known.empty() ? "" : ", ") + std::string(word);
-  }
-  throw InvalidArgument("unknown " + std::string(what) + " '" + std::string(given) + "'; known are " + known);
-}
+template <>
+struct EnumNames<MaterialModel> {
+  static constexpr std::string_view kind = "material model";
+  static constexpr std::array names{std::pair{MaterialModel::corotational, "corotational"},
+                                    std::pair{MaterialModel::stvk, "stvk"},
+                                    std::pair{MaterialModel::neo_hookean, "neo-hookean"}};
+};
+
+template <>
+struct EnumNames<LocalModel> {
+  static constexpr std::string_view kind = "material model";
+  static constexpr std::array names{
+      std::pair{LocalModel::springs, "springs"}, std::pair{LocalModel::strain, "strain"},
+      std::pair{LocalModel::stvk, "stvk"}, std::pair{LocalModel::neo_hookean, "neo-hookean"},
+      std::pair{LocalModel::log_neo_hookean, "log-neo-hookean"}};
+};
+
+template <>
+struct EnumNames<ContactSolverKind> {
+  static constexpr std::string_view kind = "contact solver";
+  static constexpr std::array names{std::pair{ContactSolverKind::uzawa, "uzawa"},
+                                    std::pair{ContactSolverKind::gauss_seidel, "gauss-seidel"}};
+};
+
+template <>
+struct EnumNames<Tangent> {
+  static constexpr std::string_view kind = "tangent";
+  static constexpr std::array names{std::pair{Tangent::exact, "exact"},
+                                    std::pair{Tangent::approximate, "approximate"},
+                                    std::pair{Tangent::projected, "projected"}};
+};
+
+template <>
+struct EnumNames<Mass> {
+  static constexpr std::string_view kind = "mass";
+  static constexpr std::array names{std::pair{Mass::lumped, "lumped"},
+                                    std::pair{Mass::consistent, "consistent"}};
+};
 
 /// Whether a scenario's mesh, or what a user gives in its place, names a model rather than a file: it has no
 /// extension.

@@ -2,6 +2,7 @@
 #include "lab/scenario/vertex_choice.hpp"
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "mesh/groups.hpp"
 
 #include <fmt/format.h>
@@ -38,9 +39,7 @@ class Marks {
 std::vector<Index> in_set(const Mesh& mesh, std::span<const Index> candidates, const std::string& name) {
   Marks marks(mesh);
   bool found = false;
-  std::string known;
   for (const EntitySet& set : mesh.sets) {
-    known += (known.empty() ? "" : ", ") + set.name;
     if (set.name != name) continue;
     found = true;
     for (const Index member : set.members) {
@@ -49,7 +48,10 @@ std::vector<Index> in_set(const Mesh& mesh, std::span<const Index> candidates, c
   }
   if (!found) {
     throw InvalidArgument("the mesh has no set '" + name + "'; " +
-                          (known.empty() ? "it has none at all" : "its sets are " + known));
+                          (mesh.sets.empty() ? "it has none at all"
+                                             : "its sets are " + join(mesh.sets, [](const EntitySet& set) {
+                                                 return set.name;
+                                               })));
   }
   return marks.among(candidates);
 }

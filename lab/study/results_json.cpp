@@ -62,7 +62,7 @@ class Writer {
   Json of(const std::array<KernelRecord, kKernels.size()>& kernels) {
     Json json = Json::object();
     for (const Kernel kernel : kKernels)
-      json[std::string(name(kernel))] = of(kernels[static_cast<std::size_t>(kernel)]);
+      json[std::string(to_string(kernel))] = of(kernels[static_cast<std::size_t>(kernel)]);
     return json;
   }
 
@@ -103,7 +103,7 @@ void expect_size(const JsonValue& value, std::size_t wanted, std::string_view wh
 
 void expect_misses(const std::vector<NamedCaches>& hierarchies, const JsonValue& order) {
   for (const Kernel kernel : kKernels) {
-    const JsonValue misses = order["kernels"][name(kernel)]["misses"];
+    const JsonValue misses = order["kernels"][to_string(kernel)]["misses"];
     const std::vector<JsonValue> of_hierarchy = misses.items();
     if (of_hierarchy.empty()) continue;
     expect_size(misses, hierarchies.size(), "one list for each of the hierarchies");
@@ -213,10 +213,10 @@ class Reader {
   static void read(const JsonValue& value, std::array<KernelRecord, kKernels.size()>& kernels, bool free) {
     std::vector<std::string_view> names;
     names.reserve(kKernels.size());
-    for (const Kernel kernel : kKernels) names.push_back(name(kernel));
+    for (const Kernel kernel : kKernels) names.push_back(to_string(kernel));
     value.expect_keys(names);
     for (const Kernel kernel : kKernels)
-      read(value[name(kernel)], kernels[static_cast<std::size_t>(kernel)], free);
+      read(value[to_string(kernel)], kernels[static_cast<std::size_t>(kernel)], free);
   }
 };
 

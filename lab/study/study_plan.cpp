@@ -2,6 +2,7 @@
 #include "lab/study/study_plan.hpp"
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 #include <algorithm>
 
@@ -26,15 +27,12 @@ StudyOrdering study_ordering(std::string_view name) {
     return std::any_of(methods.begin(), methods.end(), [&](const auto& m) { return m.name == method; });
   };
   if (!known(vertex_methods(), vertices) || !known(element_methods(), elements)) {
-    std::string names;
-    for (const StudyOrdering& ordering : paper_orderings()) names += ordering.name + ", ";
-    throw InvalidArgument("unknown ordering '" + std::string(name) + "'; known are " + names +
-                          "and VERTICES/ELEMENTS, see meshorder methods");
+    throw InvalidArgument("unknown ordering '" + std::string(name) + "'; known are " +
+                          join(paper_orderings(), [](const auto& ordering) { return ordering.name; }) +
+                          ", and VERTICES/ELEMENTS, see meshorder methods");
   }
   return {vertices + "-" + elements, vertices + "/" + elements, vertices, elements};
 }
-
-std::vector<std::string_view> study_sizes() { return {"paper", "300k", "2m"}; }
 
 std::string mesh_of_size(std::string_view size, const std::string& mesh) {
   if (size == "paper") return mesh;
@@ -43,7 +41,7 @@ std::string mesh_of_size(std::string_view size, const std::string& mesh) {
   throw InvalidArgument("unknown size '" + std::string(size) + "'; known are paper, 300k and 2m");
 }
 
-bool can_be_had(std::string_view size, const Scenario& scenario) {
+bool fits_in_memory(std::string_view size, const Scenario& scenario) {
   return size != "2m" || scenario.is_implicit();
 }
 

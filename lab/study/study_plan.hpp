@@ -36,15 +36,13 @@ struct StudyPlan {
   OrderingOptions ordering = {};
 };
 
-/// The sizes in which a study can be had: "paper", the scenarios' own meshes; "300k", the armadillo with
-/// 291,000 vertices; "2m", a lattice with 1.9 million.
-std::vector<std::string_view> study_sizes();
-
-/// The mesh of that size for a scenario, whose own is `mesh`. Throws InvalidArgument for an unknown size.
+/// Returns the mesh of a study's size for a scenario whose own mesh is `mesh`: `mesh` itself for "paper", the
+/// armadillo with 291,000 vertices for "300k", a lattice with 1.9 million for "2m". Throws InvalidArgument
+/// for any other size.
 std::string mesh_of_size(std::string_view size, const std::string& mesh);
 
-/// Whether a scenario can be had in that size: a factored matrix of a solid with two million vertices does
-/// not fit in a workstation's memory, so that ADMM stops at 300k.
-bool can_be_had(std::string_view size, const Scenario& scenario);
+/// Returns whether a scenario fits in memory at that size. ADMM's factored matrix of a solid with two million
+/// vertices does not fit in a workstation's memory.
+bool fits_in_memory(std::string_view size, const Scenario& scenario);
 
 }  // namespace meshorder

@@ -82,7 +82,7 @@ class Study {
     subject.scenario = find_scenario(argument);
     std::string& mesh = subject.scenario.mesh;
     mesh = plan_.mesh.empty() ? mesh_of_size(plan_.size, mesh) : plan_.mesh;
-    if (!can_be_had(plan_.size, subject.scenario)) {
+    if (!fits_in_memory(plan_.size, subject.scenario)) {
       observer_.note(fmt::format("{} is left out: its factored matrix would not fit in memory at size {}",
                                  subject.scenario.name, plan_.size));
       return;

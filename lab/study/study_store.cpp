@@ -110,8 +110,8 @@ ScenarioRecord StudyStore::new_record(const Scenario& scenario) const {
   record.name = scenario.name;
   record.title = scenario.title;
   record.method = scenario.is_implicit() ? "backward-euler" : "admm";
-  record.material = scenario.is_implicit() ? name_in(kMaterialModels, scenario.model)
-                                           : name_in(kLocalModels, scenario.projective().model);
+  record.material =
+      scenario.is_implicit() ? to_string(scenario.model) : to_string(scenario.projective().model);
   for (const StudyOrdering& ordering : results_.orderings)
     record.orders.emplace_back().ordering = ordering.name;
   return record;

@@ -44,12 +44,7 @@ class UniqueKeys {
   std::vector<std::set<std::string>> keys_;
 };
 
-std::string joined(std::span<const std::string_view> words) {
-  std::string result;
-  for (const std::string_view word : words) result += (result.empty() ? "" : ", ") + std::string(word);
-  return result;
-}
-
+/// Characters up to which a value is written in one line.
 constexpr std::size_t kShort = 100;
 
 bool is_list_of_plain_values(const nlohmann::ordered_json& json) {
@@ -113,10 +108,10 @@ void JsonValue::expect_keys(std::initializer_list<std::string_view> known) const
 }
 
 void JsonValue::expect_keys(std::span<const std::string_view> known) const {
-  if (!value_->is_object()) throw error("is " + kind(), "an object {…} of " + joined(known) + " is needed");
+  if (!value_->is_object()) throw error("is " + kind(), "an object {…} of " + join(known) + " is needed");
   for (const auto& [key, value] : value_->items()) {
     if (std::find(known.begin(), known.end(), key) == known.end())
-      throw error("the key '" + key + "' is unknown", "known are " + joined(known));
+      throw error("the key '" + key + "' is unknown", "known are " + join(known));
   }
 }
 

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/point.hpp"
+#include "base/text.hpp"
 
 #include <nlohmann/json.hpp>
 #include <nlohmann/json_fwd.hpp>
@@ -71,7 +72,6 @@ class JsonValue {
   // ---- plain values
   [[nodiscard]] bool is_null() const noexcept { return value_->is_null(); }
   [[nodiscard]] bool is_text() const noexcept { return value_->is_string(); }
-  [[nodiscard]] bool is_whole() const noexcept { return value_->is_number_integer(); }
   /// A text that is not empty.
   [[nodiscard]] std::string text() const;
   /// A text that may be empty.
@@ -82,16 +82,19 @@ class JsonValue {
   [[nodiscard]] bool truth() const;
   /// Three numbers.
   [[nodiscard]] Point vector() const;
-  /// What a text stands for, of (text, meaning) pairs.
-  template <class Meaning, std::size_t N>
-  [[nodiscard]] Meaning one_of(const std::array<std::pair<std::string_view, Meaning>, N>& meanings) const {
+  /// The value that a text names, of pairs (value, name). Throws Error that lists the names.
+  template <class Value, std::size_t N>
+  [[nodiscard]] Value one_of(const std::array<std::pair<Value, const char*>, N>& names) const {
     const std::string given = text();
-    std::string known;
-    for (const auto& [word, meaning] : meanings) {
-      if (word == given) return meaning;
-      known += (known.empty() ? "" : ", ") + std::string(word);
+    for (const auto& [value, name] : names) {
+      if (given == name) return value;
     }
-    throw error("'" + given + "' is unknown", "known are " + known);
+    throw error("'" + given + "' is unknown",
+                "known are " + join(names, [](const auto& pair) { return std::string_view(pair.second); }));
+  }
+  template <NamedEnum Enum>
+  [[nodiscard]] Enum one_of() const {
+    return one_of(EnumNames<Enum>::names);
   }
 
  private:

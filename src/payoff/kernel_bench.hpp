@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "kernels/assembly.hpp"
 #include "kernels/springs.hpp"
 #include "mesh/mesh.hpp"
@@ -9,18 +10,28 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
 
-/// The simulators' hot loops: the product with the stiffness matrix, elastic element forces, assembly of the
-/// stiffness matrix, forces of springs on the edges.
+/// The simulators' hot loops: the product of the stiffness matrix with a vector, the forces of elastic
+/// elements, the assembly of the stiffness matrix, and the forces of springs along the edges.
 enum class Kernel : std::uint8_t { spmv, element, assembly, springs };
 
 inline constexpr std::array kKernels{Kernel::spmv, Kernel::element, Kernel::assembly, Kernel::springs};
 
-/// "spmv", "element", "assembly", "springs".
-std::string_view name(Kernel kernel);
+template <>
+struct EnumNames<Kernel> {
+  static constexpr std::string_view kind = "kernel";
+  static constexpr std::array names{std::pair{Kernel::spmv, "spmv"}, std::pair{Kernel::element, "element"},
+                                    std::pair{Kernel::assembly, "assembly"},
+                                    std::pair{Kernel::springs, "springs"}};
+};
+
+/// What tables and figures call the kernels, as kKernels lists them.
+inline constexpr std::array<std::string_view, kKernels.size()> kKernelTitles{"SpMV", "element force",
+                                                                             "assembly", "springs"};
 
 /// A mesh in one order, prepared for its kernels to run again and again: the stiffness matrix on the vertex
 /// graph, the elements cut into simplices, a spring on every edge, and vertices off their rest positions by a

@@ -104,7 +104,7 @@ TEST(MeshStudy, MissesAreThoseOfLeastRecentlyUsedCaches) {
         const std::vector<Offset>& levels = hierarchies[h].caches.level_bytes;
         ASSERT_EQ(record.misses[h].size(), levels.size());
         for (std::size_t level = 0; level < levels.size(); ++level)
-          EXPECT_EQ(record.misses[h][level], lru_misses(stream, levels[level])) << name(kernel);
+          EXPECT_EQ(record.misses[h][level], lru_misses(stream, levels[level])) << to_string(kernel);
       }
       EXPECT_GT(record.predicted_ms, 0);
       EXPECT_EQ(record.measured_ms, 0);

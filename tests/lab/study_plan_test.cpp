@@ -32,9 +32,9 @@ TEST(StudyPlan, GrowsTheMeshesAndLeavesOutWhatDoesNotFit) {
   EXPECT_EQ(mesh_of_size("paper", "dragon"), "dragon");
   EXPECT_EQ(mesh_of_size("300k", "dragon"), "armadillo-300k");
   EXPECT_THROW(mesh_of_size("huge", "dragon"), InvalidArgument);
-  EXPECT_TRUE(can_be_had("2m", find_scenario("falling")));
-  EXPECT_FALSE(can_be_had("2m", find_scenario("unsquash")));
-  EXPECT_TRUE(can_be_had("300k", find_scenario("unsquash")));
+  EXPECT_TRUE(fits_in_memory("2m", find_scenario("falling")));
+  EXPECT_FALSE(fits_in_memory("2m", find_scenario("unsquash")));
+  EXPECT_TRUE(fits_in_memory("300k", find_scenario("unsquash")));
 }
 
 }  // namespace

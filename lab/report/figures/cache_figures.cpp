@@ -91,9 +91,8 @@ std::string panel(const StudyResults& results, const MeshRecord& mesh, std::size
                     "set title {}\nset label 1 {} at graph 0.97, 0.9 right textcolor '#222222'\n"
                     "set yrange [0:{}]\nset ytics 0,{},{}\nset format y '{}'\nset xrange [0.5:{}]\n"
                     "set xtics scale 0 ({})\nplot {}\n",
-                    kernel == 0 ? gnuplot_key(caches.name, 32) : "''",
-                    gnuplot_quoted(title_of(kKernels[kernel])), 1.3 * most, step_of_axis(most), 1.05 * most,
-                    hierarchy == 0 ? "%g %%" : "",
+                    kernel == 0 ? gnuplot_key(caches.name, 32) : "''", gnuplot_quoted(kKernelTitles[kernel]),
+                    1.3 * most, step_of_axis(most), 1.05 * most, hierarchy == 0 ? "%g %%" : "",
                     static_cast<double>(caches.caches.level_bytes.size()) + 0.5, level_tics(caches.caches),
                     fmt::join(plots, ", \\\n  "));
 }

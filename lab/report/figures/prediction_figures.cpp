@@ -53,7 +53,7 @@ std::vector<Figure> prediction_figures(const StudyResults& results) {
     plots.push_back(
         fmt::format("$kernel{} using 1:2 with points linecolor '{}' linewidth 1.4 pointtype {} "
                     "pointsize 0.8 title {}",
-                    k, kStyles[k].colour, kStyles[k].point, gnuplot_quoted(title_of(kKernels[k]))));
+                    k, kStyles[k].colour, kStyles[k].point, gnuplot_quoted(kKernelTitles[k])));
   }
   if (plots.empty()) return {};
   plots.emplace_back("x with lines linecolor '#555555' dashtype (4,4) title 'as predicted'");

@@ -50,21 +50,6 @@ inline std::string title_of(const StudyResults& results, std::string_view orderi
   return std::string(ordering);
 }
 
-/// What it heads its columns and axes with: "element force".
-inline std::string_view title_of(Kernel kernel) {
-  switch (kernel) {
-    case Kernel::spmv:
-      return "SpMV";
-    case Kernel::element:
-      return "element force";
-    case Kernel::assembly:
-      return "assembly";
-    case Kernel::springs:
-      break;
-  }
-  return "springs";
-}
-
 /// A scenario's parts of a step, which the two methods share: what is done by element (the assembly; ADMM's
 /// local step), what by a system of equations (the solve; the global step), collisions, and the rest.
 /// Seconds, mean of the runs.

@@ -93,7 +93,7 @@ std::string kernels_of(const StudyResults& results, const MeshRecord& mesh) {
       const double whole = reference->kernels[k].measured_ms;
       if (&order == reference || ms <= 0 || whole <= 0) continue;
       const auto words = [&](const char* how, double times) {
-        return fmt::format("{} runs {:.2f} times {} in {}", title_of(kKernels[k]), times, how,
+        return fmt::format("{} runs {:.2f} times {} in {}", kKernelTitles[k], times, how,
                            title_of(results, order.ordering));
       };
       if (whole / ms > best.factor) best = {whole / ms, words("faster", whole / ms)};

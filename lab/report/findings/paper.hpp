@@ -27,18 +27,10 @@ struct PaperScenario {
   std::array<PaperSaving, 3> savings;
 };
 
-/// A mesh as the paper's section 5 counts it.
-struct PaperMesh {
-  std::string_view name;
-  Index vertices = 0;
-  Index tetrahedra = 0;
-};
-
 /// Time steps of each of its runs.
 inline constexpr Index kPaperSteps = 240;
 
 std::span<const PaperScenario> paper_scenarios();
-std::span<const PaperMesh> paper_meshes();
 
 /// nullptr for a scenario that is not the paper's.
 const PaperScenario* find_paper_scenario(std::string_view name);

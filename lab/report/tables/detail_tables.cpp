@@ -28,7 +28,7 @@ void for_each_kernel(const StudyResults& results, Row row) {
 TableCell kernel_head(const StudyResults& results, const MeshRecord& mesh, std::size_t kernel,
                       const OrderOfMesh& order) {
   return text_cell(
-      fmt::format("{}, {}, {}", mesh.name, title_of(kKernels[kernel]), title_of(results, order.ordering)));
+      fmt::format("{}, {}, {}", mesh.name, kKernelTitles[kernel], title_of(results, order.ordering)));
 }
 
 /// The misses of a level; nothing where the record does not hold them.
