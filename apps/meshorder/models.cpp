@@ -22,7 +22,7 @@ struct MakeArguments : Common {
 nlohmann::ordered_json to_json(const Model& model) {
   const bool made = !model.path.empty();
   return {{"name", model.name},
-          {"sentence", model.sentence},
+          {"sentence", model.description},
           {"path", made ? nlohmann::ordered_json(model.path.string()) : nlohmann::ordered_json(nullptr)},
           {"vertices", made ? nlohmann::ordered_json(model.vertices) : nlohmann::ordered_json(nullptr)},
           {"elements", made ? nlohmann::ordered_json(model.elements) : nlohmann::ordered_json(nullptr)}};
@@ -30,7 +30,7 @@ nlohmann::ordered_json to_json(const Model& model) {
 
 void print_model(const Console& console, const Model& model) {
   if (model.path.empty()) {
-    console.print("  {:<16} {:>10} {:>12}  {}", model.name, "–", "–", model.sentence);
+    console.print("  {:<16} {:>10} {:>12}  {}", model.name, "–", "–", model.description);
   } else {
     console.print("  {:<16} {:>10} {:>12}  {}", model.name, with_commas(model.vertices),
                   with_commas(model.elements), model.path.string());

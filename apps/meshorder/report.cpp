@@ -37,7 +37,7 @@ struct ReportArguments : Common {
 constexpr std::string_view kAsItIs = "original";
 constexpr std::string_view kOrdered = "meshorder";
 
-std::vector<StudyOrdering> orderings_of_report() {
+std::vector<OrderingSpec> orderings_of_report() {
   return {{std::string(kAsItIs), "As it is", "original", "original"},
           {"scrambled", "Scrambled", "scrambled", "scrambled"},
           {"fiedler", "Fiedler", "fiedler", "original"},
@@ -46,7 +46,7 @@ std::vector<StudyOrdering> orderings_of_report() {
 }
 
 /// Returns the predicted and measured times of an order, as `info` takes them.
-OrderCosts costs_of(const OrderOfMesh& order) {
+OrderCosts costs_of(const MeshOrderRecord& order) {
   OrderCosts costs;
   costs.predicted.emplace();
   bool measured = true;
@@ -64,7 +64,7 @@ OrderCosts costs_of(const OrderOfMesh& order) {
 std::string verdict_on(const MeshRecord& record) {
   const auto order = [&](std::string_view name) {
     return std::find_if(record.orders.begin(), record.orders.end(),
-                        [&](const OrderOfMesh& one) { return one.ordering == name; });
+                        [&](const MeshOrderRecord& one) { return one.ordering == name; });
   };
   const auto as_it_is = order(kAsItIs);
   const auto ordered = order(kOrdered);

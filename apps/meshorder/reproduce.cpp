@@ -42,9 +42,9 @@ StudyPlan plan_of(const ReproduceArguments& arguments) {
     for (const BuiltInScenario& scenario : built_in_scenarios()) plan.scenarios.emplace_back(scenario.name);
   }
   for (const std::string& order : arguments.orders) {
-    StudyOrdering ordering = study_ordering(order);
+    OrderingSpec ordering = study_ordering(order);
     const bool known = std::any_of(plan.orderings.begin(), plan.orderings.end(),
-                                   [&](const StudyOrdering& other) { return other.name == ordering.name; });
+                                   [&](const OrderingSpec& other) { return other.name == ordering.name; });
     if (!known) plan.orderings.push_back(std::move(ordering));
   }
   plan.threads = arguments.threads > 0 ? arguments.threads : thread_count();

@@ -125,7 +125,7 @@ void time(const std::string& name, double budget, const std::string& folder,
     return mo::KernelBench(ordered, mo::renumbered(graph, vertices.old_to_new()));
   };
   const std::vector<mo::OrderTimes> times = mo::time_orders(
-      mo::index_size(orders), prepare, {.budget_seconds = budget, .least_rounds = 3, .sample_seconds = 0.01});
+      mo::index_size(orders), prepare, {.budget_seconds = budget, .min_rounds = 3, .sample_seconds = 0.01});
   for (std::size_t i = 0; i < orders.size(); ++i) {
     for (const mo::Kernel kernel : mo::kKernels) {
       const mo::KernelTimes& t = times[i][kernel];

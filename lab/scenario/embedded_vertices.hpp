@@ -11,22 +11,22 @@
 
 namespace meshorder {
 
-/// A vertex that no tetrahedron has as a corner, and the tetrahedron with which it moves: where it is at rest
-/// is the corners' mean by these weights, which add up to 1.
-struct Follower {
+/// A vertex that is no corner of a tetrahedron, and the tetrahedron with which it moves. Its position at rest
+/// is the weighted mean of the corners; the weights add up to 1.
+struct EmbeddedVertex {
   Index vertex = 0;
   std::array<Index, 4> corners{};
   std::array<double, 4> weights{};
 };
 
-/// The nodes of edges, faces and interiors of the mesh's volume cells, each with the tetrahedron, of those
-/// that its cells are cut into, that it lies deepest in; of several the first. `simplices` are the mesh's
-/// tetrahedra. Vertices of no volume cell, and of flat ones alone, are left out. O(tetrahedra · nodes of a
-/// cell).
-std::vector<Follower> followers(const Mesh& mesh, const Simplices& simplices);
+/// Embeds the nodes on edges, on faces and inside of volume cells: each in the tetrahedron of its cells that
+/// it lies deepest in, the first of several. `simplices` are the mesh's tetrahedra. Vertices that belong to
+/// no volume cell, or only to flat ones, are not embedded. O(tetrahedra · nodes of a cell).
+std::vector<EmbeddedVertex> embed_vertices(const Mesh& mesh, const Simplices& simplices);
 
-/// Takes the followers of a body, whose vertices rest at `rest`, to where its corners are, and gives them
-/// their velocity. O(followers).
-void carry(const std::vector<Follower>& followers, std::span<const Point> rest, MotionState& state);
+/// Sets positions and velocities of embedded vertices from those of the corners. `rest` are the positions of
+/// all vertices at rest. O(embedded vertices).
+void move_embedded(const std::vector<EmbeddedVertex>& embedded, std::span<const Point> rest,
+                   MotionState& state);
 
 }  // namespace meshorder

@@ -8,7 +8,7 @@
 namespace meshorder {
 namespace {
 
-constexpr NumberRange kTolerance{.least = 0, .most = 1, .least_open = true, .most_open = true};
+constexpr NumberRange kTolerance{.min = 0, .max = 1, .min_open = true, .max_open = true};
 constexpr int kMostIterations = 1'000'000;
 
 enum class Method : std::uint8_t { backward_euler, admm };
@@ -22,7 +22,7 @@ void read_count(const JsonValue& owner, std::string_view key, int most, int& cou
 
 // ---- materials
 
-/// Young's modulus and Poisson's ratio, or a stiffness alone.
+/// Whether a material has Young's modulus and Poisson's ratio, or a stiffness.
 enum class Elastic : std::uint8_t { moduli, stiffness };
 
 Material material_of(const JsonValue& value, Elastic elastic, Material numbers) {
@@ -32,7 +32,7 @@ Material material_of(const JsonValue& value, Elastic elastic, Material numbers) 
   } else {
     if (const auto young = value.find("young")) numbers.young = young->number(kPositive);
     if (const auto poisson = value.find("poisson"))
-      numbers.poisson = poisson->number({.least = -1, .most = 0.5, .least_open = true, .most_open = true});
+      numbers.poisson = poisson->number({.min = -1, .max = 0.5, .min_open = true, .max_open = true});
   }
   if (const auto density = value.find("density")) numbers.density = density->number(kPositive);
   return numbers;
@@ -78,7 +78,7 @@ void read_implicit_material(const JsonValue& value, Scenario& scenario) {
   if (const auto tangent = value.find("tangent")) {
     scenario.tangent = tangent->one_of<Tangent>();
     if (scenario.tangent == Tangent::approximate && scenario.model != MaterialModel::corotational)
-      throw tangent->error("'approximate' is of the corotational model alone", "give exact or projected");
+      throw tangent->error("'approximate' is for the corotational model only", "give exact or projected");
   }
   read_numbers(value, Elastic::moduli, scenario);
 }
@@ -132,13 +132,13 @@ void read_projective(const JsonValue& value, ProjectiveScenario& options) {
   value.expect_keys({"method", "time_step", "gravity", "iterations", "tolerance", "duals", "acceleration"});
   read_count(value, "iterations", kMostIterations, options.iterations);
   if (const auto tolerance = value.find("tolerance"))
-    options.tolerance = tolerance->number({.least = 0, .most = 1, .most_open = true});
+    options.tolerance = tolerance->number({.min = 0, .max = 1, .max_open = true});
   if (const auto window = value.find("acceleration"))
     options.acceleration = static_cast<int>(window->whole(0, AndersonMixer<double>::kWidestWindow));
   if (const auto duals = value.find("duals")) options.keep_duals = duals->one_of(kDuals);
 }
 
-/// A direction: a vector other than 0.
+/// Reads a vector other than 0.
 Point direction(const JsonValue& value) {
   const Point vector = value.vector();
   if (!(std::hypot(vector[0], vector[1], vector[2]) > 0.0))
@@ -171,10 +171,8 @@ ScenarioObstacle obstacle(const JsonValue& value) {
     result.place = (*bowl)["center"].vector();
     result.direction = direction((*bowl)["axis"]);
     result.radius = (*bowl)["radius"].number(kPositive);
-    result.thickness =
-        (*bowl)["thickness"].number({.least = 0, .most = 2 * result.radius, .least_open = true});
-    result.opening =
-        (*bowl)["opening"].number({.least = 0, .most = 180, .least_open = true, .most_open = true});
+    result.thickness = (*bowl)["thickness"].number({.min = 0, .max = 2 * result.radius, .min_open = true});
+    result.opening = (*bowl)["opening"].number({.min = 0, .max = 180, .min_open = true, .max_open = true});
   } else {
     result.kind = Kind::surface;
     result.file = (std::filesystem::path(value.file()).parent_path() / value["surface"].text()).string();
@@ -197,8 +195,7 @@ void read_contact(const JsonValue& value, ProjectiveScenario& options) {
   if (const auto tolerance = value.find("tolerance")) solver.tolerance = tolerance->number(kTolerance);
   read_count(value, "max_iterations", kMostIterations, solver.max_iterations);
   if (const auto relaxation = value.find("over_relaxation"))
-    solver.over_relaxation =
-        relaxation->number({.least = 0, .most = 2, .least_open = true, .most_open = true});
+    solver.over_relaxation = relaxation->number({.min = 0, .max = 2, .min_open = true, .max_open = true});
 }
 
 }  // namespace
@@ -234,7 +231,7 @@ void read_integrator(const JsonValue& root, Scenario& scenario) {
   }
   if (contact) read_contact(*contact, options);
   if (options.acceleration > 0 && (!options.obstacles.empty() || options.contact.with_itself))
-    throw integrator["acceleration"].error("is not for contacts", "leave out one of them");
+    throw integrator["acceleration"].error("cannot be combined with contacts", "leave out one of them");
   scenario.integrator = std::move(options);
 }
 

@@ -76,14 +76,14 @@ void expect_positive(std::int64_t number, const JsonValue& value, std::string_vi
   if (number < 1) throw value[key].error("is 0", "give 1 or more");
 }
 
-/// What the records of a list are called by; throws for a name that comes twice.
+/// Returns the names of the records of a list. Throws if a name occurs twice.
 template <class Record>
 std::set<std::string> unique_names(const std::vector<Record>& records, std::string Record::*name,
                                    const JsonValue& value, std::string_view list, std::string_view key) {
   std::set<std::string> names;
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (!names.insert(records[i].*name).second)
-      throw value[list].items()[i][key].error("'" + records[i].*name + "' comes twice", "keep one of them");
+      throw value[list].items()[i][key].error("'" + records[i].*name + "' occurs twice", "keep one of them");
   }
   return names;
 }
@@ -91,7 +91,7 @@ std::set<std::string> unique_names(const std::vector<Record>& records, std::stri
 /// Throws unless the text at `value` is one of the names.
 void expect_one_of(const std::set<std::string>& names, const JsonValue& value, std::string_view list) {
   if (!names.contains(value.text()))
-    throw value.error("'" + value.text() + "' is none of the " + std::string(list),
+    throw value.error("'" + value.text() + "' is not one of the " + std::string(list),
                       "name one that is listed there");
 }
 
@@ -117,8 +117,8 @@ void check_record(const Caches& caches, const JsonValue& value) {
   Offset before = 0;
   for (const Offset bytes : caches.level_bytes) {
     if (bytes <= before || bytes % kLineBytes != 0)
-      throw value.error(fmt::format("{} is no size of a cache after {}", bytes, before),
-                        fmt::format("sizes rise and are multiples of {}", kLineBytes));
+      throw value.error(fmt::format("{} is not a cache size after {}", bytes, before),
+                        fmt::format("sizes are ascending multiples of {}", kLineBytes));
     before = bytes;
   }
 }
@@ -127,7 +127,7 @@ void check_record(const Caches& caches, const JsonValue& value) {
 /// or none.
 void check_record(const MeshRecord& mesh, const JsonValue& value) {
   expect_positive(mesh.span_bin, value, "span_bin");
-  unique_names(mesh.orders, &OrderOfMesh::ordering, value, "orders", "ordering");
+  unique_names(mesh.orders, &MeshOrderRecord::ordering, value, "orders", "ordering");
   for (const JsonValue& order : value["orders"].items()) expect_misses(mesh.hierarchies, order);
 }
 
@@ -136,7 +136,7 @@ void check_record(const MeshRecord& mesh, const JsonValue& value) {
 void check_record(const ScenarioRecord& scenario, const JsonValue& value) {
   expect_positive(scenario.steps, value, "steps");
   expect_positive(scenario.turn, value, "turn");
-  unique_names(scenario.orders, &OrderOfScenario::ordering, value, "orders", "ordering");
+  unique_names(scenario.orders, &ScenarioOrderRecord::ordering, value, "orders", "ordering");
   for (const JsonValue& order : value["orders"].items()) {
     for (const JsonValue& run : order["runs"].items())
       expect_size(run["step_seconds"], static_cast<std::size_t>(scenario.steps), "one for each step");
@@ -150,7 +150,7 @@ void check_record(const ScenarioRecord& scenario, const JsonValue& value) {
 void check_record(const StudyResults& results, const JsonValue& value) {
   expect_positive(results.runs, value, "runs");
   expect_positive(results.threads, value, "threads");
-  const auto orderings = unique_names(results.orderings, &StudyOrdering::name, value, "orderings", "name");
+  const auto orderings = unique_names(results.orderings, &OrderingSpec::name, value, "orderings", "name");
   const auto meshes = unique_names(results.meshes, &MeshRecord::name, value, "meshes", "name");
   unique_names(results.scenarios, &ScenarioRecord::name, value, "scenarios", "name");
   expect_one_of(orderings, value["reference"], "orderings");
@@ -171,7 +171,7 @@ void check_record(const Record& /*record*/, const JsonValue& /*value*/) {}
 /// Converts JSON to records.
 class Reader {
  public:
-  /// Reads an object of the record's keys and, where the caller read them already, `also`.
+  /// Reads an object with the record's keys. It may have the keys `also`, which the caller has read.
   template <Described Record>
   static void read(const JsonValue& value, Record& record, bool /*free*/ = false,
                    std::vector<std::string_view> also = {}) {
@@ -187,7 +187,7 @@ class Reader {
 
  private:
   static void read(const JsonValue& value, double& number, bool free) {
-    number = free ? value.number() : value.number({.least = 0});
+    number = free ? value.number() : value.number({.min = 0});
   }
   static void read(const JsonValue& value, bool& truth, bool /*free*/) { truth = value.truth(); }
   template <std::integral Whole>
@@ -206,7 +206,7 @@ class Reader {
   static void read(const JsonValue& value, std::vector<Value>& values, bool free) {
     for (const JsonValue& item : value.items()) read(item, values.emplace_back(), free);
   }
-  /// Of a step, which are counted from 1.
+  /// Reads the number of a step, counted from 1.
   static void read(const JsonValue& value, std::optional<Index>& step, bool /*free*/) {
     if (!value.is_null()) step = static_cast<Index>(value.whole(1, kMaxIndex));
   }
@@ -238,10 +238,10 @@ StudyResults read_results(const std::filesystem::path& path) {
   const nlohmann::json json = parse_json(text.all(), file, kGuide);
   const JsonValue root(json, file, kGuide);
   if (!root.has("format") || root["format"].any_text() != kFormat)
-    throw root.error("is no study of meshorder",
+    throw root.error("is not a study of meshorder",
                      "give a results.json whose \"format\" is \"" + std::string(kFormat) + "\"");
   if (root["version"].whole(1, kMaxIndex) != kVersion)
-    throw root["version"].error("was written by a later meshorder", "use that, or measure anew");
+    throw root["version"].error("was written by a later meshorder", "use that one, or measure again");
   StudyResults results;
   Reader::read(root, results, false, {"format", "version"});
   return results;

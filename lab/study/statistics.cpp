@@ -109,7 +109,7 @@ std::optional<Index> break_even_step(const std::vector<double>& saved_by_step, d
 double order_seconds(const StudyResults& results, const std::string& mesh, const std::string& ordering) {
   for (const MeshRecord& record : results.meshes) {
     if (record.name != mesh) continue;
-    for (const OrderOfMesh& order : record.orders) {
+    for (const MeshOrderRecord& order : record.orders) {
       if (order.ordering == ordering) return order.seconds;
     }
   }
@@ -117,15 +117,15 @@ double order_seconds(const StudyResults& results, const std::string& mesh, const
 }
 
 void summarise(const StudyResults& results, ScenarioRecord& scenario) {
-  for (OrderOfScenario& order : scenario.orders) {
+  for (ScenarioOrderRecord& order : scenario.orders) {
     order.time = summary_of(order.runs);
     order.speedup = {};
   }
   const auto found =
       std::find_if(scenario.orders.begin(), scenario.orders.end(),
-                   [&](const OrderOfScenario& order) { return order.ordering == results.reference; });
+                   [&](const ScenarioOrderRecord& order) { return order.ordering == results.reference; });
   if (found == scenario.orders.end()) return;
-  for (OrderOfScenario& order : scenario.orders) {
+  for (ScenarioOrderRecord& order : scenario.orders) {
     const auto runs = static_cast<std::ptrdiff_t>(std::min(order.runs.size(), found->runs.size()));
     if (order.ordering == results.reference || runs == 0) continue;
     order.speedup = speedup_of({order.runs.begin(), order.runs.begin() + runs},

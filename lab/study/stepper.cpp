@@ -4,7 +4,7 @@
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "io/npy.hpp"
-#include "lab/scenario/followers.hpp"
+#include "lab/scenario/embedded_vertices.hpp"
 #include "lab/scenario/motion_file.hpp"
 #include "lab/scenario/simulation.hpp"
 #include "lab/scenario/vertex_choice.hpp"
@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The identity where no file is given.
+/// Reads an order; without a file it is the identity.
 Permutation order_of(const std::string& path, Index count, const std::string& what) {
   return path.empty() ? Permutation::identity(count) : read_permutation(path, count, what);
 }
@@ -36,19 +36,19 @@ Simulation set_up(const StepperTask& task) {
   return set_up(std::move(scenario), std::move(mesh), task.mesh, std::move(order));
 }
 
-/// The state's places in the mesh's own order.
+/// Returns the positions in the mesh's own order.
 std::vector<Point> in_own_order(const MotionState& state, const Permutation& vertices) {
   std::vector<Point> points(state.positions.size());
   for (std::size_t v = 0; v < points.size(); ++v) points[v] = state.positions[vertices.old_to_new()[v]];
   return points;
 }
 
-/// A simulation that takes turns.
+/// A simulation that runs turn by turn.
 class Stepping {
  public:
   explicit Stepping(const StepperTask& task)
       : simulation_(set_up(task)),
-        followers_(followers(simulation_.mesh, cut_into_simplices(simulation_.mesh))) {
+        embedded_(embed_vertices(simulation_.mesh, cut_into_simplices(simulation_.mesh))) {
     ready_.vertices = simulation_.mesh.vertex_count();
     ready_.tetrahedra = simulation_.tetrahedra;
     ready_.longest_side = bounding_box(simulation_.mesh.points, simulation_.vertices).longest_side();
@@ -98,12 +98,12 @@ class Stepping {
 
   void add_frame() {
     MotionState state = simulation_.body->state();
-    carry(followers_, simulation_.mesh.points, state);
+    move_embedded(embedded_, simulation_.mesh.points, state);
     frames_->add(in_own_order(state, simulation_.order.vertices));
   }
 
   Simulation simulation_;
-  std::vector<Follower> followers_;
+  std::vector<EmbeddedVertex> embedded_;
   StepperReady ready_;
   Index step_ = 0;
   std::vector<WarningRecord> warnings_;
@@ -187,7 +187,7 @@ void serve_steps(std::istream& questions, std::ostream& answers) {
       }
       const StepperTask task = stepper_task(question);
       if (!task.processors.empty() && !bind_to(task.processors))
-        throw Error("processors", "the threads cannot be bound to them", "leave them free: --no-pin");
+        throw Error("processors", "the threads cannot be bound to them", "give --no-pin");
       stepping.emplace(task);
       answer(to_json(stepping->ready()));
     }
@@ -209,7 +209,7 @@ json Stepper::ask(const json& question) {
   process_.send(question.dump());
   json answer = json::parse(process_.receive());
   if (answer.contains("error"))
-    throw Error(name_ + ", in a process of its own", answer["error"], "this run is not kept");
+    throw Error(name_ + ", in its own process", answer["error"], "this run is lost");
   return answer;
 }
 

@@ -15,41 +15,41 @@
 
 namespace meshorder {
 
-// What a study and the processes that step for it say to each other: one JSON object a line. The study asks,
-// the process answers each question by what it asked for, or by {"error": …} and ends.
+// The messages between a study and the processes that simulate for it, one JSON object a line. The process
+// answers each question, or answers {"error": …} and ends.
 
 /// What to simulate.
 struct StepperTask {
-  std::string scenario;      ///< a name or a file
-  std::string mesh;          ///< a file, in the place of the scenario's
-  std::string vertex_order;  ///< a NumPy array, old_to_new, for the mesh and its cells; none: as they are
-  std::string cell_order;
-  std::vector<int> processors;  ///< to be bound to; empty: not bound
+  std::string scenario;         ///< a name or a file
+  std::string mesh;             ///< a file, instead of the scenario's own
+  std::string vertex_order;     ///< file of the NumPy array old_to_new; empty: the mesh's own order
+  std::string cell_order;       ///< the same for cells
+  std::vector<int> processors;  ///< to bind the process to; empty: not bound
 };
 
-/// A body that is ready to be stepped.
+/// Describes a body that is ready to be simulated.
 struct StepperReady {
   Index vertices = 0;
   Offset tetrahedra = 0;
   double longest_side = 0;  ///< of the box around the body at rest, m
   double setup_seconds = 0;
-  double step_seconds = 0;       ///< of the first step, which is then taken back
-  Offset bytes = 0;              ///< that the body holds
+  double step_seconds = 0;       ///< of the warm-up step, which is undone
+  Offset bytes = 0;              ///< memory of the body
   std::string fingerprint;       ///< of the mesh, and of the parameters in this order
-  bool fixed_addresses = false;  ///< the system puts arrays where it puts them in every such process
+  bool fixed_addresses = false;  ///< address space randomisation is off
 };
 
-/// Steps to be taken, one after another.
+/// Asks for steps.
 struct StepperTurn {
   Index steps = 0;
-  std::string frames;     ///< a file for the motion, in the mesh's own order; empty: none is kept
-  Index frame_every = 1;  ///< a frame after each step that this divides, and at the start
-  bool last = false;      ///< the file of the frames is then complete
+  std::string frames;     ///< file for the motion, in the mesh's own order; empty: no frames
+  Index frame_every = 1;  ///< a frame at the start and after every so many steps
+  bool last = false;      ///< completes the file of the frames
 };
 
-/// What they took.
+/// Timings and iteration counts of the steps of a turn.
 struct StepperTimes {
-  std::vector<double> step_seconds;  ///< of each step call, without the frames
+  std::vector<double> step_seconds;  ///< of each step, without writing frames
   StepReport::Seconds seconds;       ///< sums
   Offset cg_iterations = 0;
   Offset admm_iterations = 0;
@@ -62,27 +62,27 @@ nlohmann::json to_json(const StepperReady& ready);
 nlohmann::json to_json(const StepperTurn& turn);
 nlohmann::json to_json(const StepperTimes& times);
 
-// Throw nlohmann::json::exception for what is no such message.
+// These throw nlohmann::json::exception for anything but such a message.
 StepperTask stepper_task(const nlohmann::json& message);
 StepperReady stepper_ready(const nlohmann::json& message);
 StepperTurn stepper_turn(const nlohmann::json& message);
 StepperTimes stepper_times(const nlohmann::json& message);
 
-/// Answers a study's questions: a StepperTask first, then turn after turn until the input ends. Sets the body
-/// up, takes one step to warm up memory and processor and takes it back, and from then on times step calls
-/// and nothing else. Whatever goes wrong is the last answer.
+/// Serves a study over a pair of streams: reads a StepperTask, sets up the body, runs a warm-up step and
+/// undoes it; then simulates and times turn after turn until the input ends. An error is the last answer.
 void serve_steps(std::istream& questions, std::ostream& answers);
 
-/// A simulation in a process of its own, so that all orders find memory as it is in a fresh process: at the
-/// same addresses, where the system allows it.
+/// A simulation in a process of its own: every order has a fresh process, with its memory at the same
+/// addresses where the system allows it.
 class Stepper {
  public:
-  /// `program` is meshorder. Waits until the body is ready. Throws Error with what the process says is wrong.
+  /// Starts `program`, which is meshorder, and waits until the body is ready. Throws Error with the process's
+  /// message.
   Stepper(const std::filesystem::path& program, int threads, const StepperTask& task);
 
   [[nodiscard]] const StepperReady& ready() const noexcept { return ready_; }
 
-  /// Takes the steps of a turn and waits for them. Throws Error with what the process says is wrong.
+  /// Runs the steps of a turn and waits for them. Throws Error with the process's message.
   StepperTimes take(const StepperTurn& turn);
 
  private:

@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-std::vector<StudyOrdering> paper_orderings() {
+std::vector<OrderingSpec> paper_orderings() {
   return {{"original", "Original", "original", "original"},
           {"fiedler", "Fiedler", "fiedler", "original"},
           {"vf-fiedler", "VF Fiedler", "fiedler", "fiedler"},
@@ -16,8 +16,8 @@ std::vector<StudyOrdering> paper_orderings() {
           {"vf-scrambled", "VF scrambled", "scrambled", "scrambled"}};
 }
 
-StudyOrdering study_ordering(std::string_view name) {
-  for (const StudyOrdering& ordering : paper_orderings()) {
+OrderingSpec study_ordering(std::string_view name) {
+  for (const OrderingSpec& ordering : paper_orderings()) {
     if (ordering.name == name) return ordering;
   }
   const auto slash = name.find('/');

@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// What the parser says, without its own numbers and place.
+/// Returns the parser's message without its error number and position.
 std::string reason(std::string what) {
   for (const std::string_view mark : {"syntax error ", "] "}) {
     const std::size_t found = what.find(mark);
@@ -24,7 +24,7 @@ std::string reason(std::string what) {
   return what;
 }
 
-/// Throws where an object has a key twice, of which the parser would keep the last.
+/// Refuses a key that occurs twice in an object; the parser would keep the last.
 class UniqueKeys {
  public:
   explicit UniqueKeys(std::string file) : file_(std::move(file)) {}
@@ -83,9 +83,9 @@ nlohmann::json parse_json(std::string_view text, const std::string& file, std::s
   } catch (const nlohmann::json::parse_error& error) {
     const std::string_view before = text.substr(0, std::min(error.byte, text.size()));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-    throw Error(Location{file, line, -1}, "no JSON: " + reason(error.what()), remedy);
+    throw Error(Location{file, line, -1}, "not JSON: " + reason(error.what()), remedy);
   } catch (const nlohmann::json::exception& error) {
-    throw Error(file, "no JSON: " + reason(error.what()), remedy);
+    throw Error(file, "not JSON: " + reason(error.what()), remedy);
   }
 }
 
@@ -108,7 +108,7 @@ void JsonValue::expect_keys(std::initializer_list<std::string_view> known) const
 }
 
 void JsonValue::expect_keys(std::span<const std::string_view> known) const {
-  if (!value_->is_object()) throw error("is " + kind(), "an object {…} of " + join(known) + " is needed");
+  if (!value_->is_object()) throw error("is " + kind(), "give an object {…} of " + join(known));
   for (const auto& [key, value] : value_->items()) {
     if (std::find(known.begin(), known.end(), key) == known.end())
       throw error("the key '" + key + "' is unknown", "known are " + join(known));
@@ -127,10 +127,10 @@ std::optional<JsonValue> JsonValue::find(std::string_view key) const {
   return at(*found, (path_.empty() ? "" : path_ + ".") + std::string(key));
 }
 
-std::vector<JsonValue> JsonValue::items(std::size_t least, std::size_t most) const {
+std::vector<JsonValue> JsonValue::items(std::size_t min, std::size_t max) const {
   if (!value_->is_array()) throw error("is " + kind(), "a list […] is needed");
-  if (value_->size() < least || value_->size() > most) {
-    const std::string wanted = least == most ? fmt::format("{}", least) : fmt::format("at least {}", least);
+  if (value_->size() < min || value_->size() > max) {
+    const std::string wanted = min == max ? fmt::format("{}", min) : fmt::format("at least {}", min);
     throw error(fmt::format("has {} entries", value_->size()), "give " + wanted);
   }
   std::vector<JsonValue> result;
@@ -152,27 +152,27 @@ std::string JsonValue::text() const {
 double JsonValue::number(const NumberRange& range) const {
   if (!value_->is_number()) throw error("is " + kind(), "a number is needed");
   const auto result = value_->get<double>();
-  const bool above = range.least_open ? result > range.least : result >= range.least;
-  const bool below = range.most_open ? result < range.most : result <= range.most;
+  const bool above = range.min_open ? result > range.min : result >= range.min;
+  const bool below = range.max_open ? result < range.max : result <= range.max;
   if (!std::isfinite(result) || !above || !below) {
     std::string wanted;
-    if (range.least > std::numeric_limits<double>::lowest())
-      wanted = fmt::format("{} {}", range.least_open ? "above" : "at least", range.least);
-    if (range.most < std::numeric_limits<double>::max())
-      wanted += fmt::format("{}{} {}", wanted.empty() ? "" : " and ", range.most_open ? "below" : "at most",
-                            range.most);
+    if (range.min > std::numeric_limits<double>::lowest())
+      wanted = fmt::format("{} {}", range.min_open ? "above" : "at least", range.min);
+    if (range.max < std::numeric_limits<double>::max())
+      wanted += fmt::format("{}{} {}", wanted.empty() ? "" : " and ", range.max_open ? "below" : "at most",
+                            range.max);
     throw error("is " + value_->dump(), "it must be " + (wanted.empty() ? "finite" : wanted));
   }
   return result;
 }
 
-std::int64_t JsonValue::whole(std::int64_t least, std::int64_t most) const {
-  const std::string wanted = fmt::format("a whole number from {} to {} is needed", least, most);
+std::int64_t JsonValue::whole(std::int64_t min, std::int64_t max) const {
+  const std::string wanted = fmt::format("a whole number from {} to {} is needed", min, max);
   if (!value_->is_number_integer()) throw error("is " + kind(), wanted);
   const bool fits =
       !value_->is_number_unsigned() || std::in_range<std::int64_t>(value_->get<std::uint64_t>());
   const auto result = value_->get<std::int64_t>();
-  if (!fits || result < least || result > most) throw error("is " + kind(), wanted);
+  if (!fits || result < min || result > max) throw error("is " + kind(), wanted);
   return result;
 }
 

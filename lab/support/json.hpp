@@ -24,24 +24,25 @@
 
 namespace meshorder {
 
-/// Where errors about scenarios point.
+/// Documentation that errors in scenarios refer to.
 inline constexpr std::string_view kScenarioGuide = "docs/simulate.md";
 
-/// The JSON text of a file. Throws Error with the line of what is no JSON, of a key that an object has twice
-/// and of a number that no double holds. `guide` is the documentation that errors point at.
+/// Parses the JSON text of a file. Throws Error with the line for text that is not JSON, for a key that
+/// occurs twice in an object and for a number outside the range of double. `guide` is the documentation that
+/// errors refer to.
 nlohmann::json parse_json(std::string_view text, const std::string& file,
                           std::string_view guide = kScenarioGuide);
 
-/// Numbers that are allowed; the ends are, too, unless they are `open`.
+/// A range of numbers; it includes its ends unless they are `open`.
 struct NumberRange {
-  double least = std::numeric_limits<double>::lowest();
-  double most = std::numeric_limits<double>::max();
-  bool least_open = false;
-  bool most_open = false;
+  double min = std::numeric_limits<double>::lowest();
+  double max = std::numeric_limits<double>::max();
+  bool min_open = false;
+  bool max_open = false;
 };
 
-/// A value in a JSON file that knows its place there: every Error names the file and the path, as in
-/// `FILE: forces[0].newtons: what; remedy`. The value, and the text of `guide`, must outlive it.
+/// A value in a JSON file with its path there: every Error names file and path, as in `FILE:
+/// forces[0].newtons: what; remedy`. The nlohmann::json value and the text of `guide` must outlive it.
 class JsonValue {
  public:
   JsonValue(const nlohmann::json& value, std::string file, std::string_view guide = kScenarioGuide)
@@ -55,34 +56,33 @@ class JsonValue {
   }
 
   // ---- objects
-  /// Throws unless it is an object of no other keys than these.
+  /// Throws unless it is an object with no keys but these.
   void expect_keys(std::initializer_list<std::string_view> known) const;
   void expect_keys(std::span<const std::string_view> known) const;
   [[nodiscard]] bool has(std::string_view key) const { return value_->contains(key); }
-  /// A value that must be there.
+  /// Returns the value of a key. Throws if the object lacks it.
   [[nodiscard]] JsonValue operator[](std::string_view key) const;
-  /// A value that may be there.
+  /// Returns the value of a key, if the object has it.
   [[nodiscard]] std::optional<JsonValue> find(std::string_view key) const;
 
   // ---- arrays
-  /// The values of an array of `least` to `most` values.
-  [[nodiscard]] std::vector<JsonValue> items(
-      std::size_t least = 0, std::size_t most = std::numeric_limits<std::size_t>::max()) const;
+  /// Returns the values of an array. Throws unless there are `min` to `max`.
+  [[nodiscard]] std::vector<JsonValue> items(std::size_t min = 0,
+                                             std::size_t max = std::numeric_limits<std::size_t>::max()) const;
 
   // ---- plain values
   [[nodiscard]] bool is_null() const noexcept { return value_->is_null(); }
   [[nodiscard]] bool is_text() const noexcept { return value_->is_string(); }
-  /// A text that is not empty.
+  /// Returns a text. Throws if it is empty.
   [[nodiscard]] std::string text() const;
-  /// A text that may be empty.
+  /// Returns a text, which may be empty.
   [[nodiscard]] std::string any_text() const;
   [[nodiscard]] double number(const NumberRange& range = {}) const;
-  [[nodiscard]] std::int64_t whole(std::int64_t least, std::int64_t most) const;
-  /// true or false.
+  [[nodiscard]] std::int64_t whole(std::int64_t min, std::int64_t max) const;
   [[nodiscard]] bool truth() const;
-  /// Three numbers.
+  /// Returns a point of three numbers.
   [[nodiscard]] Point vector() const;
-  /// The value that a text names, of pairs (value, name). Throws Error that lists the names.
+  /// Returns the value that a text names, from pairs (value, name). Throws Error that lists the names.
   template <class Value, std::size_t N>
   [[nodiscard]] Value one_of(const std::array<std::pair<Value, const char*>, N>& names) const {
     const std::string given = text();
@@ -98,7 +98,7 @@ class JsonValue {
   }
 
  private:
-  /// What stands at `path` in this one's file.
+  /// Returns a value of the same file.
   [[nodiscard]] JsonValue at(const nlohmann::json& value, std::string path) const;
   [[nodiscard]] std::string kind() const;
 
@@ -108,11 +108,11 @@ class JsonValue {
   std::string path_;
 };
 
-/// JSON for people and for version control: what is short, and every list of numbers, stands in one line;
-/// the rest is indented. Doubles read back to the same bits. Ends with a line break. O(size · depth).
+/// Returns JSON for people and version control: short values and lists of numbers take one line, the rest is
+/// indented. Doubles read back to the same bits. Ends with a line break. O(size · depth).
 std::string json_text(const nlohmann::ordered_json& json);
 
-/// Writes that to a file, whole or not at all. Throws Error when it cannot be written.
+/// Writes json_text to a file, completely or not at all. Throws Error if it cannot be written.
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
 }  // namespace meshorder

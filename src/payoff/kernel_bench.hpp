@@ -33,40 +33,40 @@ struct EnumNames<Kernel> {
 inline constexpr std::array<std::string_view, kKernels.size()> kKernelTitles{"SpMV", "element force",
                                                                              "assembly", "springs"};
 
-/// A mesh in one order, prepared for its kernels to run again and again: the stiffness matrix on the vertex
-/// graph, the elements cut into simplices, a spring on every edge, and vertices off their rest positions by a
-/// smooth deformation that depends on where a vertex rests and on nothing else. Two orders of a mesh
-/// therefore compute the same physics, and no force, strain or matrix entry is trivial.
+/// A mesh in one order, prepared to run its kernels repeatedly: the stiffness matrix on the vertex graph, the
+/// elements cut into simplices, a spring on every edge, and vertices displaced by a smooth function of their
+/// rest position. All orders of a mesh therefore compute the same physics, and no force, strain or matrix
+/// entry is trivial.
 class KernelBench {
  public:
-  /// `graph` is the mesh's vertex graph. O(size of the mesh · log degree). Throws InvalidArgument when the
-  /// graph belongs to another mesh. With several `threads` the kernels share their work among so many by
-  /// ranges of vertices (see owned_batches): the same results, bit for bit.
+  /// `graph` is the mesh's vertex graph. Several `threads` share the work by ranges of vertices (see
+  /// owned_batches), with the same results, bit for bit. O(size of the mesh · log degree). Throws
+  /// InvalidArgument if the graph is of another mesh.
   KernelBench(const Mesh& mesh, const CsrGraph& graph, int threads = 1);
   explicit KernelBench(const Mesh& mesh, int threads = 1);
 
-  /// Runs a kernel once, from cleared to complete results.
+  /// Runs a kernel once; clears its results first.
   void run(Kernel kernel);
 
-  /// What the last run of that kernel computed: 3 doubles a vertex for spmv, 4 for forces (see
-  /// padded_positions), 9 a block for assembly. The forces of elements and springs share their place.
+  /// Returns the result of the kernel's last run: 3 doubles a vertex for spmv, 4 for forces (see
+  /// padded_positions), 9 a block for assembly. Elements and springs share the array of forces.
   [[nodiscard]] std::span<const double> result(Kernel kernel) const;
 
   [[nodiscard]] const BlockCsr& matrix() const noexcept { return matrix_; }
 
-  /// The bytes that one run moves when every array passes through the processor once: divided by the memory's
-  /// bandwidth, the least time of a mesh much larger than the caches.
+  /// Returns the bytes that one run moves if every array passes through the processor once. Divided by the
+  /// memory's bandwidth, this is a lower bound on the time for a mesh much larger than the caches.
   [[nodiscard]] double streamed_bytes(Kernel kernel) const;
 
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
-  /// By how much the threads together compute more elements than there are: 0 on one thread, 0.02 where every
-  /// fiftieth batch is computed twice.
+  /// Returns the share of elements that are computed in addition, because threads overlap: 0 on one thread,
+  /// 0.02 if every fiftieth batch is computed twice.
   [[nodiscard]] double redundancy() const;
 
  private:
-  /// What one thread does.
+  /// The work of one thread.
   struct Share {
     OwnedBatches elements;
     OwnedBlocks blocks;
@@ -84,7 +84,7 @@ class KernelBench {
   AlignedVector<double> forces_;
   AlignedVector<double> x_;
   AlignedVector<double> y_;
-  std::vector<Share> shares_;  ///< none on one thread
+  std::vector<Share> shares_;  ///< empty for one thread
 };
 
 }  // namespace meshorder

@@ -407,7 +407,7 @@ def test_errors_name_the_file_and_the_place(command, tmp_path):
     command.fails("simulate", "falling", "--order", "rcm", "--vertices", "rcm")
     command.fails("simulate", "falling", "--steps", "0")
     (tmp_path / "broken.json").write_text('{\n "name": "a",\n}')
-    assert "broken.json:3: no JSON" in command.fails("simulate", "broken.json")
+    assert "broken.json:3: not JSON" in command.fails("simulate", "broken.json")
     write_scenario(tmp_path, material={**SMALL["material"], "poisson": 0.5})
     assert "small.json: material.poisson: is 0.5" in command.fails("simulate", "small.json")
     write_scenario(tmp_path, fixed=[{"on": {"set": "left"}}])

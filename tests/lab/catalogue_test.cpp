@@ -107,7 +107,7 @@ TEST_F(Catalogue, ListsModelsThatAreNotMadeWithoutPathAndCounts) {
     const Model model = named(name);
     EXPECT_TRUE(model.path.empty()) << name;
     EXPECT_EQ(model.vertices, 0) << name;
-    EXPECT_FALSE(model.sentence.empty()) << name;
+    EXPECT_FALSE(model.description.empty()) << name;
   }
   EXPECT_TRUE(kept().empty());
 }

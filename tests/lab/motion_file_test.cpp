@@ -74,9 +74,9 @@ TEST(MotionFile, BrokenFilesAreErrorsWithTheirNames) {
       {content.substr(0, content.size() - 1), "promises 1 frames of 1 vertices, but 11 bytes"},
       {changed("(1, 1, 3)", "(9, 1, 3)"), "promises 9 frames"},
       {changed("(1, 1,", "(-1,1,"), "promises -1 frames"},
-      {changed("<f4", "<f8"), "is no motion"},
-      {changed("False", "True "), "is no motion"},
-      {changed("(1, 1, 3)", "(1, 3, 1)"), "is no motion"},
+      {changed("<f4", "<f8"), "is not a motion"},
+      {changed("False", "True "), "is not a motion"},
+      {changed("(1, 1, 3)", "(1, 3, 1)"), "is not a motion"},
       {not_finite, "not finite"}};
   for (const auto& [broken, expected] : files) {
     try {

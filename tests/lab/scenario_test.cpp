@@ -298,12 +298,12 @@ TEST(Scenario, ErrorsNameTheFileThePlaceAndWhatWouldBeRight) {
     std::vector<std::string> expected;
   };
   const std::vector<Broken> cases{
-      {"{\n\"name\": \"a\",\n}", {"my.json:3:", "no JSON"}},
-      {"[1, 2", {"my.json:1:", "no JSON"}},
-      {"", {"my.json:1:", "no JSON"}},
-      {kSmallest + "x", {"my.json:", "no JSON"}},
-      {changed("0.02", "NaN"), {"my.json:4:", "no JSON"}},
-      {changed("0.02", "1e999"), {"my.json: ", "no JSON", "1e999"}},
+      {"{\n\"name\": \"a\",\n}", {"my.json:3:", "not JSON"}},
+      {"[1, 2", {"my.json:1:", "not JSON"}},
+      {"", {"my.json:1:", "not JSON"}},
+      {kSmallest + "x", {"my.json:", "not JSON"}},
+      {changed("0.02", "NaN"), {"my.json:4:", "not JSON"}},
+      {changed("0.02", "1e999"), {"my.json: ", "not JSON", "1e999"}},
       {with(R"("steps": 8)"), {"my.json: ", "'steps' twice"}},
       {"[]", {"my.json: the file: is a list of 0", "object"}},
       {with(R"("speed": 1)"), {"my.json: the file: the key 'speed' is unknown", "scale"}},

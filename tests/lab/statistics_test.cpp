@@ -187,8 +187,8 @@ TEST(Statistics, RefuseRunsThatDoNotFitEachOther) {
   EXPECT_THROW(speedup_of(two, two, 0, 0), InvalidArgument);
 }
 
-OrderOfScenario order_with(const std::string& ordering, const std::vector<std::vector<double>>& steps) {
-  OrderOfScenario order;
+ScenarioOrderRecord order_with(const std::string& ordering, const std::vector<std::vector<double>>& steps) {
+  ScenarioOrderRecord order;
   order.ordering = ordering;
   order.runs = runs_of(steps);
   return order;
@@ -216,7 +216,7 @@ StudyResults small_study() {
 TEST(Summarise, TakesTheOrdersCostsFromTheMesh) {
   StudyResults results = small_study();
   summarise(results);
-  const std::vector<OrderOfScenario>& orders = results.scenarios[0].orders;
+  const std::vector<ScenarioOrderRecord>& orders = results.scenarios[0].orders;
   EXPECT_DOUBLE_EQ(orders[1].time.mean, 3.05);
   EXPECT_DOUBLE_EQ(orders[1].speedup.saved_seconds, 2.95);
   EXPECT_EQ(orders[1].speedup.break_even_step, 2);
@@ -227,7 +227,7 @@ TEST(Summarise, TakesTheOrdersCostsFromTheMesh) {
 TEST(Summarise, ComparesTheRunsThatBothHave) {
   StudyResults results = small_study();
   summarise(results);
-  const OrderOfScenario& original = results.scenarios[0].orders[0];
+  const ScenarioOrderRecord& original = results.scenarios[0].orders[0];
   EXPECT_DOUBLE_EQ(original.speedup.percent, 25);
   EXPECT_EQ(original.speedup.break_even_step, std::nullopt) << "its cost is not known";
 }

@@ -44,7 +44,7 @@ std::vector<std::string> ids(const std::vector<Table>& tables) {
 
 TEST(Tables, HoldTheResultsNumbersToTheLastBit) {
   StudyResults results = sample_results();
-  OrderOfScenario& order = results.scenarios[1].orders[1];
+  ScenarioOrderRecord& order = results.scenarios[1].orders[1];
   order.time = {87.123456789012345, 1.0 / 3, 0};
   order.speedup = {1.0 / 7, 2.0 / 7, 3.0 / 7, 4.0 / 7, true, 5.0 / 7, 3};
   results.meshes[0].orders[1].seconds = 1.0 / 9;

@@ -15,7 +15,7 @@ namespace meshorder {
 namespace {
 
 TimingOptions quick() {
-  return {.budget_seconds = 0.0, .least_rounds = 4, .most_rounds = 9, .sample_seconds = 1e-5};
+  return {.budget_seconds = 0.0, .min_rounds = 4, .max_rounds = 9, .sample_seconds = 1e-5};
 }
 
 double largest(std::span<const double> values) {

@@ -32,10 +32,10 @@ std::vector<Figure> prediction_figures(const StudyResults& results) {
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     std::vector<std::string> points;
     for (const MeshRecord& mesh : results.meshes) {
-      const OrderOfMesh* const reference = find_order(mesh, results.reference);
+      const MeshOrderRecord* const reference = find_order(mesh, results.reference);
       if (reference == nullptr) continue;
       const KernelRecord& whole = reference->kernels[k];
-      for (const OrderOfMesh& order : mesh.orders) {
+      for (const MeshOrderRecord& order : mesh.orders) {
         const KernelRecord& kernel = order.kernels[k];
         if (&order == reference || kernel.predicted_ms <= 0 || kernel.measured_ms <= 0 ||
             whole.predicted_ms <= 0 || whole.measured_ms <= 0) {
@@ -63,7 +63,7 @@ std::vector<Figure> prediction_figures(const StudyResults& results) {
       "prediction",
       "Kernels: predicted and measured",
       fmt::format("How many times faster than in the order “{}” the kernels run, a mark for each mesh "
-                  "and order, both axes logarithmic: above the line faster than predicted, below it "
+                  "and order, both axes logarithmic. Above the line: faster than predicted; below: "
                   "slower.",
                   reference),
       {}};
