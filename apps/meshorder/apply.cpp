@@ -70,12 +70,13 @@ void run(const ApplyArguments& arguments) {
 }  // namespace
 
 void add_apply(CLI::App& app) {
-  CLI::App* subcommand =
-      app.add_subcommand("apply",
-                         "Reorder a mesh by the maps that `order --maps` wrote, or restore its old order.\n"
-                         "  meshorder order a.msh -o ordered.msh --maps a\n"
-                         "  meshorder apply a a-with-loads.msh -o ordered-with-loads.msh\n"
-                         "  meshorder apply a ordered.msh -o a-again.msh --inverse");
+  CLI::App* subcommand = app.add_subcommand(
+      "apply", "Reorder a mesh by the maps that `order --maps` wrote, or restore its old order.");
+  subcommand->footer(
+      "Examples:\n"
+      "  meshorder order a.msh -o ordered.msh --maps a\n"
+      "  meshorder apply a a-with-loads.msh -o ordered-with-loads.msh\n"
+      "  meshorder apply a ordered.msh -o a-again.msh --inverse");
   const auto arguments = std::make_shared<ApplyArguments>();
   subcommand->add_option("PREFIX", arguments->prefix, "Prefix of the maps, as given to `order --maps`")
       ->required();

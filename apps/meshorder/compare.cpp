@@ -140,8 +140,10 @@ void add_compare(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
       "compare",
       "Compare orders of a mesh: their cost, edge spans, predicted cache misses and measured kernels.\n"
-      "  meshorder compare dragon.veg --methods hilbert,fiedler,metis-nd\n"
       "With --threads N, N > 1, the kernels run on one thread and then on N.");
+  subcommand->footer(
+      "Example:\n"
+      "  meshorder compare dragon.veg --methods hilbert,fiedler,metis-nd");
   const auto arguments = std::make_shared<CompareArguments>();
   arguments->methods = default_methods();
   subcommand->add_option("MESH", arguments->input, "Mesh file")->required();

@@ -201,10 +201,12 @@ void run(const InfoArguments& arguments) {
 }  // namespace
 
 void add_info(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand("info",
-                                            "Show what a mesh file holds and whether its order is good.\n"
-                                            "  meshorder info dragon.veg\n"
-                                            "  meshorder info dragon.veg --measure");
+  CLI::App* subcommand =
+      app.add_subcommand("info", "Show what a mesh file holds and whether its order is good.");
+  subcommand->footer(
+      "Examples:\n"
+      "  meshorder info dragon.veg\n"
+      "  meshorder info dragon.veg --measure");
   const auto arguments = std::make_shared<InfoArguments>();
   subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
   add_cache_option(*subcommand, arguments->caches);

@@ -69,8 +69,8 @@ std::string command_named_by(const CLI::App& app) {
 // NOLINTNEXTLINE(bugprone-exception-escape): only printing a message could still throw
 int main(int argc, char** argv) {
   CLI::App app{
-      "Reorders the vertices and elements of a simulation mesh so that physics on it runs faster,\n"
-      "with everything in the file.\n\n"
+      "Reorders the vertices and elements of a simulation mesh, with all data in its file, so that\n"
+      "physics on it runs faster.\n\n"
       "  meshorder order  dragon.veg -o ordered.veg   order by the method chosen for the mesh\n"
       "  meshorder info   dragon.veg                  counts and spans; is it in a good order?\n"
       "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"

@@ -35,9 +35,10 @@ void run(const Common& common) {
 }  // namespace
 
 void add_methods(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand("methods",
-                                            "List the ordering methods, with a description each.\n"
-                                            "  meshorder methods");
+  CLI::App* subcommand = app.add_subcommand("methods", "List the ordering methods, with a description each.");
+  subcommand->footer(
+      "Example:\n"
+      "  meshorder methods");
   const auto common = std::make_shared<Common>();
   add_common(*subcommand, *common);
   subcommand->callback([common] { run(*common); });

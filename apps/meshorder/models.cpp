@@ -89,8 +89,9 @@ void make(const MakeArguments& arguments) {
 
 void add_models(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
-      "models",
-      "Make meshes to try things on: the paper's bodies, and grids, balls and tori of any size.\n"
+      "models", "Make meshes to try things on: the paper's bodies, and grids, balls and tori of any size.");
+  subcommand->footer(
+      "Examples:\n"
       "  meshorder models\n"
       "  meshorder models make dragon");
   const auto common = std::make_shared<Common>();
@@ -103,8 +104,10 @@ void add_models(CLI::App& app) {
   CLI::App* make_command =
       subcommand->add_subcommand("make",
                                  "Make a model and keep it in your cache folder.\n"
-                                 "The scanned bodies are downloaded from Debian's package archive (24 MB).\n"
-                                 "  meshorder models make grid --size 40");
+                                 "The scanned bodies are downloaded from Debian's package archive (24 MB).");
+  make_command->footer(
+      "Example:\n"
+      "  meshorder models make grid --size 40");
   const auto arguments = std::make_shared<MakeArguments>();
   make_command
       ->add_option("NAME", arguments->name, "A name from `meshorder models`, or `all` for all scanned bodies")

@@ -111,7 +111,9 @@ void run(const OrderArguments& arguments) {
 void add_order(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
       "order",
-      "Reorder a mesh with all its data, labels and groups. The extension of the output is its format.\n"
+      "Reorder a mesh with all its data, labels and groups. The extension of the output is its format.");
+  subcommand->footer(
+      "Examples:\n"
       "  meshorder order dragon.veg -o ordered.veg\n"
       "  meshorder order part.msh -o part.vtu --for spmv --maps part");
   const auto arguments = std::make_shared<OrderArguments>();

@@ -196,10 +196,12 @@ void add_report(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
       "report",
       "Write a page for the browser: meshes coloured by their order, spans, caches, kernels, tables.\n"
+      "The page is one file and needs no network.");
+  subcommand->footer(
+      "Examples:\n"
       "  meshorder report dragon.veg -o dragon.html   your mesh as it is and in other orders, and what\n"
       "                                               each is worth; takes about half a minute\n"
-      "  meshorder report results/                    a study: writes its tables, figures and page again\n"
-      "The page is one file and needs no network.");
+      "  meshorder report results/                    a study: writes its tables, figures and page again");
   const auto arguments = std::make_shared<ReportArguments>();
   subcommand->add_option("INPUT", arguments->inputs, "Mesh files, or the folder of one study")
       ->required()

@@ -96,7 +96,9 @@ void run(const ReproduceArguments& arguments) {
 void add_reproduce(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
       "reproduce",
-      "Repeat the paper's study on this machine: six scenarios, five orders, tables and a page.\n"
+      "Repeat the paper's study on this machine: six scenarios, five orders, tables and a page.");
+  subcommand->footer(
+      "Examples:\n"
       "  meshorder reproduce --quick -o results   a few steps of each scenario: some minutes\n"
       "  meshorder reproduce -o results           240 steps, three runs: hours; stop it by Ctrl-C and\n"
       "                                           resume it later by the same command");

@@ -247,7 +247,9 @@ void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
 void add_simulate(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
       "simulate",
-      "Simulate an elastic body as a scenario describes, with the mesh in a given order, and time it.\n"
+      "Simulate an elastic body as a scenario describes, with the mesh in a given order, and time it.");
+  subcommand->footer(
+      "Example:\n"
       "  meshorder simulate falling --order fiedler --vtk frames");
   const auto arguments = std::make_shared<SimulateArguments>();
   add_scenario_options(*subcommand, *arguments);

@@ -122,7 +122,7 @@ TEST(Scenario, ReadsEveryValue) {
   EXPECT_EQ(s.forces[0].steps.last, kMaxIndex);
   EXPECT_EQ(s.forces[1].on.by, By::set);
   EXPECT_EQ(s.forces[1].on.name, "tip");
-  EXPECT_EQ(s.forces[1].on.where, "forces[1].on");
+  EXPECT_EQ(s.forces[1].on.source_path, "forces[1].on");
   EXPECT_EQ(s.forces[1].steps.first, 2);
   EXPECT_EQ(s.forces[1].steps.last, 5);
   EXPECT_EQ(s.forces[1].newtons, (Point{0, 0, 1}));
