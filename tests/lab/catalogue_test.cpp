@@ -188,7 +188,7 @@ TEST_F(Catalogue, ShowsTheLastLineOfAProgramThatFails) {
   install("tetgen", "kill -9 $$");
   EXPECT_NE(error_of<Error>("armadillo-300k").find("status 137: it printed nothing"), std::string::npos);
   install("tetgen", "exit 0");
-  EXPECT_NE(error_of<Error>("armadillo-300k").find("left no mesh"), std::string::npos);
+  EXPECT_NE(error_of<Error>("armadillo-300k").find("wrote no mesh"), std::string::npos);
   EXPECT_TRUE(kept().empty());
 }
 

@@ -224,7 +224,7 @@ TEST(Scenario, ErrorsOfAdmmNameThePlace) {
            Broken{R"("reset")", R"("reset", "acceleration": 11)",
                   "integrator.acceleration: is the number 11"},
            Broken{R"("reset")", R"("reset", "acceleration": 5)",
-                  "integrator.acceleration: is not for contacts"},
+                  "integrator.acceleration: cannot be combined with contacts"},
            Broken{R"("single")", R"("half")", "solver.precision: 'half'"},
            Broken{R"("normal": [0, 2, 0])", R"("normal": [0, 0, 0])",
                   "obstacles[0].half_space.normal: has no direction"},
@@ -237,8 +237,9 @@ TEST(Scenario, ErrorsOfAdmmNameThePlace) {
                   "contact.with_itself: is the number 1; true or"},
            Broken{R"("gauss-seidel")", R"("lemke")", "contact.solver: 'lemke'"},
            Broken{R"("over_relaxation": 1.5)", R"("over_relaxation": 2)", "contact.over_relaxation: is 2"},
-           Broken{R"("height": 0.5)", R"("height": 0.5, "longest_side": 1)", "scale: does not say to what"},
-           Broken{R"(, "at": [0.5, 0, 1])", "", "start[1]: says nothing"},
+           Broken{R"("height": 0.5)", R"("height": 0.5, "longest_side": 1)",
+                  "scale: does not say which side to scale"},
+           Broken{R"(, "at": [0.5, 0, 1])", "", "start[1]: has neither velocity nor at"},
        }) {
     const std::string message = error_of(projective(broken.from, broken.to));
     EXPECT_NE(message.find(broken.expected), std::string::npos) << message << "\n  lacks " << broken.expected;
@@ -313,7 +314,7 @@ TEST(Scenario, ErrorsNameTheFileThePlaceAndWhatWouldBeRight) {
       {changed("7", "18446744073709551615"), {"steps: ", "whole number from 1"}},
       {changed("7", "\"many\""), {"steps: is the text 'many'"}},
       {changed("\"small\"", "\"\""), {"name: is an empty text"}},
-      {changed("\"small\"", "\"a/b\""), {"name: 'a/b' holds a slash"}},
+      {changed("\"small\"", "\"a/b\""), {"name: 'a/b' contains a slash"}},
       {changed("0.02", "-0.02"), {"integrator.time_step: is -0.02", "above 0"}},
       {changed("0.3", "0.5"), {"material.poisson: is 0.5", "above -1 and below 0.5"}},
       {changed("1e5", "0"), {"material.young: is 0", "above 0"}},
@@ -470,7 +471,7 @@ TEST(VertexChoice, ErrorsListWhatTheMeshHas) {
   EXPECT_NE(no_set.find("my.json: fixed[0].on: the mesh has no set 'tip'"), std::string::npos) << no_set;
   EXPECT_NE(no_set.find("fixed, part"), std::string::npos) << no_set;
   const std::string no_label = message_of(choice_of(By::label, "label", 12345));
-  EXPECT_NE(no_label.find("fixed[0].on: nothing has the label 12345; those of cells are"), std::string::npos)
+  EXPECT_NE(no_label.find("fixed[0].on: nothing has the label 12345; labels of cells are"), std::string::npos)
       << no_label;
   const std::string no_array = message_of(choice_of(By::label, "colour", 1));
   EXPECT_NE(no_array.find("no array 'colour'"), std::string::npos) << no_array;
