@@ -7,6 +7,7 @@
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include "payoff/access_stream.hpp"
+#include "payoff/machine.hpp"
 
 #include <fmt/core.h>
 #include <tbb/global_control.h>
@@ -30,8 +31,8 @@ void predict(const mo::Mesh& mesh, const mo::Caches& caches) {
   for (const mo::Kernel kernel : mo::kKernels) {
     stopwatch = {};
     const mo::Reuse reuse = mo::reuse_of(kernel, graph, simplices);
-    fmt::print("{} seconds {:.3f} accesses {} mean_log2 {:.3f} misses", mo::name(kernel), stopwatch.seconds(),
-               reuse.all.accesses(), reuse.all.mean_log2());
+    fmt::print("{} seconds {:.3f} accesses {} mean_log2 {:.3f} misses", mo::to_string(kernel),
+               stopwatch.seconds(), reuse.all.accesses(), reuse.all.mean_log2());
     for (const mo::Offset misses : mo::misses(reuse.all, caches)) fmt::print(" {}", misses);
     fmt::print("\n");
   }
@@ -39,7 +40,7 @@ void predict(const mo::Mesh& mesh, const mo::Caches& caches) {
 
 bool run(const mo::Mesh& mesh, const std::string& kernel_name, int runs) {
   for (const mo::Kernel kernel : mo::kKernels) {
-    if (mo::name(kernel) != kernel_name) continue;
+    if (mo::to_string(kernel) != kernel_name) continue;
     mo::KernelBench bench(mesh);
     for (int i = 0; i < runs; ++i) bench.run(kernel);
     return true;

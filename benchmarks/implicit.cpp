@@ -152,8 +152,7 @@ nlohmann::ordered_json measure(const std::string& file, const Settings& settings
     for (const bool single : {false, true}) {
       for (int threads = 1; threads <= static_cast<int>(bandwidths.size()); ++threads) {
         mo::Scenario changed = in_order(scenario, orders.back());
-        changed.implicit().preconditioner =
-            mo::meaning_in(mo::kPreconditioners, preconditioner, "preconditioner");
+        changed.implicit().preconditioner = mo::parse<mo::PreconditionerKind>(preconditioner);
         if (single) changed.implicit().precision = mo::MatrixPrecision::single;
         runners.push_back(
             make_runner(preconditioner + (single ? ", float" : ""), threads, changed, mesh, file));

@@ -37,8 +37,9 @@ int main(int argc, char** argv) {
   for (std::size_t i = 0; i < orders.size(); ++i) {
     for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
       const mo::KernelTimes& t = times[i].times[k];
-      fmt::print("{:<20}{:<10}{:>10.3f}{:>10.3f}{:>8.1f}{:>9.2f}\n", orders[i][0], mo::name(mo::kKernels[k]),
-                 t.best_ms, t.median_ms, 1e-6 * bytes[i][k] / t.best_ms, t.speedup);
+      fmt::print("{:<20}{:<10}{:>10.3f}{:>10.3f}{:>8.1f}{:>9.2f}\n", orders[i][0],
+                 mo::to_string(mo::kKernels[k]), t.best_ms, t.median_ms, 1e-6 * bytes[i][k] / t.best_ms,
+                 t.speedup);
     }
   }
 }

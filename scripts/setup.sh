@@ -18,7 +18,6 @@ packages_to_run=(
   libmeshoptimizer-dev "simplifies the surfaces that it shows"
   libmetis-dev         "orders by nested dissection and by parts"
   libsuitesparse-dev   "sparse Cholesky factors of the ADMM simulator"
-  libspdlog-dev        "log"
   libtbb-dev           "threads"
   nlohmann-json3-dev   "JSON results"
   zlib1g-dev           "compressed .vtu files"

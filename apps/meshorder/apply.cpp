@@ -9,6 +9,9 @@
 #include "mesh/reorder.hpp"
 #include "progress.hpp"
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include <memory>
 #include <string>
 #include <utility>
@@ -27,7 +30,7 @@ void run(const ApplyArguments& arguments) {
   const Console console(arguments);
   const Stopwatch total;
   (void)format_of(arguments.output);
-  (void)OutputFile(arguments.output);  // whether it can be written is known before the work begins
+  (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.5);
@@ -36,17 +39,17 @@ void run(const ApplyArguments& arguments) {
   Maps maps = read_maps(arguments.prefix, mesh);
   if (arguments.inverse) {
     maps.vertices = maps.vertices.inverse();
-    maps.elements = maps.elements.inverse();
+    maps.cells = maps.cells.inverse();
   }
   try {
-    apply_reordering(mesh, maps.vertices, maps.elements);
+    apply_reordering(mesh, maps.vertices, maps.cells);
   } catch (const InvalidArgument& error) {
     throw Error(arguments.input, error.what(), "give the maps that were written with this mesh");
   }
   if (arguments.inverse) {
-    // the numbers that the file gave before it was ordered
+    // the ids that the file had before it was ordered
     if (!maps.vertex_ids.empty()) mesh.vertex_ids = maps.vertex_ids;
-    if (!maps.element_ids.empty()) mesh.cell_ids = maps.element_ids;
+    if (!maps.cell_ids.empty()) mesh.cell_ids = maps.cell_ids;
   }
 
   progress.stage("writing " + arguments.output, 0.5, 1);
@@ -54,7 +57,8 @@ void run(const ApplyArguments& arguments) {
   progress.finish();
   console.log_notes(notes);
   console.print("wrote {}: {} vertices and {} cells {}", arguments.output, with_commas(mesh.vertex_count()),
-                with_commas(mesh.cell_count()), arguments.inverse ? "put back" : "moved");
+                with_commas(mesh.cell_count()),
+                arguments.inverse ? "restored to the old order" : "reordered");
   console.print_json({{"input", arguments.input},
                       {"output", arguments.output},
                       {"inverse", arguments.inverse},
@@ -66,16 +70,21 @@ void run(const ApplyArguments& arguments) {
 }  // namespace
 
 void add_apply(CLI::App& app) {
-  CLI::App* subcommand =
-      app.add_subcommand("apply", "Move a mesh by the maps that `order --maps` wrote, or put it back");
+  CLI::App* subcommand = app.add_subcommand(
+      "apply", "Reorder a mesh by the maps that `order --maps` wrote, or restore its old order.");
+  subcommand->footer(
+      "Examples:\n"
+      "  meshorder order a.msh -o ordered.msh --maps a\n"
+      "  meshorder apply a a-with-loads.msh -o ordered-with-loads.msh\n"
+      "  meshorder apply a ordered.msh -o a-again.msh --inverse");
   const auto arguments = std::make_shared<ApplyArguments>();
-  subcommand->add_option("PREFIX", arguments->prefix, "What was given to `order --maps`")->required();
+  subcommand->add_option("PREFIX", arguments->prefix, "Prefix of the maps, as given to `order --maps`")
+      ->required();
   subcommand
-      ->add_option("MESH", arguments->input,
-                   "Mesh file: the unordered one, or with --inverse the ordered one")
+      ->add_option("MESH", arguments->input, "Mesh file: in its old order or, with --inverse, reordered")
       ->required();
   subcommand->add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
-  subcommand->add_flag("--inverse", arguments->inverse, "Put back what was ordered");
+  subcommand->add_flag("--inverse", arguments->inverse, "Restore the old order");
   add_common(*subcommand, *arguments);
   subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

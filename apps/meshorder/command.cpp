@@ -1,14 +1,46 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
 
+#include "base/text.hpp"
+
+#include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
 
 #include <array>
 #include <cstddef>
+#include <cstdlib>
 #include <new>
 #include <string>
 
 namespace meshorder::command {
+namespace {
+
+/// Refuses numbers for which `accepts` is false; what is not a number is left to the option's own type.
+template <class Accepts>
+CLI::Validator number_check(Accepts accepts, const std::string& message) {
+  return {[accepts, message](const std::string& text) {
+            char* end = nullptr;
+            const double number = std::strtod(text.c_str(), &end);
+            const bool is_number = end != text.c_str() && *end == '\0';
+            return is_number && !accepts(number) ? message + ", not " + text : std::string();
+          },
+          ""};
+}
+
+}  // namespace
+
+CLI::Validator not_negative() {
+  return number_check([](double number) { return number >= 0; }, "must be 0 or more");
+}
+
+CLI::Validator positive() {
+  return number_check([](double number) { return number > 0; }, "must be more than 0");
+}
+
+CLI::Validator in_range(int lowest, int highest) {
+  return number_check([=](double number) { return number >= lowest && number <= highest; },
+                      "must be from " + std::to_string(lowest) + " to " + std::to_string(highest));
+}
 
 OrderNames order_named(const std::string& name) {
   OrderNames order;
@@ -20,36 +52,43 @@ OrderNames order_named(const std::string& name) {
 }
 
 void add_common(CLI::App& subcommand, Common& common) {
-  subcommand.add_flag("--json", common.json, "One JSON object on stdout, the log on stderr");
-  subcommand.add_flag("--quiet,-q", common.quiet, "Neither log nor progress");
+  subcommand.add_flag("--json", common.json, "Print one JSON object on stdout; notes go to stderr");
+  subcommand.add_flag("--quiet,-q", common.quiet, "No warnings and no progress bar");
   subcommand
-      .add_option("--threads", common.threads, "Threads at most; 0 takes all. Results do not depend on it")
-      ->check(CLI::NonNegativeNumber)
+      .add_option("--threads", common.threads,
+                  "Maximum number of threads (0 = all). The output is the same for any number")
+      ->check(not_negative())
       ->capture_default_str();
 }
 
 void add_ordering_options(CLI::App& subcommand, OrderingOptions& options) {
-  std::string uses;
-  for (const Workload use : kWorkloads) uses += (uses.empty() ? "" : "|") + std::string(name(use));
   subcommand
       .add_option_function<std::string>(
           "--for", [&options](const std::string& use) { options.use = parse_workload(use); },
-          "The hot loop that `auto` shall choose the order for: " + uses)
-      ->type_name("USE")
+          "Which kernel the order should be best for, if `auto` chooses it:\n" +
+              join(kWorkloads, [](Workload use) { return name(use); }))
+      ->type_name("KERNEL")
       ->default_str(std::string(name(options.use)));
-  subcommand.add_option("--seed", options.seed, "Seed of random orders, METIS and start vectors")
+  subcommand.add_option("--seed", options.seed, "Seed of random orders, of METIS and of start vectors")
+      ->check(not_negative())
       ->capture_default_str();
   subcommand
       .add_option("--tolerance", options.tolerance,
-                  "Residual of Fiedler vectors, relative to lambda2; the order settles at 0.1")
-      ->check(CLI::PositiveNumber)
+                  "Residual of Fiedler vectors relative to lambda2; below 0.1 the order hardly changes")
+      ->check(positive())
       ->capture_default_str();
+}
+
+void add_cache_option(CLI::App& subcommand, std::string& caches) {
+  subcommand.add_option(
+      "--cache", caches,
+      "Caches to predict misses for: this (machine), paper, or the sizes of the levels, such as\n"
+      "48K,1M,32M");
 }
 
 void with_threads(int threads, const std::function<void()>& work) {
   if (threads > 0) {
-    // in a place of its own, so that it never ends: when a limit ends, TBB starts a thread though nothing is
-    // left to do
+    // leaked on purpose: destroying global_control wakes a TBB worker at exit
     alignas(tbb::global_control) static std::array<std::byte, sizeof(tbb::global_control)> limit;
     new (limit.data())
         tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));

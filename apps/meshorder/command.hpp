@@ -3,38 +3,42 @@
 
 #include "ordering/method.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include <functional>
 #include <stdexcept>
 #include <string>
 
+namespace CLI {
+class App;
+class Validator;
+}  // namespace CLI
+
 namespace meshorder::command {
 
-/// What every subcommand understands.
+/// Options of every subcommand.
 struct Common {
   bool json = false;
   bool quiet = false;
-  int threads = 0;  ///< 0: as many as the machine has
+  int threads = 0;  ///< 0: all that the machine has
 };
 
-/// Ends the command with a sentence and an exit status of its own.
-struct Stopped : std::runtime_error {
-  Stopped(const std::string& sentence, int exit_status) : std::runtime_error(sentence), status(exit_status) {}
+/// Ends the command with a message and an exit status.
+struct CommandError : std::runtime_error {
+  CommandError(const std::string& message, int exit_status)
+      : std::runtime_error(message), status(exit_status) {}
   int status;
 };
 
-/// An order as users name it.
+/// The methods of an order.
 struct OrderNames {
   std::string vertices;
   std::string elements;
 };
 
-/// VERTICES or VERTICES/ELEMENTS; elements follow lexmax where only vertices are named, and stay or are
-/// scrambled when vertices do or are.
+/// Splits VERTICES/ELEMENTS. If only VERTICES is given, elements keep the file's order for `original`, are
+/// scrambled for `scrambled` and follow lexmax otherwise.
 OrderNames order_named(const std::string& name);
 
-/// A subcommand adds itself to the application; its work runs after the arguments are understood.
+// Each adds a subcommand to the application; the subcommand runs once all arguments are parsed.
 void add_order(CLI::App& app);
 void add_apply(CLI::App& app);
 void add_info(CLI::App& app);
@@ -46,13 +50,23 @@ void add_reproduce(CLI::App& app);
 void add_serve_steps(CLI::App& app);
 void add_report(CLI::App& app);
 
-/// --json, --quiet and --threads.
+/// Adds --json, --quiet and --threads.
 void add_common(CLI::App& subcommand, Common& common);
 
-/// --for, --seed and --tolerance.
+/// Adds --for, --seed and --tolerance.
 void add_ordering_options(CLI::App& subcommand, OrderingOptions& options);
 
-/// Runs `work`, and what comes after it in this process, with at most `threads` threads (0: all).
+/// Adds --cache, whose value parse_caches reads.
+void add_cache_option(CLI::App& subcommand, std::string& caches);
+
+/// Accepts numbers of at least 0.
+CLI::Validator not_negative();
+/// Accepts numbers above 0.
+CLI::Validator positive();
+/// Accepts numbers from `lowest` to `highest`.
+CLI::Validator in_range(int lowest, int highest);
+
+/// Runs `work` with at most `threads` threads (0: all). The limit stays for the rest of the process.
 void with_threads(int threads, const std::function<void()>& work);
 
 }  // namespace meshorder::command

@@ -9,9 +9,14 @@
 #include "metrics/edge_span.hpp"
 #include "payoff/band.hpp"
 #include "payoff/kernel_timing.hpp"
+#include "payoff/machine.hpp"
 #include "progress.hpp"
 #include "reuse_report.hpp"
 #include "wording.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -33,7 +38,7 @@ struct CompareArguments : Common {
 std::vector<std::string> default_methods() {
   std::vector<std::string> names;
   for (const VertexMethod& method : vertex_methods()) {
-    if (method.name != "auto") names.emplace_back(method.name);  // auto takes one of the others
+    if (method.name != "auto") names.emplace_back(method.name);  // auto chooses one of the others
   }
   names.insert(std::find(names.begin(), names.end(), "fiedler") + 1, "fiedler/fiedler");
   return names;
@@ -47,7 +52,7 @@ ComparedOrder parsed(const std::string& name) {
   return order;
 }
 
-/// The orders with scrambled/scrambled, the point of reference, in front.
+/// Returns the orders, first scrambled/scrambled, the reference.
 std::vector<ComparedOrder> orders_of(const std::vector<std::string>& names) {
   std::vector<ComparedOrder> orders{parsed("scrambled")};
   for (const std::string& name : names) {
@@ -60,7 +65,7 @@ std::vector<ComparedOrder> orders_of(const std::vector<std::string>& names) {
   return orders;
 }
 
-/// The kernels of all orders and of the band, in interleaved rounds.
+/// Times the kernels in all orders and on the band, in interleaved rounds.
 KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<ComparedOrder>& orders,
                   const Band& band, int threads, const TimingOptions& options) {
   KernelTable table;
@@ -87,7 +92,7 @@ void run(const CompareArguments& arguments) {
   progress.stage("reading " + arguments.input, 0, 0.05);
   Notes notes;
   Mesh mesh = read_mesh(arguments.input, &notes);
-  mesh.cell_blocks.clear();  // what is compared is the orders, not a file's layout
+  mesh.cell_blocks.clear();  // orders are compared, not a file's layout
   const CsrGraph graph = vertex_graph(mesh);
 
   comparison.orders = orders_of(arguments.methods);
@@ -133,8 +138,11 @@ void run(const CompareArguments& arguments) {
 void add_compare(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
       "compare",
-      "Every order's cost, quality and measured simulation kernels on this machine, in one table.\n"
+      "Compare orders of a mesh: their cost, edge spans, predicted cache misses and measured kernels.\n"
       "With --threads N, N > 1, the kernels run on one thread and then on N.");
+  subcommand->footer(
+      "Example:\n"
+      "  meshorder compare dragon.veg --methods hilbert,fiedler,metis-nd");
   const auto arguments = std::make_shared<CompareArguments>();
   arguments->methods = default_methods();
   subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
@@ -143,8 +151,8 @@ void add_compare(CLI::App& app) {
                    "Orders to compare, VERTICES or VERTICES/ELEMENTS, separated by commas")
       ->delimiter(',')
       ->capture_default_str();
-  subcommand->add_option("--budget", arguments->budget_seconds, "Seconds to spend on running kernels")
-      ->check(CLI::PositiveNumber)
+  subcommand->add_option("--budget", arguments->budget_seconds, "Seconds to spend on running the kernels")
+      ->check(positive())
       ->capture_default_str();
   add_cache_option(*subcommand, arguments->caches);
   add_ordering_options(*subcommand, arguments->ordering);

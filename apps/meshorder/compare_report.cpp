@@ -4,13 +4,16 @@
 #include "reuse_report.hpp"
 #include "wording.hpp"
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 namespace meshorder::command {
 namespace {
 
 constexpr const char* kFloor = "band";
 
-/// The time over the band's. Both are compared through the reference, since orders that do not fit into the
-/// memory together are timed in groups, each beside the reference.
+/// Returns the time divided by the band's. Both are taken relative to the reference, since orders that do not
+/// fit into memory together are timed in groups, each with the reference.
 double of_floor(const KernelTimes& times, const KernelTimes& floor) { return floor.speedup / times.speedup; }
 
 void print_quality(const Console& console, const Comparison& comparison) {
@@ -33,12 +36,10 @@ void print_quality(const Console& console, const Comparison& comparison) {
 
 void print_reuse(const Console& console, const Comparison& comparison) {
   if (!comparison.orders.front().reuse) {
-    console.log("a large mesh: --cache this predicts its kernels' cache misses");
+    console.log("not shown, to save time on a large mesh: cache misses; --cache this predicts them");
     return;
   }
-  console.print(
-      "\nPredicted for each run: mean log2 of reuse distances, misses of caches, jumps among the last "
-      "cache's misses");
+  console.print("\nPredicted for each run of a kernel\n{}", kReuseLegend);
   console.print("{}", reuse_header(comparison.caches, 26));
   for (const ComparedOrder& c : comparison.orders) {
     console.print("{:<11} {:<14}{}", c.vertices, c.elements, reuse_cells(*c.reuse, comparison.caches));
@@ -46,8 +47,9 @@ void print_reuse(const Console& console, const Comparison& comparison) {
 }
 
 void print_kernels(const Console& console, const Comparison& comparison, const KernelTable& table) {
-  console.print("\nKernels on {} thread{}: best milliseconds; speedup over scrambled; time over the floor's",
-                table.threads, table.threads == 1 ? "" : "s");
+  console.print(
+      "\nKernels on {} thread{}: best milliseconds, speedup over scrambled, time divided by the band's",
+      table.threads, table.threads == 1 ? "" : "s");
   const bool parallel = table.threads > 1;
   console.print("{:<11} {:<14} {:>20} {:>20} {:>20} {:>20}{}", "vertices", "elements", "SpMV",
                 "element force", "assembly", "springs", parallel ? "     twice" : "");
@@ -72,16 +74,16 @@ nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& f
   nlohmann::ordered_json kernels;
   for (const Kernel kernel : kKernels) {
     const KernelTimes& t = times[kernel];
-    kernels[std::string(name(kernel))] = {{"milliseconds", t.median_ms},
-                                          {"best_milliseconds", t.best_ms},
-                                          {"samples", t.samples},
-                                          {"speedup", t.speedup},
-                                          {"of_floor", of_floor(t, floor[kernel])}};
+    kernels[std::string(to_string(kernel))] = {{"milliseconds", t.median_ms},
+                                               {"best_milliseconds", t.best_ms},
+                                               {"samples", t.samples},
+                                               {"speedup", t.speedup},
+                                               {"of_floor", of_floor(t, floor[kernel])}};
   }
   return kernels;
 }
 
-/// "kernels" on one thread, and "parallel_kernels" where they ran on several.
+/// Adds "kernels" for one thread, and "parallel_kernels" for several.
 template <class TimesOf>
 void add_kernels(nlohmann::ordered_json& to, const Comparison& comparison, TimesOf times_of) {
   for (const KernelTable& table : comparison.kernels) {
@@ -96,10 +98,12 @@ void print_comparison(const Console& console, const Comparison& comparison) {
   print_reuse(console, comparison);
   for (const KernelTable& table : comparison.kernels) print_kernels(console, comparison, table);
   if (comparison.kernels.back().threads > 1) {
-    console.print("\ntwice: elements that two threads compute, since each adds to its own vertices alone.");
+    console.print(
+        "\ntwice: share of elements that two threads compute, since each adds only to its own vertices.");
   }
-  console.print("\n{} is no order of this mesh but the floor: a made-up problem of its size that streams.",
-                kFloor);
+  console.print(
+      "\n{} is not an order of your mesh; it is a lower bound: a synthetic mesh of its size that streams.",
+      kFloor);
 }
 
 nlohmann::ordered_json to_json(const Comparison& comparison) {

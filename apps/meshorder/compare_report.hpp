@@ -8,7 +8,7 @@
 #include "payoff/access_stream.hpp"
 #include "payoff/kernel_timing.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <optional>
 #include <string>
@@ -16,24 +16,24 @@
 
 namespace meshorder::command {
 
-/// One order in the comparison: its names, what it cost and how good it is.
+/// An order in the comparison: its methods, its cost and its quality.
 struct ComparedOrder {
   std::string vertices;
   std::string elements;
   Reordering order;
   EdgeSpan span;
-  std::optional<KernelReuse> reuse;  ///< in the steady state; none for a large mesh
+  std::optional<KernelReuse> reuse;  ///< of a repeated run; none for a large mesh
 };
 
-/// Kernels measured on some number of threads.
+/// Kernels measured with a number of threads.
 struct KernelTable {
   int threads = 1;
   std::vector<OrderTimes> orders;  ///< the reference first
-  OrderTimes floor;                ///< of the ideal band
-  std::vector<double> redundancy;  ///< of each order: see KernelBench::redundancy
+  OrderTimes floor;                ///< on the ideal band
+  std::vector<double> redundancy;  ///< in each order, see KernelBench::redundancy
 };
 
-/// The orders, the first of which is the reference, and the band of the mesh's size, which is none of them.
+/// The orders, the first of which is the reference, and the band of the mesh's size, a lower bound.
 struct Comparison {
   Caches caches;  ///< for which misses are predicted
   std::vector<ComparedOrder> orders;
@@ -41,10 +41,10 @@ struct Comparison {
   std::vector<KernelTable> kernels;
 };
 
-/// Costs and spans, and a table of kernels for each number of threads.
+/// Prints costs and spans, predicted misses, and a table of kernels for each number of threads.
 void print_comparison(const Console& console, const Comparison& comparison);
 
-/// "methods" and "floor", as docs/json.md has them.
+/// Returns the keys that docs/json.md lists, but for those of the file.
 nlohmann::ordered_json to_json(const Comparison& comparison);
 
 }  // namespace meshorder::command

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/stopwatch.hpp"
+#include "base/text.hpp"
 #include "command.hpp"
 #include "console.hpp"
 #include "graph/traversal.hpp"
@@ -7,16 +8,22 @@
 #include "mesh/graphs.hpp"
 #include "mesh/mesh.hpp"
 #include "metrics/edge_span.hpp"
+#include "payoff/machine.hpp"
 #include "progress.hpp"
 #include "reuse_report.hpp"
 #include "verdict.hpp"
 #include "wording.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace meshorder::command {
 namespace {
@@ -27,46 +34,48 @@ struct InfoArguments : Common {
   bool measure = false;
 };
 
-/// --measure ends about then, counted from the command's start, for meshes of some 300 thousand vertices.
+/// Seconds from the command's start until --measure is done, for meshes of up to about 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
-/// More than one order would not be prepared for measuring by then.
-constexpr Offset kMostOfTwoOrders = 500'000;
+/// Simplices above which there is no time to measure a second order.
+constexpr Offset kMaxOfTwoOrders = 500'000;
 
-/// What reordering is worth; nothing for a mesh without elements, and for a large one when nobody asked.
+/// Returns what reordering is worth; nothing for a mesh without elements, nor for a large one unless --cache
+/// or
+/// --measure is given.
 std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph,
                                 double graph_seconds, const Stopwatch& since_start) {
   const Offset simplices = mesh.cells.highest_dimension() < 1 ? 0 : cut_into_simplices(mesh).size();
   AdviceOptions options;
   options.caches = parse_caches(arguments.caches);
   options.graph_seconds = graph_seconds;
-  options.predict = simplices <= kMostPredicted || !arguments.caches.empty();
+  options.predict = simplices <= kMaxPredicted || !arguments.caches.empty();
   if (simplices == 0 || !(options.predict || arguments.measure)) return std::nullopt;
   if (arguments.measure) {
     options.measure_within = kMeasureWithin - since_start.seconds();
-    options.for_springs_too = simplices <= kMostOfTwoOrders;
-    if (simplices > kMostOfTwoOrders) options.halvings = 5;
+    options.for_springs_too = simplices <= kMaxOfTwoOrders;
+    if (simplices > kMaxOfTwoOrders) options.halvings = 5;
   }
   return advise(mesh, graph, options);
 }
 
-/// Of larger meshes the reuse is estimated from a part of the lines, unless --cache asks for all.
-constexpr Index kMostExact = 200'000;
+/// Cells above which reuse is estimated from a sample of the lines, unless --cache is given.
+constexpr Index kMaxExact = 200'000;
 constexpr int kHalvings = 3;
 
 bool is_estimated(const InfoArguments& arguments, const Mesh& mesh) {
-  return arguments.caches.empty() && mesh.cell_count() > kMostExact;
+  return arguments.caches.empty() && mesh.cell_count() > kMaxExact;
 }
 
-/// The reuse of the mesh in its order; nothing for a large mesh when nobody asked for it, and when there is
-/// no time for it beside measurements.
+/// Returns the reuse of the mesh in its order; nothing for a large mesh unless --cache is given, nor when
+/// measuring leaves no time for it.
 std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph) {
   const Simplices simplices = cut_into_simplices(mesh);
-  const Offset most = arguments.measure ? kMostOfTwoOrders : kMostPredicted;
+  const Offset most = arguments.measure ? kMaxOfTwoOrders : kMaxPredicted;
   if (arguments.caches.empty() && simplices.size() > most) return std::nullopt;
   return reuse_of_kernels(graph, simplices, is_estimated(arguments, mesh) ? kHalvings : 0);
 }
 
-/// One bar for each power of two, as long as its share of the edges.
+/// Prints a bar for each power of two, in proportion to its number of edges.
 void print_histogram(const Console& console, const std::vector<Offset>& bins) {
   constexpr double kWidth = 50;
   const Offset largest = *std::max_element(bins.begin(), bins.end());
@@ -97,15 +106,14 @@ nlohmann::ordered_json attachments(const Mesh& mesh) {
 
 void print_attachments(const Console& console, const Mesh& mesh) {
   const auto list = [&](Association association) {
-    std::string names;
-    const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
+    std::vector<std::string> names;
     for (const DataArray& array : mesh.data) {
-      if (array.association == association) add(array.name);
+      if (array.association == association) names.push_back(array.name);
     }
     for (const EntitySet& set : mesh.sets) {
-      if (set.association == association) add("set " + set.name);
+      if (set.association == association) names.push_back("set " + set.name);
     }
-    return names;
+    return join(names);
   };
   for (const auto& [association, title] :
        {std::pair(Association::vertices, "on vertices"), std::pair(Association::cells, "on cells")}) {
@@ -148,25 +156,26 @@ void run(const InfoArguments& arguments) {
   print_attachments(console, mesh);
   console.print("{:<12} {} edges, {} {}{}", "graph", with_commas(graph.edge_count()), with_commas(connected),
                 connected == 1 ? "component" : "components",
-                isolated > 0 ? fmt::format(", {} vertices that no element uses", with_commas(isolated)) : "");
+                isolated > 0 ? fmt::format(", {} unused vertices", with_commas(isolated)) : "");
   if (degenerate > 0)
-    console.print("{:<12} {} cells name a vertex twice", "degenerate", with_commas(degenerate));
+    console.print("{:<12} {} cells use a vertex twice", "degenerate", with_commas(degenerate));
   console.print("{:<12} mean {:.1f}, largest {}, mean log2 {:.2f} (a random order: mean {:.0f})", "edge span",
                 span.mean, with_commas(span.max), span.mean_log2, (mesh.vertex_count() + 1) / 3.0);
   console.print("{:<12} {}", "bandwidth", with_commas(span.max));
   console.print("{:<12} {}", "profile", with_commas(envelope));
   if (!histogram.empty()) print_histogram(console, histogram);
   if (reuse) {
-    console.print(
-        "\nPredicted for each run of a kernel{}: mean log2 of reuse distances, misses of caches, jumps among "
-        "the last cache's misses",
-        is_estimated(arguments, mesh) ? fmt::format(", from 1/{} of the lines", 1 << kHalvings) : "");
+    console.print("\nPredicted for each run of a kernel{}\n{}",
+                  is_estimated(arguments, mesh)
+                      ? fmt::format(", estimated from 1/{} of the lines", 1 << kHalvings)
+                      : "",
+                  kReuseLegend);
     console.print("{}\n{}", reuse_header(caches, 0), reuse_cells(*reuse, caches));
   } else if (arguments.measure) {
-    console.log("left out, to measure in time: the reuse table, orders for springs alone; see compare");
+    console.log("not shown, to save time: cache misses and an order for springs only; see meshorder compare");
   } else {
     console.log(
-        "left out, to answer in time: the kernels' cache misses and the verdict. --cache this predicts them, "
+        "not shown, to save time on a large mesh: cache misses and the verdict; --cache this predicts them, "
         "--measure runs the kernels");
   }
   if (advice) print_verdict(console, *advice);
@@ -192,14 +201,19 @@ void run(const InfoArguments& arguments) {
 }  // namespace
 
 void add_info(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand("info", "What a mesh holds, and how good its order is");
+  CLI::App* subcommand =
+      app.add_subcommand("info", "Show what a mesh file holds and whether its order is good.");
+  subcommand->footer(
+      "Examples:\n"
+      "  meshorder info dragon.veg\n"
+      "  meshorder info dragon.veg --measure");
   const auto arguments = std::make_shared<InfoArguments>();
   subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
   add_cache_option(*subcommand, arguments->caches);
   subcommand->add_flag(
       "--measure", arguments->measure,
-      "Run the kernels in the mesh's order and in a better one, for some seconds, instead of\n"
-      "predicting what that is worth");
+      "Run the kernels for a few seconds, in the mesh's order and in a better one, instead of\n"
+      "predicting the gain");
   add_common(*subcommand, *arguments);
   subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

@@ -10,7 +10,7 @@ namespace {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing else
 volatile std::sig_atomic_t caught = 0;
 
-extern "C" void take_note(int signal) {
+extern "C" void set_flag(int signal) {
   caught = signal;
   std::signal(signal, SIG_DFL);
 }
@@ -19,7 +19,7 @@ extern "C" void take_note(int signal) {
 
 Interruption::Interruption() {
   caught = 0;
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, take_note);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, set_flag);
 }
 
 Interruption::~Interruption() {

@@ -3,8 +3,8 @@
 
 namespace meshorder::command {
 
-/// While it lives, the first Ctrl-C (SIGINT) or SIGTERM only takes note, so that the work can end in good
-/// order; a second one ends the process as usual. One at a time.
+/// While alive, the first Ctrl-C (SIGINT) or SIGTERM sets a flag; a second one terminates the process. Only
+/// one object at a time.
 class Interruption {
  public:
   Interruption();
@@ -14,7 +14,7 @@ class Interruption {
   Interruption& operator=(const Interruption&) = delete;
   Interruption& operator=(Interruption&&) = delete;
 
-  /// The signal that came, or 0.
+  /// Returns the signal that was received, or 0.
   [[nodiscard]] static int signal() noexcept;
 };
 

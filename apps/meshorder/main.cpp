@@ -2,38 +2,83 @@
 #include "base/error.hpp"
 #include "command.hpp"
 
-#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <numeric>
+#include <string>
+#include <vector>
 
 namespace {
 
 constexpr int kBadInput = 2;
 constexpr int kOwnFailure = 1;
 
-int report(const char* message, int status) {
+int report(const std::string& message, int status) {
   fmt::print(stderr, "meshorder: {}\n", message);
   return status;
 }
 
+/// Returns the number of letters to insert, delete or replace that turn one word into the other
+/// (Levenshtein).
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// Returns "; did you mean order?" if a subcommand is spelt almost like `word`, else where the help is.
+std::string suggestion(const CLI::App& app, const std::string& word) {
+  constexpr std::size_t kMaxDistance = 2;
+  std::string nearest;
+  std::size_t least = kMaxDistance + 1;
+  for (const CLI::App* const subcommand : app.get_subcommands({})) {
+    const std::size_t distance = edit_distance(word, subcommand->get_name());
+    if (subcommand->get_group().empty() || distance >= least) continue;
+    least = distance;
+    nearest = subcommand->get_name();
+  }
+  return nearest.empty() ? "; see meshorder --help" : "; did you mean " + nearest + "?";
+}
+
+/// Returns the subcommand that the arguments name, "meshorder models make", as far as they were understood.
+std::string command_named_by(const CLI::App& app) {
+  std::string words = "meshorder";
+  for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+    at = at->get_subcommands().front();
+    words += " " + at->get_name();
+  }
+  return words;
+}
+
 }  // namespace
 
-// NOLINTNEXTLINE(bugprone-exception-escape): what could still throw is the printing of a message
+// NOLINTNEXTLINE(bugprone-exception-escape): only printing a message could still throw
 int main(int argc, char** argv) {
   CLI::App app{
-      "Reorders the vertices and elements of a simulation mesh so that physics on it runs faster, and "
-      "carries\n"
-      "everything in the file along.\n\n"
-      "  meshorder order  dragon.veg -o ordered.veg   the sensible default, chosen for the mesh\n"
-      "  meshorder info   dragon.veg                  counts, spans, is it in a good order?\n"
+      "Reorders the vertices and elements of a simulation mesh, with all data in its file, so that\n"
+      "physics on it runs faster.\n\n"
+      "  meshorder order  dragon.veg -o ordered.veg   order by the method chosen for the mesh\n"
+      "  meshorder info   dragon.veg                  counts and spans; is it in a good order?\n"
       "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
-      "  meshorder simulate falling --mesh dragon.veg an elastic body in motion, timed\n"
+      "  meshorder simulate falling --mesh dragon.veg simulate an elastic body and time it\n"
       "  meshorder reproduce -o results               the paper's study on this machine, as a page\n"
       "  meshorder report dragon.veg                  all of it as a page for the browser\n",
       "meshorder"};
-  app.set_version_flag("--version", MESHORDER_VERSION);
+  app.set_version_flag("-V,--version", MESHORDER_VERSION);
   app.require_subcommand(1);
   meshorder::command::add_order(app);
   meshorder::command::add_apply(app);
@@ -46,14 +91,22 @@ int main(int argc, char** argv) {
   meshorder::command::add_methods(app);
   meshorder::command::add_serve_steps(app);
   try {
+    if (argc < 2) {
+      fmt::print(stderr, "{}", app.help());
+      return kBadInput;
+    }
+    const std::string first = argv[1];
+    const auto has_first_name = [&](const CLI::App* subcommand) { return subcommand->get_name() == first; };
+    if (!first.starts_with('-') && app.get_subcommands(has_first_name).empty())
+      return report("unknown subcommand '" + first + "'" + suggestion(app, first), kBadInput);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    return report((std::string(error.what()) + "; see meshorder --help").c_str(), kBadInput);
-  } catch (const meshorder::command::Stopped& stopped) {
-    return report(stopped.what(), stopped.status);
+    return report(std::string(error.what()) + "; see " + command_named_by(app) + " --help", kBadInput);
+  } catch (const meshorder::command::CommandError& error) {
+    return report(error.what(), error.status);
   } catch (const meshorder::Error& error) {
     return report(error.what(), kBadInput);
   } catch (const meshorder::InvalidArgument& error) {

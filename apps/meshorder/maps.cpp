@@ -26,7 +26,7 @@ void write_map(const Permutation& map, const std::vector<std::int64_t>& ids, con
   if (!ids.empty()) {
     write_npy(ids, written.emplace_back(ids_path(prefix, what)));
   } else {
-    std::filesystem::remove(ids_path(prefix, what));  // of an earlier run with this prefix
+    std::filesystem::remove(ids_path(prefix, what));  // an earlier run with this prefix may have left it
   }
 }
 
@@ -45,7 +45,7 @@ std::vector<std::int64_t> read_ids(const std::string& path, Index count) {
 std::vector<std::string> write_maps(const Maps& maps, const std::string& prefix) {
   std::vector<std::string> written;
   write_map(maps.vertices, maps.vertex_ids, prefix, "vertices", written);
-  write_map(maps.elements, maps.element_ids, prefix, "elements", written);
+  write_map(maps.cells, maps.cell_ids, prefix, "elements", written);
   return written;
 }
 

@@ -10,21 +10,21 @@
 
 namespace meshorder::command {
 
-/// Which vertex and cell of the output was which in the input, as NumPy arrays beside each other:
-/// PREFIX.vertices.old_to_new.npy, PREFIX.vertices.new_to_old.npy, and the same for elements (all cells, in
-/// the order of the file). Where the input numbers its vertices or cells in a way of its own,
-/// PREFIX.vertices.ids.npy holds those numbers, in the input's order.
+/// The reordering of a mesh file, on disk as NumPy arrays: PREFIX.vertices.old_to_new.npy and
+/// PREFIX.vertices.new_to_old.npy, and PREFIX.elements.*.npy for all cells. If the input numbers its vertices
+/// or cells other than from 0 or 1 on, PREFIX.vertices.ids.npy or PREFIX.elements.ids.npy holds these numbers
+/// in the input's order.
 struct Maps {
   Permutation vertices;
-  Permutation elements;
+  Permutation cells;
   std::vector<std::int64_t> vertex_ids;
-  std::vector<std::int64_t> element_ids;
+  std::vector<std::int64_t> cell_ids;
 };
 
 /// Writes the maps and returns the paths.
 std::vector<std::string> write_maps(const Maps& maps, const std::string& prefix);
 
-/// Reads maps for a mesh and checks that they fit it. Throws Error.
+/// Reads the maps of a mesh. Throws Error if a file is missing, is not a permutation or has another length.
 Maps read_maps(const std::string& prefix, const Mesh& mesh);
 
 }  // namespace meshorder::command

@@ -3,6 +3,9 @@
 #include "console.hpp"
 #include "ordering/method.hpp"
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include <memory>
 
 namespace meshorder::command {
@@ -22,9 +25,9 @@ void list_text(const Console& console, const Methods& methods) {
 
 void run(const Common& common) {
   const Console console(common);
-  console.print("Vertex orders (--vertices):");
+  console.print("Methods for vertices (--vertices):");
   list_text(console, vertex_methods());
-  console.print("\nElement orders (--elements); cells of lower dimension follow lexmax:");
+  console.print("\nMethods for elements (--elements); cells of lower dimension follow lexmax:");
   list_text(console, element_methods());
   console.print_json({{"vertices", list_json(vertex_methods())}, {"elements", list_json(element_methods())}});
 }
@@ -32,7 +35,10 @@ void run(const Common& common) {
 }  // namespace
 
 void add_methods(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand("methods", "List the orders, with a sentence each");
+  CLI::App* subcommand = app.add_subcommand("methods", "List the ordering methods, with a description each.");
+  subcommand->footer(
+      "Example:\n"
+      "  meshorder methods");
   const auto common = std::make_shared<Common>();
   add_common(*subcommand, *common);
   subcommand->callback([common] { run(*common); });

@@ -4,6 +4,9 @@
 #include "lab/models/catalogue.hpp"
 #include "progress.hpp"
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,7 +22,7 @@ struct MakeArguments : Common {
 nlohmann::ordered_json to_json(const Model& model) {
   const bool made = !model.path.empty();
   return {{"name", model.name},
-          {"sentence", model.sentence},
+          {"sentence", model.description},
           {"path", made ? nlohmann::ordered_json(model.path.string()) : nlohmann::ordered_json(nullptr)},
           {"vertices", made ? nlohmann::ordered_json(model.vertices) : nlohmann::ordered_json(nullptr)},
           {"elements", made ? nlohmann::ordered_json(model.elements) : nlohmann::ordered_json(nullptr)}};
@@ -27,7 +30,7 @@ nlohmann::ordered_json to_json(const Model& model) {
 
 void print_model(const Console& console, const Model& model) {
   if (model.path.empty()) {
-    console.print("  {:<16} {:>10} {:>12}  {}", model.name, "–", "–", model.sentence);
+    console.print("  {:<16} {:>10} {:>12}  {}", model.name, "–", "–", model.description);
   } else {
     console.print("  {:<16} {:>10} {:>12}  {}", model.name, with_commas(model.vertices),
                   with_commas(model.elements), model.path.string());
@@ -42,7 +45,7 @@ void list(const Common& common) {
     print_model(console, model);
     models.push_back(to_json(model));
   }
-  console.print("`meshorder models make NAME` makes those that have no path yet.");
+  console.print("Models without a path are not made yet: `meshorder models make NAME`");
   console.print_json({{"models", models}});
 }
 
@@ -85,27 +88,35 @@ void make(const MakeArguments& arguments) {
 }  // namespace
 
 void add_models(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand("models", "Real and procedural meshes to try things on");
+  CLI::App* subcommand = app.add_subcommand(
+      "models", "Make meshes to try things on: the paper's bodies, and grids, balls and tori of any size.");
+  subcommand->footer(
+      "Examples:\n"
+      "  meshorder models\n"
+      "  meshorder models make dragon");
   const auto common = std::make_shared<Common>();
   add_common(*subcommand, *common);
   subcommand->require_subcommand(0, 1);
-  CLI::App* list_command = subcommand->add_subcommand("list", "Which there are, and where those made stand");
+  CLI::App* list_command = subcommand->add_subcommand("list", "List the models and where they are stored");
   add_common(*list_command, *common);
   list_command->callback([common] { list(*common); });
 
   CLI::App* make_command =
       subcommand->add_subcommand("make",
-                                 "Make a model, once; it is kept in your cache folder.\nThe scanned ones "
-                                 "need Debian's package archive.");
+                                 "Make a model and keep it in your cache folder.\n"
+                                 "The scanned bodies are downloaded from Debian's package archive (24 MB).");
+  make_command->footer(
+      "Example:\n"
+      "  meshorder models make grid --size 40");
   const auto arguments = std::make_shared<MakeArguments>();
   make_command
-      ->add_option("NAME", arguments->name,
-                   "A name from `meshorder models`, or all (that are not procedural)")
+      ->add_option("NAME", arguments->name, "A name from `meshorder models`, or `all` for all scanned bodies")
       ->required();
-  make_command->add_option("--size", arguments->options.size, "Procedural models: lattice cubes across")
-      ->check(CLI::PositiveNumber)
+  make_command
+      ->add_option("--size", arguments->options.size, "Procedural models: number of lattice cubes across")
+      ->check(positive())
       ->capture_default_str();
-  make_command->add_flag("--force", arguments->options.force, "Make it anew");
+  make_command->add_flag("--force", arguments->options.force, "Build it again");
   add_common(*make_command, *arguments);
   make_command->callback([arguments] { with_threads(arguments->threads, [&] { make(*arguments); }); });
 

@@ -11,6 +11,9 @@
 #include "progress.hpp"
 #include "wording.hpp"
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include <memory>
 #include <string>
 
@@ -38,7 +41,7 @@ void print_result(const Console& console, const Reordering& order, const EdgeSpa
                 after.mean_log2);
 }
 
-/// {"count", "method", "chosen_by", "because", "seconds"}
+/// Returns {"count", "method", "chosen_by", "because", "seconds"}.
 nlohmann::ordered_json half_json(Index count, const MethodChoice& method, double seconds) {
   nlohmann::ordered_json result{{"count", count}};
   result.update(to_json(method));
@@ -49,7 +52,7 @@ nlohmann::ordered_json half_json(Index count, const MethodChoice& method, double
 void run(const OrderArguments& arguments) {
   const Console console(arguments);
   const Format& target = format_of(arguments.output);
-  (void)OutputFile(arguments.output);  // whether it can be written is known before the work begins
+  (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.4);
@@ -62,14 +65,14 @@ void run(const OrderArguments& arguments) {
   const Stopwatch ordering;
   Maps maps;
   maps.vertex_ids = mesh.vertex_ids;
-  maps.element_ids = mesh.cell_ids;
+  maps.cell_ids = mesh.cell_ids;
   const Permutation arranged = arrange_cells(mesh, format_of(arguments.input), target);
   const CsrGraph graph = vertex_graph(mesh);
   const Reordering order = compute_reordering(mesh, graph, arguments.reordering);
   apply_reordering(mesh, order.vertices, order.cells);
   const double order_seconds = ordering.seconds();
   maps.vertices = order.vertices;
-  maps.elements = arranged.then(order.cells);
+  maps.cells = arranged.then(order.cells);
   const EdgeSpan before = edge_span(graph, Permutation::identity(mesh.vertex_count()));
   const EdgeSpan after = edge_span(graph, order.vertices);
   note_convergence(order.vertex_fiedler, "the vertices", notes);
@@ -106,30 +109,37 @@ void run(const OrderArguments& arguments) {
 
 void add_order(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
-      "order", "Reorder a mesh, everything attached included.\nThe output's extension names its format.");
+      "order",
+      "Reorder a mesh with all its data, labels and groups. The extension of the output is its format.");
+  subcommand->footer(
+      "Examples:\n"
+      "  meshorder order dragon.veg -o ordered.veg\n"
+      "  meshorder order part.msh -o part.vtu --for spmv --maps part");
   const auto arguments = std::make_shared<OrderArguments>();
   subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
   subcommand->add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
   subcommand
-      ->add_option("--vertices", arguments->reordering.vertices, "Vertex order, see `meshorder methods`")
+      ->add_option("--vertices", arguments->reordering.vertices,
+                   "Method for vertices, see `meshorder methods`")
       ->capture_default_str();
   subcommand
-      ->add_option("--elements", arguments->reordering.elements, "Element order, see `meshorder methods`")
+      ->add_option("--elements", arguments->reordering.elements,
+                   "Method for elements, see `meshorder methods`")
       ->capture_default_str();
   subcommand
       ->add_option(
           "--group-by", arguments->reordering.group_by,
-          "Keep groups together, by an array of whole numbers that `meshorder info` lists, or by sets.\n"
+          "Keep groups together: an array of integers that `meshorder info` lists, or `sets`.\n"
           "`label` is the file's own cell tag (Gmsh's first physical group, Medit's reference);\n"
-          "gmsh:geometrical are Gmsh's entities, attribute TetGen's regions, sets Vega's regions and\n"
-          "named physical groups. Cells of one value stand together, by rising value, each group in\n"
-          "the methods' order; a vertex belongs to the smallest value among its elements. An array on\n"
-          "vertices groups these alone; cells:NAME, vertices:NAME say which, else cells. What has no\n"
-          "value is last")
+          "gmsh:geometrical: Gmsh's entities; attribute: TetGen's regions; sets: Vega's regions and\n"
+          "named physical groups. Cells are sorted by value, each group in the methods' order; a\n"
+          "vertex goes with the smallest value among its elements. An array on vertices groups only\n"
+          "the vertices. Write cells:NAME or vertices:NAME if both have that array (default: cells).\n"
+          "Cells and vertices without a value come last")
       ->type_name("NAME");
   subcommand->add_option(
       "--maps", arguments->maps,
-      "Also write which vertex and cell was which: PREFIX.vertices.old_to_new.npy and so on");
+      "Also write the permutations as NumPy files: PREFIX.vertices.old_to_new.npy and so on");
   add_ordering_options(*subcommand, arguments->reordering.ordering);
   add_common(*subcommand, *arguments);
   subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });

@@ -14,7 +14,7 @@
 namespace meshorder::command {
 namespace {
 
-constexpr double kPatience = 2.0;  // seconds that need no explanation
+constexpr double kSilentSeconds = 2.0;
 constexpr std::chrono::milliseconds kRedraw{200};
 
 double now() {
@@ -55,7 +55,7 @@ void Progress::draw_until_done() {
   std::unique_lock lock(mutex_);
   while (!done_.wait_for(lock, kRedraw, [this] { return finished_; })) {
     const double elapsed = now() - began_;
-    if (elapsed > kPatience) draw(elapsed);
+    if (elapsed > kSilentSeconds) draw(elapsed);
   }
   if (drawn_) fmt::print(stderr, "\r\x1b[K");
 }
@@ -63,7 +63,7 @@ void Progress::draw_until_done() {
 void Progress::draw(double elapsed) {
   double share = share_;
   if (share <= from_ && from_ > 0 && stage_began_ > 0) {
-    // the pace so far says how long this stage should take; the guess nears its end without reaching it
+    // the pace so far gives this stage's time; the estimate approaches the stage's end without reaching it
     const double expected = stage_began_ / from_ * (to_ - from_);
     share = from_ + (to_ - from_) * (1 - std::exp(-(elapsed - stage_began_) / std::max(expected, 1e-3)));
   }

@@ -8,8 +8,8 @@
 
 namespace meshorder::command {
 
-/// A line on the terminal that says what is being done and about how long it will take, from two seconds on.
-/// Writes nothing where stderr is no terminal.
+/// A line on the terminal, shown after two seconds, with the current stage and an estimate of the time left.
+/// Writes nothing if stderr is not a terminal.
 class Progress {
  public:
   /// `enabled` is false for --quiet.
@@ -20,14 +20,14 @@ class Progress {
   Progress(Progress&&) = delete;
   Progress& operator=(Progress&&) = delete;
 
-  /// From now on `what` is done, the share `from` … `to` of the whole. Within a stage that reports nothing
-  /// further the share is guessed from the pace so far.
+  /// Begins a stage, which is the share `from` … `to` of the whole. If the stage reports no progress of its
+  /// own, its share is estimated from the pace so far.
   void stage(std::string what, double from, double to);
 
-  /// The share of the whole that is done, 0 … 1, for stages that know it.
+  /// Sets the share of the whole that is done, 0 … 1.
   void at(double share);
 
-  /// Clears the line, before results are printed; nothing is drawn from then on.
+  /// Clears the line for good. Call it before printing results.
   void finish();
 
  private:

@@ -5,13 +5,17 @@
 #include "io/format.hpp"
 #include "io/stream/output_file.hpp"
 #include "lab/report/page/study_page.hpp"
+#include "lab/study/folder.hpp"
 #include "lab/study/mesh_study.hpp"
 #include "lab/study/results_json.hpp"
-#include "lab/study/timestamp.hpp"
 #include "lab/support/machine.hpp"
 #include "progress.hpp"
 #include "verdict.hpp"
 #include "wording.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -25,7 +29,7 @@ namespace fs = std::filesystem;
 
 struct ReportArguments : Common {
   std::vector<std::string> inputs;
-  std::string output;  ///< empty: report.html, or in the study's folder
+  std::string output;  ///< empty: report.html, or report.html in the study's folder
   double budget_seconds = TimingOptions{}.budget_seconds;
   OrderingOptions ordering;
 };
@@ -33,7 +37,7 @@ struct ReportArguments : Common {
 constexpr std::string_view kAsItIs = "original";
 constexpr std::string_view kOrdered = "meshorder";
 
-std::vector<StudyOrdering> orderings_of_report() {
+std::vector<OrderingSpec> orderings_of_report() {
   return {{std::string(kAsItIs), "As it is", "original", "original"},
           {"scrambled", "Scrambled", "scrambled", "scrambled"},
           {"fiedler", "Fiedler", "fiedler", "original"},
@@ -41,8 +45,8 @@ std::vector<StudyOrdering> orderings_of_report() {
           {std::string(kOrdered), "meshorder order", "auto", "auto"}};
 }
 
-/// What a record knows of one order, as `info` would have it.
-OrderCosts costs_of(const OrderOfMesh& order) {
+/// Returns the predicted and measured times of an order, as `info` takes them.
+OrderCosts costs_of(const MeshOrderRecord& order) {
   OrderCosts costs;
   costs.predicted.emplace();
   bool measured = true;
@@ -56,11 +60,11 @@ OrderCosts costs_of(const OrderOfMesh& order) {
   return costs;
 }
 
-/// The verdict of `info` on the mesh, of the times of this record; "" without the orders that it compares.
+/// Returns the verdict of `info`, from the times of this record; "" without the orders that it compares.
 std::string verdict_on(const MeshRecord& record) {
   const auto order = [&](std::string_view name) {
     return std::find_if(record.orders.begin(), record.orders.end(),
-                        [&](const OrderOfMesh& one) { return one.ordering == name; });
+                        [&](const MeshOrderRecord& one) { return one.ordering == name; });
   };
   const auto as_it_is = order(kAsItIs);
   const auto ordered = order(kOrdered);
@@ -73,7 +77,7 @@ std::string verdict_on(const MeshRecord& record) {
   return verdict_sentence({costs_of(*as_it_is), {candidate}});
 }
 
-/// The file's name without its extension, and a number where another mesh has it.
+/// Returns the file's name without its extension, with a number if another mesh has that name.
 std::string unique_name(const std::string& file, const std::vector<MeshRecord>& others) {
   const std::string stem = fs::path(file).stem().string();
   const auto is_taken = [&](const std::string& name) {
@@ -85,13 +89,14 @@ std::string unique_name(const std::string& file, const std::vector<MeshRecord>& 
   return name;
 }
 
-/// Reads a mesh, studies it and adds it to the page. `from` … `to` is its share of the progress.
+/// Reads a mesh, measures it in the report's orders and adds it to the page. `from` … `to` is its share of
+/// the progress.
 void add_mesh(Page& page, const std::string& file, const ReportArguments& arguments, Progress& progress,
               double from, double to, Notes& notes) {
   progress.stage("reading " + file, from, from + 0.1 * (to - from));
   const Mesh mesh = read_mesh(file, &notes);
   if (mesh.cells.highest_dimension() < 2)
-    throw Error(file, "has neither volumes nor a surface, so that nothing can be shown",
+    throw Error(file, "has neither volume cells nor a surface to show",
                 "give a mesh with cells of two or three dimensions");
   const std::string name = unique_name(file, page.results.meshes);
   MeshStudyOptions options;
@@ -123,7 +128,7 @@ std::string title_of(const Page& page) {
 
 void report_on_meshes(const Console& console, const ReportArguments& arguments) {
   const std::string output = arguments.output.empty() ? "report.html" : arguments.output;
-  (void)OutputFile(output);  // whether it can be written is known before the work begins
+  (void)OutputFile(output);  // fail before the work if it cannot be written
   Progress progress(!console.quiet());
   Page page;
   page.results.began = timestamp_now();
@@ -154,7 +159,8 @@ void report_on_meshes(const Console& console, const ReportArguments& arguments) 
 
 void report_on_study(const Console& console, const ReportArguments& arguments) {
   if (!arguments.output.empty())
-    throw InvalidArgument("-o is for a report on meshes; a study's report stands in the study's folder");
+    throw InvalidArgument(
+        "-o is for a report on meshes; a study's report is written into the study's folder");
   const StudyFolder folder(arguments.inputs.front());
   if (!fs::exists(folder.results()))
     throw Error(folder.root().string(), "holds no results.json",
@@ -179,7 +185,8 @@ void run(const ReportArguments& arguments) {
   const auto folder = std::find_if(arguments.inputs.begin(), arguments.inputs.end(), is_folder);
   if (folder == arguments.inputs.end()) return report_on_meshes(console, arguments);
   if (arguments.inputs.size() > 1)
-    throw InvalidArgument(*folder + " is a folder: a study's report is made by itself");
+    throw InvalidArgument(*folder +
+                          " is a folder: report on a study by itself, without meshes or other studies");
   report_on_study(console, arguments);
 }
 
@@ -188,21 +195,23 @@ void run(const ReportArguments& arguments) {
 void add_report(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
       "report",
-      "A page to open in a browser: meshes coloured by their order, spans, caches, kernels, tables.\n"
-      "  meshorder report dragon.veg -o dragon.html   your mesh as it is and in other orders, in half\n"
-      "                                               a minute: what each is worth, with a verdict\n"
-      "  meshorder report results/                    of a study: tables, figures and page anew\n"
-      "The page is one file that needs no network.");
+      "Write a page for the browser: meshes coloured by their order, spans, caches, kernels, tables.\n"
+      "The page is one file and needs no network.");
+  subcommand->footer(
+      "Examples:\n"
+      "  meshorder report dragon.veg -o dragon.html   your mesh as it is and in other orders, and what\n"
+      "                                               each is worth; takes about half a minute\n"
+      "  meshorder report results/                    a study: writes its tables, figures and page again");
   const auto arguments = std::make_shared<ReportArguments>();
-  subcommand->add_option("INPUT", arguments->inputs, "Mesh files, or the folder of a study")
+  subcommand->add_option("INPUT", arguments->inputs, "Mesh files, or the folder of one study")
       ->required()
       ->type_name("MESH… | DIR");
   subcommand->add_option("-o,--output", arguments->output,
-                         "The page on meshes; report.html in this folder if not given");
+                         "File for the page on meshes (default: report.html)");
   subcommand
       ->add_option("--budget", arguments->budget_seconds,
-                   "Seconds to spend on running kernels, for each mesh")
-      ->check(CLI::PositiveNumber)
+                   "Seconds to spend on running the kernels, for each mesh")
+      ->check(positive())
       ->capture_default_str();
   add_ordering_options(*subcommand, arguments->ordering);
   add_common(*subcommand, *arguments);

@@ -9,6 +9,10 @@
 #include "lab/study/study_run.hpp"
 #include "progress.hpp"
 
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -19,7 +23,7 @@
 namespace meshorder::command {
 namespace {
 
-/// What a scenario may take with --quick, in all orders.
+/// Seconds that a scenario may take with --quick, in all orders together.
 constexpr double kQuickSeconds = 20;
 
 struct ReproduceArguments : Common {
@@ -38,9 +42,9 @@ StudyPlan plan_of(const ReproduceArguments& arguments) {
     for (const BuiltInScenario& scenario : built_in_scenarios()) plan.scenarios.emplace_back(scenario.name);
   }
   for (const std::string& order : arguments.orders) {
-    StudyOrdering ordering = study_ordering(order);
+    OrderingSpec ordering = study_ordering(order);
     const bool known = std::any_of(plan.orderings.begin(), plan.orderings.end(),
-                                   [&](const StudyOrdering& other) { return other.name == ordering.name; });
+                                   [&](const OrderingSpec& other) { return other.name == ordering.name; });
     if (!known) plan.orderings.push_back(std::move(ordering));
   }
   plan.threads = arguments.threads > 0 ? arguments.threads : thread_count();
@@ -52,7 +56,7 @@ StudyPlan plan_of(const ReproduceArguments& arguments) {
   return plan;
 }
 
-/// Makes the report of what is there, also of a study that was stopped, and says what it found.
+/// Writes the report of a study, finished or not, and prints its findings.
 void report(const Console& console, const StudyFolder& folder, Progress& progress) {
   progress.stage("the report", 0.99, 1);
   const WrittenReport written = write_report(folder);
@@ -76,13 +80,13 @@ void run(const ReproduceArguments& arguments) {
   const Interruption interruption;
   StudyObserver observer;
   observer.stage = [&](const std::string& what, double from, double to) { progress.stage(what, from, to); };
-  observer.note = [&](const std::string& sentence) { console.log("{}", sentence); };
+  observer.note = [&](const std::string& message) { console.log("{}", message); };
   observer.stop = [] { return Interruption::signal() != 0; };
   const bool finished = run_study(plan, folder, std::filesystem::read_symlink("/proc/self/exe"), observer);
   if (finished || std::filesystem::exists(folder.results())) report(console, folder, progress);
   if (!finished)
-    throw Stopped(
-        fmt::format("stopped; what is finished stands in {}, and the same command goes on from there",
+    throw CommandError(
+        fmt::format("stopped; finished runs are kept in {}, and the same command goes on from there",
                     arguments.folder),
         128 + Interruption::signal());
 }
@@ -92,38 +96,42 @@ void run(const ReproduceArguments& arguments) {
 void add_reproduce(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
       "reproduce",
-      "The paper's study on this machine: six scenarios, five orders, tables and a page to look at.\n"
-      "  meshorder reproduce --quick -o results      a few steps of each, in some minutes\n"
-      "  meshorder reproduce -o results              240 steps, three runs: hours; Ctrl-C, and go on later");
+      "Repeat the paper's study on this machine: six scenarios, five orders, tables and a page.");
+  subcommand->footer(
+      "Examples:\n"
+      "  meshorder reproduce --quick -o results   a few steps of each scenario: some minutes\n"
+      "  meshorder reproduce -o results           240 steps, three runs: hours; stop it by Ctrl-C and\n"
+      "                                           resume it later by the same command");
   const auto arguments = std::make_shared<ReproduceArguments>();
   arguments->threads = 1;
   StudyPlan& plan = arguments->plan;
-  subcommand->add_option("-o,--output", arguments->folder, "Folder for the results; a study in it is resumed")
+  subcommand
+      ->add_option("-o,--output", arguments->folder,
+                   "Folder for the results; an unfinished study in it is resumed")
       ->capture_default_str();
   CLI::Option* const quick = subcommand->add_flag("--quick", arguments->quick, "One run of a few steps");
-  subcommand->add_flag("--full", arguments->full, "All steps, three runs; the default")->excludes(quick);
-  subcommand->add_option("--scenario", plan.scenarios,
-                         "A name or a file, see simulate; may be repeated; default: all");
-  subcommand->add_option("--mesh", plan.mesh,
-                         "A mesh in the place of the scenarios' own: a model's name or a file");
-  subcommand->add_option("--size", plan.size, "paper, 300k or 2m: how large the meshes are")
+  subcommand->add_flag("--full", arguments->full, "All steps, three runs (default)")->excludes(quick);
+  subcommand->add_option(
+      "--scenario", plan.scenarios,
+      "A scenario's name or file, see `meshorder simulate`; may be repeated (default: all)");
+  subcommand->add_option("--mesh", plan.mesh, "Mesh instead of the scenarios' own: a model's name or a file");
+  subcommand->add_option("--size", plan.size, "Size of the meshes: paper, 300k or 2m vertices")
       ->capture_default_str();
   subcommand
       ->add_option("--orders", arguments->orders,
-                   "Orders beside the paper's five: VERTICES/ELEMENTS, separated by commas")
+                   "Orders besides the paper's five: VERTICES/ELEMENTS, separated by commas")
       ->delimiter(',');
   subcommand->add_option("--runs", plan.runs, "Runs of each scenario in each order")
-      ->check(CLI::Range(1, 1000))
+      ->check(in_range(1, 1000))
       ->excludes(quick)
       ->capture_default_str();
-  subcommand->add_option("--steps", arguments->steps, "Steps, in the place of the scenarios' own")
-      ->check(CLI::Range(1, 1'000'000));
+  subcommand->add_option("--steps", arguments->steps, "Number of steps instead of the scenarios' own")
+      ->check(in_range(1, 1'000'000));
   subcommand
-      ->add_option("--budget", plan.kernel_seconds, "Seconds to spend on running kernels, for each mesh")
-      ->check(CLI::PositiveNumber)
+      ->add_option("--budget", plan.kernel_seconds, "Seconds to spend on running the kernels, for each mesh")
+      ->check(positive())
       ->capture_default_str();
-  subcommand->add_flag("--no-pin", arguments->no_pin,
-                       "Leave threads to the system, do not bind them to processors");
+  subcommand->add_flag("--no-pin", arguments->no_pin, "Do not bind threads to processors");
   add_ordering_options(*subcommand, plan.ordering);
   add_common(*subcommand, *arguments);
   subcommand->callback([arguments] { run(*arguments); });

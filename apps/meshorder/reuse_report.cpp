@@ -2,6 +2,7 @@
 #include "reuse_report.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <sstream>
 
@@ -11,7 +12,7 @@ namespace {
 constexpr int kLogWidth = 8;
 constexpr int kMissesWidth = 7;
 
-/// Three digits: "954k", "1.09M".
+/// Returns three digits: "954k", "1.09M".
 std::string short_count(Offset count) {
   const auto number = static_cast<double>(count);
   if (number < 1e3) return std::to_string(count);
@@ -24,22 +25,15 @@ std::string count_cell(Offset count) { return fmt::format("{:>{}}", short_count(
 
 }  // namespace
 
-CLI::Option* add_cache_option(CLI::App& subcommand, std::string& caches) {
-  return subcommand.add_option(
-      "--cache", caches,
-      "Caches to predict misses for: this (machine), paper, or the sizes of the levels, such as "
-      "48K,1M,32M");
-}
-
-bool is_quick_to_predict(const Mesh& mesh) { return cut_into_simplices(mesh).size() <= kMostPredicted; }
+bool is_quick_to_predict(const Mesh& mesh) { return cut_into_simplices(mesh).size() <= kMaxPredicted; }
 
 nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches) {
   nlohmann::ordered_json result;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    result[std::string(name(kKernels[k]))] = {{"accesses", reuse[k].all.accesses()},
-                                              {"misses", misses(reuse[k].all, caches)},
-                                              {"jumps", misses(reuse[k].jumps, caches)},
-                                              {"mean_log2", reuse[k].all.mean_log2()}};
+    result[std::string(to_string(kKernels[k]))] = {{"accesses", reuse[k].all.accesses()},
+                                                   {"misses", misses(reuse[k].all, caches)},
+                                                   {"jumps", misses(reuse[k].jumps, caches)},
+                                                   {"mean_log2", reuse[k].all.mean_log2()}};
   }
   return result;
 }
@@ -51,7 +45,7 @@ std::string reuse_header(const Caches& caches, int left) {
   levels += fmt::format("{:>{}}", "jumps", kMissesWidth);
   std::string first(left, ' ');
   std::string second(left, ' ');
-  for (const char* const kernel : {"SpMV", "element force", "assembly", "springs"}) {
+  for (const std::string_view kernel : kKernelTitles) {
     first += fmt::format("{:>{}}", kernel, levels.size());
     second += levels;
   }

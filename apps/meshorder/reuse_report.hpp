@@ -4,31 +4,34 @@
 #include "metrics/cache.hpp"
 #include "payoff/access_stream.hpp"
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <string_view>
 
 namespace meshorder::command {
 
-/// --cache, for parse_caches.
-CLI::Option* add_cache_option(CLI::App& subcommand, std::string& caches);
+/// Simplices up to which misses are predicted without being asked: it takes a few seconds, and 13 bytes for
+/// each cache line that a kernel touches.
+inline constexpr Offset kMaxPredicted = 2'000'000;
 
-/// Predicting takes a few seconds for so many simplices, and 13 bytes for each line that a kernel touches.
-inline constexpr Offset kMostPredicted = 2'000'000;
-
-/// Whether the mesh has no more than that.
+/// Returns whether the mesh has at most kMaxPredicted simplices.
 bool is_quick_to_predict(const Mesh& mesh);
 
-/// {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …}, misses and jumps level by level
+/// Returns {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …}, misses and jumps by level.
 nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches);
 
-/// What `reuse_cells` shows, in two lines: the kernels, and for each its mean log2 of reuse distances and its
-/// misses in each level, and those jumps among the last level's. `left` is how wide the columns before them
-/// are.
+/// Explains the columns of reuse_header.
+inline constexpr std::string_view kReuseLegend =
+    "log2: mean log2 of the reuse distances; a cache's size: its misses; jumps: misses of the last level "
+    "that\n"
+    "no hardware prefetcher foresees";
+
+/// Returns two lines that head the columns of reuse_cells: the kernels, and below each its log2, its misses
+/// in every level and its jumps. `left` is the width of the columns before them.
 std::string reuse_header(const Caches& caches, int left);
 
-/// One row of the table: "14.6  1.09M   954k   681k  20.1k" for each kernel.
+/// Returns a row of the table: "14.6  1.09M   954k   681k  20.1k" for each kernel.
 std::string reuse_cells(const KernelReuse& reuse, const Caches& caches);
 
 }  // namespace meshorder::command

@@ -2,6 +2,8 @@
 #include "command.hpp"
 #include "lab/study/stepper.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <iostream>
 #include <memory>
 
@@ -9,8 +11,8 @@ namespace meshorder::command {
 
 void add_serve_steps(CLI::App& app) {
   CLI::App* subcommand =
-      app.add_subcommand("serve-steps", "Simulate what a study asks for on standard input");
-  subcommand->group("");  // for meshorder itself: left out of the help
+      app.add_subcommand("serve-steps", "Serve a study: read tasks on standard input and simulate them");
+  subcommand->group("");  // for `reproduce` only: not shown in the help
   const auto arguments = std::make_shared<Common>();
   add_common(*subcommand, *arguments);
   subcommand->callback(

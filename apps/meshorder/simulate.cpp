@@ -8,10 +8,14 @@
 #include "lab/models/catalogue.hpp"
 #include "lab/scenario/checkpoint.hpp"
 #include "lab/scenario/frames.hpp"
-#include "lab/scenario/shape.hpp"
+#include "lab/scenario/motion_metrics.hpp"
 #include "lab/scenario/simulation.hpp"
 #include "progress.hpp"
 #include "simulate_report.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <csignal>
 #include <memory>
@@ -25,7 +29,7 @@ namespace {
 struct SimulateArguments : Common {
   bool list = false;
   std::string scenario;
-  // what takes the place of the scenario's own
+  // these replace the scenario's own
   std::string mesh;
   std::string order;
   std::string vertices;
@@ -52,7 +56,7 @@ void list_scenarios(const Console& console) {
   console.print_json({{"scenarios", scenarios}});
 }
 
-/// The scenario, with what the command line puts in the place of its own.
+/// Returns the scenario with the replacements of the command line.
 Scenario scenario_of(const SimulateArguments& arguments) {
   Scenario scenario = find_scenario(arguments.scenario);
   if (!arguments.mesh.empty()) scenario.mesh = arguments.mesh;
@@ -66,18 +70,18 @@ Scenario scenario_of(const SimulateArguments& arguments) {
   if (arguments.steps > 0) scenario.steps = arguments.steps;
   if (!arguments.preconditioner.empty()) {
     if (!scenario.is_implicit())
-      throw InvalidArgument("--preconditioner is of the implicit method, and " + scenario.name +
-                            " has none: ADMM factors its matrix once");
+      throw InvalidArgument("--preconditioner is for backward Euler; " + scenario.name +
+                            " is solved by ADMM, which factors its matrix once");
     scenario.implicit().preconditioner = parse<PreconditionerKind>(arguments.preconditioner);
   }
   if (!arguments.precision.empty()) {
-    const MatrixPrecision precision = parse<MatrixPrecision>(arguments.precision);
+    const auto precision = parse<MatrixPrecision>(arguments.precision);
     std::visit([&](auto& options) { options.precision = precision; }, scenario.integrator);
   }
   return scenario;
 }
 
-/// The path of the scenario's mesh; a model is made where it is not yet.
+/// Returns the path of the scenario's mesh, and makes it if it is a model that is not made yet.
 std::string mesh_path(const Scenario& scenario, Progress& progress) {
   if (!names_a_model(scenario.mesh)) return scenario.mesh;
   MakeOptions options;
@@ -87,7 +91,7 @@ std::string mesh_path(const Scenario& scenario, Progress& progress) {
   return make_model(scenario.mesh, options).path.string();
 }
 
-/// Steps on to the scenario's end, writing frames and checkpoints as they are due.
+/// Simulates to the scenario's end and writes frames and checkpoints as they are due.
 class Run {
  public:
   Run(const SimulateArguments& arguments, Simulation& simulation)
@@ -98,8 +102,8 @@ class Run {
       record_ = std::move(checkpoint.record);
       resumed_from_ = checkpoint.state.step;
       if (resumed_from_ > simulation.scenario.steps) {
-        throw Error(arguments.resume, fmt::format("is of step {} already", resumed_from_),
-                    fmt::format("ask for more than {} --steps", simulation.scenario.steps));
+        throw Error(arguments.resume, fmt::format("is already at step {}", resumed_from_),
+                    fmt::format("give more --steps than {}", simulation.scenario.steps));
       }
     }
     if (record_.balances.empty()) record_.balances.push_back(simulation.body->balance());
@@ -133,9 +137,9 @@ class Run {
         write_checkpoint({simulation_.fingerprint, state, record_}, arguments_.checkpoint);
       if (interrupted && step < last) {
         progress.finish();
-        throw Stopped(fmt::format("stopped after step {} of {}; --resume {} goes on from there", step, last,
-                                  arguments_.checkpoint),
-                      128 + Interruption::signal());
+        throw CommandError(fmt::format("stopped after step {} of {}; --resume {} goes on from there", step,
+                                       last, arguments_.checkpoint),
+                           128 + Interruption::signal());
       }
     }
   }
@@ -156,7 +160,7 @@ void run(const SimulateArguments& arguments) {
   const Console console(arguments);
   if (arguments.list) return list_scenarios(console);
   if (arguments.scenario.empty())
-    throw InvalidArgument("simulate needs the name of a scenario or a file; --list shows the names");
+    throw InvalidArgument("give the name or the file of a scenario; --list shows the names");
   Scenario scenario = scenario_of(arguments);
 
   Progress progress(!console.quiet());
@@ -198,43 +202,44 @@ void run(const SimulateArguments& arguments) {
 
 void add_scenario_options(CLI::App& subcommand, SimulateArguments& arguments) {
   subcommand.add_option("SCENARIO", arguments.scenario,
-                        "A name that --list shows, or a file (docs/simulate.md)");
-  subcommand.add_flag("--list", arguments.list, "Which scenarios have a name");
+                        "Name of a built-in scenario (see --list), or a file (docs/simulate.md)");
+  subcommand.add_flag("--list", arguments.list, "List the built-in scenarios");
   subcommand.add_option("--mesh", arguments.mesh,
-                        "A mesh file, or a name from `meshorder models`, in the place of the scenario's");
-  CLI::Option* const order =
-      subcommand.add_option("--order", arguments.order,
-                            "VERTICES or VERTICES/ELEMENTS; with VERTICES alone elements follow lexmax, and\n"
-                            "stay or are scrambled when vertices do or are");
-  subcommand.add_option("--vertices", arguments.vertices, "Vertex order, see `meshorder methods`")
+                        "Mesh instead of the scenario's own: a file, or a name from `meshorder models`");
+  CLI::Option* const order = subcommand.add_option(
+      "--order", arguments.order,
+      "VERTICES or VERTICES/ELEMENTS. With only VERTICES, elements keep the file's order\n"
+      "for original, are scrambled for scrambled and follow lexmax otherwise");
+  subcommand.add_option("--vertices", arguments.vertices, "Method for vertices, see `meshorder methods`")
       ->excludes(order);
-  subcommand.add_option("--elements", arguments.elements, "Element order, see `meshorder methods`")
+  subcommand.add_option("--elements", arguments.elements, "Method for elements, see `meshorder methods`")
       ->excludes(order);
-  subcommand.add_option("--steps", arguments.steps, "Steps in all")->check(CLI::Range(1, 1'000'000));
+  subcommand.add_option("--steps", arguments.steps, "Number of steps")->check(in_range(1, 1'000'000));
   subcommand.add_option("--preconditioner", arguments.preconditioner,
-                        "jacobi, block-jacobi, incomplete-cholesky or multigrid");
+                        "For backward Euler: " + names_of<PreconditionerKind>());
   subcommand.add_option("--precision", arguments.precision,
-                        "double or single: of the matrix that CG reads, of all that ADMM iterates");
+                        "double or single: precision of the matrix in CG, of all arrays in ADMM");
 }
 
 void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
   CLI::Option* const frames = subcommand.add_option(
-      "--vtk", arguments.frames, "Write the motion into this folder; ParaView opens SCENARIO.pvd in it");
-  subcommand.add_option("--every", arguments.every, "A frame after every so many steps")
-      ->check(CLI::PositiveNumber)
+      "--vtk", arguments.frames, "Write the motion into this folder, for ParaView: open SCENARIO.pvd");
+  subcommand.add_option("--every", arguments.every, "Steps from one frame to the next")
+      ->check(positive())
       ->needs(frames)
       ->capture_default_str();
   CLI::Option* const checkpoint =
       subcommand.add_option("--checkpoint", arguments.checkpoint,
-                            "Keep in this file what it takes to go on; Ctrl-C then ends in good order");
-  subcommand.add_option("--checkpoint-every", arguments.checkpoint_every, "Steps from one to the next")
-      ->check(CLI::PositiveNumber)
+                            "Write checkpoints to this file; Ctrl-C saves one before exiting");
+  subcommand
+      .add_option("--checkpoint-every", arguments.checkpoint_every, "Steps from one checkpoint to the next")
+      ->check(positive())
       ->needs(checkpoint)
       ->capture_default_str();
   subcommand.add_option(
       "--resume", arguments.resume,
-      "Go on from a checkpoint of the same scenario, mesh and order: the motion is the same\n"
-      "to the last bit");
+      "Continue from a checkpoint of the same scenario, mesh and order; the motion is the same to\n"
+      "the last bit");
 }
 
 }  // namespace
@@ -242,7 +247,9 @@ void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
 void add_simulate(CLI::App& app) {
   CLI::App* subcommand = app.add_subcommand(
       "simulate",
-      "Move an elastic body as a scenario says, in the order that is asked for, and time it.\n"
+      "Simulate an elastic body as a scenario describes, with the mesh in a given order, and time it.");
+  subcommand->footer(
+      "Example:\n"
       "  meshorder simulate falling --order fiedler --vtk frames");
   const auto arguments = std::make_shared<SimulateArguments>();
   add_scenario_options(*subcommand, *arguments);

@@ -5,6 +5,9 @@
 #include "lab/scenario/vertex_choice.hpp"
 #include "wording.hpp"
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +16,7 @@
 namespace meshorder::command {
 namespace {
 
-/// Sums over the steps.
+/// Returns the sums over the steps.
 StepReport sums(const MotionRecord& record) {
   StepReport sum;
   for (const auto& [report, shape_distance] : record.steps) {
@@ -26,25 +29,25 @@ StepReport sums(const MotionRecord& record) {
   return sum;
 }
 
-/// What steps took beyond their parts.
+/// Returns the time that is in no part of a step.
 double other(const StepReport::Seconds& seconds) {
   return seconds.total - seconds.assembly - seconds.solve - seconds.local - seconds.global -
          seconds.collision;
 }
 
-/// The least and largest of a number of the steps, of which there is one.
+/// Returns the smallest and the largest of a number over the steps, of which there is at least one.
 template <class Number>
 std::pair<Number, Number> range(const MotionRecord& record, Number StepReport::*number) {
-  Number least = record.steps.front().report.*number;
-  Number most = least;
+  Number lowest = record.steps.front().report.*number;
+  Number highest = lowest;
   for (const StepRecord& step : record.steps) {
-    least = std::min(least, step.report.*number);
-    most = std::max(most, step.report.*number);
+    lowest = std::min(lowest, step.report.*number);
+    highest = std::max(highest, step.report.*number);
   }
-  return {least, most};
+  return {lowest, highest};
 }
 
-/// A number of every step.
+/// Returns a number of every step.
 template <class Number>
 nlohmann::ordered_json each(const MotionRecord& record, Number StepReport::*number) {
   auto list = nlohmann::ordered_json::array();
@@ -66,7 +69,7 @@ std::string in_words(const Point& vector) {
 
 double total_energy(const Balance& balance) { return balance.kinetic + balance.elastic + balance.potential; }
 
-/// Count of cells of the highest dimension.
+/// Returns the number of elements.
 Index element_count(const Mesh& mesh) {
   return static_cast<Index>(std::count_if(mesh.cells.shapes.begin(), mesh.cells.shapes.end(),
                                           [](Shape shape) { return dimension(shape) == 3; }));
@@ -157,13 +160,13 @@ std::string material_in_words(const Scenario& scenario) {
 std::string method_in_words(const ImplicitOptions& options) {
   return fmt::format("backward Euler, CG with {} to {:g}{}", to_string(options.preconditioner),
                      options.solve.tolerance,
-                     options.precision == MatrixPrecision::single ? " in single" : "");
+                     options.precision == MatrixPrecision::single ? " in single precision" : "");
 }
 
 std::string method_in_words(const ProjectiveScenario& options) {
   return fmt::format("ADMM, {}{} iterations, duals {}{}", options.tolerance > 0 ? "at most " : "",
                      options.iterations, options.keep_duals ? "kept" : "reset",
-                     options.precision == MatrixPrecision::single ? ", in single" : "");
+                     options.precision == MatrixPrecision::single ? ", in single precision" : "");
 }
 
 std::string contact_in_words(const ProjectiveScenario& options) {
@@ -173,7 +176,7 @@ std::string contact_in_words(const ProjectiveScenario& options) {
     words += fmt::format("{}{}", words.empty() ? "" : ", ", kNames[static_cast<std::size_t>(obstacle.kind)]);
     if (obstacle.friction > 0) words += fmt::format(" (friction {:g})", obstacle.friction);
   }
-  if (options.contact.with_itself) words += words.empty() ? "with itself" : ", and with itself";
+  if (options.contact.with_itself) words += words.empty() ? "with itself" : ", with itself";
   return words + ", by uzawa";
 }
 
@@ -186,17 +189,17 @@ void print_steps(const Console& console, const Scenario& scenario, const MotionR
     console.print("\n{:<10} {}: {} a step, of which assembly {}, CG {}, other {}", "time",
                   duration(seconds.total), a_step(seconds.total), a_step(seconds.assembly),
                   a_step(seconds.solve), a_step(other(seconds)));
-    const auto [least, most] = range(record, &StepReport::cg_iterations);
+    const auto [lowest, highest] = range(record, &StepReport::cg_iterations);
     console.print("{:<10} {} iterations, {:.1f} a step, {} to {}", "CG", with_commas(sum.cg_iterations),
-                  sum.cg_iterations / steps, least, most);
+                  sum.cg_iterations / steps, lowest, highest);
     return;
   }
   console.print("\n{:<10} {}: {} a step, of which local {}, global {}, collision {}, other {}", "time",
                 duration(seconds.total), a_step(seconds.total), a_step(seconds.local), a_step(seconds.global),
                 a_step(seconds.collision), a_step(other(seconds)));
-  const auto [least, most] = range(record, &StepReport::admm_iterations);
+  const auto [lowest, highest] = range(record, &StepReport::admm_iterations);
   console.print("{:<10} {} iterations, {} to {} a step, {} each", "ADMM", with_commas(sum.admm_iterations),
-                least, most, duration(seconds.total / std::max(1, sum.admm_iterations)));
+                lowest, highest, duration(seconds.total / std::max(1, sum.admm_iterations)));
   if (!touches(scenario.projective())) return;
   console.print("{:<10} at most {} vertices, {} iterations in all; deepest in an obstacle {:.2g} m",
                 "contact", with_commas(range(record, &StepReport::contacts).second),
@@ -207,7 +210,8 @@ void print_steps(const Console& console, const Scenario& scenario, const MotionR
                   record.steps.back().report.vertices_in_itself);
 }
 
-/// From when on the body is as it was at rest, to 1 % of its height.
+/// Prints how far the body is from its shape at rest, and from which step on that is within 1 % of its
+/// height.
 void print_shape(const Console& console, const Simulation& simulation, const MotionRecord& record) {
   const BoundingBox box = bounding_box(simulation.mesh.points, simulation.vertices);
   const double near = 0.01 * (box.high[1] - box.low[1]);
@@ -215,9 +219,9 @@ void print_shape(const Console& console, const Simulation& simulation, const Mot
                                      [&](const StepRecord& step) { return step.shape_distance > near; });
   const double distance = record.steps.back().shape_distance;
   if (last_far == record.steps.rbegin()) {
-    console.print("{:<10} {:.4g} m from the one at rest", "shape", distance);
+    console.print("{:<10} {:.4g} m from the shape at rest", "shape", distance);
   } else {
-    console.print("{:<10} {:.4g} m from the one at rest, within 1 % of the height from step {} on", "shape",
+    console.print("{:<10} {:.4g} m from the shape at rest, within 1 % of the height from step {} on", "shape",
                   distance, record.steps.rend() - last_far + 1);
   }
 }
@@ -253,7 +257,7 @@ void print_summary(const Console& console, const Simulation& simulation, const M
   console.print("{:<10} {:.1f} MB", "memory", static_cast<double>(simulation.body->bytes()) * 1e-6);
   const Balance& first = record.balances.front();
   const Balance& last = record.balances.back();
-  console.print("{:<10} kinetic {:.5g} → {:.5g} J, elastic {:.5g} → {:.5g} J, of gravity {:.5g} → {:.5g} J",
+  console.print("{:<10} kinetic {:.5g} → {:.5g} J, elastic {:.5g} → {:.5g} J, gravity {:.5g} → {:.5g} J",
                 "energy", first.kinetic, last.kinetic, first.elastic, last.elastic, first.potential,
                 last.potential);
   console.print("{:<10} {} → {} kg m/s", "momentum", in_words(first.momentum), in_words(last.momentum));

@@ -2,22 +2,22 @@
 #pragma once
 
 #include "console.hpp"
-#include "lab/scenario/motion_record.hpp"
+#include "lab/scenario/motion_file.hpp"
 #include "lab/scenario/simulation.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 
 namespace meshorder::command {
 
-/// What is simulated, before it is.
+/// Prints what will be simulated.
 void print_header(const Console& console, const Simulation& simulation, const std::string& mesh);
 
-/// What it took, and what is conserved.
+/// Prints times, iterations and the change of energy and momentum.
 void print_summary(const Console& console, const Simulation& simulation, const MotionRecord& record);
 
-/// Keys as docs/json.md lists them, but for what only the run knows.
+/// Returns the keys that docs/json.md lists, but for those of the run: the mesh's file, frames, checkpoints.
 nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord& record);
 
 }  // namespace meshorder::command

@@ -1,7 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "wording.hpp"
 
+#include "base/text.hpp"
 #include "console.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -11,12 +15,12 @@
 namespace meshorder::command {
 namespace {
 
-/// Cells of each type, highest dimension first.
+/// Returns the number of cells of each type, highest dimension first.
 std::vector<std::pair<std::string, Index>> type_counts(const Mesh& mesh) {
   std::map<std::array<int, 3>, Index> counts;
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const Shape shape = mesh.cells.shapes[c];
-    const bool fixed = corners(shape, 0) > 0;  // polygons are one type, whatever their number of corners
+    const bool fixed = corners(shape, 0) > 0;  // polygons are one type
     ++counts[{-dimension(shape), static_cast<int>(shape), fixed ? mesh.cells.vertex_count(c) : 0}];
   }
   std::vector<std::pair<std::string, Index>> result;
@@ -82,11 +86,10 @@ nlohmann::ordered_json cells_by_type(const Mesh& mesh) {
 }
 
 std::string cells_in_words(const Mesh& mesh) {
-  std::string words;
-  for (const auto& [type, count] : type_counts(mesh)) {
-    words += (words.empty() ? "" : ", ") + with_commas(count) + " " + (count == 1 ? type : plural(type));
-  }
-  return words;
+  return join(type_counts(mesh), [](const auto& entry) {
+    const auto& [type, count] = entry;
+    return with_commas(count) + " " + (count == 1 ? type : plural(type));
+  });
 }
 
 std::string method_in_words(const MethodChoice& choice) {
@@ -109,8 +112,8 @@ void note_convergence(const std::vector<FiedlerComponent>& components, const std
   for (const FiedlerComponent& component : components) {
     if (component.converged) continue;
     notes.push_back(fmt::format(
-        "the Fiedler vector of {} did not converge on a component of {}: residual {:.2g} of lambda2 after {} "
-        "iterations; the best vector so far gives the order",
+        "the Fiedler vector of {} did not converge on a component of {} vertices: residual {:.2g} of lambda2 "
+        "after {} iterations; the order follows the best vector found",
         of, with_commas(component.size), component.residual / component.lambda2, component.iterations));
   }
 }

@@ -14,6 +14,7 @@
 #include "mesh/reorder.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/kernel_timing.hpp"
+#include "payoff/machine.hpp"
 
 #include <fmt/format.h>
 
@@ -104,7 +105,7 @@ void predict(const std::string& name, const mo::Caches& caches, const std::strin
     const mo::KernelReuse reuse = mo::reuse_of_kernels(mesh, graph, r.vertices, r.cells, kHalvings);
     for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
       fmt::print("{},{},{},{},{},{},{},{},{}\n", name, mesh.vertex_count(), simplices.size(),
-                 simplices.dimension, order, mo::name(mo::kKernels[k]), reuse[k].all.accesses(),
+                 simplices.dimension, order, mo::to_string(mo::kKernels[k]), reuse[k].all.accesses(),
                  fmt::join(mo::misses(reuse[k].all, caches), ","),
                  fmt::join(mo::misses(reuse[k].jumps, caches), ","));
     }
@@ -123,11 +124,12 @@ void time(const std::string& name, double budget, const std::string& folder,
     return mo::KernelBench(ordered, mo::renumbered(graph, vertices.old_to_new()));
   };
   const std::vector<mo::OrderTimes> times = mo::time_orders(
-      mo::index_size(orders), prepare, {.budget_seconds = budget, .least_rounds = 3, .sample_seconds = 0.01});
+      mo::index_size(orders), prepare, {.budget_seconds = budget, .min_rounds = 3, .sample_seconds = 0.01});
   for (std::size_t i = 0; i < orders.size(); ++i) {
     for (const mo::Kernel kernel : mo::kKernels) {
       const mo::KernelTimes& t = times[i][kernel];
-      fmt::print("{},{},{:.6f},{:.6f},{}\n", orders[i], mo::name(kernel), t.best_ms, t.median_ms, t.samples);
+      fmt::print("{},{},{:.6f},{:.6f},{}\n", orders[i], mo::to_string(kernel), t.best_ms, t.median_ms,
+                 t.samples);
     }
   }
 }

@@ -25,14 +25,15 @@ constexpr const char* kElsewhere = "set MESHORDER_CACHE to a folder that can be 
   throw Error(path.string(), what, kElsewhere);
 }
 
-/// The variable's folder; empty when it is not set. The XDG standard takes relative paths for mistakes.
+/// Returns the folder in an environment variable; empty if unset or relative, which the XDG standard calls
+/// invalid.
 fs::path folder_in(const char* variable) {
   const char* const value = std::getenv(variable);
   fs::path folder = value != nullptr ? value : "";
   return folder.is_absolute() ? folder : fs::path();
 }
 
-/// The first number in a file that is no comment; 0 when there is none.
+/// Returns the first number of a file outside its comments; 0 if there is none.
 Index first_number(const fs::path& path) {
   std::ifstream in(path);
   for (std::string line; std::getline(in, line);) {
@@ -53,7 +54,7 @@ fs::path cache_folder() {
   if (own != nullptr && *own != '\0') return fs::absolute(own);
   if (const fs::path folder = folder_in("XDG_CACHE_HOME"); !folder.empty()) return folder / "meshorder";
   if (const fs::path home = folder_in("HOME"); !home.empty()) return home / ".cache/meshorder";
-  refuse("models", "neither HOME nor XDG_CACHE_HOME tells where to keep them");
+  refuse("models", "neither HOME nor XDG_CACHE_HOME is set, so there is no folder to store them");
 }
 
 void make_folder(const fs::path& folder) {
@@ -68,21 +69,21 @@ MakingLock::MakingLock(const fs::path& folder, std::string_view name)
     : file_(::open((folder / ("." + std::string(name) + ".lock")).c_str(), O_RDWR | O_CREAT | O_CLOEXEC,
                    0644)) {
   if (file_ < 0) refuse(folder, "cannot be written: " + std::generic_category().message(errno));
-  // file systems without locks (ENOLCK) go without
+  // on a file system without locks (ENOLCK) there is none
   while (::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
   }
 }
 
 MakingLock::~MakingLock() { ::close(file_); }
 
-Workshop::Workshop(const fs::path& folder, std::string_view name)
+ScratchFolder::ScratchFolder(const fs::path& folder, std::string_view name)
     : path_(folder / ("." + std::string(name) + ".making")) {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
   make_folder(path_);
 }
 
-Workshop::~Workshop() {
+ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
 }
@@ -95,7 +96,7 @@ Counts counts_of(const fs::path& node_file) {
 }
 
 void publish(const fs::path& from, const fs::path& to) {
-  // the .node file comes last: without it there is no model
+  // the .node file comes last: without it the model does not exist
   for (const std::string_view extension : {".ele", ".node"}) {
     fs::path source = from;
     fs::path target = to;

@@ -8,18 +8,18 @@
 
 namespace meshorder::models {
 
-/// `$MESHORDER_CACHE`, or else `$XDG_CACHE_HOME/meshorder`, or else `~/.cache/meshorder`. Throws Error when
+/// Returns `$MESHORDER_CACHE`, else `$XDG_CACHE_HOME/meshorder`, else `~/.cache/meshorder`. Throws Error if
 /// none of the variables is set.
 std::filesystem::path cache_folder();
 
-/// Makes a folder and those above it. Throws Error when it cannot be made.
+/// Makes a folder and its parents. Throws Error if that fails.
 void make_folder(const std::filesystem::path& folder);
 
-/// The right to make one thing in the cache: a second process that wants it waits in the constructor. It ends
-/// with the process at the latest.
+/// A lock for making one file in the cache: a second process waits in the constructor. Released at the end of
+/// the process at the latest.
 class MakingLock {
  public:
-  /// `folder` must exist. Throws Error when it cannot be written.
+  /// Waits for the lock. `folder` must exist. Throws Error if it cannot be written.
   MakingLock(const std::filesystem::path& folder, std::string_view name);
   ~MakingLock();
   MakingLock(const MakingLock&) = delete;
@@ -31,16 +31,16 @@ class MakingLock {
   int file_;
 };
 
-/// An empty folder for what is being made, `folder/.NAME.making`; to be used under the lock of that name.
-/// It is removed in the end, and what an interrupted process left in it is removed at the start.
-class Workshop {
+/// An empty folder for unfinished files, `folder/.NAME.making`, to be used under the lock of that name.
+/// Removed by the destructor; the constructor removes what an interrupted process left.
+class ScratchFolder {
  public:
-  Workshop(const std::filesystem::path& folder, std::string_view name);
-  ~Workshop();
-  Workshop(const Workshop&) = delete;
-  Workshop(Workshop&&) = delete;
-  Workshop& operator=(const Workshop&) = delete;
-  Workshop& operator=(Workshop&&) = delete;
+  ScratchFolder(const std::filesystem::path& folder, std::string_view name);
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder(ScratchFolder&&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(ScratchFolder&&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
@@ -48,16 +48,15 @@ class Workshop {
   std::filesystem::path path_;
 };
 
-/// Numbers of a mesh in TetGen's format from the first lines of its two files; both are 0 unless both files
-/// are there.
+/// Numbers of vertices and elements in the first lines of a mesh's TetGen files; 0 unless both files exist.
 struct Counts {
   Index vertices = 0;
   Index elements = 0;
 };
 Counts counts_of(const std::filesystem::path& node_file);
 
-/// Moves `from.node` and `from.ele` to `to.node` and `to.ele`, for paths without extension in one file
-/// system. Throws Error when it cannot.
+/// Moves `from.node` and `from.ele` to `to.node` and `to.ele`, in one file system. Throws Error if that
+/// fails.
 void publish(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace meshorder::models

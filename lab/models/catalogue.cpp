@@ -2,6 +2,7 @@
 #include "lab/models/catalogue.hpp"
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/format.hpp"
 #include "lab/models/cache.hpp"
 #include "lab/models/surfaces.hpp"
@@ -20,15 +21,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// ---- what there is
+// ---- the list
 
-/// How a model comes out of a surface; apps/meshorder-models/README.md tells why by these steps.
+/// How a model is made from a surface; apps/meshorder-models/README.md explains these steps.
 struct Recipe {
   std::string_view name;
-  std::string_view sentence;
+  std::string_view description;
   std::string_view surface;
   std::string_view tetgen_options;
-  double alpha_ratio = 0;  ///< of the wrap; 0 fills the surface as it is
+  double alpha_ratio = 0;  ///< of the wrap; 0: fill the surface as it is
   double offset_ratio = 0;
 };
 
@@ -44,7 +45,7 @@ constexpr std::array<Recipe, 4> kRecipes{{
 
 struct Rule {
   std::string_view name;
-  std::string_view sentence;
+  std::string_view description;
   Mesh (*make)(const ProceduralOptions&);
 };
 
@@ -54,7 +55,7 @@ constexpr std::array<Rule, 3> kRules{{
     {"torus", "a torus cut into tetrahedra, in any size, numbered along its rows", make_torus},
 }};
 
-/// The number at the end of "grid-40", for the rule "grid".
+/// Returns the number at the end of "grid-40", for the rule "grid".
 std::optional<Index> size_in(std::string_view name, const Rule& rule) {
   if (!name.starts_with(rule.name) || name.size() == rule.name.size()) return std::nullopt;
   name.remove_prefix(rule.name.size());
@@ -65,9 +66,9 @@ std::optional<Index> size_in(std::string_view name, const Rule& rule) {
   return size;
 }
 
-/// A model, with what its files tell if it is made.
-Model look_up(std::string name, std::string_view sentence, bool procedural) {
-  Model model{std::move(name), std::string(sentence), procedural, {}, 0, 0};
+/// Returns a model, with its path and counts if it is made.
+Model look_up(std::string name, std::string_view description, bool procedural) {
+  Model model{std::move(name), std::string(description), procedural, {}, 0, 0};
   fs::path path = models_folder() / (model.name + ".node");
   const auto [vertices, elements] = models::counts_of(path);
   if (vertices == 0) return model;
@@ -92,7 +93,7 @@ std::vector<Index> made_sizes(const Rule& rule) {
 
 using Progress = std::function<void(std::string_view, double)>;
 
-/// Each writes its .node and .ele into `folder` and returns their path without extension.
+// Both write a .node and .ele file into `folder` and return their path without extension.
 fs::path make_by_rule(const Rule& rule, Index size, const fs::path& folder, const Progress& progress) {
   progress("Building the mesh", 0);
   fs::path path = folder / rule.name;
@@ -115,7 +116,7 @@ fs::path make_by_recipe(const Recipe& recipe, const fs::path& folder, const Prog
 
   const std::string input = fmt::format("{}.off", recipe.name);
   if (wrapped) {
-    progress("Wrapping the surface (some 15 s)", fetch ? 0.3 : 0);
+    progress("Wrapping the surface (about 15 s)", fetch ? 0.3 : 0);
     run_tool(recipe.name, "meshorder-models",
              {"wrap", surface.string(), input, "--alpha-ratio", fmt::format("{}", recipe.alpha_ratio),
               "--offset-ratio", fmt::format("{}", recipe.offset_ratio)},
@@ -124,35 +125,33 @@ fs::path make_by_recipe(const Recipe& recipe, const fs::path& folder, const Prog
     fs::copy_file(surface, folder / input);
   }
 
-  progress(fmt::format("Filling it with tetrahedra (TetGen, some {} s)", wrapped ? 1 : 25), wrapped ? 0.95
-                                                                                            : fetch ? 0.2
-                                                                                                    : 0);
+  progress(fmt::format("Filling it with tetrahedra (TetGen, about {} s)", wrapped ? 1 : 25), wrapped ? 0.95
+                                                                                             : fetch ? 0.2
+                                                                                                     : 0);
   run_tool(recipe.name, "tetgen", {std::string(recipe.tetgen_options), input}, folder);
   return folder / fmt::format("{}.1", recipe.name);
 }
 
-/// Makes `name` in the cache unless another process does so meanwhile; `make` gets an empty folder.
+/// Makes a model in the cache, unless another process has made it meanwhile. `make` gets an empty folder.
 template <class Make>
 void make_kept(const std::string& name, bool force, const Progress& progress, const Make& make) {
   const fs::path folder = models_folder();
   models::make_folder(folder);
   const models::MakingLock lock(folder, name);
   if (!force && models::counts_of(folder / (name + ".node")).vertices > 0) return;
-  const models::Workshop workshop(folder, name);
-  const fs::path made = make(workshop.path());
+  const models::ScratchFolder scratch(folder, name);
+  const fs::path made = make(scratch.path());
   if (models::counts_of(made.string() + ".node").vertices == 0) {
-    throw Error("model " + name, "its last step left no mesh behind", "is the disk full?");
+    throw Error("model " + name, "its last step wrote no mesh", "is the disk full?");
   }
   models::publish(made, folder / name);
   progress("Done", 1);
 }
 
 [[noreturn]] void refuse_name(std::string_view name) {
-  std::string known;
-  for (const Recipe& recipe : kRecipes) known += fmt::format("{}, ", recipe.name);
-  for (const Rule& rule : kRules) known += fmt::format("{}, ", rule.name);
-  throw InvalidArgument(fmt::format("unknown model '{}'; known are {} and sizes as in grid-40", name,
-                                    known.substr(0, known.size() - 2)));
+  const auto name_of = [](const auto& entry) { return entry.name; };
+  throw InvalidArgument(fmt::format("unknown model '{}'; known are {}, {}, and sizes as in grid-40", name,
+                                    join(kRecipes, name_of), join(kRules, name_of)));
 }
 
 }  // namespace
@@ -163,10 +162,10 @@ std::vector<Model> list_models() {
   std::vector<Model> result;
   result.reserve(kRecipes.size() + kRules.size());
   for (const Recipe& recipe : kRecipes) {
-    result.push_back(look_up(std::string(recipe.name), recipe.sentence, false));
+    result.push_back(look_up(std::string(recipe.name), recipe.description, false));
   }
   for (const Rule& rule : kRules) {
-    result.push_back({std::string(rule.name), std::string(rule.sentence), true, {}, 0, 0});
+    result.push_back({std::string(rule.name), std::string(rule.description), true, {}, 0, 0});
     for (const Index size : made_sizes(rule)) {
       result.push_back(look_up(fmt::format("{}-{}", rule.name, size),
                                fmt::format("the {} in size {}", rule.name, size), true));
@@ -180,12 +179,12 @@ Model make_model(std::string_view name, const MakeOptions& options) {
   const auto kept_or_made = [&](Model model, const auto& make) {
     if (!options.force && !model.path.empty()) return model;
     make_kept(model.name, options.force, progress, make);
-    return look_up(model.name, model.sentence, model.procedural);
+    return look_up(model.name, model.description, model.procedural);
   };
 
   for (const Recipe& recipe : kRecipes) {
     if (name != recipe.name) continue;
-    return kept_or_made(look_up(std::string(name), recipe.sentence, false),
+    return kept_or_made(look_up(std::string(name), recipe.description, false),
                         [&](const fs::path& folder) { return make_by_recipe(recipe, folder, progress); });
   }
   for (const Rule& rule : kRules) {

@@ -11,40 +11,41 @@
 
 namespace meshorder {
 
-/// A tetrahedral mesh that anyone can make by its name.
+/// A tetrahedral mesh that meshorder can make by name.
 struct Model {
-  std::string name;            ///< "dragon"; a procedural one that is made has its size in it, "grid-20"
-  std::string sentence;        ///< for a list of models
-  bool procedural = false;     ///< made by rule in any size, without other programs
+  std::string name;            ///< "dragon"; of a procedural model that is made with its size, "grid-20"
+  std::string description;     ///< for a list of models
+  bool procedural = false;     ///< made in any size, without other programs
   std::filesystem::path path;  ///< the .node file, its .ele beside it; empty until it is made
   Index vertices = 0;          ///< 0 until it is made
   Index elements = 0;          ///< 0 until it is made
 };
 
-/// Where models are kept: `$MESHORDER_CACHE`, or else `$XDG_CACHE_HOME/meshorder`, or else
-/// `~/.cache/meshorder`, and in it `models`. Throws Error when none of the three variables tells.
+/// Returns the folder of the models: `models` in `$MESHORDER_CACHE`, else in `$XDG_CACHE_HOME/meshorder`,
+/// else in
+/// `~/.cache/meshorder`. Throws Error if none of the variables is set.
 std::filesystem::path models_folder();
 
-/// All models: the paper's and larger ones, then the procedural ones, each of these without a size and then
-/// in the sizes that are made. Reads first lines of files, no mesh.
+/// Returns all models: the paper's and larger ones, then the procedural ones, each without a size and then in
+/// the sizes that are made. Reads only the first lines of files.
 std::vector<Model> list_models();
 
 struct MakeOptions {
   Index size = 20;     ///< of procedural models: lattice cubes across the shape
-  bool force = false;  ///< makes it again where it is made already
-  /// Is told each step as it begins, and which fraction of the time is over by then (below 0: unknown).
+  bool force = false;  ///< make it again if it exists
+  /// Called with each step as it begins and the fraction of the time that has passed (below 0: unknown).
   std::function<void(std::string_view step, double fraction)> progress = {};
 };
 
-/// Makes the model of that name and keeps it, or does nothing but look when it is kept already. The name of a
-/// procedural model may carry its size, "grid-40", which then counts.
+/// Makes a model and stores it, unless it is stored already, and returns it. The name of a procedural model
+/// may include its size, "grid-40", which then overrides `options.size`.
 ///
-/// The others come out of surfaces in Debian's package libcgal-demo (24 MB to download, once), prepared by
-/// `meshorder-models` and filled by `tetgen`. Of two processes that make the same model, one waits for the
-/// other. Whatever interrupts it, no half of a model is left under its name.
+/// The other models are made from surfaces in Debian's package libcgal-demo (downloaded once, 24 MB),
+/// prepared by `meshorder-models` and filled by `tetgen`. If two processes make the same model, one waits for
+/// the other. An interruption never leaves an incomplete model under its name.
 ///
-/// Throws InvalidArgument for an unknown name or a wrong size; Error, which says what would help, when a
-/// program is not installed or fails, or the folder cannot be written.
+/// Throws InvalidArgument for an unknown name or an invalid size; Error, with a remedy, if a program is not
+/// installed or fails, or if the folder cannot be written.
 Model make_model(std::string_view name, const MakeOptions& options = {});
 
 }  // namespace meshorder

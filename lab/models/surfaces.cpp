@@ -48,8 +48,8 @@ std::string remedy_for_failure(std::string_view program) {
   return "are memory and disk space left?";
 }
 
-/// Downloads the package into `folder`. The system's lists of packages may be missing or old, and renewing
-/// them takes root; so a second attempt gets lists of its own.
+/// Downloads the package into `folder`. The system's package lists may be missing or old, and only root may
+/// update them, so a second attempt uses lists of its own.
 void download_package(std::string_view model, const fs::path& folder) {
   try {
     run_tool(model, "apt-get", {"download", "libcgal-demo"}, folder);
@@ -63,7 +63,7 @@ void download_package(std::string_view model, const fs::path& folder) {
   }
 }
 
-/// The package's file name, which holds its version.
+/// Returns the package's file name, which includes its version.
 std::string downloaded_package(std::string_view model, const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".deb") return entry.path().filename().string();
@@ -76,7 +76,7 @@ std::string downloaded_package(std::string_view model, const fs::path& folder) {
 void run_tool(std::string_view model, std::string_view program, const std::vector<std::string>& arguments,
               const fs::path& folder) {
   const fs::path path = require_tool(model, program);
-  const Ended ended = run_process(path, arguments, folder, folder / "log");
+  const ExitStatus ended = run_process(path, arguments, folder, folder / "log");
   if (ended.code == 0) return;
   throw Error(model_named(model),
               fmt::format("{} failed with status {}: {}", program, ended.code,
@@ -99,17 +99,17 @@ void fetch_surfaces(std::string_view model) {
   if (complete) return;  // another process was faster
 
   require_tools(model, {"apt-get", "dpkg-deb", "tar"});
-  const Workshop workshop(folder, "surfaces");
-  download_package(model, workshop.path());
-  run_tool(model, "dpkg-deb", {"--extract", downloaded_package(model, workshop.path()), "demo"},
-           workshop.path());
+  const ScratchFolder scratch(folder, "surfaces");
+  download_package(model, scratch.path());
+  run_tool(model, "dpkg-deb", {"--extract", downloaded_package(model, scratch.path()), "demo"},
+           scratch.path());
   std::vector<std::string> unpack{"-xzf", "demo/usr/share/doc/libcgal-dev/data.tar.gz",
                                   "--strip-components=2"};
   for (const std::string_view surface : kSurfaces) unpack.push_back(fmt::format("data/meshes/{}", surface));
-  run_tool(model, "tar", unpack, workshop.path());
+  run_tool(model, "tar", unpack, scratch.path());
   for (const std::string_view surface : kSurfaces) {
     std::error_code code;
-    fs::rename(workshop.path() / surface, folder / surface, code);
+    fs::rename(scratch.path() / surface, folder / surface, code);
     if (code)
       throw Error((folder / surface).string(), "cannot be written: " + code.message(), "check the folder");
   }

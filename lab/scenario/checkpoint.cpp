@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// The file, numbers as the machine has them: magic (16 bytes), byte order mark and version (4 each), bytes in
-// all (8); then fingerprint, state and record; the CRC-32 of all before it (4).
+// The file, in the machine's byte order: magic (16 bytes), byte order mark and version (4 each), size of the
+// file (8); fingerprint, state and record; the CRC-32 of all bytes before it (4).
 #include "lab/scenario/checkpoint.hpp"
 
 #include "base/error.hpp"
@@ -28,7 +28,7 @@ std::uint32_t checksum_of(std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-/// Bytes of a file that is being made.
+/// Collects the bytes of the file.
 class Packer {
  public:
   template <class Number>
@@ -47,7 +47,7 @@ class Packer {
   void point(const Point& value) {
     for (const double x : value) number(x);
   }
-  /// Fills in the length, and ends with the checksum.
+  /// Fills in the length, appends the checksum and returns the bytes.
   std::string finish() {
     const std::uint64_t length = bytes_.size() + sizeof(std::uint32_t);
     std::memcpy(bytes_.data() + kLengthAt, &length, sizeof length);
@@ -59,8 +59,8 @@ class Packer {
   std::string bytes_;
 };
 
-Index read_count(Scanner& file, std::string_view what, std::int64_t least_bytes) {
-  return file.checked_count(file.binary<std::int64_t>(what), what, least_bytes);
+Index read_count(Scanner& file, std::string_view what, std::int64_t min_bytes) {
+  return file.checked_count(file.binary<std::int64_t>(what), what, min_bytes);
 }
 
 Point read_point(Scanner& file) {
@@ -89,7 +89,7 @@ Balance read_balance(Scanner& file) {
   return balance;
 }
 
-/// All numbers of a step, in the order in which they are written.
+/// Calls `work` on all numbers of a step, in the order of the file.
 template <class Step, class Work>
 void visit_numbers(Step& step, Work work) {
   auto& report = step.report;
@@ -108,7 +108,7 @@ void visit_numbers(Step& step, Work work) {
     work(*part);
   work(step.shape_distance);
 }
-constexpr std::int64_t kLeastStepBytes = 6 * 4 + 10 * 8;
+constexpr std::int64_t kMinStepBytes = 6 * 4 + 10 * 8;
 
 void pack(const MotionRecord& record, Packer& out) {
   out.count(record.steps.size());
@@ -127,7 +127,7 @@ void pack(const MotionRecord& record, Packer& out) {
 
 MotionRecord read_record(Scanner& file) {
   MotionRecord record;
-  record.steps.resize(read_count(file, "the number of steps", kLeastStepBytes));
+  record.steps.resize(read_count(file, "the number of steps", kMinStepBytes));
   for (StepRecord& step : record.steps) {
     visit_numbers(step, [&](auto& number) {
       number = file.binary<std::remove_reference_t<decltype(number)>>("a number of a step");
@@ -157,13 +157,14 @@ MotionState read_state(Scanner& file) {
   return state;
 }
 
-/// Leaves the scanner behind the header of a sound file.
+/// Checks the file and leaves the scanner behind its header.
 void read_header(Scanner& file) {
   if (!file.all().starts_with(kMagic))
-    file.fail_at_byte("is no checkpoint", "give a file that simulate --checkpoint wrote");
+    file.fail_at_byte("is not a checkpoint", "give a file that simulate --checkpoint wrote");
   (void)file.binary_block(static_cast<std::int64_t>(kMagic.size()), "the magic");
   if (file.binary<std::uint32_t>("the byte order") != kOrderMark)
-    file.fail_at_byte("comes from a machine with the other byte order", "go on where it was written");
+    file.fail_at_byte("comes from a machine with the other byte order",
+                      "continue on the kind of machine that wrote it");
   const auto version = file.binary<std::uint32_t>("the version");
   if (version != kVersion)
     file.fail_at_byte(fmt::format("has version {}", version), fmt::format("this program reads {}", kVersion));
@@ -171,7 +172,7 @@ void read_header(Scanner& file) {
   const std::string_view all = file.all();
   if (all.size() < length) {
     file.seek(static_cast<std::int64_t>(all.size()));
-    file.fail_at_byte(fmt::format("ends here, but has {} bytes", length), "it was cut short");
+    file.fail_at_byte(fmt::format("ends here, but should have {} bytes", length), "it was cut short");
   }
   if (all.size() > length) {
     file.seek(static_cast<std::int64_t>(length));
@@ -194,7 +195,7 @@ void write_checkpoint(const Checkpoint& checkpoint, const std::filesystem::path&
   out.bytes(kMagic);
   out.number(kOrderMark);
   out.number(kVersion);
-  out.number(std::uint64_t{0});  // the length, when it is known
+  out.number(std::uint64_t{0});  // the length, filled in by finish
   out.number(checkpoint.fingerprint.mesh);
   out.number(checkpoint.fingerprint.order);
   out.number(checkpoint.fingerprint.parameters);

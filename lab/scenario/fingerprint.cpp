@@ -8,7 +8,8 @@
 namespace meshorder {
 namespace {
 
-/// FNV-1a (Fowler, Noll, Vo) over 64-bit words.
+/// A 64-bit hash in the manner of FNV-1a: it takes words instead of bytes and folds in the upper half. Not
+/// FNV-1a.
 class Checksum {
  public:
   template <class Number>

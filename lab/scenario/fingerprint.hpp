@@ -10,8 +10,8 @@
 
 namespace meshorder {
 
-/// Tells whether two simulations are the same: checksums of the mesh, of its order and of all numbers that
-/// the motion depends on. Not of how many steps are done.
+/// Identifies a simulation: checksums of the mesh, of its order and of all numbers that the motion depends
+/// on, but not of the number of steps.
 struct Fingerprint {
   std::uint64_t mesh = 0;
   std::uint64_t order = 0;
@@ -20,12 +20,12 @@ struct Fingerprint {
   bool operator==(const Fingerprint&) const = default;
 };
 
-// The parts of it, O(size of what is given) each.
+// The checksums. O(size of the arguments) each.
 std::uint64_t checksum_of(const std::vector<Point>& points, const Simplices& simplices);
 std::uint64_t checksum_of(const Reordering& order);
-/// Of a body whose vertices start in that state.
+/// Of a body that starts in that state.
 std::uint64_t checksum_of(const ImplicitOptions& options, const Body& body, const MotionState& start);
-/// Obstacles and precision are taken from `scenario`, since the options do not tell what they are.
+/// Obstacles and precision are taken from `scenario`: `options` holds the obstacles only as opaque objects.
 std::uint64_t checksum_of(const ProjectiveOptions& options, const ProjectiveScenario& scenario,
                           const ProjectiveBody& body, const MotionState& start);
 

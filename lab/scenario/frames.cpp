@@ -18,7 +18,7 @@ namespace meshorder {
 namespace {
 namespace fs = std::filesystem;
 
-// the frame's own arrays, in front of the mesh's, which then give way where they have the same names
+// the frame's own arrays come first: the writer drops later arrays of the same name
 enum OwnArray : std::uint8_t { kDisplacement, kVelocity, kOriginalVertex, kOriginalCell };
 
 std::vector<DataArray> own_arrays(const Mesh& mesh, const Reordering& order) {
@@ -32,13 +32,13 @@ std::vector<DataArray> own_arrays(const Mesh& mesh, const Reordering& order) {
   return arrays;
 }
 
-/// What a .vtu file says beyond the mesh: of one that came from VTK what it had; compressed.
+/// Returns the metadata of the .vtu files: those of the mesh if it was read from VTK, with compression.
 std::shared_ptr<vtk::Metadata> metadata_of(const Mesh& mesh) {
   const auto* const own = dynamic_cast<const vtk::Metadata*>(mesh.format_metadata.get());
   auto metadata = own != nullptr ? std::make_shared<vtk::Metadata>(*own) : std::make_shared<vtk::Metadata>();
   metadata->legacy.reset();
   metadata->float_points = true;
-  // raw bytes would be a quarter less, but no XML: meshio 5.0 takes one file in some hundreds apart wrongly
+  // raw bytes would be a quarter smaller but are not XML: meshio 5.0 misreads one file in some hundreds
   metadata->vtu =
       VtuEncoding{.mode = VtuEncoding::Mode::appended_base64, .compressor = VtuEncoding::Compressor::zlib};
   return metadata;
@@ -53,19 +53,21 @@ FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index ev
       time_step_(simulation.scenario.motion().time_step),
       collection_(folder_ / (name_ + ".pvd")),
       rest_(simulation.mesh.points),
-      followers_(followers(simulation.mesh, cut_into_simplices(simulation.mesh))),
+      embedded_(embed_vertices(simulation.mesh, cut_into_simplices(simulation.mesh))),
       frame_(simulation.mesh) {
-  if (every < 1) throw InvalidArgument("frames: one of every " + std::to_string(every) + " steps");
+  if (every < 1)
+    throw InvalidArgument("frames: the number of steps from one to the next is " + std::to_string(every) +
+                          ", not 1 or more");
   std::error_code code;
   fs::create_directories(folder_, code);
   if (code)
     throw Error(folder_.string(), "cannot be made: " + code.message(), "name a folder for the frames");
-  (void)OutputFile(collection_);  // whether it can be written is known before the work begins
+  (void)OutputFile(collection_);  // fail before the work if it cannot be written
   std::vector<DataArray> arrays = own_arrays(frame_, simulation.order);
   arrays.insert(arrays.end(), std::make_move_iterator(frame_.data.begin()),
                 std::make_move_iterator(frame_.data.end()));
   frame_.data = std::move(arrays);
-  frame_.vertex_ids.clear();  // they would run along the order
+  frame_.vertex_ids.clear();  // ids would only repeat the order
   frame_.cell_ids.clear();
   frame_.format_metadata = metadata_of(simulation.mesh);
   write_obstacles(simulation);
@@ -90,7 +92,7 @@ void FrameWriter::resume_after(Index step) {
 }
 
 void FrameWriter::write(MotionState state) {
-  carry(followers_, rest_, state);
+  move_embedded(embedded_, rest_, state);
   auto& displacement = std::get<std::vector<float>>(frame_.data[kDisplacement].values);
   auto& velocity = std::get<std::vector<float>>(frame_.data[kVelocity].values);
   for (std::size_t v = 0; v < rest_.size(); ++v) {

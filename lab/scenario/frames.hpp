@@ -2,7 +2,7 @@
 #pragma once
 
 #include "io/vtu.hpp"
-#include "lab/scenario/followers.hpp"
+#include "lab/scenario/embedded_vertices.hpp"
 #include "lab/scenario/simulation.hpp"
 
 #include <filesystem>
@@ -10,31 +10,30 @@
 
 namespace meshorder {
 
-/// Writes a motion into a folder as one .vtu file for each frame, NAME-000012.vtu after step 12, and
-/// NAME.pvd, which ParaView opens as an animation; it is complete after every frame.
+/// Writes a motion into a folder: a .vtu file for each frame, NAME-000012.vtu after step 12, and NAME.pvd,
+/// which ParaView opens as an animation and which is complete after every frame.
 ///
-/// A frame has the moved mesh with all that is attached to it, and on its vertices `displacement` (m, from
-/// the mesh at rest) and `velocity` (m/s) in single precision, as points are. `original_vertex` and
-/// `original_cell` number the vertices and cells as the mesh's file did, from 0, so that frames of two orders
-/// can be laid over each other. What the body may meet stands in NAME-obstacles.vtu.
+/// A frame is the moved mesh with its data and, on its vertices, `displacement` (m, from rest) and `velocity`
+/// (m/s) in single precision, as the points are. `original_vertex` and `original_cell` are the numbers in the
+/// mesh's file, from 0, so that frames of two orders can be compared. NAME-obstacles.vtu holds the obstacles.
 class FrameWriter {
  public:
-  /// A frame after every `every`-th step, and one of the start. Makes the folder. Throws Error when it cannot
-  /// be made or written.
+  /// Makes the folder. Frames are those of the start and of every `every`-th step. Throws Error if the folder
+  /// cannot be made or written.
   FrameWriter(const Simulation& simulation, std::filesystem::path folder, Index every);
 
-  /// Lists the frames up to that step that an earlier run left in the folder.
+  /// Lists the frames up to `step` that an earlier run left in the folder.
   void resume_after(Index step);
 
-  /// Whether a frame is due after that step.
+  /// Returns whether a frame is due after `step`.
   [[nodiscard]] bool is_due(Index step) const { return step % every_ == 0; }
 
-  /// Writes a frame, and the collection anew. Throws Error when it cannot. Frames of one state are the same
-  /// bytes. O(size of the mesh).
+  /// Writes a frame and the collection. Throws Error if it cannot. The bytes depend on the state only. O(size
+  /// of the mesh).
   void write(MotionState state);
 
   [[nodiscard]] const std::filesystem::path& collection() const noexcept { return collection_; }
-  /// What the files could not hold of the mesh.
+  /// Notes on what the files could not hold of the mesh.
   [[nodiscard]] const Notes& notes() const noexcept { return notes_; }
 
  private:
@@ -48,7 +47,7 @@ class FrameWriter {
   double time_step_;
   std::filesystem::path collection_;
   std::vector<Point> rest_;
-  std::vector<Follower> followers_;
+  std::vector<EmbeddedVertex> embedded_;
   Mesh frame_;
   std::vector<PvdEntry> entries_;
   Notes notes_;

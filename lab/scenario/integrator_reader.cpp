@@ -8,25 +8,14 @@
 namespace meshorder {
 namespace {
 
-constexpr NumberRange kTolerance{.least = 0, .most = 1, .least_open = true, .most_open = true};
+constexpr NumberRange kTolerance{.min = 0, .max = 1, .min_open = true, .max_open = true};
 constexpr int kMostIterations = 1'000'000;
 
 enum class Method : std::uint8_t { backward_euler, admm };
-constexpr std::array kMethods{std::pair(std::string_view("backward-euler"), Method::backward_euler),
-                              std::pair(std::string_view("admm"), Method::admm)};
-constexpr std::array kContactSolvers{std::pair(std::string_view("uzawa"), true)};  // the only one
-constexpr std::array kDuals{std::pair(std::string_view("kept"), true),
-                            std::pair(std::string_view("reset"), false)};
-
-/// Returns the value that a text names.
-template <NamedEnum Enum>
-Enum read_enum(const JsonValue& value) {
-  const std::string given = value.text();
-  for (const auto& [result, name] : EnumNames<Enum>::names) {
-    if (given == name) return result;
-  }
-  throw value.error("'" + given + "' is unknown", "known are " + names_of<Enum>());
-}
+constexpr std::array kMethods{std::pair{Method::backward_euler, "backward-euler"},
+                              std::pair{Method::admm, "admm"}};
+constexpr std::array kContactSolvers{std::pair{true, "uzawa"}};  // the only one
+constexpr std::array kDuals{std::pair{true, "kept"}, std::pair{false, "reset"}};
 
 void read_count(const JsonValue& owner, std::string_view key, int most, int& count) {
   if (const auto value = owner.find(key)) count = static_cast<int>(value->whole(1, most));
@@ -34,7 +23,7 @@ void read_count(const JsonValue& owner, std::string_view key, int most, int& cou
 
 // ---- materials
 
-/// Young's modulus and Poisson's ratio, or a stiffness alone.
+/// Whether a material has Young's modulus and Poisson's ratio, or a stiffness.
 enum class Elastic : std::uint8_t { moduli, stiffness };
 
 Material material_of(const JsonValue& value, Elastic elastic, Material numbers) {
@@ -44,7 +33,7 @@ Material material_of(const JsonValue& value, Elastic elastic, Material numbers) 
   } else {
     if (const auto young = value.find("young")) numbers.young = young->number(kPositive);
     if (const auto poisson = value.find("poisson"))
-      numbers.poisson = poisson->number({.least = -1, .most = 0.5, .least_open = true, .most_open = true});
+      numbers.poisson = poisson->number({.min = -1, .max = 0.5, .min_open = true, .max_open = true});
   }
   if (const auto density = value.find("density")) numbers.density = density->number(kPositive);
   return numbers;
@@ -86,18 +75,18 @@ void read_numbers(const JsonValue& value, Elastic elastic, Scenario& scenario) {
 
 void read_implicit_material(const JsonValue& value, Scenario& scenario) {
   value.expect_keys({"model", "tangent", "young", "poisson", "density", "regions"});
-  scenario.model = read_enum<MaterialModel>(value["model"]);
+  scenario.model = value["model"].one_of<MaterialModel>();
   if (const auto tangent = value.find("tangent")) {
-    scenario.tangent = read_enum<Tangent>(*tangent);
+    scenario.tangent = tangent->one_of<Tangent>();
     if (scenario.tangent == Tangent::approximate && scenario.model != MaterialModel::corotational)
-      throw tangent->error("'approximate' is of the corotational model alone", "give exact or projected");
+      throw tangent->error("'approximate' is for the corotational model only", "give exact or projected");
   }
   read_numbers(value, Elastic::moduli, scenario);
 }
 
 void read_implicit(const JsonValue& value, ImplicitOptions& options) {
   value.expect_keys({"method", "time_step", "mass", "rayleigh", "gravity", "newton"});
-  if (const auto mass = value.find("mass")) options.mass = read_enum<Mass>(*mass);
+  if (const auto mass = value.find("mass")) options.mass = mass->one_of<Mass>();
   if (const auto rayleigh = value.find("rayleigh")) {
     rayleigh->expect_keys({"alpha", "beta"});
     if (const auto alpha = rayleigh->find("alpha")) options.mass_damping = alpha->number(kNotNegative);
@@ -114,17 +103,17 @@ void read_implicit(const JsonValue& value, ImplicitOptions& options) {
 void read_implicit_solver(const JsonValue& value, ImplicitOptions& options) {
   value.expect_keys({"preconditioner", "tolerance", "max_iterations", "precision"});
   if (const auto preconditioner = value.find("preconditioner"))
-    options.preconditioner = read_enum<PreconditionerKind>(*preconditioner);
+    options.preconditioner = preconditioner->one_of<PreconditionerKind>();
   if (const auto tolerance = value.find("tolerance")) options.solve.tolerance = tolerance->number(kTolerance);
   read_count(value, "max_iterations", kMostIterations, options.solve.max_iterations);
   if (const auto precision = value.find("precision"))
-    options.precision = read_enum<MatrixPrecision>(*precision);
+    options.precision = precision->one_of<MatrixPrecision>();
 }
 
 // ---- ADMM
 
 void read_projective_material(const JsonValue& value, ProjectiveScenario& options, Scenario& scenario) {
-  options.model = read_enum<LocalModel>(value["model"]);
+  options.model = value["model"].one_of<LocalModel>();
   switch (options.model) {
     case LocalModel::springs:
       value.expect_keys({"model", "stiffness", "density"});
@@ -144,11 +133,11 @@ void read_projective(const JsonValue& value, ProjectiveScenario& options) {
   value.expect_keys({"method", "time_step", "gravity", "iterations", "tolerance", "duals"});
   read_count(value, "iterations", kMostIterations, options.iterations);
   if (const auto tolerance = value.find("tolerance"))
-    options.tolerance = tolerance->number({.least = 0, .most = 1, .most_open = true});
+    options.tolerance = tolerance->number({.min = 0, .max = 1, .max_open = true});
   if (const auto duals = value.find("duals")) options.keep_duals = duals->one_of(kDuals);
 }
 
-/// A direction: a vector other than 0.
+/// Reads a vector other than 0.
 Point direction(const JsonValue& value) {
   const Point vector = value.vector();
   if (!(std::hypot(vector[0], vector[1], vector[2]) > 0.0))
@@ -181,10 +170,8 @@ ScenarioObstacle obstacle(const JsonValue& value) {
     result.place = (*bowl)["center"].vector();
     result.direction = direction((*bowl)["axis"]);
     result.radius = (*bowl)["radius"].number(kPositive);
-    result.thickness =
-        (*bowl)["thickness"].number({.least = 0, .most = 2 * result.radius, .least_open = true});
-    result.opening =
-        (*bowl)["opening"].number({.least = 0, .most = 180, .least_open = true, .most_open = true});
+    result.thickness = (*bowl)["thickness"].number({.min = 0, .max = 2 * result.radius, .min_open = true});
+    result.opening = (*bowl)["opening"].number({.min = 0, .max = 180, .min_open = true, .max_open = true});
   } else {
     result.kind = Kind::surface;
     result.file = (std::filesystem::path(value.file()).parent_path() / value["surface"].text()).string();
@@ -236,7 +223,7 @@ void read_integrator(const JsonValue& root, Scenario& scenario) {
   if (solver) {
     solver->expect_keys({"precision"});
     if (const auto precision = solver->find("precision"))
-      options.precision = read_enum<MatrixPrecision>(*precision);
+      options.precision = precision->one_of<MatrixPrecision>();
   }
   if (contact) read_contact(*contact, options);
   scenario.integrator = std::move(options);

@@ -2,15 +2,15 @@
 #pragma once
 
 #include "lab/scenario/scenario.hpp"
-#include "lab/support/json_value.hpp"
+#include "lab/support/json.hpp"
 
 namespace meshorder {
 
-inline constexpr NumberRange kPositive{.least = 0, .least_open = true};
-inline constexpr NumberRange kNotNegative{.least = 0};
+inline constexpr NumberRange kPositive{.min = 0, .min_open = true};
+inline constexpr NumberRange kNotNegative{.min = 0};
 
-/// Reads `material`, `integrator`, `solver` and `contact` of a scenario's file, whose keys depend on the
-/// method. Throws Error as parse_scenario does.
+/// Reads `material`, `integrator`, `solver` and `contact` of a scenario's file; their keys depend on the
+/// method. Throws Error like parse_scenario.
 void read_integrator(const JsonValue& root, Scenario& scenario);
 
 }  // namespace meshorder

@@ -7,19 +7,31 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace meshorder {
 namespace {
 
-/// As long for any number of frames, so that it can be written when that is known.
+/// Returns the header, whose length does not depend on the number of frames: it is written again at the end.
 std::string header_of(Index frames, Index vertices) {
   return npy_header("<f4", std::array<std::int64_t, 3>{frames, vertices, 3});
+}
+
+/// Returns a message without the characters of numbers: equal for messages that differ only in numbers.
+std::string without_numbers(std::string_view message) {
+  constexpr std::string_view kOfNumbers = "0123456789.,+-einfa";
+  std::string result;
+  std::copy_if(message.begin(), message.end(), std::back_inserter(result),
+               [&](char c) { return kOfNumbers.find(c) == std::string_view::npos; });
+  return result;
 }
 
 }  // namespace
@@ -54,15 +66,16 @@ Motion read_motion(const std::filesystem::path& path) {
   const NpyHeader header = read_npy_header(file);
   const auto& shape = header.shape;
   if (header.type != "<f4" || header.columns_first || shape.size() != 3 || shape[2] != 3) {
-    file.fail_at_byte("is no motion", "frames × vertices × 3 numbers of type <f4 in C order are one");
+    file.fail_at_byte("is not a motion",
+                      "it should hold frames × vertices × 3 numbers of type <f4 in C order");
   }
   const std::int64_t frames = shape[0];
   const std::int64_t vertices = shape[1];
   constexpr std::int64_t kBytes = 3 * sizeof(float);
   if (frames < 0 || vertices < 0 || vertices > kMaxIndex || (vertices == 0 && frames > 0) ||
       (frames > 0 && vertices > file.bytes_left() / kBytes / frames)) {
-    file.fail_at_byte(fmt::format("promises {} frames of {} vertices, but {} bytes follow", frames, vertices,
-                                  file.bytes_left()),
+    file.fail_at_byte(fmt::format("should have {} frames of {} vertices, but only {} bytes follow", frames,
+                                  vertices, file.bytes_left()),
                       "it may be cut short");
   }
   Motion motion{static_cast<Index>(vertices), {}};
@@ -72,11 +85,31 @@ Motion read_motion(const std::filesystem::path& path) {
     for (auto& position : frame) {
       for (float& x : position) {
         x = file.binary<float>("a coordinate", std::endian::little);
-        if (!std::isfinite(x)) file.fail_at_byte("holds a place that is not finite", "the motion blew up");
+        if (!std::isfinite(x))
+          file.fail_at_byte("has a position that is not finite", "the simulation diverged");
       }
     }
   }
   return motion;
+}
+
+bool add_warning(const std::string& warning, Index step, std::vector<WarningRecord>& warnings) {
+  const auto known = std::find_if(warnings.begin(), warnings.end(), [&](const WarningRecord& w) {
+    return without_numbers(w.first) == without_numbers(warning);
+  });
+  if (known != warnings.end()) {
+    ++known->count;
+    return false;
+  }
+  warnings.push_back({warning, step, 1});
+  return true;
+}
+
+void add(StepReport report, double shape_distance, const Balance& balance, MotionRecord& record) {
+  const std::vector<std::string> warnings = std::exchange(report.warnings, {});
+  record.steps.push_back({std::move(report), shape_distance});
+  record.balances.push_back(balance);
+  for (const std::string& warning : warnings) add_warning(warning, index_size(record.steps), record.warnings);
 }
 
 }  // namespace meshorder

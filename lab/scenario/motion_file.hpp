@@ -4,25 +4,27 @@
 #include "base/index.hpp"
 #include "base/point.hpp"
 #include "io/stream/output_file.hpp"
+#include "lab/motion/integrator.hpp"
 
 #include <array>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace meshorder {
 
-/// Writes the frames of a motion, one after another, as a NumPy array of single precision, little endian, in
-/// C order: frames × vertices × 3. The file appears whole or not at all, when it is committed.
+/// Writes the frames of a motion one by one, as a NumPy array of little-endian single precision in C order,
+/// frames × vertices × 3. The file appears when it is committed, completely or not at all.
 class MotionFile {
  public:
-  /// Throws Error when the file cannot be written.
+  /// Throws Error if the file cannot be written.
   MotionFile(std::filesystem::path path, Index vertices);
 
-  /// Appends a frame: the places of all vertices. Throws InvalidArgument for another number of them.
+  /// Appends a frame, the positions of all vertices. Throws InvalidArgument for another number of vertices.
   void add(std::span<const Point> positions);
 
-  /// Nothing can be added afterwards. Throws Error when the disk is full.
+  /// Completes the file. Throws Error if the disk is full.
   void commit();
 
  private:
@@ -31,14 +33,42 @@ class MotionFile {
   Index frames_ = 0;
 };
 
-/// What a MotionFile holds.
+/// The content of a MotionFile.
 struct Motion {
   Index vertices = 0;
-  std::vector<std::vector<std::array<float, 3>>> frames;  ///< of each, the places of all vertices
+  std::vector<std::vector<std::array<float, 3>>> frames;  ///< of each frame, the positions of all vertices
 };
 
-/// Throws Error, with the byte, for a file that is no such array, is cut short, or holds a number that is not
-/// finite. O(size of the file).
+/// Reads a motion. Throws Error, with the byte, for a file that is not such an array, is truncated or holds a
+/// number that is not finite. O(size of the file).
 Motion read_motion(const std::filesystem::path& path);
+
+/// Timings and iteration counts of a step, and the body's shape after it. Its warnings are in
+/// MotionRecord::warnings.
+struct StepRecord {
+  StepReport report;
+  double shape_distance = 0;  ///< see distance_from_shape, m
+};
+
+/// A warning of one or more steps; only its numbers may differ between them.
+struct WarningRecord {
+  std::string first;     ///< the text of the first time
+  Index first_step = 0;  ///< counted from 1
+  Index count = 0;
+};
+
+/// All steps of a simulation so far.
+struct MotionRecord {
+  std::vector<StepRecord> steps;
+  std::vector<Balance> balances;  ///< at the start and after each step
+  std::vector<WarningRecord> warnings;
+};
+
+/// Adds a warning of a step and returns true. If the warnings hold one that differs only in its numbers,
+/// counts that once more instead and returns false.
+bool add_warning(const std::string& warning, Index step, std::vector<WarningRecord>& warnings);
+
+/// Adds a step, with the shape distance and balance after it.
+void add(StepReport report, double shape_distance, const Balance& balance, MotionRecord& record);
 
 }  // namespace meshorder

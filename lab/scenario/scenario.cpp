@@ -2,6 +2,7 @@
 #include "lab/scenario/scenario.hpp"
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace meshorder {
 
@@ -10,16 +11,16 @@ bool names_a_model(std::string_view mesh) {
 }
 
 Scenario find_scenario(const std::string& name_or_file) {
-  std::string known;
   for (const BuiltInScenario& scenario : built_in_scenarios()) {
     if (scenario.name == name_or_file)
       return parse_scenario(scenario.text, "scenario " + std::string(scenario.name));
-    known += (known.empty() ? "" : ", ") + std::string(scenario.name);
   }
   std::error_code code;
   if (!std::filesystem::exists(name_or_file, code))
     throw Error(name_or_file, "no scenario has this name, and no file either",
-                "there are " + known + ", or give a file as docs/simulate.md describes");
+                "there are " + join(built_in_scenarios(), [](const auto& scenario) {
+                  return scenario.name;
+                }) + ", or give a file as docs/simulate.md describes");
   return read_scenario(name_or_file);
 }
 

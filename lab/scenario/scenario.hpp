@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/point.hpp"
+#include "base/text.hpp"
 #include "kernels/material.hpp"
 #include "kernels/regions.hpp"
 #include "lab/admm/projective_dynamics.hpp"
@@ -22,24 +23,24 @@
 
 namespace meshorder {
 
-/// Some vertices of a mesh, named so that it does not matter how they are numbered.
+/// Describes vertices of a mesh independently of their numbering.
 struct VertexChoice {
   enum class By : std::uint8_t {
     all,
     set,      ///< members of the set `name`, or the vertices of its cells
-    label,    ///< those with the value `label` in the array `name`, or the vertices of cells with it; without
-              ///< a name those that have this label, or where there are none the vertices of cells with it
-    box,      ///< those from `low` to `high`
-    nearest,  ///< the one nearest to `low`
+    label,    ///< vertices, or the vertices of cells, with the value `label` in the array `name`; without a
+              ///< name in the label array of the vertices, else in that of the cells
+    box,      ///< vertices from `low` to `high`
+    nearest,  ///< the vertex nearest to `low`
   };
   By by = By::all;
   std::string name;
   std::int64_t label = 0;
-  Point low{}, high{};  ///< relative to the bounding box: 0 … 1 along each axis
-  std::string where;    ///< its place in the scenario's file
+  Point low{}, high{};      ///< relative to the bounding box: 0 … 1 along each axis
+  std::string source_path;  ///< its path in the scenario's file
 };
 
-/// Steps are counted from 1; both ends count.
+/// A range of steps, both ends included, counted from 1.
 struct StepRange {
   Index first = 1;
   Index last = kMaxIndex;
@@ -57,61 +58,61 @@ struct ScenarioMotion {
   Point velocity{};  ///< m/s
 };
 
-/// Where vertices are when the motion starts, and how fast; what is not given stays.
+/// Initial positions and velocities of vertices; what is not given stays as in the mesh, at rest.
 struct ScenarioStart {
   VertexChoice on;
   std::optional<Point> velocity;  ///< m/s
-  std::optional<Point> at;        ///< all at one place, relative to the bounding box
+  std::optional<Point> at;        ///< one position for all, relative to the bounding box
 };
 
-/// What the body must stay outside of, in metres where the body is.
+/// An obstacle that the body must stay outside of, in metres and the body's coordinates.
 struct ScenarioObstacle {
   enum class Kind : std::uint8_t { half_space, sphere, bowl, surface };
   Kind kind = Kind::half_space;
-  Point place{};           ///< a point of the plane; the centre
+  Point place{};           ///< a point of the plane; the centre of a sphere or bowl
   Point direction{};       ///< the plane's normal; the bowl's axis
-  double radius = 0.0;     ///< of the sphere, of the bowl's middle
+  double radius = 0.0;     ///< of the sphere, of the middle of the bowl's wall
   double thickness = 0.0;  ///< of the bowl
-  double opening = 0.0;    ///< the bowl's, half of it, degrees
+  double opening = 0.0;    ///< half the opening angle of the bowl, degrees
   std::string file;        ///< of a closed surface
   double friction = 0.0;   ///< Coulomb's coefficient
 };
 
-/// ADMM projective dynamics, its options without obstacles, which are bound to the mesh.
+/// Options of ADMM projective dynamics; obstacles are described rather than made.
 struct ProjectiveScenario : ProjectiveOptions {
   LocalModel model = LocalModel::strain;
   MatrixPrecision precision = MatrixPrecision::double_;
   std::vector<ScenarioObstacle> obstacles;
 };
 
-/// What is simulated: a mesh, what it is made of, what happens to it and how that is computed. Nothing in it
-/// depends on the order of vertices or elements. docs/simulate.md describes its file.
+/// A simulation: mesh, material, loads, integrator and solver. Independent of the order of vertices and
+/// elements. docs/simulate.md describes its file.
 struct Scenario {
-  std::string file;  ///< where it comes from
+  std::string file;  ///< the path it was read from
   std::string name;
   std::string title;
   std::string mesh;             ///< a model's name, or the path of a file
-  double longest_side = 0;      ///< of the bounding box that the mesh is scaled to, m; 0: as it is
-  double height = 0;            ///< or the box's side along y
-  std::optional<Point> bottom;  ///< where the middle of the box's bottom is put, m
+  double longest_side = 0;      ///< of the bounding box that the mesh is scaled to, m; 0: not scaled
+  double height = 0;            ///< the box's side along y instead, m
+  std::optional<Point> bottom;  ///< position of the middle of the box's bottom, m
   std::string vertex_order = "original";
   std::string element_order = "original";
 
-  MaterialModel model = MaterialModel::corotational;  ///< of the implicit method, as the tangent
+  MaterialModel model = MaterialModel::corotational;  ///< of backward Euler, as is the tangent
   Tangent tangent = Tangent::exact;
-  /// Springs and strain have their stiffness (N/m, Pa) in the place of Young's modulus.
+  /// The models springs and strain have their stiffness (N/m, Pa) in the place of Young's modulus.
   Material material;
-  std::string regions_by;  ///< the array whose groups the regions are (see `grouping_by`); else empty
+  std::string regions_by;  ///< the array whose groups are the regions (see `grouping_by`); may be empty
   std::vector<RegionMaterial> regions;
 
-  /// Forces and prescribed motions in it are empty: they are these.
+  /// Its forces and prescribed motions are empty; `forces` and `motions` below describe them.
   std::variant<ImplicitOptions, ProjectiveScenario> integrator;
-  std::vector<ScenarioStart> start;  ///< of two for one vertex the later counts
+  std::vector<ScenarioStart> start;  ///< if two apply to a vertex, the later one wins
   std::vector<ScenarioForce> forces;
   std::vector<ScenarioMotion> motions;  ///< fixed vertices have the velocity 0
   Index steps = 240;
 
-  std::vector<std::string> paper;  ///< paths in the file of what is the paper's
+  std::vector<std::string> paper;  ///< paths in the file of values that the paper gives
   std::vector<std::string> notes;
 
   [[nodiscard]] bool is_implicit() const noexcept {
@@ -129,26 +130,26 @@ struct Scenario {
   }
 };
 
-/// Whether a scenario's mesh, or what a user gives in its place, names a model rather than a file: it has no
-/// extension.
+/// Returns whether `mesh` is a model's name rather than a file's: it has no extension.
 bool names_a_model(std::string_view mesh);
 
-/// The scenario of a file's text. `file` is named in errors, and a mesh file's path is relative to its
-/// folder. Throws Error, which names the path in the file, for whatever is unknown, missing, of the wrong
-/// type or out of range. The mesh is not looked at.
+/// Returns the scenario that a file's text describes. `file` is its path: errors name it, and the mesh file
+/// is relative to its folder. Throws Error, which names the path in the file, for values that are unknown,
+/// missing, of the wrong type or out of range. Does not read the mesh.
 Scenario parse_scenario(std::string_view text, const std::string& file);
 
-/// Reads a scenario's file. Throws Error like `parse_scenario`, and when there is no such file.
+/// Reads a scenario's file. Throws Error like `parse_scenario`, or if there is no such file.
 Scenario read_scenario(const std::filesystem::path& path);
 
-/// A scenario that is part of the program, from `scenarios/` of its sources.
+/// A scenario that is built into the program, from `scenarios/`.
 struct BuiltInScenario {
   std::string_view name;
   std::string_view text;
 };
 std::span<const BuiltInScenario> built_in_scenarios();
 
-/// The scenario of that name, or else of that file. Throws Error that lists the names when it is neither.
+/// Returns the built-in scenario of that name, else reads that file. Throws Error, which lists the names, if
+/// there is neither.
 Scenario find_scenario(const std::string& name_or_file);
 
 }  // namespace meshorder

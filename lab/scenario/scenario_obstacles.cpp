@@ -19,23 +19,23 @@ using Kind = ScenarioObstacle::Kind;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr int kAround = 96;  // corners of a circle
 
-/// The triangles of a surface's file.
+/// Reads the points and triangles of a surface's file.
 std::pair<std::vector<Point>, std::vector<std::array<int, 3>>> read_surface(const std::string& file) {
   Mesh mesh = read_mesh(file);
   const Simplices simplices = cut_into_simplices(mesh);
   if (simplices.dimension != 2)
-    throw Error(file, "is no surface", "an obstacle is a closed surface of triangles");
+    throw Error(file, "is not a surface", "an obstacle is a closed surface of triangles");
   std::vector<std::array<int, 3>> triangles(simplices.vertices.size() / 3);
   for (std::size_t i = 0; i < simplices.vertices.size(); ++i) triangles[i / 3][i % 3] = simplices.vertices[i];
   return {std::move(mesh.points), std::move(triangles)};
 }
 
-/// A place on a surface of revolution: how far from the axis, and how far along it.
+/// A point of a surface of revolution: distance from the axis, and height along it.
 struct ProfilePoint {
   double radius, height;
 };
 
-/// Points of an arc about the origin, from one angle to another, both counted from the axis.
+/// Appends the points of an arc about the origin between two angles from the axis.
 void append_arc(double radius, double from, double to, std::vector<ProfilePoint>& profile) {
   constexpr int kSteps = 48;
   for (int i = 0; i <= kSteps; ++i) {
@@ -69,7 +69,7 @@ std::vector<ProfilePoint> profile_of(const ScenarioObstacle& obstacle, double ex
   return profile;
 }
 
-/// The axis and two directions across it, all of length 1 and at right angles.
+/// Returns the axis and two directions across it, an orthonormal frame.
 std::array<Point, 3> frame_about(const Point& axis) {
   const auto scaled = [](Point v) {
     const double length = std::hypot(v[0], v[1], v[2]);
@@ -85,7 +85,7 @@ std::array<Point, 3> frame_about(const Point& axis) {
   return {along, across, cross(along, across)};
 }
 
-/// Turns a profile about an axis through `center`.
+/// Appends the surface of a profile that turns about an axis through `center`.
 void append_revolution(const std::vector<ProfilePoint>& profile, const Point& center, const Point& axis,
                        Mesh& mesh) {
   const auto [along, across, third] = frame_about(axis);

@@ -10,12 +10,12 @@
 
 namespace meshorder {
 
-/// The obstacle that a scenario means. Throws Error, which names its file, for a surface that cannot be read,
-/// is none, or is not closed and oriented.
+/// Makes the obstacle that a scenario describes. Throws Error, which names its file, for a surface that
+/// cannot be read, does not consist of triangles, or is not closed and oriented.
 std::shared_ptr<const Obstacle> obstacle_of(const ScenarioObstacle& obstacle);
 
-/// The surfaces of obstacles, to be looked at: triangles, and `obstacle` on the cells numbers which of them
-/// each belongs to. A half-space shows a round part of its plane, `extent` wide to either side of its point.
+/// Returns the surfaces of obstacles as triangles for viewing; the cell array `obstacle` is the index of each
+/// triangle's obstacle. A half-space is shown as a disc of radius `extent` about its point.
 Mesh surfaces_of(std::span<const ScenarioObstacle> obstacles, double extent);
 
 }  // namespace meshorder

@@ -12,10 +12,10 @@ namespace fs = std::filesystem;
 
 constexpr Index kMostSteps = 1'000'000;
 
-/// "all", {"set": …}, {"label": …}, {"box": …} or {"nearest": …}.
+/// Reads "all", {"set": …}, {"label": …}, {"box": …} or {"nearest": …}.
 VertexChoice vertex_choice(const JsonValue& value) {
   VertexChoice choice;
-  choice.where = value.path();
+  choice.source_path = value.path();
   if (value.is_text()) {
     if (value.text() != "all")
       throw value.error("'" + value.text() + "' is unknown",
@@ -71,7 +71,7 @@ void read_order(const JsonValue& value, Scenario& scenario) {
 void read_scale(const JsonValue& value, Scenario& scenario) {
   value.expect_keys({"longest_side", "height"});
   if (value.has("longest_side") == value.has("height"))
-    throw value.error("does not say to what", "give longest_side or height");
+    throw value.error("does not say which side to scale", "give longest_side or height");
   if (const auto height = value.find("height")) {
     scenario.height = height->number(kPositive);
   } else {
@@ -87,8 +87,7 @@ void read_events(const JsonValue& value, Scenario& scenario) {
       read.on = vertex_choice(some["on"]);
       if (const auto velocity = some.find("velocity")) read.velocity = velocity->vector();
       if (const auto at = some.find("at")) read.at = at->vector();
-      if (!read.velocity && !read.at)
-        throw some.error("says nothing of its vertices", "give a velocity or at");
+      if (!read.velocity && !read.at) throw some.error("has neither velocity nor at", "give one of them");
     }
   }
   if (const auto forces = value.find("forces")) {
@@ -112,7 +111,7 @@ void read_events(const JsonValue& value, Scenario& scenario) {
   }
 }
 
-/// Texts that name what is in the file, as "material.young".
+/// Reads paths of values in the file, such as "material.young".
 std::vector<std::string> read_paths(const JsonValue& root, const JsonValue& list) {
   std::vector<std::string> result;
   for (const JsonValue& entry : list.items()) {
@@ -121,7 +120,7 @@ std::vector<std::string> read_paths(const JsonValue& root, const JsonValue& list
     for (std::string_view rest = result.back(); !rest.empty();) {
       const std::size_t end = std::min(rest.find('.'), rest.size());
       const auto next = at.find(rest.substr(0, end));
-      if (!next) throw entry.error("'" + result.back() + "' is not in the file", "name a value of it");
+      if (!next) throw entry.error("'" + result.back() + "' is not in the file", "name a value of the file");
       at = *next;
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
@@ -141,7 +140,8 @@ Scenario parse_scenario(std::string_view text, const std::string& file) {
   scenario.file = file;
   scenario.name = root["name"].text();
   if (scenario.name.find_first_of("/\\") != std::string::npos)
-    throw root["name"].error("'" + scenario.name + "' holds a slash", "it becomes part of file names");
+    throw root["name"].error("'" + scenario.name + "' contains a slash",
+                             "leave it out: the name becomes part of file names");
   if (const auto title = root.find("title")) scenario.title = title->text();
   scenario.mesh = root["mesh"].text();
   if (!names_a_model(scenario.mesh)) scenario.mesh = (fs::path(file).parent_path() / scenario.mesh).string();

@@ -17,7 +17,7 @@
 namespace meshorder {
 namespace {
 
-/// The vertices that simplices use, rising.
+/// Returns the vertices of simplices, ascending.
 std::vector<Index> used_vertices(const Simplices& simplices, Index vertex_count) {
   std::vector<char> used(vertex_count, 0);
   for (const Index v : simplices.vertices) used[v] = 1;
@@ -28,20 +28,20 @@ std::vector<Index> used_vertices(const Simplices& simplices, Index vertex_count)
   return result;
 }
 
-/// Puts the times of the steps, between which no rounding can move them, into a selection.
+/// Sets a selection to the times of the steps, halfway between two steps so that rounding cannot matter.
 void set_times(const StepRange& steps, double time_step, Selection& selection) {
   selection.from = (steps.first - 1.5) * time_step;
   if (steps.last < kMaxIndex) selection.until = (steps.last - 0.5) * time_step;
 }
 
-/// Scales and moves the mesh so that the box around `vertices` is as the scenario says.
+/// Scales and moves the mesh so that the bounding box of `vertices` is as the scenario says.
 void place(Mesh& mesh, std::span<const Index> vertices, const Scenario& scenario, const std::string& file) {
   BoundingBox box = bounding_box(mesh.points, vertices);
   if (scenario.longest_side > 0 || scenario.height > 0) {
     const double factor = scenario.longest_side > 0 ? scenario.longest_side / box.longest_side()
                                                     : scenario.height / (box.high[1] - box.low[1]);
     if (!std::isfinite(factor) || !(factor > 0.0))
-      throw Error(file, "its volume cells have no extent", "give a mesh with a volume");
+      throw Error(file, "its volume cells have no extent", "give a mesh of a body with a volume");
     for (Point& point : mesh.points) {
       for (double& x : point) x *= factor;
     }
@@ -54,7 +54,8 @@ void place(Mesh& mesh, std::span<const Index> vertices, const Scenario& scenario
   }
 }
 
-/// Throws Error that names the scenario's file for regions that the mesh has not.
+/// Returns the materials of the simplices. Throws Error, which names the scenario's file, for unknown
+/// regions.
 SimplexMaterials materials_of(const Scenario& scenario, const Mesh& mesh, const Simplices& simplices) {
   if (scenario.regions.empty()) return uniform_material(scenario.material);
   try {
@@ -66,7 +67,7 @@ SimplexMaterials materials_of(const Scenario& scenario, const Mesh& mesh, const 
   }
 }
 
-/// The scenario's motion with its forces and prescribed motions on the vertices that they mean.
+/// Adds the scenario's forces and prescribed motions with the vertices that they describe.
 void bind_loads(const Scenario& scenario, const Mesh& mesh, std::span<const Index> candidates,
                 MotionOptions& options) {
   for (const ScenarioForce& force : scenario.forces) {

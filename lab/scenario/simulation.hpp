@@ -12,32 +12,31 @@
 
 namespace meshorder {
 
-/// A scenario with its mesh, ready to be stepped.
+/// A scenario with its mesh, ready to be simulated.
 struct Simulation {
   Scenario scenario;
-  Mesh mesh;         ///< at rest, scaled and in the order that is simulated
-  Reordering order;  ///< how it came from the mesh's own order
+  Mesh mesh;         ///< at rest, scaled, in the simulated order
+  Reordering order;  ///< from the mesh's own order to the simulated one
   Offset tetrahedra = 0;
   std::unique_ptr<Integrator> body;
-  std::vector<Index> vertices;  ///< those of volume cells, rising
+  std::vector<Index> vertices;  ///< the vertices of volume cells, ascending
   Fingerprint fingerprint;
-  Notes notes;               ///< what deserves a word
-  double order_seconds = 0;  ///< the vertex graph, both orders, moving the mesh
-  double setup_seconds = 0;  ///< the body
+  Notes notes;               ///< warnings: what was dropped, repaired or looks wrong
+  double order_seconds = 0;  ///< for the vertex graph, both orders and moving the mesh
+  double setup_seconds = 0;  ///< for the body
 };
 
-/// Throws Error unless the mesh has cells of volume; `file` is named.
+/// Throws Error, which names `file`, unless the mesh has volume cells.
 void require_volume_cells(const Mesh& mesh, const std::string& file);
 
-/// Scales and places a mesh as the scenario says, puts it in the order that it names, finds the vertices that
-/// it means and makes the body of the mesh's volume cells, which are cut into tetrahedra. `file` is the
-/// mesh's, for errors. Throws Error, which names the file and the place in it, for what the mesh has not;
-/// InvalidArgument for unknown orders. O(size of the mesh), and the order's cost.
+/// Scales, places and orders a mesh as the scenario says, finds the vertices of its loads and makes the body
+/// from the mesh's volume cells, cut into tetrahedra. `file` is the mesh's path, for errors. Throws Error,
+/// which names the file and the path in it, for sets, labels or regions that the mesh lacks; InvalidArgument
+/// for unknown methods. O(size of the mesh) and the order's cost.
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file,
                   const OrderingOptions& ordering = {});
 
-/// The same in an order that is there already; those that the scenario names do not count. Throws
-/// InvalidArgument when the order is of another mesh.
+/// The same in a given order instead of the scenario's. Throws InvalidArgument if it is of another mesh.
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, Reordering order);
 
 }  // namespace meshorder

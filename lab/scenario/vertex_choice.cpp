@@ -2,6 +2,7 @@
 #include "lab/scenario/vertex_choice.hpp"
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "mesh/groups.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// Marks on all vertices of a mesh.
+/// A mark for every vertex of a mesh.
 class Marks {
  public:
   explicit Marks(const Mesh& mesh) : mesh_(mesh), marked_(mesh.points.size(), 0) {}
@@ -22,7 +23,7 @@ class Marks {
     for (const Index v : mesh_.cells[cell]) mark(v);
   }
 
-  /// The candidates that are marked.
+  /// Returns the marked candidates.
   [[nodiscard]] std::vector<Index> among(std::span<const Index> candidates) const {
     std::vector<Index> result;
     std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(result),
@@ -38,9 +39,7 @@ class Marks {
 std::vector<Index> in_set(const Mesh& mesh, std::span<const Index> candidates, const std::string& name) {
   Marks marks(mesh);
   bool found = false;
-  std::string known;
   for (const EntitySet& set : mesh.sets) {
-    known += (known.empty() ? "" : ", ") + set.name;
     if (set.name != name) continue;
     found = true;
     for (const Index member : set.members) {
@@ -49,7 +48,10 @@ std::vector<Index> in_set(const Mesh& mesh, std::span<const Index> candidates, c
   }
   if (!found) {
     throw InvalidArgument("the mesh has no set '" + name + "'; " +
-                          (known.empty() ? "it has none at all" : "its sets are " + known));
+                          (mesh.sets.empty() ? "it has none at all"
+                                             : "its sets are " + join(mesh.sets, [](const EntitySet& set) {
+                                                 return set.name;
+                                               })));
   }
   return marks.among(candidates);
 }
@@ -69,8 +71,8 @@ std::vector<Index> in_group(const Mesh& mesh, std::span<const Index> candidates,
   return marks.among(candidates);
 }
 
-/// The arrays in which a choice looks for its label: the one that it names, or else that of the vertices and
-/// then that of the cells.
+/// Returns the arrays to search for a choice's label: the one that it names, else the label arrays of
+/// vertices and cells.
 std::vector<std::string> arrays_of_labels(const Mesh& mesh, const VertexChoice& choice) {
   std::vector<std::string> names;
   for (const Association association : {Association::vertices, Association::cells}) {
@@ -89,7 +91,7 @@ std::vector<Index> with_label(const Mesh& mesh, std::span<const Index> candidate
     const auto found = std::lower_bound(groups.values.begin(), groups.values.end(), choice.label);
     if (found == groups.values.end() || *found != choice.label) {
       constexpr std::size_t kShown = 8;
-      known += fmt::format("{}those of {} are ", known.empty() ? "" : "; ", to_string(groups.association));
+      known += fmt::format("{}labels of {} are ", known.empty() ? "" : "; ", to_string(groups.association));
       for (std::size_t i = 0; i < std::min(kShown, groups.values.size()); ++i)
         known += fmt::format("{}{}", i == 0 ? "" : ", ", groups.values[i]);
       if (groups.values.size() > kShown) known += ", …";
@@ -100,7 +102,7 @@ std::vector<Index> with_label(const Mesh& mesh, std::span<const Index> candidate
   throw InvalidArgument(fmt::format("nothing has the label {}; {}", choice.label, known));
 }
 
-/// Where a point lies in a box, 0 … 1 along each axis.
+/// Returns a point relative to a box: 0 … 1 along each axis.
 Point relative(const Point& point, const BoundingBox& box) {
   Point result{};
   for (int a = 0; a < 3; ++a) {
@@ -186,10 +188,10 @@ std::vector<Index> choose_vertices(const Mesh& mesh, std::span<const Index> cand
   try {
     result = chosen(mesh, candidates, choice);
   } catch (const InvalidArgument& error) {
-    throw Error(file, choice.where + ": " + error.what(), "name vertices that the mesh has");
+    throw Error(file, choice.source_path + ": " + error.what(), "name vertices that the mesh has");
   }
   if (result.empty())
-    throw Error(file, choice.where + ": no vertex of a tetrahedron is chosen",
+    throw Error(file, choice.source_path + ": no vertex of a tetrahedron is chosen",
                 "name vertices that the mesh has");
   return result;
 }

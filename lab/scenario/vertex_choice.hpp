@@ -10,24 +10,23 @@
 
 namespace meshorder {
 
-/// The smallest box along the axes that holds some points.
+/// An axis-aligned bounding box.
 struct BoundingBox {
   Point low{}, high{};
 
-  /// The length of its longest side.
   [[nodiscard]] double longest_side() const;
 };
 
-/// The box of `points[v]` for all v of `vertices`, of which there must be one. O(vertices).
+/// Returns the bounding box of `points[v]` for all v in `vertices`, which must not be empty. O(vertices).
 BoundingBox bounding_box(std::span<const Point> points, std::span<const Index> vertices);
 
-/// The vertices that are meant, rising, of the `candidates` (rising: those that take part in the simulation).
-/// The same ones however the mesh is numbered: of several nearest ones the one with the smallest coordinates
-/// counts, x before y before z, and all that lie at that very point. Relative coordinates are those in the
-/// candidates' bounding box, a side without length counting as 0.
+/// Returns the vertices that `choice` describes among the `candidates` (ascending: the vertices of the
+/// simulation), ascending. Independent of the numbering: of several nearest points the one with the smallest
+/// coordinates counts, x before y before z, with all vertices at that point. Relative coordinates refer to
+/// the candidates' bounding box; along a side of length 0 they are 0.
 ///
-/// Throws Error, which names `file` and the choice's place in it, for a set or label that the mesh has not
-/// (and lists those it has), and when no vertex is meant. O(size of the mesh).
+/// Throws Error, which names `file` and the choice's path in it, for an unknown set or label (and lists the
+/// known ones), or if no vertex is found. O(size of the mesh).
 std::vector<Index> choose_vertices(const Mesh& mesh, std::span<const Index> candidates,
                                    const VertexChoice& choice, const std::string& file);
 

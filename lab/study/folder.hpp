@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <ctime>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -8,8 +10,8 @@
 
 namespace meshorder {
 
-/// Where things stand in a study's folder, so that a study can be resumed and its report made anew from it.
-/// What is measured stands in `data`; the rest is made of it.
+/// Paths of the files in a study's folder. A study is resumed, and its report made again, from results.json
+/// and the files in `data`; all other files are made from these.
 class StudyFolder {
  public:
   explicit StudyFolder(std::filesystem::path root) : root_(std::move(root)) {}
@@ -24,23 +26,23 @@ class StudyFolder {
   [[nodiscard]] std::filesystem::path figure(std::string_view name) const {
     return root_ / "figures" / (std::string(name) + ".svg");
   }
-  /// A mesh in its own order, with points and cells alone.
+  /// A mesh in its own order: points and cells only.
   [[nodiscard]] std::filesystem::path mesh(std::string_view mesh) const {
     return data() / (std::string(mesh) + ".vtu");
   }
-  /// The place of each vertex or cell in an order: old_to_new, as NumPy's array.
+  /// The rank of each vertex or cell in an order: old_to_new, a NumPy array.
   [[nodiscard]] std::filesystem::path vertex_order(std::string_view mesh, std::string_view ordering) const {
     return data() / (std::string(mesh) + "-" + std::string(ordering) + ".vertices.npy");
   }
   [[nodiscard]] std::filesystem::path cell_order(std::string_view mesh, std::string_view ordering) const {
     return data() / (std::string(mesh) + "-" + std::string(ordering) + ".cells.npy");
   }
-  /// Frames of a scenario, vertices numbered as in the mesh's own order: a NumPy array of single precision,
-  /// frames × vertices × 3.
+  /// Frames of a scenario, with vertices in the mesh's own order: a NumPy array of single precision, frames ×
+  /// vertices × 3.
   [[nodiscard]] std::filesystem::path motion(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-motion.npy");
   }
-  /// What the body meets there, as a surface; there is none without obstacles.
+  /// The obstacles of a scenario as a surface mesh; no such file without obstacles.
   [[nodiscard]] std::filesystem::path obstacles(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-obstacles.vtu");
   }
@@ -48,5 +50,14 @@ class StudyFolder {
  private:
   std::filesystem::path root_;
 };
+
+/// Returns the time now, "2026-11-20T17:30:00Z".
+inline std::string timestamp_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
+  return text.data();
+}
 
 }  // namespace meshorder

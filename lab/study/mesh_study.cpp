@@ -7,6 +7,7 @@
 #include "mesh/reorder.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/cost_model.hpp"
+#include "payoff/machine.hpp"
 
 #include <tbb/task_arena.h>
 
@@ -69,9 +70,9 @@ class MeshStudy {
     record.hierarchies = options.hierarchies.empty() ? hierarchies_of_studies() : options.hierarchies;
   }
 
-  void add(const StudyOrdering& ordering) {
+  void add(const OrderingSpec& ordering) {
     Reordering order;
-    OrderOfMesh& record = result_.record.orders.emplace_back();
+    MeshOrderRecord& record = result_.record.orders.emplace_back();
     record.ordering = ordering.name;
     record.seconds = compute(ordering, order);
     record.vertex_method = order.vertex_method.name;
@@ -96,7 +97,7 @@ class MeshStudy {
 
  private:
   /// Returns what the order costs.
-  double compute(const StudyOrdering& ordering, Reordering& order) {
+  double compute(const OrderingSpec& ordering, Reordering& order) {
     Mesh moved;
     const double seconds = best_seconds(
         threads_, [&] { moved = mesh_; },
@@ -110,7 +111,7 @@ class MeshStudy {
     return moves_nothing ? 0.0 : graph_seconds_ + seconds;
   }
 
-  void simulate_caches(const Reordering& order, OrderOfMesh& record) const {
+  void simulate_caches(const Reordering& order, MeshOrderRecord& record) const {
     const std::vector<NamedCaches>& hierarchies = result_.record.hierarchies;
     const int halvings = result_.record.tetrahedra > kMostExact ? kHalvings : 0;
     const KernelReuse reuse = reuse_of_kernels(mesh_, graph_, order.vertices, order.cells, halvings);
@@ -144,7 +145,7 @@ Index span_bin_width(Index vertices) {
   return kPaper * std::max<Index>(1, chunk_count(vertices, kMostBins * kPaper));
 }
 
-OrderedMesh study_mesh(const Mesh& mesh, const std::vector<StudyOrdering>& orderings,
+OrderedMesh study_mesh(const Mesh& mesh, const std::vector<OrderingSpec>& orderings,
                        const MeshStudyOptions& options) {
   const auto tell = [&](std::string_view what, double fraction) {
     if (options.progress) options.progress(what, fraction);

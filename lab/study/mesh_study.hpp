@@ -11,38 +11,37 @@
 
 namespace meshorder {
 
-/// A mesh with the orders of a study.
+/// A mesh record with the orders that it describes.
 struct OrderedMesh {
   MeshRecord record;
-  std::vector<Reordering> orders;  ///< as record.orders
+  std::vector<Reordering> orders;  ///< in the sequence of record.orders
 };
 
 struct MeshStudyOptions {
   OrderingOptions ordering = {};
-  /// Empty: this machine's and the paper's. Times are predicted for the first.
+  /// Cache hierarchies to simulate; empty: this machine's and the paper's. Times are predicted for the first.
   std::vector<NamedCaches> hierarchies = {};
-  int threads = 0;      ///< that orders are computed with when their cost is timed; 0: all
+  int threads = 0;      ///< for computing the orders, whose cost is timed; 0: all
   bool measure = true;  ///< time the kernels
   TimingOptions timing = {};
-  /// Is told what is done, and which fraction of the time is over by then.
+  /// Called with each stage as it begins and the fraction of the time that has passed.
   std::function<void(std::string_view what, double fraction)> progress = {};
 };
 
-/// This machine's and the paper's, by the names that a study gives them.
+/// Returns this machine's caches and the paper's, with their names in a study.
 std::vector<NamedCaches> hierarchies_of_studies();
 
-/// How wide the bins of a span histogram are: the paper's 50 up to 200,000 vertices; above, n/4000, rounded
-/// up to a multiple of 50, so that there are 4000 bins at most.
+/// Returns the width of the bins of a span histogram: the paper's 50 up to 200,000 vertices; above, n/4000
+/// rounded up to a multiple of 50, so that there are at most 4000 bins.
 Index span_bin_width(Index vertices);
 
-/// Computes the orders of a mesh, what each costs (the best of three where it takes less than a second; an
-/// order that leaves all in its place costs nothing), its edge spans, the simulated misses of the kernels,
-/// and their predicted and measured times. Of meshes of more than a million simplices reuse is estimated from
-/// a sample of the lines. Changes nothing. A file's layout in blocks of cells is not kept, as in simulations.
-/// `name`, `file` and `verdict` of the record are the caller's to fill. Misses and spans are the same on
-/// every run. Throws InvalidArgument for unknown methods. O(size of the mesh · orders), the orders' costs and
-/// the time that `timing` allows.
-OrderedMesh study_mesh(const Mesh& mesh, const std::vector<StudyOrdering>& orderings,
+/// Computes the orders of a mesh and, for each: its cost (the best of three if it takes less than a second; 0
+/// for an order that moves nothing), its edge spans, the simulated misses of the kernels, and their predicted
+/// and measured times. Above a million simplices, reuse is estimated from a sample of the lines. Cell blocks
+/// of the file are ignored, as in simulations. The caller fills in `name`, `file` and `verdict` of the
+/// record. Misses and spans are the same on every run. Throws InvalidArgument for unknown methods. O(size of
+/// the mesh · orders), the orders' costs and the time that `timing` allows.
+OrderedMesh study_mesh(const Mesh& mesh, const std::vector<OrderingSpec>& orderings,
                        const MeshStudyOptions& options = {});
 
 }  // namespace meshorder

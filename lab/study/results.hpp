@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lab/motion/integrator.hpp"
-#include "lab/scenario/motion_difference.hpp"
+#include "lab/scenario/motion_metrics.hpp"
 #include "lab/support/machine.hpp"
 #include "metrics/cache.hpp"
 #include "metrics/edge_span.hpp"
@@ -16,40 +16,40 @@
 
 namespace meshorder {
 
-/// An order of vertices and elements that a study compares: "vf-fiedler", "VF Fiedler".
-struct StudyOrdering {
+/// An order of vertices and elements in a study: "vf-fiedler", "VF Fiedler".
+struct OrderingSpec {
   std::string name;      ///< unique in a study, of letters, digits and '-'
-  std::string title;     ///< as the paper's tables head it
+  std::string title;     ///< for tables and figures, as in the paper
   std::string vertices;  ///< methods, see `meshorder methods`
   std::string elements;
 
-  bool operator==(const StudyOrdering&) const = default;
+  bool operator==(const OrderingSpec&) const = default;
 };
 
 /// One kernel on a mesh in one order.
 struct KernelRecord {
-  double predicted_ms = 0;  ///< those of the model's machine: ratios between orders are what counts
+  double predicted_ms = 0;  ///< for the model's machine: only ratios between orders matter
   double measured_ms = 0;   ///< best of interleaved rounds on one thread; 0: not measured
   Offset accesses = 0;      ///< of cache lines in one run
-  /// By cache hierarchy, as MeshRecord::hierarchies lists them, and level: simulated, when the run is
-  /// repeated.
+  /// Simulated misses of a repeated run, by cache hierarchy, as MeshRecord::hierarchies lists them, and
+  /// level.
   std::vector<std::vector<Offset>> misses;
 
   bool operator==(const KernelRecord&) const = default;
 };
 
 /// A mesh in one of a study's orders.
-struct OrderOfMesh {
+struct MeshOrderRecord {
   std::string ordering;
-  std::string vertex_method;  ///< the one that was taken where `auto` was asked for
+  std::string vertex_method;  ///< the method that `auto` chose, if that was asked for
   std::string element_method;
-  double seconds = 0;  ///< what the order costs: the vertex graph, both orders, moving the mesh
+  double seconds = 0;  ///< cost of the order: the vertex graph, both orders, moving the mesh
   EdgeSpan span;
   std::vector<Offset>
       span_histogram;  ///< entry k: edges of spans from k·w to (k + 1)·w − 1, w = MeshRecord::span_bin
   std::array<KernelRecord, kKernels.size()> kernels;
 
-  bool operator==(const OrderOfMesh&) const = default;
+  bool operator==(const MeshOrderRecord&) const = default;
 };
 
 struct NamedCaches {
@@ -59,7 +59,7 @@ struct NamedCaches {
   bool operator==(const NamedCaches&) const = default;
 };
 
-/// What is known of a mesh in the study's orders without simulating anything.
+/// Measurements and predictions on a mesh in the study's orders.
 struct MeshRecord {
   std::string name;  ///< unique in a study: the model's, or the file's without its extension
   std::string file;  ///< in the study's folder
@@ -68,56 +68,57 @@ struct MeshRecord {
   Offset edges = 0;     ///< of the vertex graph
   Index span_bin = 50;  ///< the paper's; wider for more than 200,000 vertices
   std::vector<NamedCaches> hierarchies;
-  std::vector<OrderOfMesh> orders;  ///< as StudyResults::orderings; of those that were computed
-  std::string verdict;              ///< what reordering it is worth, in a sentence; may be empty
+  std::vector<MeshOrderRecord>
+      orders;           ///< in the sequence of StudyResults::orderings; only those that were computed
+  std::string verdict;  ///< what reordering is worth, a sentence; may be empty
 
   bool operator==(const MeshRecord&) const = default;
 };
 
-/// One run of a scenario in one order. Set-up is not counted in `step_seconds`.
+/// One run of a scenario in one order. `step_seconds` does not include set-up.
 struct RunRecord {
   std::string began;                 ///< "2026-11-20T17:30:00Z"
-  std::vector<double> step_seconds;  ///< of each step call
+  std::vector<double> step_seconds;  ///< of each step
   StepReport::Seconds seconds;       ///< sums over the steps
   Offset cg_iterations = 0;
   Offset admm_iterations = 0;
   Offset contact_iterations = 0;
   double setup_seconds = 0;
-  Offset bytes = 0;  ///< memory that the body held
+  Offset bytes = 0;  ///< memory of the body
   std::vector<std::string> warnings;
 
   bool operator==(const RunRecord&) const = default;
 };
 
-/// Seconds of a scenario's steps in one order: of the sums of its runs.
+/// Seconds of a scenario's steps in one order, over its runs.
 struct TimeSummary {
   double mean = 0;
   double deviation = 0;    ///< standard deviation of the runs' sums (n − 1); 0 for one run
-  double undisturbed = 0;  ///< every step at its fastest of the runs, added up
+  double undisturbed = 0;  ///< sum over the steps of the fastest run of each
 
   bool operator==(const TimeSummary&) const = default;
 };
 
-/// An order compared with the reference, from turns that were measured side by side.
+/// An order compared with the reference, by turns that were measured side by side.
 struct Speedup {
-  double saved_seconds = 0;              ///< the reference's mean less this one's
+  double saved_seconds = 0;              ///< the reference's mean minus this one's
   double percent = 0;                    ///< of the reference's mean, as the paper's Table 4
   double low = 0, high = 0;              ///< 95 % confidence interval of `percent`
-  bool beyond_noise = false;             ///< the interval does not hold 0
+  bool beyond_noise = false;             ///< the interval does not contain 0
   double undisturbed_percent = 0;        ///< of the undisturbed times
-  std::optional<Index> break_even_step;  ///< the first at whose end the order's own cost is paid; none: never
+  std::optional<Index> break_even_step;  ///< first step by whose end the order's cost is saved; none: never
 
   bool operator==(const Speedup&) const = default;
 };
 
-struct OrderOfScenario {
+struct ScenarioOrderRecord {
   std::string ordering;
   std::vector<RunRecord> runs;
   TimeSummary time;
   Speedup speedup;  ///< all 0 for the reference
   MotionDifference motion;
 
-  bool operator==(const OrderOfScenario&) const = default;
+  bool operator==(const ScenarioOrderRecord&) const = default;
 };
 
 struct ScenarioRecord {
@@ -128,24 +129,24 @@ struct ScenarioRecord {
   std::string mesh;         ///< MeshRecord::name
   std::string fingerprint;  ///< of the mesh, and of the parameters in the first order
   Index steps = 0;
-  Index turn = 0;                  ///< so many steps of one order were timed, then as many of the next
-  bool interleaved = true;         ///< false: one order after another, since memory did not hold all
+  Index turn = 0;                  ///< number of steps of one order that were timed before the next order's
+  bool interleaved = true;         ///< false: one order after another, since memory cannot hold all
   bool fixed_addresses = false;    ///< every order had its arrays at the same addresses
-  std::vector<int> processors;     ///< that the threads were bound to; empty: not bound
+  std::vector<int> processors;     ///< to which the threads were bound; empty: not bound
   std::vector<Index> frame_steps;  ///< steps after which a frame was kept; the first is 0
-  std::vector<OrderOfScenario> orders;
+  std::vector<ScenarioOrderRecord> orders;
 
   bool operator==(const ScenarioRecord&) const = default;
 };
 
-/// All that a study found; results.json is this (docs/results.schema.json).
+/// The results of a study, as results.json holds them (docs/results.schema.json).
 struct StudyResults {
   std::string began;           ///< "2026-11-20T17:30:00Z"
   std::string size = "paper";  ///< "paper", "300k", "2m"
   int runs = 3;
   int threads = 1;
-  std::string reference;  ///< the ordering that speedups refer to, "scrambled"
-  std::vector<StudyOrdering> orderings;
+  std::string reference;  ///< name of the ordering that speedups refer to
+  std::vector<OrderingSpec> orderings;
   MachineRecord machine;
   std::vector<MeshRecord> meshes;
   std::vector<ScenarioRecord> scenarios;

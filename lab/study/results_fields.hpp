@@ -9,8 +9,7 @@
 
 namespace meshorder {
 
-/// A key of results.json and the member that it is. Texts are not empty and numbers not negative, unless they
-/// are `free`.
+/// A key of results.json and its member. Unless `free`, a text must not be empty and a number not negative.
 template <class Record, class Value>
 struct Field {
   std::string_view key;
@@ -23,14 +22,14 @@ Field(std::string_view, Value Record::*) -> Field<Record, Value>;
 template <class Record, class Value>
 Field(std::string_view, Value Record::*, bool) -> Field<Record, Value>;
 
-/// What a record's object has, in its order, for reading and writing alike.
+/// The keys of a record's JSON object in their order, for reading and writing.
 template <class Record>
 inline constexpr auto kFields = nullptr;
 
 template <>
-inline constexpr auto kFields<StudyOrdering> =
-    std::tuple{Field{"name", &StudyOrdering::name}, Field{"title", &StudyOrdering::title},
-               Field{"vertices", &StudyOrdering::vertices}, Field{"elements", &StudyOrdering::elements}};
+inline constexpr auto kFields<OrderingSpec> =
+    std::tuple{Field{"name", &OrderingSpec::name}, Field{"title", &OrderingSpec::title},
+               Field{"vertices", &OrderingSpec::vertices}, Field{"elements", &OrderingSpec::elements}};
 
 template <>
 inline constexpr auto kFields<MachineRecord> =
@@ -56,13 +55,14 @@ inline constexpr auto kFields<EdgeSpan> = std::tuple{
     Field{"mean", &EdgeSpan::mean}, Field{"max", &EdgeSpan::max}, Field{"mean_log2", &EdgeSpan::mean_log2}};
 
 template <>
-inline constexpr auto kFields<OrderOfMesh> = std::tuple{Field{"ordering", &OrderOfMesh::ordering},
-                                                        Field{"vertex_method", &OrderOfMesh::vertex_method},
-                                                        Field{"element_method", &OrderOfMesh::element_method},
-                                                        Field{"seconds", &OrderOfMesh::seconds},
-                                                        Field{"span", &OrderOfMesh::span},
-                                                        Field{"span_histogram", &OrderOfMesh::span_histogram},
-                                                        Field{"kernels", &OrderOfMesh::kernels}};
+inline constexpr auto kFields<MeshOrderRecord> =
+    std::tuple{Field{"ordering", &MeshOrderRecord::ordering},
+               Field{"vertex_method", &MeshOrderRecord::vertex_method},
+               Field{"element_method", &MeshOrderRecord::element_method},
+               Field{"seconds", &MeshOrderRecord::seconds},
+               Field{"span", &MeshOrderRecord::span},
+               Field{"span_histogram", &MeshOrderRecord::span_histogram},
+               Field{"kernels", &MeshOrderRecord::kernels}};
 
 template <>
 inline constexpr auto kFields<NamedCaches> =
@@ -117,10 +117,10 @@ inline constexpr auto kFields<MotionDifference> =
     std::tuple{Field{"by_frame", &MotionDifference::by_frame}, Field{"largest", &MotionDifference::largest}};
 
 template <>
-inline constexpr auto kFields<OrderOfScenario> =
-    std::tuple{Field{"ordering", &OrderOfScenario::ordering}, Field{"runs", &OrderOfScenario::runs},
-               Field{"time", &OrderOfScenario::time}, Field{"speedup", &OrderOfScenario::speedup},
-               Field{"motion", &OrderOfScenario::motion}};
+inline constexpr auto kFields<ScenarioOrderRecord> =
+    std::tuple{Field{"ordering", &ScenarioOrderRecord::ordering}, Field{"runs", &ScenarioOrderRecord::runs},
+               Field{"time", &ScenarioOrderRecord::time}, Field{"speedup", &ScenarioOrderRecord::speedup},
+               Field{"motion", &ScenarioOrderRecord::motion}};
 
 template <>
 inline constexpr auto kFields<ScenarioRecord> =
@@ -146,7 +146,7 @@ inline constexpr auto kFields<StudyResults> =
                Field{"machine", &StudyResults::machine},     Field{"meshes", &StudyResults::meshes},
                Field{"scenarios", &StudyResults::scenarios}};
 
-/// Whether a type is one of those records.
+/// A record that has kFields.
 template <class Type>
 concept Described = !std::is_null_pointer_v<std::remove_cv_t<decltype(kFields<Type>)>>;
 

@@ -3,15 +3,16 @@
 
 #include "base/error.hpp"
 #include "io/stream/scanner.hpp"
-#include "lab/study/results_check.hpp"
 #include "lab/study/results_fields.hpp"
-#include "lab/support/json_text.hpp"
-#include "lab/support/json_value.hpp"
+#include "lab/support/json.hpp"
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <concepts>
 #include <limits>
 #include <optional>
+#include <set>
 
 namespace meshorder {
 namespace {
@@ -22,7 +23,7 @@ constexpr std::string_view kGuide = "docs/results.schema.json";
 
 using Json = nlohmann::ordered_json;
 
-/// Records as JSON.
+/// Converts records to JSON.
 class Writer {
  public:
   template <Described Record>
@@ -61,17 +62,116 @@ class Writer {
   Json of(const std::array<KernelRecord, kKernels.size()>& kernels) {
     Json json = Json::object();
     for (const Kernel kernel : kKernels)
-      json[std::string(name(kernel))] = of(kernels[static_cast<std::size_t>(kernel)]);
+      json[std::string(to_string(kernel))] = of(kernels[static_cast<std::size_t>(kernel)]);
     return json;
   }
 
   std::string_view key_;
 };
 
-/// Records from JSON.
+// The checks of records read from JSON throw an Error that names the place in `value`.
+
+/// Throws unless the number at `key` is 1 or more.
+void expect_positive(std::int64_t number, const JsonValue& value, std::string_view key) {
+  if (number < 1) throw value[key].error("is 0", "give 1 or more");
+}
+
+/// Returns the names of the records of a list. Throws if a name occurs twice.
+template <class Record>
+std::set<std::string> unique_names(const std::vector<Record>& records, std::string Record::*name,
+                                   const JsonValue& value, std::string_view list, std::string_view key) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (!names.insert(records[i].*name).second)
+      throw value[list].items()[i][key].error("'" + records[i].*name + "' occurs twice", "keep one of them");
+  }
+  return names;
+}
+
+/// Throws unless the text at `value` is one of the names.
+void expect_one_of(const std::set<std::string>& names, const JsonValue& value, std::string_view list) {
+  if (!names.contains(value.text()))
+    throw value.error("'" + value.text() + "' is not one of the " + std::string(list),
+                      "name one that is listed there");
+}
+
+void expect_size(const JsonValue& value, std::size_t wanted, std::string_view why) {
+  const std::size_t size = value.items().size();
+  if (size != wanted)
+    throw value.error(fmt::format("has {} entries", size), fmt::format("give {}, {}", wanted, why));
+}
+
+void expect_misses(const std::vector<NamedCaches>& hierarchies, const JsonValue& order) {
+  for (const Kernel kernel : kKernels) {
+    const JsonValue misses = order["kernels"][to_string(kernel)]["misses"];
+    const std::vector<JsonValue> of_hierarchy = misses.items();
+    if (of_hierarchy.empty()) continue;
+    expect_size(misses, hierarchies.size(), "one list for each of the hierarchies");
+    for (std::size_t i = 0; i < of_hierarchy.size(); ++i)
+      expect_size(of_hierarchy[i], hierarchies[i].caches.level_bytes.size(), "one for each cache");
+  }
+}
+
+/// Throws unless the levels are ascending multiples of a line.
+void check_record(const Caches& caches, const JsonValue& value) {
+  Offset before = 0;
+  for (const Offset bytes : caches.level_bytes) {
+    if (bytes <= before || bytes % kLineBytes != 0)
+      throw value.error(fmt::format("{} is not a cache size after {}", bytes, before),
+                        fmt::format("sizes are ascending multiples of {}", kLineBytes));
+    before = bytes;
+  }
+}
+
+/// Throws unless bins are counted, every order comes once and misses are those of every hierarchy and level,
+/// or none.
+void check_record(const MeshRecord& mesh, const JsonValue& value) {
+  expect_positive(mesh.span_bin, value, "span_bin");
+  unique_names(mesh.orders, &MeshOrderRecord::ordering, value, "orders", "ordering");
+  for (const JsonValue& order : value["orders"].items()) expect_misses(mesh.hierarchies, order);
+}
+
+/// Throws unless every order comes once, every run has the scenario's steps and every frame its difference,
+/// if there are any.
+void check_record(const ScenarioRecord& scenario, const JsonValue& value) {
+  expect_positive(scenario.steps, value, "steps");
+  expect_positive(scenario.turn, value, "turn");
+  unique_names(scenario.orders, &ScenarioOrderRecord::ordering, value, "orders", "ordering");
+  for (const JsonValue& order : value["orders"].items()) {
+    for (const JsonValue& run : order["runs"].items())
+      expect_size(run["step_seconds"], static_cast<std::size_t>(scenario.steps), "one for each step");
+    const JsonValue differences = order["motion"]["by_frame"];
+    if (!differences.items().empty())
+      expect_size(differences, scenario.frame_steps.size(), "one for each of the frame_steps");
+  }
+}
+
+/// Throws unless names are unique and every name that is referred to exists.
+void check_record(const StudyResults& results, const JsonValue& value) {
+  expect_positive(results.runs, value, "runs");
+  expect_positive(results.threads, value, "threads");
+  const auto orderings = unique_names(results.orderings, &OrderingSpec::name, value, "orderings", "name");
+  const auto meshes = unique_names(results.meshes, &MeshRecord::name, value, "meshes", "name");
+  unique_names(results.scenarios, &ScenarioRecord::name, value, "scenarios", "name");
+  expect_one_of(orderings, value["reference"], "orderings");
+  for (const std::string_view list : {"meshes", "scenarios"}) {
+    for (const JsonValue& record : value[list].items()) {
+      for (const JsonValue& order : record["orders"].items())
+        expect_one_of(orderings, order["ordering"], "orderings");
+    }
+  }
+  for (const JsonValue& scenario : value["scenarios"].items())
+    expect_one_of(meshes, scenario["mesh"], "meshes");
+}
+
+/// Other records need no check beyond the types of their fields.
+template <class Record>
+void check_record(const Record& /*record*/, const JsonValue& /*value*/) {}
+
+/// Converts JSON to records.
 class Reader {
  public:
-  /// Reads an object of the record's keys and, where the caller read them already, `also`.
+  /// Reads an object with the record's keys. It may have the keys `also`, which the caller has read.
   template <Described Record>
   static void read(const JsonValue& value, Record& record, bool /*free*/ = false,
                    std::vector<std::string_view> also = {}) {
@@ -87,7 +187,7 @@ class Reader {
 
  private:
   static void read(const JsonValue& value, double& number, bool free) {
-    number = free ? value.number() : value.number({.least = 0});
+    number = free ? value.number() : value.number({.min = 0});
   }
   static void read(const JsonValue& value, bool& truth, bool /*free*/) { truth = value.truth(); }
   template <std::integral Whole>
@@ -106,17 +206,17 @@ class Reader {
   static void read(const JsonValue& value, std::vector<Value>& values, bool free) {
     for (const JsonValue& item : value.items()) read(item, values.emplace_back(), free);
   }
-  /// Of a step, which are counted from 1.
+  /// Reads the number of a step, counted from 1.
   static void read(const JsonValue& value, std::optional<Index>& step, bool /*free*/) {
     if (!value.is_null()) step = static_cast<Index>(value.whole(1, kMaxIndex));
   }
   static void read(const JsonValue& value, std::array<KernelRecord, kKernels.size()>& kernels, bool free) {
     std::vector<std::string_view> names;
     names.reserve(kKernels.size());
-    for (const Kernel kernel : kKernels) names.push_back(name(kernel));
+    for (const Kernel kernel : kKernels) names.push_back(to_string(kernel));
     value.expect_keys(names);
     for (const Kernel kernel : kKernels)
-      read(value[name(kernel)], kernels[static_cast<std::size_t>(kernel)], free);
+      read(value[to_string(kernel)], kernels[static_cast<std::size_t>(kernel)], free);
   }
 };
 
@@ -138,10 +238,10 @@ StudyResults read_results(const std::filesystem::path& path) {
   const nlohmann::json json = parse_json(text.all(), file, kGuide);
   const JsonValue root(json, file, kGuide);
   if (!root.has("format") || root["format"].any_text() != kFormat)
-    throw root.error("is no study of meshorder",
+    throw root.error("is not a study of meshorder",
                      "give a results.json whose \"format\" is \"" + std::string(kFormat) + "\"");
   if (root["version"].whole(1, kMaxIndex) != kVersion)
-    throw root["version"].error("was written by a later meshorder", "use that, or measure anew");
+    throw root["version"].error("was written by a later meshorder", "use that one, or measure again");
   StudyResults results;
   Reader::read(root, results, false, {"format", "version"});
   return results;

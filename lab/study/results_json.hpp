@@ -9,14 +9,14 @@
 
 namespace meshorder {
 
-/// Keys as docs/results.schema.json has them.
+/// Returns the results as docs/results.schema.json describes them.
 nlohmann::ordered_json to_json(const StudyResults& results);
 
-/// Writes the file whole or not at all. Throws Error when it cannot be written.
+/// Writes the file, completely or not at all. Throws Error if it cannot be written.
 void write_results(const StudyResults& results, const std::filesystem::path& path);
 
-/// Reads what write_results wrote: the same to the last bit. Throws Error that names the place in the file
-/// for whatever is missing, unknown or out of range.
+/// Reads results that write_results wrote, the same bit for bit. Throws Error, which names the path in the
+/// file, for values that are missing, unknown or out of range.
 StudyResults read_results(const std::filesystem::path& path);
 
 }  // namespace meshorder

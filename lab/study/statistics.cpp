@@ -2,11 +2,11 @@
 #include "lab/study/statistics.hpp"
 
 #include "base/error.hpp"
-#include "lab/study/student_t.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -109,7 +109,7 @@ std::optional<Index> break_even_step(const std::vector<double>& saved_by_step, d
 double order_seconds(const StudyResults& results, const std::string& mesh, const std::string& ordering) {
   for (const MeshRecord& record : results.meshes) {
     if (record.name != mesh) continue;
-    for (const OrderOfMesh& order : record.orders) {
+    for (const MeshOrderRecord& order : record.orders) {
       if (order.ordering == ordering) return order.seconds;
     }
   }
@@ -117,21 +117,35 @@ double order_seconds(const StudyResults& results, const std::string& mesh, const
 }
 
 void summarise(const StudyResults& results, ScenarioRecord& scenario) {
-  for (OrderOfScenario& order : scenario.orders) {
+  for (ScenarioOrderRecord& order : scenario.orders) {
     order.time = summary_of(order.runs);
     order.speedup = {};
   }
   const auto found =
       std::find_if(scenario.orders.begin(), scenario.orders.end(),
-                   [&](const OrderOfScenario& order) { return order.ordering == results.reference; });
+                   [&](const ScenarioOrderRecord& order) { return order.ordering == results.reference; });
   if (found == scenario.orders.end()) return;
-  for (OrderOfScenario& order : scenario.orders) {
+  for (ScenarioOrderRecord& order : scenario.orders) {
     const auto runs = static_cast<std::ptrdiff_t>(std::min(order.runs.size(), found->runs.size()));
     if (order.ordering == results.reference || runs == 0) continue;
     order.speedup = speedup_of({order.runs.begin(), order.runs.begin() + runs},
                                {found->runs.begin(), found->runs.begin() + runs}, scenario.turn,
                                order_seconds(results, scenario.mesh, order.ordering));
   }
+}
+
+/// The probability of |t| ≤ √degrees · tan angle.
+double probability_within(double angle, Index degrees) {
+  const bool odd = degrees % 2 == 1;
+  const double cosine = std::cos(angle);
+  double term = odd ? cosine : 1.0;
+  double sum = degrees == 1 ? 0.0 : term;
+  for (Index power = odd ? 3 : 2; power <= degrees - 2; power += 2) {
+    term *= cosine * cosine * (power - 1) / power;
+    sum += term;
+  }
+  const double series = std::sin(angle) * sum;
+  return odd ? 2.0 / std::numbers::pi * (angle + series) : series;
 }
 
 }  // namespace
@@ -187,6 +201,20 @@ Speedup speedup_of(const std::vector<RunRecord>& runs, const std::vector<RunReco
 
 void summarise(StudyResults& results) {
   for (ScenarioRecord& scenario : results.scenarios) summarise(std::as_const(results), scenario);
+}
+
+double student_t(Index degrees, double probability) {
+  if (degrees < 1) throw InvalidArgument("student_t: less than one degree of freedom");
+  if (!(probability > 0.0 && probability < 1.0))
+    throw InvalidArgument("student_t: a probability that is not between 0 and 1");
+  double low = 0.0;
+  double high = std::numbers::pi / 2;
+  constexpr int kBitsOfDouble = 53;
+  for (int i = 0; i < kBitsOfDouble; ++i) {
+    const double middle = 0.5 * (low + high);
+    (probability_within(middle, degrees) < probability ? low : high) = middle;
+  }
+  return std::sqrt(degrees) * std::tan(0.5 * (low + high));
 }
 
 }  // namespace meshorder

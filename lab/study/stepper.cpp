@@ -4,12 +4,11 @@
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "io/npy.hpp"
-#include "lab/scenario/followers.hpp"
+#include "lab/scenario/embedded_vertices.hpp"
 #include "lab/scenario/motion_file.hpp"
-#include "lab/scenario/motion_record.hpp"
 #include "lab/scenario/simulation.hpp"
 #include "lab/scenario/vertex_choice.hpp"
-#include "payoff/processors.hpp"
+#include "payoff/machine.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -23,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The identity where no file is given.
+/// Reads an order; without a file it is the identity.
 Permutation order_of(const std::string& path, Index count, const std::string& what) {
   return path.empty() ? Permutation::identity(count) : read_permutation(path, count, what);
 }
@@ -37,19 +36,19 @@ Simulation set_up(const StepperTask& task) {
   return set_up(std::move(scenario), std::move(mesh), task.mesh, std::move(order));
 }
 
-/// The state's places in the mesh's own order.
+/// Returns the positions in the mesh's own order.
 std::vector<Point> in_own_order(const MotionState& state, const Permutation& vertices) {
   std::vector<Point> points(state.positions.size());
   for (std::size_t v = 0; v < points.size(); ++v) points[v] = state.positions[vertices.old_to_new()[v]];
   return points;
 }
 
-/// A simulation that takes turns.
+/// A simulation that runs turn by turn.
 class Stepping {
  public:
   explicit Stepping(const StepperTask& task)
       : simulation_(set_up(task)),
-        followers_(followers(simulation_.mesh, cut_into_simplices(simulation_.mesh))) {
+        embedded_(embed_vertices(simulation_.mesh, cut_into_simplices(simulation_.mesh))) {
     ready_.vertices = simulation_.mesh.vertex_count();
     ready_.tetrahedra = simulation_.tetrahedra;
     ready_.longest_side = bounding_box(simulation_.mesh.points, simulation_.vertices).longest_side();
@@ -99,12 +98,12 @@ class Stepping {
 
   void add_frame() {
     MotionState state = simulation_.body->state();
-    carry(followers_, simulation_.mesh.points, state);
+    move_embedded(embedded_, simulation_.mesh.points, state);
     frames_->add(in_own_order(state, simulation_.order.vertices));
   }
 
   Simulation simulation_;
-  std::vector<Follower> followers_;
+  std::vector<EmbeddedVertex> embedded_;
   StepperReady ready_;
   Index step_ = 0;
   std::vector<WarningRecord> warnings_;
@@ -112,6 +111,69 @@ class Stepping {
 };
 
 }  // namespace
+
+using nlohmann::json;
+
+json to_json(const StepperTask& task) {
+  return {{"scenario", task.scenario},
+          {"mesh", task.mesh},
+          {"vertex_order", task.vertex_order},
+          {"cell_order", task.cell_order},
+          {"processors", task.processors}};
+}
+
+StepperTask stepper_task(const json& message) {
+  return {message.at("scenario"), message.at("mesh"), message.at("vertex_order"), message.at("cell_order"),
+          message.at("processors").get<std::vector<int>>()};
+}
+
+json to_json(const StepperReady& ready) {
+  return {{"vertices", ready.vertices},         {"tetrahedra", ready.tetrahedra},
+          {"longest_side", ready.longest_side}, {"setup_seconds", ready.setup_seconds},
+          {"step_seconds", ready.step_seconds}, {"bytes", ready.bytes},
+          {"fingerprint", ready.fingerprint},   {"fixed_addresses", ready.fixed_addresses}};
+}
+
+StepperReady stepper_ready(const json& message) {
+  return {message.at("vertices"),      message.at("tetrahedra"),     message.at("longest_side"),
+          message.at("setup_seconds"), message.at("step_seconds"),   message.at("bytes"),
+          message.at("fingerprint"),   message.at("fixed_addresses")};
+}
+
+json to_json(const StepperTurn& turn) {
+  return {
+      {"steps", turn.steps}, {"frames", turn.frames}, {"frame_every", turn.frame_every}, {"last", turn.last}};
+}
+
+StepperTurn stepper_turn(const json& message) {
+  return {message.at("steps"), message.at("frames"), message.at("frame_every"), message.at("last")};
+}
+
+json to_json(const StepperTimes& times) {
+  const StepReport::Seconds& s = times.seconds;
+  return {{"step_seconds", times.step_seconds},
+          {"seconds",
+           {{"total", s.total},
+            {"assembly", s.assembly},
+            {"solve", s.solve},
+            {"local", s.local},
+            {"global", s.global},
+            {"collision", s.collision}}},
+          {"cg_iterations", times.cg_iterations},
+          {"admm_iterations", times.admm_iterations},
+          {"contact_iterations", times.contact_iterations},
+          {"warnings", times.warnings}};
+}
+
+StepperTimes stepper_times(const json& message) {
+  const json& s = message.at("seconds");
+  return {message.at("step_seconds").get<std::vector<double>>(),
+          {s.at("total"), s.at("assembly"), s.at("solve"), s.at("local"), s.at("global"), s.at("collision")},
+          message.at("cg_iterations"),
+          message.at("admm_iterations"),
+          message.at("contact_iterations"),
+          message.at("warnings").get<std::vector<std::string>>()};
+}
 
 void serve_steps(std::istream& questions, std::ostream& answers) {
   const auto answer = [&](const json& message) { answers << message.dump() << std::endl; };
@@ -125,7 +187,7 @@ void serve_steps(std::istream& questions, std::ostream& answers) {
       }
       const StepperTask task = stepper_task(question);
       if (!task.processors.empty() && !bind_to(task.processors))
-        throw Error("processors", "the threads cannot be bound to them", "leave them free: --no-pin");
+        throw Error("processors", "the threads cannot be bound to them", "give --no-pin");
       stepping.emplace(task);
       answer(to_json(stepping->ready()));
     }
@@ -147,7 +209,7 @@ json Stepper::ask(const json& question) {
   process_.send(question.dump());
   json answer = json::parse(process_.receive());
   if (answer.contains("error"))
-    throw Error(name_ + ", in a process of its own", answer["error"], "this run is not kept");
+    throw Error(name_ + ", in its own process", answer["error"], "this run is lost");
   return answer;
 }
 

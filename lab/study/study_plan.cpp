@@ -2,12 +2,13 @@
 #include "lab/study/study_plan.hpp"
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 #include <algorithm>
 
 namespace meshorder {
 
-std::vector<StudyOrdering> paper_orderings() {
+std::vector<OrderingSpec> paper_orderings() {
   return {{"original", "Original", "original", "original"},
           {"fiedler", "Fiedler", "fiedler", "original"},
           {"vf-fiedler", "VF Fiedler", "fiedler", "fiedler"},
@@ -15,8 +16,8 @@ std::vector<StudyOrdering> paper_orderings() {
           {"vf-scrambled", "VF scrambled", "scrambled", "scrambled"}};
 }
 
-StudyOrdering study_ordering(std::string_view name) {
-  for (const StudyOrdering& ordering : paper_orderings()) {
+OrderingSpec study_ordering(std::string_view name) {
+  for (const OrderingSpec& ordering : paper_orderings()) {
     if (ordering.name == name) return ordering;
   }
   const auto slash = name.find('/');
@@ -26,15 +27,12 @@ StudyOrdering study_ordering(std::string_view name) {
     return std::any_of(methods.begin(), methods.end(), [&](const auto& m) { return m.name == method; });
   };
   if (!known(vertex_methods(), vertices) || !known(element_methods(), elements)) {
-    std::string names;
-    for (const StudyOrdering& ordering : paper_orderings()) names += ordering.name + ", ";
-    throw InvalidArgument("unknown ordering '" + std::string(name) + "'; known are " + names +
-                          "and VERTICES/ELEMENTS, see meshorder methods");
+    throw InvalidArgument("unknown ordering '" + std::string(name) + "'; known are " +
+                          join(paper_orderings(), [](const auto& ordering) { return ordering.name; }) +
+                          ", and VERTICES/ELEMENTS, see meshorder methods");
   }
   return {vertices + "-" + elements, vertices + "/" + elements, vertices, elements};
 }
-
-std::vector<std::string_view> study_sizes() { return {"paper", "300k", "2m"}; }
 
 std::string mesh_of_size(std::string_view size, const std::string& mesh) {
   if (size == "paper") return mesh;
@@ -43,7 +41,7 @@ std::string mesh_of_size(std::string_view size, const std::string& mesh) {
   throw InvalidArgument("unknown size '" + std::string(size) + "'; known are paper, 300k and 2m");
 }
 
-bool can_be_had(std::string_view size, const Scenario& scenario) {
+bool fits_in_memory(std::string_view size, const Scenario& scenario) {
   return size != "2m" || scenario.is_implicit();
 }
 

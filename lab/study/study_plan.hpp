@@ -13,38 +13,36 @@
 
 namespace meshorder {
 
-/// The paper's five (section 5): original, Fiedler, VF Fiedler, scrambled, VF scrambled.
-std::vector<StudyOrdering> paper_orderings();
+/// Returns the paper's five orderings (section 5): original, Fiedler, VF Fiedler, scrambled, VF scrambled.
+std::vector<OrderingSpec> paper_orderings();
 
-/// The paper's ordering of that name, or VERTICES/ELEMENTS, methods of any kind, named by its methods.
-/// Throws InvalidArgument for neither.
-StudyOrdering study_ordering(std::string_view name);
+/// Returns the paper's ordering of that name, or the one of methods given as VERTICES/ELEMENTS. Throws
+/// InvalidArgument for any other name.
+OrderingSpec study_ordering(std::string_view name);
 
-/// What a study measures.
+/// Options of a study.
 struct StudyPlan {
   std::vector<std::string> scenarios;  ///< names or files
-  std::string mesh;            ///< in the place of the scenarios' own: a model's name or a file; or empty
-  std::string size = "paper";  ///< see mesh_of_size
-  std::vector<StudyOrdering> orderings = paper_orderings();
+  std::string mesh;                    ///< instead of the scenarios' own: a model's name or a file; or empty
+  std::string size = "paper";          ///< see mesh_of_size
+  std::vector<OrderingSpec> orderings = paper_orderings();
   std::string reference = "scrambled";  ///< one of them
   int runs = 3;
   int threads = 1;
-  std::optional<Index> steps;              ///< in the place of the scenarios' own
-  std::optional<double> scenario_seconds;  ///< or about as many as a scenario does in this time, 8 at least
-  double kernel_seconds = 12;              ///< to spend on running kernels, for each mesh
+  std::optional<Index> steps;              ///< instead of the scenarios' own
+  std::optional<double> scenario_seconds;  ///< or about as many as fit in this time, at least 8
+  double kernel_seconds = 12;              ///< for running kernels, for each mesh
   bool pin = true;                         ///< bind threads to processors
   OrderingOptions ordering = {};
 };
 
-/// The sizes in which a study can be had: "paper", the scenarios' own meshes; "300k", the armadillo with
-/// 291,000 vertices; "2m", a lattice with 1.9 million.
-std::vector<std::string_view> study_sizes();
-
-/// The mesh of that size for a scenario, whose own is `mesh`. Throws InvalidArgument for an unknown size.
+/// Returns the mesh of a study's size for a scenario whose own mesh is `mesh`: `mesh` itself for "paper", the
+/// armadillo with 291,000 vertices for "300k", a lattice with 1.9 million for "2m". Throws InvalidArgument
+/// for any other size.
 std::string mesh_of_size(std::string_view size, const std::string& mesh);
 
-/// Whether a scenario can be had in that size: a factored matrix of a solid with two million vertices does
-/// not fit in a workstation's memory, so that ADMM stops at 300k.
-bool can_be_had(std::string_view size, const Scenario& scenario);
+/// Returns whether a scenario fits in memory at that size. ADMM's factored matrix of a solid with two million
+/// vertices does not fit in a workstation's memory.
+bool fits_in_memory(std::string_view size, const Scenario& scenario);
 
 }  // namespace meshorder

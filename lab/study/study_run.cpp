@@ -4,12 +4,12 @@
 #include "base/error.hpp"
 #include "io/format.hpp"
 #include "lab/models/catalogue.hpp"
-#include "lab/scenario/motion_difference.hpp"
+#include "lab/scenario/motion_metrics.hpp"
 #include "lab/scenario/scenario_obstacles.hpp"
 #include "lab/scenario/simulation.hpp"
 #include "lab/study/study_store.hpp"
 #include "lab/study/study_turns.hpp"
-#include "payoff/processors.hpp"
+#include "payoff/machine.hpp"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ namespace meshorder {
 namespace {
 namespace fs = std::filesystem;
 
-/// A scenario of the plan and what is known of it before it is run.
+/// A scenario of the plan, with its mesh and the turns of its runs.
 struct Subject {
   std::string argument;  ///< as the plan names it
   Scenario scenario;
@@ -39,7 +39,7 @@ struct Share {
   }
 };
 
-/// Of a study's time the meshes' orders and kernels take so much, the runs the rest.
+/// Share of a study's time for the meshes' orders and kernels; the runs take the rest.
 constexpr double kMeshShare = 0.1;
 
 class Study {
@@ -48,7 +48,7 @@ class Study {
       : plan_(plan), store_(plan, folder), program_(std::move(program)), observer_(observer) {
     if (plan.pin) processors_ = choose_processors(plan.threads);
     if (plan.pin && processors_.empty())
-      observer.note("the threads are not bound: the system does not tell its processors");
+      observer.note("the threads are not bound to processors: the system does not report them");
   }
 
   bool run() {
@@ -82,23 +82,22 @@ class Study {
     subject.scenario = find_scenario(argument);
     std::string& mesh = subject.scenario.mesh;
     mesh = plan_.mesh.empty() ? mesh_of_size(plan_.size, mesh) : plan_.mesh;
-    if (!can_be_had(plan_.size, subject.scenario)) {
-      observer_.note(fmt::format("{} is left out: its factored matrix would not fit in memory at size {}",
+    if (!fits_in_memory(plan_.size, subject.scenario)) {
+      observer_.note(fmt::format("{} is skipped: its factored matrix would not fit in memory at size {}",
                                  subject.scenario.name, plan_.size));
       return;
     }
     subject.mesh = names_a_model(mesh) ? mesh : fs::path(mesh).stem().string();
     for (const Subject& other : subjects_) {
       if (other.scenario.name == subject.scenario.name)
-        throw InvalidArgument("two scenarios of the name " + other.scenario.name);
+        throw InvalidArgument("two scenarios have the name " + other.scenario.name);
       if (other.mesh == subject.mesh && other.scenario.mesh != mesh)
-        throw InvalidArgument("two meshes of the name " + subject.mesh);
+        throw InvalidArgument("two meshes have the name " + subject.mesh);
     }
     subjects_.push_back(std::move(subject));
   }
 
-  /// Makes the mesh and its orders, and takes the first step, so that what cannot be run is known before
-  /// hours are spent on the rest.
+  /// Makes the mesh and its orders and runs the first step, so that errors show before hours are spent.
   void prepare(Subject& subject, const Share& share) {
     subject.mesh_path = subject.scenario.mesh;
     if (names_a_model(subject.mesh_path)) {
@@ -117,7 +116,7 @@ class Study {
     if (const ScenarioRecord* const begun = store_.find(subject.scenario.name)) go_on_with(*begun, subject);
   }
 
-  /// Further runs of a scenario are shared out as the first one was.
+  /// Divides further runs of a scenario into the turns of its first one.
   void go_on_with(const ScenarioRecord& begun, Subject& subject) const {
     const bool may_have_other_steps = plan_.scenario_seconds && !plan_.steps;
     if (begun.fingerprint != subject.body.fingerprint ||
@@ -132,7 +131,7 @@ class Study {
   void study_mesh_of(const Subject& subject, const Share& share) {
     Mesh mesh = read_mesh(subject.mesh_path);
     require_volume_cells(mesh, subject.mesh_path);
-    mesh.cell_blocks.clear();  // what is compared is the orders, not a file's layout
+    mesh.cell_blocks.clear();  // orders are compared, not a file's layout
     MeshStudyOptions options;
     options.ordering = plan_.ordering;
     options.threads = plan_.threads;
@@ -156,7 +155,7 @@ class Study {
            subject.body.step_seconds * static_cast<double>(plan_.orderings.size());
   }
 
-  /// All runs of a scenario that are missing.
+  /// Runs the missing runs of a scenario.
   bool run_all(const Subject& subject, const Share& share) {
     const int first = store_.runs_done(subject.scenario.name);
     const double count = plan_.runs - first;
@@ -168,7 +167,7 @@ class Study {
 
   bool run_once(const Subject& subject, int run, const Share& share) {
     Round round{program_, plan_.threads, {}, {}, subject.turns, run};
-    for (const StudyOrdering& ordering : plan_.orderings) {
+    for (const OrderingSpec& ordering : plan_.orderings) {
       round.tasks.push_back(task_of(subject, ordering.name));
       if (run == 0) round.motions.push_back(unfinished_motion(subject, ordering.name));
     }
@@ -189,7 +188,7 @@ class Study {
     return (motion.parent_path() / ("." + ordering + "-" + motion.filename().string())).string();
   }
 
-  /// What is known of a scenario after its first run, but for the times.
+  /// Returns the record of a scenario after its first run, without times.
   [[nodiscard]] ScenarioRecord record_of(const Subject& subject) const {
     ScenarioRecord record = store_.new_record(subject.scenario);
     record.mesh = subject.mesh;
@@ -205,11 +204,11 @@ class Study {
     return record;
   }
 
-  /// Of the motions the first order's is kept, for the page.
+  /// Compares the motions and keeps the first order's, for the page.
   void compare_motions(const Subject& subject, ScenarioRecord& record) const {
     const std::string kept = unfinished_motion(subject, plan_.orderings.front().name);
     const Motion reference = read_motion(kept);
-    for (OrderOfScenario& order : record.orders) {
+    for (ScenarioOrderRecord& order : record.orders) {
       const std::string file = unfinished_motion(subject, order.ordering);
       order.motion = difference_of(read_motion(file), reference, subject.body.longest_side);
       if (file != kept) fs::remove(file);

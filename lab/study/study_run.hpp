@@ -10,26 +10,26 @@
 
 namespace meshorder {
 
-/// Who watches a study.
+/// Callbacks of a study.
 struct StudyObserver {
-  /// Is told what is done, and the shares of the whole between which that lies.
+  /// Called at the begin of each stage, with its share of the whole.
   std::function<void(const std::string& what, double from, double to)> stage = [](auto&&...) {};
-  std::function<void(const std::string& sentence)> note = [](auto&&...) {};
-  /// Asked after each turn; the study stops when it says yes, and loses the runs that are not finished.
+  std::function<void(const std::string& message)> note = [](auto&&...) {};
+  /// Called after each turn. If it returns true the study stops and loses its unfinished runs.
   std::function<bool()> stop = [] { return false; };
 };
 
-/// Runs a study, or what is missing of it, and keeps what it finds in the folder's results.json, after each
-/// mesh and after each run of a scenario in all orders. Returns whether it was finished rather than stopped.
+/// Runs a study, or the missing part of it, and updates results.json in the folder after each mesh and after
+/// each run of a scenario in all orders. Returns true if it finished, false if it was stopped.
 ///
-/// For each mesh the orders are computed once. For each scenario and run every order gets a fresh process of
-/// `program`, which is meshorder, bound to the same processors, its memory at the same addresses; they step
-/// by turns of about a second, each turn begun by the next order, so that a machine that changes its pace
-/// changes it for all of them. Where memory does not hold all orders they run one after another. In the first
-/// run frames of the motion are kept, and compared between the orders.
+/// The orders of a mesh are computed once. In each run of a scenario every order has a fresh process of
+/// `program`, which is meshorder, on the same processors and with its memory at the same addresses. The
+/// processes take turns of about a second, each round begun by the next order, so that changes of the
+/// machine's speed affect all orders alike. If memory cannot hold all orders they run one after another. The
+/// first run stores frames of the motion and compares them between the orders.
 ///
-/// Throws Error when the folder holds another study, naming what differs, and for what scenarios and meshes
-/// have wrong.
+/// Throws Error if the folder holds another study, naming what differs, and for errors in scenarios and
+/// meshes.
 bool run_study(const StudyPlan& plan, const StudyFolder& folder, const std::filesystem::path& program,
                const StudyObserver& observer);
 

@@ -4,9 +4,9 @@
 #include "base/error.hpp"
 #include "io/format.hpp"
 #include "io/npy.hpp"
+#include "lab/study/folder.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/study/statistics.hpp"
-#include "lab/study/timestamp.hpp"
 #include "lab/support/machine.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ void make_folders(const StudyFolder& folder) {
     throw Error(folder.root().string(), "cannot be made: " + code.message(), "name a folder for the results");
 }
 
-/// What an interrupted study left unfinished.
+/// Removes unfinished files of an interrupted study.
 void remove_unfinished(const StudyFolder& folder) {
   std::error_code code;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.data())) {
@@ -34,7 +34,7 @@ void remove_unfinished(const StudyFolder& folder) {
   }
 }
 
-/// Where a scenario stands in the paper; others behind.
+/// Returns the rank of a scenario in the paper; other scenarios come last.
 std::ptrdiff_t place_of(const ScenarioRecord& record) {
   const auto known = built_in_scenarios();
   const auto found = std::find_if(known.begin(), known.end(),
@@ -112,7 +112,7 @@ ScenarioRecord StudyStore::new_record(const Scenario& scenario) const {
   record.method = scenario.is_implicit() ? "backward-euler" : "admm";
   record.material =
       scenario.is_implicit() ? to_string(scenario.model) : to_string(scenario.projective().model);
-  for (const StudyOrdering& ordering : results_.orderings)
+  for (const OrderingSpec& ordering : results_.orderings)
     record.orders.emplace_back().ordering = ordering.name;
   return record;
 }

@@ -11,27 +11,26 @@
 
 namespace meshorder {
 
-/// What a study has found, and the folder that keeps it: results.json is whole after every call.
+/// The results of a study in its folder; results.json is complete after every call.
 class StudyStore {
  public:
-  /// Makes the folder and begins a study in it, or goes on with the one that is there. Throws Error when the
-  /// folder cannot be made, and when the study in it is another one: on another machine, by another build, of
-  /// other orders, threads or sizes.
+  /// Makes the folder and begins a study in it, or resumes the study in it. Throws Error if the folder cannot
+  /// be made, or if its study is of another machine, build, order, size or number of threads.
   StudyStore(const StudyPlan& plan, const StudyFolder& folder);
 
   [[nodiscard]] const StudyFolder& folder() const noexcept { return folder_; }
   [[nodiscard]] bool has_mesh(std::string_view name) const;
-  /// Null where no run of the scenario is finished.
+  /// Returns the record of a scenario, null if no run of it is finished.
   [[nodiscard]] const ScenarioRecord* find(std::string_view scenario) const;
   [[nodiscard]] int runs_done(std::string_view scenario) const;
-  /// The record of a scenario without runs, with the study's orderings.
+  /// Returns a record without runs, with the study's orderings.
   [[nodiscard]] ScenarioRecord new_record(const Scenario& scenario) const;
 
-  /// Keeps a mesh with its orders. `record.file` is filled in.
+  /// Stores a mesh with its orders and sets `record.file`.
   void keep(const Mesh& mesh, OrderedMesh studied);
-  /// Keeps a scenario of which no run is finished yet.
+  /// Adds the record of a scenario, before its first run is stored.
   void begin(ScenarioRecord record);
-  /// Keeps one more run of a scenario that has begun, in all orders.
+  /// Stores a run of a scenario, one for each order.
   void keep(std::string_view scenario, const std::vector<RunRecord>& runs);
 
  private:

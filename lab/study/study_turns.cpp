@@ -2,7 +2,7 @@
 #include "lab/study/study_turns.hpp"
 
 #include "base/error.hpp"
-#include "lab/study/timestamp.hpp"
+#include "lab/study/folder.hpp"
 
 #include <fmt/format.h>
 
@@ -19,12 +19,12 @@ namespace {
 constexpr Index kFrames = 48;
 constexpr Offset kMotionBytes = Offset{256} << 20;
 constexpr double kTurnSeconds = 1.0;
-constexpr Index kLeastTurns = 8;
-constexpr Index kLeastSteps = 8;
-/// A process holds the mesh, the body and what made it.
+constexpr Index kMinTurns = 8;
+constexpr Index kMinSteps = 8;
+/// Memory of a process relative to its body: it also holds the mesh and what the body was made from.
 constexpr double kProcessBytesOfBody = 2.5;
 
-/// What the system could give to new processes; a great deal where it does not tell.
+/// Returns the memory available to new processes; unlimited if the system does not report it.
 double available_bytes() {
   std::ifstream in("/proc/meminfo");
   for (std::string key, unit; in >> key;) {
@@ -45,7 +45,7 @@ void add(const StepperTimes& times, RunRecord& run) {
   run.warnings.insert(run.warnings.end(), times.warnings.begin(), times.warnings.end());
 }
 
-/// The orders that are in memory together.
+/// Returns the groups of orders that are in memory together.
 std::vector<std::vector<std::size_t>> groups_of(const Round& round) {
   std::vector<std::size_t> all(round.tasks.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -65,12 +65,12 @@ TurnPlan plan_turns(const StepperReady& body, Index steps, std::optional<double>
   plan.steps = steps;
   if (budget_seconds)
     plan.steps = static_cast<Index>(
-        std::clamp<double>(*budget_seconds / (orders * step_seconds), std::min(kLeastSteps, steps), steps));
+        std::clamp<double>(*budget_seconds / (orders * step_seconds), std::min(kMinSteps, steps), steps));
   const Offset frame_bytes = Offset{12} * std::max<Index>(1, body.vertices);
   const Offset frames = std::clamp<Offset>(kMotionBytes / frame_bytes, 1, kFrames);
   plan.frame_every = static_cast<Index>((plan.steps + frames - 1) / frames);
   const double wanted = std::ceil(kTurnSeconds / (step_seconds * plan.frame_every));
-  const Index most = std::max<Index>(1, plan.steps / (kLeastTurns * plan.frame_every));
+  const Index most = std::max<Index>(1, plan.steps / (kMinTurns * plan.frame_every));
   plan.turn = plan.frame_every * static_cast<Index>(std::clamp<double>(wanted, 1, most));
   plan.interleaved = orders * kProcessBytesOfBody * static_cast<double>(body.bytes) < available_bytes();
   return plan;
@@ -87,7 +87,8 @@ std::optional<std::vector<RunRecord>> run_round(const Round& round, const std::s
       steppers[order] = std::make_unique<Stepper>(round.program, round.threads, round.tasks[order]);
       const StepperReady& ready = steppers[order]->ready();
       if (order == 0 && ready.fingerprint != fingerprint)
-        throw Error(round.tasks[order].scenario, "is not what the study in this folder began with",
+        throw Error(round.tasks[order].scenario,
+                    "differs from the one that the study in this folder began with",
                     "give a new folder, or the scenario and mesh as they were");
       runs[order].began = timestamp_now();
       runs[order].setup_seconds = ready.setup_seconds;

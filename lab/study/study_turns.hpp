@@ -12,17 +12,17 @@
 
 namespace meshorder {
 
-/// How the steps of a scenario are shared out.
+/// How the steps of a scenario are divided into turns.
 struct TurnPlan {
   Index steps = 0;
   Index frame_every = 1;
   Index turn = 1;           ///< steps, a multiple of frame_every
-  bool interleaved = true;  ///< all orders at once, by turns
+  bool interleaved = true;  ///< all orders in memory, by turns
 };
 
-/// Turns of about a second, yet eight of them at least where the steps suffice; about 48 frames, fewer of
-/// bodies with so many vertices that the file would have more than 256 MB; all orders at once where the
-/// memory that is free holds them. `budget_seconds` as StudyPlan::scenario_seconds.
+/// Plans turns of about a second, at least eight if there are enough steps; about 48 frames, fewer if their
+/// file would exceed 256 MB; all orders at once if free memory holds them. `budget_seconds` is
+/// StudyPlan::scenario_seconds.
 TurnPlan plan_turns(const StepperReady& body, Index steps, std::optional<double> budget_seconds, int orders);
 
 /// One run of a scenario in all orders.
@@ -30,13 +30,14 @@ struct Round {
   std::filesystem::path program;
   int threads = 1;
   std::vector<StepperTask> tasks;    ///< one for each order
-  std::vector<std::string> motions;  ///< a file for each order's frames; none: no frames
+  std::vector<std::string> motions;  ///< a file for each order's frames; empty: no frames
   TurnPlan plan;
-  int number = 0;  ///< the order that begins is this one, modulo their number
+  int number = 0;  ///< index of the run; the order of index `number` modulo their number begins
 };
 
-/// Runs it; `after_turn` is told the share of the steps that are done and says whether to go on. None when it
-/// does not. Throws Error when a process does, or when the first order's body is not that of `fingerprint`.
+/// Runs a round. `after_turn` is called with the share of the steps that are done; if it returns false the
+/// round stops and returns nothing. Throws Error if a process fails, or if the first order's body does not
+/// have that fingerprint.
 std::optional<std::vector<RunRecord>> run_round(const Round& round, const std::string& fingerprint,
                                                 const std::function<bool(double share)>& after_turn);
 

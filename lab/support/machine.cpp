@@ -5,7 +5,7 @@
 #include "base/text.hpp"
 #include "kernels/simd_target.hpp"
 #include "payoff/bandwidth.hpp"
-#include "payoff/memory.hpp"
+#include "payoff/machine.hpp"
 
 #include <sys/utsname.h>
 #include <unistd.h>
@@ -19,12 +19,12 @@ namespace {
 
 constexpr int kPasses = 8;
 
-/// Several times the last cache, but not so much that a small machine swaps.
+/// Returns several times the last cache, but not so much that a small machine swaps.
 std::size_t buffer_bytes(const MachineRecord& machine) {
-  constexpr std::size_t kLeast = std::size_t{256} << 20;
-  constexpr std::size_t kMost = std::size_t{1} << 30;
+  constexpr std::size_t kMin = std::size_t{256} << 20;
+  constexpr std::size_t kMax = std::size_t{1} << 30;
   const auto last = static_cast<std::size_t>(machine.caches.level_bytes.back());
-  return std::min(std::clamp(4 * last, kLeast, kMost), static_cast<std::size_t>(machine.memory_bytes) / 8);
+  return std::min(std::clamp(4 * last, kMin, kMax), static_cast<std::size_t>(machine.memory_bytes) / 8);
 }
 
 }  // namespace

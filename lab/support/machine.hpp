@@ -9,10 +9,10 @@
 
 namespace meshorder {
 
-/// What a study was measured on, and with.
+/// The machine and the program of a study.
 struct MachineRecord {
-  std::string processor;  ///< as it calls itself
-  int cores = 0;          ///< that the system has
+  std::string processor;  ///< its name
+  int cores = 0;          ///< number of processors in the system
   std::string system;     ///< "Linux 6.1.0 x86_64"
   Caches caches;          ///< of the first processor
   std::uint64_t memory_bytes = 0;
@@ -21,18 +21,17 @@ struct MachineRecord {
   std::string program;            ///< meshorder's version
   std::string compiler;           ///< "GNU 12.2.0"
   std::string flags;              ///< its options
-  std::string simd;               ///< what the kernels chose at run time: "AVX3"
+  std::string simd;               ///< the target that the kernels chose at run time: "AVX3"
 
   bool operator==(const MachineRecord&) const = default;
 };
 
-/// This machine, and what this program was made with. Measures the bandwidths, in about a second; that of all
-/// threads with as many as `thread_count` says.
+/// Describes this machine and this program's build. Measures the bandwidths, which takes about a second; "all
+/// threads" are `thread_count()` threads.
 MachineRecord describe_machine();
 
-/// What the first processor calls itself in Linux's /proc/cpuinfo. ARM's have no name there but numbers of
-/// who made them and what: "aarch64 processor, implementer 0x41, part 0xd0c". Of what says neither,
-/// "`architecture` processor".
+/// Returns the name of the first processor in Linux's /proc/cpuinfo. ARM processors have only numbers there:
+/// "aarch64 processor, implementer 0x41, part 0xd0c". Without either, "`architecture` processor".
 std::string processor_name(std::istream& cpuinfo, const std::string& architecture);
 
 }  // namespace meshorder

@@ -1,21 +1,68 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/support/process.hpp"
 
+#include "base/error.hpp"
+
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/personality.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
-namespace meshorder::models {
+namespace meshorder {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// What the child does between fork and exec, where only system calls are allowed.
+[[noreturn]] void become(const char* program, char* const* arguments, int socket, bool fixed_addresses,
+                         pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(127);
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  ::sigaction(SIGINT, &ignore, nullptr);
+  ::dup2(socket, STDIN_FILENO);
+  ::dup2(socket, STDOUT_FILENO);
+  if (fixed_addresses) ::personality(ADDR_NO_RANDOMIZE);
+  ::execv(program, arguments);
+  ::_exit(127);
+}
+
+/// Returns a program and its arguments as `exec` takes them: pointers into `words`, then nullptr.
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  return argv;
+}
+
+std::vector<std::string> command_line(const fs::path& program, const std::vector<std::string>& arguments) {
+  std::vector<std::string> words{program.string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return words;
+}
+
+/// Waits for a child to end. Returns false, with the reason in errno, if there is no such child.
+bool wait_for(pid_t child, int& status) {
+  pid_t ended = 0;
+  do ended = ::waitpid(child, &status, 0);
+  while (ended < 0 && errno == EINTR);
+  return ended >= 0;
+}
 
 bool is_program(const fs::path& path) {
   std::error_code ignored;
@@ -61,6 +108,76 @@ std::string last_line_of(const fs::path& log) {
 
 }  // namespace
 
+ChildProcess::ChildProcess(std::filesystem::path program, const std::vector<std::string>& arguments,
+                           bool fixed_addresses)
+    : program_(std::move(program)) {
+  std::array<int, 2> sockets{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0)
+    throw Error(program_.string(), std::string("cannot be started: ") + std::strerror(errno), "try again");
+  std::vector<std::string> words = command_line(program_, arguments);
+  const std::vector<char*> argv = pointers_to(words);
+  const pid_t parent = ::getpid();
+  id_ = ::fork();
+  if (id_ == 0) become(words.front().c_str(), argv.data(), sockets[1], fixed_addresses, parent);
+  ::close(sockets[1]);
+  socket_ = sockets[0];
+  if (id_ > 0) replies_ = ::fdopen(::dup(socket_), "r");
+  if (replies_ != nullptr) return;
+  ::close(socket_);
+  throw Error(program_.string(), std::string("cannot be started: ") + std::strerror(errno), "try again");
+}
+
+ChildProcess::~ChildProcess() {
+  std::fclose(replies_);
+  ::close(socket_);
+  if (id_ <= 0) return;
+  ::kill(id_, SIGKILL);  // safe: the child owns no files or locks
+  int status = 0;
+  wait_for(id_, status);
+}
+
+void ChildProcess::send(std::string_view line) {
+  std::string text(line);
+  text += '\n';
+  for (std::string_view left = text; !left.empty();) {
+    const ssize_t sent = ::send(socket_, left.data(), left.size(), MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0) throw_ended();
+    left.remove_prefix(static_cast<std::size_t>(sent));
+  }
+}
+
+std::string ChildProcess::receive() {
+  char* buffer = nullptr;
+  std::size_t capacity = 0;
+  ssize_t length = -1;
+  do {  // a signal that the parent takes note of interrupts the wait
+    std::clearerr(replies_);
+    errno = 0;
+    length = ::getline(&buffer, &capacity, replies_);
+  } while (length < 0 && errno == EINTR);
+  std::string line = length > 0 ? std::string(buffer, static_cast<std::size_t>(length)) : std::string();
+  std::free(buffer);  // NOLINT(cppcoreguidelines-no-malloc): getline's
+  if (line.empty()) throw_ended();
+  if (line.back() == '\n') line.pop_back();
+  return line;
+}
+
+void ChildProcess::throw_ended() {
+  int status = 0;
+  wait_for(std::exchange(id_, -1), status);
+  std::string how = "ended";
+  if (WIFSIGNALED(status)) how = std::string("was ended by a signal: ") + ::strsignal(WTERMSIG(status));
+  if (WIFEXITED(status)) how = "ended with status " + std::to_string(WEXITSTATUS(status));
+  throw Error(program_.string(), "a child process " + how, "is there enough memory?");
+}
+
+bool has_fixed_addresses() {
+  constexpr unsigned long kAsk = 0xffffffff;
+  const int traits = ::personality(kAsk);
+  return traits != -1 && (traits & ADDR_NO_RANDOMIZE) != 0;
+}
+
 fs::path find_program(std::string_view name) {
   std::error_code code;
   const fs::path self = fs::read_symlink("/proc/self/exe", code);
@@ -78,14 +195,10 @@ fs::path find_program(std::string_view name) {
   return {};
 }
 
-Ended run_process(const fs::path& program, const std::vector<std::string>& arguments, const fs::path& folder,
-                  const fs::path& log) {
-  std::string name = program.string();
-  std::vector<std::string> copies = arguments;
-  std::vector<char*> argv{name.data()};
-  for (std::string& argument : copies) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-
+ExitStatus run_process(const fs::path& program, const std::vector<std::string>& arguments,
+                       const fs::path& folder, const fs::path& log) {
+  std::vector<std::string> words = command_line(program, arguments);
+  const std::vector<char*> argv = pointers_to(words);
   const Redirections redirections(folder, log);
   pid_t child = 0;
   const int failed =
@@ -93,11 +206,9 @@ Ended run_process(const fs::path& program, const std::vector<std::string>& argum
   if (failed != 0) throw_errno(failed, program);
 
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) throw_errno(errno, program);
-  }
+  if (!wait_for(child, status)) throw_errno(errno, program);
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return {code, last_line_of(log)};
 }
 
-}  // namespace meshorder::models
+}  // namespace meshorder

@@ -1,25 +1,63 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <sys/types.h>
+
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace meshorder::models {
+namespace meshorder {
 
-/// The program of that name beside the running one, or else on PATH; empty when there is none.
-std::filesystem::path find_program(std::string_view name);
+/// A child process that reads lines of text from its standard input and writes lines to its standard output.
+/// Ctrl-C does not reach it. It ends no later than this process.
+class ChildProcess {
+ public:
+  /// Starts a program. With `fixed_addresses`, address space randomisation is off where the system allows it:
+  /// the program, its heap and its mappings lie at the same addresses in all such processes. Throws Error if
+  /// the program cannot be started.
+  ChildProcess(std::filesystem::path program, const std::vector<std::string>& arguments,
+               bool fixed_addresses = false);
+  /// Kills the child.
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess(ChildProcess&&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+  ChildProcess& operator=(ChildProcess&&) = delete;
 
-/// How a child process ended.
-struct Ended {
-  int code = 0;           ///< exit status, or 128 + the signal that killed it
-  std::string last_line;  ///< the last line that it printed, on either stream; empty when there was none
+  /// Sends a line. Throws Error if the child has ended.
+  void send(std::string_view line);
+
+  /// Waits for the child's next line and returns it without its line break. Throws Error, which says how the
+  /// child ended, if there is none.
+  std::string receive();
+
+ private:
+  [[noreturn]] void throw_ended();
+
+  std::filesystem::path program_;
+  pid_t id_ = -1;
+  int socket_ = -1;
+  std::FILE* replies_ = nullptr;
 };
 
-/// Runs a program in `folder` to its end, without a shell and without input. What it prints goes to the file
-/// `log`. Throws std::system_error when it cannot be started.
-Ended run_process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                  const std::filesystem::path& folder, const std::filesystem::path& log);
+/// Returns whether this process was started with fixed addresses.
+bool has_fixed_addresses();
 
-}  // namespace meshorder::models
+/// Returns the program of that name in the running program's folder, else on PATH; empty if there is none.
+std::filesystem::path find_program(std::string_view name);
+
+/// How a process ended.
+struct ExitStatus {
+  int code = 0;           ///< its exit status, or 128 + the signal that killed it
+  std::string last_line;  ///< the last line that it printed, to either stream; empty if it printed none
+};
+
+/// Runs a program in `folder` until it ends, without a shell and without input; its output goes to the file
+/// `log`. Throws std::system_error if it cannot be started.
+ExitStatus run_process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                       const std::filesystem::path& folder, const std::filesystem::path& log);
+
+}  // namespace meshorder

@@ -5,10 +5,10 @@
 
 namespace meshorder {
 
-/// 46316 as "46,316".
+/// Returns 46316 as "46,316".
 std::string with_commas(long long number);
 
-/// 0.0123 s as "12.3 ms", 75 s as "1 min 15 s".
+/// Returns 0.0123 s as "12.3 ms", 75 s as "1 min 15 s".
 std::string duration(double seconds);
 
 }  // namespace meshorder

@@ -14,21 +14,21 @@
 
 namespace meshorder {
 
-/// The cache lines that one run of a kernel touches, in its order, told from the mesh alone: neither matrix
-/// nor rest shapes nor maps are built. Every array of the kernel begins a line, and lines are numbered array
-/// by array from 0. An access is
-/// - the first touch of a line of what is read or cleared from end to end: matrix values and columns, rest
-///   shapes, maps, springs, results being cleared;
-/// - each line of each vertex that is gathered, or has something added to it, and of each matrix block that
-///   an element adds to.
+/// The sequence of cache lines that one run of a kernel accesses, derived from the mesh: no matrix, rest
+/// shapes or maps are built. Every array of the kernel begins at a line; lines are numbered array by array
+/// from 0. An access is
+/// - the first touch of each line of an array that is read or cleared from front to back: matrix values and
+/// columns,
+///   rest shapes, maps, springs, results being cleared;
+/// - each line of each vertex that is gathered or added to, and of each matrix block that an element adds to.
 ///
-/// Left out are the stack, the code, and what lies within a few accesses of one that is told: the last entry
-/// of a block, added after the eight others.
+/// Not included: the stack, the code, and repeated touches within a few accesses, such as the last entry of a
+/// block, which is added after the other eight.
 class AccessStream {
  public:
-  /// `graph` is the vertex graph and `simplices` what `cut_into_simplices` makes of a mesh, both in the order
-  /// to be judged; they must outlive the stream. Throws InvalidArgument when the kernel needs 2^31 lines or
-  /// more. O(1).
+  /// `graph` is the vertex graph of a mesh and `simplices` the result of `cut_into_simplices`, both in the
+  /// order to be judged; both must outlive the stream. Throws InvalidArgument if the kernel needs 2^31 lines
+  /// or more. O(1).
   AccessStream(Kernel kernel, const CsrGraph& graph, const Simplices& simplices);
 
   [[nodiscard]] Index line_count() const noexcept { return static_cast<Index>(lines_); }
@@ -62,7 +62,7 @@ class AccessStream {
     }
   };
 
-  /// An array that is read from its beginning on: each line is touched when its first byte is reached.
+  /// Reads an array from front to back: each line is touched when its first byte is reached.
   class Reader {
    public:
     explicit Reader(const Array& array) : next_line_(array.first_line) {}
@@ -75,7 +75,7 @@ class AccessStream {
 
    private:
     Offset next_line_;
-    Offset left_ = 0;  ///< bytes of the line touched last that have not been read
+    Offset left_ = 0;  ///< bytes of the last touched line that are not read yet
   };
 
   static constexpr Offset kBlockBytes = 9 * sizeof(double);
@@ -83,10 +83,10 @@ class AccessStream {
 
   Array place(Offset bytes);
 
-  /// The number of the block in row a and column b of the matrix on the graph: each row has a block for each
+  /// Returns the index of the block in row a and column b of the matrix: each row has a block for each
   /// neighbour and one for the diagonal.
   [[nodiscard]] Offset block(Index a, Index b) const {
-    // std::lower_bound without branches, which would be mispredicted half the time
+    // branch-free std::lower_bound: the branches would be unpredictable
     const Index* row = graph_.neighbours.data() + graph_.offsets[a];
     Index left = graph_.degree(a);
     Offset before = 0;
@@ -154,7 +154,7 @@ class AccessStream {
     }
   }
 
-  /// The blocks of the element of corners v[0], v[kBatch] …
+  /// Visits the blocks of the element with corners v[0], v[kBatch] …
   template <class Touch>
   void visit_blocks(const Index* v, Touch& touch) const {
     for (int a = 0; a <= simplices_.dimension; ++a) {
@@ -170,7 +170,7 @@ class AccessStream {
   void visit_springs(Touch& touch) const {
     forces_.touch(0, forces_.bytes, touch);
     Reader ends(ends_), rest_lengths(rest_lengths_);
-    // what fills up the last batch are springs from vertex 0 to itself
+    // the last batch is padded with springs from vertex 0 to itself
     std::array<Index, 2 * kBatch> batch{};
     Index lane = 0;
     const auto visit_batch = [&] {
@@ -198,26 +198,25 @@ class AccessStream {
   Offset lines_ = 0;
   Offset vertices_of_batch_ = 0;  ///< bytes
   Offset geometry_of_batch_ = 0;
-  // those that the kernel has
+  // the arrays of the kernel
   Array offsets_, columns_, values_, x_, y_;
   Array positions_, forces_, vertices_, geometry_, map_;
   Array ends_, rest_lengths_;
 };
 
-/// The reuse distances of a kernel that a solver repeats: of every run but the first. O(accesses · log
-/// distance) time, about 13 bytes of memory for each line, so a fifth of what the kernel itself needs. With
-/// `halvings` > 0 estimated from 2^-halvings of the lines (see ReuseSample), whose accesses alone cost more
-/// than telling them.
+/// Returns the reuse distances of a repeated kernel: of every run but the first. O(accesses · log distance)
+/// time and about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0
+/// estimated from 2^-halvings of the lines (see ReuseSample), which is faster.
 Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings = 0);
 
 /// By kernel, as kKernels lists them.
 using KernelReuse = std::array<Reuse, kKernels.size()>;
 
-/// Those of all kernels, each on a thread of its own.
+/// Returns the reuse of all kernels, each computed on its own thread.
 KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings = 0);
 
-/// Those that a mesh of that vertex graph has once `reorder` has moved its vertices and cells to these
-/// places.
+/// Returns the reuse of all kernels on a mesh, whose vertex graph is `graph`, after apply_reordering with
+/// these permutations.
 KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
                              const Permutation& cells, int halvings = 0);
 

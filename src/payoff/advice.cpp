@@ -49,7 +49,7 @@ std::vector<KernelMilliseconds> measurements(const std::vector<Ordered>& orders,
   for (std::optional<KernelBench>& bench : benches) pointers.push_back(&bench.value());
   const std::vector<OrderTimes> times =
       time_interleaved(pointers, {.budget_seconds = std::max(0.0, seconds - stopwatch.seconds()),
-                                  .least_rounds = 2,
+                                  .min_rounds = 2,
                                   .sample_seconds = 0.01});
   std::vector<KernelMilliseconds> result(orders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {

@@ -6,23 +6,22 @@
 
 namespace meshorder {
 
-/// A mesh that no order of another one can be, but that is as large and streams as well as an order could.
+/// A synthetic mesh of the same size whose natural order streams: its kernel times are a lower bound.
 struct Band {
   Mesh mesh;
-  CsrGraph graph;  ///< what KernelBench takes for the mesh's vertex graph
+  CsrGraph graph;  ///< to be passed to KernelBench as the mesh's vertex graph
 };
 
-/// The ideal streaming order of a problem of that size: as many vertices, edges and simplices as `mesh` has,
-/// with vertex i joined to i ± 1 … ± k, and the simplices from the first vertices to the last, each on
-/// vertices i … i + k and all its ways to choose them in turn, so that simplices use every edge as those of a
-/// mesh do. Every kernel then reads and writes memory front to back and finds in the nearest cache what it
-/// needs again: its times are a practical floor for the orders of `mesh`, which must pay for the cuts through
-/// a body of two or three dimensions.
+/// Returns the ideal streaming problem of a mesh's size: as many vertices, edges and simplices as `mesh`,
+/// with vertex i joined to i ± 1 … ± k and each simplex on some of the vertices i … i + k, ascending and in
+/// all combinations, so that simplices use every edge as those of a mesh do. Every kernel reads and writes
+/// memory front to back and finds reused data in the first cache: a practical lower bound for the orders of
+/// `mesh`, in which a body of two or three dimensions has to be cut.
 ///
-/// `graph` is the vertex graph of `mesh`. The counts are exact, save that a degenerate mesh gets the edges
-/// that its simplices need. As many vertices as in the mesh have no neighbours, and come last. The points
-/// lie on a helix, so that no simplex is flat. O(n + edges + cells). Throws InvalidArgument when the graph
-/// belongs to another mesh.
+/// `graph` is the vertex graph of `mesh`. The counts are exact, except that a degenerate mesh gets the edges
+/// that its simplices need. As many vertices as in `mesh` have no neighbours; they come last. The points lie
+/// on a helix, so that no simplex is flat. O(n + edges + cells). Throws InvalidArgument if the graph is of
+/// another mesh.
 Band ideal_band(const Mesh& mesh, const CsrGraph& graph);
 
 }  // namespace meshorder

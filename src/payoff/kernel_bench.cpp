@@ -51,20 +51,6 @@ std::size_t bytes_of(const Vector& vector) {
 
 }  // namespace
 
-std::string_view name(Kernel kernel) {
-  switch (kernel) {
-    case Kernel::spmv:
-      return "spmv";
-    case Kernel::element:
-      return "element";
-    case Kernel::assembly:
-      return "assembly";
-    case Kernel::springs:
-      return "springs";
-  }
-  return "";
-}
-
 KernelBench::KernelBench(const Mesh& mesh, const CsrGraph& graph, int threads) {
   if (graph.size() != mesh.vertex_count()) {
     throw InvalidArgument("kernels: a graph of " + std::to_string(graph.size()) + " vertices for a mesh of " +

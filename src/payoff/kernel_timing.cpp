@@ -2,7 +2,7 @@
 #include "payoff/kernel_timing.hpp"
 
 #include "base/stopwatch.hpp"
-#include "payoff/memory.hpp"
+#include "payoff/machine.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,9 +49,9 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
   }
   std::vector<Samples> samples(orders);
   const Stopwatch stopwatch;
-  for (int round = 0; round < options.most_rounds; ++round) {
+  for (int round = 0; round < options.max_rounds; ++round) {
     const double seconds = stopwatch.seconds();
-    if (round >= options.least_rounds && seconds + seconds / round > budget_seconds) break;
+    if (round >= options.min_rounds && seconds + seconds / round > budget_seconds) break;
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
       for (std::size_t i = 0; i < orders; ++i) {
         const std::size_t order = (i + static_cast<std::size_t>(round)) % orders;

@@ -11,15 +11,40 @@ import meshes
 
 
 def test_help_teaches(command):
-    for words in ([], ["order"], ["apply"], ["info"], ["compare"], ["simulate"], ["models"], ["methods"]):
+    for words in ([], ["order"], ["apply"], ["info"], ["compare"], ["simulate"], ["reproduce"], ["report"], ["models"],
+                  ["models", "make"], ["methods"]):
         text = command.ok(*words, "--help").stdout
         assert "Usage" in text and len(text.splitlines()) > 5
+        assert " ".join(["  meshorder", *words]) in text, "no example"
+
+
+def test_without_arguments_it_shows_the_help(command):
+    done = command.run()
+    assert done.returncode == 2 and done.stdout == "" and done.stderr == command.ok("--help").stdout
+
+
+def test_usage_errors_name_the_remedy(command):
+    assert command.fails("ordr", "x") == "meshorder: unknown subcommand 'ordr'; did you mean order?"
+    assert command.fails("frobnicate") == "meshorder: unknown subcommand 'frobnicate'; see meshorder --help"
+    assert command.fails("--frobnicate").endswith("see meshorder --help")
+    assert command.fails("order").endswith("see meshorder order --help")
+    assert command.fails("models", "make").endswith("see meshorder models make --help")
+
+
+@pytest.mark.parametrize("arguments, says", [
+    (("order", "--threads", "-1"), "--threads: must be 0 or more, not -1"),
+    (("order", "--seed", "-3"), "--seed: must be 0 or more, not -3"),
+    (("order", "--tolerance", "0"), "--tolerance: must be more than 0, not 0"),
+    (("compare", "--budget", "-0.5"), "--budget: must be more than 0, not -0.5"),
+    (("reproduce", "--runs", "1001"), "--runs: must be from 1 to 1000, not 1001"),
+])
+def test_numbers_out_of_range_are_refused(command, arguments, says):
+    assert command.fails(*arguments) == f"meshorder: {says}; see meshorder {arguments[0]} --help"
 
 
 def test_unknown_options_and_methods_are_refused(command, tmp_path):
     meshes.write_tetgen(tmp_path)
     command.fails("order", "mesh.node", "-o", "a.node", "--frobnicate")
-    command.fails()
     line = command.fails("order", "mesh.node", "-o", "a.node", "--vertices", "best")
     assert "fiedler" in line and "metis-nd" in line
     command.fails("order", "mesh.node", "-o", "a.node", "--tolerance", "-1")

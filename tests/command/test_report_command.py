@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""`meshorder report`: a page on meshes, and a study's page made anew. The page is read without a browser."""
+"""`meshorder report`: a page on meshes, and a study's page written again. The page is read without a browser."""
 import base64
 import html.parser
 import json
@@ -155,7 +155,7 @@ def study(command):
     return root
 
 
-def test_a_studys_report_is_made_anew(command, study):
+def test_a_studys_report_is_written_again(command, study):
     said = command.json("report", study)
     assert said["page"] == str(study / "report.html")
     assert {str(study / "tables.md"), str(study / "tables.csv")} < set(said["files"])

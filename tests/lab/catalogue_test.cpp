@@ -107,7 +107,7 @@ TEST_F(Catalogue, ListsModelsThatAreNotMadeWithoutPathAndCounts) {
     const Model model = named(name);
     EXPECT_TRUE(model.path.empty()) << name;
     EXPECT_EQ(model.vertices, 0) << name;
-    EXPECT_FALSE(model.sentence.empty()) << name;
+    EXPECT_FALSE(model.description.empty()) << name;
   }
   EXPECT_TRUE(kept().empty());
 }
@@ -188,7 +188,7 @@ TEST_F(Catalogue, ShowsTheLastLineOfAProgramThatFails) {
   install("tetgen", "kill -9 $$");
   EXPECT_NE(error_of<Error>("armadillo-300k").find("status 137: it printed nothing"), std::string::npos);
   install("tetgen", "exit 0");
-  EXPECT_NE(error_of<Error>("armadillo-300k").find("left no mesh"), std::string::npos);
+  EXPECT_NE(error_of<Error>("armadillo-300k").find("wrote no mesh"), std::string::npos);
   EXPECT_TRUE(kept().empty());
 }
 

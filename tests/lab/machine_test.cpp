@@ -2,6 +2,7 @@
 #include "lab/support/machine.hpp"
 
 #include "lab/study/results_json.hpp"
+#include "payoff/machine.hpp"
 #include "support/files.hpp"
 
 #include <gtest/gtest.h>

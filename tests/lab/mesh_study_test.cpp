@@ -6,6 +6,7 @@
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
 #include "payoff/access_stream.hpp"
+#include "payoff/machine.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,10 +17,10 @@
 namespace meshorder {
 namespace {
 
-const std::vector<StudyOrdering> kOrderings{{"original", "Original", "original", "original"},
-                                            {"vf-fiedler", "VF Fiedler", "fiedler", "fiedler"},
-                                            {"scrambled", "Scrambled", "scrambled", "original"},
-                                            {"chosen", "Chosen", "auto", "auto"}};
+const std::vector<OrderingSpec> kOrderings{{"original", "Original", "original", "original"},
+                                           {"vf-fiedler", "VF Fiedler", "fiedler", "fiedler"},
+                                           {"scrambled", "Scrambled", "scrambled", "original"},
+                                           {"chosen", "Chosen", "auto", "auto"}};
 
 MeshStudyOptions without_clock() {
   MeshStudyOptions options;
@@ -74,7 +75,7 @@ TEST(MeshStudy, SpansAreThoseOfTheMovedMesh) {
   const Mesh mesh = make_grid({.size = 9});
   const OrderedMesh study = study_mesh(mesh, kOrderings, without_clock());
   for (std::size_t i = 0; i < kOrderings.size(); ++i) {
-    const OrderOfMesh& order = study.record.orders[i];
+    const MeshOrderRecord& order = study.record.orders[i];
     EXPECT_EQ(order.ordering, kOrderings[i].name);
     const CsrGraph graph = vertex_graph(moved(mesh, study.orders[i]));
     EXPECT_EQ(order.span, edge_span(graph, Permutation::identity(graph.size())));
@@ -103,7 +104,7 @@ TEST(MeshStudy, MissesAreThoseOfLeastRecentlyUsedCaches) {
         const std::vector<Offset>& levels = hierarchies[h].caches.level_bytes;
         ASSERT_EQ(record.misses[h].size(), levels.size());
         for (std::size_t level = 0; level < levels.size(); ++level)
-          EXPECT_EQ(record.misses[h][level], lru_misses(stream, levels[level])) << name(kernel);
+          EXPECT_EQ(record.misses[h][level], lru_misses(stream, levels[level])) << to_string(kernel);
       }
       EXPECT_GT(record.predicted_ms, 0);
       EXPECT_EQ(record.measured_ms, 0);
@@ -139,14 +140,14 @@ TEST(MeshStudy, SaysWhichMethodsWereTaken) {
 TEST(MeshStudy, MeasuresEveryKernelInEveryOrder) {
   MeshStudyOptions options = without_clock();
   options.measure = true;
-  options.timing = {.budget_seconds = 0, .least_rounds = 1, .most_rounds = 1, .sample_seconds = 1e-4};
+  options.timing = {.budget_seconds = 0, .min_rounds = 1, .max_rounds = 1, .sample_seconds = 1e-4};
   std::vector<double> fractions;
   options.progress = [&](std::string_view what, double fraction) {
     EXPECT_FALSE(what.empty());
     fractions.push_back(fraction);
   };
   const OrderedMesh study = study_mesh(make_grid({.size = 6}), kOrderings, options);
-  for (const OrderOfMesh& order : study.record.orders) {
+  for (const MeshOrderRecord& order : study.record.orders) {
     for (const KernelRecord& kernel : order.kernels) {
       EXPECT_GT(kernel.measured_ms, 0);
       EXPECT_LT(kernel.measured_ms, 1000);
@@ -162,7 +163,7 @@ TEST(MeshStudy, GivesTheSameOnEveryRun) {
   OrderedMesh one = study_mesh(mesh, kOrderings, without_clock());
   OrderedMesh other = study_mesh(mesh, kOrderings, without_clock());
   for (OrderedMesh* study : {&one, &other}) {
-    for (OrderOfMesh& order : study->record.orders) order.seconds = 0;
+    for (MeshOrderRecord& order : study->record.orders) order.seconds = 0;
   }
   EXPECT_EQ(one.record, other.record);
 }

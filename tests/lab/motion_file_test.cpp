@@ -71,12 +71,12 @@ TEST(MotionFile, BrokenFilesAreErrorsWithTheirNames) {
   std::string not_finite = content;
   not_finite.replace(128, 4, std::string("\0\0\xc0\x7f", 4));
   const std::vector<std::pair<std::string, std::string>> files{
-      {content.substr(0, content.size() - 1), "promises 1 frames of 1 vertices, but 11 bytes"},
-      {changed("(1, 1, 3)", "(9, 1, 3)"), "promises 9 frames"},
-      {changed("(1, 1,", "(-1,1,"), "promises -1 frames"},
-      {changed("<f4", "<f8"), "is no motion"},
-      {changed("False", "True "), "is no motion"},
-      {changed("(1, 1, 3)", "(1, 3, 1)"), "is no motion"},
+      {content.substr(0, content.size() - 1), "should have 1 frames of 1 vertices, but only 11 bytes"},
+      {changed("(1, 1, 3)", "(9, 1, 3)"), "should have 9 frames"},
+      {changed("(1, 1,", "(-1,1,"), "should have -1 frames"},
+      {changed("<f4", "<f8"), "is not a motion"},
+      {changed("False", "True "), "is not a motion"},
+      {changed("(1, 1, 3)", "(1, 3, 1)"), "is not a motion"},
       {not_finite, "not finite"}};
   for (const auto& [broken, expected] : files) {
     try {

@@ -2,7 +2,6 @@
 #include "lab/report/page/page.hpp"
 
 #include "base/error.hpp"
-#include "lab/report/page/template.hpp"
 #include "lab/report/page/viewer_sources.hpp"
 #include "support/files.hpp"
 #include "unpacked.hpp"
@@ -47,12 +46,6 @@ Page sample_page() {
 
 nlohmann::ordered_json manifest_of(const std::string& html) {
   return nlohmann::ordered_json::parse(script_content(html, "manifest"));
-}
-
-TEST(Template, FillsEachPlaceholderOnce) {
-  const auto value = [](std::string_view name) { return name == "a b" ? std::string("{{c}}") : "-"; };
-  EXPECT_EQ(fill_template("x{{a b}}y {d} {{c}}", value), "x{{c}}y {d} -");
-  EXPECT_THROW((void)fill_template("x {{a", value), InvalidArgument);
 }
 
 TEST(Page, CarriesItsDataExactly) {
@@ -119,7 +112,14 @@ TEST(Page, SaysWhatThereIs) {
   EXPECT_EQ(fill_page("{{has}}", page), "meshes");
 }
 
+TEST(Page, FillsEachPlaceholderOnce) {
+  Page page;
+  page.title = "{{has}}";
+  EXPECT_EQ(fill_page("x{{title}}y {d} {{has}}.", page), "x{{has}}y {d} .");
+}
+
 TEST(Page, KnowsItsPlaceholders) {
+  EXPECT_THROW((void)fill_page("x {{title", sample_page()), InvalidArgument);
   EXPECT_THROW((void)fill_page("{{tables}}", sample_page()), InvalidArgument);
   EXPECT_EQ(fill_page("{{table no-such-table}}", sample_page()), "");
 }

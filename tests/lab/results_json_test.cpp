@@ -2,7 +2,8 @@
 #include "lab/study/results_json.hpp"
 
 #include "base/error.hpp"
-#include "lab/support/json_text.hpp"
+#include "lab/support/json.hpp"
+#include "payoff/machine.hpp"
 #include "support/files.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ KernelRecord sample_kernel(double ms) {
   return {.predicted_ms = ms, .measured_ms = ms / 3, .accesses = 1000, .misses = {{70, 9}, {80, 20, 1}}};
 }
 
-OrderOfMesh sample_order(const std::string& ordering) {
+MeshOrderRecord sample_order(const std::string& ordering) {
   return {.ordering = ordering,
           .vertex_method = ordering,
           .element_method = "lexmax",
@@ -43,7 +44,7 @@ RunRecord sample_run(double seconds) {
           .warnings = {"vertex 7 \"flies\""}};
 }
 
-OrderOfScenario sample_runs(const std::string& ordering, double seconds) {
+ScenarioOrderRecord sample_runs(const std::string& ordering, double seconds) {
   return {.ordering = ordering,
           .runs = {sample_run(seconds), sample_run(1.01 * seconds)},
           .time = {.mean = 3.3, .deviation = 0.01, .undisturbed = 3.2},
@@ -154,10 +155,10 @@ TEST(ResultsJson, RefusesWhatIsMissingOrUnknown) {
             "springs");
   EXPECT_EQ(complaint([](Json& json) { json["colour"] = 1; }).substr(0, 38),
             "the file: the key 'colour' is unknown;");
-  EXPECT_EQ(complaint([](Json& json) { json.erase("format"); }).substr(0, 34),
-            "the file: is no study of meshorder");
+  EXPECT_EQ(complaint([](Json& json) { json.erase("format"); }).substr(0, 37),
+            "the file: is not a study of meshorder");
   EXPECT_EQ(complaint([](Json& json) { json["version"] = 2; }),
-            "version: was written by a later meshorder; use that, or measure anew");
+            "version: was written by a later meshorder; use that one, or measure again");
 }
 
 TEST(ResultsJson, RefusesNumbersOutOfRange) {
@@ -176,7 +177,7 @@ TEST(ResultsJson, RefusesNumbersOutOfRange) {
       complaint([](Json& json) {
         json["machine"]["cache_bytes"] = {65536, 32768};
       }),
-      "machine.cache_bytes: 32768 is no size of a cache after 65536; sizes rise and are multiples of 64");
+      "machine.cache_bytes: 32768 is not a cache size after 65536; sizes are ascending multiples of 64");
   EXPECT_EQ(complaint([](Json& json) { json["machine"]["processor"] = ""; }),
             "machine.processor: is an empty text; give one");
 }
@@ -193,17 +194,18 @@ TEST(ResultsJson, RefusesListsThatDoNotFitEachOther) {
 
 TEST(ResultsJson, RefusesNamesOfNothing) {
   EXPECT_EQ(complaint([](Json& json) { json["reference"] = "random"; }),
-            "reference: 'random' is none of the orderings; name one that is listed there");
+            "reference: 'random' is not one of the orderings; name one that is listed there");
   EXPECT_EQ(complaint([](Json& json) { json["meshes"][0]["orders"][1]["ordering"] = "rcm"; }),
-            "meshes[0].orders[1].ordering: 'rcm' is none of the orderings; name one that is listed there");
-  EXPECT_EQ(complaint([](Json& json) { json["scenarios"][0]["orders"][1]["ordering"] = "rcm"; }),
-            "scenarios[0].orders[1].ordering: 'rcm' is none of the orderings; name one that is listed there");
+            "meshes[0].orders[1].ordering: 'rcm' is not one of the orderings; name one that is listed there");
+  EXPECT_EQ(
+      complaint([](Json& json) { json["scenarios"][0]["orders"][1]["ordering"] = "rcm"; }),
+      "scenarios[0].orders[1].ordering: 'rcm' is not one of the orderings; name one that is listed there");
   EXPECT_EQ(complaint([](Json& json) { json["scenarios"][0]["mesh"] = "dragon"; }),
-            "scenarios[0].mesh: 'dragon' is none of the meshes; name one that is listed there");
+            "scenarios[0].mesh: 'dragon' is not one of the meshes; name one that is listed there");
   EXPECT_EQ(complaint([](Json& json) { json["scenarios"][0]["orders"][1]["ordering"] = "scrambled"; }),
-            "scenarios[0].orders[1].ordering: 'scrambled' comes twice; keep one of them");
+            "scenarios[0].orders[1].ordering: 'scrambled' occurs twice; keep one of them");
   EXPECT_EQ(complaint([](Json& json) { json["meshes"][1] = json["meshes"][0]; }),
-            "meshes[1].name: 'grid' comes twice; keep one of them");
+            "meshes[1].name: 'grid' occurs twice; keep one of them");
 }
 
 TEST(ResultsJson, RefusesToWriteWhatIsNoNumber) {

@@ -122,7 +122,7 @@ TEST(Scenario, ReadsEveryValue) {
   EXPECT_EQ(s.forces[0].steps.last, kMaxIndex);
   EXPECT_EQ(s.forces[1].on.by, By::set);
   EXPECT_EQ(s.forces[1].on.name, "tip");
-  EXPECT_EQ(s.forces[1].on.where, "forces[1].on");
+  EXPECT_EQ(s.forces[1].on.source_path, "forces[1].on");
   EXPECT_EQ(s.forces[1].steps.first, 2);
   EXPECT_EQ(s.forces[1].steps.last, 5);
   EXPECT_EQ(s.forces[1].newtons, (Point{0, 0, 1}));
@@ -232,8 +232,9 @@ TEST(Scenario, ErrorsOfAdmmNameThePlace) {
                   "contact.with_itself: is the number 1; true or"},
            Broken{R"("uzawa")", R"("gauss-seidel")", "contact.solver: 'gauss-seidel'"},
            Broken{R"("max_iterations": 50)", R"("over_relaxation": 1.5)", "contact.over_relaxation: "},
-           Broken{R"("height": 0.5)", R"("height": 0.5, "longest_side": 1)", "scale: does not say to what"},
-           Broken{R"(, "at": [0.5, 0, 1])", "", "start[1]: says nothing"},
+           Broken{R"("height": 0.5)", R"("height": 0.5, "longest_side": 1)",
+                  "scale: does not say which side to scale"},
+           Broken{R"(, "at": [0.5, 0, 1])", "", "start[1]: has neither velocity nor at"},
        }) {
     const std::string message = error_of(projective(broken.from, broken.to));
     EXPECT_NE(message.find(broken.expected), std::string::npos) << message << "\n  lacks " << broken.expected;
@@ -293,12 +294,12 @@ TEST(Scenario, ErrorsNameTheFileThePlaceAndWhatWouldBeRight) {
     std::vector<std::string> expected;
   };
   const std::vector<Broken> cases{
-      {"{\n\"name\": \"a\",\n}", {"my.json:3:", "no JSON"}},
-      {"[1, 2", {"my.json:1:", "no JSON"}},
-      {"", {"my.json:1:", "no JSON"}},
-      {kSmallest + "x", {"my.json:", "no JSON"}},
-      {changed("0.02", "NaN"), {"my.json:4:", "no JSON"}},
-      {changed("0.02", "1e999"), {"my.json: ", "no JSON", "1e999"}},
+      {"{\n\"name\": \"a\",\n}", {"my.json:3:", "not JSON"}},
+      {"[1, 2", {"my.json:1:", "not JSON"}},
+      {"", {"my.json:1:", "not JSON"}},
+      {kSmallest + "x", {"my.json:", "not JSON"}},
+      {changed("0.02", "NaN"), {"my.json:4:", "not JSON"}},
+      {changed("0.02", "1e999"), {"my.json: ", "not JSON", "1e999"}},
       {with(R"("steps": 8)"), {"my.json: ", "'steps' twice"}},
       {"[]", {"my.json: the file: is a list of 0", "object"}},
       {with(R"("speed": 1)"), {"my.json: the file: the key 'speed' is unknown", "scale"}},
@@ -308,7 +309,7 @@ TEST(Scenario, ErrorsNameTheFileThePlaceAndWhatWouldBeRight) {
       {changed("7", "18446744073709551615"), {"steps: ", "whole number from 1"}},
       {changed("7", "\"many\""), {"steps: is the text 'many'"}},
       {changed("\"small\"", "\"\""), {"name: is an empty text"}},
-      {changed("\"small\"", "\"a/b\""), {"name: 'a/b' holds a slash"}},
+      {changed("\"small\"", "\"a/b\""), {"name: 'a/b' contains a slash"}},
       {changed("0.02", "-0.02"), {"integrator.time_step: is -0.02", "above 0"}},
       {changed("0.3", "0.5"), {"material.poisson: is 0.5", "above -1 and below 0.5"}},
       {changed("1e5", "0"), {"material.young: is 0", "above 0"}},
@@ -465,7 +466,7 @@ TEST(VertexChoice, ErrorsListWhatTheMeshHas) {
   EXPECT_NE(no_set.find("my.json: fixed[0].on: the mesh has no set 'tip'"), std::string::npos) << no_set;
   EXPECT_NE(no_set.find("fixed, part"), std::string::npos) << no_set;
   const std::string no_label = message_of(choice_of(By::label, "label", 12345));
-  EXPECT_NE(no_label.find("fixed[0].on: nothing has the label 12345; those of cells are"), std::string::npos)
+  EXPECT_NE(no_label.find("fixed[0].on: nothing has the label 12345; labels of cells are"), std::string::npos)
       << no_label;
   const std::string no_array = message_of(choice_of(By::label, "colour", 1));
   EXPECT_NE(no_array.find("no array 'colour'"), std::string::npos) << no_array;

@@ -3,7 +3,7 @@
 
 #include "io/format.hpp"
 #include "io/npy.hpp"
-#include "lab/scenario/motion_difference.hpp"
+#include "lab/scenario/motion_metrics.hpp"
 #include "lab/scenario/simulation.hpp"
 #include "mesh/procedural.hpp"
 #include "support/files.hpp"

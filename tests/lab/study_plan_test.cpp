@@ -9,17 +9,17 @@ namespace meshorder {
 namespace {
 
 TEST(StudyPlan, HasThePapersFiveOrderings) {
-  const std::vector<StudyOrdering> orderings = paper_orderings();
+  const std::vector<OrderingSpec> orderings = paper_orderings();
   ASSERT_EQ(orderings.size(), 5U);
   EXPECT_EQ(orderings[2].name, "vf-fiedler");
   EXPECT_EQ(orderings[2].elements, "fiedler");  // of the dual graph, section 4.1
   EXPECT_EQ(orderings[3].elements, "original");
-  for (const StudyOrdering& ordering : orderings)
+  for (const OrderingSpec& ordering : orderings)
     EXPECT_EQ(study_ordering(ordering.name).title, ordering.title);
 }
 
 TEST(StudyPlan, TakesAnyMethodsAsAnOrdering) {
-  const StudyOrdering ordering = study_ordering("hilbert/lexmax");
+  const OrderingSpec ordering = study_ordering("hilbert/lexmax");
   EXPECT_EQ(ordering.name, "hilbert-lexmax");
   EXPECT_EQ(ordering.vertices, "hilbert");
   EXPECT_EQ(ordering.elements, "lexmax");
@@ -32,9 +32,9 @@ TEST(StudyPlan, GrowsTheMeshesAndLeavesOutWhatDoesNotFit) {
   EXPECT_EQ(mesh_of_size("paper", "dragon"), "dragon");
   EXPECT_EQ(mesh_of_size("300k", "dragon"), "armadillo-300k");
   EXPECT_THROW(mesh_of_size("huge", "dragon"), InvalidArgument);
-  EXPECT_TRUE(can_be_had("2m", find_scenario("falling")));
-  EXPECT_FALSE(can_be_had("2m", find_scenario("unsquash")));
-  EXPECT_TRUE(can_be_had("300k", find_scenario("unsquash")));
+  EXPECT_TRUE(fits_in_memory("2m", find_scenario("falling")));
+  EXPECT_FALSE(fits_in_memory("2m", find_scenario("unsquash")));
+  EXPECT_TRUE(fits_in_memory("300k", find_scenario("unsquash")));
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ std::vector<std::string> ids(const std::vector<Table>& tables) {
 
 TEST(Tables, HoldTheResultsNumbersToTheLastBit) {
   StudyResults results = sample_results();
-  OrderOfScenario& order = results.scenarios[1].orders[1];
+  ScenarioOrderRecord& order = results.scenarios[1].orders[1];
   order.time = {87.123456789012345, 1.0 / 3, 0};
   order.speedup = {1.0 / 7, 2.0 / 7, 3.0 / 7, 4.0 / 7, true, 5.0 / 7, 3};
   results.meshes[0].orders[1].seconds = 1.0 / 9;
@@ -63,7 +63,7 @@ TEST(Tables, HoldTheResultsNumbersToTheLastBit) {
   EXPECT_EQ(value("table-4", "stretch, Fiedler", "95 % to"), 4.0 / 7);
   EXPECT_EQ(value("table-4", "stretch, Fiedler", "Undisturbed, %"), 5.0 / 7);
   EXPECT_EQ(value("break-even", "stretch, Fiedler", "Cost, s"), 1.0 / 9);
-  EXPECT_EQ(value("break-even", "stretch, Fiedler", "Paid at step"), 3);
+  EXPECT_EQ(value("break-even", "stretch, Fiedler", "Pays off at step"), 3);
 }
 
 TEST(Tables, RoundToDigitsThatMeanSomething) {
@@ -103,7 +103,7 @@ TEST(Tables, ShowThePapersFiguresAndSayWhereItHasNone) {
   EXPECT_FALSE(unknown.value);
   for (const char* id : {"table-2", "table-3", "table-4"}) {
     const std::string& caption = find_table(tables, id)->caption;
-    EXPECT_NE(caption.find("–: the paper's text gives no figure"), std::string::npos) << caption;
+    EXPECT_NE(caption.find("–: the paper's text gives no number"), std::string::npos) << caption;
     EXPECT_NE(caption.find("Not as in the paper: falling, 4 steps; stretch, 4 steps."), std::string::npos);
   }
 }
@@ -130,7 +130,7 @@ TEST(Tables, SayWhereTheNoiseSwallowsADifference) {
   EXPECT_EQ(cell(tables, "table-4", "stretch, Fiedler", "In words").text, "gain");
   EXPECT_FALSE(cell(tables, "table-4", "stretch, Fiedler", "Speedup, %").weak);
   EXPECT_EQ(cell(tables, "table-4", "stretch, VF scrambled", "In words").text, "loss");
-  EXPECT_EQ(cell(tables, "break-even", "stretch, VF Fiedler", "Paid at step").text, "never");
+  EXPECT_EQ(cell(tables, "break-even", "stretch, VF Fiedler", "Pays off at step").text, "never");
 }
 
 TEST(Tables, LeaveOutWhatTheResultsDoNotHold) {

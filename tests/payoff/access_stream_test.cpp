@@ -157,7 +157,7 @@ TEST(AccessStream, TouchesTheLinesThatTheKernelTouches) {
   for (const Mesh& mesh : meshes()) {
     const Prepared prepared(mesh);
     for (const Kernel kernel : kKernels) {
-      SCOPED_TRACE(std::string(name(kernel)) + ", " + std::to_string(mesh.vertex_count()) + " vertices");
+      SCOPED_TRACE(std::string(to_string(kernel)) + ", " + std::to_string(mesh.vertex_count()) + " vertices");
       const AccessStream stream(kernel, prepared.graph, prepared.simplices);
       std::vector<Index> lines;
       stream.visit([&](Index line) { lines.push_back(line); });
@@ -179,7 +179,7 @@ TEST(AccessStream, TouchesTheLinesThatTheKernelTouches) {
 TEST(ReuseOf, HasNoColdAccessesAndMissesTheLeastWithTheLargestCache) {
   const Prepared prepared(test::tetrahedral_bar(200));
   for (const Kernel kernel : kKernels) {
-    SCOPED_TRACE(name(kernel));
+    SCOPED_TRACE(to_string(kernel));
     const ReuseHistogram histogram = reuse_of(kernel, prepared.graph, prepared.simplices).all;
     const Index lines = AccessStream(kernel, prepared.graph, prepared.simplices).line_count();
     EXPECT_EQ(histogram.cold(), 0);
@@ -196,7 +196,7 @@ TEST(ReuseOfKernels, IsThatOfEachByItself) {
   const Prepared prepared(test::mixed_mesh());
   const KernelReuse reuse = reuse_of_kernels(prepared.graph, prepared.simplices);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    EXPECT_EQ(reuse[k], reuse_of(kKernels[k], prepared.graph, prepared.simplices)) << name(kKernels[k]);
+    EXPECT_EQ(reuse[k], reuse_of(kKernels[k], prepared.graph, prepared.simplices)) << to_string(kKernels[k]);
   }
 }
 
@@ -219,7 +219,7 @@ TEST(ReuseOf, IsFartherInAScrambledOrder) {
   const Prepared good(ordered);
   const Prepared bad(scrambled);
   for (const Kernel kernel : kKernels) {
-    SCOPED_TRACE(name(kernel));
+    SCOPED_TRACE(to_string(kernel));
     const ReuseHistogram few = reuse_of(kernel, good.graph, good.simplices).all;
     const ReuseHistogram many = reuse_of(kernel, bad.graph, bad.simplices).all;
     EXPECT_LT(few.misses(128), many.misses(128));

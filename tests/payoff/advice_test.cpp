@@ -54,7 +54,7 @@ TEST(Advice, AMeshInTheOrderThatIsAdvisedHasNothingToGain) {
   const Advice advice = advice_on(grid_in_order("auto", "auto"));
   ASSERT_FALSE(advice.candidates.empty());
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    EXPECT_EQ(kernel_advice(advice)[k].runs_to_pay, 0) << name(kKernels[k]);
+    EXPECT_EQ(kernel_advice(advice)[k].runs_to_pay, 0) << to_string(kKernels[k]);
     EXPECT_NEAR((*advice.candidates[0].costs.predicted)[k] / (*advice.as_is.predicted)[k], 1, 0.01);
   }
   EXPECT_EQ(saved_in_time_step(advice, 0), 0);
@@ -72,7 +72,7 @@ TEST(Advice, SamplingChangesPredictedRatiosLittle) {
     const auto ratio = [&](const Advice& advice) {
       return (*advice.as_is.predicted)[k] / (*advice.candidates.front().costs.predicted)[k];
     };
-    EXPECT_NEAR(ratio(sampled) / ratio(measured), 1, 0.06) << name(kKernels[k]);
+    EXPECT_NEAR(ratio(sampled) / ratio(measured), 1, 0.06) << to_string(kKernels[k]);
   }
 }
 

@@ -102,7 +102,7 @@ TEST(IdealBand, IsAProblemForEveryKernel) {
         ASSERT_TRUE(std::isfinite(value));
         largest = std::max(largest, std::abs(value));
       }
-      EXPECT_GT(largest, 0.0) << name(kernel);
+      EXPECT_GT(largest, 0.0) << to_string(kernel);
     }
     // no simplex is flat
     const RestShapes rest = rest_shapes(cut_into_simplices(band.mesh), band.mesh.points);

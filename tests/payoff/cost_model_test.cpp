@@ -60,7 +60,7 @@ TEST(CostModel, NoCostIsNegativeAndLargerCachesNeverCostMore) {
     }
     const double small = predicted_ms(kernel, some_reuse(5), lines({8, 16, 32}));
     const double large = predicted_ms(kernel, some_reuse(5), lines({512, 2048, 65536}));
-    EXPECT_GT(small, large) << name(kernel);
+    EXPECT_GT(small, large) << to_string(kernel);
     EXPECT_GT(large, 0.0);
   }
 }

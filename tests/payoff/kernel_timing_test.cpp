@@ -15,7 +15,7 @@ namespace meshorder {
 namespace {
 
 TimingOptions quick() {
-  return {.budget_seconds = 0.0, .least_rounds = 4, .most_rounds = 9, .sample_seconds = 1e-5};
+  return {.budget_seconds = 0.0, .min_rounds = 4, .max_rounds = 9, .sample_seconds = 1e-5};
 }
 
 double largest(std::span<const double> values) {
@@ -46,7 +46,7 @@ TEST(KernelBench, ComputesTheSamePhysicsInEveryOrder) {
     KernelBench a(before);
     KernelBench b(after);
     for (const Kernel kernel : {Kernel::spmv, Kernel::element, Kernel::springs}) {
-      SCOPED_TRACE(name(kernel));
+      SCOPED_TRACE(to_string(kernel));
       a.run(kernel);
       b.run(kernel);
       expect_same_rows(b.result(kernel), a.result(kernel), kernel == Kernel::spmv ? 3 : kPaddedStride,
@@ -80,7 +80,7 @@ TEST(KernelBench, ComputesTheSameBitsOnAnyNumberOfThreads) {
     for (const int threads : {2, 3, 8}) {
       KernelBench shared(mesh, threads);
       for (const Kernel kernel : kKernels) {
-        SCOPED_TRACE(std::string(name(kernel)) + " on " + std::to_string(threads));
+        SCOPED_TRACE(std::string(to_string(kernel)) + " on " + std::to_string(threads));
         serial.run(kernel);
         shared.run(kernel);
         shared.run(kernel);  // results of the first run must be cleared
@@ -135,7 +135,7 @@ TEST(TimeInterleaved, TimesEveryKernelInEveryOrder) {
   const std::vector<OrderTimes> times = time_interleaved(benches, quick());
   ASSERT_EQ(times.size(), 2U);
   for (const Kernel kernel : kKernels) {
-    SCOPED_TRACE(name(kernel));
+    SCOPED_TRACE(to_string(kernel));
     for (const OrderTimes& order : times) {
       EXPECT_GT(order[kernel].best_ms, 0.0);
       EXPECT_LE(order[kernel].best_ms, order[kernel].median_ms);

@@ -33,7 +33,7 @@ Mesh bar_of_regions() {
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const bool face = mesh.cells.shapes[c] == Shape::triangle;
     if (!face && c / 6 == 4) continue;
-    regions.rows.push_back(c);
+    regions.indices.push_back(c);
     values.push_back(face ? 5 : c / 6 < 2 ? 7 : -2);
     mesh.sets[face ? 2 : c / 6 < 2 ? 0 : 1].members.push_back(c);
   }

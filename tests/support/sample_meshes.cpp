@@ -113,12 +113,12 @@ Permutation shuffled_cells(const Mesh& mesh, std::uint64_t seed) {
 Mesh sorted_members(Mesh mesh) {
   for (EntitySet& set : mesh.sets) std::sort(set.members.begin(), set.members.end());
   for (DataArray& array : mesh.data) {
-    std::vector<Index> order(array.rows.size());
+    std::vector<Index> order(array.indices.size());
     std::iota(order.begin(), order.end(), Index{0});
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return array.rows[a] < array.rows[b]; });
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return array.indices[a] < array.indices[b]; });
     if (order.empty()) continue;
     const Permutation sorting = Permutation::from_new_to_old(order);
-    array.rows = sorting.moved(array.rows);
+    array.indices = sorting.moved(array.indices);
     std::visit(
         [&](auto& values) { values = sorting.moved(values, static_cast<std::size_t>(array.components)); },
         array.values);

@@ -22,7 +22,7 @@ struct SampleTimes {
 /// A mesh of 300 vertices and 1000 edges with figures that are simple to check: kernels of 100 accesses, and
 /// a mean span, misses and milliseconds in the ratio `share` to the scrambled order's: 100 a mean span, 80,
 /// 40 and 20 misses on this machine, 90, 60 and 50 on the paper's, 2 ms predicted and 1 ms measured.
-inline MeshRecord sample_mesh(const std::string& name, const std::vector<StudyOrdering>& orderings,
+inline MeshRecord sample_mesh(const std::string& name, const std::vector<OrderingSpec>& orderings,
                               const std::vector<double>& share) {
   MeshRecord mesh;
   mesh.name = name;
@@ -34,7 +34,7 @@ inline MeshRecord sample_mesh(const std::string& name, const std::vector<StudyOr
                       {"the paper's Xeon E5-1620 v4", {{32 << 10, 256 << 10, 10 << 20}}}};
   for (std::size_t i = 0; i < orderings.size(); ++i) {
     const auto of = [&share, i](double whole) { return static_cast<Offset>(whole * share[i] + 0.5); };
-    OrderOfMesh order;
+    MeshOrderRecord order;
     order.ordering = orderings[i].name;
     order.vertex_method = orderings[i].vertices;
     order.element_method = orderings[i].elements;
@@ -73,7 +73,7 @@ inline std::vector<RunRecord> sample_runs(const ScenarioRecord& scenario, double
 }
 
 /// Fills the orders of a scenario of 4 steps, and all that a study computes from their runs.
-inline void add_sample_orders(ScenarioRecord& scenario, const std::vector<StudyOrdering>& orderings,
+inline void add_sample_orders(ScenarioRecord& scenario, const std::vector<OrderingSpec>& orderings,
                               const std::vector<SampleTimes>& times) {
   scenario.fingerprint = "5eed";
   scenario.steps = 4;
@@ -83,7 +83,7 @@ inline void add_sample_orders(ScenarioRecord& scenario, const std::vector<StudyO
   scenario.frame_steps = {0, 2, 4};
   for (std::size_t i = 0; i < orderings.size(); ++i) {
     const SampleTimes& t = times[i];
-    OrderOfScenario order;
+    ScenarioOrderRecord order;
     order.ordering = orderings[i].name;
     order.runs = sample_runs(scenario, t.mean);
     order.time = {t.mean, 0.5, t.mean - 0.5};

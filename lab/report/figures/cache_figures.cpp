@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/report/figures/figure_groups.hpp"
 #include "lab/report/figures/figure_style.hpp"
+#include "lab/report/figures/figures.hpp"
 #include "lab/report/figures/gnuplot.hpp"
 #include "lab/report/findings/lookup.hpp"
 #include "lab/report/findings/numbers_in_words.hpp"
@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kBarsOfLevel = 0.8;  ///< share of a level's width that its bars take
 
-/// The bars of an order in a panel, "left right misses", misses in per cent of the accesses.
-std::vector<std::string> bars_of(const OrderOfMesh& order, std::size_t kernel, std::size_t hierarchy,
+/// Returns the bars of an order in a panel, "left right misses", with misses in per cent of the accesses.
+std::vector<std::string> bars_of(const MeshOrderRecord& order, std::size_t kernel, std::size_t hierarchy,
                                  std::size_t place, std::size_t orders) {
   std::vector<std::string> bars;
   const KernelRecord& record = order.kernels[kernel];
@@ -36,7 +36,7 @@ std::vector<std::string> bars_of(const OrderOfMesh& order, std::size_t kernel, s
 
 double most_misses(const MeshRecord& mesh, std::size_t kernel) {
   double most = 0;
-  for (const OrderOfMesh& order : mesh.orders) {
+  for (const MeshOrderRecord& order : mesh.orders) {
     const KernelRecord& record = order.kernels[kernel];
     if (record.accesses <= 0) continue;
     for (const auto& levels : record.misses) {
@@ -48,14 +48,15 @@ double most_misses(const MeshRecord& mesh, std::size_t kernel) {
   return most;
 }
 
-/// 1, 2 or 5 times a power of ten: what divides an axis up to `most` into two to five parts.
+/// Returns the step, 1, 2 or 5 times a power of ten, that divides an axis up to `most` into two to five
+/// parts.
 double step_of_axis(double most) {
   const double power = std::pow(10, std::floor(std::log10(most)));
   const double leading = most / power;
   return power * (leading < 2 ? 0.5 : leading < 5 ? 1 : 2);
 }
 
-/// "'L1 48 KB' 1, 'L2 1 MB' 2"
+/// Returns "'48 KB' 1, '1 MB' 2".
 std::string level_tics(const Caches& caches) {
   std::vector<std::string> tics;
   for (const Offset bytes : caches.level_bytes) {
@@ -65,14 +66,14 @@ std::string level_tics(const Caches& caches) {
   return fmt::format("{}", fmt::join(tics, ", "));
 }
 
-/// One kernel on one hierarchy.
+/// Returns the panel of a kernel on a hierarchy.
 std::string panel(const StudyResults& results, const MeshRecord& mesh, std::size_t kernel,
                   std::size_t hierarchy) {
   const NamedCaches& caches = mesh.hierarchies[hierarchy];
   std::string data;
   std::vector<std::string> plots;
   for (std::size_t o = 0; o < results.orderings.size(); ++o) {
-    const OrderOfMesh* const order = find_order(mesh, results.orderings[o].name);
+    const MeshOrderRecord* const order = find_order(mesh, results.orderings[o].name);
     if (order == nullptr) continue;
     const auto bars = bars_of(*order, kernel, hierarchy, o, results.orderings.size());
     if (bars.empty()) continue;
@@ -85,23 +86,22 @@ std::string panel(const StudyResults& results, const MeshRecord& mesh, std::size
                     block, style.pattern, style.colour));
   }
   if (plots.empty()) return {};
-  // less than a per cent is next to nothing, and shall look so
+  // an axis of at least 1 %, so that negligible misses look negligible
   const double most = std::max(most_misses(mesh, kernel), 1.0);
   return data + fmt::format(
                     "set title {}\nset label 1 {} at graph 0.97, 0.9 right textcolor '#222222'\n"
                     "set yrange [0:{}]\nset ytics 0,{},{}\nset format y '{}'\nset xrange [0.5:{}]\n"
                     "set xtics scale 0 ({})\nplot {}\n",
-                    kernel == 0 ? gnuplot_key(caches.name, 32) : "''",
-                    gnuplot_quoted(title_of(kKernels[kernel])), 1.3 * most, step_of_axis(most), 1.05 * most,
-                    hierarchy == 0 ? "%g %%" : "",
+                    kernel == 0 ? gnuplot_key(caches.name, 32) : "''", gnuplot_quoted(kKernelTitles[kernel]),
+                    1.3 * most, step_of_axis(most), 1.05 * most, hierarchy == 0 ? "%g %%" : "",
                     static_cast<double>(caches.caches.level_bytes.size()) + 0.5, level_tics(caches.caches),
                     fmt::join(plots, ", \\\n  "));
 }
 
-/// A row above the panels.
+/// Returns the key, a row above the panels.
 std::string key(const StudyResults& results, const MeshRecord& mesh) {
   std::vector<std::string> plots;
-  for (const StudyOrdering& ordering : results.orderings) {
+  for (const OrderingSpec& ordering : results.orderings) {
     if (find_order(mesh, ordering.name) == nullptr) continue;
     const OrderStyle style = style_of(results, ordering.name);
     plots.push_back(fmt::format("NaN with boxes fillstyle pattern {} linecolor '{}' title {}", style.pattern,
@@ -113,7 +113,7 @@ std::string key(const StudyResults& results, const MeshRecord& mesh) {
       fmt::join(plots, ", "));
 }
 
-/// Where the edges of a panel are, in pixels from the picture's upper left corner.
+/// Edges of a panel in pixels from the picture's upper left corner.
 struct Panel {
   int left, right, top, bottom;
 };
@@ -129,11 +129,11 @@ Figure cache_figure(const StudyResults& results, const MeshRecord& mesh) {
       figure_name("misses", results, mesh),
       "caches",
       "Simulated cache misses on " + mesh.name,
-      "Cache lines fetched from beyond each level, in per cent of a kernel's accesses to lines, when it "
-      "runs again and again: one row for each kernel, one column for each processor's caches. Where "
-      "bars of a level are alike, the order does not matter there.",
+      "Cache lines that a repeated kernel fetches from beyond each level, in per cent of its accesses: a row "
+      "for each kernel, a column for each processor. Where the bars of a level are alike, the order does "
+      "not matter.",
       {}};
-  // in pixels, since the text is; the panels' edges stand where they are put
+  // in pixels, like the text
   constexpr int kWidth = 520;
   constexpr int kLeft = 54;
   constexpr int kTop = 80;
@@ -160,9 +160,10 @@ Figure cache_figure(const StudyResults& results, const MeshRecord& mesh) {
 std::vector<Figure> cache_figures(const StudyResults& results) {
   std::vector<Figure> figures;
   for (const MeshRecord& mesh : results.meshes) {
-    const bool simulated = std::any_of(mesh.orders.begin(), mesh.orders.end(), [](const OrderOfMesh& order) {
-      return !order.kernels.front().misses.empty() && order.kernels.front().accesses > 0;
-    });
+    const bool simulated =
+        std::any_of(mesh.orders.begin(), mesh.orders.end(), [](const MeshOrderRecord& order) {
+          return !order.kernels.front().misses.empty() && order.kernels.front().accesses > 0;
+        });
     if (simulated && !mesh.hierarchies.empty()) figures.push_back(cache_figure(results, mesh));
   }
   return figures;

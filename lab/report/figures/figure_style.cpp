@@ -48,7 +48,7 @@ std::string slug(std::string_view text) {
 OrderStyle style_of(const StudyResults& results, std::string_view ordering) {
   if (const OrderStyle* const style = paper_style(ordering)) return *style;
   std::size_t others = 0;
-  for (const StudyOrdering& each : results.orderings) {
+  for (const OrderingSpec& each : results.orderings) {
     if (each.name == ordering) break;
     if (paper_style(each.name) == nullptr) ++others;
   }

@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// How an order looks in every figure of a study: told apart by shape, dashes and pattern as well as by
-/// colour. Colours of Okabe and Ito (Color Universal Design, 2008), which differ for every kind of colour
+/// How an order is drawn in all figures of a study: orders differ in shape, dashes and pattern as well as in
+/// colour. Colours of Okabe and Ito (2008, Color Universal Design), distinguishable with every kind of colour
 /// vision.
 struct OrderStyle {
   std::string_view colour;
@@ -20,17 +20,18 @@ struct OrderStyle {
   int pattern = 0;  ///< gnuplot's, of areas
 };
 
-/// The paper's orders look the same in all studies; others take what looks are left, in the study's order.
+/// Returns the style of an order. The paper's orders have the same style in all studies; others take the
+/// remaining styles, in the study's sequence.
 OrderStyle style_of(const StudyResults& results, std::string_view ordering);
 
-/// What all scripts begin with: thin grey axes, a light grid, the key above.
+/// Returns the beginning of all scripts: thin grey axes, a light grid, the key above.
 std::string plain_axes();
 
-/// A block of inline data "$NAME << EOD …".
+/// Returns a block of inline data, "$NAME << EOD …".
 std::string data_block(std::string_view name, const std::vector<std::string>& lines);
 
-/// "spans-dragon": a figure's name for one of the study's meshes, of lower-case letters, digits and '-', and
-/// another one for each mesh.
+/// Returns a figure's name for one of the study's meshes, "spans-dragon", of lower-case letters, digits and
+/// '-', unique among the meshes.
 std::string figure_name(std::string_view kind, const StudyResults& results, const MeshRecord& mesh);
 
 }  // namespace meshorder

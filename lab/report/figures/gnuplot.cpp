@@ -136,10 +136,10 @@ std::string tidied(const std::string& svg, const Drawing& drawing) {
 
 }  // namespace
 
-bool can_draw_figures() { return !models::find_program(kProgram).empty(); }
+bool can_draw_figures() { return !find_program(kProgram).empty(); }
 
 std::string draw(const Drawing& drawing) {
-  const fs::path program = models::find_program(kProgram);
+  const fs::path program = find_program(kProgram);
   if (program.empty()) {
     throw Error("figure " + drawing.name, "gnuplot is not installed", "apt-get install gnuplot-nox");
   }
@@ -151,8 +151,8 @@ std::string draw(const Drawing& drawing) {
       "set output 'figure.svg'\n{}\nunset output\n",
       drawing.width, drawing.height, drawing.script);
   // without the user's own settings
-  const models::Ended ended = models::run_process(program, {"--default-settings", script.string()},
-                                                  folder.path(), folder.path() / "log");
+  const ExitStatus ended =
+      run_process(program, {"--default-settings", script.string()}, folder.path(), folder.path() / "log");
   if (ended.code != 0) {
     throw Error("figure " + drawing.name,
                 fmt::format("gnuplot failed: {}",

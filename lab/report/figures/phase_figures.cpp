@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/report/figures/figure_groups.hpp"
 #include "lab/report/figures/figure_style.hpp"
+#include "lab/report/figures/figures.hpp"
 #include "lab/report/figures/gnuplot.hpp"
 #include "lab/report/findings/lookup.hpp"
 
@@ -24,7 +24,7 @@ constexpr std::array kPhases{PhaseStyle{&Phases::elements, "by element", "#0072b
                              PhaseStyle{&Phases::collision, "collision", "#009e73", 1},
                              PhaseStyle{&Phases::other, "other", "#7f7f7f", 2}};
 
-/// A bar for each order of a scenario and what stands beside it.
+/// The bars of the orders of all scenarios, and their labels.
 struct Bars {
   std::array<std::vector<std::string>, kPhases.size()> parts;  ///< "left right bottom top"
   std::vector<std::string> tics;
@@ -32,12 +32,12 @@ struct Bars {
   double height = 0;
 };
 
-/// In per cent of the reference's seconds, or of the first order's where the reference has not run.
+/// Adds bars in per cent of the reference's seconds, or of the first order's if the reference has not run.
 void add_scenario(Bars& bars, const StudyResults& results, const ScenarioRecord& scenario) {
-  const OrderOfScenario* whole = find_order(scenario, results.reference);
+  const ScenarioOrderRecord* whole = find_order(scenario, results.reference);
   bool headed = false;
-  for (const StudyOrdering& ordering : results.orderings) {
-    const OrderOfScenario* const order = find_order(scenario, ordering.name);
+  for (const OrderingSpec& ordering : results.orderings) {
+    const ScenarioOrderRecord* const order = find_order(scenario, ordering.name);
     if (order == nullptr) continue;
     if (whole == nullptr) whole = order;
     const double total = phases_of(*whole).total();

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/report/figures/figure_groups.hpp"
 #include "lab/report/figures/figure_style.hpp"
+#include "lab/report/figures/figures.hpp"
 #include "lab/report/figures/gnuplot.hpp"
 #include "lab/report/findings/lookup.hpp"
 
@@ -32,10 +32,10 @@ std::vector<Figure> prediction_figures(const StudyResults& results) {
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     std::vector<std::string> points;
     for (const MeshRecord& mesh : results.meshes) {
-      const OrderOfMesh* const reference = find_order(mesh, results.reference);
+      const MeshOrderRecord* const reference = find_order(mesh, results.reference);
       if (reference == nullptr) continue;
       const KernelRecord& whole = reference->kernels[k];
-      for (const OrderOfMesh& order : mesh.orders) {
+      for (const MeshOrderRecord& order : mesh.orders) {
         const KernelRecord& kernel = order.kernels[k];
         if (&order == reference || kernel.predicted_ms <= 0 || kernel.measured_ms <= 0 ||
             whole.predicted_ms <= 0 || whole.measured_ms <= 0) {
@@ -53,7 +53,7 @@ std::vector<Figure> prediction_figures(const StudyResults& results) {
     plots.push_back(
         fmt::format("$kernel{} using 1:2 with points linecolor '{}' linewidth 1.4 pointtype {} "
                     "pointsize 0.8 title {}",
-                    k, kStyles[k].colour, kStyles[k].point, gnuplot_quoted(title_of(kKernels[k]))));
+                    k, kStyles[k].colour, kStyles[k].point, gnuplot_quoted(kKernelTitles[k])));
   }
   if (plots.empty()) return {};
   plots.emplace_back("x with lines linecolor '#555555' dashtype (4,4) title 'as predicted'");
@@ -63,7 +63,7 @@ std::vector<Figure> prediction_figures(const StudyResults& results) {
       "prediction",
       "Kernels: predicted and measured",
       fmt::format("How many times faster than in the order “{}” the kernels run, a mark for each mesh "
-                  "and order, both axes logarithmic: above the line faster than predicted, below it "
+                  "and order, both axes logarithmic. Above the line: faster than predicted; below: "
                   "slower.",
                   reference),
       {}};

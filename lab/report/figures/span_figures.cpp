@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/report/figures/figure_groups.hpp"
 #include "lab/report/figures/figure_style.hpp"
+#include "lab/report/figures/figures.hpp"
 #include "lab/report/figures/gnuplot.hpp"
 #include "lab/report/findings/lookup.hpp"
 
@@ -42,8 +42,8 @@ struct Curve {
 };
 std::vector<Curve> curves_of(const StudyResults& results, const MeshRecord& mesh) {
   std::vector<Curve> curves;
-  for (const StudyOrdering& ordering : results.orderings) {
-    const OrderOfMesh* const order = find_order(mesh, ordering.name);
+  for (const OrderingSpec& ordering : results.orderings) {
+    const MeshOrderRecord* const order = find_order(mesh, ordering.name);
     if (order == nullptr || order->span_histogram.empty()) continue;
     const auto same = std::find_if(curves.begin(), curves.end(), [order](const Curve& curve) {
       return *curve.histogram == order->span_histogram;

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/report/figures/figure_groups.hpp"
 #include "lab/report/figures/figure_style.hpp"
+#include "lab/report/figures/figures.hpp"
 #include "lab/report/figures/gnuplot.hpp"
 #include "lab/report/findings/lookup.hpp"
 #include "lab/report/findings/paper.hpp"
@@ -23,9 +23,9 @@ std::vector<const ScenarioRecord*> compared_scenarios(const StudyResults& result
 }
 
 /// The orders but for the reference.
-std::vector<const StudyOrdering*> compared_orders(const StudyResults& results) {
-  std::vector<const StudyOrdering*> orders;
-  for (const StudyOrdering& ordering : results.orderings) {
+std::vector<const OrderingSpec*> compared_orders(const StudyResults& results) {
+  std::vector<const OrderingSpec*> orders;
+  for (const OrderingSpec& ordering : results.orderings) {
     if (ordering.name != results.reference) orders.push_back(&ordering);
   }
   return orders;
@@ -57,7 +57,7 @@ std::vector<Figure> speedup_figures(const StudyResults& results) {
     std::vector<std::string> ours;
     std::vector<std::string> papers;
     for (std::size_t s = 0; s < scenarios.size(); ++s) {
-      const OrderOfScenario* const order = find_order(*scenarios[s], orders[o]->name);
+      const ScenarioOrderRecord* const order = find_order(*scenarios[s], orders[o]->name);
       if (order == nullptr) continue;
       const Speedup& speedup = order->speedup;
       ours.push_back(fmt::format("{} {} {} {}", speedup.percent, rows.at(s, o), speedup.low, speedup.high));

@@ -9,7 +9,8 @@
 
 namespace meshorder {
 
-/// What a mesh or scenario record says of an order; nullptr where it was not computed or no run is finished.
+/// Returns a mesh or scenario record's entry for an order; nullptr if it was not computed or no run is
+/// finished.
 template <class Record>
 auto find_order(const Record& record, std::string_view ordering) -> decltype(record.orders.data()) {
   const auto found = std::find_if(record.orders.begin(), record.orders.end(),
@@ -21,53 +22,38 @@ auto find_order(const Record& record, std::string_view ordering) -> decltype(rec
   return &*found;
 }
 
-/// nullptr for a mesh that the study does not hold.
+/// Returns a mesh of the study, nullptr if there is none of that name.
 inline const MeshRecord* find_mesh(const StudyResults& results, std::string_view name) {
   const auto found = std::find_if(results.meshes.begin(), results.meshes.end(),
                                   [name](const MeshRecord& mesh) { return mesh.name == name; });
   return found == results.meshes.end() ? nullptr : &*found;
 }
 
-/// Calls `row(scenario, order)` for what has finished runs, but for the reference where `against_reference`;
-/// and then only for scenarios in which the reference has run.
+/// Calls `row(scenario, order)` for all orders with finished runs. With `against_reference`, skips the
+/// reference and scenarios in which it has not run.
 template <class Row>
 void for_each_order(const StudyResults& results, bool against_reference, Row row) {
   for (const ScenarioRecord& scenario : results.scenarios) {
     if (against_reference && find_order(scenario, results.reference) == nullptr) continue;
-    for (const StudyOrdering& ordering : results.orderings) {
-      const OrderOfScenario* const order = find_order(scenario, ordering.name);
+    for (const OrderingSpec& ordering : results.orderings) {
+      const ScenarioOrderRecord* const order = find_order(scenario, ordering.name);
       if (order == nullptr || (against_reference && ordering.name == results.reference)) continue;
       row(scenario, *order);
     }
   }
 }
 
-/// "VF Fiedler"; the name itself of an order without a title.
+/// Returns the title of an order, "VF Fiedler"; its name if it has no title.
 inline std::string title_of(const StudyResults& results, std::string_view ordering) {
-  for (const StudyOrdering& each : results.orderings) {
+  for (const OrderingSpec& each : results.orderings) {
     if (each.name == ordering && !each.title.empty()) return each.title;
   }
   return std::string(ordering);
 }
 
-/// What it heads its columns and axes with: "element force".
-inline std::string_view title_of(Kernel kernel) {
-  switch (kernel) {
-    case Kernel::spmv:
-      return "SpMV";
-    case Kernel::element:
-      return "element force";
-    case Kernel::assembly:
-      return "assembly";
-    case Kernel::springs:
-      break;
-  }
-  return "springs";
-}
-
-/// A scenario's parts of a step, which the two methods share: what is done by element (the assembly; ADMM's
-/// local step), what by a system of equations (the solve; the global step), collisions, and the rest.
-/// Seconds, mean of the runs.
+/// Seconds of a scenario's steps by part, mean of the runs. Both methods have the same parts: work by element
+/// (assembly; ADMM's local step), the system of equations (the solve; the global step), collisions, and the
+/// rest.
 struct Phases {
   double elements = 0;
   double system = 0;
@@ -76,7 +62,7 @@ struct Phases {
 
   [[nodiscard]] double total() const { return elements + system + collision + other; }
 };
-inline Phases phases_of(const OrderOfScenario& order) {
+inline Phases phases_of(const ScenarioOrderRecord& order) {
   Phases sum;
   for (const RunRecord& run : order.runs) {
     const StepReport::Seconds& s = run.seconds;
@@ -89,8 +75,8 @@ inline Phases phases_of(const OrderOfScenario& order) {
   return sum;
 }
 
-/// Of conjugate gradients and of ADMM, mean of the runs.
-inline double mean_iterations(const OrderOfScenario& order) {
+/// Returns the iterations of conjugate gradients and of ADMM, mean of the runs.
+inline double mean_iterations(const ScenarioOrderRecord& order) {
   double sum = 0;
   for (const RunRecord& run : order.runs) sum += static_cast<double>(run.cg_iterations + run.admm_iterations);
   return sum / static_cast<double>(order.runs.size());

@@ -14,32 +14,32 @@
 namespace meshorder {
 namespace {
 
-/// The least mean span of each mesh beside the reference's.
+/// Returns the smallest mean span of each mesh, with the reference's.
 std::string spans_in_words(const StudyResults& results) {
   std::vector<std::string> parts;
   for (const MeshRecord& mesh : results.meshes) {
-    const OrderOfMesh* const reference = find_order(mesh, results.reference);
+    const MeshOrderRecord* const reference = find_order(mesh, results.reference);
     if (reference == nullptr) continue;
     const auto best = std::min_element(
         mesh.orders.begin(), mesh.orders.end(),
-        [](const OrderOfMesh& a, const OrderOfMesh& b) { return a.span.mean < b.span.mean; });
+        [](const MeshOrderRecord& a, const MeshOrderRecord& b) { return a.span.mean < b.span.mean; });
     if (best->span.mean >= reference->span.mean) continue;
     parts.push_back(fmt::format("from {} to {} on {} ({})", with_digits(reference->span.mean, 3),
                                 with_digits(best->span.mean, 3), mesh.name,
                                 title_of(results, best->ordering)));
   }
   if (parts.empty()) return {};
-  return fmt::format("From “{}” to the order where it is least the mean edge span falls {}.",
+  return fmt::format("From “{}” to the best order, the mean edge span falls {}.",
                      title_of(results, results.reference), in_words(parts));
 }
 
-/// Misses of the last level of a hierarchy in an order: of all kernels on all meshes together. Nothing where
-/// one of them was not simulated.
+/// Returns the misses of the last level of a hierarchy in an order: the sum over all kernels and meshes.
+/// Nothing if one of them was not simulated.
 std::optional<double> last_level_misses(const StudyResults& results, const std::string& ordering,
                                         std::size_t hierarchy) {
   double sum = 0;
   for (const MeshRecord& mesh : results.meshes) {
-    const OrderOfMesh* const order = find_order(mesh, ordering);
+    const MeshOrderRecord* const order = find_order(mesh, ordering);
     if (order == nullptr) return std::nullopt;
     for (const KernelRecord& kernel : order->kernels) {
       if (hierarchy >= kernel.misses.size() || kernel.misses[hierarchy].empty()) return std::nullopt;
@@ -49,7 +49,8 @@ std::optional<double> last_level_misses(const StudyResults& results, const std::
   return sum;
 }
 
-/// On one processor: "7.13 M times on this machine (32 MB), 0.98 times as often in Fiedler".
+/// Returns the misses on one processor: "7.13 M times on this machine (32 MB), 0.98 times as often in
+/// Fiedler".
 std::string misses_on(const StudyResults& results, std::size_t hierarchy) {
   const auto whole = last_level_misses(results, results.reference, hierarchy);
   const NamedCaches& caches = results.meshes.front().hierarchies[hierarchy];
@@ -57,7 +58,7 @@ std::string misses_on(const StudyResults& results, std::size_t hierarchy) {
   std::string words = fmt::format("{} times on {} ({})", metric(*whole), caches.name,
                                   bytes_in_words(static_cast<double>(caches.caches.level_bytes.back())));
   std::vector<std::string> others;
-  for (const StudyOrdering& ordering : results.orderings) {
+  for (const OrderingSpec& ordering : results.orderings) {
     const auto misses = last_level_misses(results, ordering.name, hierarchy);
     if (!misses || ordering.name == results.reference || *whole <= 0) continue;
     others.push_back(
@@ -73,13 +74,14 @@ std::string misses_in_words(const StudyResults& results) {
     if (!words.empty()) parts.push_back(std::move(words));
   }
   if (parts.empty()) return {};
-  return fmt::format("Simulated, one run of each kernel on each mesh in “{}” misses the last-level cache {}.",
-                     title_of(results, results.reference), fmt::join(parts, "; "));
+  return fmt::format(
+      "In simulation, one run of each kernel on each mesh in “{}” misses the last-level cache {}.",
+      title_of(results, results.reference), fmt::join(parts, "; "));
 }
 
-/// The kernel and order that gain most over the reference by the clock, and those that lose most.
+/// Returns the kernel and order that gain most over the reference in measured time, and those that lose most.
 std::string kernels_of(const StudyResults& results, const MeshRecord& mesh) {
-  const OrderOfMesh* const reference = find_order(mesh, results.reference);
+  const MeshOrderRecord* const reference = find_order(mesh, results.reference);
   if (reference == nullptr) return {};
   struct Case {
     double factor = 1;
@@ -88,12 +90,12 @@ std::string kernels_of(const StudyResults& results, const MeshRecord& mesh) {
   Case best;
   Case worst;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    for (const OrderOfMesh& order : mesh.orders) {
+    for (const MeshOrderRecord& order : mesh.orders) {
       const double ms = order.kernels[k].measured_ms;
       const double whole = reference->kernels[k].measured_ms;
       if (&order == reference || ms <= 0 || whole <= 0) continue;
       const auto words = [&](const char* how, double times) {
-        return fmt::format("{} runs {:.2f} times {} in {}", title_of(kKernels[k]), times, how,
+        return fmt::format("{} runs {:.2f} times {} in {}", kKernelTitles[k], times, how,
                            title_of(results, order.ordering));
       };
       if (whole / ms > best.factor) best = {whole / ms, words("faster", whole / ms)};
@@ -105,7 +107,7 @@ std::string kernels_of(const StudyResults& results, const MeshRecord& mesh) {
     if (!found.words.empty()) parts.push_back(found.words);
   }
   if (parts.empty()) return {};
-  return fmt::format("By the clock, of the kernels on {} over “{}”: {}.", mesh.name,
+  return fmt::format("Measured kernels on {}, compared with “{}”: {}.", mesh.name,
                      title_of(results, results.reference), fmt::join(parts, "; "));
 }
 

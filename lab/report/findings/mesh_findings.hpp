@@ -8,9 +8,8 @@
 
 namespace meshorder {
 
-/// What is known of the meshes without simulating anything, in sentences: verdicts, edge spans, where
-/// simulated misses of the last level differ between the processors, and in a study without scenarios the
-/// kernels that gain and lose most by the clock.
+/// Returns findings on the meshes, as sentences: verdicts, edge spans, simulated misses of the last level on
+/// each processor and, in a study without scenarios, the measured kernels that gain and lose most.
 std::vector<std::string> mesh_findings(const StudyResults& results);
 
 }  // namespace meshorder

@@ -14,7 +14,7 @@
 namespace meshorder {
 namespace {
 
-/// `text` with a true minus sign.
+/// Returns the text of a number with a true minus sign.
 std::string with_minus(const std::string& text) {
   return text.starts_with('-') ? "−" + text.substr(1) : text;
 }
@@ -75,7 +75,8 @@ TableCell count_cell(long long number) {
 }
 TableCell unknown_cell() { return {"–", std::nullopt, true}; }
 
-TableCell head_of(const StudyResults& results, const ScenarioRecord& scenario, const OrderOfScenario& order) {
+TableCell head_of(const StudyResults& results, const ScenarioRecord& scenario,
+                  const ScenarioOrderRecord& order) {
   return text_cell(fmt::format("{}, {}", scenario.name, title_of(results, order.ordering)));
 }
 

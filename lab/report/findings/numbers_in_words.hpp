@@ -8,26 +8,28 @@
 
 namespace meshorder {
 
-/// So many significant digits, 4: "0.04321", "12.35", "1,846"; all digits of whole numbers.
+/// Returns a number with that many significant digits, 4: "0.04321", "12.35", "1,846"; integers with all
+/// digits.
 std::string with_digits(double number, int digits);
 
-/// As `with_digits(whole, digits)` shows the whole that the number is a part of: after "12.35" a "0.50".
+/// Returns a number with as many decimals as `with_digits(whole, digits)` has: "0.50" for a part of "12.35".
 std::string with_digits_of(double number, double whole, int digits);
 
-/// One digit after the point and a sign: "+24.9", "−0.3", "0.0".
+/// Returns one decimal and a sign: "+24.9", "−0.3", "0.0".
 std::string signed_percent(double percent);
 
-/// "9,870", "12.3 k", "1.23 M": three digits for what is larger than 10,000.
+/// Returns "9,870", "12.3 k", "1.23 M": three digits from 10,000 on.
 std::string metric(double number);
 
-/// 49152 as "48 KB".
+/// Returns 49152 as "48 KB".
 std::string bytes_in_words(double bytes);
 
-/// "falling", "falling and bowl", "falling, bowl and bounce"
+/// Returns "falling", "falling and bowl", "falling, bowl and bounce".
 std::string in_words(const std::vector<std::string>& names);
 
-/// What heads the row of a scenario in an order: "falling, VF Fiedler".
-TableCell head_of(const StudyResults& results, const ScenarioRecord& scenario, const OrderOfScenario& order);
+/// Returns the head of the row of a scenario in an order: "falling, VF Fiedler".
+TableCell head_of(const StudyResults& results, const ScenarioRecord& scenario,
+                  const ScenarioOrderRecord& order);
 
 TableCell text_cell(std::string text);
 TableCell number_cell(double number, int digits = 4);

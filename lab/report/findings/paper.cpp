@@ -32,13 +32,9 @@ constexpr std::array kScenarios{
                   "Figure 9",
                   {{{"original", 262.8, 8.23}, {"fiedler", 426.2, 13.3}, {"vf-fiedler", 449.2, 14.1}}}}};
 
-constexpr std::array kMeshes{PaperMesh{"dragon", 46736, 160553}, PaperMesh{"armadillo", 45908, 151869},
-                             PaperMesh{"bunny", 34833, 120001}};
-
 }  // namespace
 
 std::span<const PaperScenario> paper_scenarios() { return kScenarios; }
-std::span<const PaperMesh> paper_meshes() { return kMeshes; }
 
 const PaperScenario* find_paper_scenario(std::string_view name) {
   const auto found = std::find_if(kScenarios.begin(), kScenarios.end(),

@@ -10,16 +10,16 @@
 
 namespace meshorder {
 
-/// What an order saves in one of the paper's scenarios, over vertices scrambled: 240 steps on a Xeon E5-1620
-/// v4.
+/// Time that an order saves in one of the paper's scenarios over scrambled vertices: 240 steps on a Xeon
+/// E5-1620 v4.
 struct PaperSaving {
-  std::string_view ordering;  ///< StudyOrdering::name
+  std::string_view ordering;  ///< OrderingSpec::name
   double seconds = 0;
   double percent = 0;  ///< of the scrambled order's time
 };
 
-/// What the paper tells of a scenario in words: the caption of its figure. The figures of its Tables 1 to 4
-/// are not in the text that this project has; nothing is known of VF scrambled.
+/// Numbers in the caption of a scenario's figure. The numbers of the paper's Tables 1 to 4 are not in the
+/// text that this project has; nothing is known of VF scrambled.
 struct PaperScenario {
   std::string_view name;
   std::string_view mesh;
@@ -27,27 +27,20 @@ struct PaperScenario {
   std::array<PaperSaving, 3> savings;
 };
 
-/// A mesh as the paper's section 5 counts it.
-struct PaperMesh {
-  std::string_view name;
-  Index vertices = 0;
-  Index tetrahedra = 0;
-};
-
-/// Time steps of each of its runs.
+/// Time steps of each of the paper's runs.
 inline constexpr Index kPaperSteps = 240;
 
 std::span<const PaperScenario> paper_scenarios();
-std::span<const PaperMesh> paper_meshes();
 
-/// nullptr for a scenario that is not the paper's.
+/// Returns a scenario of the paper, nullptr if there is none of that name.
 const PaperScenario* find_paper_scenario(std::string_view name);
 
-/// Nothing where the paper tells nothing of the scenario or of that order in it.
+/// Returns what an order saves in a scenario, if the paper gives it.
 std::optional<PaperSaving> paper_saving(std::string_view scenario, std::string_view ordering);
 
-/// Seconds of the scenario's steps in an order, *derived*: the scrambled order's are all seconds saved over
-/// all per cents, good to half a per cent since those are rounded; another's are less by what it saves.
+/// Returns the *derived* seconds of the scenario's steps in an order: for the scrambled order the sum of the
+/// seconds saved divided by the sum of the percentages, good to half a per cent since these are rounded; for
+/// another order less by what it saves.
 std::optional<double> paper_seconds(std::string_view scenario, std::string_view ordering);
 
 }  // namespace meshorder

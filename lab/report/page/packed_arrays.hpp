@@ -17,26 +17,26 @@
 
 namespace meshorder {
 
-/// The numbers that a page carries, packed as viewer/README.md says: little endian, compressed by zlib, as
-/// base64 in a script element each; equal arrays share one. What `add…` returns describes the array in the
-/// page's manifest.
+/// The arrays of a page, packed as viewer/README.md describes: little endian, compressed by zlib, as base64,
+/// each in a script element; equal arrays share one. `add…` returns the array's description for the page's
+/// manifest.
 class PackedArrays {
  public:
-  /// Whole numbers, none negative, in the smallest type that holds all. Throws InvalidArgument when they are
-  /// not as many as the shape says.
+  /// Adds non-negative integers in the smallest type that holds them. Throws InvalidArgument if their number
+  /// does not match the shape.
   nlohmann::ordered_json add(std::span<const std::uint32_t> numbers, std::vector<std::size_t> shape);
   nlohmann::ordered_json add(std::span<const Index> numbers);
   nlohmann::ordered_json add(std::span<const std::array<Index, 3>> triangles);
 
-  /// Coordinates in 65,536 steps along each side of their bounding box.
+  /// Adds points, quantised to 65,536 steps along each side of their bounding box.
   nlohmann::ordered_json add_places(std::span<const Point> places);
 
-  /// Places of the same vertices in each frame, as differences from the frame before. A step is one
-  /// 4,096th of the first frame's longest side, which is not seen and leaves less to compress, or wider where
-  /// the frames do not fit in 65,536 of them. Throws InvalidArgument when frames differ in size.
+  /// Adds positions of the same vertices in each frame, as differences from the frame before. They are
+  /// quantised to 1/4096 of the first frame's longest side, or coarser if the frames would not fit in 65,536
+  /// steps. Throws InvalidArgument if frames differ in size.
   nlohmann::ordered_json add_frames(const std::vector<std::vector<Point>>& frames);
 
-  /// `<script type="text/plain" id="blob-1">…</script>` for each array.
+  /// Returns `<script type="text/plain" id="blob-1">…</script>` for each array.
   [[nodiscard]] const std::string& script_elements() const noexcept { return elements_; }
 
  private:
@@ -44,7 +44,7 @@ class PackedArrays {
                                    const std::vector<std::size_t>& shape, bool delta = false);
 
   std::string elements_;
-  std::map<std::string, std::string> ids_;  ///< by what the elements hold
+  std::map<std::string, std::string> ids_;  ///< by the content of the elements
 };
 
 }  // namespace meshorder

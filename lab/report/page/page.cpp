@@ -6,7 +6,6 @@
 #include "io/stream/base64.hpp"
 #include "io/stream/output_file.hpp"
 #include "lab/report/page/packed_arrays.hpp"
-#include "lab/report/page/template.hpp"
 #include "lab/report/page/viewer_sources.hpp"
 #include "lab/study/results_json.hpp"
 
@@ -21,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A script element of JSON; nothing in it can end the element.
+/// Returns a script element with JSON, escaped so that no text in it ends the element.
 std::string json_element(std::string_view id, const Json& json) {
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
@@ -63,11 +62,11 @@ Json describe(const PageMotion& motion, const StudyResults& results, PackedArray
   return json;
 }
 
-/// The script elements at the end of the page.
+/// Returns the script elements at the end of the page.
 std::string data_of(const Page& page) {
   PackedArrays arrays;
   Json manifest{{"orderings", Json::array()}, {"meshes", Json::array()}, {"motions", Json::array()}};
-  for (const StudyOrdering& ordering : page.results.orderings)
+  for (const OrderingSpec& ordering : page.results.orderings)
     manifest["orderings"].push_back({{"name", ordering.name}, {"title", ordering.title}});
   for (const PageMesh& mesh : page.meshes) manifest["meshes"].push_back(describe(mesh, page.results, arrays));
   for (const PageMotion& motion : page.motions)
@@ -77,14 +76,11 @@ std::string data_of(const Page& page) {
 }
 
 std::string words_of(const Page& page) {
-  std::string words;
-  const auto add = [&](bool there, std::string_view word) {
-    if (there) words += (words.empty() ? "" : " ") + std::string(word);
-  };
-  add(!page.results.meshes.empty(), "meshes");
-  add(!page.results.scenarios.empty(), "scenarios");
-  add(!page.motions.empty(), "motions");
-  return words;
+  std::vector<std::string_view> words;
+  if (!page.results.meshes.empty()) words.emplace_back("meshes");
+  if (!page.results.scenarios.empty()) words.emplace_back("scenarios");
+  if (!page.motions.empty()) words.emplace_back("motions");
+  return join(words, std::string_view(" "));
 }
 
 std::string figures_in(const Page& page, std::string_view section) {
@@ -106,7 +102,7 @@ std::string table_of(const Page& page, std::string_view id) {
   return table == page.tables.end() ? "" : to_html(*table);
 }
 
-/// Text as HTML, with what stands between `backticks` as code; a per cent sign stays with its number.
+/// Returns text as HTML, with text in `backticks` as code and a no-break space before per cent signs.
 std::string prose(std::string text) {
   constexpr std::string_view kApart = " %", kTogether = "\u00a0%";
   for (auto at = text.find(kApart); at != std::string::npos; at = text.find(kApart, at))
@@ -131,6 +127,24 @@ std::string findings_in(const Page& page) {
   std::string html;
   for (const std::string& finding : page.findings) html += "<p>" + prose(finding) + "</p>\n";
   return html;
+}
+
+/// Returns `text` with each placeholder `{{words}}` replaced by `value_of(words)`; values are not searched
+/// for placeholders. Throws InvalidArgument for a placeholder without end. O(size of the result).
+std::string fill_template(std::string_view text,
+                          const std::function<std::string(std::string_view)>& value_of) {
+  std::string result;
+  for (;;) {
+    const auto begin = text.find("{{");
+    result += text.substr(0, begin);
+    if (begin == std::string_view::npos) return result;
+    text.remove_prefix(begin + 2);
+    const auto end = text.find("}}");
+    if (end == std::string_view::npos)
+      throw InvalidArgument("a placeholder has no end: {{" + std::string(text.substr(0, 40)));
+    result += value_of(text.substr(0, end));
+    text.remove_prefix(end + 2);
+  }
 }
 
 }  // namespace

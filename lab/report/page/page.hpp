@@ -12,7 +12,7 @@
 
 namespace meshorder {
 
-/// A mesh of a study as the page shows it in 3-D.
+/// A mesh as the page shows it in 3-D.
 struct PageMesh {
   std::string name;  ///< MeshRecord::name
   SurfaceView surface;
@@ -30,12 +30,12 @@ struct PageMotion {
   std::string scenario;
   SurfaceView surface;
   std::vector<Index> steps;                ///< of each frame
-  std::vector<std::vector<Point>> frames;  ///< places of the surface's vertices
+  std::vector<std::vector<Point>> frames;  ///< positions of the surface's vertices
   SurfaceView obstacle;                    ///< may be empty
   std::vector<Point> obstacle_points;
 };
 
-/// What a page is made of.
+/// The content of a page.
 struct Page {
   std::string title;
   StudyResults results;
@@ -46,14 +46,14 @@ struct Page {
   std::vector<std::string> findings;  ///< sentences for the top
 };
 
-/// One HTML file that needs nothing else: no network, no other file. Its data are quantised to 16 bits a
-/// coordinate and compressed.
+/// Returns the page as one HTML file, which needs no network and no other file. Coordinates are quantised to
+/// 16 bits and compressed.
 std::string to_html(const Page& page);
 
-/// The same in another frame than viewer/page.html. Throws InvalidArgument for an unknown placeholder.
+/// The same with a template other than viewer/page.html. Throws InvalidArgument for an unknown placeholder.
 std::string fill_page(std::string_view frame, const Page& page);
 
-/// Writes it whole or not at all. Throws Error when the file cannot be written.
+/// Writes the page, completely or not at all. Throws Error if the file cannot be written.
 void write_page(const Page& page, const std::filesystem::path& path);
 
 }  // namespace meshorder

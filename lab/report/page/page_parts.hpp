@@ -10,23 +10,23 @@
 
 namespace meshorder {
 
-/// How much of a mesh a page shows.
+/// How much of meshes and motions a page shows.
 struct PageDetail {
-  Index mesh_triangles = 90'000;  ///< about; of the meshes coloured by their orders
+  Index mesh_triangles = 90'000;  ///< about, of the meshes coloured by order
   Index motion_triangles = 12'000;
   Index frames = 60;  ///< at most, of a motion
   int sparsity_side = 192;
 };
 
-/// A mesh as the page shows it, in each of its vertex orders, which are named as the study's orderings.
-/// Throws Error for a mesh without surface.
+/// Returns a mesh for the page with its vertex orders, named as the study's orderings. Throws Error for a
+/// mesh without a surface.
 PageMesh page_mesh(const std::string& name, const Mesh& mesh,
                    const std::vector<std::pair<std::string, Permutation>>& orders,
                    const PageDetail& detail = {});
 
-/// The motion of a scenario on the mesh's simplified surface, every frame of it or every second … as many as
-/// `detail` allows, the last one always. `obstacles` is nullptr where there are none. Throws InvalidArgument
-/// when the motion has another number of vertices than the mesh, or of frames than `frame_steps`.
+/// Returns the motion of a scenario on the mesh's simplified surface, with as many frames as `detail` allows,
+/// evenly spread, first and last included. `obstacles` may be nullptr. Throws InvalidArgument if the motion
+/// differs from the mesh in its number of vertices, or from `frame_steps` in its number of frames.
 PageMotion page_motion(const ScenarioRecord& scenario, const Mesh& mesh, const Motion& motion,
                        const Mesh* obstacles, const PageDetail& detail = {});
 

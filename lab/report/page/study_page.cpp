@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "io/npy.hpp"
 #include "io/stream/output_file.hpp"
+#include "lab/report/findings/findings.hpp"
 #include "lab/study/results_json.hpp"
 
 #include <fmt/format.h>
@@ -22,9 +23,9 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, code);
 }
 
-/// Does `work`; a file that does not fit the others is named.
+/// Runs `work` and turns InvalidArgument into an Error that names the file.
 template <class Work>
-auto blaming(const fs::path& path, const Work& work) {
+auto naming(const fs::path& path, const Work& work) {
   try {
     return work();
   } catch (const InvalidArgument& error) {
@@ -32,7 +33,7 @@ auto blaming(const fs::path& path, const Work& work) {
   }
 }
 
-/// The study's parts, one after another, of which each moves the progress on.
+/// Reports progress, one part of the study after another.
 class Parts {
  public:
   Parts(const StudyResults& results, const ReportProgress& progress)
@@ -49,13 +50,13 @@ class Parts {
   std::size_t done_ = 0;
 };
 
-/// The study's meshes that its folder holds, by name.
+/// The study's meshes in its folder, by name.
 using Meshes = std::map<std::string, Mesh>;
 
 PageMesh mesh_of(const StudyFolder& folder, const StudyResults& results, const MeshRecord& record,
                  const Mesh& mesh, Notes& notes, const PageDetail& detail) {
   std::vector<std::pair<std::string, Permutation>> orders;
-  for (const StudyOrdering& ordering : results.orderings) {
+  for (const OrderingSpec& ordering : results.orderings) {
     const fs::path path = folder.vertex_order(record.name, ordering.name);
     if (is_there(path)) {
       orders.emplace_back(ordering.name, read_permutation(path, mesh.vertex_count(), "vertices"));
@@ -64,7 +65,7 @@ PageMesh mesh_of(const StudyFolder& folder, const StudyResults& results, const M
                                   ordering.title, path.string()));
     }
   }
-  return blaming(folder.mesh(record.name), [&] { return page_mesh(record.name, mesh, orders, detail); });
+  return naming(folder.mesh(record.name), [&] { return page_mesh(record.name, mesh, orders, detail); });
 }
 
 std::optional<PageMotion> motion_of(const StudyFolder& folder, const ScenarioRecord& scenario,
@@ -79,7 +80,7 @@ std::optional<PageMotion> motion_of(const StudyFolder& folder, const ScenarioRec
   const Motion motion = read_motion(path);
   std::optional<Mesh> obstacles;
   if (is_there(folder.obstacles(scenario.name))) obstacles = read_mesh(folder.obstacles(scenario.name));
-  return blaming(path, [&] {
+  return naming(path, [&] {
     return page_motion(scenario, mesh->second, motion, obstacles ? &*obstacles : nullptr, detail);
   });
 }
@@ -103,7 +104,7 @@ void fill_from_results(Page& page, Notes& notes) {
   if (can_draw_figures()) {
     page.figures = figures_of(page.results);
   } else {
-    notes.emplace_back("there are no figures, since gnuplot is not installed (Debian: gnuplot-nox)");
+    notes.emplace_back("no figures: gnuplot is not installed (Debian: gnuplot-nox)");
   }
 }
 

@@ -12,20 +12,20 @@
 
 namespace meshorder {
 
-/// Is told what is done, and which fraction of the work is over by then.
+/// Called with each stage as it begins and the fraction of the work that is done.
 using ReportProgress = std::function<void(std::string_view what, double fraction)>;
 
-/// Fills a page's tables, findings and figures from its results. Without gnuplot there are no figures, which
-/// is noted.
+/// Fills a page's tables, findings and figures from its results. Without gnuplot there are no figures but a
+/// note.
 void fill_from_results(Page& page, Notes& notes);
 
-/// The page of a study: its results with what its folder holds of meshes, orders, motions and obstacles. What
-/// is not there is left out of the page, with a note. Throws Error, with its name, for a file that is broken
-/// or does not belong to the others.
+/// Returns the page of a study: its results, and the meshes, orders, motions and obstacles in its folder.
+/// Missing files are noted. Throws Error, which names the file, for a file that is broken or does not match
+/// the others.
 Page page_of(const StudyFolder& folder, const StudyResults& results, Notes& notes,
              const ReportProgress& progress = {}, const PageDetail& detail = {});
 
-/// What was written, of what, and what deserves a word.
+/// The files that write_report wrote, with the results and findings in them; `notes` are warnings.
 struct WrittenReport {
   StudyResults results;
   std::vector<std::string> findings;
@@ -33,9 +33,8 @@ struct WrittenReport {
   Notes notes;
 };
 
-/// Makes of a study's results.json and data what stands beside them: tables.md, tables.csv, the figures and
-/// report.html, all of them whole or none. Throws Error for results that cannot be read, for broken data, and
-/// when something cannot be written.
+/// Writes tables.md, tables.csv, the figures and report.html from a study's results.json and data: all of
+/// them or none. Throws Error if results or data cannot be read or a file cannot be written.
 WrittenReport write_report(const StudyFolder& folder, const ReportProgress& progress = {});
 
 }  // namespace meshorder

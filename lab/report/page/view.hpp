@@ -13,26 +13,27 @@
 
 namespace meshorder {
 
-/// The outer surface of a body as triangles over some of its vertices, few enough to be shown.
+/// The simplified outer surface of a body.
 struct SurfaceView {
-  std::vector<Index> vertices;                  ///< of the mesh, by their numbers there, as first used
-  std::vector<std::array<Index, 3>> triangles;  ///< entries of `vertices`, seen from outside anticlockwise
+  std::vector<Index> vertices;  ///< vertices of the mesh, in the sequence of their first use
+  std::vector<std::array<Index, 3>>
+      triangles;  ///< indices into `vertices`, anticlockwise as seen from outside
 };
 
-/// The mesh's outer_triangles, simplified to about `most_triangles` where they are more (Garland and Heckbert
-/// 1997, by meshoptimizer). All vertices are vertices of the mesh, so that what is known of those is known of
-/// the view's. The topology stays unless that would leave more than twice as many. The same on every run.
-/// Throws Error for a mesh without volumes and surface. O(n log n).
+/// Returns the mesh's outer_triangles, simplified to about `most_triangles` if there are more (Garland and
+/// Heckbert 1997, Surface simplification using quadric error metrics; by meshoptimizer). All vertices are
+/// vertices of the mesh. Keeps the topology unless that would leave more than twice as many triangles. The
+/// same on every run. Throws Error for a mesh without volume cells and surface. O(n log n).
 SurfaceView surface_view(const Mesh& mesh, Index most_triangles);
 
-/// How many entries of a matrix with the pattern of the mesh's vertex graph, its diagonal among them, lie in
-/// each tile of a picture of side × side tiles, rows from the top.
+/// Number of entries in each of side × side tiles of a matrix with the pattern of the vertex graph, diagonal
+/// included; rows from the top.
 struct SparsityPattern {
   int side = 0;
   std::vector<std::uint32_t> counts;
 };
 
-/// In the given order; `side` becomes smaller where there are fewer vertices. O(edges).
+/// Returns the pattern in the given order. `side` is reduced to the number of vertices. O(edges).
 SparsityPattern sparsity_pattern(const CsrGraph& graph, const Permutation& order, int side);
 
 }  // namespace meshorder

@@ -5,12 +5,11 @@
 
 namespace meshorder {
 
-/// The files of viewer/, and three.js with its licence, as they were when the program was built; it needs
-/// none of them when it runs.
+/// The files of viewer/, and three.js with its licence, built into the program.
 struct ViewerSources {
   std::string_view page;     ///< page.html, with its placeholders
   std::string_view style;    ///< style.css
-  std::string_view scripts;  ///< all *.js, by their names' order
+  std::string_view scripts;  ///< all *.js, in the order of their names
   std::string_view three;
 };
 

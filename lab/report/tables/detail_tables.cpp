@@ -12,34 +12,35 @@
 namespace meshorder {
 namespace {
 
-/// Calls `row(mesh, kernel, order, reference)`; the reference is nullptr where the mesh was not ordered so.
+/// Calls `row(mesh, kernel, order, reference)`; the reference is nullptr if the mesh has no such order.
 template <class Row>
 void for_each_kernel(const StudyResults& results, Row row) {
   for (const MeshRecord& mesh : results.meshes) {
-    const OrderOfMesh* const reference = find_order(mesh, results.reference);
+    const MeshOrderRecord* const reference = find_order(mesh, results.reference);
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
-      for (const StudyOrdering& ordering : results.orderings) {
-        if (const OrderOfMesh* const order = find_order(mesh, ordering.name)) row(mesh, k, *order, reference);
+      for (const OrderingSpec& ordering : results.orderings) {
+        if (const MeshOrderRecord* const order = find_order(mesh, ordering.name))
+          row(mesh, k, *order, reference);
       }
     }
   }
 }
 
 TableCell kernel_head(const StudyResults& results, const MeshRecord& mesh, std::size_t kernel,
-                      const OrderOfMesh& order) {
+                      const MeshOrderRecord& order) {
   return text_cell(
-      fmt::format("{}, {}, {}", mesh.name, title_of(kKernels[kernel]), title_of(results, order.ordering)));
+      fmt::format("{}, {}, {}", mesh.name, kKernelTitles[kernel], title_of(results, order.ordering)));
 }
 
-/// The misses of a level; nothing where the record does not hold them.
-std::optional<Offset> misses_of(const OrderOfMesh& order, std::size_t kernel, std::size_t hierarchy,
+/// Returns the misses of a level, if the record has them.
+std::optional<Offset> misses_of(const MeshOrderRecord& order, std::size_t kernel, std::size_t hierarchy,
                                 std::size_t level) {
   const auto& misses = order.kernels[kernel].misses;
   if (hierarchy >= misses.size() || level >= misses[hierarchy].size()) return std::nullopt;
   return misses[hierarchy][level];
 }
 
-/// "12.3 k (0.43×)": misses, and how many there are for each of the reference's.
+/// Returns "12.3 k (0.43×)": misses, and their ratio to the reference's.
 TableCell misses_cell(const std::optional<Offset>& misses, const std::optional<Offset>& reference) {
   if (!misses) return unknown_cell();
   TableCell cell{metric(static_cast<double>(*misses)), static_cast<double>(*misses), false};
@@ -55,7 +56,7 @@ TableCell factor_cell(double milliseconds, double reference) {
   return {fmt::format("{:.2f}×", factor), factor, false};
 }
 
-/// The place of a hierarchy in a mesh's list, by its name.
+/// Returns the index of a hierarchy in a mesh's list.
 std::optional<std::size_t> place_of(const std::string& hierarchy, const MeshRecord& mesh) {
   for (std::size_t h = 0; h < mesh.hierarchies.size(); ++h) {
     if (mesh.hierarchies[h].name == hierarchy) return h;
@@ -64,23 +65,22 @@ std::optional<std::size_t> place_of(const std::string& hierarchy, const MeshReco
 }
 
 Table misses_table(const StudyResults& results, const NamedCaches& hierarchy, std::size_t number) {
-  Table table{
-      fmt::format("misses-{}", number),
-      fmt::format("Simulated cache misses: {}", hierarchy.name),
-      fmt::format(
-          "Cache lines that one run of a kernel in its usual round fetches from beyond each level, by a "
-          "model "
-          "that keeps the most recently used lines, fetches nothing ahead and belongs to one thread; in "
-          "brackets, over those of “{}”.",
-          title_of(results, results.reference)),
-      {"Mesh, kernel and order"},
-      {}};
+  Table table{fmt::format("misses-{}", number),
+              fmt::format("Simulated cache misses: {}", hierarchy.name),
+              fmt::format("Cache lines that each run of a repeated kernel fetches from beyond a level, in a "
+                          "model that keeps the "
+                          "most recently used lines, does not prefetch and serves one thread; in brackets, "
+                          "divided by those of "
+                          "“{}”.",
+                          title_of(results, results.reference)),
+              {"Mesh, kernel and order"},
+              {}};
   for (std::size_t level = 0; level < hierarchy.caches.level_bytes.size(); ++level) {
     table.columns.push_back(fmt::format(
         "L{} {}", level + 1, bytes_in_words(static_cast<double>(hierarchy.caches.level_bytes[level]))));
   }
-  for_each_kernel(results, [&](const MeshRecord& mesh, std::size_t kernel, const OrderOfMesh& order,
-                               const OrderOfMesh* reference) {
+  for_each_kernel(results, [&](const MeshRecord& mesh, std::size_t kernel, const MeshOrderRecord& order,
+                               const MeshOrderRecord* reference) {
     const auto place = place_of(hierarchy.name, mesh);
     if (!place || !misses_of(order, kernel, *place, 0)) return;
     table.rows.push_back({kernel_head(results, mesh, kernel, order)});
@@ -101,11 +101,11 @@ Table phases_table(const StudyResults& results) {
       "phases",
       "Seconds by phase of a step",
       "Means of the runs. By element: backward Euler's assembly, ADMM's local step. System: the linear "
-      "solve, the global step. Iterations: of conjugate gradients, of ADMM; with other roundings an "
-      "order may take some more or less.",
+      "solve, the global step. Iterations: of conjugate gradients, of ADMM; rounding differs between "
+      "orders, so they may take a few more or less.",
       {"Scenario and order", "By element, s", "System, s", "Collision, s", "Other, s", "Iterations"},
       {}};
-  for_each_order(results, false, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+  for_each_order(results, false, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
     const Phases phases = phases_of(order);
     const double iterations = mean_iterations(order);
     table.rows.push_back({head_of(results, scenario, order),
@@ -119,14 +119,15 @@ Table phases_table(const StudyResults& results) {
 }
 
 Table motions_table(const StudyResults& results) {
-  Table table{"motions",
-              "The same motion in every order",
-              fmt::format("The largest distance, at the times of the frames, of a vertex from where it is in "
-                          "the order “{}”, as a share of the body's longest side.",
-                          results.orderings.empty() ? "" : title_of(results, results.orderings.front().name)),
-              {"Scenario and order", "Largest difference"},
-              {}};
-  for_each_order(results, false, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+  Table table{
+      "motions",
+      "The same motion in every order",
+      fmt::format("The largest distance, over all frames, between a vertex and the same vertex in the "
+                  "order “{}”, divided by the body's longest side.",
+                  results.orderings.empty() ? "" : title_of(results, results.orderings.front().name)),
+      {"Scenario and order", "Largest difference"},
+      {}};
+  for_each_order(results, false, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
     if (order.motion.by_frame.empty()) return;
     const double largest = order.motion.largest;
     table.rows.push_back({head_of(results, scenario, order),
@@ -154,12 +155,12 @@ Table kernels_table(const StudyResults& results) {
       "Kernels: predicted and measured",
       fmt::format("How many times faster than in the order “{}” a kernel runs: predicted from simulated "
                   "misses with the costs of the model's machine, and measured on one thread of this "
-                  "one, as the best of interleaved rounds.",
+                  "machine, best of interleaved rounds.",
                   title_of(results, results.reference)),
       {"Mesh, kernel and order", "Predicted", "Measured", "Measured, ms"},
       {}};
-  for_each_kernel(results, [&](const MeshRecord& mesh, std::size_t k, const OrderOfMesh& order,
-                               const OrderOfMesh* reference) {
+  for_each_kernel(results, [&](const MeshRecord& mesh, std::size_t k, const MeshOrderRecord& order,
+                               const MeshOrderRecord* reference) {
     const KernelRecord& kernel = order.kernels[k];
     if (kernel.predicted_ms <= 0 && kernel.measured_ms <= 0) return;
     const KernelRecord compared = reference == nullptr ? KernelRecord{} : reference->kernels[k];

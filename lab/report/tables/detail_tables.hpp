@@ -7,11 +7,11 @@
 
 namespace meshorder {
 
-// What explains the paper's tables. Without rows where the results hold nothing.
+// Tables that explain the paper's. A table without data has no rows.
 
 Table phases_table(const StudyResults& results);
 Table motions_table(const StudyResults& results);
-/// One for each cache hierarchy, in the order in which the meshes name them.
+/// Returns a table for each cache hierarchy, in the sequence of the meshes.
 std::vector<Table> misses_tables(const StudyResults& results);
 Table kernels_table(const StudyResults& results);
 Table machine_table(const StudyResults& results);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kHead = "Scenario and order";
 
-/// Whether the paper says something of a scenario of the study, against the same reference.
+/// Returns whether the paper has numbers for a scenario of the study, with the same reference.
 bool has_paper(const StudyResults& results) {
   return results.reference == "scrambled" &&
          std::any_of(results.scenarios.begin(), results.scenarios.end(), [](const ScenarioRecord& scenario) {
@@ -25,7 +25,7 @@ bool has_paper(const StudyResults& results) {
          });
 }
 
-/// What differs between the paper's runs and these, for captions: " Here: falling 20 steps, on dragon-300k."
+/// Returns how these runs differ from the paper's, for captions: " Not as in the paper: falling, 20 steps."
 std::string differences(const StudyResults& results) {
   std::string words;
   for (const ScenarioRecord& scenario : results.scenarios) {
@@ -40,7 +40,7 @@ std::string differences(const StudyResults& results) {
   return words + (words.empty() ? "" : ".");
 }
 
-/// The column's cell, rounded to what can be known of a number that is derived from rounded ones.
+/// Returns a cell rounded to the accuracy of a number that is derived from rounded ones.
 TableCell derived_cell(const std::optional<double>& seconds) {
   if (!seconds) return unknown_cell();
   const double unit = *seconds < 1000 ? 1 : 10;
@@ -49,14 +49,14 @@ TableCell derived_cell(const std::optional<double>& seconds) {
 }
 
 constexpr const char* kNotTold =
-    " –: the paper's text gives no figure, which it does in the captions of its Figures 4 to 9 alone.";
+    " –: the paper's text gives no number; only the captions of its Figures 4 to 9 do.";
 
-/// Seconds that are a part of others, with as many digits after the point.
+/// Returns seconds that are a part of `whole`, with as many decimals.
 TableCell part_cell(double seconds, double whole) {
   return {with_digits_of(seconds, whole, 4), seconds, false};
 }
 
-/// A number as the paper prints it.
+/// Returns a number as the paper prints it.
 TableCell printed_cell(double number) { return {fmt::format("{}", number), number, false}; }
 
 }  // namespace
@@ -65,15 +65,15 @@ Table edge_span_table(const StudyResults& results) {
   Table table{
       "table-1",
       "Table 1: edge spans",
-      "How far apart in memory the ends of an edge lie, on average over the edges and at most, in "
-      "vertices. A random order's mean span is a third of the number of vertices. The paper's figures "
-      "are not in its text, which tells that the Fiedler order's mean is about two orders of magnitude "
-      "below the scrambled one's.",
+      "Distance in memory between the ends of an edge, in vertices: mean over all edges, and largest. The "
+      "mean span of a random order is a third of the number of vertices. The paper's text does not give "
+      "its numbers; it says that the Fiedler order's mean is about two orders of magnitude below the "
+      "scrambled one's.",
       {"Mesh and order", "Mean span", "% of a random order's", "Largest span"},
       {}};
   for (const MeshRecord& mesh : results.meshes) {
-    for (const StudyOrdering& ordering : results.orderings) {
-      const OrderOfMesh* const order = find_order(mesh, ordering.name);
+    for (const OrderingSpec& ordering : results.orderings) {
+      const MeshOrderRecord* const order = find_order(mesh, ordering.name);
       if (order == nullptr) continue;
       const double random = (mesh.vertices + 1.0) / 3.0;
       table.rows.push_back({text_cell(fmt::format("{}, {}", mesh.name, title_of(results, ordering.name))),
@@ -96,12 +96,11 @@ Table seconds_table(const StudyResults& results) {
   if (paper) {
     table.columns.emplace_back("Paper, s");
     table.caption += fmt::format(
-        " The paper's are derived: its scrambled order's are the seconds saved over the per cents, good to "
-        "half "
-        "a per cent, of {} steps (three runs, or five: it says both).{}{}",
+        " The paper's are derived: seconds saved divided by the per cent saved give those of its scrambled "
+        "order, good to half a per cent, for {} steps (three runs, or five: it says both).{}{}",
         kPaperSteps, differences(results), kNotTold);
   }
-  for_each_order(results, false, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+  for_each_order(results, false, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
     table.rows.push_back({head_of(results, scenario, order), number_cell(order.time.mean),
                           order.runs.size() > 1 ? number_cell(order.time.deviation, 2) : unknown_cell()});
     if (paper) table.rows.back().push_back(derived_cell(paper_seconds(scenario.name, order.ordering)));
@@ -111,18 +110,19 @@ Table seconds_table(const StudyResults& results) {
 
 Table saved_table(const StudyResults& results) {
   const bool paper = has_paper(results);
-  Table table{"table-3",
-              "Table 3: seconds saved",
-              fmt::format("The mean seconds of “{}” less those of each order; below 0 the order loses.",
-                          title_of(results, results.reference)),
-              {kHead, "Saved, s"},
-              {}};
+  Table table{
+      "table-3",
+      "Table 3: seconds saved",
+      fmt::format("The mean seconds of “{}” minus those of each order; negative if the order is slower.",
+                  title_of(results, results.reference)),
+      {kHead, "Saved, s"},
+      {}};
   if (paper) {
     table.columns.emplace_back("Paper, s");
     table.caption +=
         fmt::format(" The paper's {} steps on its Xeon.{}{}", kPaperSteps, differences(results), kNotTold);
   }
-  for_each_order(results, true, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+  for_each_order(results, true, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
     table.rows.push_back(
         {head_of(results, scenario, order),
          part_cell(order.speedup.saved_seconds, order.time.mean + order.speedup.saved_seconds)});
@@ -139,8 +139,7 @@ Table speedup_table(const StudyResults& results) {
   Table table{"table-4",
               "Table 4: speedups in per cent",
               fmt::format("Time saved in per cent of that of “{}”, with its 95 % confidence interval. Within "
-                          "noise: the interval holds 0. Undisturbed: of the times with every step at its "
-                          "fastest of the runs.",
+                          "noise: the interval contains 0. Undisturbed: from the fastest run of every step.",
                           title_of(results, results.reference)),
               {kHead, "Speedup, %", "95 % from", "95 % to", "In words", "Undisturbed, %"},
               {}};
@@ -148,7 +147,7 @@ Table speedup_table(const StudyResults& results) {
     table.columns.insert(table.columns.begin() + 2, "Paper, %");
     table.caption += differences(results) + kNotTold;
   }
-  for_each_order(results, true, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+  for_each_order(results, true, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
     const Speedup& s = order.speedup;
     const std::string words = !s.beyond_noise ? "within noise" : s.percent > 0 ? "gain" : "loss";
     std::vector<TableCell> row{head_of(results, scenario, order),
@@ -172,15 +171,15 @@ Table speedup_table(const StudyResults& results) {
 Table break_even_table(const StudyResults& results) {
   Table table{
       "break-even",
-      "What an order costs, and when that is paid",
-      fmt::format("Seconds that it takes to compute the order and move the mesh, and the first step at "
-                  "whose end the steps so far have saved as much over “{}”.",
+      "What an order costs, and when it pays off",
+      fmt::format("Seconds to compute the order and move the mesh, and the first step by whose end the steps "
+                  "have saved as much, compared with “{}”.",
                   title_of(results, results.reference)),
-      {kHead, "Cost, s", "Paid at step", "Of steps"},
+      {kHead, "Cost, s", "Pays off at step", "Of steps"},
       {}};
-  for_each_order(results, true, [&](const ScenarioRecord& scenario, const OrderOfScenario& order) {
+  for_each_order(results, true, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
     const MeshRecord* const mesh = find_mesh(results, scenario.mesh);
-    const OrderOfMesh* const of_mesh = mesh == nullptr ? nullptr : find_order(*mesh, order.ordering);
+    const MeshOrderRecord* const of_mesh = mesh == nullptr ? nullptr : find_order(*mesh, order.ordering);
     const auto& step = order.speedup.break_even_step;
     TableCell paid{"never", std::nullopt, true};
     if (step) paid = count_cell(*step);

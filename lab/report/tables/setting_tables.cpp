@@ -21,8 +21,7 @@ TableCell with_unit(double number, const char* unit) {
   return {fmt::format("{} {}", with_digits(number, 3), unit), number, false};
 }
 
-/// What `word_for(scenario)` says, once where all scenarios agree, and else for each: "falling 240, bowl
-/// 120".
+/// Returns `word_for(scenario)` once if all scenarios agree, else for each: "falling 240, bowl 120".
 template <class WordFor>
 std::string of_scenarios(const StudyResults& results, WordFor word_for) {
   std::vector<std::string> words;
@@ -35,17 +34,17 @@ std::string of_scenarios(const StudyResults& results, WordFor word_for) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-/// "dragon: 46,316 vertices, 161,222 tetrahedra, 253,111 edges"
+/// Returns "46,316 vertices, 161,222 tetrahedra, 253,111 edges".
 std::string mesh_in_words(const MeshRecord& mesh) {
   return fmt::format("{} vertices, {} tetrahedra, {} edges", count_cell(mesh.vertices).text,
                      count_cell(mesh.tetrahedra).text, count_cell(mesh.edges).text);
 }
 
-/// "vertices fiedler, elements original; dragon: hilbert, lexmax"
-std::string methods_in_words(const StudyResults& results, const StudyOrdering& ordering) {
+/// Returns "vertices fiedler, elements original; on dragon: hilbert, lexmax".
+std::string methods_in_words(const StudyResults& results, const OrderingSpec& ordering) {
   std::string words = fmt::format("vertices {}, elements {}", ordering.vertices, ordering.elements);
   for (const MeshRecord& mesh : results.meshes) {
-    const OrderOfMesh* const order = find_order(mesh, ordering.name);
+    const MeshOrderRecord* const order = find_order(mesh, ordering.name);
     if (order == nullptr ||
         (order->vertex_method == ordering.vertices && order->element_method == ordering.elements)) {
       continue;
@@ -59,7 +58,7 @@ std::string methods_in_words(const StudyResults& results, const StudyOrdering& o
 
 Table machine_table(const StudyResults& results) {
   Table table{
-      "machine", "The machine", "What everything here was measured on, and with.", {"What", "Is"}, {}};
+      "machine", "The machine", "The machine and the program of all measurements here.", {"What", "Is"}, {}};
   const MachineRecord& machine = results.machine;
   add(table, "Processor", text_cell(machine.processor));
   if (machine.cores > 0) add(table, "Cores", count_cell(machine.cores));
@@ -85,7 +84,7 @@ Table machine_table(const StudyResults& results) {
 Table protocol_table(const StudyResults& results) {
   Table table{"protocol",
               "How it was measured",
-              results.scenarios.empty() ? "" : "Only the step calls are timed.",
+              results.scenarios.empty() ? "" : "Only the steps are timed.",
               {"What", "Is"},
               {}};
   add(table, "Began", text_cell(results.began));
@@ -100,14 +99,15 @@ Table protocol_table(const StudyResults& results) {
                                       : fmt::format("processor {}", fmt::join(s.processors, "+"));
         })));
     add(table, "Orders take turns", text_cell(of_scenarios(results, [](const ScenarioRecord& s) {
-          return s.interleaved ? fmt::format("of {} steps", s.turn) : "of whole runs, for want of memory";
+          return s.interleaved ? fmt::format("of {} steps", s.turn)
+                               : "of whole runs, since memory cannot hold all orders";
         })));
     add(table, "Arrays' addresses", text_cell(of_scenarios(results, [](const ScenarioRecord& s) {
-          return s.fixed_addresses ? "the same for every order" : "as they came";
+          return s.fixed_addresses ? "the same for every order" : "chosen by the system";
         })));
   }
   add(table, "Compared with", text_cell(title_of(results, results.reference)));
-  for (const StudyOrdering& ordering : results.orderings) {
+  for (const OrderingSpec& ordering : results.orderings) {
     const std::string head = "Order " + title_of(results, ordering.name);
     add(table, head.c_str(), text_cell(methods_in_words(results, ordering)));
   }

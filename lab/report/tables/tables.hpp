@@ -9,47 +9,42 @@
 
 namespace meshorder {
 
-/// A cell of a table: what is shown, and the number behind it, by which a column is sorted.
+/// A cell of a table: its text, and the number behind it, by which a column is sorted.
 struct TableCell {
   std::string text;
   std::optional<double> value;
-  bool weak = false;  ///< swallowed by the noise, or unknown: shown paler, and in words
+  bool weak = false;  ///< within the noise, or unknown: shown paler
 };
 
 /// A table as Markdown, CSV and the page show it.
 struct Table {
   std::string id;       ///< "table-1", unique
   std::string title;    ///< "Table 1: mean edge span"
-  std::string caption;  ///< what is measured, in a sentence or two
+  std::string caption;  ///< what is measured, one or two sentences
   std::vector<std::string> columns;
-  std::vector<std::vector<TableCell>> rows;  ///< the first cell heads the row
+  std::vector<std::vector<TableCell>> rows;  ///< the first cell is the row's head
 };
 
-/// The paper's tables with its figures beside ours, and those that go with them. Their ids:
+/// Returns the paper's tables, with its numbers next to ours, and further tables. Their ids:
 /// - table-1: edge spans, by mesh and order
 /// - table-2: seconds, by scenario and order, as the following
 /// - table-3: seconds saved over the reference
 /// - table-4: speedups in per cent with their intervals
-/// - break-even: what an order costs and the step at which that is paid
+/// - break-even: what an order costs and the step at which it pays off
 /// - phases: seconds of the parts of a step
-/// - motions: how far the motion in an order is from that in the first
+/// - motions: distance between the motion in an order and in the first order
 /// - misses-1, misses-2, …: simulated misses, one table for each cache hierarchy
 /// - kernels: predicted and measured speedups of the kernels, by mesh, kernel and order
-/// - machine, protocol: what it was measured on, and how
-/// In this order; those for which the results hold nothing are left out. A cell's value is the number in the
-/// results, or what follows from numbers there; its text is rounded.
+/// - machine, protocol: the machine, and how it was measured
+/// Tables for which the results hold no data are omitted. A cell's value is a number of the results or
+/// derived from them; its text is rounded.
 std::vector<Table> tables_of(const StudyResults& results);
 
-/// What the results say, in a few sentences for the top of the page and of tables.md: where the order pays
-/// and how much, where the noise swallows it, where it loses, how that compares with the paper. Made from the
-/// numbers alone.
-std::vector<std::string> findings_of(const StudyResults& results);
-
-/// All of them, one after another.
+/// Returns the tables as Markdown.
 std::string to_markdown(const std::vector<Table>& tables);
-/// One row for each cell: table,row,column,text,value. (RFC 4180)
+/// Returns the tables as CSV (RFC 4180), a line for each cell: table,row,column,text,value.
 std::string to_csv(const std::vector<Table>& tables);
-/// A table element with data-value attributes; text is escaped.
+/// Returns a table element with data-value attributes; text is escaped.
 std::string to_html(const Table& table);
 
 }  // namespace meshorder

@@ -1,7 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/support/json_value.hpp"
+#include "lab/support/json.hpp"
+
+#include "io/stream/output_file.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// What the parser says, without its own numbers and place.
+/// Returns the parser's message without its error number and position.
 std::string reason(std::string what) {
   for (const std::string_view mark : {"syntax error ", "] "}) {
     const std::size_t found = what.find(mark);
@@ -21,7 +24,7 @@ std::string reason(std::string what) {
   return what;
 }
 
-/// Throws where an object has a key twice, of which the parser would keep the last.
+/// Refuses a key that occurs twice in an object; the parser would keep the last.
 class UniqueKeys {
  public:
   explicit UniqueKeys(std::string file) : file_(std::move(file)) {}
@@ -41,10 +44,34 @@ class UniqueKeys {
   std::vector<std::set<std::string>> keys_;
 };
 
-std::string joined(std::span<const std::string_view> words) {
-  std::string result;
-  for (const std::string_view word : words) result += (result.empty() ? "" : ", ") + std::string(word);
-  return result;
+/// Characters up to which a value is written in one line.
+constexpr std::size_t kShort = 100;
+
+bool is_list_of_plain_values(const nlohmann::ordered_json& json) {
+  return json.is_array() && std::all_of(json.begin(), json.end(), [](const auto& item) {
+           return item.is_number() || item.is_boolean() || item.is_null();
+         });
+}
+
+void append(const nlohmann::ordered_json& json, std::size_t indentation, std::string& text) {
+  std::string in_one_line = json.dump();
+  if (!json.is_structured() || in_one_line.size() <= kShort || is_list_of_plain_values(json)) {
+    text += in_one_line;
+    return;
+  }
+  const bool object = json.is_object();
+  text += object ? '{' : '[';
+  bool first = true;
+  for (const auto& [key, value] : json.items()) {
+    text += first ? "\n" : ",\n";
+    text.append(indentation + 1, ' ');
+    if (object) text += nlohmann::ordered_json(key).dump() + ": ";
+    append(value, indentation + 1, text);
+    first = false;
+  }
+  text += '\n';
+  text.append(indentation, ' ');
+  text += object ? '}' : ']';
 }
 
 }  // namespace
@@ -56,9 +83,9 @@ nlohmann::json parse_json(std::string_view text, const std::string& file, std::s
   } catch (const nlohmann::json::parse_error& error) {
     const std::string_view before = text.substr(0, std::min(error.byte, text.size()));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-    throw Error(Location{file, line, -1}, "no JSON: " + reason(error.what()), remedy);
+    throw Error(Location{file, line, -1}, "not JSON: " + reason(error.what()), remedy);
   } catch (const nlohmann::json::exception& error) {
-    throw Error(file, "no JSON: " + reason(error.what()), remedy);
+    throw Error(file, "not JSON: " + reason(error.what()), remedy);
   }
 }
 
@@ -81,10 +108,10 @@ void JsonValue::expect_keys(std::initializer_list<std::string_view> known) const
 }
 
 void JsonValue::expect_keys(std::span<const std::string_view> known) const {
-  if (!value_->is_object()) throw error("is " + kind(), "an object {…} of " + joined(known) + " is needed");
+  if (!value_->is_object()) throw error("is " + kind(), "give an object {…} of " + join(known));
   for (const auto& [key, value] : value_->items()) {
     if (std::find(known.begin(), known.end(), key) == known.end())
-      throw error("the key '" + key + "' is unknown", "known are " + joined(known));
+      throw error("the key '" + key + "' is unknown", "known are " + join(known));
   }
 }
 
@@ -100,10 +127,10 @@ std::optional<JsonValue> JsonValue::find(std::string_view key) const {
   return at(*found, (path_.empty() ? "" : path_ + ".") + std::string(key));
 }
 
-std::vector<JsonValue> JsonValue::items(std::size_t least, std::size_t most) const {
+std::vector<JsonValue> JsonValue::items(std::size_t min, std::size_t max) const {
   if (!value_->is_array()) throw error("is " + kind(), "a list […] is needed");
-  if (value_->size() < least || value_->size() > most) {
-    const std::string wanted = least == most ? fmt::format("{}", least) : fmt::format("at least {}", least);
+  if (value_->size() < min || value_->size() > max) {
+    const std::string wanted = min == max ? fmt::format("{}", min) : fmt::format("at least {}", min);
     throw error(fmt::format("has {} entries", value_->size()), "give " + wanted);
   }
   std::vector<JsonValue> result;
@@ -125,27 +152,27 @@ std::string JsonValue::text() const {
 double JsonValue::number(const NumberRange& range) const {
   if (!value_->is_number()) throw error("is " + kind(), "a number is needed");
   const auto result = value_->get<double>();
-  const bool above = range.least_open ? result > range.least : result >= range.least;
-  const bool below = range.most_open ? result < range.most : result <= range.most;
+  const bool above = range.min_open ? result > range.min : result >= range.min;
+  const bool below = range.max_open ? result < range.max : result <= range.max;
   if (!std::isfinite(result) || !above || !below) {
     std::string wanted;
-    if (range.least > std::numeric_limits<double>::lowest())
-      wanted = fmt::format("{} {}", range.least_open ? "above" : "at least", range.least);
-    if (range.most < std::numeric_limits<double>::max())
-      wanted += fmt::format("{}{} {}", wanted.empty() ? "" : " and ", range.most_open ? "below" : "at most",
-                            range.most);
+    if (range.min > std::numeric_limits<double>::lowest())
+      wanted = fmt::format("{} {}", range.min_open ? "above" : "at least", range.min);
+    if (range.max < std::numeric_limits<double>::max())
+      wanted += fmt::format("{}{} {}", wanted.empty() ? "" : " and ", range.max_open ? "below" : "at most",
+                            range.max);
     throw error("is " + value_->dump(), "it must be " + (wanted.empty() ? "finite" : wanted));
   }
   return result;
 }
 
-std::int64_t JsonValue::whole(std::int64_t least, std::int64_t most) const {
-  const std::string wanted = fmt::format("a whole number from {} to {} is needed", least, most);
+std::int64_t JsonValue::whole(std::int64_t min, std::int64_t max) const {
+  const std::string wanted = fmt::format("a whole number from {} to {} is needed", min, max);
   if (!value_->is_number_integer()) throw error("is " + kind(), wanted);
   const bool fits =
       !value_->is_number_unsigned() || std::in_range<std::int64_t>(value_->get<std::uint64_t>());
   const auto result = value_->get<std::int64_t>();
-  if (!fits || result < least || result > most) throw error("is " + kind(), wanted);
+  if (!fits || result < min || result > max) throw error("is " + kind(), wanted);
   return result;
 }
 
@@ -157,6 +184,18 @@ bool JsonValue::truth() const {
 Point JsonValue::vector() const {
   const std::vector<JsonValue> numbers = items(3, 3);
   return {numbers[0].number(), numbers[1].number(), numbers[2].number()};
+}
+
+std::string json_text(const nlohmann::ordered_json& json) {
+  std::string text;
+  append(json, 0, text);
+  return text + "\n";
+}
+
+void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path) {
+  OutputFile file(path);
+  file.write(json_text(json));
+  file.commit();
 }
 
 }  // namespace meshorder

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/support/child_process.hpp"
+#include "lab/support/process.hpp"
 
 #include "base/error.hpp"
 
@@ -32,9 +32,9 @@ TEST(ChildProcess, TellsHowItEnded) {
       return std::string(error.what());
     }
   };
-  EXPECT_EQ(complaint("exit 3"), "/bin/sh: a process of it ended with status 3; is there enough memory?");
+  EXPECT_EQ(complaint("exit 3"), "/bin/sh: a child process ended with status 3; is there enough memory?");
   EXPECT_EQ(complaint("kill -9 $$"),
-            "/bin/sh: a process of it was ended by a signal: Killed; is there enough memory?");
+            "/bin/sh: a child process was ended by a signal: Killed; is there enough memory?");
   EXPECT_EQ(complaint("echo done; exit 1"), "done");
 }
 

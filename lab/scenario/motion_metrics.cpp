@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/scenario/shape.hpp"
+#include "lab/scenario/motion_metrics.hpp"
 
+#include "base/error.hpp"
 #include "kernels/rotation.hpp"
 
 #include <algorithm>
@@ -16,6 +17,10 @@ Point mean(std::span<const Point> points, std::span<const Index> vertices) {
   }
   for (double& x : sum) x /= static_cast<double>(vertices.size());
   return sum;
+}
+
+double distance(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+  return std::hypot(double{a[0]} - double{b[0]}, double{a[1]} - double{b[1]}, double{a[2]} - double{b[2]});
 }
 
 }  // namespace
@@ -43,6 +48,20 @@ double distance_from_shape(std::span<const Point> rest, std::span<const Point> p
     largest = std::max(largest, squared);
   }
   return std::sqrt(largest);
+}
+
+MotionDifference difference_of(const Motion& motion, const Motion& reference, double longest_side) {
+  if (motion.vertices != reference.vertices || motion.frames.size() != reference.frames.size())
+    throw InvalidArgument("motions of different bodies, or with different frames, cannot be compared");
+  MotionDifference difference;
+  for (std::size_t frame = 0; frame < motion.frames.size(); ++frame) {
+    double largest = 0;
+    for (std::size_t v = 0; v < motion.frames[frame].size(); ++v)
+      largest = std::max(largest, distance(motion.frames[frame][v], reference.frames[frame][v]));
+    difference.by_frame.push_back(largest / longest_side);
+    difference.largest = std::max(difference.largest, difference.by_frame.back());
+  }
+  return difference;
 }
 
 }  // namespace meshorder

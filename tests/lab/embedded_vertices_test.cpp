@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/scenario/followers.hpp"
+#include "lab/scenario/embedded_vertices.hpp"
 
 #include "support/sample_meshes.hpp"
 
@@ -33,14 +33,14 @@ Mesh straight_quadratic() {
   return mesh;
 }
 
-TEST(Followers, NodesOfStraightEdgesAreTheMeanOfTheEnds) {
+TEST(EmbeddedVertices, NodesOfStraightEdgesAreTheMeanOfTheEnds) {
   const Mesh mesh = straight_quadratic();
-  const std::vector<Follower> found = followers(mesh, cut_into_simplices(mesh));
+  const std::vector<EmbeddedVertex> found = embed_vertices(mesh, cut_into_simplices(mesh));
   ASSERT_EQ(found.size(), 9U);  // 9 edges
-  for (const Follower& follower : found) {
-    EXPECT_GE(follower.vertex, 5);
-    EXPECT_LT(follower.vertex, 14);
-    std::array<double, 4> sorted = follower.weights;
+  for (const EmbeddedVertex& entry : found) {
+    EXPECT_GE(entry.vertex, 5);
+    EXPECT_LT(entry.vertex, 14);
+    std::array<double, 4> sorted = entry.weights;
     std::sort(sorted.begin(), sorted.end());
     EXPECT_NEAR(sorted[0], 0.0, 1e-15);
     EXPECT_NEAR(sorted[1], 0.0, 1e-15);
@@ -48,13 +48,13 @@ TEST(Followers, NodesOfStraightEdgesAreTheMeanOfTheEnds) {
     EXPECT_NEAR(sorted[3], 0.5, 1e-15);
     for (std::size_t c = 0; c < 3; ++c) {
       double mean = 0.0;
-      for (std::size_t i = 0; i < 4; ++i) mean += follower.weights[i] * mesh.points[follower.corners[i]][c];
-      EXPECT_NEAR(mean, mesh.points[follower.vertex][c], 1e-15);
+      for (std::size_t i = 0; i < 4; ++i) mean += entry.weights[i] * mesh.points[entry.corners[i]][c];
+      EXPECT_NEAR(mean, mesh.points[entry.vertex][c], 1e-15);
     }
   }
 }
 
-TEST(Followers, AreAllOtherNodesOfVolumeCellsAndGoAlongAffineMotions) {
+TEST(EmbeddedVertices, AreAllOtherNodesOfVolumeCellsAndGoAlongAffineMotions) {
   const Mesh mesh = test::mixed_mesh();
   const Simplices simplices = cut_into_simplices(mesh);
   std::vector<char> expected(mesh.points.size(), 0);
@@ -63,23 +63,23 @@ TEST(Followers, AreAllOtherNodesOfVolumeCellsAndGoAlongAffineMotions) {
     for (const Index v : mesh.cells[cell]) expected[v] = 1;
   }
   for (const Index v : simplices.vertices) expected[v] = 0;
-  const std::vector<Follower> found = followers(mesh, simplices);
+  const std::vector<EmbeddedVertex> found = embed_vertices(mesh, simplices);
   EXPECT_EQ(static_cast<long>(found.size()), std::count(expected.begin(), expected.end(), 1));
   EXPECT_GT(found.size(), 10U);
-  for (const Follower& follower : found) {
-    EXPECT_EQ(expected[follower.vertex], 1);
-    EXPECT_NEAR(std::accumulate(follower.weights.begin(), follower.weights.end(), 0.0), 1.0, 1e-12);
+  for (const EmbeddedVertex& entry : found) {
+    EXPECT_EQ(expected[entry.vertex], 1);
+    EXPECT_NEAR(std::accumulate(entry.weights.begin(), entry.weights.end(), 0.0), 1.0, 1e-12);
     for (std::size_t c = 0; c < 3; ++c) {
       double mean = 0.0;
-      for (std::size_t i = 0; i < 4; ++i) mean += follower.weights[i] * mesh.points[follower.corners[i]][c];
-      EXPECT_NEAR(mean, mesh.points[follower.vertex][c], 1e-9);
+      for (std::size_t i = 0; i < 4; ++i) mean += entry.weights[i] * mesh.points[entry.corners[i]][c];
+      EXPECT_NEAR(mean, mesh.points[entry.vertex][c], 1e-9);
     }
   }
 }
 
-TEST(Followers, LinearMeshesHaveNone) {
+TEST(EmbeddedVertices, LinearMeshesHaveNone) {
   const Mesh mesh = test::tetrahedral_bar(2);
-  EXPECT_TRUE(followers(mesh, cut_into_simplices(mesh)).empty());
+  EXPECT_TRUE(embed_vertices(mesh, cut_into_simplices(mesh)).empty());
 }
 
 }  // namespace

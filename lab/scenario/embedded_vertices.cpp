@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/scenario/followers.hpp"
+#include "lab/scenario/embedded_vertices.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,10 +29,10 @@ std::array<double, 4> weights_of(const Point& at, const std::array<Point, 4>& co
 
 }  // namespace
 
-std::vector<Follower> followers(const Mesh& mesh, const Simplices& simplices) {
+std::vector<EmbeddedVertex> embed_vertices(const Mesh& mesh, const Simplices& simplices) {
   std::vector<char> is_corner(mesh.points.size(), 0);
   for (const Index v : simplices.vertices) is_corner[v] = 1;
-  std::vector<Follower> found(mesh.points.size());
+  std::vector<EmbeddedVertex> found(mesh.points.size());
   std::vector<double> depth(mesh.points.size(), -std::numeric_limits<double>::infinity());
   for (Offset s = 0; s < simplices.size(); ++s) {
     std::array<Index, 4> corners{};
@@ -48,22 +48,23 @@ std::vector<Follower> followers(const Mesh& mesh, const Simplices& simplices) {
       found[v] = {v, corners, weights};
     }
   }
-  std::vector<Follower> result;
+  std::vector<EmbeddedVertex> result;
   for (std::size_t v = 0; v < found.size(); ++v) {
     if (std::isfinite(depth[v])) result.push_back(found[v]);
   }
   return result;
 }
 
-void carry(const std::vector<Follower>& followers, std::span<const Point> rest, MotionState& state) {
-  for (const Follower& follower : followers) {
-    Point& position = state.positions[follower.vertex];
-    position = rest[follower.vertex];
+void move_embedded(const std::vector<EmbeddedVertex>& embedded, std::span<const Point> rest,
+                   MotionState& state) {
+  for (const EmbeddedVertex& entry : embedded) {
+    Point& position = state.positions[entry.vertex];
+    position = rest[entry.vertex];
     for (std::size_t i = 0; i < 4; ++i) {
-      const Index corner = follower.corners[i];
+      const Index corner = entry.corners[i];
       for (std::size_t c = 0; c < 3; ++c) {
-        position[c] += follower.weights[i] * (state.positions[corner][c] - rest[corner][c]);
-        state.velocities[follower.vertex][c] += follower.weights[i] * state.velocities[corner][c];
+        position[c] += entry.weights[i] * (state.positions[corner][c] - rest[corner][c]);
+        state.velocities[entry.vertex][c] += entry.weights[i] * state.velocities[corner][c];
       }
     }
   }

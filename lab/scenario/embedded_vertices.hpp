@@ -1,0 +1,32 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/simplices.hpp"
+#include "lab/motion/integrator.hpp"
+#include "mesh/mesh.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// A vertex that is no corner of a tetrahedron, and the tetrahedron with which it moves. Its position at rest
+/// is the weighted mean of the corners; the weights add up to 1.
+struct EmbeddedVertex {
+  Index vertex = 0;
+  std::array<Index, 4> corners{};
+  std::array<double, 4> weights{};
+};
+
+/// Embeds the nodes on edges, on faces and inside of volume cells: each in the tetrahedron of its cells that
+/// it lies deepest in, the first of several. `simplices` are the mesh's tetrahedra. Vertices that belong to
+/// no volume cell, or only to flat ones, are not embedded. O(tetrahedra · nodes of a cell).
+std::vector<EmbeddedVertex> embed_vertices(const Mesh& mesh, const Simplices& simplices);
+
+/// Sets positions and velocities of embedded vertices from those of the corners. `rest` are the positions of
+/// all vertices at rest. O(embedded vertices).
+void move_embedded(const std::vector<EmbeddedVertex>& embedded, std::span<const Point> rest,
+                   MotionState& state);
+
+}  // namespace meshorder

@@ -1,0 +1,112 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/machine.hpp"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+
+namespace meshorder {
+namespace {
+
+/// Returns the caches of those sizes that are larger than all before them, cut to whole lines.
+Caches ascending(const std::vector<Offset>& sizes) {
+  Caches caches;
+  Offset largest = 0;
+  for (const Offset size : sizes) {
+    const Offset whole_lines = size - size % kLineBytes;
+    if (whole_lines <= largest) continue;
+    caches.level_bytes.push_back(whole_lines);
+    largest = whole_lines;
+  }
+  return caches;
+}
+
+Caches caches_in_sysfs() {
+  std::map<int, Offset> size_of_level;
+  for (int i = 0;; ++i) {
+    const std::string folder = "/sys/devices/system/cpu/cpu0/cache/index" + std::to_string(i) + "/";
+    std::ifstream level_file(folder + "level"), type_file(folder + "type"), size_file(folder + "size");
+    int level = 0;
+    std::string type;
+    Offset kilobytes = 0;  // Linux writes "48K"
+    if (!(level_file >> level) || !(type_file >> type) || !(size_file >> kilobytes)) break;
+    if (type != "Instruction") size_of_level[level] = kilobytes << 10;
+  }
+  std::vector<Offset> sizes;
+  sizes.reserve(size_of_level.size());
+  for (const auto& [level, size] : size_of_level) sizes.push_back(size);
+  return ascending(sizes);
+}
+
+Caches caches_in_sysconf() {
+  std::vector<Offset> sizes;
+#ifdef _SC_LEVEL1_DCACHE_SIZE
+  for (const int name : {_SC_LEVEL1_DCACHE_SIZE, _SC_LEVEL2_CACHE_SIZE, _SC_LEVEL3_CACHE_SIZE}) {
+    sizes.push_back(sysconf(name));
+  }
+#endif
+  return ascending(sizes);
+}
+
+/// Returns the hardware threads of a processor's core as the system lists them: the same text for all of
+/// them.
+std::string core_of(int processor) {
+  std::ifstream in("/sys/devices/system/cpu/cpu" + std::to_string(processor) +
+                   "/topology/thread_siblings_list");
+  std::string siblings;
+  return std::getline(in, siblings) ? siblings : std::to_string(processor);
+}
+
+}  // namespace
+
+Caches caches_of_this_machine() {
+  Caches caches = caches_in_sysfs();
+  if (caches.level_bytes.empty()) caches = caches_in_sysconf();
+  if (caches.level_bytes.empty()) caches = parse_cache_sizes("32K,512K,16M");
+  return caches;
+}
+
+Caches caches_of_the_paper() { return parse_cache_sizes("32K,256K,10M"); }
+
+Caches parse_caches(std::string_view text) {
+  if (text.empty() || text == "this") return caches_of_this_machine();
+  return text == "paper" ? caches_of_the_paper() : parse_cache_sizes(text);
+}
+
+std::size_t memory_of_this_machine() {
+  const auto physical =
+      static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  std::size_t limit = 0;
+  std::ifstream control_group("/sys/fs/cgroup/memory.max");
+  return control_group >> limit ? std::min(limit, physical) : physical;
+}
+
+std::vector<int> choose_processors(int threads) {
+  cpu_set_t allowed;
+  if (::sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return {};
+  std::vector<int> firsts, others;  // the first of each core, then the rest
+  std::set<std::string> cores;
+  for (int processor = CPU_SETSIZE - 1; processor >= 0; --processor) {
+    if (!CPU_ISSET(static_cast<std::size_t>(processor), &allowed)) continue;
+    (cores.insert(core_of(processor)).second ? firsts : others).push_back(processor);
+  }
+  firsts.insert(firsts.end(), others.begin(), others.end());
+  if (static_cast<int>(firsts.size()) < threads) return {};
+  firsts.resize(static_cast<std::size_t>(threads));
+  std::sort(firsts.begin(), firsts.end());
+  return firsts;
+}
+
+bool bind_to(const std::vector<int>& processors) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (const int processor : processors) CPU_SET(static_cast<std::size_t>(processor), &set);
+  return ::sched_setaffinity(0, sizeof(set), &set) == 0;
+}
+
+}  // namespace meshorder

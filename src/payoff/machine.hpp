@@ -1,0 +1,36 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "metrics/cache.hpp"
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace meshorder {
+
+/// Returns the data caches of this machine's first processor, as Linux or the C library reports them; 32K,
+/// 512K and 16M if neither does.
+Caches caches_of_this_machine();
+
+/// Returns the caches of the Intel Xeon E5-1620 v4, on which the paper measured: 32 KB, 256 KB and 10 MB.
+Caches caches_of_the_paper();
+
+/// Returns this machine's caches for "this" or "", the paper's for "paper", else those that parse_cache_sizes
+/// reads. Throws InvalidArgument as that does.
+Caches parse_caches(std::string_view text);
+
+/// Returns the physical memory in bytes, or the limit in /sys/fs/cgroup/memory.max if that is smaller (in
+/// containers).
+std::size_t memory_of_this_machine();
+
+/// Returns processors to bind `threads` threads to, ascending: the last ones that this process may use, one a
+/// core as long as there are enough cores; systems tend to serve interrupts on the first. Empty if the system
+/// does not report its processors or has fewer than `threads`.
+std::vector<int> choose_processors(int threads);
+
+/// Binds this process, and all processes that it starts later, to the processors. Returns false if the system
+/// refuses.
+bool bind_to(const std::vector<int>& processors);
+
+}  // namespace meshorder
