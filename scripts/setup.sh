@@ -9,7 +9,6 @@ packages_to_run=(
   build-essential      "C++ compiler"
   cmake                "configures the build"
   ninja-build          "runs the build"
-  gnuplot-nox          "the figures of a study"
   libcli11-dev         "command line"
   libeigen3-dev        "dense linear algebra"
   libfmt-dev           "text"
@@ -29,6 +28,7 @@ packages_to_run=(
   tetgen               "fills the surfaces with tetrahedra"
   gnuplot-nox          "draws the figures of a study"
 )
+# shellcheck disable=SC2034  # for ./test
 packages_to_test=(
   "${packages_to_run[@]}"
   libgtest-dev         "unit tests"
@@ -46,6 +46,14 @@ packages_to_test=(
   fonts-dejavu-core    "letters for the browser"
   clang-format         "checks the layout of the sources"
   clang-tidy           "looks for mistakes in the sources"
+)
+# ./test does the same without them, in more time
+# shellcheck disable=SC2034  # for ./test
+packages_for_speed=(
+  ccache               "compiles only once what has not changed, in whichever folder"
+  libclang-dev         "a plugin that makes clang-tidy several times as fast"
+  llvm-dev             "headers for that plugin"
+  python3-pytest-xdist "several end-to-end tests at a time"
 )
 
 die() { printf '%s\n' "$*" >&2; exit 1; }
@@ -101,6 +109,12 @@ build_jobs() {
   echo $((cores < memory ? cores : memory))
 }
 
+# What was compiled in one checkout is found again in another: paths in it are taken relative to the checkout, also those
+# of debug information. With a precompiled header, ccache can see neither unused macros nor __TIME__ within it; a new
+# checkout gives old headers new times.
+export CCACHE_BASEDIR CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+CCACHE_BASEDIR=$(pwd -P)
+
 # configure FOLDER OPTION…: ninja itself runs CMake again when a CMake file changed
 configure() {
   local folder=$1 launcher=()
@@ -114,19 +128,9 @@ configure() {
 # build FOLDER TARGET…
 build() { ninja -C "$1" -j "$(build_jobs)" "${@:2}"; }
 
-# all sources of ours, each ended by a zero byte
-sources() { find include src lab apps tests benchmarks -name '*.[ch]pp' -print0; }
-
-# tidy FOLDER: clang-tidy over what is built there, but for the tests and the CGAL tool. A file that passed is
-# looked at again when it, a header or the checks change.
-tidy() {
-  local folder=$1 newest
-  newest=$(find .clang-tidy src lab apps \( -name '*.hpp' -o -name .clang-tidy \) -printf '%T@ %p\n' | sort -n | tail -n 1 | cut -d' ' -f2-)
-  mkdir -p "$folder/tidy"
-  # shellcheck disable=SC2016  # the inner shell's variables
-  find src lab apps/meshorder -name '*.cpp' -print0 | sort -z | xargs -0 -P "$(build_jobs)" -I {} bash -c '
-    passed=$1/tidy/${2//\//.}
-    [ "$passed" -nt "$2" ] && [ "$passed" -nt "$3" ] && exit 0
-    if found=$(clang-tidy --quiet -p "$1" "$2" 2>&1); then touch "$passed"; else printf "%s\n" "$found"; exit 1; fi
-  ' _ "$folder" {} "$newest"
+# sources FOLDER…: all sources of ours in those folders that exist, each ended by a zero byte
+sources() {
+  local folder folders=()
+  for folder in "$@"; do [ ! -d "$folder" ] || folders+=("$folder"); done
+  find "${folders[@]}" -name '*.[ch]pp' -print0
 }

@@ -1,0 +1,180 @@
+#!/usr/bin/env python3
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Runs clang-tidy over the project's own sources of a finished build, and over each only once.
+
+    tidy.py BUILD JOBS [WORD…]    with words: only files whose path has one of them
+
+A file that passed leaves a stamp, named by all that clang-tidy saw: the file, its headers, its flags, the checks and
+clang-tidy itself. As long as that stays the same, in whichever checkout, the file is not looked at again. Stamps lie
+in ccache's folder: whoever keeps that from one machine to the next keeps them too.
+"""
+import concurrent.futures
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+HERE = pathlib.Path(__file__).resolve().parent
+# tests may be careless, and CGAL is nobody's style
+LEFT_OUT = re.compile(r"^(tests|benchmarks|apps/meshorder-models)/")
+DAYS_KEPT = 30
+
+
+def output(*command):
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+def stamps_folder():
+    if shutil.which("ccache"):
+        kept = pathlib.Path(output("ccache", "--get-config", "cache_dir").strip())
+    else:
+        kept = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache")
+    folder = kept / "meshorder-tidy"
+    folder.mkdir(parents=True, exist_ok=True)
+    for stamp in folder.iterdir():
+        if time.time() - stamp.stat().st_mtime > DAYS_KEPT * 86400:
+            stamp.unlink(missing_ok=True)
+    return folder
+
+
+def flags(entry):
+    """What of a compile command matters to clang-tidy. GCC's precompiled header is none for clang, and no file may
+    need it."""
+    words = shlex.split(entry["command"])
+    while os.path.basename(words[0]).startswith(("ccache", "c++", "g++", "clang++")):
+        words.pop(0)
+    kept = []
+    while words:
+        word = words.pop(0)
+        if word in ("-o", "-c", "-MF", "-MT"):
+            words.pop(0)
+        elif word == "-include" and "cmake_pch" in words[0]:
+            words.pop(0)
+        elif word not in ("-Winvalid-pch", "-fpch-preprocess", "-MD"):
+            kept.append(word)
+    return kept
+
+
+def headers_by_object(build):
+    """What ninja knows: for each object the files that its compiler has read, less those of a precompiled header."""
+    found, current = {}, None
+    for line in output("ninja", "-C", str(build), "-t", "deps").splitlines():
+        if line.startswith("    ") and current is not None:
+            current.append(os.path.normpath(build / line.strip()))
+        elif ": #deps" in line:
+            name, state = line.split(": #deps")
+            current = found[name] = [] if "(VALID)" in state else None
+    return found
+
+
+def headers_of(entry, by_object):
+    """None where ninja does not know them all."""
+    words = shlex.split(entry["command"])
+    objects = [entry.get("output") or words[words.index("-o") + 1]]
+    objects += [f"{after}.gch" for word, after in zip(words, words[1:]) if word == "-include" and "cmake_pch" in after]
+    known = [by_object.get(os.path.relpath(os.path.join(entry["directory"], name), entry["directory"])) for name in objects]
+    return None if None in known else {path for paths in known for path in paths if "cmake_pch" not in path}
+
+
+class Fingerprints:
+    """Of a file of ours its content counts, of another its name, size and age: packages keep a file's age."""
+
+    def __init__(self):
+        self.known = {}
+
+    def __call__(self, path):
+        if path not in self.known:
+            own = pathlib.Path(path).is_relative_to(ROOT)
+            if own:
+                what = (os.path.relpath(path, ROOT), hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest())
+            else:
+                status = os.stat(path)
+                what = (path, status.st_size, int(status.st_mtime))
+            self.known[path] = repr(what)
+        return self.known[path]
+
+
+def key(entry, headers, fingerprint, general):
+    """Names the stamp of a file."""
+    folders = [ROOT, *(p for p in pathlib.Path(entry["file"]).parents if p.is_relative_to(ROOT))]
+    checks = {str(folder / ".clang-tidy") for folder in folders if (folder / ".clang-tidy").exists()}
+    seen = [general, os.path.relpath(entry["file"], ROOT), shlex.join(flags(entry)).replace(str(ROOT), ".")]
+    seen += [fingerprint(path) for path in sorted(checks | headers | {entry["file"]})]
+    return hashlib.sha256("\n".join(seen).encode()).hexdigest()
+
+
+def plugin(build):
+    """Builds own_code.cpp and returns the options that make clang-tidy use it: none where clang's headers are
+    missing or fit not, for the findings are the same without."""
+    installed = pathlib.Path(shutil.which("clang-tidy")).resolve().parents[1]
+    module, log = build / "tidy" / "own_code.so", build / "tidy" / "own_code.log"
+    module.parent.mkdir(exist_ok=True)
+    launcher = ["ccache"] if shutil.which("ccache") else []
+    compile_it = [*launcher, "c++", "-std=c++17", "-O1", "-fPIC", "-fno-rtti", "-w", "-isystem", installed / "include", "-c",
+                  HERE / "own_code.cpp", "-o", module.with_suffix(".o")]
+    link_it = ["c++", "-shared", module.with_suffix(".o"), "-o", module]
+    options = [f"--load={module}", "--checks=meshorder-own-code"]
+    with open(log, "w", encoding="utf-8") as said:
+        for command in (compile_it, link_it, ["clang-tidy", *options, "--list-checks"]):
+            if subprocess.run(command, stdout=said, stderr=said, check=False).returncode != 0:
+                print(f"clang-tidy takes several times as long without its plugin: see {log}", flush=True)
+                return []
+    return options
+
+
+def look_at(entry, options, stamp):
+    """Returns what clang-tidy found: nothing, if all is well."""
+    done = subprocess.run(["clang-tidy", "--quiet", *options, entry["file"], "--", *flags(entry)],
+                          cwd=entry["directory"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    if done.returncode == 0:
+        if stamp:
+            stamp.touch()
+        return ""
+    return done.stdout or f"{entry['file']}: clang-tidy ended with {done.returncode}"
+
+
+def main():
+    build, jobs, words = pathlib.Path(sys.argv[1]).resolve(), int(sys.argv[2]), sys.argv[3:]
+    entries = {}
+    for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
+        path = pathlib.Path(entry["file"])
+        if path.is_relative_to(ROOT) and not path.is_relative_to(build):
+            name = str(path.relative_to(ROOT))
+            if not LEFT_OUT.match(name) and (not words or any(word in name for word in words)):
+                entries[name] = entry
+    by_object, fingerprint, folder = headers_by_object(build), Fingerprints(), stamps_folder()
+    general = output("clang-tidy", "--version") + fingerprint(str(HERE / "tidy.py")) + fingerprint(str(HERE / "own_code.cpp"))
+
+    todo = []
+    for name, entry in sorted(entries.items()):
+        headers = headers_of(entry, by_object)
+        stamp = folder / key(entry, headers, fingerprint, general) if headers else None
+        if stamp and stamp.exists():
+            stamp.touch()
+        else:
+            todo.append((name, entry, stamp))
+    print(f"{len(entries) - len(todo)} of {len(entries)} files have passed before", flush=True)
+    if not todo:
+        return 0
+
+    options, failed = plugin(build), 0
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        for number, found in enumerate(pool.map(lambda job: look_at(job[1], options, job[2]), todo), 1):
+            if found:
+                failed += 1
+                print(found, flush=True)
+            elif number % 25 == 0:
+                print(f"{number} of {len(todo)} looked at", flush=True)
+    print(f"{len(todo) - failed} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
