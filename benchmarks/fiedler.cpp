@@ -38,15 +38,15 @@ double median_milliseconds(Work work) {
 
 /// Both numbers of threads in turn, so that a machine that changes its pace changes it for both.
 void measure(const CsrGraph& graph, double tolerance) {
-  FiedlerResult result;
+  FiedlerVectors result;
   std::array<double, 2> milliseconds{};
   for (const int threads : {1, 2}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     milliseconds[threads - 1] =
-        median_milliseconds([&] { result = fiedler_vector(graph, {.tolerance = tolerance}); });
+        median_milliseconds([&] { result = fiedler_vectors(graph, {.tolerance = tolerance}); });
   }
   const FiedlerComponent& largest = result.components.front();
-  const Ordering order = order_vertices("fiedler", {graph, {}}, {.tolerance = tolerance});
+  const Order order = order_graph("fiedler", {graph, {}}, {.tolerance = tolerance});
   fmt::print(
       "  tolerance {:<7g} {:8.1f} ms, two threads {:8.1f} ms ({:.2f}x) {:3} iterations  lambda2 {:.6e}  "
       "residual/lambda2 {:.2g}{}  mean span {:.1f}\n",
@@ -70,7 +70,7 @@ void report(const std::string& name) {
     graph_milliseconds = median_milliseconds([&] { graph = vertex_graph(mesh); });
   }
   const PeakMemory memory;
-  (void)fiedler_vector(graph);
+  (void)fiedler_vectors(graph);
   const double graph_bytes =
       static_cast<double>(sizeof(Offset) * graph.offsets.size() + sizeof(Index) * graph.neighbours.size());
   fmt::print(

@@ -22,7 +22,7 @@ using namespace meshorder;
 void report(const std::string& name, const CsrGraph& graph, std::optional<double> exact = {},
             const std::vector<double>& weights = {}) {
   const Stopwatch stopwatch;
-  const FiedlerResult result = weights.empty() ? fiedler_vector(graph) : fiedler_vector(graph, weights);
+  const FiedlerVectors result = weights.empty() ? fiedler_vectors(graph) : fiedler_vectors(graph, weights);
   const double seconds = stopwatch.seconds();
   const FiedlerComponent& largest = result.components.front();
   int unfinished = 0;

@@ -43,7 +43,7 @@ void measure(bool of_vertices, const std::string& method, const std::string& fil
   double seconds = 0;
   if (of_vertices) {
     const mo::Stopwatch stopwatch;
-    (void)mo::order_vertices(method, {graph, mesh.points});
+    (void)mo::order_graph(method, {graph, mesh.points});
     seconds = stopwatch.seconds();
   } else {
     seconds = mo::compute_reordering(mesh, graph, {.vertices = "hilbert", .elements = method, .ordering = {}})

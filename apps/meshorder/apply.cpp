@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "console.hpp"
@@ -8,6 +7,7 @@
 #include "maps.hpp"
 #include "mesh/reorder.hpp"
 #include "progress.hpp"
+#include <meshorder/error.hpp>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -44,7 +44,7 @@ void run(const ApplyArguments& arguments) {
   try {
     apply_reordering(mesh, maps.vertices, maps.cells);
   } catch (const InvalidArgument& error) {
-    throw Error(arguments.input, error.what(), "give the maps that were written with this mesh");
+    throw InputError(arguments.input, error.what(), "give the maps that were written with this mesh");
   }
   if (arguments.inverse) {
     // the ids that the file had before it was ordered

@@ -61,7 +61,7 @@ void add_common(CLI::App& subcommand, Common& common) {
       ->capture_default_str();
 }
 
-void add_ordering_options(CLI::App& subcommand, OrderingOptions& options) {
+void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
   subcommand
       .add_option_function<std::string>(
           "--for", [&options](const std::string& use) { options.use = parse_workload(use); },

@@ -54,7 +54,7 @@ void add_report(CLI::App& app);
 void add_common(CLI::App& subcommand, Common& common);
 
 /// Adds --for, --seed and --tolerance.
-void add_ordering_options(CLI::App& subcommand, OrderingOptions& options);
+void add_ordering_options(CLI::App& subcommand, OrderOptions& options);
 
 /// Adds --cache, whose value parse_caches reads.
 void add_cache_option(CLI::App& subcommand, std::string& caches);

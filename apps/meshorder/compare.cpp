@@ -30,14 +30,14 @@ namespace {
 struct CompareArguments : Common {
   std::string input;
   std::vector<std::string> methods;
-  OrderingOptions ordering;
+  OrderOptions ordering;
   double budget_seconds = TimingOptions{}.budget_seconds;
   std::string caches;  ///< empty: this machine's, unless that takes long
 };
 
 std::vector<std::string> default_methods() {
   std::vector<std::string> names;
-  for (const VertexMethod& method : vertex_methods()) {
+  for (const MethodInfo& method : vertex_methods()) {
     if (method.name != "auto") names.emplace_back(method.name);  // auto chooses one of the others
   }
   names.insert(std::find(names.begin(), names.end(), "fiedler") + 1, "fiedler/fiedler");

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "command.hpp"
+#include <meshorder/error.hpp>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>

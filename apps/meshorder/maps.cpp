@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "maps.hpp"
 
-#include "base/error.hpp"
 #include "io/npy.hpp"
+#include <meshorder/error.hpp>
 
 #include <filesystem>
 
@@ -34,8 +34,8 @@ std::vector<std::int64_t> read_ids(const std::string& path, Index count) {
   if (!std::filesystem::exists(path)) return {};
   std::vector<std::int64_t> ids = read_npy(path);
   if (index_size(ids) != count) {
-    throw Error(path, "has " + std::to_string(ids.size()) + " numbers for " + std::to_string(count),
-                "give the maps that were written with this mesh");
+    throw InputError(path, "has " + std::to_string(ids.size()) + " numbers for " + std::to_string(count),
+                     "give the maps that were written with this mesh");
   }
   return ids;
 }

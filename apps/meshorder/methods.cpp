@@ -14,13 +14,14 @@ namespace {
 template <class Methods>
 nlohmann::ordered_json list_json(const Methods& methods) {
   auto list = nlohmann::ordered_json::array();
-  for (const auto& method : methods) list.push_back({{"name", method.name}, {"sentence", method.sentence}});
+  for (const auto& method : methods)
+    list.push_back({{"name", method.name}, {"sentence", method.description}});
   return list;
 }
 
 template <class Methods>
 void list_text(const Console& console, const Methods& methods) {
-  for (const auto& method : methods) console.print("  {:<14} {}", method.name, method.sentence);
+  for (const auto& method : methods) console.print("  {:<14} {}", method.name, method.description);
 }
 
 void run(const Common& common) {

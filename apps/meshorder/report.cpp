@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "command.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
@@ -12,6 +11,7 @@
 #include "progress.hpp"
 #include "verdict.hpp"
 #include "wording.hpp"
+#include <meshorder/error.hpp>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ struct ReportArguments : Common {
   std::vector<std::string> inputs;
   std::string output;  ///< empty: report.html, or report.html in the study's folder
   double budget_seconds = TimingOptions{}.budget_seconds;
-  OrderingOptions ordering;
+  OrderOptions ordering;
 };
 
 constexpr std::string_view kAsItIs = "original";
@@ -96,8 +96,8 @@ void add_mesh(Page& page, const std::string& file, const ReportArguments& argume
   progress.stage("reading " + file, from, from + 0.1 * (to - from));
   const Mesh mesh = read_mesh(file, &notes);
   if (mesh.cells.highest_dimension() < 2)
-    throw Error(file, "has neither volume cells nor a surface to show",
-                "give a mesh with cells of two or three dimensions");
+    throw InputError(file, "has neither volume cells nor a surface to show",
+                     "give a mesh with cells of two or three dimensions");
   const std::string name = unique_name(file, page.results.meshes);
   MeshStudyOptions options;
   options.ordering = arguments.ordering;
@@ -163,8 +163,8 @@ void report_on_study(const Console& console, const ReportArguments& arguments) {
         "-o is for a report on meshes; a study's report is written into the study's folder");
   const StudyFolder folder(arguments.inputs.front());
   if (!fs::exists(folder.results()))
-    throw Error(folder.root().string(), "holds no results.json",
-                "name the folder of a study that `meshorder reproduce` made, or mesh files");
+    throw InputError(folder.root().string(), "holds no results.json",
+                     "name the folder of a study that `meshorder reproduce` made, or mesh files");
   Progress progress(!console.quiet());
   const WrittenReport report = write_report(folder, [&](std::string_view what, double fraction) {
     progress.stage(std::string(what), fraction, std::min(1.0, fraction + 0.1));

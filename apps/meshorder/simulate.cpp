@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "console.hpp"
@@ -12,6 +11,7 @@
 #include "lab/scenario/simulation.hpp"
 #include "progress.hpp"
 #include "simulate_report.hpp"
+#include <meshorder/error.hpp>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ struct SimulateArguments : Common {
   std::string preconditioner;
   std::string precision;
   Index steps = 0;
-  OrderingOptions ordering;
+  OrderOptions ordering;
 
   std::string frames;
   Index every = 1;
@@ -102,8 +102,8 @@ class Run {
       record_ = std::move(checkpoint.record);
       resumed_from_ = checkpoint.state.step;
       if (resumed_from_ > simulation.scenario.steps) {
-        throw Error(arguments.resume, fmt::format("is already at step {}", resumed_from_),
-                    fmt::format("give more --steps than {}", simulation.scenario.steps));
+        throw InputError(arguments.resume, fmt::format("is already at step {}", resumed_from_),
+                         fmt::format("give more --steps than {}", simulation.scenario.steps));
       }
     }
     if (record_.balances.empty()) record_.balances.push_back(simulation.body->balance());

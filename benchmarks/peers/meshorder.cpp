@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   return peer::run(argc, argv, [](const peer::Arguments& arguments) {
     peer::measure(arguments.vector, [&] {
-      return meshorder::fiedler_vector(arguments.graph, {.tolerance = arguments.tolerance}).values;
+      return meshorder::fiedler_vectors(arguments.graph, {.tolerance = arguments.tolerance}).values;
     });
   });
 }

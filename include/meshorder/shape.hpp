@@ -14,8 +14,8 @@ inline namespace v0_2 {
 /// The geometric shape of a cell. Shape and number of vertices together are the type of a cell: a tetrahedron
 /// of 4 vertices is linear, one of 10 is quadratic. The last four shapes have any number of vertices.
 ///
-/// Vertices are listed corners first, in VTK's order; then, in second-order cells, the nodes of edges, faces
-/// and interior in VTK's order.
+/// Corners come first, in VTK's order except for linear wedges: the first triangle of every wedge faces
+/// inward, as in Gmsh. In second-order cells the nodes of edges, faces and interior follow, in VTK's order.
 enum class Shape : std::uint8_t {
   vertex,
   line,

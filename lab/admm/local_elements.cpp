@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/admm/local_elements.hpp"
 
-#include "base/error.hpp"
 #include "graph/incidence.hpp"
 #include "kernels/springs.hpp"
 #include "lab/admm/local_steps.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/core.h>
 
@@ -78,7 +78,7 @@ CsrGraph graph_of(std::vector<Index> vertices, Index corners, Index n) {
   incidence.vertices = std::move(vertices);
   incidence.offsets.resize(count + 1);
   for (Offset s = 0; s <= count; ++s) incidence.offsets[s] = corners * s;
-  return vertex_graph(incidence);
+  return joined_vertices(incidence);
 }
 
 template <class Real>

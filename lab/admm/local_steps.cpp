@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/admm/local_steps.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "kernels/positions.hpp"
 #include "lab/admm/local_energy.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/core.h>
 

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/admm/projective_dynamics.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "kernels/positions.hpp"
 #include "lab/motion/mass.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -261,9 +261,10 @@ void ProjectiveDynamics<Real>::finish(StepReport& report) {
   const auto wrong = std::find_if(x_.begin(), x_.end(), [](Real x) { return !std::isfinite(x); });
   if (wrong != x_.end()) {
     local_.reset_duals();  // they are not finite either
-    throw Error(fmt::format("step {}", steps_ + 1),
-                fmt::format("the motion is not finite at vertex {}", (wrong - x_.begin()) / kPaddedStride),
-                "a smaller time step or another material may help");
+    throw InputError(
+        fmt::format("step {}", steps_ + 1),
+        fmt::format("the motion is not finite at vertex {}", (wrong - x_.begin()) / kPaddedStride),
+        "a smaller time step or another material may help");
   }
   const double h = options_.time_step;
   for_each_chunk(index_size(masses_), kVertices, [&](Index, Index begin, Index end) {

@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/implicit/backward_euler.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/spmv.hpp"
 #include "lab/linear/cg/solve.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -250,9 +250,9 @@ void BackwardEuler::solve(Iterate& iterate, StepReport& report) {
     solved = solve_once(iterate, report);
   }
   if (solved.status == SolveStatus::not_finite) {
-    throw Error(fmt::format("step {}", steps_ + 1),
-                fmt::format("the equations are not finite at vertex {}", solved.vertex),
-                "a smaller time step or another material may help");
+    throw InputError(fmt::format("step {}", steps_ + 1),
+                     fmt::format("the equations are not finite at vertex {}", solved.vertex),
+                     "a smaller time step or another material may help");
   }
   if (solved.status != SolveStatus::converged) {
     report.warnings.push_back(

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/implicit/elastic_system.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "graph/incidence.hpp"
 #include "kernels/positions.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <string>
@@ -19,7 +19,7 @@ CsrGraph graph_of(const Simplices& simplices, Index vertex_count) {
   incidence.vertices = simplices.vertices;
   incidence.offsets.resize(simplices.size() + 1);
   for (Offset s = 0; s <= simplices.size(); ++s) incidence.offsets[s] = (simplices.dimension + 1) * s;
-  return vertex_graph(incidence);
+  return joined_vertices(incidence);
 }
 
 void check_masses(const RestShapes& rest, const MassMatrix& mass) {

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/models/cache.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -22,7 +22,7 @@ namespace {
 constexpr const char* kElsewhere = "set MESHORDER_CACHE to a folder that can be written";
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& what) {
-  throw Error(path.string(), what, kElsewhere);
+  throw InputError(path.string(), what, kElsewhere);
 }
 
 /// Returns the folder in an environment variable; empty if unset or relative, which the XDG standard calls

@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/models/catalogue.hpp"
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/format.hpp"
 #include "lab/models/cache.hpp"
 #include "lab/models/surfaces.hpp"
 #include "mesh/procedural.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -142,7 +142,7 @@ void make_kept(const std::string& name, bool force, const Progress& progress, co
   const models::ScratchFolder scratch(folder, name);
   const fs::path made = make(scratch.path());
   if (models::counts_of(made.string() + ".node").vertices == 0) {
-    throw Error("model " + name, "its last step wrote no mesh", "is the disk full?");
+    throw InputError("model " + name, "its last step wrote no mesh", "is the disk full?");
   }
   models::publish(made, folder / name);
   progress("Done", 1);

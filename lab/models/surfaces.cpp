@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/models/surfaces.hpp"
 
-#include "base/error.hpp"
 #include "lab/models/cache.hpp"
 #include "lab/support/process.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -37,7 +37,8 @@ std::string how_to_install(std::string_view program) {
 fs::path require_tool(std::string_view model, std::string_view program) {
   fs::path path = find_program(program);
   if (path.empty()) {
-    throw Error(model_named(model), fmt::format("{} is not installed", program), how_to_install(program));
+    throw InputError(model_named(model), fmt::format("{} is not installed", program),
+                     how_to_install(program));
   }
   return path;
 }
@@ -53,7 +54,7 @@ std::string remedy_for_failure(std::string_view program) {
 void download_package(std::string_view model, const fs::path& folder) {
   try {
     run_tool(model, "apt-get", {"download", "libcgal-demo"}, folder);
-  } catch (const Error&) {
+  } catch (const InputError&) {
     const std::string lists = "Dir::State::Lists=" + (folder / "lists").string();
     const std::string cache = "Dir::Cache=" + (folder / "cache").string();
     make_folder(folder / "lists/partial");
@@ -68,7 +69,7 @@ std::string downloaded_package(std::string_view model, const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".deb") return entry.path().filename().string();
   }
-  throw Error(model_named(model), "apt-get downloaded no package", remedy_for_failure("apt-get"));
+  throw InputError(model_named(model), "apt-get downloaded no package", remedy_for_failure("apt-get"));
 }
 
 }  // namespace
@@ -78,10 +79,10 @@ void run_tool(std::string_view model, std::string_view program, const std::vecto
   const fs::path path = require_tool(model, program);
   const ExitStatus ended = run_process(path, arguments, folder, folder / "log");
   if (ended.code == 0) return;
-  throw Error(model_named(model),
-              fmt::format("{} failed with status {}: {}", program, ended.code,
-                          ended.last_line.empty() ? "it printed nothing" : ended.last_line),
-              remedy_for_failure(program));
+  throw InputError(model_named(model),
+                   fmt::format("{} failed with status {}: {}", program, ended.code,
+                               ended.last_line.empty() ? "it printed nothing" : ended.last_line),
+                   remedy_for_failure(program));
 }
 
 void require_tools(std::string_view model, const std::vector<std::string_view>& programs) {
@@ -111,7 +112,8 @@ void fetch_surfaces(std::string_view model) {
     std::error_code code;
     fs::rename(scratch.path() / surface, folder / surface, code);
     if (code)
-      throw Error((folder / surface).string(), "cannot be written: " + code.message(), "check the folder");
+      throw InputError((folder / surface).string(), "cannot be written: " + code.message(),
+                       "check the folder");
   }
 }
 

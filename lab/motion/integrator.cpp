@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/motion/integrator.hpp"
 
-#include "base/error.hpp"
 #include "kernels/positions.hpp"
+#include <meshorder/error.hpp>
 
 #include <utility>
 

@@ -4,9 +4,9 @@
 // file (8); fingerprint, state and record; the CRC-32 of all bytes before it (4).
 #include "lab/scenario/checkpoint.hpp"
 
-#include "base/error.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 #include <zlib.h>

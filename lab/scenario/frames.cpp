@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/frames.hpp"
 
-#include "base/error.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/vtk/vtk.hpp"
 #include "lab/scenario/scenario_obstacles.hpp"
 #include "lab/scenario/vertex_choice.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -61,7 +61,7 @@ FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index ev
   std::error_code code;
   fs::create_directories(folder_, code);
   if (code)
-    throw Error(folder_.string(), "cannot be made: " + code.message(), "name a folder for the frames");
+    throw InputError(folder_.string(), "cannot be made: " + code.message(), "name a folder for the frames");
   (void)OutputFile(collection_);  // fail before the work if it cannot be written
   std::vector<DataArray> arrays = own_arrays(frame_, simulation.order);
   arrays.insert(arrays.end(), std::make_move_iterator(frame_.data.begin()),

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/motion_file.hpp"
 
-#include "base/error.hpp"
 #include "io/npy_header.hpp"
 #include "io/stream/scanner.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -57,7 +57,7 @@ void MotionFile::commit() {
   std::fstream stream(file_.temporary(), std::ios::binary | std::ios::in | std::ios::out);
   stream << header_of(frames_, vertices_);
   stream.close();
-  if (!stream) throw Error(file_.target().string(), "cannot be written to the end", "is the disk full?");
+  if (!stream) throw InputError(file_.target().string(), "cannot be written to the end", "is the disk full?");
   file_.commit();
 }
 

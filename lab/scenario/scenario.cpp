@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/scenario.hpp"
 
-#include "base/error.hpp"
 #include "base/text.hpp"
+#include <meshorder/error.hpp>
 
 namespace meshorder {
 
@@ -17,10 +17,10 @@ Scenario find_scenario(const std::string& name_or_file) {
   }
   std::error_code code;
   if (!std::filesystem::exists(name_or_file, code))
-    throw Error(name_or_file, "no scenario has this name, and no file either",
-                "there are " + join(built_in_scenarios(), [](const auto& scenario) {
-                  return scenario.name;
-                }) + ", or give a file as docs/simulate.md describes");
+    throw InputError(name_or_file, "no scenario has this name, and no file either",
+                     "there are " + join(built_in_scenarios(), [](const auto& scenario) {
+                       return scenario.name;
+                     }) + ", or give a file as docs/simulate.md describes");
   return read_scenario(name_or_file);
 }
 

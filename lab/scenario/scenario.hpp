@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/point.hpp"
 #include "base/text.hpp"
@@ -9,6 +8,7 @@
 #include "kernels/regions.hpp"
 #include "lab/admm/projective_dynamics.hpp"
 #include "lab/implicit/backward_euler.hpp"
+#include <meshorder/error.hpp>
 
 #include <array>
 #include <cstdint>

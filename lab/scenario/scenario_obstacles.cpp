@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/scenario_obstacles.hpp"
 
-#include "base/error.hpp"
 #include "io/format.hpp"
 #include "kernels/simplices.hpp"
+#include <meshorder/error.hpp>
 
 #include <array>
 #include <cmath>
@@ -24,7 +24,7 @@ std::pair<std::vector<Point>, std::vector<std::array<int, 3>>> read_surface(cons
   Mesh mesh = read_mesh(file);
   const Simplices simplices = cut_into_simplices(mesh);
   if (simplices.dimension != 2)
-    throw Error(file, "is not a surface", "an obstacle is a closed surface of triangles");
+    throw InputError(file, "is not a surface", "an obstacle is a closed surface of triangles");
   std::vector<std::array<int, 3>> triangles(simplices.vertices.size() / 3);
   for (std::size_t i = 0; i < simplices.vertices.size(); ++i) triangles[i / 3][i % 3] = simplices.vertices[i];
   return {std::move(mesh.points), std::move(triangles)};
@@ -128,7 +128,7 @@ std::shared_ptr<const Obstacle> obstacle_of(const ScenarioObstacle& obstacle) {
   try {
     return closed_surface(std::move(points), std::move(triangles));
   } catch (const InvalidArgument& error) {
-    throw Error(obstacle.file, error.what(), "an obstacle is a closed surface of triangles");
+    throw InputError(obstacle.file, error.what(), "an obstacle is a closed surface of triangles");
   }
 }
 

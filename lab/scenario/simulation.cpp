@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/simulation.hpp"
 
-#include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "lab/scenario/scenario_obstacles.hpp"
 #include "lab/scenario/vertex_choice.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
 #include "mesh/reorder.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -41,7 +41,7 @@ void place(Mesh& mesh, std::span<const Index> vertices, const Scenario& scenario
     const double factor = scenario.longest_side > 0 ? scenario.longest_side / box.longest_side()
                                                     : scenario.height / (box.high[1] - box.low[1]);
     if (!std::isfinite(factor) || !(factor > 0.0))
-      throw Error(file, "its volume cells have no extent", "give a mesh of a body with a volume");
+      throw InputError(file, "its volume cells have no extent", "give a mesh of a body with a volume");
     for (Point& point : mesh.points) {
       for (double& x : point) x *= factor;
     }
@@ -62,8 +62,8 @@ SimplexMaterials materials_of(const Scenario& scenario, const Mesh& mesh, const 
     return materials_by_region(simplices, grouping_by(mesh, scenario.regions_by), scenario.material,
                                scenario.regions);
   } catch (const InvalidArgument& error) {
-    throw Error(scenario.file, std::string("material.regions: ") + error.what(),
-                "name groups that the mesh has");
+    throw InputError(scenario.file, std::string("material.regions: ") + error.what(),
+                     "name groups that the mesh has");
   }
 }
 
@@ -162,12 +162,13 @@ void set_up_projective(Simplices simplices, const MotionState& start, Simulation
 void require_volume_cells(const Mesh& mesh, const std::string& file) {
   const int dimension = mesh.cells.highest_dimension();
   if (dimension == 3) return;
-  throw Error(file, dimension == 2 ? "is a surface: it has no volume cells" : "has no volume cells",
-              "a body needs tetrahedra (or hexahedra, wedges, pyramids), with which TetGen or Gmsh fill a "
-              "closed surface");
+  throw InputError(
+      file, dimension == 2 ? "is a surface: it has no volume cells" : "has no volume cells",
+      "a body needs tetrahedra (or hexahedra, wedges, pyramids), with which TetGen or Gmsh fill a "
+      "closed surface");
 }
 
-Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const OrderingOptions& ordering) {
+Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const OrderOptions& ordering) {
   require_volume_cells(mesh, file);
   const Stopwatch ordering_time;
   mesh.cell_blocks.clear();  // they are a file's layout, and would keep cells from their places

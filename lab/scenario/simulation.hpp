@@ -33,8 +33,7 @@ void require_volume_cells(const Mesh& mesh, const std::string& file);
 /// from the mesh's volume cells, cut into tetrahedra. `file` is the mesh's path, for errors. Throws Error,
 /// which names the file and the path in it, for sets, labels or regions that the mesh lacks; InvalidArgument
 /// for unknown methods. O(size of the mesh) and the order's cost.
-Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file,
-                  const OrderingOptions& ordering = {});
+Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const OrderOptions& ordering = {});
 
 /// The same in a given order instead of the scenario's. Throws InvalidArgument if it is of another mesh.
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, Reordering order);

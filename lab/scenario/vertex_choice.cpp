@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/vertex_choice.hpp"
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "mesh/groups.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -188,11 +188,11 @@ std::vector<Index> choose_vertices(const Mesh& mesh, std::span<const Index> cand
   try {
     result = chosen(mesh, candidates, choice);
   } catch (const InvalidArgument& error) {
-    throw Error(file, choice.source_path + ": " + error.what(), "name vertices that the mesh has");
+    throw InputError(file, choice.source_path + ": " + error.what(), "name vertices that the mesh has");
   }
   if (result.empty())
-    throw Error(file, choice.source_path + ": no vertex of a tetrahedron is chosen",
-                "name vertices that the mesh has");
+    throw InputError(file, choice.source_path + ": no vertex of a tetrahedron is chosen",
+                     "name vertices that the mesh has");
   return result;
 }
 

@@ -18,7 +18,7 @@ struct OrderedMesh {
 };
 
 struct MeshStudyOptions {
-  OrderingOptions ordering = {};
+  OrderOptions ordering = {};
   /// Cache hierarchies to simulate; empty: this machine's and the paper's. Times are predicted for the first.
   std::vector<NamedCaches> hierarchies = {};
   int threads = 0;      ///< for computing the orders, whose cost is timed; 0: all

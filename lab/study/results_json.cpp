@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/results_json.hpp"
 
-#include "base/error.hpp"
 #include "io/stream/scanner.hpp"
 #include "lab/study/results_fields.hpp"
 #include "lab/support/json.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/stepper.hpp"
 
-#include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "io/npy.hpp"
 #include "lab/scenario/embedded_vertices.hpp"
@@ -9,6 +8,7 @@
 #include "lab/scenario/simulation.hpp"
 #include "lab/scenario/vertex_choice.hpp"
 #include "payoff/machine.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -187,7 +187,7 @@ void serve_steps(std::istream& questions, std::ostream& answers) {
       }
       const StepperTask task = stepper_task(question);
       if (!task.processors.empty() && !bind_to(task.processors))
-        throw Error("processors", "the threads cannot be bound to them", "give --no-pin");
+        throw InputError("processors", "the threads cannot be bound to them", "give --no-pin");
       stepping.emplace(task);
       answer(to_json(stepping->ready()));
     }
@@ -209,7 +209,7 @@ json Stepper::ask(const json& question) {
   process_.send(question.dump());
   json answer = json::parse(process_.receive());
   if (answer.contains("error"))
-    throw Error(name_ + ", in its own process", answer["error"], "this run is lost");
+    throw InputError(name_ + ", in its own process", answer["error"], "this run is lost");
   return answer;
 }
 

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/study_plan.hpp"
 
-#include "base/error.hpp"
 #include "base/text.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 

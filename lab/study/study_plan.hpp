@@ -33,7 +33,7 @@ struct StudyPlan {
   std::optional<double> scenario_seconds;  ///< or about as many as fit in this time, at least 8
   double kernel_seconds = 12;              ///< for running kernels, for each mesh
   bool pin = true;                         ///< bind threads to processors
-  OrderingOptions ordering = {};
+  OrderOptions ordering = {};
 };
 
 /// Returns the mesh of a study's size for a scenario whose own mesh is `mesh`: `mesh` itself for "paper", the

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/study_run.hpp"
 
-#include "base/error.hpp"
 #include "io/format.hpp"
 #include "lab/models/catalogue.hpp"
 #include "lab/scenario/motion_metrics.hpp"
@@ -10,6 +9,7 @@
 #include "lab/study/study_store.hpp"
 #include "lab/study/study_turns.hpp"
 #include "payoff/machine.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -121,8 +121,8 @@ class Study {
     const bool may_have_other_steps = plan_.scenario_seconds && !plan_.steps;
     if (begun.fingerprint != subject.body.fingerprint ||
         (begun.steps != subject.turns.steps && !may_have_other_steps))
-      throw Error(store_.folder().results().string(), "holds another " + subject.scenario.name,
-                  "give a new folder, or the scenario, mesh and steps as they were");
+      throw InputError(store_.folder().results().string(), "holds another " + subject.scenario.name,
+                       "give a new folder, or the scenario, mesh and steps as they were");
     subject.turns.steps = begun.steps;
     subject.turns.turn = begun.turn;
     subject.turns.interleaved = begun.interleaved;

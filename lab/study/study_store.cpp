@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/study_store.hpp"
 
-#include "base/error.hpp"
 #include "io/format.hpp"
 #include "io/npy.hpp"
 #include "lab/study/folder.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/study/statistics.hpp"
 #include "lab/support/machine.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -23,7 +23,8 @@ void make_folders(const StudyFolder& folder) {
   std::error_code code;
   fs::create_directories(folder.data(), code);
   if (code)
-    throw Error(folder.root().string(), "cannot be made: " + code.message(), "name a folder for the results");
+    throw InputError(folder.root().string(), "cannot be made: " + code.message(),
+                     "name a folder for the results");
 }
 
 /// Removes unfinished files of an interrupted study.
@@ -70,8 +71,8 @@ void StudyStore::resume(const StudyPlan& plan, const MachineRecord& machine) {
   results_ = read_results(folder_.results());
   const auto same = [&](bool is_same, const std::string& what) {
     if (!is_same)
-      throw Error(folder_.results().string(), "is of a study with " + what,
-                  "give a new folder, or the same options as before");
+      throw InputError(folder_.results().string(), "is of a study with " + what,
+                       "give a new folder, or the same options as before");
   };
   const MachineRecord& before = results_.machine;
   same(before.processor == machine.processor, "another processor: " + before.processor);

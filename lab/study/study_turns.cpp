@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/study_turns.hpp"
 
-#include "base/error.hpp"
 #include "lab/study/folder.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -87,9 +87,9 @@ std::optional<std::vector<RunRecord>> run_round(const Round& round, const std::s
       steppers[order] = std::make_unique<Stepper>(round.program, round.threads, round.tasks[order]);
       const StepperReady& ready = steppers[order]->ready();
       if (order == 0 && ready.fingerprint != fingerprint)
-        throw Error(round.tasks[order].scenario,
-                    "differs from the one that the study in this folder began with",
-                    "give a new folder, or the scenario and mesh as they were");
+        throw InputError(round.tasks[order].scenario,
+                         "differs from the one that the study in this folder began with",
+                         "give a new folder, or the scenario and mesh as they were");
       runs[order].began = timestamp_now();
       runs[order].setup_seconds = ready.setup_seconds;
       runs[order].bytes = ready.bytes;

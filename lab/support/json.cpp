@@ -34,8 +34,8 @@ class UniqueKeys {
     if (event == Event::object_start) keys_.emplace_back();
     if (event == Event::object_end) keys_.pop_back();
     if (event == Event::key && !keys_.back().insert(parsed.get<std::string>()).second)
-      throw Error(file_, "an object has the key '" + parsed.get<std::string>() + "' twice",
-                  "keep one of them");
+      throw InputError(file_, "an object has the key '" + parsed.get<std::string>() + "' twice",
+                       "keep one of them");
     return true;
   }
 
@@ -83,9 +83,9 @@ nlohmann::json parse_json(std::string_view text, const std::string& file, std::s
   } catch (const nlohmann::json::parse_error& error) {
     const std::string_view before = text.substr(0, std::min(error.byte, text.size()));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-    throw Error(Location{file, line, -1}, "not JSON: " + reason(error.what()), remedy);
+    throw InputError(Location{file, line, -1}, "not JSON: " + reason(error.what()), remedy);
   } catch (const nlohmann::json::exception& error) {
-    throw Error(file, "not JSON: " + reason(error.what()), remedy);
+    throw InputError(file, "not JSON: " + reason(error.what()), remedy);
   }
 }
 

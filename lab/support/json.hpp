@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/point.hpp"
 #include "base/text.hpp"
+#include <meshorder/error.hpp>
 
 #include <nlohmann/json.hpp>
 #include <nlohmann/json_fwd.hpp>
@@ -51,7 +51,7 @@ class JsonValue {
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
   /// "forces[0].newtons"; "the file" for the outermost value.
   [[nodiscard]] std::string path() const { return path_.empty() ? "the file" : path_; }
-  [[nodiscard]] Error error(const std::string& what, const std::string& remedy) const {
+  [[nodiscard]] InputError error(const std::string& what, const std::string& remedy) const {
     return {file_, path() + ": " + what, remedy};
   }
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/support/process.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -113,7 +113,8 @@ ChildProcess::ChildProcess(std::filesystem::path program, const std::vector<std:
     : program_(std::move(program)) {
   std::array<int, 2> sockets{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0)
-    throw Error(program_.string(), std::string("cannot be started: ") + std::strerror(errno), "try again");
+    throw InputError(program_.string(), std::string("cannot be started: ") + std::strerror(errno),
+                     "try again");
   std::vector<std::string> words = command_line(program_, arguments);
   const std::vector<char*> argv = pointers_to(words);
   const pid_t parent = ::getpid();
@@ -124,7 +125,7 @@ ChildProcess::ChildProcess(std::filesystem::path program, const std::vector<std:
   if (id_ > 0) replies_ = ::fdopen(::dup(socket_), "r");
   if (replies_ != nullptr) return;
   ::close(socket_);
-  throw Error(program_.string(), std::string("cannot be started: ") + std::strerror(errno), "try again");
+  throw InputError(program_.string(), std::string("cannot be started: ") + std::strerror(errno), "try again");
 }
 
 ChildProcess::~ChildProcess() {
@@ -169,7 +170,7 @@ void ChildProcess::throw_ended() {
   std::string how = "ended";
   if (WIFSIGNALED(status)) how = std::string("was ended by a signal: ") + ::strsignal(WTERMSIG(status));
   if (WIFEXITED(status)) how = "ended with status " + std::to_string(WEXITSTATUS(status));
-  throw Error(program_.string(), "a child process " + how, "is there enough memory?");
+  throw InputError(program_.string(), "a child process " + how, "is there enough memory?");
 }
 
 bool has_fixed_addresses() {

@@ -72,11 +72,4 @@ class CellSelection {
   Incidence own_;
 };
 
-/// Joins elements that share a facet, numbered as in `elements`: a face for volumes, an edge for surfaces, an
-/// end for lines. Facets are the same when their corners are, in any order; of more than two elements at a
-/// facet each is joined to the next. O(facets · log facets at a vertex).
-///
-/// @throws InvalidArgument if the shapes of cells are not known
-CsrGraph joined_by_facet(const CellArrays& cells, const CellSelection& elements);
-
 }  // namespace meshorder

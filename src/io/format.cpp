@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
 
-#include "base/error.hpp"
 #include "io/all_formats.hpp"
 #include "mesh/reorder.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <array>
@@ -27,7 +27,7 @@ const Format& format_of(const std::filesystem::path& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (std::error_code code; extension.empty() && std::filesystem::is_directory(path, code)) {
-    throw Error(path.string(), "is a folder", "give a mesh file");
+    throw InputError(path.string(), "is a folder", "give a mesh file");
   }
   std::string known;
   for (const Format& format : kFormats) {
@@ -36,19 +36,20 @@ const Format& format_of(const std::filesystem::path& path) {
       known += (known.empty() ? "" : " ") + std::string(candidate);
     }
   }
-  throw Error(path.string(), extension.empty() ? "has no extension" : "unknown extension '" + extension + "'",
-              "known are " + known);
+  throw InputError(path.string(),
+                   extension.empty() ? "has no extension" : "unknown extension '" + extension + "'",
+                   "known are " + known);
 }
 
 Mesh read_mesh(const std::filesystem::path& path, Notes* notes) {
   Notes ignored;
   Notes& noted = notes != nullptr ? *notes : ignored;
   Mesh mesh = format_of(path).read(path, noted);
-  if (mesh.cell_count() == 0) throw Error(path.string(), "has no cells", "a mesh needs at least one");
+  if (mesh.cell_count() == 0) throw InputError(path.string(), "has no cells", "a mesh needs at least one");
   try {
     check_mesh(mesh);
   } catch (const InvalidArgument& fault) {
-    throw Error(path.string(), fault.what(), "the file may be damaged");
+    throw InputError(path.string(), fault.what(), "the file may be damaged");
   }
   const std::vector<Index> degenerate = degenerate_cells(mesh);
   if (!degenerate.empty()) {

@@ -2,10 +2,10 @@
 // The format: NumPy Enhancement Proposal 1, "A Simple File Format for NumPy Arrays".
 #include "io/npy.hpp"
 
-#include "base/error.hpp"
 #include "io/npy_header.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -122,7 +122,7 @@ std::vector<std::int64_t> read_npy(const std::filesystem::path& path) {
 Permutation read_permutation(const std::filesystem::path& path, Index count, const std::string& what) {
   const std::vector<std::int64_t> places = read_npy(path);
   if (index_size(places) != count) {
-    throw Error(
+    throw InputError(
         path.string(),
         "maps " + std::to_string(places.size()) + " " + what + ", the mesh has " + std::to_string(count),
         "give the maps that were written with this mesh");
@@ -135,7 +135,7 @@ Permutation read_permutation(const std::filesystem::path& path, Index count, con
   try {
     return Permutation::from_old_to_new(std::move(old_to_new));
   } catch (const InvalidArgument& error) {
-    throw Error(path.string(), error.what(), "give a map that meshorder wrote");
+    throw InputError(path.string(), error.what(), "give a map that meshorder wrote");
   }
 }
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/unsupported.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ void require_supported_cells(const Mesh& mesh, const std::filesystem::path& path
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const int vertices = mesh.cells.vertex_count(c);
     if (holds(mesh.cells.shapes[c], vertices)) continue;
-    throw Error(
+    throw InputError(
         path.string(),
         fmt::format("{} cannot hold a cell of type {}", format, type_name(mesh.cells.shapes[c], vertices)),
         remedy);

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "kernels/elasticity.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "kernels/pass.hpp"
+#include <meshorder/error.hpp>
 
 #include <array>
 #include <string>

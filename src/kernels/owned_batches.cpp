@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "kernels/owned_batches.hpp"
 
-#include "base/error.hpp"
 #include "kernels/positions.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <string>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "kernels/positions.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <string>

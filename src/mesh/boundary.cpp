@@ -1,40 +1,16 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/boundary.hpp"
 
-#include "base/error.hpp"
+#include "cells/facets.hpp"
+#include "mesh/graphs.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <functional>
-#include <map>
-#include <numeric>
 #include <span>
-#include <utility>
 
 namespace meshorder {
 namespace {
-
-using Facets = std::vector<std::vector<int>>;
-
-/// Looks up `facets`, which are the same for all cells of a type.
-class FacetsOfTypes {
- public:
-  const Facets& operator()(const Mesh& mesh, Index cell) {
-    const auto type = std::pair(mesh.cells.shapes[cell], mesh.cells.vertex_count(cell));
-    const auto found = by_type_.find(type);
-    if (found != by_type_.end()) return found->second;
-    return by_type_.emplace(type, facets(type.first, type.second)).first->second;
-  }
-
- private:
-  std::map<std::pair<Shape, int>, Facets> by_type_;
-};
-
-std::array<Index, 4> sorted_corners(std::span<const Index> cell, const std::vector<int>& positions) {
-  std::array<Index, 4> corners{-1, -1, -1, -1};
-  for (std::size_t k = 0; k < positions.size(); ++k) corners[k] = cell[positions[k]];
-  std::sort(corners.begin(), corners.end(), std::greater<>());
-  return corners;
-}
 
 /// Calls `visit(element, cell)` for every element.
 template <class Visit>
@@ -97,40 +73,12 @@ void add_face(const Mesh& mesh, Index c, const std::vector<int>& positions,
 
 }  // namespace
 
-std::vector<ElementFacet> matched_facets(const std::vector<ElementFacet>& facets, Index vertex_count) {
-  // bucket by the largest corner, then sort each bucket
-  std::vector<Offset> starts(static_cast<std::size_t>(vertex_count) + 1, 0);
-  for (const ElementFacet& facet : facets) ++starts[facet.corners[0] + 1];
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  std::vector<Offset> next(starts.begin(), starts.end() - 1);
-  std::vector<ElementFacet> result(facets.size());
-  for (const ElementFacet& facet : facets) result[next[facet.corners[0]]++] = facet;
-  for (Index v = 0; v < vertex_count; ++v) {
-    std::sort(result.begin() + starts[v], result.begin() + starts[v + 1],
-              [](const ElementFacet& a, const ElementFacet& b) {
-                return a.corners != b.corners ? a.corners < b.corners : a.element < b.element;
-              });
-  }
-  return result;
-}
-
-std::vector<ElementFacet> matched_facets(const Mesh& mesh) {
-  std::vector<ElementFacet> all;
-  FacetsOfTypes facets_of;
-  for_elements(mesh, [&](Index element, Index c) {
-    for (const std::vector<int>& positions : facets_of(mesh, c)) {
-      all.push_back({sorted_corners(mesh.cells[c], positions), element});
-    }
-  });
-  return matched_facets(all, mesh.vertex_count());
-}
-
 std::vector<std::array<Index, 3>> boundary_triangles(const Mesh& mesh) {
   std::vector<std::array<Index, 3>> triangles;
   const int highest = mesh.cells.highest_dimension();
   if (highest < 2) {
-    throw Error("the mesh", "has no surface: its cells have at most one dimension",
-                "give one with cells of two or three dimensions");
+    throw InputError("the mesh", "has no surface: its cells have at most one dimension",
+                     "give one with cells of two or three dimensions");
   }
   if (highest == 2) {
     const Simplices simplices = cut_into_simplices(mesh);
@@ -138,14 +86,15 @@ std::vector<std::array<Index, 3>> boundary_triangles(const Mesh& mesh) {
       triangles.push_back({simplices.vertices[i], simplices.vertices[i + 1], simplices.vertices[i + 2]});
     return triangles;
   }
-  std::vector<ElementFacet> outer = matched_facets(mesh);
+  const CellArrays cells = cell_arrays(mesh);
+  std::vector<ElementFacet> outer = matched_facets(cells, CellSelection::elements(cells));
   keep_unmatched(outer);
   std::span<const ElementFacet> left(outer);
   FacetsOfTypes facets_of;
   for_elements(mesh, [&](Index element, Index c) {
     const auto own = take_facets_of(element, left);
     if (own.empty()) return;
-    for (const std::vector<int>& positions : facets_of(mesh, c)) {
+    for (const std::vector<int>& positions : facets_of(mesh.cells.shapes[c], mesh.cells.vertex_count(c))) {
       const auto corners = sorted_corners(mesh.cells[c], positions);
       if (std::any_of(own.begin(), own.end(), [&](const ElementFacet& f) { return f.corners == corners; })) {
         add_face(mesh, c, positions, triangles);

@@ -8,24 +8,11 @@
 
 namespace meshorder {
 
-/// A facet of an element: a face of a volume, an edge of a surface, an end of a line.
-struct ElementFacet {
-  std::array<Index, 4> corners;  ///< descending; −1 behind the last
-  Index element;
-};
-
-/// Sorts facets so that those with the same corners are adjacent, in ascending order of their elements.
-/// `vertex_count` exceeds every corner. O(facets · log facets at a vertex).
-std::vector<ElementFacet> matched_facets(const std::vector<ElementFacet>& facets, Index vertex_count);
-
-/// Returns the facets of the mesh's elements, matched; elements are counted in the order of cells.
-std::vector<ElementFacet> matched_facets(const Mesh& mesh);
-
 /// Returns the visible surface of a mesh as triangles on its corners. For volumes: the faces of exactly one
 /// cell, those of cavities included, counterclockwise as seen from outside whichever way the cell's corners
 /// turn (a cell without volume leaves its faces as they are). For a surface mesh: its cells. Quadrilaterals
-/// and polygons are cut into fans. In the order of cells. Throws Error for a mesh without cells of two or
-/// three dimensions. O(facets · log facets at a vertex).
+/// and polygons are cut into fans. In the order of cells. Throws InputError for a mesh without cells of two
+/// or three dimensions. O(facets · log facets at a vertex).
 std::vector<std::array<Index, 3>> boundary_triangles(const Mesh& mesh);
 
 /// Returns the faces that exactly one tetrahedron has, ascending, as 4 · tetrahedron + k; face k is opposite

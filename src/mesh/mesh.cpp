@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/mesh.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/reorder.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "mesh/graphs.hpp"
-#include "ordering/grouped.hpp"
+#include "ordering/method.hpp"
+#include "ordering/moved.hpp"
+#include "ordering/order_cells.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,17 +17,6 @@
 
 namespace meshorder {
 namespace {
-
-/// Returns the slot class of each cell, block × dimension: only cells of one class may swap positions.
-std::vector<Index> slot_classes(const Mesh& mesh) {
-  std::vector<Index> classes(mesh.cells.shapes.size());
-  Index block = 0;
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    while (block + 1 < index_size(mesh.cell_blocks) && mesh.cell_blocks[block + 1] <= c) ++block;
-    classes[c] = 4 * block + dimension(mesh.cells.shapes[c]);
-  }
-  return classes;
-}
 
 Index class_count(const Mesh& mesh) { return 4 * std::max<Index>(1, index_size(mesh.cell_blocks)); }
 
@@ -42,7 +33,7 @@ Cells reordered(const Cells& cells, const Permutation& vertices, const Permutati
     });
   };
   Cells result;
-  result.shapes = order.moved(cells.shapes);
+  result.shapes = moved(order, cells.shapes);
   result.offsets.resize(cells.offsets.size());
   for_cells([&](Index c, Index old) { result.offsets[c + 1] = cells.vertex_count(old); });
   std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
@@ -57,7 +48,7 @@ Cells reordered(const Cells& cells, const Permutation& vertices, const Permutati
 void reorder_data(DataArray& array, const Permutation& order) {
   if (array.is_dense()) {
     const auto width = static_cast<std::size_t>(array.components);
-    std::visit([&](auto& values) { values = order.moved(values, width); }, array.values);
+    std::visit([&](auto& values) { values = moved(order, values, width); }, array.values);
   } else {
     for (Index& row : array.indices) row = order.old_to_new()[row];
   }
@@ -74,7 +65,7 @@ void sort_ids_within_classes(std::vector<std::int64_t>& ids, const std::vector<I
 
 /// Moves vertices and cells with their arrays and sets, but not ids and blocks.
 void move_all(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
-  mesh.points = vertices.moved(mesh.points);
+  mesh.points = moved(vertices, mesh.points);
   mesh.cells = reordered(mesh.cells, vertices, cells);
   for (DataArray& array : mesh.data)
     reorder_data(array, array.association == Association::vertices ? vertices : cells);
@@ -92,48 +83,29 @@ void check_fits(const Mesh& mesh, const Permutation& vertices, const Permutation
   }
 }
 
-/// Returns all cells in their new order: elements by their method, then the others by lexmax.
-std::vector<Index> cells_in_order(const Mesh& mesh, const ReorderingOptions& options, Reordering& result) {
-  const CellIncidence top = elements(mesh);
-  const auto facets_of_mesh = [&] { return facet_graph(mesh); };
-  Ordering by_method = order_elements(
-      options.elements, {top.incidence, result.vertices, mesh.points, facets_of_mesh}, options.ordering);
-  result.element_fiedler = std::move(by_method.fiedler);
-  result.element_method = std::move(by_method.method);
-
-  std::vector<Index> order;
-  order.reserve(mesh.cells.shapes.size());
-  for (const Index e : by_method.permutation.new_to_old()) order.push_back(top.cells[e]);
-  const CellIncidence lower = lower_dimensional_cells(mesh);
-  const std::string_view lower_method = options.elements == "original" ? "original" : "lexmax";
-  const Ordering of_lower = order_elements(
-      lower_method, {lower.incidence, result.vertices, mesh.points, facets_of_mesh}, options.ordering);
-  for (const Index e : of_lower.permutation.new_to_old()) order.push_back(lower.cells[e]);
-  if (result.groups && result.groups->association == Association::cells) {
-    const std::vector<Index>& group_of = result.groups->of_cells;
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return group_of[a] < group_of[b]; });
-  }
-  return order;
-}
-
 }  // namespace
 
 Reordering compute_reordering(const Mesh& mesh, const CsrGraph& graph, const ReorderingOptions& options) {
   Reordering result;
+  OrderOptions ordering = options.ordering;
   const Stopwatch vertices;
-  if (!options.group_by.empty()) result.groups = grouping_by(mesh, options.group_by);
-  Ordering by_method =
-      result.groups
-          ? order_vertices_in_groups(options.vertices, {graph, mesh.points}, result.groups->of_vertices,
-                                     result.groups->count(), options.ordering)
-          : order_vertices(options.vertices, {graph, mesh.points}, options.ordering);
-  result.vertices = std::move(by_method.permutation);
-  result.vertex_fiedler = std::move(by_method.fiedler);
-  result.vertex_method = std::move(by_method.method);
+  if (!options.group_by.empty()) {
+    result.groups = grouping_by(mesh, options.group_by);
+    ordering.groups = result.groups->of_vertices;
+    if (result.groups->association == Association::cells) ordering.cell_groups = result.groups->of_cells;
+  }
+  Order of_vertices = order_vertices_by_options(options.vertices, {graph, mesh.points}, ordering);
+  result.vertices = std::move(of_vertices.permutation);
+  result.vertex_fiedler = std::move(of_vertices.fiedler);
+  result.vertex_method = std::move(of_vertices.method);
   result.vertex_seconds = vertices.seconds();
 
   const Stopwatch cells;
-  result.cells = permutation_within_blocks(mesh, cells_in_order(mesh, options, result));
+  Order of_cells = order_cells(options.elements, cell_arrays(mesh), result.vertices, mesh.points,
+                               ordering.cell_groups, ordering);
+  result.cells = std::move(of_cells.permutation);
+  result.element_fiedler = std::move(of_cells.fiedler);
+  result.element_method = std::move(of_cells.method);
   result.element_seconds = cells.seconds();
   return result;
 }
@@ -146,7 +118,7 @@ Reordering reorder(Mesh& mesh, const ReorderingOptions& options) {
 
 void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
   check_fits(mesh, vertices, cells);
-  const std::vector<Index> classes = slot_classes(mesh);
+  const std::vector<Index> classes = slot_classes(cell_arrays(mesh));
   const Index to_check = is_one_class(classes) ? 0 : mesh.cell_count();
   for (Index c = 0; c < to_check; ++c) {
     if (classes[cells.old_to_new()[c]] != classes[c]) {
@@ -157,29 +129,6 @@ void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation
   move_all(mesh, vertices, cells);
   std::sort(mesh.vertex_ids.begin(), mesh.vertex_ids.end());
   if (!mesh.cell_ids.empty()) sort_ids_within_classes(mesh.cell_ids, classes, class_count(mesh));
-}
-
-Permutation permutation_within_blocks(const Mesh& mesh, const std::vector<Index>& cells_in_order) {
-  if (cells_in_order.size() != mesh.cells.shapes.size()) {
-    throw InvalidArgument("cells: an order of " + std::to_string(cells_in_order.size()) + " for " +
-                          std::to_string(mesh.cell_count()) + " cells");
-  }
-  const std::vector<Index> classes = slot_classes(mesh);
-  if (is_one_class(classes)) return Permutation::from_new_to_old(cells_in_order);
-
-  // positions of each class, ascending, one class after another
-  std::vector<Index> start(class_count(mesh) + 1, 0);
-  for (const Index k : classes) ++start[k + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<Index> places(classes.size());
-  std::vector<Index> next(start.begin(), start.end() - 1);
-  for (Index c = 0; c < mesh.cell_count(); ++c) places[next[classes[c]]++] = c;
-
-  // assign them
-  std::copy(start.begin(), start.end() - 1, next.begin());
-  std::vector<Index> old_to_new(classes.size(), -1);
-  for (const Index c : cells_in_order) old_to_new[c] = places[next[classes[c]]++];
-  return Permutation::from_old_to_new(std::move(old_to_new));
 }
 
 Permutation group_cells_by_type(Mesh& mesh) {
@@ -193,7 +142,7 @@ Permutation group_cells_by_type(Mesh& mesh) {
   std::stable_sort(new_to_old.begin(), new_to_old.end(), [&](Index a, Index b) { return type(a) < type(b); });
   Permutation order = Permutation::from_new_to_old(std::move(new_to_old));
   move_all(mesh, Permutation::identity(mesh.vertex_count()), order);
-  if (!mesh.cell_ids.empty()) mesh.cell_ids = order.moved(mesh.cell_ids);
+  if (!mesh.cell_ids.empty()) mesh.cell_ids = moved(order, mesh.cell_ids);
   mesh.cell_blocks.clear();
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     if (c == 0 || type(c) != type(c - 1)) mesh.cell_blocks.push_back(c);

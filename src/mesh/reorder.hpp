@@ -15,7 +15,7 @@ namespace meshorder {
 struct ReorderingOptions {
   std::string vertices = "auto";
   std::string elements = "auto";
-  OrderingOptions ordering = {};
+  OrderOptions ordering = {};
   /// An array of integers (see `grouping_by`) whose groups stay together: vertices, and the cells of each
   /// dimension, are sorted by group, ascending by value, and within a group by their method; those without
   /// a value come last. Empty: no groups.
@@ -37,9 +37,9 @@ struct Reordering {
 
 /// Computes an order and leaves the mesh unchanged. Elements, the cells of the highest dimension, are ordered
 /// by their method; cells of lower dimension by `lexmax` (or not at all if elements keep their order). Each
-/// cell stays in its block, and each dimension keeps its positions (see `permutation_within_blocks`). `graph`
-/// is the mesh's vertex graph. Groups stay together within the blocks. Throws InvalidArgument for unknown
-/// methods and arrays.
+/// cell stays in its block, and each dimension keeps its positions (see `permutation_within_classes`).
+/// `graph` is the mesh's vertex graph. Groups stay together within the blocks. Throws InvalidArgument for
+/// unknown methods and arrays.
 Reordering compute_reordering(const Mesh& mesh, const CsrGraph& graph, const ReorderingOptions& options);
 
 /// Computes an order and applies it: `vertex_graph`, `compute_reordering`, `apply_reordering`.
@@ -53,10 +53,6 @@ Reordering reorder(Mesh& mesh, const ReorderingOptions& options = {});
 /// its block or to the position of a cell of another dimension; the mesh is then unchanged. O(size of the
 /// mesh) time; memory for a second copy of the largest part.
 void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells);
-
-/// Returns the permutation that sorts the cells of each dimension of each block as in `cells_in_order`, which
-/// lists every cell once. Each (block, dimension) keeps its positions. O(cells).
-Permutation permutation_within_blocks(const Mesh& mesh, const std::vector<Index>& cells_in_order);
 
 /// Sorts the cells by dimension, highest first, then by type, keeping the order within a type; makes each
 /// type a block; returns the applied permutation. For formats that keep the cells of a type together. O(size

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/access_stream.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/reuse_sample.hpp"
+#include <meshorder/error.hpp>
 
 #include <string>
 #include <utility>

@@ -5,8 +5,8 @@
 #include "kernels/simplices.hpp"
 #include "mesh/mesh.hpp"
 #include "metrics/cache.hpp"
-#include "ordering/permutation.hpp"
 #include "payoff/kernel_bench.hpp"
+#include <meshorder/permutation.hpp>
 
 #include <algorithm>
 #include <array>

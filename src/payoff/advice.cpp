@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/advice.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "mesh/reorder.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -52,7 +52,7 @@ struct KernelAdvice {
 
 struct AdviceOptions {
   Caches caches = caches_of_this_machine();
-  OrderingOptions ordering = {};
+  OrderOptions ordering = {};
   double graph_seconds = 0;  ///< time that the vertex graph took
   bool predict = true;
   bool for_springs_too = true;  ///< add a candidate for springs if `auto` chooses another method for them

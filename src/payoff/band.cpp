@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/band.hpp"
 
-#include "base/error.hpp"
 #include "kernels/simplices.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/kernel_bench.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "kernels/elasticity.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/spmv.hpp"
 #include "mesh/graphs.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <cmath>

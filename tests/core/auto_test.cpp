@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/auto.hpp"
-
-#include "base/error.hpp"
+#include "ordering/method.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -23,8 +22,8 @@ struct Lattice {
   }
 };
 
-OrderingOptions options_for(Workload use) {
-  OrderingOptions options;
+OrderOptions options_for(Workload use) {
+  OrderOptions options;
   options.use = use;
   return options;
 }
@@ -40,13 +39,13 @@ TEST(Auto, GivesTheOrderOfTheMethodThatItSaysItTook) {
     SCOPED_TRACE(name(use));
     for (const std::span<const Point> points :
          {std::span<const Point>(lattice.points), std::span<const Point>()}) {
-      const VertexProblem problem{lattice.graph, points};
-      const Ordering order = order_vertices("auto", problem, options_for(use));
+      const VertexInput problem{lattice.graph, points};
+      const Order order = order_graph("auto", problem, options_for(use));
       EXPECT_TRUE(is_known(order.method.name)) << order.method.name;
       EXPECT_NE(order.method.name, "auto");
       EXPECT_FALSE(order.method.reason.empty());
       EXPECT_EQ(order.method, choose_vertex_method(problem, use));
-      EXPECT_EQ(order.permutation, order_vertices(order.method.name, problem).permutation);
+      EXPECT_EQ(order.permutation, order_graph(order.method.name, problem).permutation);
     }
   }
 }
@@ -54,8 +53,8 @@ TEST(Auto, GivesTheOrderOfTheMethodThatItSaysItTook) {
 TEST(Auto, OrdersElementsByLexmax) {
   const Incidence elements{4, {0, 2, 4, 6}, {0, 3, 0, 1, 1, 2}};
   const Permutation vertices = Permutation::identity(4);
-  const ElementProblem problem{elements, vertices, {}, {}};
-  const Ordering order = order_elements("auto", problem);
+  const ElementInput problem{elements, vertices, {}, {}};
+  const Order order = order_incidence("auto", problem);
   EXPECT_EQ(order.method.name, "lexmax");
   EXPECT_FALSE(order.method.reason.empty());
   EXPECT_EQ(order.permutation.new_to_old(), (std::vector<Index>{1, 2, 0}));
@@ -67,7 +66,7 @@ TEST(Auto, TakesNoGeometricMethodWhereCoordinatesTellNothing) {
   for (const Workload use : kWorkloads) {
     const std::string without = choose_vertex_method({lattice.graph, {}}, use).name;
     EXPECT_EQ(choose_vertex_method({lattice.graph, all_the_same}, use).name, without);
-    EXPECT_NO_THROW(order_vertices(without, {lattice.graph, {}}));
+    EXPECT_NO_THROW(order_graph(without, {lattice.graph, {}}));
   }
 }
 
@@ -88,7 +87,7 @@ TEST(Auto, LooksAtTheSize) {
 
 TEST(Auto, MethodsAskedForByNameGiveNoReason) {
   const Lattice lattice;
-  const Ordering order = order_vertices("bfs", {lattice.graph, lattice.points});
+  const Order order = order_graph("bfs", {lattice.graph, lattice.points});
   EXPECT_EQ(order.method, (MethodChoice{"bfs", ""}));
 }
 

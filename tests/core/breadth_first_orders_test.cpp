@@ -16,7 +16,7 @@ CsrGraph scrambled(const CsrGraph& graph, std::uint64_t seed) {
 }
 
 Permutation order_of(const CsrGraph& graph, std::string_view method) {
-  return order_vertices(method, {graph, {}}).permutation;
+  return order_graph(method, {graph, {}}).permutation;
 }
 
 TEST(BreadthFirstOrders, PutAScrambledPathBackEndToEnd) {

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/csr_graph.hpp"
 
-#include "base/error.hpp"
-#include "graph/traversal.hpp"
 #include "graph/incidence.hpp"
+#include "graph/traversal.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
       }
     }
   }
-  const CsrGraph graph = vertex_graph(elements);
+  const CsrGraph graph = joined_vertices(elements);
   check_graph(graph);
   std::set<std::pair<Index, Index>> found;
   for (Index v = 0; v < graph.size(); ++v) {
@@ -55,7 +55,7 @@ TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
 
 TEST(DualGraphByVertex, JoinsExactlyTheElementsThatShareAVertex) {
   const Incidence elements = random_elements(80, 40, 3, 2);
-  const CsrGraph dual = dual_graph_by_vertex(elements);
+  const CsrGraph dual = joined_by_vertex(elements);
   check_graph(dual);
   for (Index e = 0; e < elements.size(); ++e) {
     for (Index f = 0; f < elements.size(); ++f) {

@@ -50,7 +50,7 @@ void expect_sorted(const char* method, const std::function<bool(const Ranks&, co
   for (const Index vertices : {4, 12, 100}) {
     const Incidence elements = random_elements(vertices, 300, 4, static_cast<unsigned>(vertices));
     const Permutation order = test::shuffled(vertices, 2);
-    EXPECT_EQ(order_elements(method, {elements, order, {}, {}}).permutation.new_to_old(),
+    EXPECT_EQ(order_incidence(method, {elements, order, {}, {}}).permutation.new_to_old(),
               sorted_elements(elements, order, before))
         << method << ", " << vertices << " vertices";
   }
@@ -64,7 +64,7 @@ TEST(ElementsByRanks, LexmaxComparesAllRanksOfLargeElements) {
   // of three vertices, so that many of up to nine tie in their largest four or in all
   const Incidence elements = random_elements(3, 500, 9, 5);
   const Permutation order = test::shuffled(3, 2);
-  EXPECT_EQ(order_elements("lexmax", {elements, order, {}, {}}).permutation.new_to_old(),
+  EXPECT_EQ(order_incidence("lexmax", {elements, order, {}, {}}).permutation.new_to_old(),
             sorted_elements(elements, order,
                             [](const Ranks& a, const Ranks& b) { return falling(a) < falling(b); }));
 }
@@ -73,7 +73,7 @@ TEST(ElementsByRanks, LexmaxSortsElementsThatSeveralThreadsShare) {
   for (const Index vertices : {50, 150000}) {
     const Incidence elements = random_elements(vertices, 150000, 4, 6);
     const Permutation order = test::shuffled(vertices, 2);
-    EXPECT_EQ(order_elements("lexmax", {elements, order, {}, {}}).permutation.new_to_old(),
+    EXPECT_EQ(order_incidence("lexmax", {elements, order, {}, {}}).permutation.new_to_old(),
               sorted_elements(elements, order,
                               [](const Ranks& a, const Ranks& b) { return falling(a) < falling(b); }));
   }
@@ -105,7 +105,7 @@ TEST(ElementsByRanks, LexmaxOfAPathOfEdgesIsThePath) {
     edges.offsets.push_back(static_cast<Offset>(edges.vertices.size()));
   }
   const Permutation vertices = Permutation::identity(6);
-  EXPECT_EQ(order_elements("lexmax", {edges, vertices, {}, {}}).permutation.new_to_old(),
+  EXPECT_EQ(order_incidence("lexmax", {edges, vertices, {}, {}}).permutation.new_to_old(),
             (Ranks{1, 4, 3, 0, 2}));
 }
 

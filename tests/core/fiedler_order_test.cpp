@@ -14,9 +14,9 @@ namespace meshorder {
 namespace {
 
 Permutation fiedler_order(const CsrGraph& graph, double tolerance = 0.1) {
-  OrderingOptions options;
+  OrderOptions options;
   options.tolerance = tolerance;
-  return order_vertices("fiedler", {graph, {}}, options).permutation;
+  return order_graph("fiedler", {graph, {}}, options).permutation;
 }
 
 CsrGraph scrambled(const CsrGraph& graph, std::uint64_t seed) {
@@ -50,8 +50,8 @@ TEST(FiedlerOrder, KeepsEachComponentTogetherLargestFirstIsolatedLast) {
   const CsrGraph graph = scrambled(test::disjoint_union({test::path(1), test::grid(4, 3), test::star(150),
                                                          test::path(2), test::path(1), test::grid(4, 3)}),
                                    3);
-  const Ordering order = order_vertices("fiedler", {graph, {}});
-  const FiedlerResult result = fiedler_vector(graph);
+  const Order order = order_graph("fiedler", {graph, {}});
+  const FiedlerVectors result = fiedler_vectors(graph);
   const std::vector<Index>& sequence = order.permutation.new_to_old();
   std::size_t place = 0;
   ASSERT_EQ(order.fiedler.size(), 6U);
@@ -87,8 +87,8 @@ TEST(FiedlerOrder, OfElementsFollowsTheirDualGraphs) {
   const CellIncidence top = elements(bar);
   const Permutation vertices = test::shuffled(bar.vertex_count(), 1);
   for (const char* method : {"fiedler", "fiedler-facet"}) {
-    const Ordering order =
-        order_elements(method, {top.incidence, vertices, {}, [&] { return facet_graph(bar); }});
+    const Order order =
+        order_incidence(method, {top.incidence, vertices, {}, [&] { return facet_graph(bar); }});
     ASSERT_EQ(order.fiedler.size(), 1U);
     EXPECT_TRUE(order.fiedler[0].converged);
     const auto& sequence = order.permutation.new_to_old();

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/fiedler.hpp"
 
-#include "base/error.hpp"
 #include "graph/traversal.hpp"
 #include "support/dense.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -32,14 +32,14 @@ FiedlerOptions to(double tolerance) {
   return options;
 }
 
-double sum_of_squares(const FiedlerResult& result, std::size_t component) {
+double sum_of_squares(const FiedlerVectors& result, std::size_t component) {
   double sum = 0;
   for (const Index v : result.component_vertices[component]) sum += result.values[v] * result.values[v];
   return sum;
 }
 
 /// ‖L x − λ x‖ / ‖x‖ from the graph and the values alone.
-double true_residual(const CsrGraph& graph, const FiedlerResult& result, std::size_t component) {
+double true_residual(const CsrGraph& graph, const FiedlerVectors& result, std::size_t component) {
   double squares = 0;
   for (const Index v : result.component_vertices[component]) {
     double r = -result.components[component].lambda2 * result.values[v];
@@ -50,7 +50,7 @@ double true_residual(const CsrGraph& graph, const FiedlerResult& result, std::si
 }
 
 /// Σ over edges of squared differences by Σ of squares.
-double rayleigh_quotient(const CsrGraph& graph, const FiedlerResult& result, std::size_t component) {
+double rayleigh_quotient(const CsrGraph& graph, const FiedlerVectors& result, std::size_t component) {
   double sum = 0;
   for (const Index v : result.component_vertices[component]) {
     for (const Index u : graph[v]) {
@@ -61,7 +61,7 @@ double rayleigh_quotient(const CsrGraph& graph, const FiedlerResult& result, std
 }
 
 /// What every result promises, whether it converged or not.
-void expect_sound(const CsrGraph& graph, const FiedlerResult& result, const FiedlerOptions& options = {}) {
+void expect_sound(const CsrGraph& graph, const FiedlerVectors& result, const FiedlerOptions& options = {}) {
   ASSERT_EQ(index_size(result.values), graph.size());
   ASSERT_EQ(result.component_vertices, connected_components(graph));
   ASSERT_EQ(result.components.size(), result.component_vertices.size());
@@ -106,7 +106,7 @@ void expect_sound(const CsrGraph& graph, const FiedlerResult& result, const Fied
 void expect_eigenpair(const CsrGraph& graph, double lambda2, const std::vector<double>& x = {}) {
   SCOPED_TRACE(std::to_string(graph.size()) + " vertices, " + std::to_string(graph.edge_count()) + " edges");
   const FiedlerOptions options = to(1e-8);
-  const FiedlerResult result = fiedler_vector(graph, options);
+  const FiedlerVectors result = fiedler_vectors(graph, options);
   expect_sound(graph, result, options);
   ASSERT_EQ(result.components.size(), 1U);
   EXPECT_TRUE(result.components[0].converged);
@@ -130,7 +130,7 @@ TEST(FiedlerVector, OfACycleLiesInItsPlaneOfTwo) {
   for (const Index n : {3, 4, 9, 100, 101, 500, 2000}) {
     const CsrGraph cycle = test::cycle(n);
     expect_eigenpair(cycle, 2 - 2 * std::cos(2 * kPi / n));
-    const FiedlerResult result = fiedler_vector(cycle, to(1e-8));
+    const FiedlerVectors result = fiedler_vectors(cycle, to(1e-8));
     double cosine = 0;
     double sine = 0;
     for (Index k = 0; k < n; ++k) {
@@ -216,7 +216,7 @@ TEST(FiedlerVector, OfEveryGraphOfUpToFourVertices) {
         if ((chosen >> e & 1U) != 0) edges.push_back(all[e]);
       }
       const CsrGraph graph = graph_from_edges(n, edges);
-      const FiedlerResult result = fiedler_vector(graph);
+      const FiedlerVectors result = fiedler_vectors(graph);
       expect_sound(graph, result);
       for (std::size_t c = 0; c < result.components.size(); ++c) {
         if (result.components[c].size == 1) continue;
@@ -234,7 +234,7 @@ TEST(FiedlerVector, SolvesEachComponentAsIfItWereAlone) {
                                     test::grid(30, 20),   test::path(2), test::path(1),
                                     test::grid(30, 20, 1)};
   const CsrGraph graph = test::disjoint_union(parts);
-  const FiedlerResult result = fiedler_vector(graph);
+  const FiedlerVectors result = fiedler_vectors(graph);
   expect_sound(graph, result);
   std::vector<Index> sizes;
   for (const FiedlerComponent& report : result.components) sizes.push_back(report.size);
@@ -242,7 +242,7 @@ TEST(FiedlerVector, SolvesEachComponentAsIfItWereAlone) {
 
   Index first = 0;
   for (const CsrGraph& part : parts) {
-    const FiedlerResult alone = fiedler_vector(part);
+    const FiedlerVectors alone = fiedler_vectors(part);
     const std::vector<double> here(result.values.begin() + first,
                                    result.values.begin() + first + part.size());
     EXPECT_EQ(here, alone.values) << "component at vertex " << first;
@@ -254,8 +254,8 @@ TEST(FiedlerVector, IsTheSameBitsOnEveryRun) {
   for (const CsrGraph& graph : {test::grid(30, 30), test::random_connected(2000, 3000, 3), test::star(300)}) {
     FiedlerOptions options;
     options.seed = 4;
-    const FiedlerResult once = fiedler_vector(graph, options);
-    const FiedlerResult again = fiedler_vector(graph, options);
+    const FiedlerVectors once = fiedler_vectors(graph, options);
+    const FiedlerVectors again = fiedler_vectors(graph, options);
     EXPECT_EQ(once.values, again.values);
     EXPECT_EQ(once.components[0].iterations, again.components[0].iterations);
   }
@@ -264,8 +264,8 @@ TEST(FiedlerVector, IsTheSameBitsOnEveryRun) {
 TEST(FiedlerVector, DoesNotDependOnTheNumberingBeyondRounding) {
   const CsrGraph graph = test::random_connected(1500, 700, 8);
   const Permutation order = test::shuffled(graph.size(), 2);
-  const FiedlerResult plain = fiedler_vector(graph, to(1e-8));
-  const FiedlerResult renamed = fiedler_vector(renumbered(graph, order.old_to_new()), to(1e-8));
+  const FiedlerVectors plain = fiedler_vectors(graph, to(1e-8));
+  const FiedlerVectors renamed = fiedler_vectors(renumbered(graph, order.old_to_new()), to(1e-8));
   EXPECT_NEAR(plain.components[0].lambda2, renamed.components[0].lambda2, 1e-12);
   double product = 0;
   for (Index v = 0; v < graph.size(); ++v) product += plain.values[v] * renamed.values[order.old_to_new()[v]];
@@ -276,12 +276,12 @@ TEST(FiedlerVector, SaysSoWhenIterationsRunOut) {
   FiedlerOptions options = to(1e-12);
   options.max_iterations = 1;
   const CsrGraph path = test::path(20000);
-  const FiedlerResult result = fiedler_vector(path, options);
+  const FiedlerVectors result = fiedler_vectors(path, options);
   expect_sound(path, result, options);
   EXPECT_FALSE(result.components[0].converged);
   EXPECT_EQ(result.components[0].iterations, 1);
   options.max_iterations = 0;
-  const FiedlerResult at_start = fiedler_vector(path, options);
+  const FiedlerVectors at_start = fiedler_vectors(path, options);
   expect_sound(path, at_start, options);
   EXPECT_EQ(at_start.components[0].iterations, 0);
 }
@@ -291,7 +291,7 @@ TEST(FiedlerVector, DoesNotClaimMoreThanRoundingAllows) {
   FiedlerOptions options = to(1e-11);
   options.max_iterations = 200;
   const CsrGraph path = test::path(5000);
-  const FiedlerResult result = fiedler_vector(path, options);
+  const FiedlerVectors result = fiedler_vectors(path, options);
   expect_sound(path, result, options);
   EXPECT_FALSE(result.components[0].converged);
   EXPECT_NEAR(result.components[0].lambda2, path_lambda2(5000), 1e-14);
@@ -300,7 +300,7 @@ TEST(FiedlerVector, DoesNotClaimMoreThanRoundingAllows) {
 TEST(FiedlerVector, OfALongPath) {
   const Index n = test::large(100000);
   const CsrGraph path = test::path(n);
-  const FiedlerResult result = fiedler_vector(path, to(1e-4));
+  const FiedlerVectors result = fiedler_vectors(path, to(1e-4));
   expect_sound(path, result, to(1e-4));
   EXPECT_TRUE(result.components[0].converged);
   EXPECT_NEAR(result.components[0].lambda2, path_lambda2(n), 1e-6 * path_lambda2(n));
@@ -310,7 +310,7 @@ TEST(FiedlerVector, OfALongPath) {
 TEST(FiedlerVector, OfALongCycleAndALongComb) {
   const Index n = test::large(50000);
   const CsrGraph cycle = test::cycle(n);
-  const FiedlerResult of_cycle = fiedler_vector(cycle);
+  const FiedlerVectors of_cycle = fiedler_vectors(cycle);
   expect_sound(cycle, of_cycle);
   EXPECT_TRUE(of_cycle.components[0].converged);
   // a path with a leaf at each vertex: λ (λ − 2) = (λ − 1) μ for the path's eigenvalue μ
@@ -320,7 +320,7 @@ TEST(FiedlerVector, OfALongCycleAndALongComb) {
     if (v > 0) edges.push_back({v - 1, v});
   }
   const CsrGraph comb = graph_from_edges(2 * n, edges);
-  const FiedlerResult of_comb = fiedler_vector(comb, to(1e-3));
+  const FiedlerVectors of_comb = fiedler_vectors(comb, to(1e-3));
   expect_sound(comb, of_comb, to(1e-3));
   EXPECT_TRUE(of_comb.components[0].converged);
   const double mu = path_lambda2(n);
@@ -335,7 +335,7 @@ TEST(FiedlerVector, OfLargeStars) {
     std::vector<Index> reversed(n);
     for (Index v = 0; v < n; ++v) reversed[v] = n - 1 - v;
     const CsrGraph graph = centre_first ? star : renumbered(star, reversed);
-    const FiedlerResult result = fiedler_vector(graph);
+    const FiedlerVectors result = fiedler_vectors(graph);
     expect_sound(graph, result);
     EXPECT_TRUE(result.components[0].converged);
     EXPECT_NEAR(result.components[0].lambda2, 1, 0.01);
@@ -344,7 +344,7 @@ TEST(FiedlerVector, OfLargeStars) {
 
 TEST(FiedlerVector, OfALargeCompleteGraph) {
   const CsrGraph complete = test::complete(1000);
-  const FiedlerResult result = fiedler_vector(complete, to(1e-8));
+  const FiedlerVectors result = fiedler_vectors(complete, to(1e-8));
   expect_sound(complete, result, to(1e-8));
   EXPECT_TRUE(result.components[0].converged);
   EXPECT_NEAR(result.components[0].lambda2, 1000, 1e-8);
@@ -354,7 +354,7 @@ TEST(FiedlerVector, OfAnExpander) {
   const CsrGraph small = test::random_regular(kDenseSize, 6, 1);
   expect_eigenpair(small, test::dense_eigen(small).eigenvalues()[1]);
   const CsrGraph graph = test::random_regular(test::large(10000), 6, 1);
-  const FiedlerResult result = fiedler_vector(graph, to(1e-3));
+  const FiedlerVectors result = fiedler_vectors(graph, to(1e-3));
   expect_sound(graph, result, to(1e-3));
   EXPECT_TRUE(result.components[0].converged);
   // Friedman's theorem: d − 2 √(d − 1) in the limit
@@ -366,7 +366,7 @@ TEST(FiedlerVector, OfAPowerLawGraph) {
     const CsrGraph small = test::preferential_attachment(kDenseSize, m, 1);
     expect_eigenpair(small, test::dense_eigen(small).eigenvalues()[1]);
     const CsrGraph graph = test::preferential_attachment(test::large(10000), m, 1);
-    const FiedlerResult result = fiedler_vector(graph);
+    const FiedlerVectors result = fiedler_vectors(graph);
     expect_sound(graph, result);
     EXPECT_TRUE(result.components[0].converged);
   }
@@ -377,7 +377,7 @@ TEST(FiedlerVector, OfManySmallComponents) {
   for (Index k = 0; k < 10000; ++k)
     parts.push_back(k % 3 == 0 ? test::path(k % 7 + 1) : test::star(k % 5 + 2));
   const CsrGraph graph = test::disjoint_union(parts);
-  const FiedlerResult result = fiedler_vector(graph);
+  const FiedlerVectors result = fiedler_vectors(graph);
   ASSERT_EQ(result.components.size(), 10000U);
   expect_sound(graph, result);
   EXPECT_TRUE(std::all_of(result.components.begin(), result.components.end(),
@@ -386,7 +386,7 @@ TEST(FiedlerVector, OfManySmallComponents) {
 
 TEST(FiedlerVector, OfManyIsolatedVertices) {
   const CsrGraph graph = test::disjoint_union({graph_from_edges(50000, {}), test::path(500)});
-  const FiedlerResult result = fiedler_vector(graph);
+  const FiedlerVectors result = fiedler_vectors(graph);
   expect_sound(graph, result);
   EXPECT_EQ(result.components[0].size, 500);
 }
@@ -403,8 +403,8 @@ std::vector<double> weights_of(const CsrGraph& graph, WeightOf weight_of) {
 
 TEST(FiedlerVector, OfWeightsThatAreAllOneIsThatWithoutWeights) {
   const CsrGraph graph = test::grid(40, 15);
-  const FiedlerResult plain = fiedler_vector(graph);
-  const FiedlerResult weighted = fiedler_vector(graph, weights_of(graph, [](Index, Index) { return 1.0; }));
+  const FiedlerVectors plain = fiedler_vectors(graph);
+  const FiedlerVectors weighted = fiedler_vectors(graph, weights_of(graph, [](Index, Index) { return 1.0; }));
   for (Index v = 0; v < graph.size(); ++v) EXPECT_NEAR(weighted.values[v], plain.values[v], 1e-12);
 }
 
@@ -422,7 +422,7 @@ TEST(FiedlerVector, OfWeightedGraphsIsThatOfTheDenseSolver) {
       }
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> exact(matrix);
-    const FiedlerResult result = fiedler_vector(graph, weights, to(1e-6));
+    const FiedlerVectors result = fiedler_vectors(graph, weights, to(1e-6));
     ASSERT_TRUE(result.components[0].converged) << decades;
     EXPECT_NEAR(result.components[0].lambda2 / exact.eigenvalues()[1], 1, 1e-6) << decades;
     double along = 0;
@@ -435,7 +435,7 @@ TEST(FiedlerVector, CutsWhereTheWeightsAreWeak) {
   // twelve decades: two halves of strong edges, joined by weak ones
   const CsrGraph graph = test::grid(40, 25);
   const auto half = [](Index v) { return v / 25 < 20; };
-  const FiedlerResult result = fiedler_vector(
+  const FiedlerVectors result = fiedler_vectors(
       graph, weights_of(graph, [&](Index a, Index b) { return half(a) == half(b) ? 1e6 : 1e-6; }));
   // λ₂ is that of two vertices of mass 500 joined by 25 weak edges
   // and 14 decades below the largest eigenvalue, where the vector itself has few digits left
@@ -454,7 +454,7 @@ TEST(FiedlerVector, ReturnsOnWeightsOverTwelveDecades) {
     });
     FiedlerOptions options = to(0.1);
     options.max_iterations = 100;
-    const FiedlerResult result = fiedler_vector(graph, weights, options);
+    const FiedlerVectors result = fiedler_vectors(graph, weights, options);
     const FiedlerComponent& component = result.components[0];
     EXPECT_TRUE(std::isfinite(component.lambda2));
     EXPECT_GE(component.lambda2, 0);
@@ -465,11 +465,11 @@ TEST(FiedlerVector, ReturnsOnWeightsOverTwelveDecades) {
 
 TEST(FiedlerVector, RejectsWeightsThatAreNone) {
   const CsrGraph graph = test::path(3);
-  EXPECT_THROW(fiedler_vector(graph, std::vector<double>{1, 1, 1}), InvalidArgument);
-  EXPECT_THROW(fiedler_vector(graph, std::vector<double>{1, 1, 0, 1}), InvalidArgument);
-  EXPECT_THROW(fiedler_vector(graph, std::vector<double>{1, -1, -1, 1}), InvalidArgument);
-  EXPECT_THROW(fiedler_vector(graph, std::vector<double>{1, 1, NAN, 1}), InvalidArgument);
-  EXPECT_THROW(fiedler_vector(graph, std::vector<double>{1, 1, INFINITY, 1}), InvalidArgument);
+  EXPECT_THROW(fiedler_vectors(graph, std::vector<double>{1, 1, 1}), InvalidArgument);
+  EXPECT_THROW(fiedler_vectors(graph, std::vector<double>{1, 1, 0, 1}), InvalidArgument);
+  EXPECT_THROW(fiedler_vectors(graph, std::vector<double>{1, -1, -1, 1}), InvalidArgument);
+  EXPECT_THROW(fiedler_vectors(graph, std::vector<double>{1, 1, NAN, 1}), InvalidArgument);
+  EXPECT_THROW(fiedler_vectors(graph, std::vector<double>{1, 1, INFINITY, 1}), InvalidArgument);
 }
 
 TEST(FiedlerVector, IsTheSameBitsOnAnyNumberOfThreads) {
@@ -480,7 +480,7 @@ TEST(FiedlerVector, IsTheSameBitsOnAnyNumberOfThreads) {
   for (const int threads : {1, 2, 3, 7}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     tbb::task_arena arena(threads);
-    const FiedlerResult result = arena.execute([&] { return fiedler_vector(graph); });
+    const FiedlerVectors result = arena.execute([&] { return fiedler_vectors(graph); });
     if (expected.empty()) expected = result.values;
     EXPECT_EQ(result.values, expected) << threads << " threads";
   }

@@ -1,10 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/grouped.hpp"
-
-#include "base/error.hpp"
 #include "base/stopwatch.hpp"
-#include "ordering/auto.hpp"
+#include "ordering/method.hpp"
 #include "support/sample_graphs.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -27,10 +25,10 @@ TEST(OrderInGroups, IsTheMethodsOrderOfEachGroupsOwnGraph) {
   std::vector<Index> group_of(graph.size());
   for (Index v = 0; v < graph.size(); ++v)
     group_of[v] = (v % 20) / 7 == 1 ? 0 : v < 150 ? 3 : 1;  // 2 is empty
-  for (const VertexMethod& method : vertex_methods()) {
+  for (const MethodInfo& method : vertex_methods()) {
     if (method.name == "auto") continue;
     SCOPED_TRACE(method.name);
-    const Ordering order = order_vertices_in_groups(method.name, {graph, points}, group_of, 4);
+    const Order order = order_graph_in_groups(method.name, {graph, points}, group_of, 4);
     EXPECT_EQ(order.method, (MethodChoice{std::string(method.name), ""}));
     std::vector<Index> expected;
     std::size_t components = 0;
@@ -43,7 +41,7 @@ TEST(OrderInGroups, IsTheMethodsOrderOfEachGroupsOwnGraph) {
         of_members.push_back(points[v]);
       }
       const CsrGraph subgraph = induced_subgraph(graph, members);
-      const Ordering alone = order_vertices(method.name, {subgraph, of_members});
+      const Order alone = order_graph(method.name, {subgraph, of_members});
       for (const Index k : alone.permutation.new_to_old()) expected.push_back(members[k]);
       components += alone.fiedler.size();
     }
@@ -56,10 +54,10 @@ TEST(OrderInGroups, ChoosesOneMethodForAllGroups) {
   const CsrGraph graph = test::grid(20, 15);
   std::vector<Index> group_of(graph.size(), 0);
   for (Index v = 0; v < 100; ++v) group_of[v] = 1;
-  const Ordering order = order_vertices_in_groups("auto", {graph, {}}, group_of, 2);
+  const Order order = order_graph_in_groups("auto", {graph, {}}, group_of, 2);
   EXPECT_EQ(order.method, choose_vertex_method({graph, {}}, Workload::all));
   EXPECT_EQ(order.permutation,
-            order_vertices_in_groups(order.method.name, {graph, {}}, group_of, 2).permutation);
+            order_graph_in_groups(order.method.name, {graph, {}}, group_of, 2).permutation);
 }
 
 TEST(OrderInGroups, TakesTimeInProportionToManyGroups) {
@@ -68,7 +66,7 @@ TEST(OrderInGroups, TakesTimeInProportionToManyGroups) {
   std::vector<Index> group_of(static_cast<std::size_t>(n));
   std::iota(group_of.rbegin(), group_of.rend(), Index{0});
   const Stopwatch watch;
-  const Ordering order = order_vertices_in_groups("rcm", {graph, {}}, group_of, n);
+  const Order order = order_graph_in_groups("rcm", {graph, {}}, group_of, n);
   EXPECT_LT(watch.seconds(), 10);
   EXPECT_EQ(order.permutation.new_to_old().front(), n - 1);
 }
@@ -79,11 +77,10 @@ TEST(OrderInGroups, RefusesGroupsThatDoNotFit) {
   const std::vector<Index> too_large{0, 2, 1};
   const std::vector<Index> negative{0, -1, 1};
   for (const auto& group_of : {too_few, too_large, negative}) {
-    EXPECT_THROW(order_vertices_in_groups("bfs", {graph, {}}, group_of, 2), InvalidArgument);
+    EXPECT_THROW(order_graph_in_groups("bfs", {graph, {}}, group_of, 2), InvalidArgument);
   }
-  EXPECT_THROW(order_vertices_in_groups("best", {graph, {}}, std::vector<Index>{0, 0, 0}, 1),
-               InvalidArgument);
-  EXPECT_EQ(order_vertices_in_groups("bfs", {CsrGraph{}, {}}, {}, 0).permutation.size(), 0);
+  EXPECT_THROW(order_graph_in_groups("best", {graph, {}}, std::vector<Index>{0, 0, 0}, 1), InvalidArgument);
+  EXPECT_EQ(order_graph_in_groups("bfs", {CsrGraph{}, {}}, {}, 0).permutation.size(), 0);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "ordering/method.hpp"
 
-#include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "mesh/graphs.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -60,15 +60,15 @@ std::vector<NamedGraph> vertex_graphs() {
 }
 
 TEST(VertexMethods, YieldABijectionAndKeepQuiet) {
-  for (const VertexMethod& method : vertex_methods()) {
+  for (const MethodInfo& method : vertex_methods()) {
     for (const auto& [name, graph] : vertex_graphs()) {
       SCOPED_TRACE(std::string(method.name) + " on " + name);
       const std::vector<Point> points = random_points(graph.size());
       testing::internal::CaptureStdout();
-      const Ordering order = order_vertices(method.name, {graph, points});
+      const Order order = order_graph(method.name, {graph, points});
       EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
       expect_bijection(order.permutation, graph.size());
-      EXPECT_EQ(order_vertices(method.name, {graph, points}).permutation, order.permutation) << "run again";
+      EXPECT_EQ(order_graph(method.name, {graph, points}).permutation, order.permutation) << "run again";
       const bool spectral = method.name == "fiedler" || method.name == "minla";
       EXPECT_EQ(!order.fiedler.empty(), spectral && graph.size() > 0);
     }
@@ -79,8 +79,8 @@ TEST(VertexMethods, PutIsolatedVerticesLastInOldOrderButForOriginal) {
   const CsrGraph graph =
       test::disjoint_union({test::path(1), test::grid(5, 4), test::path(1), test::path(3), test::path(1)});
   const std::vector<Point> points = random_points(graph.size());
-  for (const VertexMethod& method : vertex_methods()) {
-    const Permutation order = order_vertices(method.name, {graph, points}).permutation;
+  for (const MethodInfo& method : vertex_methods()) {
+    const Permutation order = order_graph(method.name, {graph, points}).permutation;
     if (method.name == "original") {
       EXPECT_TRUE(order.is_identity());
       continue;
@@ -95,10 +95,10 @@ TEST(VertexMethods, TakeTimeInProportionToManyIsolatedVertices) {
       test::disjoint_union({graph_from_edges(test::large(400000), {}),
                             test::disjoint_union(std::vector<CsrGraph>(2000, test::path(3)))});
   const std::vector<Point> points = random_points(graph.size());
-  for (const VertexMethod& method : vertex_methods()) {
+  for (const MethodInfo& method : vertex_methods()) {
     if (method.name.starts_with("metis")) continue;  // METIS takes what time it takes
     const Stopwatch watch;
-    EXPECT_EQ(order_vertices(method.name, {graph, points}).permutation.size(), graph.size());
+    EXPECT_EQ(order_graph(method.name, {graph, points}).permutation.size(), graph.size());
     EXPECT_LT(watch.seconds(), 10) << method.name;
   }
 }
@@ -106,12 +106,12 @@ TEST(VertexMethods, TakeTimeInProportionToManyIsolatedVertices) {
 TEST(VertexMethods, OfGeometryNeedCoordinatesAndOthersDoNot) {
   const CsrGraph graph = test::grid(5, 4);
   const std::vector<Point> too_few = random_points(19);
-  for (const VertexMethod& method : vertex_methods()) {
+  for (const MethodInfo& method : vertex_methods()) {
     if (method.name == "morton" || method.name == "hilbert") {
-      EXPECT_THROW(order_vertices(method.name, {graph, {}}), InvalidArgument) << method.name;
-      EXPECT_THROW(order_vertices(method.name, {graph, too_few}), InvalidArgument) << method.name;
+      EXPECT_THROW(order_graph(method.name, {graph, {}}), InvalidArgument) << method.name;
+      EXPECT_THROW(order_graph(method.name, {graph, too_few}), InvalidArgument) << method.name;
     } else {
-      EXPECT_NO_THROW(order_vertices(method.name, {graph, {}})) << method.name;
+      EXPECT_NO_THROW(order_graph(method.name, {graph, {}})) << method.name;
     }
   }
 }
@@ -129,28 +129,28 @@ std::string refusal(Call call) {
 
 TEST(Methods, OfUnknownNamesAreRefusedWithTheKnownOnes) {
   const CsrGraph graph = test::path(3);
-  const std::string of_vertices = refusal([&] { order_vertices("fielder", {graph, {}}); });
+  const std::string of_vertices = refusal([&] { order_graph("fielder", {graph, {}}); });
   EXPECT_NE(of_vertices.find("'fielder'"), std::string::npos) << of_vertices;
-  for (const VertexMethod& method : vertex_methods()) {
+  for (const MethodInfo& method : vertex_methods()) {
     EXPECT_NE(of_vertices.find(method.name), std::string::npos) << of_vertices;
   }
   const Permutation vertices = Permutation::identity(0);
-  const std::string of_elements = refusal([&] { order_elements("", {Incidence{}, vertices, {}, {}}); });
-  for (const ElementMethod& method : element_methods()) {
+  const std::string of_elements = refusal([&] { order_incidence("", {Incidence{}, vertices, {}, {}}); });
+  for (const MethodInfo& method : element_methods()) {
     EXPECT_NE(of_elements.find(method.name), std::string::npos) << of_elements;
   }
 }
 
 TEST(Methods, HaveDistinctNamesAndASentenceEach) {
   std::set<std::string_view> names;
-  for (const VertexMethod& method : vertex_methods()) {
+  for (const MethodInfo& method : vertex_methods()) {
     EXPECT_TRUE(names.insert(method.name).second) << method.name;
-    EXPECT_FALSE(method.sentence.empty());
+    EXPECT_FALSE(method.description.empty());
   }
   names.clear();
-  for (const ElementMethod& method : element_methods()) {
+  for (const MethodInfo& method : element_methods()) {
     EXPECT_TRUE(names.insert(method.name).second) << method.name;
-    EXPECT_FALSE(method.sentence.empty());
+    EXPECT_FALSE(method.description.empty());
   }
 }
 
@@ -180,34 +180,36 @@ std::vector<NamedMesh> meshes() {
 }
 
 TEST(ElementMethods, YieldABijection) {
-  for (const ElementMethod& method : element_methods()) {
+  for (const MethodInfo& method : element_methods()) {
     for (const auto& [name, mesh] : meshes()) {
       SCOPED_TRACE(std::string(method.name) + " on " + name);
-      const CellIncidence top = elements(mesh);
+      const CellArrays cells = cell_arrays(mesh);
+      const CellSelection top = CellSelection::elements(cells);
       const Permutation vertices = test::shuffled(mesh.vertex_count(), 3);
-      const ElementProblem problem{top.incidence, vertices, mesh.points,
-                                   [&m = mesh] { return facet_graph(m); }};
-      const Ordering order = order_elements(method.name, problem);
-      expect_bijection(order.permutation, index_size(top.cells));
-      EXPECT_EQ(order_elements(method.name, problem).permutation, order.permutation) << "run again";
-      EXPECT_EQ(!order.fiedler.empty(), method.name.starts_with("fiedler") && !top.cells.empty());
+      const ElementInput problem{top.incidence(), vertices, mesh.points,
+                                 [&m = mesh] { return facet_graph(m); }};
+      const Order order = order_incidence(method.name, problem);
+      expect_bijection(order.permutation, top.size());
+      EXPECT_EQ(order_incidence(method.name, problem).permutation, order.permutation) << "run again";
+      EXPECT_EQ(!order.fiedler.empty(), method.name.starts_with("fiedler") && top.size() > 0);
     }
   }
 }
 
 TEST(ElementMethods, OfGeometryNeedCoordinatesAndOthersDoNot) {
   const Mesh mesh = test::tetrahedral_bar(3);
-  const CellIncidence top = elements(mesh);
+  const CellArrays cells = cell_arrays(mesh);
+  const CellSelection top = CellSelection::elements(cells);
   const Permutation vertices = Permutation::identity(mesh.vertex_count());
-  const ElementProblem problem{top.incidence, vertices, {}, [&] { return facet_graph(mesh); }};
-  for (const ElementMethod& method : element_methods()) {
+  const ElementInput problem{top.incidence(), vertices, {}, [&] { return facet_graph(mesh); }};
+  for (const MethodInfo& method : element_methods()) {
     if (method.name == "hilbert") {
-      const std::string message = refusal([&] { order_elements(method.name, problem); });
+      const std::string message = refusal([&] { order_incidence(method.name, problem); });
       EXPECT_NE(message.find("'hilbert'"), std::string::npos) << message;
       EXPECT_NE(message.find(std::to_string(mesh.vertex_count()) + " vertices"), std::string::npos)
           << message;
     } else {
-      EXPECT_NO_THROW(order_elements(method.name, problem)) << method.name;
+      EXPECT_NO_THROW(order_incidence(method.name, problem)) << method.name;
     }
   }
 }

@@ -19,9 +19,9 @@ CsrGraph scrambled_mesh_graph() {
 }
 
 Permutation order_of(const CsrGraph& graph, std::string_view method, std::uint64_t seed = 0) {
-  OrderingOptions options;
+  OrderOptions options;
   options.seed = seed;
-  return order_vertices(method, {graph, {}}, options).permutation;
+  return order_graph(method, {graph, {}}, options).permutation;
 }
 
 /// Entries of the Cholesky factor below the diagonal, by elimination on sets.

@@ -20,7 +20,7 @@ namespace meshorder {
 namespace {
 
 Permutation order_of(const CsrGraph& graph, std::string_view method = "minla") {
-  return order_vertices(method, {graph, {}}).permutation;
+  return order_graph(method, {graph, {}}).permutation;
 }
 
 /// Σ |rank i − rank j| over edges, straight from its definition; exact.
@@ -160,8 +160,8 @@ TEST(Minla, KeepsComponentsWhereFiedlerPutsThem) {
       scrambled(test::disjoint_union({test::path(1), test::grid(7, 5), test::star(150), test::path(2),
                                       test::path(1), test::grid(20, 9), test::cycle(3)}),
                 3);
-  const Ordering order = order_vertices("minla", {graph, {}});
-  const std::vector<std::vector<Index>> components = fiedler_vector(graph).component_vertices;
+  const Order order = order_graph("minla", {graph, {}});
+  const std::vector<std::vector<Index>> components = fiedler_vectors(graph).component_vertices;
   auto place = order.permutation.new_to_old().begin();
   for (const std::vector<Index>& component : components) {
     std::vector<Index> here(place, place + static_cast<std::ptrdiff_t>(component.size()));

@@ -12,9 +12,9 @@ namespace meshorder {
 namespace {
 
 Permutation scrambled(const CsrGraph& graph, std::uint64_t seed) {
-  OrderingOptions options;
+  OrderOptions options;
   options.seed = seed;
-  return order_vertices("scrambled", {graph, {}}, options).permutation;
+  return order_graph("scrambled", {graph, {}}, options).permutation;
 }
 
 TEST(Scrambled, IsSeeded) {
@@ -53,9 +53,9 @@ TEST(Scrambled, OfElementsIsSeededToo) {
   }
   const Permutation vertices = Permutation::identity(1);
   const auto order = [&](std::uint64_t seed) {
-    OrderingOptions options;
+    OrderOptions options;
     options.seed = seed;
-    return order_elements("scrambled", {elements, vertices, {}, {}}, options).permutation;
+    return order_incidence("scrambled", {elements, vertices, {}, {}}, options).permutation;
   };
   EXPECT_EQ(order(1), order(1));
   EXPECT_NE(order(1), order(2));

@@ -3,6 +3,7 @@
 
 #include "mesh/graphs.hpp"
 #include "ordering/method.hpp"
+#include "ordering/moved.hpp"
 #include "support/sample_meshes.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +28,7 @@ std::vector<Point> full_lattice(int axes, int k) {
       }
     }
   }
-  return test::shuffled(index_size(points), 1).moved(points);
+  return moved(test::shuffled(index_size(points), 1), points);
 }
 
 Permutation order_of(std::string_view method, const std::vector<Point>& points) {
@@ -38,7 +39,7 @@ Permutation order_of(std::string_view method, const std::vector<Point>& points) 
     for (Index v = 0; v < n; ++v) ring.push_back({v, (v + 1) % n});
     return graph_from_edges(n, ring);
   }();
-  return order_vertices(method, {complete_enough, points}).permutation;
+  return order_graph(method, {complete_enough, points}).permutation;
 }
 
 double distance(const Point& a, const Point& b) {
@@ -170,17 +171,18 @@ TEST(SpaceFilling, LatticeCoversTheBox) {
 
 TEST(Hilbert, OfElementsGoesThroughTheirCentroids) {
   const Mesh mesh = test::tetrahedral_bar(5);
-  const CellIncidence top = elements(mesh);
+  const CellArrays cells = cell_arrays(mesh);
+  const CellSelection top = CellSelection::elements(cells);
   std::vector<Point> centroids;
-  for (Index e = 0; e < top.incidence.size(); ++e) {
+  for (Index e = 0; e < top.incidence().size(); ++e) {
     Point sum{};
-    for (const Index v : top.incidence[e]) {
+    for (const Index v : top.incidence()[e]) {
       for (int a = 0; a < 3; ++a) sum[a] += mesh.points[v][a] / 4;
     }
     centroids.push_back(sum);
   }
   const Permutation vertices = test::shuffled(mesh.vertex_count(), 1);
-  EXPECT_EQ(order_elements("hilbert", {top.incidence, vertices, mesh.points, {}}).permutation,
+  EXPECT_EQ(order_incidence("hilbert", {top.incidence(), vertices, mesh.points, {}}).permutation,
             order_of("hilbert", centroids));
 }
 

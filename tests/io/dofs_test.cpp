@@ -1,8 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // The C++ example of docs/dofs.md; tests/command/test_docs.py sees to it that both are the same.
+#include "io/format.hpp"
+#include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
-#include <meshorder/meshorder.hpp>
 
 #include <gtest/gtest.h>
 
@@ -25,10 +26,11 @@ TEST(Dofs, FollowTheVertices) {
   // [docs/dofs.md
   mo::Mesh mesh = mo::read_mesh(path);
   const mo::Reordering order = mo::reorder(mesh);
-  const auto& old_to_new = order.vertices.old_to_new();
+  const auto old_to_new = order.vertices.old_to_new();
 
   // three numbers a vertex, node-major, follow the vertices
-  const std::vector<double> u_new = order.vertices.moved(u, 3);
+  std::vector<double> u_new(u.size());
+  order.vertices.move(u, u_new, 3);
 
   // the number of a degree of freedom
   const auto node_major = [&](mo::Index v, int c) { return 3 * mo::Offset{old_to_new[v]} + c; };

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
 
-#include "base/error.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -30,8 +30,8 @@ Mesh interleaved(const std::vector<Shape>& shapes) {
 
 TEST(Format, IsFoundByItsExtensionInAnyCase) {
   EXPECT_EQ(format_of("a.MSH").name, format_of("b.msh").name);
-  EXPECT_THROW((void)format_of("a.txt"), Error);
-  EXPECT_THROW((void)format_of("mesh"), Error);
+  EXPECT_THROW((void)format_of("a.txt"), InputError);
+  EXPECT_THROW((void)format_of("mesh"), InputError);
 }
 
 TEST(Format, ExtensionsAreUnique) {

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "io/format.hpp"
 #include "io/gmsh_files.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -414,7 +414,7 @@ TEST(Gmsh, RefusesCellsThatItLacks) {
   try {
     write_mesh(cells_of_type(Shape::polygon, 5, 2), path);
     FAIL() << "a polygon was written";
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("polygon"));
     EXPECT_THAT(error.what(), HasSubstr("mesh.msh"));
   }
@@ -512,9 +512,9 @@ TEST(Gmsh, FindsItsEntitiesAgainAfterADetour) {
 
 TEST(Gmsh, LeavesNothingBehindWhenTheTargetCannotBeWritten) {
   const TemporaryFolder folder;
-  EXPECT_THROW(write_mesh(tetrahedral_bar(1), folder.path() / "absent" / "mesh.msh"), Error);
+  EXPECT_THROW(write_mesh(tetrahedral_bar(1), folder.path() / "absent" / "mesh.msh"), InputError);
   std::filesystem::create_directory(folder.path() / "mesh.msh");
-  EXPECT_THROW(write_mesh(tetrahedral_bar(1), folder.path() / "mesh.msh"), Error);
+  EXPECT_THROW(write_mesh(tetrahedral_bar(1), folder.path() / "mesh.msh"), InputError);
   EXPECT_THAT(folder.names(), ElementsAre("mesh.msh"));
 }
 

@@ -46,10 +46,11 @@ Pairs facet_neighbours(const std::vector<Cell>& cells) { return edges_of(facet_g
 
 /// Pairs of elements that share a facet, by comparing every facet of every pair as sets of vertices.
 Pairs sharing_a_facet(const Mesh& mesh) {
-  const CellIncidence top = elements(mesh);
-  std::vector<std::set<std::set<Index>>> facet_sets(top.cells.size());
-  for (std::size_t e = 0; e < top.cells.size(); ++e) {
-    const Index c = top.cells[e];
+  const CellArrays cells = cell_arrays(mesh);
+  const CellSelection top = CellSelection::elements(cells);
+  std::vector<std::set<std::set<Index>>> facet_sets(static_cast<std::size_t>(top.size()));
+  for (Index e = 0; e < top.size(); ++e) {
+    const Index c = top.cell(e);
     for (const auto& positions : facets(mesh.cells.shapes[c], mesh.cells.vertex_count(c))) {
       std::set<Index> corners;
       for (const int k : positions) corners.insert(mesh.cells[c][k]);
@@ -57,8 +58,8 @@ Pairs sharing_a_facet(const Mesh& mesh) {
     }
   }
   Pairs result;
-  for (std::size_t e = 0; e < top.cells.size(); ++e) {
-    for (std::size_t f = e + 1; f < top.cells.size(); ++f) {
+  for (Index e = 0; e < top.size(); ++e) {
+    for (Index f = e + 1; f < top.size(); ++f) {
       const bool share = std::any_of(facet_sets[e].begin(), facet_sets[e].end(),
                                      [&](const auto& facet) { return facet_sets[f].contains(facet); });
       if (share) result.emplace(static_cast<Index>(e), static_cast<Index>(f));
@@ -101,10 +102,12 @@ TEST(MeshVertexGraph, OfNoCellsHasNoEdges) {
 
 TEST(Elements, AreTheCellsOfTheHighestDimensionAndLowerCellsTheRest) {
   const Mesh mesh = test::mixed_mesh();
-  const CellIncidence top = elements(mesh);
-  const CellIncidence lower = lower_dimensional_cells(mesh);
-  std::vector<Index> all = top.cells;
-  all.insert(all.end(), lower.cells.begin(), lower.cells.end());
+  const CellArrays cells = cell_arrays(mesh);
+  const CellSelection top = CellSelection::elements(cells);
+  const CellSelection lower = CellSelection::lower_dimensional(cells);
+  std::vector<Index> all;
+  for (Index e = 0; e < top.size(); ++e) all.push_back(top.cell(e));
+  for (Index e = 0; e < lower.size(); ++e) all.push_back(lower.cell(e));
   std::sort(all.begin(), all.end());
   EXPECT_EQ(index_size(all), mesh.cell_count());
   EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());

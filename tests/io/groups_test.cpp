@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/groups.hpp"
 
-#include "base/error.hpp"
 #include "mesh/reorder.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "io/format.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -343,7 +343,7 @@ TEST(Medit, RefusesCellsThatItCannotHold) {
     try {
       write_mesh(test::cells_of_type(shape, nodes, 1), folder.path() / "m.mesh");
       ADD_FAILURE() << type_name(shape, nodes);
-    } catch (const Error& error) {
+    } catch (const InputError& error) {
       EXPECT_THAT(error.what(), AllOf(HasSubstr(type_name(shape, nodes)), HasSubstr("instead")));
     }
   }
@@ -353,9 +353,9 @@ TEST(Medit, RefusesCellsThatItCannotHold) {
 TEST(Medit, SaysWhereItCannotWrite) {
   const TemporaryFolder folder;
   const Mesh mesh = read(kFile);
-  EXPECT_THROW(write_mesh(mesh, folder.path() / "none" / "m.mesh"), Error);
+  EXPECT_THROW(write_mesh(mesh, folder.path() / "none" / "m.mesh"), InputError);
   fs::create_directory(folder.path() / "m.mesh");
-  EXPECT_THROW(write_mesh(mesh, folder.path() / "m.mesh"), Error);
+  EXPECT_THROW(write_mesh(mesh, folder.path() / "m.mesh"), InputError);
   EXPECT_THAT(folder.names(), ElementsAre("m.mesh"));
 }
 
@@ -439,7 +439,7 @@ TEST(Medit, NoticesTruncation) {
     try {
       (void)read(kFile.substr(0, size), &notes);
       EXPECT_FALSE(notes.empty()) << "cut after " << size;
-    } catch (const Error&) {
+    } catch (const InputError&) {
       continue;
     }
   }

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -100,7 +100,7 @@ TEST(MeshOrdering, UnusedVerticesComeLastInOldOrder) {
   mesh.cells.push_back(Shape::tetrahedron, std::vector<Index>{1, 3, 4, 6});
   mesh.cells.push_back(Shape::tetrahedron, std::vector<Index>{3, 4, 6, 9});
   mesh.cells.push_back(Shape::triangle, std::vector<Index>{0, 2, 9});  // lower: does not keep 0 and 2 in use
-  for (const VertexMethod& method : vertex_methods()) {
+  for (const MethodInfo& method : vertex_methods()) {
     if (method.name == "original") continue;
     const CsrGraph graph = vertex_graph(mesh);
     const Reordering result = compute_reordering(mesh, graph, methods(std::string(method.name), "lexmax"));
@@ -113,7 +113,7 @@ TEST(MeshOrdering, UnusedVerticesComeLastInOldOrder) {
 TEST(MeshOrdering, IsTheSameTwice) {
   const Mesh mesh = bar_with_boundary();
   const CsrGraph graph = vertex_graph(mesh);
-  for (const VertexMethod& method : vertex_methods()) {
+  for (const MethodInfo& method : vertex_methods()) {
     const ReorderingOptions options = methods(std::string(method.name), "fiedler");
     const Reordering once = compute_reordering(mesh, graph, options);
     const Reordering again = compute_reordering(mesh, graph, options);
@@ -125,8 +125,8 @@ TEST(MeshOrdering, IsTheSameTwice) {
 TEST(MeshOrdering, EveryPairOfMethodsGivesASoundMeshThatTheInverseRestores) {
   for (const Mesh& original : {test::mixed_mesh(), bar_with_boundary(), Mesh{}}) {
     const CsrGraph graph = vertex_graph(original);
-    for (const VertexMethod& of_vertices : vertex_methods()) {
-      for (const ElementMethod& of_elements : element_methods()) {
+    for (const MethodInfo& of_vertices : vertex_methods()) {
+      for (const MethodInfo& of_elements : element_methods()) {
         SCOPED_TRACE(std::string(of_vertices.name) + " and " + std::string(of_elements.name));
         const ReorderingOptions options =
             methods(std::string(of_vertices.name), std::string(of_elements.name));

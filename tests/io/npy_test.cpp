@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/npy.hpp"
 
-#include "base/error.hpp"
 #include "support/files.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TEST(Npy, RefusesWhatIsNoListOfIntegers) {
       "\x93NUMPY\x01\0\xff\xff"s,
   };
   for (const std::string& content : broken) {
-    EXPECT_THROW((void)read_npy(folder.file("a.npy", content)), Error) << content;
+    EXPECT_THROW((void)read_npy(folder.file("a.npy", content)), InputError) << content;
   }
 }
 

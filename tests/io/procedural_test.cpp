@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/procedural.hpp"
 
-#include "base/error.hpp"
 #include "graph/traversal.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/mesh.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/reorder.hpp"
 
-#include "base/error.hpp"
+#include "mesh/graphs.hpp"
 #include "mesh/mesh.hpp"
+#include "ordering/order_cells.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -91,7 +93,7 @@ TEST(Reorder, RefusesToMoveACellOutOfItsBlock) {
 TEST(PermutationWithinBlocks, KeepsTheGivenOrderInEachBlock) {
   Mesh mesh = test::tetrahedral_bar(1);
   mesh.cell_blocks = {0, 2};
-  const auto p = permutation_within_blocks(mesh, {5, 4, 3, 2, 1, 0});
+  const auto p = permutation_within_classes(slot_classes(cell_arrays(mesh)), {5, 4, 3, 2, 1, 0});
   EXPECT_EQ(p.new_to_old(), (std::vector<Index>{1, 0, 5, 4, 3, 2}));
 }
 
@@ -106,7 +108,8 @@ TEST(GroupCellsByType, PutsTypesTogetherHighestDimensionFirst) {
   EXPECT_EQ(mesh.cell_blocks.size(), 18U);
   mesh.cell_blocks.clear();
   apply_reordering(mesh, Permutation::identity(mesh.vertex_count()),
-                   permutation_within_blocks(mesh, test::shuffled(mesh.cell_count(), 1).new_to_old()));
+                   permutation_within_classes(slot_classes(cell_arrays(mesh)),
+                                              test::shuffled(mesh.cell_count(), 1).new_to_old()));
   EXPECT_EQ(order.size(), before.cell_count());
 }
 

@@ -40,7 +40,7 @@ TEST(Scanner, ErrorsNameFileLineAndRemedy) {
   try {
     scanner.integer<int>("the count");
     FAIL();
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()),
               (folder.path() / "a.txt").string() + ":2: the count is 'x'; a whole number is needed");
   }
@@ -49,17 +49,17 @@ TEST(Scanner, ErrorsNameFileLineAndRemedy) {
 TEST(Scanner, DoesNotBelieveCountsThatTheFileCannotHold) {
   const TemporaryFolder folder;
   Scanner scanner(folder.file("a.txt", "1000000000000 -1 99 2\n1 2"));
-  EXPECT_THROW(scanner.count("nodes", 2), Error);
-  EXPECT_THROW(scanner.count("nodes", 2), Error);
-  EXPECT_THROW(scanner.count("nodes", 2), Error);
+  EXPECT_THROW(scanner.count("nodes", 2), InputError);
+  EXPECT_THROW(scanner.count("nodes", 2), InputError);
+  EXPECT_THROW(scanner.count("nodes", 2), InputError);
   EXPECT_EQ(scanner.count("nodes", 2), 2);
 }
 
 TEST(Scanner, RefusesFoldersEmptyAndMissingFiles) {
   const TemporaryFolder folder;
-  EXPECT_THROW(Scanner(folder.path()), Error);
-  EXPECT_THROW(Scanner(folder.path() / "none"), Error);
-  EXPECT_THROW(Scanner(folder.file("a.txt", "")), Error);
+  EXPECT_THROW(Scanner(folder.path()), InputError);
+  EXPECT_THROW(Scanner(folder.path() / "none"), InputError);
+  EXPECT_THROW(Scanner(folder.file("a.txt", "")), InputError);
 }
 
 TEST(Scanner, ReadsBinaryInEitherOrder) {
@@ -67,7 +67,7 @@ TEST(Scanner, ReadsBinaryInEitherOrder) {
   Scanner scanner(folder.file("a.bin", std::string_view("\0\0\0\1\1\0\0\0\7", 9)));
   EXPECT_EQ(scanner.binary<std::int32_t>("n", std::endian::big), 1);
   EXPECT_EQ(scanner.binary<std::int32_t>("n", std::endian::little), 1);
-  EXPECT_THROW(scanner.binary<std::int32_t>("n"), Error);
+  EXPECT_THROW(scanner.binary<std::int32_t>("n"), InputError);
 }
 
 TEST(OutputFile, AppearsWholeOrNotAtAll) {
@@ -86,8 +86,8 @@ TEST(OutputFile, AppearsWholeOrNotAtAll) {
 
 TEST(OutputFile, RefusesAFolderAndAMissingFolder) {
   const TemporaryFolder folder;
-  EXPECT_THROW(OutputFile(folder.path()), Error);
-  EXPECT_THROW(OutputFile(folder.path() / "none" / "a.txt"), Error);
+  EXPECT_THROW(OutputFile(folder.path()), InputError);
+  EXPECT_THROW(OutputFile(folder.path() / "none" / "a.txt"), InputError);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "io/format.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -374,7 +374,7 @@ TEST(TetGen, CellsWithoutALabelGetZero) {
 std::string write_error(const Mesh& mesh, const fs::path& path) {
   try {
     write_mesh(mesh, path);
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   ADD_FAILURE() << path << " was written without an error";
@@ -567,7 +567,7 @@ TEST(TetGen, NoticesTruncationOfEveryFile) {
         EXPECT_EQ(part.cells, whole.cells) << name << " cut after " << size;
         // only a last marker can lose digits, and that is noted; comments may be cut anywhere
         EXPECT_TRUE(part.data == whole.data || !notes.empty()) << name << " cut after " << size;
-      } catch (const Error&) {
+      } catch (const InputError&) {
         continue;
       }
     }

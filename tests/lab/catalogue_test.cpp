@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/models/catalogue.hpp"
 
-#include "base/error.hpp"
 #include "io/format.hpp"
 #include "support/files.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -170,10 +170,10 @@ TEST_F(Catalogue, RefusesUnknownNamesAndListsTheKnownOnes) {
 }
 
 TEST_F(Catalogue, NamesThePackageOfAMissingProgram) {
-  EXPECT_EQ(error_of<Error>("armadillo-300k"),
+  EXPECT_EQ(error_of<InputError>("armadillo-300k"),
             "model armadillo-300k: tetgen is not installed; apt-get install tetgen");
   install("tetgen", "exit 1");
-  const std::string message = error_of<Error>("armadillo-300k");
+  const std::string message = error_of<InputError>("armadillo-300k");
   EXPECT_NE(message.find("apt-get is not installed"), std::string::npos) << message;
   EXPECT_NE(message.find((cache() / "surfaces").string()), std::string::npos) << message;
   EXPECT_TRUE(kept().empty());
@@ -182,13 +182,13 @@ TEST_F(Catalogue, NamesThePackageOfAMissingProgram) {
 TEST_F(Catalogue, ShowsTheLastLineOfAProgramThatFails) {
   keep_surface("armadillo.off");
   install("tetgen", "echo first\necho 'Two facets exactly intersect.' >&2\necho\nexit 3");
-  EXPECT_EQ(error_of<Error>("armadillo-300k"),
+  EXPECT_EQ(error_of<InputError>("armadillo-300k"),
             "model armadillo-300k: tetgen failed with status 3: Two facets exactly intersect.; "
             "are memory and disk space left?");
   install("tetgen", "kill -9 $$");
-  EXPECT_NE(error_of<Error>("armadillo-300k").find("status 137: it printed nothing"), std::string::npos);
+  EXPECT_NE(error_of<InputError>("armadillo-300k").find("status 137: it printed nothing"), std::string::npos);
   install("tetgen", "exit 0");
-  EXPECT_NE(error_of<Error>("armadillo-300k").find("wrote no mesh"), std::string::npos);
+  EXPECT_NE(error_of<InputError>("armadillo-300k").find("wrote no mesh"), std::string::npos);
   EXPECT_TRUE(kept().empty());
 }
 
@@ -197,7 +197,7 @@ TEST_F(Catalogue, FailedDownloadLeavesNothing) {
   install("dpkg-deb", "exit 1");
   install("tar", "exit 1");
   install("apt-get", "echo half > libcgal-demo_1_all.deb\necho 'E: no network'\nexit 100");
-  const std::string message = error_of<Error>("armadillo-300k");
+  const std::string message = error_of<InputError>("armadillo-300k");
   EXPECT_NE(message.find("apt-get failed with status 100: E: no network"), std::string::npos) << message;
   EXPECT_TRUE(kept().empty());
   EXPECT_FALSE(fs::exists(cache() / "surfaces/.surfaces.making"));
@@ -238,7 +238,7 @@ TEST_F(Catalogue, OfTwoAtOnceOneMakesTheModel) {
 TEST_F(Catalogue, SaysWhenTheCacheCannotBeWritten) {
   const Variable file_as_cache("MESHORDER_CACHE", cache().string() + "/file");
   (void)std::ofstream(cache() / "file");
-  const std::string message = error_of<Error>("grid");
+  const std::string message = error_of<InputError>("grid");
   EXPECT_NE(message.find("set MESHORDER_CACHE"), std::string::npos) << message;
 }
 

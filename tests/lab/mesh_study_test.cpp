@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/mesh_study.hpp"
 
-#include "base/error.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/machine.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

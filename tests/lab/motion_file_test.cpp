@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/motion_file.hpp"
 
-#include "base/error.hpp"
 #include "support/files.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -82,7 +82,7 @@ TEST(MotionFile, BrokenFilesAreErrorsWithTheirNames) {
     try {
       (void)read_motion(folder.file("b.npy", broken));
       ADD_FAILURE() << "read it; expected: " << expected;
-    } catch (const Error& error) {
+    } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("b.npy"), std::string::npos);
       EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
     }

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/motion_metrics.hpp"
 
-#include "base/error.hpp"
 #include "base/random.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

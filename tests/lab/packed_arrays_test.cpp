@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/packed_arrays.hpp"
 
-#include "base/error.hpp"
 #include "unpacked.hpp"
+#include <meshorder/error.hpp>
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/page.hpp"
 
-#include "base/error.hpp"
 #include "lab/report/page/viewer_sources.hpp"
 #include "support/files.hpp"
 #include "unpacked.hpp"
+#include <meshorder/error.hpp>
 
 #include <fstream>
 
@@ -148,7 +148,7 @@ TEST(Page, IsWrittenWholeOrNotAtAll) {
   const TemporaryFolder folder;
   write_page(sample_page(), folder.path() / "a.html");
   EXPECT_EQ(test::content_of(folder.path() / "a.html"), to_html(sample_page()));
-  EXPECT_THROW(write_page(sample_page(), folder.path() / "missing" / "a.html"), Error);
+  EXPECT_THROW(write_page(sample_page(), folder.path() / "missing" / "a.html"), InputError);
 }
 
 }  // namespace

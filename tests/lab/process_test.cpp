@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/support/process.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 #include <sys/personality.h>
@@ -28,7 +28,7 @@ TEST(ChildProcess, TellsHowItEnded) {
     ChildProcess shell("/bin/sh", {"-c", script});
     try {
       return shell.receive();
-    } catch (const Error& error) {
+    } catch (const InputError& error) {
       return std::string(error.what());
     }
   };
@@ -40,7 +40,7 @@ TEST(ChildProcess, TellsHowItEnded) {
 
 TEST(ChildProcess, RefusesAProgramThatIsNotThere) {
   ChildProcess none("/no/such/program", {});
-  EXPECT_THROW(none.receive(), Error);
+  EXPECT_THROW(none.receive(), InputError);
 }
 
 TEST(ChildProcess, IsNotReachedByCtrlC) {

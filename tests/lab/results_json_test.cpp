@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/results_json.hpp"
 
-#include "base/error.hpp"
 #include "lab/support/json.hpp"
 #include "payoff/machine.hpp"
 #include "support/files.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -113,7 +113,7 @@ std::string complaint(const std::function<void(Json&)>& change) {
   const auto path = folder.file("results.json", json.dump());
   try {
     read_results(path);
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     const std::string what = error.what();
     return what.starts_with(path.string() + ": ") ? what.substr(path.string().size() + 2)
                                                   : "elsewhere: " + what;

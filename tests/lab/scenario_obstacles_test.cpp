@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/scenario_obstacles.hpp"
 
-#include "base/error.hpp"
 #include "support/files.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -76,9 +76,9 @@ TEST(Obstacles, AreReadFromClosedSurfacesAlone) {
   EXPECT_NEAR(obstacle_of(obstacle)->distance({0.1, 0.3, 0.3}), -0.1, 1e-12);
   EXPECT_EQ(surfaces_of(std::vector{obstacle}, 1.0).cell_count(), 4);
   write("3 0 2 1\n3 0 1 3\n3 0 3 2\n");
-  EXPECT_THROW((void)obstacle_of(obstacle), Error);
+  EXPECT_THROW((void)obstacle_of(obstacle), InputError);
   write("3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 3 2\n");
-  EXPECT_THROW((void)obstacle_of(obstacle), Error);
+  EXPECT_THROW((void)obstacle_of(obstacle), InputError);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/scenario.hpp"
 
-#include "base/error.hpp"
 #include "lab/scenario/vertex_choice.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ std::string changed(const std::string& from, const std::string& to) {
 std::string error_of(const std::string& text) {
   try {
     (void)parse_scenario(text, "my.json");
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   ADD_FAILURE() << "read without an error: " << text;
@@ -283,7 +283,7 @@ TEST(Scenario, FilesAreFoundByTheirPathsAndWhatIsNoneListsTheNames) {
   try {
     (void)find_scenario((folder.path() / "absent.json").string());
     FAIL();
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("falling, constrained"), std::string::npos);
   }
 }
@@ -351,7 +351,7 @@ TEST(Scenario, ErrorsNameTheFileThePlaceAndWhatWouldBeRight) {
 
 TEST(Scenario, NoCutOfAFileIsRead) {
   for (std::size_t size = 0; size < kSmallest.size(); ++size) {
-    EXPECT_THROW((void)parse_scenario(kSmallest.substr(0, size), "my.json"), Error) << size;
+    EXPECT_THROW((void)parse_scenario(kSmallest.substr(0, size), "my.json"), InputError) << size;
   }
 }
 
@@ -457,7 +457,7 @@ TEST(VertexChoice, ErrorsListWhatTheMeshHas) {
   const auto message_of = [&](const VertexChoice& choice) -> std::string {
     try {
       (void)choose_vertices(mesh, all_vertices(mesh), choice, "my.json");
-    } catch (const Error& error) {
+    } catch (const InputError& error) {
       return error.what();
     }
     return "";

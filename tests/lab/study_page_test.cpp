@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/study_page.hpp"
 
-#include "base/error.hpp"
 #include "io/npy.hpp"
 #include "lab/study/results_json.hpp"
 #include "mesh/procedural.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
 #include "support/sample_results.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ class StudyPage : public testing::Test {
   std::string error() {
     try {
       (void)page();
-    } catch (const Error& error) {
+    } catch (const InputError& error) {
       return error.what();
     }
     ADD_FAILURE() << "no error";
@@ -180,7 +180,7 @@ TEST_F(StudyPage, IsWrittenWithItsTables) {
 TEST_F(StudyPage, IsWrittenWholeOrNotAtAll) {
   write_results(results, folder.results());
   std::filesystem::create_directory(folder.page());
-  EXPECT_THROW((void)write_report(folder), Error);
+  EXPECT_THROW((void)write_report(folder), InputError);
   EXPECT_FALSE(std::filesystem::exists(folder.tables(".md")));
   EXPECT_FALSE(std::filesystem::exists(folder.tables(".csv")));
 }

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/study_plan.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/view.hpp"
 
-#include "base/error.hpp"
 #include "lab/contact/search/body_surface.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -165,7 +165,7 @@ TEST(SurfaceView, OfASurfaceIsItsTriangles) {
 }
 
 TEST(SurfaceView, OfLinesIsAnError) {
-  EXPECT_THROW((void)surface_view(test::cells_of_type(Shape::line, 2, 3), 10), Error);
+  EXPECT_THROW((void)surface_view(test::cells_of_type(Shape::line, 2, 3), 10), InputError);
 }
 
 TEST(SparsityPattern, CountsTheEntriesOfEachTile) {

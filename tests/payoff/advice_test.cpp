@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/advice.hpp"
 
-#include "base/error.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

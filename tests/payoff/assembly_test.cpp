@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "payoff/elastic.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/band.hpp"
 
-#include "base/error.hpp"
 #include "kernels/simplices.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/procedural.hpp"
 #include "payoff/kernel_bench.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

@@ -42,7 +42,7 @@ inline CsrGraph graph_of(const Patch& patch) {
   for (Offset s = 1; s <= patch.simplices.size(); ++s) {
     elements.offsets.push_back(s * (patch.simplices.dimension + 1));
   }
-  return vertex_graph(elements);
+  return joined_vertices(elements);
 }
 
 inline AlignedVector<double> forces_of(const Patch& patch, const Elasticity& elasticity,

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "payoff/elastic.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/machine.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "kernels/owned_batches.hpp"
 
-#include "base/error.hpp"
 #include "base/random.hpp"
 #include "kernels/positions.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "kernels/regions.hpp"
 
-#include "base/error.hpp"
 #include "kernels/elasticity.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "kernels/spmv.hpp"
 
-#include "base/error.hpp"
 #include "base/random.hpp"
 #include "payoff/deformed.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

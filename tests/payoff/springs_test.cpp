@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "kernels/springs.hpp"
 
-#include "base/error.hpp"
 #include "payoff/deformed.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/implicit/backward_euler.hpp"
 
-#include "base/error.hpp"
 #include "bodies.hpp"
 #include "kernels/positions.hpp"
+#include <meshorder/error.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -557,7 +557,7 @@ TEST(BackwardEuler, AMotionThatIsNotFiniteIsAnErrorAndChangesNothing) {
     try {
       simulator.step();
       FAIL() << "no error with " << to_string(preconditioner);
-    } catch (const Error& error) {
+    } catch (const InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr("step 1: "));
       EXPECT_THAT(error.what(), HasSubstr("vertex "));
     }

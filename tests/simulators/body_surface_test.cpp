@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/search/body_surface.hpp"
 
-#include "base/error.hpp"
 #include "mesh/procedural.hpp"
 #include "simulators/surfaces.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/cholesky/cholesky.hpp"
 
-#include "base/error.hpp"
 #include "base/random.hpp"
 #include "kernels/positions.hpp"
 #include "mesh/graphs.hpp"
@@ -9,6 +8,7 @@
 #include "payoff/deformed.hpp"
 #include "simulators/sparse.hpp"
 #include "support/sample_graphs.hpp"
+#include <meshorder/error.hpp>
 
 #include <Eigen/Dense>
 #include <gmock/gmock.h>

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "lab/linear/cg/solve.hpp"
 #include "lab/linear/preconditioners/preconditioner.hpp"
 #include "mesh/procedural.hpp"
 #include "simulators/elastic_system.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/search/contact_finder.hpp"
 
-#include "base/error.hpp"
 #include "lab/contact/search/tetrahedron_search.hpp"
 #include "mesh/procedural.hpp"
 #include "simulators/surfaces.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

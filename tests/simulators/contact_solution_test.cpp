@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "lab/contact/solve/dual_contact_solver.hpp"
 #include "mesh/procedural.hpp"
 #include "simulators/contact_problem.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

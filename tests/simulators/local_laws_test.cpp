@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "graph/incidence.hpp"
 #include "kernels/elasticity.hpp"
 #include "kernels/springs.hpp"
 #include "simulators/local_step.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(LocalSprings, AreThoseOnTheEdgesOfTheMesh) {
   incidence.vertices = patch.simplices.vertices;
   incidence.offsets.resize(41);
   for (Offset s = 0; s <= 40; ++s) incidence.offsets[s] = 4 * s;
-  const Springs springs = springs_on_edges(vertex_graph(incidence), patch.points);
+  const Springs springs = springs_on_edges(joined_vertices(incidence), patch.points);
   EXPECT_EQ(steps.element_count(), springs.count);
   const AlignedVector<double> x = test::shaken(patch, 1);
   const double expected = spring_energy(springs, law.stiffness, x);

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "base/random.hpp"
 #include "payoff/elastic.hpp"
 #include "simulators/local_step.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

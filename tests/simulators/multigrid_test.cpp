@@ -1,14 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/multigrid/multigrid.hpp"
 
-#include "base/error.hpp"
 #include "kernels/elasticity.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/spmv.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
-#include "ordering/permutation.hpp"
 #include "support/sample_graphs.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/permutation.hpp>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "lab/linear/cg/solve.hpp"
 #include "lab/linear/preconditioners/incomplete_cholesky.hpp"
 #include "mesh/procedural.hpp"
@@ -8,6 +7,7 @@
 #include "simulators/elastic_system.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>

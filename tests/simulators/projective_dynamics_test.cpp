@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "kernels/elasticity.hpp"
 #include "kernels/springs.hpp"
 #include "mesh/graphs.hpp"
 #include "projective_bodies.hpp"
+#include <meshorder/error.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -112,7 +112,7 @@ TEST(ProjectiveDynamics, BalancesTheForcesOfSprings) {
   const MotionState after = simulator.state();
   Incidence elements{index_size(points), {}, body.simplices.vertices};
   for (Offset s = 0; s <= body.simplices.size(); ++s) elements.offsets.push_back(4 * s);
-  const Springs springs = springs_on_edges(vertex_graph(elements), points);
+  const Springs springs = springs_on_edges(joined_vertices(elements), points);
   AlignedVector<double> forces = padded_zeros(index_size(points));
   add_spring_forces(springs, body.law.stiffness, padded_positions(after.positions), forces);
   EXPECT_NEAR(simulator.balance().elastic,
@@ -358,7 +358,7 @@ TEST(ProjectiveDynamics, AMotionThatIsNotFiniteIsAnErrorAndChangesNothing) {
   try {
     simulator.step();
     FAIL();
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("step 2: "));
     EXPECT_THAT(error.what(), HasSubstr("vertex "));
   }

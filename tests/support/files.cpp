@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "support/files.hpp"
 
-#include "base/error.hpp"
 #include "io/format.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -56,7 +56,7 @@ fs::path shared_mesh(const std::string& name) {
 std::string read_error(const fs::path& path) {
   try {
     (void)read_mesh(path);
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   ADD_FAILURE() << path << " was read without an error";
@@ -66,7 +66,7 @@ std::string read_error(const fs::path& path) {
 std::string write_error(const Mesh& mesh, const fs::path& path) {
   try {
     write_mesh(mesh, path);
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   ADD_FAILURE() << path << " was written without an error";
@@ -93,7 +93,7 @@ void expect_truncation_is_noticed(const std::string& name, std::string_view cont
     std::optional<Mesh> part;
     try {
       part = read_mesh(path);
-    } catch (const Error&) {
+    } catch (const InputError&) {
       continue;
     }
     // what may go unnoticed is the loss of a line end or of an optional section's last blanks

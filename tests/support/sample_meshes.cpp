@@ -1,7 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "support/sample_meshes.hpp"
 
+#include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
+#include "ordering/moved.hpp"
+#include "ordering/order_cells.hpp"
 
 #include <gtest/gtest.h>
 
@@ -107,7 +110,8 @@ Permutation shuffled(Index n, std::uint64_t seed) {
 }
 
 Permutation shuffled_cells(const Mesh& mesh, std::uint64_t seed) {
-  return permutation_within_blocks(mesh, shuffled(mesh.cell_count(), seed).new_to_old());
+  return permutation_within_classes(slot_classes(cell_arrays(mesh)),
+                                    shuffled(mesh.cell_count(), seed).new_to_old());
 }
 
 Mesh sorted_members(Mesh mesh) {
@@ -115,12 +119,13 @@ Mesh sorted_members(Mesh mesh) {
   for (DataArray& array : mesh.data) {
     std::vector<Index> order(array.indices.size());
     std::iota(order.begin(), order.end(), Index{0});
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return array.indices[a] < array.indices[b]; });
+    std::sort(order.begin(), order.end(),
+              [&](Index a, Index b) { return array.indices[a] < array.indices[b]; });
     if (order.empty()) continue;
     const Permutation sorting = Permutation::from_new_to_old(order);
-    array.indices = sorting.moved(array.indices);
+    array.indices = moved(sorting, array.indices);
     std::visit(
-        [&](auto& values) { values = sorting.moved(values, static_cast<std::size_t>(array.components)); },
+        [&](auto& values) { values = moved(sorting, values, static_cast<std::size_t>(array.components)); },
         array.values);
   }
   return mesh;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mesh/mesh.hpp"
-#include "ordering/permutation.hpp"
+#include <meshorder/permutation.hpp>
 
 #include <cstdint>
 #include <vector>

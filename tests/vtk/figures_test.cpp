@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/figures/figures.hpp"
 
-#include "base/error.hpp"
 #include "support/files.hpp"
 #include "support/sample_results.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 #include <vtkSmartPointer.h>
@@ -310,7 +310,7 @@ TEST(FiguresWithoutGnuplot, NameThePackage) {
   try {
     (void)figures_of(sample_results());
     FAIL() << "drew without gnuplot";
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("gnuplot-nox"), std::string::npos) << error.what();
   }
 }
@@ -324,11 +324,11 @@ TEST(FiguresWithABrokenGnuplot, TellItsLastLine) {
   try {
     (void)figures_of(sample_results());
     FAIL() << "took a failure for a figure";
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("line 7: out of paper"), std::string::npos) << error.what();
   }
   (void)folder.file("gnuplot", "#!/bin/sh\n: > figure.svg\n");
-  EXPECT_THROW((void)figures_of(sample_results()), Error) << "an empty picture";
+  EXPECT_THROW((void)figures_of(sample_results()), InputError) << "an empty picture";
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/vtu.hpp"
-
-#include "base/error.hpp"
 #include "support/files.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 #include <vtkNew.h>
@@ -52,7 +51,7 @@ TEST(Pvd, ReplacesTheLastOneWhole) {
       write_pvd(std::vector<PvdEntry>(1, {std::numeric_limits<double>::quiet_NaN(), "frame.vtu"}), path),
       InvalidArgument);
   EXPECT_EQ(test::content_of(path), content);
-  EXPECT_THROW(write_pvd({}, folder.path() / "absent" / "a.pvd"), Error);
+  EXPECT_THROW(write_pvd({}, folder.path() / "absent" / "a.pvd"), InputError);
 }
 
 }  // namespace

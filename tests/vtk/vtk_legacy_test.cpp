@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "io/format.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
 #include "support/vtk_grids.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -601,7 +601,7 @@ TEST(VtkLegacy, CutFilesAreNoticed) {
   expect_truncation_is_noticed("cut.vtk", kPolydata.substr(0, one));
   for (std::size_t size = sections; size + 1 < data; ++size) {
     const std::string cut = kPolydata.substr(0, size) + "\n" + kPolydata.substr(data);
-    EXPECT_THROW((void)read_mesh(folder.file("cut.vtk", cut)), Error) << size;
+    EXPECT_THROW((void)read_mesh(folder.file("cut.vtk", cut)), InputError) << size;
   }
   write_mesh(tetrahedral_bar(1), folder.path() / "bar.vtk");
   expect_truncation_is_noticed("cut.vtk", content_of(folder.path() / "bar.vtk"));
@@ -634,7 +634,7 @@ TEST(VtkLegacy, DamagedFilesGiveAMeshOrAnError) {
       }
       try {
         check_mesh(read_mesh(folder.file("damaged.vtk", damaged)));
-      } catch (const Error&) {  // that is right, too
+      } catch (const InputError&) {  // that is right, too
       }
     }
   }
@@ -661,7 +661,7 @@ TEST(VtkLegacy, FullDiskIsAnErrorAndLeavesNothing) {
   std::string message;
   try {
     write_mesh(tetrahedral_bar(100), folder.path() / "bar.vtk");
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     message = error.what();
   }
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old_limit), 0);

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "io/format.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
 #include "support/vtk_grids.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -442,7 +442,7 @@ TEST(Vtu, CellsOfHigherOrderAreWrittenOnlyInTheOrderOfVtk) {
   try {
     write_mesh(cells_of_type(Shape::tetrahedron, 20, 1), path);
     ADD_FAILURE() << "written";
-  } catch (const Error& error) {
+  } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("tetrahedron20"), std::string::npos) << error.what();
   }
   EXPECT_TRUE(folder.names().empty());
@@ -543,7 +543,7 @@ TEST(Vtu, DamagedFilesGiveAMeshOrAnError) {
       }
       try {
         check_mesh(read_mesh(folder.file("damaged.vtu", damaged)));
-      } catch (const Error&) {  // that is right, too
+      } catch (const InputError&) {  // that is right, too
       }
     }
   }
@@ -609,7 +609,7 @@ TEST(Vtu, FullDiskIsAnErrorAndLeavesNothing) {
     std::string message;
     try {
       write_mesh(tetrahedral_bar(2000), folder.path() / "bar.vtu");
-    } catch (const Error& error) {
+    } catch (const InputError& error) {
       message = error.what();
     }
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old_limit), 0);
@@ -622,9 +622,9 @@ TEST(Vtu, FullDiskIsAnErrorAndLeavesNothing) {
 
 TEST(Vtu, UnwritableTargetIsAnError) {
   const TemporaryFolder folder;
-  EXPECT_THROW(write_mesh(tetrahedral_bar(1), folder.path() / "nowhere" / "bar.vtu"), Error);
+  EXPECT_THROW(write_mesh(tetrahedral_bar(1), folder.path() / "nowhere" / "bar.vtu"), InputError);
   std::filesystem::create_directory(folder.path() / "bar.vtu");
-  EXPECT_THROW(write_mesh(tetrahedral_bar(1), folder.path() / "bar.vtu"), Error);
+  EXPECT_THROW(write_mesh(tetrahedral_bar(1), folder.path() / "bar.vtu"), InputError);
 }
 
 TEST(Vtu, NothingIsPrinted) {
@@ -635,7 +635,7 @@ TEST(Vtu, NothingIsPrinted) {
   write_with_vtk(grid, folder.path() / "b.vtu", {"", 2, false, 2, false, false});
   std::string content = content_of(folder.path() / "b.vtu");
   for (std::size_t i = content.find("_") + 40; i < content.size(); i += 7) content[i] = 'x';
-  EXPECT_THROW((void)read_mesh(folder.file("c.vtu", content)), Error);
+  EXPECT_THROW((void)read_mesh(folder.file("c.vtu", content)), InputError);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "base/point.hpp"
 #include "lab/contact/obstacles/obstacle.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <numbers>

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Bærentzen, Aanæs: Signed Distance Computation Using the Angle Weighted Pseudonormal (2005).
-#include "base/error.hpp"
 #include "base/point.hpp"
 #include "lab/contact/geometry/box_tree.hpp"
 #include "lab/contact/geometry/triangle_point.hpp"
 #include "lab/contact/obstacles/obstacle.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

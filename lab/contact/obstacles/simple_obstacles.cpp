@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Obstacles whose distance is one line: the half-space and the sphere.
-#include "base/error.hpp"
 #include "base/point.hpp"
 #include "lab/contact/obstacles/obstacle.hpp"
+#include <meshorder/error.hpp>
 
 namespace meshorder {
 namespace {

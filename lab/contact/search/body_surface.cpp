@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/search/body_surface.hpp"
 
-#include "base/error.hpp"
 #include "base/point.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

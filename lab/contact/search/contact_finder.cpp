@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/search/contact_finder.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "kernels/positions.hpp"
 #include "lab/contact/geometry/box_tree.hpp"
 #include "lab/contact/search/body_surface.hpp"
 #include "lab/contact/search/self_contact.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <initializer_list>

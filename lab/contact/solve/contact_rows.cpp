@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/solve/contact_rows.hpp"
 
-#include "base/error.hpp"
 #include "kernels/positions.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/solve/dual_contact_solver.hpp"
 
-#include "base/error.hpp"
 #include "kernels/positions.hpp"
 #include "lab/contact/solve/contact_rows.hpp"
 #include "lab/contact/solve/force_problem.hpp"
 #include "lab/contact/solve/remembered_forces.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/cg/solve.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "kernels/owned_batches.hpp"
 #include "kernels/spmv.hpp"
 #include "lab/linear/cg/vector_passes.hpp"
 #include "lab/linear/preconditioners/jacobi.hpp"
+#include <meshorder/error.hpp>
 
 #include <tbb/task_arena.h>
 

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/cholesky/cholesky.hpp"
 
-#include "base/error.hpp"
 #include "kernels/positions.hpp"
 #include "lab/linear/cholesky/panel_solve.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/core.h>
 

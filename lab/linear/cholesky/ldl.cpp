@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/cholesky/ldl.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 
 #include <cholmod.h>
 #include <fmt/core.h>

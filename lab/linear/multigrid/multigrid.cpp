@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/multigrid/multigrid.hpp"
 
-#include "base/error.hpp"
 #include "lab/linear/multigrid/level.hpp"
 #include "lab/linear/multigrid/rigid_modes.hpp"
 #include "spectral/component_numbering.hpp"
+#include <meshorder/error.hpp>
 
 #include <Eigen/Dense>
 

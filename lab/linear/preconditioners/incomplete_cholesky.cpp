@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/preconditioners/incomplete_cholesky.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "kernels/owned_batches.hpp"
 #include "lab/linear/preconditioners/symmetric_block.hpp"
 #include "lab/linear/preconditioners/triangular_solve.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/preconditioners/jacobi.hpp"
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "lab/linear/preconditioners/symmetric_block.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <string>

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/preconditioners/preconditioner.hpp"
 
-#include "base/error.hpp"
 #include "lab/linear/multigrid/multigrid.hpp"
 #include "lab/linear/preconditioners/incomplete_cholesky.hpp"
 #include "lab/linear/preconditioners/jacobi.hpp"
+#include <meshorder/error.hpp>
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/preconditioners/symmetric_block.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 
 #include <cmath>
 #include <string>

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/figures/gnuplot.hpp"
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "lab/report/figures/figures.hpp"
 #include "lab/support/process.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ class WorkFolder {
   WorkFolder() {
     std::string pattern = (fs::temp_directory_path() / "meshorder-figure-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) {
-      throw Error(pattern, std::generic_category().message(errno), "is the disk full?");
+      throw InputError(pattern, std::generic_category().message(errno), "is the disk full?");
     }
     path_ = pattern;
   }
@@ -126,7 +126,7 @@ std::string tidied(const std::string& svg, const Drawing& drawing) {
   const std::size_t title = svg.find("<title>", begin);
   const std::size_t end = svg.find("</desc>", title);
   if (end == std::string::npos || svg.find("</svg>", end) == std::string::npos) {
-    throw Error("figure " + drawing.name, "gnuplot drew no SVG picture", "is its package gnuplot-nox?");
+    throw InputError("figure " + drawing.name, "gnuplot drew no SVG picture", "is its package gnuplot-nox?");
   }
   const std::string head = in_one_line(std::string_view(svg).substr(begin, title - begin));
   const std::string body = svg.substr(end + std::string_view("</desc>").size());
@@ -141,7 +141,7 @@ bool can_draw_figures() { return !find_program(kProgram).empty(); }
 std::string draw(const Drawing& drawing) {
   const fs::path program = find_program(kProgram);
   if (program.empty()) {
-    throw Error("figure " + drawing.name, "gnuplot is not installed", "apt-get install gnuplot-nox");
+    throw InputError("figure " + drawing.name, "gnuplot is not installed", "apt-get install gnuplot-nox");
   }
   const WorkFolder folder;
   const fs::path script = folder.path() / "script";
@@ -154,10 +154,11 @@ std::string draw(const Drawing& drawing) {
   const ExitStatus ended =
       run_process(program, {"--default-settings", script.string()}, folder.path(), folder.path() / "log");
   if (ended.code != 0) {
-    throw Error("figure " + drawing.name,
-                fmt::format("gnuplot failed: {}",
-                            ended.last_line.empty() ? fmt::format("status {}", ended.code) : ended.last_line),
-                "is it version 5.4 or newer, and is there space in the folder for temporary files?");
+    throw InputError(
+        "figure " + drawing.name,
+        fmt::format("gnuplot failed: {}",
+                    ended.last_line.empty() ? fmt::format("status {}", ended.code) : ended.last_line),
+        "is it version 5.4 or newer, and is there space in the folder for temporary files?");
   }
   return tidied(read(folder.path() / "figure.svg"), drawing);
 }

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/outer_triangles.hpp"
 
-#include "base/error.hpp"
 #include "base/point.hpp"
 #include "kernels/simplices.hpp"
 #include "mesh/cells.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -104,8 +104,8 @@ std::vector<std::array<Index, 3>> outer_triangles(const Mesh& mesh) {
   std::vector<std::array<Index, 3>> triangles;
   const int highest = mesh.cells.highest_dimension();
   if (highest < 2) {
-    throw Error("the mesh", "has neither volumes nor a surface, so that nothing can be shown",
-                "give one with cells of two or three dimensions");
+    throw InputError("the mesh", "has neither volumes nor a surface, so that nothing can be shown",
+                     "give one with cells of two or three dimensions");
   }
   if (highest == 2) {
     const Simplices simplices = cut_into_simplices(mesh);

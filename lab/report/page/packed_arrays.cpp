@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/packed_arrays.hpp"
 
-#include "base/error.hpp"
 #include "io/stream/base64.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 #include <zlib.h>

@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/page.hpp"
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/stream/base64.hpp"
 #include "io/stream/output_file.hpp"
 #include "lab/report/page/packed_arrays.hpp"
 #include "lab/report/page/viewer_sources.hpp"
 #include "lab/study/results_json.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/page_parts.hpp"
 
-#include "base/error.hpp"
 #include "mesh/graphs.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/study_page.hpp"
 
-#include "base/error.hpp"
 #include "io/npy.hpp"
 #include "io/stream/output_file.hpp"
 #include "lab/report/findings/findings.hpp"
 #include "lab/study/results_json.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ auto naming(const fs::path& path, const Work& work) {
   try {
     return work();
   } catch (const InvalidArgument& error) {
-    throw Error(path.string(), error.what(), "is it of another study?");
+    throw InputError(path.string(), error.what(), "is it of another study?");
   }
 }
 
@@ -140,7 +140,8 @@ WrittenReport write_report(const StudyFolder& folder, const ReportProgress& prog
   Page page = page_of(folder, read_results(folder.results()), report.notes, progress);
   std::error_code code;
   if (!page.figures.empty()) fs::create_directories(folder.figure("any").parent_path(), code);
-  if (code) throw Error(folder.root().string(), "cannot be written: " + code.message(), "check the folder");
+  if (code)
+    throw InputError(folder.root().string(), "cannot be written: " + code.message(), "check the folder");
   std::vector<OutputFile> files;
   const auto add = [&](const fs::path& path, const std::string& content) {
     files.emplace_back(path).write(content);

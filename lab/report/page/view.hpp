@@ -3,7 +3,7 @@
 
 #include "graph/csr_graph.hpp"
 #include "mesh/mesh.hpp"
-#include "ordering/permutation.hpp"
+#include <meshorder/permutation.hpp>
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "io/gmsh/gmsh.hpp"
 #include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/gmsh/gmsh.hpp"
 
-#include "base/error.hpp"
 #include "io/all_formats.hpp"
 #include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "io/gmsh/gmsh.hpp"
+#include <meshorder/error.hpp>
 
 #include <limits>
 
@@ -43,8 +43,8 @@ void NumberWriter::int32(std::int64_t value) {
   if (binary) {
     if (value > std::numeric_limits<std::int32_t>::max() ||
         value < std::numeric_limits<std::int32_t>::min()) {
-      throw Error(file, "the number " + std::to_string(value) + " does not fit in this binary file",
-                  "give nodes and elements numbers below 2147483648");
+      throw InputError(file, "the number " + std::to_string(value) + " does not fit in this binary file",
+                       "give nodes and elements numbers below 2147483648");
     }
     out.binary(static_cast<std::int32_t>(value), order);
   } else {

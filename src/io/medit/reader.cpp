@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/labels.hpp"
 #include "io/medit/medit.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -86,7 +86,7 @@ class Reader {
  private:
   void refuse_other_formats() {
     if (in_.all().substr(0, 16).find('\0') != std::string_view::npos) {
-      throw Error(in_.file(), "is binary, perhaps a .meshb file", "convert it to an ASCII .mesh");
+      throw InputError(in_.file(), "is binary, perhaps a .meshb file", "convert it to an ASCII .mesh");
     }
     if (in_.at_end() || !same_but_for_case(in_.peek_word(), "MeshVersionFormatted")) {
       in_.fail(

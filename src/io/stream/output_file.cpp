@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/output_file.hpp"
 
-#include "base/error.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -27,17 +27,18 @@ struct OutputFile::Stream {
 OutputFile::OutputFile(fs::path target) : target_(std::move(target)), stream_(std::make_unique<Stream>()) {
   std::error_code code;
   if (fs::is_directory(target_, code)) {
-    throw Error(target_.string(), "is a folder", "give a file name for the output");
+    throw InputError(target_.string(), "is a folder", "give a file name for the output");
   }
   const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, code)) {
-    throw Error(target_.string(), "its folder does not exist", "make " + folder.string() + " first");
+    throw InputError(target_.string(), "its folder does not exist", "make " + folder.string() + " first");
   }
   // the process id keeps two runs with one target apart
   temporary_ = folder / ("." + target_.stem().string() + ".tmp" + std::to_string(::getpid()) +
                          target_.extension().string());
   stream_->file.open(temporary_, std::ios::binary | std::ios::trunc);
-  if (!stream_->file) throw Error(target_.string(), "cannot be written", "check the folder's permissions");
+  if (!stream_->file)
+    throw InputError(target_.string(), "cannot be written", "check the folder's permissions");
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
@@ -66,14 +67,14 @@ void OutputFile::flush() {
   auto& [file, buffer] = *stream_;
   file.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
   buffer.clear();
-  if (!file) throw Error(target_.string(), "cannot be written to the end", "is the disk full?");
+  if (!file) throw InputError(target_.string(), "cannot be written to the end", "is the disk full?");
 }
 
 void OutputFile::close() {
   if (!stream_->file.is_open()) return;
   flush();
   stream_->file.close();
-  if (!stream_->file) throw Error(target_.string(), "cannot be written to the end", "is the disk full?");
+  if (!stream_->file) throw InputError(target_.string(), "cannot be written to the end", "is the disk full?");
 }
 
 void OutputFile::commit_all(std::span<OutputFile> files) {
@@ -81,7 +82,8 @@ void OutputFile::commit_all(std::span<OutputFile> files) {
   for (OutputFile& file : files) {
     std::error_code code;
     fs::rename(file.temporary_, file.target_, code);
-    if (code) throw Error(file.target_.string(), "cannot be replaced: " + code.message(), "check the target");
+    if (code)
+      throw InputError(file.target_.string(), "cannot be replaced: " + code.message(), "check the target");
     file.temporary_.clear();
   }
 }

@@ -23,10 +23,10 @@ std::string shown(std::string_view text) {
 Scanner::Scanner(const std::filesystem::path& path, char comment) : file_(path.string()), comment_(comment) {
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) throw Error(file_, "no such file", "check the path");
-  if (std::filesystem::is_directory(status)) throw Error(file_, "is a folder", "give a mesh file");
+  if (!std::filesystem::exists(status)) throw InputError(file_, "no such file", "check the path");
+  if (std::filesystem::is_directory(status)) throw InputError(file_, "is a folder", "give a mesh file");
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw Error(file_, "cannot be read", "check its permissions");
+  if (!stream) throw InputError(file_, "cannot be read", "check its permissions");
   const auto size = std::filesystem::file_size(path, code);
   if (!code) {
     text_.resize(size);
@@ -35,7 +35,7 @@ Scanner::Scanner(const std::filesystem::path& path, char comment) : file_(path.s
   } else {  // a pipe
     text_.assign(std::istreambuf_iterator<char>(stream), {});
   }
-  if (text_.empty()) throw Error(file_, "is empty", "give a mesh file");
+  if (text_.empty()) throw InputError(file_, "is empty", "give a mesh file");
 }
 
 void Scanner::seek(std::int64_t byte) {
@@ -58,11 +58,11 @@ void Scanner::seek(std::int64_t byte) {
 }
 
 void Scanner::fail(const std::string& what, const std::string& remedy) const {
-  throw Error(Location{file_, line_, -1}, what, remedy);
+  throw InputError(Location{file_, line_, -1}, what, remedy);
 }
 
 void Scanner::fail_at_byte(const std::string& what, const std::string& remedy) const {
-  throw Error(Location{file_, 0, byte()}, what, remedy);
+  throw InputError(Location{file_, 0, byte()}, what, remedy);
 }
 
 bool Scanner::at_break() const { return position_ >= text_.size() || is_line_end(text_[position_]); }

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "base/error.hpp"
 #include "base/index.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <array>

@@ -3,12 +3,12 @@
 // Wavefront OBJ, as "Object Files (.obj)", appendix B1 of the Advanced Visualizer manual, gives it
 // (https://paulbourke.net/dataformats/obj/): polygons, lines and points with texture coordinates and normals
 // of their corners, groups, materials and other states. Free-form curves and surfaces are not read.
-#include "base/error.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/surface/obj_parts.hpp"
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/surface/obj_parts.hpp"
 #include "io/surface/surface_data.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -247,9 +247,9 @@ class Reader {
   /// Checks that numbers that point ahead stay within the list.
   void check_ahead(const List& list) const {
     if (list.highest_ahead < list.count) return;
-    throw Error(Location{scanner_.file(), list.line_ahead, -1},
-                fmt::format("{} {} does not exist", list.name, list.highest_ahead + 1),
-                fmt::format("there are {}, counted from 1", list.count));
+    throw InputError(Location{scanner_.file(), list.line_ahead, -1},
+                     fmt::format("{} {} does not exist", list.name, list.highest_ahead + 1),
+                     fmt::format("there are {}, counted from 1", list.count));
   }
 
   /// A corner: v, v/vt, v//vn or v/vt/vn.

@@ -3,13 +3,13 @@
 // Geomview's OFF, http://www.geomview.org/docs/html/OFF.html: [ST][C][N]OFF as text. A vertex may have a
 // normal, a colour and texture coordinates, a face a colour of 1 (an entry of a colour map), 3 or 4 numbers,
 // whole ones from 0 to 255 or real ones from 0 to 1.
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

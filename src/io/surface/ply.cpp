@@ -3,12 +3,12 @@
 // PLY, the Stanford triangle format: Greg Turk, "The PLY Polygon File Format" (1994),
 // https://paulbourke.net/dataformats/ply/, as text and binary in either byte order. Vertices, faces, edges
 // and tetrahedra are understood with all their properties.
-#include "base/error.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/surface/ply_parts.hpp"
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

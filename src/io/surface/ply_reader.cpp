@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/stream/number_reader.hpp"
 #include "io/surface/ply_parts.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

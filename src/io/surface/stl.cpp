@@ -3,12 +3,12 @@
 // STL, ASCII and binary, as 3D Systems' "StereoLithography Interface Specification" (1989) gives it and
 // https://www.loc.gov/preservation/digital/formats/fdd/fdd000504.shtml describes. Each triangle has its own
 // three points; equal points become one vertex here, numbered by first appearance.
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -249,13 +249,13 @@ Mesh read_stl(const fs::path& path, Notes& notes) {
              scanner.all().find('\0') == std::string_view::npos) {
     mesh = read_ascii(scanner, *metadata, notes);
   } else if (promised < 0 || scanner.all().find('\0') == std::string_view::npos) {
-    throw Error(scanner.file(), "is not an STL file: it does not begin with 'solid' and is not binary",
-                "give an ASCII or binary STL file");
+    throw InputError(scanner.file(), "is not an STL file: it does not begin with 'solid' and is not binary",
+                     "give an ASCII or binary STL file");
   } else {
-    throw Error(Location{scanner.file(), 0, static_cast<std::int64_t>(kHeaderBytes)},
-                fmt::format("a binary STL file of {} triangles has {} bytes, this has {}",
-                            (promised - 84) / kTriangleBytes, promised, size),
-                "the count is wrong or the file is cut short");
+    throw InputError(Location{scanner.file(), 0, static_cast<std::int64_t>(kHeaderBytes)},
+                     fmt::format("a binary STL file of {} triangles has {} bytes, this has {}",
+                                 (promised - 84) / kTriangleBytes, promised, size),
+                     "the count is wrong or the file is cut short");
   }
   mesh.format_metadata = std::move(metadata);
   return mesh;

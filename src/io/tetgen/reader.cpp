@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/labels.hpp"
 #include "io/stream/id_map.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/tetgen/tetgen.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -383,8 +383,8 @@ void read_cell_file(const fs::path& path, File file, ReadContext& to, Notes& not
   Scanner in(path, kComment);
   const int nodes_in_ele = to.metadata->nodes_in_ele;
   if (file == kFace && (to.mesh.dimension == 2 || nodes_in_ele == 3 || nodes_in_ele == 6)) {
-    throw Error(path.string(), "holds faces, but the cells of the mesh are triangles themselves",
-                "remove it, if it belongs to another mesh");
+    throw InputError(path.string(), "holds faces, but the cells of the mesh are triangles themselves",
+                     "remove it, if it belongs to another mesh");
   }
   if (file == kEle) {
     read_ele(in, to);
@@ -397,10 +397,11 @@ void read_cell_file(const fs::path& path, File file, ReadContext& to, Notes& not
 }  // namespace
 
 Mesh read(const fs::path& path, Notes& notes) {
-  if (!is_there(path)) throw Error(path.string(), "no such file", "check the path");
+  if (!is_there(path)) throw InputError(path.string(), "no such file", "check the path");
   const fs::path node_path = beside(path, ".node");
   if (!is_there(node_path)) {
-    throw Error(path.string(), "has no .node file beside it", node_path.filename().string() + " is needed");
+    throw InputError(path.string(), "has no .node file beside it",
+                     node_path.filename().string() + " is needed");
   }
 
   ReadContext reading;
@@ -414,7 +415,8 @@ Mesh read(const fs::path& path, Notes& notes) {
     if (is_there(cell_path)) read_cell_file(cell_path, file, reading, notes);
   }
   if (reading.mesh.cell_count() == 0) {
-    throw Error(path.string(), "has no cells", "an .ele, .face or .edge file with cells must be beside it");
+    throw InputError(path.string(), "has no cells",
+                     "an .ele, .face or .edge file with cells must be beside it");
   }
 
   settle_face_order(reading);

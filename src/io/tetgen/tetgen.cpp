@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/tetgen/tetgen.hpp"
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/labels.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -89,7 +89,7 @@ Layout layout_of(const Mesh& mesh, const Metadata& metadata, const fs::path& pat
     const int nodes = mesh.cells.vertex_count(c);
     if (layout.cells[file].empty()) layout.nodes[file] = nodes;
     if (layout.nodes[file] != nodes) {
-      throw Error(
+      throw InputError(
           path.string(),
           fmt::format("the mesh has both {} and {}, and a {} file holds one kind", type_name(shape, nodes),
                       type_name(shape, layout.nodes[file]), kExtensions[file]),
@@ -99,8 +99,8 @@ Layout layout_of(const Mesh& mesh, const Metadata& metadata, const fs::path& pat
   }
   const bool second_order = layout.nodes[kEle] == 10 || layout.nodes[kEle] == 6 || layout.nodes[kFace] == 6;
   if (layout.nodes[kEdge] == 3 && !second_order) {
-    throw Error(path.string(), "lines of 3 points need cells of second order beside them",
-                "write .msh, .vtu or .mesh instead");
+    throw InputError(path.string(), "lines of 3 points need cells of second order beside them",
+                     "write .msh, .vtu or .mesh instead");
   }
   return layout;
 }
@@ -110,7 +110,7 @@ void refuse_leftovers(const Layout& layout, const Metadata& metadata, const fs::
   for (const File file : kCellFiles) {
     const fs::path other = beside(path, kExtensions[file]);
     if (!layout.cells[file].empty() || metadata.parts[file].present || !is_there(other)) continue;
-    throw Error(
+    throw InputError(
         path.string(),
         fmt::format("{} is beside it and would be read as part of this mesh", other.filename().string()),
         "remove that file or choose another name");

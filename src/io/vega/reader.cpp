@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/stream/id_map.hpp"
 #include "io/vega/lines.hpp"
 #include "io/vega/parts.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ class Reader {
  public:
   Reader(const std::filesystem::path& path, Notes& notes) : lines_(path), notes_(notes) {
     if (lines_.at().all().find('\0') != std::string_view::npos) {
-      throw Error(path.string(), "is a binary Vega file", "save it as text (.veg)");
+      throw InputError(path.string(), "is a binary Vega file", "save it as text (.veg)");
     }
   }
 
@@ -325,11 +325,11 @@ class Reader {
       for (std::string_view word = next_word(line, kSeparators); !word.empty();
            word = next_word(line, kSeparators)) {
         if (word.find_first_not_of("+-0123456789") != std::string_view::npos) continue;
-        throw Error(Location{file, where, -1},
-                    "the section " + title.substr(0, 60) +
-                        " is unknown and holds whole numbers, which "
-                        "could be those of elements",
-                    "remove the section");
+        throw InputError(Location{file, where, -1},
+                         "the section " + title.substr(0, 60) +
+                             " is unknown and holds whole numbers, which "
+                             "could be those of elements",
+                         "remove the section");
       }
     }
   }

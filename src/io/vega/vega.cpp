@@ -3,12 +3,12 @@
 // Vega FEM's volumetric meshes (.veg), as its library volumetricMesh reads and writes them; the format is
 // described in Vega's user manual, https://viterbi-web.usc.edu/~jbarbic/vega/. The corners of CUBIC elements
 // come in VTK's order.
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include "io/vega/parts.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -255,7 +255,7 @@ void write_vega(const Mesh& mesh, const fs::path& path, Notes& notes) {
   require_supported_cells(mesh, path, "Vega", vega_holds, remedy);
   for (Index c = 1; c < mesh.cell_count(); ++c) {
     if (mesh.cells.shapes[c] == mesh.cells.shapes[0]) continue;
-    throw Error(path.string(), "a Vega file cannot hold both tetrahedra and hexahedra", remedy);
+    throw InputError(path.string(), "a Vega file cannot hold both tetrahedra and hexahedra", remedy);
   }
   Writer(mesh, path, notes).write();
 }

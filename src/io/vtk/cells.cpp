@@ -139,7 +139,7 @@ class DefaultTypes {
   std::array<std::array<std::pair<bool, const CellType*>, kRemembered>, kShapes> types_{};
 };
 
-Error unknown_type(int number, Index cell, const ErrorAt& error) {
+InputError unknown_type(int number, Index cell, const ErrorAt& error) {
   std::string what = "cell " + std::to_string(cell) + " (counted from 0) ";
   if (number == 42) {
     what += "is a polyhedron (VTK_POLYHEDRON)";
@@ -217,11 +217,11 @@ std::vector<std::uint8_t> cell_types(const Mesh& mesh, const std::string& file, 
     }
     const bool lagrange = type != nullptr && type->number >= kFirstLagrange && type->number <= kLastLagrange;
     if (type == nullptr || (lagrange && !higher_orders)) {
-      throw Error(file,
-                  "cell " + std::to_string(c) + " (counted from 0) is a " + type_name(shape, vertices) +
-                      ", which VTK's formats " +
-                      (type == nullptr ? "do not have" : "number in another order"),
-                  "write the format that the mesh came from, .msh for example");
+      throw InputError(file,
+                       "cell " + std::to_string(c) + " (counted from 0) is a " + type_name(shape, vertices) +
+                           ", which VTK's formats " +
+                           (type == nullptr ? "do not have" : "number in another order"),
+                       "write the format that the mesh came from, .msh for example");
     }
     types[c] = static_cast<std::uint8_t>(type->number);
   }

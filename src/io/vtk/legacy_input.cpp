@@ -60,8 +60,8 @@ std::string percent_decoded(std::string_view text) {
   return result;
 }
 
-Error LegacyInput::section_error(std::int64_t line, const std::string& what,
-                                 const std::string& remedy) const {
+InputError LegacyInput::section_error(std::int64_t line, const std::string& what,
+                                      const std::string& remedy) const {
   return {Location{scanner.file(), binary ? 0 : line, -1}, what, remedy};
 }
 

@@ -26,8 +26,8 @@ class LegacyInput : public NumberReader {
   explicit LegacyInput(const std::filesystem::path& path) : NumberReader(path) { order = std::endian::big; }
 
   /// Makes the Error for a fault in a section that began at that line.
-  [[nodiscard]] Error section_error(std::int64_t line, const std::string& what,
-                                    const std::string& remedy) const;
+  [[nodiscard]] InputError section_error(std::int64_t line, const std::string& what,
+                                         const std::string& remedy) const;
 
   /// Reads a count, 0 … kMaxIndex.
   std::int64_t count(std::string_view what);

@@ -44,14 +44,14 @@ class Reader {
     const char* const end = version.data() + version.size();
     const auto dot = std::from_chars(version.data(), end, major).ptr;
     if (version.empty() || dot == end || *dot != '.' || std::from_chars(dot + 1, end, minor).ptr != end) {
-      throw Error(Location{in_.scanner.file(), 1, -1}, "is not a legacy VTK file",
-                  "the first line of one is like '# vtk DataFile Version 4.2'");
+      throw InputError(Location{in_.scanner.file(), 1, -1}, "is not a legacy VTK file",
+                       "the first line of one is like '# vtk DataFile Version 4.2'");
     }
     version_ = major > 9 || minor > 9 || minor < 0 ? kLastVersion + 1 : 10 * major + minor;
     if (version_ > kLastVersion || version_ < 10) {
-      throw Error(Location{in_.scanner.file(), 1, -1},
-                  "the version " + std::to_string(major) + "." + std::to_string(minor) + " is unknown",
-                  "versions 1.0 to 5.1 are read");
+      throw InputError(Location{in_.scanner.file(), 1, -1},
+                       "the version " + std::to_string(major) + "." + std::to_string(minor) + " is unknown",
+                       "versions 1.0 to 5.1 are read");
     }
     layout_.version = std::to_string(major) + "." + std::to_string(minor);
     layout_.title = in_.scanner.raw_line();

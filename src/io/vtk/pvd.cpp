@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/vtu.hpp"
+#include <meshorder/error.hpp>
 
 #include <cmath>
 

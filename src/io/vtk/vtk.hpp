@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "base/error.hpp"
 #include "io/format.hpp"
 #include "io/vtu.hpp"
 #include "mesh/mesh.hpp"
+#include <meshorder/error.hpp>
 
 #include <array>
 #include <cstddef>
@@ -171,7 +171,7 @@ struct FileCells {
 };
 
 /// Makes the Error for a fault of the cell types: (what, remedy).
-using ErrorAt = std::function<Error(const std::string&, const std::string&)>;
+using ErrorAt = std::function<InputError(const std::string&, const std::string&)>;
 
 /// Gives `mesh` these cells, with their vertices in the order of a Mesh. Pixels and voxels become quads and
 /// hexahedra (noted); type numbers that shape and vertices do not determine are kept as the array kCellTypes.

@@ -82,7 +82,7 @@ VtuDocument::VtuDocument(const std::filesystem::path& path) : scanner_(path) {
   read_root();
 }
 
-Error VtuDocument::error_at(std::size_t byte, const std::string& what, const std::string& remedy) const {
+InputError VtuDocument::error_at(std::size_t byte, const std::string& what, const std::string& remedy) const {
   const std::string_view before = scanner_.all().substr(0, byte);
   // a name can hold anything; the message stays in one line
   std::string line = what;

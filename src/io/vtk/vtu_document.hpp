@@ -42,7 +42,8 @@ class VtuDocument {
   [[nodiscard]] int version() const noexcept { return version_; }
 
   /// Makes an Error at the line of that element.
-  [[nodiscard]] Error error(const VtuElement& at, const std::string& what, const std::string& remedy) const {
+  [[nodiscard]] InputError error(const VtuElement& at, const std::string& what,
+                                 const std::string& remedy) const {
     return error_at(at.at, what, remedy);
   }
 
@@ -64,7 +65,8 @@ class VtuDocument {
 
  private:
   struct Stored;
-  [[nodiscard]] Error error_at(std::size_t byte, const std::string& what, const std::string& remedy) const;
+  [[nodiscard]] InputError error_at(std::size_t byte, const std::string& what,
+                                    const std::string& remedy) const;
   void parse();
   void read_root();
   std::size_t parse_tag(std::size_t at, VtuElement& element, bool& closed) const;

@@ -1,0 +1,48 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "cells/cell_arrays.hpp"
+
+#include <array>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace meshorder {
+
+/// A facet of an element: a face of a volume, an edge of a surface, an end of a line.
+struct ElementFacet {
+  std::array<Index, 4> corners;  ///< descending; −1 behind the last
+  Index element;
+};
+
+/// Looks up the facets of cell types, which are the same for all cells of a type.
+class FacetsOfTypes {
+ public:
+  const std::vector<std::vector<int>>& operator()(Shape shape, int vertices);
+
+ private:
+  std::map<std::pair<Shape, int>, std::vector<std::vector<int>>> by_type_;
+};
+
+/// Returns the corners of a cell at these positions, at most four, descending, −1 behind the last.
+std::array<Index, 4> sorted_corners(std::span<const Index> cell, const std::vector<int>& positions);
+
+/// Sorts facets so that those with the same corners are adjacent, in ascending order of their elements.
+/// `vertex_count` exceeds every corner. O(facets · log facets at a vertex).
+std::vector<ElementFacet> matched_facets(const std::vector<ElementFacet>& facets, Index vertex_count);
+
+/// Returns the facets of elements, matched.
+///
+/// @throws InvalidArgument if the shapes of cells are not known
+std::vector<ElementFacet> matched_facets(const CellArrays& cells, const CellSelection& elements);
+
+/// Joins elements that share a facet, numbered as in `elements`: a face for volumes, an edge for surfaces, an
+/// end for lines. Facets are the same when their corners are, in any order; of more than two elements at a
+/// facet each is joined to the next. O(facets · log facets at a vertex).
+///
+/// @throws InvalidArgument if the shapes of cells are not known
+CsrGraph joined_by_facet(const CellArrays& cells, const CellSelection& elements);
+
+}  // namespace meshorder
