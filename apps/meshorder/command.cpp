@@ -64,11 +64,11 @@ void add_common(CLI::App& subcommand, Common& common) {
 void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
   subcommand
       .add_option_function<std::string>(
-          "--for", [&options](const std::string& use) { options.use = parse_workload(use); },
+          "--for", [&options](const std::string& use) { options.workload = parse_workload(use); },
           "Which kernel the order should be best for, if `auto` chooses it:\n" +
-              join(kWorkloads, [](Workload use) { return name(use); }))
+              join(kWorkloads, [](Workload use) { return to_string(use); }))
       ->type_name("KERNEL")
-      ->default_str(std::string(name(options.use)));
+      ->default_str(std::string(to_string(options.workload)));
   subcommand.add_option("--seed", options.seed, "Seed of random orders, of METIS and of start vectors")
       ->check(not_negative())
       ->capture_default_str();

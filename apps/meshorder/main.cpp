@@ -109,8 +109,6 @@ int main(int argc, char** argv) {
     return report(error.what(), error.status);
   } catch (const meshorder::Error& error) {
     return report(error.what(), kBadInput);
-  } catch (const meshorder::InvalidArgument& error) {
-    return report(error.what(), kBadInput);
   } catch (const std::bad_alloc&) {
     return report("out of memory", kOwnFailure);
   } catch (const std::exception& error) {

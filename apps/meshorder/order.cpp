@@ -95,7 +95,7 @@ void run(const OrderArguments& arguments) {
       {"output", arguments.output},
       {"vertices", half_json(mesh.vertex_count(), order.vertex_method, order.vertex_seconds)},
       {"elements", half_json(mesh.cell_count(), order.element_method, order.element_seconds)},
-      {"for", name(arguments.reordering.ordering.use)},
+      {"for", to_string(arguments.reordering.ordering.workload)},
       {"group_by", order.groups ? to_json(*order.groups) : nullptr},
       {"edge_span", {{"before", to_json(before)}, {"after", to_json(after)}}},
       {"fiedler", to_json(order.vertex_fiedler)},

@@ -12,7 +12,7 @@ namespace {
 
 std::string command_for(const Candidate& candidate) {
   return candidate.use == Workload::all ? "meshorder order"
-                                        : fmt::format("meshorder order --for {}", name(candidate.use));
+                                        : fmt::format("meshorder order --for {}", to_string(candidate.use));
 }
 
 std::string methods_of(const Candidate& candidate) {

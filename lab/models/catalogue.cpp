@@ -91,17 +91,17 @@ std::vector<Index> made_sizes(const Rule& rule) {
 
 // ---- making
 
-using Progress = std::function<void(std::string_view, double)>;
+using Report = std::function<void(std::string_view, double)>;
 
 // Both write a .node and .ele file into `folder` and return their path without extension.
-fs::path make_by_rule(const Rule& rule, Index size, const fs::path& folder, const Progress& progress) {
+fs::path make_by_rule(const Rule& rule, Index size, const fs::path& folder, const Report& progress) {
   progress("Building the mesh", 0);
   fs::path path = folder / rule.name;
   write_mesh(rule.make({.size = size}), path.string() + ".node");
   return path;
 }
 
-fs::path make_by_recipe(const Recipe& recipe, const fs::path& folder, const Progress& progress) {
+fs::path make_by_recipe(const Recipe& recipe, const fs::path& folder, const Report& progress) {
   using namespace models;
   const bool wrapped = recipe.alpha_ratio > 0;
   require_tools(recipe.name, {"tetgen"});
@@ -134,7 +134,7 @@ fs::path make_by_recipe(const Recipe& recipe, const fs::path& folder, const Prog
 
 /// Makes a model in the cache, unless another process has made it meanwhile. `make` gets an empty folder.
 template <class Make>
-void make_kept(const std::string& name, bool force, const Progress& progress, const Make& make) {
+void make_kept(const std::string& name, bool force, const Report& progress, const Make& make) {
   const fs::path folder = models_folder();
   models::make_folder(folder);
   const models::MakingLock lock(folder, name);
@@ -175,7 +175,7 @@ std::vector<Model> list_models() {
 }
 
 Model make_model(std::string_view name, const MakeOptions& options) {
-  const Progress progress = options.progress ? options.progress : [](std::string_view, double) {};
+  const Report progress = options.progress ? options.progress : [](std::string_view, double) {};
   const auto kept_or_made = [&](Model model, const auto& make) {
     if (!options.force && !model.path.empty()) return model;
     make_kept(model.name, options.force, progress, make);

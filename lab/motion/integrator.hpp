@@ -64,7 +64,7 @@ struct Balance {
 
 /// Time integration of a body. Processes vertices and elements in the given order. Vertices that no element
 /// uses stay where they are. The same bits on every run and for any number of threads.
-class Integrator : public detail::Polymorphic {
+class Integrator : public Polymorphic {
  public:
   [[nodiscard]] virtual MotionState state() const = 0;
   /// Continues from `state`. Throws InvalidArgument if the sizes differ or a number is not finite. A state

@@ -21,14 +21,18 @@ namespace fs = std::filesystem;
 // the frame's own arrays come first: the writer drops later arrays of the same name
 enum OwnArray : std::uint8_t { kDisplacement, kVelocity, kOriginalVertex, kOriginalCell };
 
+std::vector<Index> old_places(const Permutation& order) {
+  return {order.new_to_old().begin(), order.new_to_old().end()};
+}
+
 std::vector<DataArray> own_arrays(const Mesh& mesh, const Reordering& order) {
   std::vector<float> zeros(3 * mesh.points.size(), 0.0F);
   std::vector<DataArray> arrays(4);
   arrays[kDisplacement] = {"displacement", Association::vertices, 3, zeros, {}, {}};
   arrays[kVelocity] = {"velocity", Association::vertices, 3, std::move(zeros), {}, {}};
   arrays[kOriginalVertex] = {
-      "original_vertex", Association::vertices, 1, order.vertices.new_to_old(), {}, {}};
-  arrays[kOriginalCell] = {"original_cell", Association::cells, 1, order.cells.new_to_old(), {}, {}};
+      "original_vertex", Association::vertices, 1, old_places(order.vertices), {}, {}};
+  arrays[kOriginalCell] = {"original_cell", Association::cells, 1, old_places(order.cells), {}, {}};
   return arrays;
 }
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-namespace meshorder::detail {
+namespace meshorder {
 
 /// Base of abstract classes: a virtual destructor, neither copied nor moved.
 class Polymorphic {
@@ -16,4 +16,4 @@ class Polymorphic {
   Polymorphic() = default;
 };
 
-}  // namespace meshorder::detail
+}  // namespace meshorder

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/index.hpp"
+#include "base/text.hpp"
 #include "base/point.hpp"
 #include "mesh/cells.hpp"
 

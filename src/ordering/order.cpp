@@ -3,6 +3,7 @@
 // method.
 #include "base/call.hpp"
 #include "base/stopwatch.hpp"
+#include "cells/facets.hpp"
 #include "graph/clean_graph.hpp"
 #include "ordering/method.hpp"
 #include "ordering/order_cells.hpp"

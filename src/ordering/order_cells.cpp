@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "ordering/order_cells.hpp"
 
+#include "cells/facets.hpp"
 #include "ordering/method.hpp"
 #include <meshorder/error.hpp>
 

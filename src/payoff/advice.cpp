@@ -73,7 +73,7 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   for (const Workload use : {Workload::all, Workload::springs}) {
     if (use == Workload::springs && !options.for_springs_too) continue;
     ReorderingOptions reordering{.ordering = options.ordering};
-    reordering.ordering.use = use;
+    reordering.ordering.workload = use;
     const Stopwatch stopwatch;
     const Reordering order = compute_reordering(mesh, graph, reordering);
     Ordered ordered = orders.front();

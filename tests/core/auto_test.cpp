@@ -24,7 +24,7 @@ struct Lattice {
 
 OrderOptions options_for(Workload use) {
   OrderOptions options;
-  options.use = use;
+  options.workload = use;
   return options;
 }
 

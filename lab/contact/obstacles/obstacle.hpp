@@ -21,7 +21,7 @@ struct SurfacePoint {
 
 /// A rigid body at rest that the simulated body must stay outside of. Immutable; all functions are
 /// thread-safe.
-class Obstacle : public detail::Polymorphic {
+class Obstacle : public Polymorphic {
  public:
   /// Returns the nearest point of the surface if it is within `reach` (m) of `x` or x is inside. A vertex
   /// that was at `from`, outside, when the step began must be led back to the side that it came from: where x

@@ -46,7 +46,7 @@ struct ContactSolveReport {
 /// Where the rounds do not converge (a body may jam), the last bounds are kept: tangential forces may then
 /// lie outside their cones, and `converged` is false.
 template <class Real>
-class DualContactSolver : public detail::Polymorphic {
+class DualContactSolver : public Polymorphic {
  public:
   /// `matrix` and its `factor` must outlive it. Throws InvalidArgument for options that are out of range and
   /// for a factor of another size.

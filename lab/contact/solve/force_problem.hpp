@@ -19,7 +19,7 @@ struct ForceBounds {
 };
 
 /// The symmetric positive semidefinite matrix S that maps contact forces to displacements.
-class ForceOperator : public detail::Polymorphic {
+class ForceOperator : public Polymorphic {
  public:
   /// result = S forces
   virtual void multiply(std::span<const double> forces, std::span<double> result) = 0;

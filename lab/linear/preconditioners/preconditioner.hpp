@@ -15,7 +15,7 @@ namespace meshorder {
 
 /// Approximates the inverse of a symmetric positive definite matrix of 3×3 blocks. Symmetric and positive
 /// definite itself; the same bits for any number of threads.
-class Preconditioner : public detail::Polymorphic {
+class Preconditioner : public Polymorphic {
  public:
   /// Takes the values of a matrix that has the pattern it was made for. Call it before `apply`, and again
   /// after the matrix has changed.
