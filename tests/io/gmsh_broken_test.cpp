@@ -30,10 +30,10 @@ TEST(GmshBroken, VersionsThatAreNotReadAreNamed) {
   expect_broken(
       "mesh.msh",
       {{"version 1", "$NOD\n1\n1 0 0 0\n$ENDNOD\n$ELM\n0\n$ENDELM\n", "mesh.msh:2: version 1 of"},
-       {"version 3", in_22("2.2 0 8", "3 0 8"), ":2: version 3 of"},
+       {"version 3", in_22("2.2 0 8", "3 0 8"), ":2: version 3.0 of"},
        {"version 4.0", in_41("4.1 0 8", "4.0 0 8"),
-        ":2: version 4 of Gmsh's format is not supported; 2.2 and 4.1"},
-       {"says how to convert", in_41("4.1 0 8", "4 0 8"), "gmsh -save"},
+        ":2: version 4.0 of Gmsh's format is not supported; 2.2 and 4.1"},
+       {"says how to convert", in_41("4.1 0 8", "4 0 8"), "gmsh OLD.msh -save"},
        {"no version", in_41("4.1 0 8", "four"), ":2: the version is 'four'"},
        {"file type", in_41("4.1 0 8", "4.1 2 8"), ":2: the file type is 2"},
        {"data size", changed(gmsh_41_binary(std::endian::native), "4.1 1 8", "4.1 1 4"),
@@ -44,12 +44,12 @@ TEST(GmshBroken, VersionsThatAreNotReadAreNamed) {
 TEST(GmshBroken, FaultsInTextAreNamedWithTheirLine) {
   expect_broken(
       "mesh.msh",
-      {{"no sections", "hello\n", "mesh.msh:1: unexpected text outside the sections"},
+      {{"no sections", "hello\n", "mesh.msh:1: is not a Gmsh file (it begins with 'hello')"},
        {"garbage",
         std::string("\x7f"
                     "ELF\0\1\2",
                     7),
-        "unexpected text outside"},
+        "is not a Gmsh file"},
        {"an end without a beginning", "$EndNodes\n", ":1: unexpected text outside"},
        {"no format", "$Nodes\n0\n$EndNodes\n", ":2: $Nodes comes before $MeshFormat"},
        {"two formats", std::string(kGmsh41) + "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", "a second section"},
@@ -59,7 +59,8 @@ TEST(GmshBroken, FaultsInTextAreNamedWithTheirLine) {
        {"elements first", until(kGmsh22, "$Nodes") + "$Elements\n0\n$EndElements\n",
         "$Elements comes before"},
        {"data first", until(kGmsh22, "$Elements") + "$NodeData\n0\n", "$NodeData comes before $Elements"},
-       {"section without an end", until(kGmsh22, "$EndNodes"), ":16: the file ends where $EndNodes"},
+       {"section without an end", until(kGmsh22, "$EndNodes"),
+        ":16: unexpected end of file; expected $EndNodes"},
        {"comments without an end", std::string(kGmsh22) + "$Comments\nabc\n",
         "$Comments has no $EndComments"},
        {"names without quotes", in_22("\"rock\"", "rock"), "the name of the physical group 4 has no quotes"},

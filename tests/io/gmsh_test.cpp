@@ -103,12 +103,12 @@ TEST(Gmsh, KeepsStepsOfDataApartAndKnowsPartialData) {
   const DataArray* second = find_array(mesh, "heat step 1", Association::vertices);
   ASSERT_TRUE(second);
   EXPECT_EQ(second->components, 3);
-  EXPECT_EQ(second->rows, (std::vector<Index>{5, 1}));
-  EXPECT_EQ(find_array(mesh, "stress", Association::cells)->rows, (std::vector<Index>{2}));
+  EXPECT_EQ(second->indices, (std::vector<Index>{5, 1}));
+  EXPECT_EQ(find_array(mesh, "stress", Association::cells)->indices, (std::vector<Index>{2}));
   // one value for each node of a cell, filled up with 0
   EXPECT_EQ(values<double>(mesh, "jump", Association::cells), (Reals{1, 2, 3, 0, 4, 5, 6, 7}));
   EXPECT_THAT(mesh.format_metadata->contents(), Contains("the times and steps of data"));
-  EXPECT_THAT(mesh.format_metadata->contents(), Contains("the section $Entities"));
+  EXPECT_THAT(mesh.format_metadata->contents(), Contains("Gmsh's $Entities"));
 }
 
 TEST(Gmsh, ReadsAllOfVersion22) {
@@ -249,7 +249,8 @@ TEST(Gmsh, LeavesOutPeriodicPairsOfNodesThatAreNotThere) {
 }
 
 TEST(Gmsh, KeepsUnknownSectionsWithoutNumbers) {
-  const std::string content = std::string(kGmsh22) + "$Author\nJane Doe, version2\n$EndAuthor\n";
+  std::string content(kGmsh22);
+  content += "$Author\nJane Doe, version2\n$EndAuthor\n";
   EXPECT_EQ(written(read_text(content)), content);
 }
 
@@ -350,12 +351,11 @@ TEST(Gmsh, PutsMiddleNodesWhereVtkHasThem) {
     for (int i = 0; i < corner_count; ++i)
       points.push_back({static_cast<double>(8 << i), 64.0 * i, 8.0 * i * i});
     for (const auto& of : type.gmsh) points.push_back(middle(points, of));
-    std::string content =
-        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(points.size()) + "\n";
-    std::string element = "1 " + std::to_string(type.type) + " 0";
+    std::string content = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", points.size());
+    std::string element = fmt::format("1 {} 0", type.type);
     for (std::size_t i = 0; i < points.size(); ++i) {
       content += fmt::format("{} {} {} {}\n", i + 1, points[i][0], points[i][1], points[i][2]);
-      element += " " + std::to_string(i + 1);
+      element += fmt::format(" {}", i + 1);
     }
     content += "$EndNodes\n$Elements\n1\n" + element + "\n$EndElements\n";
 

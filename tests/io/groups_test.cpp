@@ -155,7 +155,7 @@ TEST(GroupBy, PutsWhatHasNoValueLast) {
   EXPECT_EQ(grouping.values, (std::vector<std::int64_t>{3, 5}));
   EXPECT_EQ(grouping.of_cells, (std::vector<Index>{2, 2, 2, 2, 1, 2, 2, 1, 2, 2, 2, 0}));
   const Reordering result = reorder(mesh, grouped("some"));
-  const auto& rows = mesh.data[0].rows;
+  const auto& rows = mesh.data[0].indices;
   EXPECT_EQ(std::vector<Index>(rows.begin() + 2, rows.end()), std::vector<Index>{0});
   EXPECT_LT(std::max(rows[0], rows[1]), 3);
   EXPECT_EQ(group_sizes(*result.groups).back().value, std::nullopt);
@@ -192,7 +192,7 @@ TEST(GroupBy, RefusesWhatHoldsNoWholeNumbers) {
   }
   mesh.sets.clear();
   mesh.data = {{"pairs", Association::cells, 2, std::vector<std::int32_t>(12, 1), {}, {}}};
-  EXPECT_NE(refusal(mesh, "pairs").find("is: none"), std::string::npos);
+  EXPECT_NE(refusal(mesh, "pairs").find("by: none"), std::string::npos);
 }
 
 TEST(GroupBy, FindsArraysByNameCellsFirstOrByPrefix) {
@@ -230,9 +230,9 @@ TEST(GroupBy, SetsOfCellsGroupByTheSmallestThatHoldsACell) {
   std::vector<Index> after(12);
   for (Index c = 0; c < 12; ++c) after[result.cells.old_to_new()[c]] = result.groups->of_cells[c];
   EXPECT_TRUE(std::is_sorted(after.begin(), after.end()));
-  EXPECT_NE(refusal(mesh, "set").find("is: sets"), std::string::npos);
+  EXPECT_NE(refusal(mesh, "set").find("by: sets"), std::string::npos);
   mesh.sets.resize(1);
-  EXPECT_NE(refusal(mesh, "sets").find("is: none"), std::string::npos);
+  EXPECT_NE(refusal(mesh, "sets").find("by: none"), std::string::npos);
 }
 
 TEST(GroupBy, OfOneGroupIsTheOrderWithoutGroups) {

@@ -67,7 +67,7 @@ TEST(Reorder, RowsOfPartialArraysFollow) {
   std::vector<Index> reversed(mesh.points.size());
   for (Index v = 0; v < mesh.vertex_count(); ++v) reversed[v] = mesh.vertex_count() - 1 - v;
   apply_reordering(mesh, Permutation::from_old_to_new(reversed), Permutation::identity(mesh.cell_count()));
-  EXPECT_EQ(mesh.data.back().rows, (std::vector<Index>{8, 6}));
+  EXPECT_EQ(mesh.data.back().indices, (std::vector<Index>{8, 6}));
 }
 
 TEST(Reorder, IdsRunInTheNewOrder) {

@@ -100,7 +100,8 @@ TEST(Stl, WritesSolidsAsTheyStood) {
 
 TEST(Stl, KeepsEmptySolids) {
   const TemporaryFolder folder;
-  const std::string text = "solid empty\nendsolid empty\n" + std::string(kTwoSolids);
+  std::string text = "solid empty\nendsolid empty\n";
+  text += kTwoSolids;
   const Mesh mesh = read_mesh(folder.file("a.stl", text));
   EXPECT_EQ(mesh.cell_blocks, (std::vector<Index>{0, 2}));
   write_mesh(mesh, folder.path() / "b.stl");
@@ -172,8 +173,8 @@ TEST(Stl, BrokenFilesStopWithTheirPlace) {
        {"long garbage", std::string(200, '\xfe'), "is not an STL file"},
        {"zero triangles", "solid\nendsolid\n", "has no cells"},
        {"zero binary triangles", std::string(84, '\0'), "has no cells"},
-       {"only solid", "solid a\n", ":2: the file ends where 'facet'"},
-       {"no endsolid", "solid a\n" + facet, ":9: the file ends where 'facet'"},
+       {"only solid", "solid a\n", ":2: unexpected end of file; expected 'facet'"},
+       {"no endsolid", "solid a\n" + facet, ":9: unexpected end of file; expected 'facet'"},
        {"facet without solid", facet, "is not an STL file"},
        {"text after", "solid a\n" + facet + "endsolid\nhello\n", ":10: 'solid' is missing"},
        {"two vertices", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n",

@@ -182,8 +182,8 @@ TEST(TetGen, AttributesThatAreNotRegionsStayReal) {
   const Mesh mesh = read({.ele = "2 4 2\n1 1 2 3 4  10 0.5\n2 2 3 4 5  20 1e-3\n"});
   const DataArray* attribute = find_array(mesh, "attribute", Association::cells);
   EXPECT_THAT(values<double>(attribute), ElementsAre(10, 0.5, 20, 1e-3));
-  EXPECT_THAT(attribute->rows, ElementsAre(0, 1));
-  EXPECT_THAT(find_array(mesh, kLabel, Association::cells)->rows, ElementsAre(2, 3, 4));
+  EXPECT_THAT(attribute->indices, ElementsAre(0, 1));
+  EXPECT_THAT(find_array(mesh, kLabel, Association::cells)->indices, ElementsAre(2, 3, 4));
   const TemporaryFolder folder;
   write_mesh(mesh, folder.path() / "out.node");
   test::expect_same(read_mesh(folder.path() / "out.node"), mesh);
@@ -195,9 +195,9 @@ Mesh with_sorted_rows(Mesh mesh) {
     if (array.is_dense()) continue;
     std::vector<std::pair<Index, std::int32_t>> pairs;
     auto& labels = std::get<std::vector<std::int32_t>>(array.values);
-    for (std::size_t i = 0; i < labels.size(); ++i) pairs.emplace_back(array.rows[i], labels[i]);
+    for (std::size_t i = 0; i < labels.size(); ++i) pairs.emplace_back(array.indices[i], labels[i]);
     std::sort(pairs.begin(), pairs.end());
-    for (std::size_t i = 0; i < labels.size(); ++i) std::tie(array.rows[i], labels[i]) = pairs[i];
+    for (std::size_t i = 0; i < labels.size(); ++i) std::tie(array.indices[i], labels[i]) = pairs[i];
   }
   return mesh;
 }
@@ -205,7 +205,7 @@ Mesh with_sorted_rows(Mesh mesh) {
 TEST(TetGen, MarkersOfFacesAloneMoveWithThem) {
   const TemporaryFolder folder;
   Mesh mesh = read_mesh(put(folder, {.ele = "2 4 0\n1 1 2 3 4\n2 2 3 4 5\n", .edge = "1 0\n1 1 2\n"}));
-  EXPECT_THAT(find_array(mesh, kLabel, Association::cells)->rows, ElementsAre(2, 3));
+  EXPECT_THAT(find_array(mesh, kLabel, Association::cells)->indices, ElementsAre(2, 3));
   apply_reordering(mesh, test::shuffled(5, 1), Permutation::from_new_to_old({1, 0, 3, 2, 4}));
   write_mesh(mesh, folder.path() / "out.node");
   test::expect_same(read_mesh(folder.path() / "out.node"), with_sorted_rows(mesh));
@@ -342,7 +342,7 @@ TEST(TetGen, KeepsNumbersAsAttributesAndNamesWhatIsLost) {
                           AllOf(HasSubstr("'label'"), HasSubstr("column 1 of"), HasSubstr(".ele")),
                           AllOf(HasSubstr("'temperature'"), HasSubstr("column 2 of"), HasSubstr(".ele")),
                           AllOf(HasSubstr("'stress'"), HasSubstr("columns 3 to 5 of"), HasSubstr(".ele")),
-                          HasSubstr("numbers of vertices"), HasSubstr("'fixed'"), HasSubstr("'part'")));
+                          HasSubstr("ids of vertices"), HasSubstr("'fixed'"), HasSubstr("'part'")));
 
   const Mesh back = read_mesh(folder.path() / "m.node");
   EXPECT_THAT(back.vertex_ids, IsEmpty());
@@ -429,7 +429,7 @@ TEST(TetGen, NotesCompanionsThatHoldForTheOldOrder) {
 TEST(TetGen, NotesALastLineWithoutEnd) {
   Notes notes;
   (void)read({.edge = "1 1\n1 1 2 6"}, &notes);
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("m.edge ends without a line end")));
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("m.edge has no final newline")));
 }
 
 TEST(TetGen, ReadsMixedLineEndsAndMarkersWithAPoint) {
@@ -451,7 +451,7 @@ TEST(TetGen, SaysWhatIsWrongAndWhere) {
   const std::string node(kNode);
   const std::vector<BrokenSet> table{
       {"empty node", {.node = ""}, "m.node: is empty"},
-      {"only comments", {.node = "# nothing\n"}, "m.node:2: the file ends where the header"},
+      {"only comments", {.node = "# nothing\n"}, "m.node:2: unexpected end of file; expected the header"},
       {"garbage", {.node = std::string("\x7f\0ELF\x01\x02", 7)}, "m.node:1:"},
       {"no points", {.node = "0 3 0 0\n"}, "m.node:1: the file has no points"},
       {"negative count", {.node = "-5 3 0 0\n"}, "m.node:1: the number of points is -5"},
@@ -467,13 +467,15 @@ TEST(TetGen, SaysWhatIsWrongAndWhere) {
       {"two markers", {.node = "1 3 0 2\n1 0 0 0 1 1\n"}, "2 boundary markers"},
       {"long header", {.node = "1 3 0 0 9\n1 0 0 0\n"}, "m.node:1: the line has more columns"},
       {"text in header", {.node = "five 3 0 0\n"}, "'five'"},
-      {"a point too few", {.node = replaced(node, "5  3", "6  3")}, "m.node:10: the file ends where a point"},
+      {"a point too few",
+       {.node = replaced(node, "5  3", "6  3")},
+       "m.node:10: unexpected end of file; expected a point"},
       {"a point too many",
        {.node = replaced(node, "5  3", "4  3")},
        "m.node:8: unexpected text after the last record"},
       {"short line",
        {.node = replaced(node, "1.5   0", "1.5")},
-       "m.node:7: the line ends where the boundary marker"},
+       "m.node:7: unexpected end of line; expected the boundary marker"},
       {"long line", {.node = replaced(node, "1.5   0", "1.5 0 3")}, "m.node:7: the line has more columns"},
       {"not a number", {.node = replaced(node, "0 0 1", "0 y 1")}, "m.node:7: a coordinate is 'y'"},
       {"nan", {.node = replaced(node, "0 0 1", "0 nan 1")}, "m.node:7: a coordinate is not finite"},
@@ -498,15 +500,17 @@ TEST(TetGen, SaysWhatIsWrongAndWhere) {
       {"point 0 in base 1", {.ele = replaced(kEle, "1 2 3 4", "0 2 3 4")}, "m.ele:2: the cell names point 0"},
       {"negative point", {.ele = replaced(kEle, "1 2 3 4", "-1 2 3 4")}, "m.ele:2: the cell names point -1"},
       {"cell twice", {.ele = replaced(kEle, "2  2 3", "1  2 3")}, "m.ele:3: the cell 1 is given twice"},
-      {"attribute missing", {.ele = replaced(kEle, "  20", "")}, "m.ele:3: the line ends where an attribute"},
+      {"attribute missing",
+       {.ele = replaced(kEle, "  20", "")},
+       "m.ele:3: unexpected end of line; expected an attribute"},
       {"more cells",
        {.ele = replaced(kEle, "2  4", "1  4")},
        "m.ele:3: unexpected text after the last record"},
 
       {"cells promised, comment",
        {.ele = "3 4 0\n1 1 2 3 4\n2 2 3 4 5\n# three\n"},
-       "m.ele:5: the file ends where a cell"},
-      {"face too short", {.face = "1 1\n1 1 2 # and\n"}, "m.face:2: the line ends"},
+       "m.ele:5: unexpected end of file; expected a cell"},
+      {"face too short", {.face = "1 1\n1 1 2 # and\n"}, "m.face:2: unexpected end of line"},
       {"face of four", {.face = "1 1\n1 1 2 3 4 5\n"}, "m.face:2: a line has 4 columns"},
       {"faces differ", {.face = "2 0\n1 1 2 3\n2 1 2 3 4\n"}, "m.face:3: the line has more columns"},
       {"face beyond", {.face = replaced(kFace, "3 4 5", "3 4 50")}, "m.face:3: the cell names point 50"},
@@ -516,7 +520,7 @@ TEST(TetGen, SaysWhatIsWrongAndWhere) {
       {"edge neighbours",
        {.edge = "1 1\n1 1 2  4  1\n"},
        "m.edge:2: the last columns are the numbers of neigh"},
-      {"edge too short", {.edge = "1 1\n1 1 # and\n"}, "m.edge:2: the line ends"},
+      {"edge too short", {.edge = "1 1\n1 1 # and\n"}, "m.edge:2: unexpected end of line"},
       {"edge too long", {.edge = "1 0\n1 1 2 3 4 5\n"}, "m.edge:2: a line has 5 columns"},
       {"missing faces", {.face = "9 0\n"}, "m.face:1: the number of cells is 9"},
       {"faces of a plane mesh",

@@ -379,7 +379,7 @@ TEST(Vtu, RolesFieldsIdsUnitsAndComponentNamesSurvive) {
   const TemporaryFolder folder;
   const auto small = folder.file("small.vtu", with(kSmall, "NaN -inf", "3 4"));
   const auto grid = read_with_vtk(small);
-  grid->GetPointData()->GetArray("heat")->GetInformation()->EntitySet(vtkDataArray::UNITS_LABEL(), "K");
+  grid->GetPointData()->GetArray("heat")->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), "K");
   const vtkNew<vtkDoubleArray> velocity;
   velocity->SetName("speed &amp; &lt;course>");  // VTK 9.1 writes names as they are
   velocity->SetNumberOfComponents(3);

@@ -264,7 +264,7 @@ Mesh read(const std::filesystem::path& path, Notes& notes) {
   while (!in.at_end()) {
     const std::string word(in.peek_word());
     if (word.front() != '$' || word.size() < 2 || word.substr(0, 4) == "$End") {
-      if (reading.metadata.sections.empty()) {
+      if (reading.metadata.sections.empty() && word.front() != '$') {
         reading.source.fail("is not a Gmsh file (it begins with '" + shown(in.peek_line()) + "')",
                             "a Gmsh file begins with $MeshFormat");
       }

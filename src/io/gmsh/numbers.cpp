@@ -56,8 +56,8 @@ void NumberWriter::size(std::int64_t value) {
   if (binary) {
     out.binary(value, order);
   } else {
-    separate();
-    out.print("{}", value);
+    out.integer(at_line_start ? "" : " ", value);
+    at_line_start = false;
   }
 }
 

@@ -63,6 +63,12 @@ void OutputFile::write(std::string_view bytes) {
   if (stream_->buffer.size() > kFlushAt) flush();
 }
 
+void OutputFile::integer(std::string_view before, std::int64_t value) {
+  const fmt::format_int digits(value);
+  stream_->buffer.append(before.data(), before.data() + before.size());
+  write({digits.data(), digits.size()});
+}
+
 void OutputFile::flush() {
   auto& [file, buffer] = *stream_;
   file.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -32,6 +33,9 @@ class OutputFile {
   }
 
   void write(std::string_view bytes);
+
+  /// Writes `before` and the digits of `value`; faster than `print`.
+  void integer(std::string_view before, std::int64_t value);
 
   /// Writes the number's bytes in the given order.
   template <class T>

@@ -391,9 +391,13 @@ class NumberWriter {
   template <class T>
   void put(T value) {
     if (encoding_ == Encoding::ascii) {
-      if (!at_start_) out_.write(" ");
+      const std::string_view before = at_start_ ? "" : " ";
       at_start_ = false;
-      out_.print("{}", value);
+      if constexpr (std::is_integral_v<T>) {
+        out_.integer(before, value);
+      } else {
+        out_.print("{}{}", before, value);
+      }
     } else {
       out_.binary(value, encoding_ == Encoding::big_endian ? std::endian::big : std::endian::little);
     }

@@ -241,7 +241,7 @@ void write_points(OutputFile& out, const WriteContext& from, Notes& notes) {
 
   out.print("{}  {}  {}  {}\n", mesh.vertex_count(), from.layout.dimension, columns.size(), marked ? 1 : 0);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    out.print("{}", from.vertex_number(v));
+    out.integer("", from.vertex_number(v));
     for (int k = 0; k < from.layout.dimension; ++k) out.print("  {}", mesh.points[v][k]);
     for (const Column& column : columns) print_value(out, column, v);
     if (marked) out.print("  {}", from.vertex_labels.values[v]);
@@ -257,9 +257,9 @@ void write_cells(OutputFile& out, File file, const WriteContext& from, const std
   std::array<Index, 10> as_given{};
   for (Index i = 0; i < index_size(cells); ++i) {
     const Index c = cells[i];
-    out.print("{}", from.cell_number(c, i));
+    out.integer("", from.cell_number(c, i));
     for (std::size_t k = 0; k < order.size(); ++k) as_given[order[k]] = mesh.cells[c][k];
-    for (std::size_t k = 0; k < order.size(); ++k) out.print(" {}", from.vertex_number(as_given[k]));
+    for (std::size_t k = 0; k < order.size(); ++k) out.integer(" ", from.vertex_number(as_given[k]));
     for (const Column& column : columns) print_value(out, column, c);
     if (marked) out.print("  {}", from.cell_labels.values[c]);
     out.write("\n");

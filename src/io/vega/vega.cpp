@@ -216,8 +216,8 @@ class Writer {
     out_.print("*ELEMENTS\n{}\n{} {} {}\n", word_of(width), mesh_.cell_count(), width,
                extra ? extra->components : 0);
     for (Index c = 0; c < mesh_.cell_count(); ++c) {
-      out_.print("{}", element_number(c));
-      for (const Index v : mesh_.cells[c]) out_.print(" {}", vertex_number(v));
+      out_.integer("", element_number(c));
+      for (const Index v : mesh_.cells[c]) out_.integer(" ", vertex_number(v));
       write_row(extra, c);
       out_.write("\n");
     }
