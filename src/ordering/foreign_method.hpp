@@ -5,11 +5,23 @@
 
 #include <meshorder.h>
 
+#include <cstdint>
 #include <string>
 
 namespace meshorder {
 
 /// Wraps a method of the C interface: gives it the arrays of the graph, and checks what it returns.
+///
+/// The wrapper throws InternalError if the method fails or returns no bijection, InvalidArgument if it needs
+/// coordinates and there are none.
 VertexMethod foreign_vertex_method(std::string name, bool needs_points, mo_method method, void* user);
+
+/// Registers a method of the C interface for the rest of the program; the parameters are those of
+/// `mo_register`.
+///
+/// @param source  what lists of methods name as its source
+/// @throws InvalidArgument as `register_vertex_method`, and for a null name or method
+void register_foreign_method(const char* name, const char* description, std::int32_t needs_points,
+                             mo_method method, void* user, const std::string& source);
 
 }  // namespace meshorder

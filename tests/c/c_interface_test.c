@@ -1,0 +1,456 @@
+/* Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT */
+/* A caller in C99: orders, Fiedler vectors, methods of its own, and the statuses of mistakes. */
+#include <meshorder.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+static int failures = 0;
+
+static void check(int holds, const char* what, int line) {
+  if (holds) return;
+  printf("line %d: not true: %s (last error: \"%s\")\n", line, what, mo_last_error());
+  ++failures;
+}
+#define CHECK(condition) check((condition), #condition, __LINE__)
+
+#define COUNT(array) ((int64_t)(sizeof(array) / sizeof((array)[0])))
+
+/* The path 0 - 3 - 1 - 4 - 2. */
+enum { N = 5 };
+static const int32_t offsets32[N + 1] = {0, 1, 3, 4, 6, 8};
+static const int32_t neighbours32[8] = {3, 3, 4, 4, 0, 1, 1, 2};
+
+static mo_in in32(const int32_t* data, int64_t size) {
+  mo_in array;
+  array.data = data;
+  array.size = size;
+  array.type = MO_INT32;
+  return array;
+}
+
+static mo_out out32(int32_t* data, int64_t size) {
+  mo_out array;
+  array.data = data;
+  array.size = size;
+  array.type = MO_INT32;
+  return array;
+}
+
+static mo_options options_of(const char* method) {
+  mo_options options;
+  mo_options_init(&options, sizeof options);
+  options.method = method;
+  return options;
+}
+
+static mo_status order_path(const mo_options* options, int32_t* new_to_old, mo_result* result) {
+  const mo_in offsets = in32(offsets32, N + 1);
+  const mo_in neighbours = in32(neighbours32, 8);
+  const mo_out order = out32(new_to_old, N);
+  return mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, options, &order, NULL, result);
+}
+
+/* Both maps are bijections, each the inverse of the other, and neighbours of the path are next to each other.
+ */
+static void check_path_order(const int64_t* new_to_old, const int64_t* old_to_new) {
+  int64_t k;
+  int row;
+  for (k = 0; k < N; ++k) {
+    CHECK(new_to_old[k] >= 0 && new_to_old[k] < N);
+    CHECK(old_to_new[k] >= 0 && old_to_new[k] < N);
+    if (new_to_old[k] < 0 || new_to_old[k] >= N) return;
+    CHECK(old_to_new[new_to_old[k]] == k);
+  }
+  for (row = 0; row < N; ++row) {
+    int32_t entry;
+    for (entry = offsets32[row]; entry < offsets32[row + 1]; ++entry) {
+      const int64_t step = old_to_new[row] - old_to_new[neighbours32[entry]];
+      CHECK(step == 1 || step == -1);
+    }
+  }
+}
+
+static void test_order_of_any_integers(void) {
+  int64_t first_new_to_old[N];
+  int32_t base;
+  for (base = 0; base <= 1; ++base) {
+    int32_t narrow_offsets[N + 1];
+    int32_t narrow_neighbours[8];
+    int32_t narrow_new_to_old[N];
+    int32_t narrow_old_to_new[N];
+    int64_t wide_offsets[N + 1];
+    int64_t wide_neighbours[8];
+    int64_t new_to_old[N];
+    uint64_t old_to_new[N];
+    int64_t from_zero[N];
+    int64_t inverse_from_zero[N];
+    mo_options options = options_of("rcm");
+    mo_result result;
+    int k;
+    options.base = base;
+    for (k = 0; k <= N; ++k) narrow_offsets[k] = offsets32[k] + base;
+    for (k = 0; k < 8; ++k) narrow_neighbours[k] = neighbours32[k] + base;
+    for (k = 0; k <= N; ++k) wide_offsets[k] = narrow_offsets[k];
+    for (k = 0; k < 8; ++k) wide_neighbours[k] = narrow_neighbours[k];
+
+    {
+      const mo_in offsets = in32(narrow_offsets, N + 1);
+      const mo_in neighbours = in32(narrow_neighbours, 8);
+      const mo_out order = out32(narrow_new_to_old, N);
+      const mo_out inverse = out32(narrow_old_to_new, N);
+      result.struct_size = sizeof result;
+      CHECK(mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, &options, &order, &inverse, &result) ==
+            MO_OK);
+      CHECK(result.complete == 1);
+      CHECK(result.components == 0);
+      CHECK(result.seconds >= 0);
+      CHECK(strcmp(result.method, "rcm") == 0);
+    }
+    {
+      const mo_in offsets = {wide_offsets, N + 1, MO_INT64};
+      const mo_in neighbours = {wide_neighbours, 8, MO_INT64};
+      mo_out order;
+      mo_out inverse;
+      order.data = new_to_old;
+      order.size = N;
+      order.type = MO_INT64;
+      inverse.data = old_to_new;
+      inverse.size = N;
+      inverse.type = MO_UINT64;
+      CHECK(mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, &options, &order, &inverse, NULL) == MO_OK);
+    }
+    for (k = 0; k < N; ++k) {
+      CHECK(narrow_new_to_old[k] == new_to_old[k]);
+      CHECK(narrow_old_to_new[k] == (int64_t)old_to_new[k]);
+      from_zero[k] = new_to_old[k] - base;
+      inverse_from_zero[k] = (int64_t)old_to_new[k] - base;
+      if (base == 0) first_new_to_old[k] = from_zero[k];
+      CHECK(from_zero[k] == first_new_to_old[k]);
+    }
+    check_path_order(from_zero, inverse_from_zero);
+  }
+}
+
+static void test_defaults(void) {
+  int32_t new_to_old[N];
+  mo_options options;
+  CHECK(order_path(NULL, new_to_old, NULL) == MO_OK);
+  mo_options_init(&options, sizeof options);
+  CHECK(options.struct_size == sizeof options);
+  CHECK(options.tolerance > 0.09 && options.tolerance < 0.11);
+  CHECK(options.max_iterations == 500);
+  CHECK(options.time_limit > 1e300);
+  CHECK(options.method == NULL && options.progress == NULL && options.start.data == NULL);
+  mo_options_init(NULL, sizeof options);
+}
+
+/* Two triangles of a square, and mo_move by the order of its vertices. */
+static void test_mesh(void) {
+  static const int32_t cell_offsets[3] = {1, 4, 7};
+  static const int32_t cell_vertices[6] = {1, 2, 3, 2, 4, 3};
+  static const int32_t types[2] = {5, 5};
+  static const double xy[8] = {0, 0, 1, 0, 0, 1, 1, 1};
+  const mo_in offsets = in32(cell_offsets, COUNT(cell_offsets));
+  const mo_in vertices = in32(cell_vertices, COUNT(cell_vertices));
+  const mo_in vtk_types = in32(types, COUNT(types));
+  const mo_in points = {xy, 8, MO_DOUBLE};
+  int32_t vertex_new_to_old[4];
+  int32_t cell_new_to_old[2];
+  int32_t cell_old_to_new[2];
+  double moved[8];
+  const mo_out vertex_order = out32(vertex_new_to_old, 4);
+  const mo_out cell_order = out32(cell_new_to_old, 2);
+  const mo_out cell_inverse = out32(cell_old_to_new, 2);
+  const mo_in map = in32(vertex_new_to_old, 4);
+  mo_options options = options_of("hilbert");
+  mo_result vertex_result;
+  mo_result cell_result;
+  int k;
+  options.base = 1;
+  options.element_method = "lexmax";
+  vertex_result.struct_size = sizeof vertex_result;
+  cell_result.struct_size = sizeof cell_result;
+  CHECK(mo_order_mesh(&offsets, &vertices, &vtk_types, 0, &points, 2, &options, &vertex_order, NULL,
+                      &cell_order, &cell_inverse, &vertex_result, &cell_result) == MO_OK);
+  CHECK(strcmp(vertex_result.method, "hilbert") == 0);
+  CHECK(strcmp(cell_result.method, "lexmax") == 0);
+  CHECK(cell_new_to_old[0] + cell_new_to_old[1] == 3);
+  CHECK(cell_old_to_new[cell_new_to_old[0] - 1] == 1);
+
+  CHECK(mo_move(&map, 1, xy, moved, (int64_t)(2 * sizeof(double))) == MO_OK);
+  for (k = 0; k < 4; ++k) {
+    const int old = vertex_new_to_old[k] - 1;
+    CHECK(memcmp(moved + 2 * k, xy + 2 * old, 2 * sizeof(double)) == 0);
+  }
+  CHECK(mo_move(&map, 2, xy, moved, 16) == MO_INVALID_ARGUMENT);
+  CHECK(mo_move(&map, 1, xy, moved, -1) == MO_INVALID_ARGUMENT);
+  CHECK(mo_move(&map, 1, xy, NULL, 16) == MO_INVALID_ARGUMENT);
+  CHECK(mo_move(NULL, 1, xy, moved, 16) == MO_INVALID_ARGUMENT);
+  vertex_new_to_old[0] = vertex_new_to_old[1];
+  CHECK(mo_move(&map, 1, xy, moved, 16) == MO_INVALID_ARGUMENT);
+  CHECK(mo_order_mesh(&offsets, &vertices, &vtk_types, -1, &points, 2, &options, &vertex_order, NULL, NULL,
+                      NULL, NULL, NULL) == MO_INVALID_ARGUMENT);
+  CHECK(mo_order_mesh(&offsets, &vertices, &vtk_types, 0, &points, 4, &options, &vertex_order, NULL, NULL,
+                      NULL, NULL, NULL) == MO_INVALID_ARGUMENT);
+}
+
+static void test_fiedler(void) {
+  enum { LENGTH = 10 };
+  const double lambda2 = 0.0978869674096928558; /* 2 - 2 cos(pi / 10) */
+  int32_t path_offsets[LENGTH + 1];
+  int32_t path_neighbours[2 * LENGTH - 2];
+  double values[LENGTH];
+  float narrow[LENGTH];
+  mo_in offsets = in32(path_offsets, LENGTH + 1);
+  mo_in neighbours = in32(path_neighbours, 2 * LENGTH - 2);
+  mo_out output;
+  mo_options options = options_of(NULL);
+  mo_result result;
+  double sum = 0;
+  double squares = 0;
+  int32_t entries = 0;
+  int v;
+  for (v = 0; v < LENGTH; ++v) {
+    path_offsets[v] = entries;
+    if (v > 0) path_neighbours[entries++] = v - 1;
+    if (v + 1 < LENGTH) path_neighbours[entries++] = v + 1;
+  }
+  path_offsets[LENGTH] = entries;
+  options.tolerance = 1e-8;
+  result.struct_size = sizeof result;
+  output.data = values;
+  output.size = LENGTH;
+  output.type = MO_DOUBLE;
+  CHECK(mo_fiedler(&offsets, &neighbours, NULL, &options, &output, &result) == MO_OK);
+  CHECK(result.components == 1);
+  CHECK(result.complete == 1);
+  CHECK(result.lambda2 > lambda2 - 1e-8 && result.lambda2 < lambda2 + 1e-8);
+  for (v = 0; v < LENGTH; ++v) {
+    sum += values[v];
+    squares += values[v] * values[v];
+    CHECK(v == 0 || (values[v] > values[v - 1]) == (values[1] > values[0]));
+  }
+  CHECK(sum > -1e-8 && sum < 1e-8);
+  CHECK(squares > 1 - 1e-8 && squares < 1 + 1e-8);
+
+  output.data = narrow;
+  output.type = MO_FLOAT;
+  CHECK(mo_fiedler(&offsets, &neighbours, NULL, &options, &output, NULL) == MO_OK);
+  for (v = 0; v < LENGTH; ++v) CHECK(narrow[v] == (float)values[v]);
+  output.type = MO_INT32;
+  CHECK(mo_fiedler(&offsets, &neighbours, NULL, &options, &output, NULL) == MO_INVALID_ARGUMENT);
+  options.tolerance = 0;
+  output.type = MO_FLOAT;
+  CHECK(mo_fiedler(&offsets, &neighbours, NULL, &options, &output, NULL) == MO_INVALID_ARGUMENT);
+}
+
+static void test_mistakes(void) {
+  static const int32_t lonely[8] = {3, 3, 4, 4, 1, 1, 1, 2}; /* row 3 lacks its neighbour 0 */
+  int32_t new_to_old[N];
+  mo_in offsets = in32(offsets32, N + 1);
+  mo_in neighbours = in32(neighbours32, 8);
+  const mo_in asymmetric = in32(lonely, 8);
+  mo_out order = out32(new_to_old, N);
+  mo_options options = options_of("rcm");
+  mo_result result;
+
+  CHECK(mo_order_graph(&offsets, &asymmetric, NULL, NULL, 0, &options, &order, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  CHECK(strlen(mo_last_error()) > 0);
+  options.symmetrize = 1;
+  CHECK(mo_order_graph(&offsets, &asymmetric, NULL, NULL, 0, &options, &order, NULL, NULL) == MO_OK);
+  options = options_of("rcm");
+
+  CHECK(mo_order_graph(NULL, &neighbours, NULL, NULL, 0, &options, &order, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  CHECK(mo_order_graph(&offsets, NULL, NULL, NULL, 0, &options, &order, NULL, NULL) == MO_INVALID_ARGUMENT);
+  neighbours.data = NULL;
+  CHECK(mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, &options, &order, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  neighbours = in32(neighbours32, -8);
+  CHECK(mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, &options, &order, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  neighbours = in32(neighbours32, 8);
+  neighbours.type = MO_DOUBLE;
+  CHECK(mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, &options, &order, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  neighbours.type = MO_INT32;
+  order.data = NULL;
+  CHECK(mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, &options, &order, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  order = out32(new_to_old, N - 1);
+  CHECK(mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, &options, &order, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  order = out32(new_to_old, N);
+  order.type = MO_DOUBLE;
+  CHECK(mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, &options, &order, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+
+  options.method = "no-such-method";
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INVALID_ARGUMENT);
+  CHECK(strstr(mo_last_error(), "no-such-method") != NULL);
+  options.method = "hilbert"; /* needs points */
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INVALID_ARGUMENT);
+  options = options_of("rcm");
+  options.base = 2;
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INVALID_ARGUMENT);
+  options = options_of("rcm");
+  options.check = 3;
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INVALID_ARGUMENT);
+  options = options_of("rcm");
+  options.threads = -1;
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INVALID_ARGUMENT);
+  options = options_of("auto");
+  options.workload = "no-such-workload";
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INVALID_ARGUMENT);
+
+  options = options_of("rcm");
+  result.struct_size = 0;
+  CHECK(order_path(&options, new_to_old, &result) == MO_INVALID_ARGUMENT);
+  options.struct_size = 0;
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INVALID_ARGUMENT);
+  options.struct_size = (size_t)-1;
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INVALID_ARGUMENT);
+}
+
+/* Fields beyond struct_size are neither read nor written. */
+static void test_smaller_structures(void) {
+  int32_t new_to_old[N];
+  mo_options options = options_of("rcm");
+  mo_result result;
+  options.cell_groups.size = -1;
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INVALID_ARGUMENT);
+  options.struct_size = offsetof(mo_options, cell_groups);
+  CHECK(order_path(&options, new_to_old, NULL) == MO_OK);
+
+  memset(&result, 'x', sizeof result);
+  result.struct_size = offsetof(mo_result, method);
+  CHECK(order_path(&options, new_to_old, &result) == MO_OK);
+  CHECK(result.complete == 1);
+  CHECK(result.method[0] == 'x' && result.method[31] == 'x');
+
+  memset(&options, 'x', sizeof options);
+  mo_options_init(&options, offsetof(mo_options, cell_groups));
+  CHECK(options.struct_size == offsetof(mo_options, cell_groups));
+  CHECK(options.max_iterations == 500);
+  CHECK(*(const char*)&options.cell_groups == 'x');
+}
+
+static int32_t reversed(void* user, int64_t n, const int64_t* offsets, const int32_t* neighbours,
+                        const double* xyz, int32_t* new_to_old) {
+  int64_t k;
+  (void)neighbours;
+  if (offsets[0] != 0 || xyz != NULL) return 1;
+  for (k = 0; k < n; ++k) new_to_old[k] = (int32_t)(n - 1 - k);
+  ++*(int*)user;
+  return 0;
+}
+
+static int32_t failing(void* user, int64_t n, const int64_t* offsets, const int32_t* neighbours,
+                       const double* xyz, int32_t* new_to_old) {
+  (void)user, (void)n, (void)offsets, (void)neighbours, (void)xyz, (void)new_to_old;
+  return 42;
+}
+
+static int32_t constant(void* user, int64_t n, const int64_t* offsets, const int32_t* neighbours,
+                        const double* xyz, int32_t* new_to_old) {
+  int64_t k;
+  (void)user, (void)offsets, (void)neighbours, (void)xyz;
+  for (k = 0; k < n; ++k) new_to_old[k] = 0;
+  return 0;
+}
+
+static void test_own_methods(void) {
+  static int calls = 0;
+  const int32_t before = mo_method_count();
+  int32_t new_to_old[N];
+  mo_options options = options_of("reversed");
+  mo_result result;
+  int k;
+  CHECK(before > 0);
+  CHECK(mo_register("reversed", "from the last to the first", 0, reversed, &calls) == MO_OK);
+  CHECK(mo_method_count() == before + 1);
+  CHECK(strcmp(mo_method_name(0), "auto") == 0);
+  CHECK(mo_method_name(before) != NULL && strcmp(mo_method_name(before), "reversed") == 0);
+  CHECK(mo_method_name(before) == mo_method_name(before));
+  CHECK(mo_method_name(-1) == NULL && mo_method_name(before + 1) == NULL);
+  result.struct_size = sizeof result;
+  CHECK(order_path(&options, new_to_old, &result) == MO_OK);
+  CHECK(calls == 1);
+  CHECK(strcmp(result.method, "reversed") == 0);
+  for (k = 0; k < N; ++k) CHECK(new_to_old[k] == N - 1 - k);
+
+  CHECK(mo_register("reversed", "again", 0, reversed, &calls) == MO_INVALID_ARGUMENT);
+  CHECK(mo_register("Upper Case", "", 0, reversed, &calls) == MO_INVALID_ARGUMENT);
+  CHECK(mo_register(NULL, "", 0, reversed, &calls) == MO_INVALID_ARGUMENT);
+  CHECK(mo_register("nothing", "", 0, NULL, NULL) == MO_INVALID_ARGUMENT);
+  CHECK(strlen(mo_last_error()) > 0);
+
+  CHECK(mo_register("failing", NULL, 0, failing, NULL) == MO_OK);
+  options.method = "failing";
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INTERNAL);
+  CHECK(strstr(mo_last_error(), "42") != NULL);
+  CHECK(mo_register("constant", NULL, 0, constant, NULL) == MO_OK);
+  options.method = "constant";
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INTERNAL);
+  CHECK(mo_register("pointed", NULL, 1, reversed, &calls) == MO_OK);
+  options.method = "pointed";
+  CHECK(order_path(&options, new_to_old, NULL) == MO_INVALID_ARGUMENT);
+}
+
+typedef struct Reports {
+  int count;
+  int good; /* all of them had a stage and a fraction in range */
+} Reports;
+
+/* Stops at the second report. */
+static int32_t on_progress(void* user, const char* stage, double fraction) {
+  Reports* const reports = user;
+  ++reports->count;
+  if (strlen(stage) == 0 || fraction < -1 || fraction > 1) reports->good = 0;
+  return reports->count >= 2;
+}
+
+/* A grid, large enough for several reports. */
+static void test_progress(void) {
+  enum { SIDE = 300, VERTICES = SIDE * SIDE };
+  static int32_t grid_offsets[VERTICES + 1];
+  static int32_t grid_neighbours[4 * VERTICES];
+  static int32_t new_to_old[VERTICES];
+  Reports reports = {0, 1};
+  mo_options options = options_of("spectral");
+  mo_in offsets = in32(grid_offsets, VERTICES + 1);
+  mo_in neighbours;
+  const mo_out order = out32(new_to_old, VERTICES);
+  int32_t entries = 0;
+  int32_t v;
+  for (v = 0; v < VERTICES; ++v) {
+    if (v >= SIDE) grid_neighbours[entries++] = v - SIDE;
+    if (v % SIDE > 0) grid_neighbours[entries++] = v - 1;
+    if (v % SIDE + 1 < SIDE) grid_neighbours[entries++] = v + 1;
+    if (v + SIDE < VERTICES) grid_neighbours[entries++] = v + SIDE;
+    grid_offsets[v + 1] = entries;
+  }
+  neighbours = in32(grid_neighbours, entries);
+  options.progress = on_progress;
+  options.user = &reports;
+  CHECK(mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, &options, &order, NULL, NULL) == MO_STOPPED);
+  CHECK(reports.count == 2 && reports.good);
+  CHECK(strlen(mo_last_error()) > 0);
+}
+
+int main(void) {
+  CHECK(mo_version() > 0);
+  CHECK(strcmp(mo_last_error(), "") == 0);
+  test_order_of_any_integers();
+  test_defaults();
+  test_mesh();
+  test_fiedler();
+  test_mistakes();
+  test_smaller_structures();
+  test_own_methods();
+  test_progress();
+  return failures == 0 ? 0 : 1;
+}

@@ -1,0 +1,10 @@
+# Fails unless the library LIBRARY exports exactly the symbols that the file EXPECTED lists, one a line.
+execute_process(COMMAND ${NM} -D --defined-only ${LIBRARY} OUTPUT_VARIABLE table COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "[^ \n]+\n" exported "${table}")
+list(TRANSFORM exported STRIP)
+list(SORT exported)
+file(STRINGS ${EXPECTED} expected)
+list(SORT expected)
+if(NOT exported STREQUAL expected)
+  message(FATAL_ERROR "${LIBRARY} exports\n  ${exported}\nbut must export\n  ${expected}")
+endif()
