@@ -2,7 +2,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Time and memory of every vertex order, and of lexmax for elements, over meshes of 10^3 to 10^7 vertices.
 
-    benchmarks/scaling.py build/benchmarks/scaling --json scaling.json --plot docs/pictures/scaling.svg
+    benchmarks/scaling.py build/bin/scaling --json scaling.json --plot docs/pictures/scaling.svg
 
 The meshes are scrambled grids of tetrahedra. Each run is a process of its own; memory is its peak while it orders,
 mesh and graph included. A method that takes longer than --limit gets no larger mesh. The exponent p of time ~ n^p is
@@ -137,7 +137,7 @@ def draw(runs, decades, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", nargs="?", help="build/benchmarks/scaling")
+    parser.add_argument("program", nargs="?", help="build/bin/scaling")
     parser.add_argument("--cubes", type=int, nargs="+", default=[9, 21, 45, 99, 215], help="across the grids")
     parser.add_argument("--mesh", help="measure this file instead of grids")
     parser.add_argument("--methods", nargs="+", help="these alone")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Draws the roofline of implicit time steps from what `benchmarks/implicit --json` measured.
+"""Draws the roofline of implicit time steps from what `build/bin/implicit --json` measured.
 
     docs/pictures/draw_roofline.py implicit.json OUT.svg
 
