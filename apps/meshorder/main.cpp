@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
   } catch (const meshorder::command::CommandError& error) {
     return report(error.what(), error.status);
   } catch (const meshorder::Error& error) {
-    return report(error.what(), kBadInput);
+    return report(error.what(), error.code() == meshorder::Code::internal ? kOwnFailure : kBadInput);
   } catch (const std::bad_alloc&) {
     return report("out of memory", kOwnFailure);
   } catch (const std::exception& error) {
