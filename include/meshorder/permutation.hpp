@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
+#include <initializer_list>
 #include <iterator>
 #include <ranges>
 #include <span>
@@ -46,11 +47,17 @@ class MESHORDER_API Permutation {
   /// @note O(n), on all threads.
   static Permutation from_old_to_new(IndexView map);
   static Permutation from_old_to_new(std::vector<Index>&& map);  ///< the same without a copy of the map
+  static Permutation from_old_to_new(std::initializer_list<Index> map) {  ///< the same for a list in braces
+    return from_old_to_new(std::vector<Index>(map));
+  }
 
   /// Makes a permutation of a map from new to old places: `map[k]` is the old place of new k, so that the map
   /// lists the old things in their new order. Throws and costs as `from_old_to_new`.
   static Permutation from_new_to_old(IndexView map);
   static Permutation from_new_to_old(std::vector<Index>&& map);  ///< the same without a copy of the map
+  static Permutation from_new_to_old(std::initializer_list<Index> map) {  ///< the same for a list in braces
+    return from_new_to_old(std::vector<Index>(map));
+  }
 
   /// Returns the number of places n.
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(old_to_new_.size()); }

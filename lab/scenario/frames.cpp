@@ -30,8 +30,7 @@ std::vector<DataArray> own_arrays(const Mesh& mesh, const Reordering& order) {
   std::vector<DataArray> arrays(4);
   arrays[kDisplacement] = {"displacement", Association::vertices, 3, zeros, {}, {}};
   arrays[kVelocity] = {"velocity", Association::vertices, 3, std::move(zeros), {}, {}};
-  arrays[kOriginalVertex] = {
-      "original_vertex", Association::vertices, 1, old_places(order.vertices), {}, {}};
+  arrays[kOriginalVertex] = {"original_vertex", Association::vertices, 1, old_places(order.vertices), {}, {}};
   arrays[kOriginalCell] = {"original_cell", Association::cells, 1, old_places(order.cells), {}, {}};
   return arrays;
 }

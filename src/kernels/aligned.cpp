@@ -5,7 +5,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace meshorder::detail {
+namespace meshorder {
 namespace {
 
 constexpr std::align_val_t kCacheLine{64};
@@ -30,4 +30,4 @@ void free_aligned(void* block, std::size_t bytes) noexcept {
   ::operator delete (block, bytes < kMinPaged ? kCacheLine : std::align_val_t{kPageBytes});
 }
 
-}  // namespace meshorder::detail
+}  // namespace meshorder

@@ -6,14 +6,10 @@
 
 namespace meshorder {
 
-namespace detail {
-
 /// Returns memory for `bytes` bytes; throws std::bad_alloc.
 void* allocate_aligned(std::size_t bytes);
 /// Frees what allocate_aligned returned for the same number of bytes.
 void free_aligned(void* block, std::size_t bytes) noexcept;
-
-}  // namespace detail
 
 /// Allocates at multiples of 64 bytes, so that batches of the kernels never straddle a cache line and every
 /// order of a mesh is measured at the same alignment. Blocks of 1 MiB and more are put on pages of 2 MiB
@@ -28,9 +24,9 @@ struct AlignedAllocator {
   AlignedAllocator(const AlignedAllocator<U>& /*other*/) noexcept {}
 
   [[nodiscard]] T* allocate(std::size_t count) {
-    return static_cast<T*>(detail::allocate_aligned(count * sizeof(T)));
+    return static_cast<T*>(allocate_aligned(count * sizeof(T)));
   }
-  void deallocate(T* block, std::size_t count) noexcept { detail::free_aligned(block, count * sizeof(T)); }
+  void deallocate(T* block, std::size_t count) noexcept { free_aligned(block, count * sizeof(T)); }
 
   bool operator==(const AlignedAllocator&) const = default;
 };

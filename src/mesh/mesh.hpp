@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/index.hpp"
-#include "base/text.hpp"
 #include "base/point.hpp"
+#include "base/text.hpp"
 #include "mesh/cells.hpp"
 
 #include <cstdint>

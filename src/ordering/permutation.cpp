@@ -69,13 +69,13 @@ std::vector<Index> inverted(std::span<const Index> map) {
   return inverse;
 }
 
-/// Copies a map of any integer type. Throws for the first entry outside 0 … n−1.
+/// Copies a map of any integer type. Throws for the first entry that Index cannot hold.
 std::vector<Index> copied(const IndexView& map) {
   check_count(map.size());
   std::vector<Index> result(map.size());
   with_type(map, [&](auto entries) {
     for (std::size_t i = 0; i < entries.size(); ++i) {
-      if (std::cmp_less(entries[i], 0) || std::cmp_greater_equal(entries[i], entries.size())) {
+      if (!std::in_range<Index>(entries[i])) {
         fail_range(static_cast<Offset>(i), std::to_string(entries[i]), static_cast<Offset>(entries.size()));
       }
       result[i] = static_cast<Index>(entries[i]);

@@ -41,7 +41,7 @@ TEST(Aggregation, PutsEveryVertexIntoAConnectedAggregate) {
   for (const CsrGraph& graph :
        {test::path(100), test::grid(17, 12), test::grid(7, 6, 5), test::star(50), test::complete(20),
         test::random_connected(500, 300, 1), test::preferential_attachment(500, 2, 2), test::hypercube(7)}) {
-    const Aggregation aggregation = aggregated(combinatorial_laplacian(graph));
+    const Aggregation aggregation = aggregated(test::combinatorial_laplacian(graph));
     ASSERT_EQ(index_size(aggregation.aggregate_of), graph.size());
     std::vector<std::vector<Index>> members(aggregation.count());
     for (Index v = 0; v < graph.size(); ++v) {
@@ -59,10 +59,10 @@ TEST(Aggregation, PutsEveryVertexIntoAConnectedAggregate) {
 
 TEST(Aggregation, FoundsWithWholeFreeNeighbourhoodsInOrder) {
   // 0 takes 1; 2 has 1, which is taken; 3 takes 2 and 4; 6 takes 5 and 7
-  EXPECT_EQ(aggregated(combinatorial_laplacian(test::path(8))).aggregate_of,
+  EXPECT_EQ(aggregated(test::combinatorial_laplacian(test::path(8))).aggregate_of,
             (std::vector<Index>{0, 0, 1, 1, 1, 2, 2, 2}));
   // 5 is left over and joins its only neighbour
-  EXPECT_EQ(aggregated(combinatorial_laplacian(test::path(6))).aggregate_of,
+  EXPECT_EQ(aggregated(test::combinatorial_laplacian(test::path(6))).aggregate_of,
             (std::vector<Index>{0, 0, 1, 1, 1, 1}));
 }
 
@@ -76,7 +76,7 @@ TEST(Aggregation, DoesNotReachAcrossWeakEdges) {
 }
 
 TEST(Aggregation, KeepsToTheChunksOfRows) {
-  const Laplacian laplacian = combinatorial_laplacian(test::grid(300, 100));
+  const Laplacian laplacian = test::combinatorial_laplacian(test::grid(300, 100));
   const RowChunks chunks(laplacian);
   ASSERT_GT(chunks.count(), 1);
   const Aggregation aggregation = aggregate(laplacian, chunks, kStrength);
@@ -94,15 +94,15 @@ TEST(Aggregation, KeepsToTheChunksOfRows) {
 
 TEST(Aggregation, CountsWhoIsAloneInItsChunk) {
   // the hub is in the first chunk, most leaves are not
-  const Laplacian laplacian = combinatorial_laplacian(test::star(20000));
+  const Laplacian laplacian = test::combinatorial_laplacian(test::star(20000));
   const RowChunks chunks(laplacian);
   ASSERT_GT(chunks.count(), 1);
   EXPECT_EQ(aggregate(laplacian, chunks, kStrength).alone, 20000 - chunks.size());
 }
 
 TEST(Aggregation, OfOneVertexIsOne) {
-  EXPECT_EQ(aggregated(combinatorial_laplacian(test::path(1))).count(), 1);
-  EXPECT_EQ(aggregated(combinatorial_laplacian(test::path(0))).count(), 0);
+  EXPECT_EQ(aggregated(test::combinatorial_laplacian(test::path(1))).count(), 1);
+  EXPECT_EQ(aggregated(test::combinatorial_laplacian(test::path(0))).count(), 0);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,13 +31,13 @@ OrderOptions options_for(Workload use) {
 
 bool is_known(const std::string& name) {
   const auto methods = vertex_methods();
-  return std::any_of(methods.begin(), methods.end(), [&](const VertexMethod& m) { return m.name == name; });
+  return std::any_of(methods.begin(), methods.end(), [&](const MethodInfo& m) { return m.name == name; });
 }
 
 TEST(Auto, GivesTheOrderOfTheMethodThatItSaysItTook) {
   const Lattice lattice;
   for (const Workload use : kWorkloads) {
-    SCOPED_TRACE(name(use));
+    SCOPED_TRACE(to_string(use));
     for (const std::span<const Point> points :
          {std::span<const Point>(lattice.points), std::span<const Point>()}) {
       const VertexInput problem{lattice.graph, points};
@@ -57,7 +58,7 @@ TEST(Auto, OrdersElementsByLexmax) {
   const Order order = order_incidence("auto", problem);
   EXPECT_EQ(order.method.name, "lexmax");
   EXPECT_FALSE(order.method.reason.empty());
-  EXPECT_EQ(order.permutation.new_to_old(), (std::vector<Index>{1, 2, 0}));
+  EXPECT_THAT(order.permutation.new_to_old(), testing::ElementsAre(1, 2, 0));
 }
 
 TEST(Auto, TakesNoGeometricMethodWhereCoordinatesTellNothing) {
@@ -92,13 +93,13 @@ TEST(Auto, MethodsAskedForByNameGiveNoReason) {
 }
 
 TEST(Workload, HasANameThatFindsIt) {
-  for (const Workload use : kWorkloads) EXPECT_EQ(parse_workload(name(use)), use);
+  for (const Workload use : kWorkloads) EXPECT_EQ(parse_workload(to_string(use)), use);
   try {
     parse_workload("everything");
     FAIL();
   } catch (const InvalidArgument& error) {
     for (const Workload use : kWorkloads) {
-      EXPECT_NE(std::string(error.what()).find(name(use)), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find(to_string(use)), std::string::npos) << error.what();
     }
   }
 }

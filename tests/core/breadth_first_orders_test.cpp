@@ -42,7 +42,7 @@ TEST(BreadthFirstOrders, RcmHasASmallerProfileThanItsReverse) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const CsrGraph graph = test::random_connected(300, 200, seed);
     const Permutation rcm = order_of(graph, "rcm");
-    std::vector<Index> sequence = rcm.new_to_old();
+    std::vector<Index> sequence(rcm.new_to_old().begin(), rcm.new_to_old().end());
     std::reverse(sequence.begin(), sequence.end());
     EXPECT_LT(profile(graph, rcm), profile(graph, Permutation::from_new_to_old(sequence)));
   }

@@ -69,7 +69,7 @@ TEST(DualGraphByVertex, JoinsExactlyTheElementsThatShareAVertex) {
 }
 
 TEST(Renumbered, KeepsEveryEdge) {
-  const CsrGraph graph = vertex_graph(random_elements(30, 30, 3, 3));
+  const CsrGraph graph = joined_vertices(random_elements(30, 30, 3, 3));
   std::vector<Index> reversed(30);
   for (Index v = 0; v < 30; ++v) reversed[v] = 29 - v;
   const CsrGraph renamed = renumbered(graph, reversed);

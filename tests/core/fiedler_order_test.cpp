@@ -3,6 +3,7 @@
 #include "mesh/procedural.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"
+#include "spectral/fiedler.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 
@@ -52,7 +53,7 @@ TEST(FiedlerOrder, KeepsEachComponentTogetherLargestFirstIsolatedLast) {
                                    3);
   const Order order = order_graph("fiedler", {graph, {}});
   const FiedlerVectors result = fiedler_vectors(graph);
-  const std::vector<Index>& sequence = order.permutation.new_to_old();
+  const std::span<const Index> sequence = order.permutation.new_to_old();
   std::size_t place = 0;
   ASSERT_EQ(order.fiedler.size(), 6U);
   for (std::size_t c = 0; c < 6; ++c) {
@@ -84,11 +85,12 @@ TEST(FiedlerOrder, OfElementsFollowsTheirDualGraphs) {
   // in a bar of cubes both dual graphs are long and thin
   const Index n = 40;
   const Mesh bar = test::tetrahedral_bar(n);
-  const CellIncidence top = elements(bar);
+  const CellArrays cells = cell_arrays(bar);
+  const CellSelection top = CellSelection::elements(cells);
   const Permutation vertices = test::shuffled(bar.vertex_count(), 1);
   for (const char* method : {"fiedler", "fiedler-facet"}) {
     const Order order =
-        order_incidence(method, {top.incidence, vertices, {}, [&] { return facet_graph(bar); }});
+        order_incidence(method, {top.incidence(), vertices, {}, [&] { return facet_graph(bar); }});
     ASSERT_EQ(order.fiedler.size(), 1U);
     EXPECT_TRUE(order.fiedler[0].converged);
     const auto& sequence = order.permutation.new_to_old();

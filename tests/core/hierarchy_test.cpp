@@ -31,7 +31,7 @@ std::vector<NamedGraph> small_graphs() {
           {"expander", test::random_regular(n, 6, 4)}};
 }
 
-Hierarchy hierarchy_of(const CsrGraph& graph) { return Hierarchy(combinatorial_laplacian(graph)); }
+Hierarchy hierarchy_of(const CsrGraph& graph) { return Hierarchy(test::combinatorial_laplacian(graph)); }
 
 /// P from level `level` + 1 to `level`, column by column.
 Eigen::MatrixXd dense_prolongation(const Hierarchy& hierarchy, int level) {

@@ -29,7 +29,7 @@ std::vector<Point> random_points(Index n) {
 
 void expect_bijection(const Permutation& order, Index n) {
   ASSERT_EQ(order.size(), n);
-  std::vector<Index> sorted = order.new_to_old();
+  std::vector<Index> sorted(order.new_to_old().begin(), order.new_to_old().end());
   std::sort(sorted.begin(), sorted.end());
   std::vector<Index> all(n);
   std::iota(all.begin(), all.end(), Index{0});

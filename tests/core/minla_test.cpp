@@ -4,6 +4,7 @@
 #include "mesh/procedural.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"
+#include "spectral/fiedler.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 

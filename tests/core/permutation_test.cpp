@@ -4,6 +4,7 @@
 #include <meshorder/error.hpp>
 #include <meshorder/permutation.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,7 +14,7 @@ namespace {
 
 TEST(Permutation, HoldsBothDirections) {
   const auto p = Permutation::from_old_to_new({2, 0, 1});
-  EXPECT_EQ(p.new_to_old(), (std::vector<Index>{1, 2, 0}));
+  EXPECT_THAT(p.new_to_old(), testing::ElementsAre(1, 2, 0));
   EXPECT_EQ(Permutation::from_new_to_old({1, 2, 0}), p);
 }
 
@@ -48,10 +49,10 @@ TEST(Permutation, OfManyPlacesHoldsBothDirectionsAndMovesRows) {
     rows[2 * i] = i;
     rows[2 * i + 1] = -i;
   }
-  const std::vector<Index> moved = moved(p, rows, 2);
+  const std::vector<Index> result = moved(p, rows, 2);
   for (Index i = 0; i < kMany; ++i) {
-    ASSERT_EQ(moved[2 * p.old_to_new()[i]], i);
-    ASSERT_EQ(moved[2 * p.old_to_new()[i] + 1], -i);
+    ASSERT_EQ(result[2 * p.old_to_new()[i]], i);
+    ASSERT_EQ(result[2 * p.old_to_new()[i] + 1], -i);
   }
 }
 

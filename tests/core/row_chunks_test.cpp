@@ -10,7 +10,7 @@
 namespace meshorder {
 namespace {
 
-RowChunks chunks_of(const CsrGraph& graph) { return RowChunks(combinatorial_laplacian(graph)); }
+RowChunks chunks_of(const CsrGraph& graph) { return RowChunks(test::combinatorial_laplacian(graph)); }
 
 TEST(RowChunks, NoEdgeJoinsTwoChunksOfAColour) {
   for (const CsrGraph& graph : {test::path(100000), test::grid(500, 100), test::star(50000)}) {

@@ -112,12 +112,11 @@ TEST(Elements, AreTheCellsOfTheHighestDimensionAndLowerCellsTheRest) {
   EXPECT_EQ(index_size(all), mesh.cell_count());
   EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
   for (const auto& [part, is_top] : {std::pair(&top, true), std::pair(&lower, false)}) {
-    EXPECT_TRUE(std::is_sorted(part->cells.begin(), part->cells.end()));
-    ASSERT_EQ(part->incidence.size(), index_size(part->cells));
-    for (Index e = 0; e < part->incidence.size(); ++e) {
-      const Index c = part->cells[e];
+    for (Index e = 0; e < part->size(); ++e) {
+      const Index c = part->cell(e);
+      EXPECT_TRUE(e == 0 || part->cell(e - 1) < c);
       EXPECT_EQ(dimension(mesh.cells.shapes[c]) == 3, is_top);
-      EXPECT_TRUE(std::equal(part->incidence[e].begin(), part->incidence[e].end(), mesh.cells[c].begin(),
+      EXPECT_TRUE(std::equal(part->incidence()[e].begin(), part->incidence()[e].end(), mesh.cells[c].begin(),
                              mesh.cells[c].end()));
     }
   }

@@ -7,6 +7,7 @@
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +39,7 @@ void expect_everything_moves(const Mesh& before) {
     EXPECT_EQ(temperature(after, Association::cells)[d], temperature(before, Association::cells)[c]);
   }
   for (std::size_t s = 0; s < before.sets.size(); ++s) {
-    const auto& map = (before.sets[s].association == Association::vertices ? vertices : cells).old_to_new();
+    const auto map = (before.sets[s].association == Association::vertices ? vertices : cells).old_to_new();
     EXPECT_EQ(after.sets[s].members[0], map[before.sets[s].members[0]]);
   }
 }
@@ -94,7 +95,7 @@ TEST(PermutationWithinBlocks, KeepsTheGivenOrderInEachBlock) {
   Mesh mesh = test::tetrahedral_bar(1);
   mesh.cell_blocks = {0, 2};
   const auto p = permutation_within_classes(slot_classes(cell_arrays(mesh)), {5, 4, 3, 2, 1, 0});
-  EXPECT_EQ(p.new_to_old(), (std::vector<Index>{1, 0, 5, 4, 3, 2}));
+  EXPECT_THAT(p.new_to_old(), testing::ElementsAre(1, 0, 5, 4, 3, 2));
 }
 
 TEST(GroupCellsByType, PutsTypesTogetherHighestDimensionFirst) {

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/search/contact_finder.hpp"
 
+#include "kernels/positions.hpp"
 #include "lab/contact/search/tetrahedron_search.hpp"
 #include "mesh/procedural.hpp"
 #include "simulators/surfaces.hpp"

@@ -2,6 +2,7 @@
 #include "elastic_system.hpp"
 #include "kernels/spmv.hpp"
 #include "lab/linear/cg/solve.hpp"
+#include "lab/linear/preconditioners/preconditioner.hpp"
 #include "mesh/procedural.hpp"
 
 #include <gtest/gtest.h>
