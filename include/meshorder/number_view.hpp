@@ -103,8 +103,9 @@ class IndexSpan {
 
   /// A view of a container's or a span's integers.
   template <class R>
-  requires(detail::IndexRange<R>&& detail::Writable<R>) IndexSpan(R&& numbers)
-  noexcept  // NOLINT(google-explicit-constructor)
+  requires(detail::IndexRange<R>&& detail::Writable<R>)
+      IndexSpan(R&& numbers)  // NOLINT(bugprone-forwarding-reference-overload)
+  noexcept                    // NOLINT(google-explicit-constructor)
       : IndexSpan(detail::first_number(numbers), detail::number_count(numbers)) {}
 
   [[nodiscard]] constexpr std::size_t size() const noexcept { return size_; }

@@ -149,9 +149,9 @@ class MESHORDER_API Graph {
     return neighbours_;
   }
   [[nodiscard]] std::span<const double> weights() const& noexcept MESHORDER_LIFETIMEBOUND { return weights_; }
-  std::span<const Offset> offsets() const&& = delete;
-  std::span<const Index> neighbours() const&& = delete;
-  std::span<const double> weights() const&& = delete;
+  [[nodiscard]] std::span<const Offset> offsets() const&& = delete;
+  [[nodiscard]] std::span<const Index> neighbours() const&& = delete;
+  [[nodiscard]] std::span<const double> weights() const&& = delete;
 
   bool operator==(const Graph&) const = default;
 

@@ -223,7 +223,7 @@ class CellsView {
   [[nodiscard]] std::span<const CellBlock> block_list() const& noexcept MESHORDER_LIFETIMEBOUND {
     return blocks_;
   }
-  std::span<const CellBlock> block_list() const&& = delete;
+  [[nodiscard]] std::span<const CellBlock> block_list() const&& = delete;
   [[nodiscard]] IndexView offsets() const noexcept { return offsets_; }
   [[nodiscard]] IndexView vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::span<const std::uint8_t> vtk_types() const noexcept { return vtk_types_; }

@@ -20,7 +20,9 @@ class RunScope {
   explicit RunScope(const Run& run);
   ~RunScope();
   RunScope(const RunScope&) = delete;
+  RunScope(RunScope&&) = delete;
   RunScope& operator=(const RunScope&) = delete;
+  RunScope& operator=(RunScope&&) = delete;
 
  private:
   friend void report(std::string_view stage, double fraction);

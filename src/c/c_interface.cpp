@@ -31,6 +31,7 @@
 namespace meshorder {
 namespace {
 
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the error of each thread
 thread_local std::string last_error;
 
 /// A larger `struct_size` is taken for a field that the caller forgot to set.
@@ -88,9 +89,13 @@ PointsView points_of(const mo_in* array, int dimension) {
   if (!is_real(array->type)) fail_type("points", array->type, kReals);
   const auto numbers = static_cast<std::size_t>(array->size);
   if (array->type == MO_FLOAT) {
-    return {std::span(static_cast<const float*>(array->data), numbers), dimension};
+    const std::span coordinates(static_cast<const float*>(array->data), numbers);
+    return PointsView(coordinates,
+                      dimension);  // NOLINT(clang-diagnostic-return-stack-address): of the caller's array
   }
-  return {std::span(static_cast<const double*>(array->data), numbers), dimension};
+  const std::span coordinates(static_cast<const double*>(array->data), numbers);
+  return PointsView(coordinates,
+                    dimension);  // NOLINT(clang-diagnostic-return-stack-address): of the caller's array
 }
 
 /// Returns offsets, of which there is at least the first.
@@ -330,7 +335,9 @@ Permutation permutation_of(const IndexView& new_to_old, int base) {
 
 /// Returns a copy of a name that lives as long as the process.
 const char* kept(std::string name) {
+  // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): never destroyed
   static auto* const mutex = new std::mutex;
+  // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): never destroyed
   static auto* const names = new std::set<std::string>;
   const std::lock_guard lock(*mutex);
   return names->insert(std::move(name)).first->c_str();

@@ -46,7 +46,7 @@ struct CellArrays {
 /// @throws InvalidArgument for the first fault, with the cell that has it
 /// @throws TooLarge for more than 2,147,483,647 vertices or cells
 /// @note O(entries), on all threads of the arena.
-CellArrays cell_arrays(const CellsView& cells, std::size_t vertex_count, Check check);
+CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check check);
 
 /// Some cells, and the vertices that each joins.
 class CellSelection {

@@ -159,12 +159,14 @@ Order order_incidence(std::string_view method, const ElementInput& input, const 
 
 std::vector<MethodInfo> built_in_vertex_methods() {
   std::vector<MethodInfo> result;
+  result.reserve(kVertexMethods.size());
   for (const auto& method : kVertexMethods) result.push_back(info_of(method));
   return result;
 }
 
 std::vector<MethodInfo> built_in_element_methods() {
   std::vector<MethodInfo> result;
+  result.reserve(kElementMethods.size());
   for (const auto& method : kElementMethods) result.push_back(info_of(method));
   return result;
 }

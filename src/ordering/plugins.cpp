@@ -17,8 +17,10 @@ namespace meshorder {
 #if defined(__unix__) || defined(__APPLE__)
 namespace {
 
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): a plug-in's function has no other context
 thread_local std::string source_of_methods;
 thread_local std::string fault_of_method;  // the last sentence about a method that could not be registered
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 /// Registers a method of a plug-in for the rest of the program.
 mo_status register_method(const char* name, const char* description, int32_t needs_points, mo_method method,

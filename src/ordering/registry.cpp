@@ -44,6 +44,7 @@ struct Registry {
 
 /// Never destroyed: registrations of other static objects may outlive any order of destruction.
 Registry& registry() {
+  // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): all threads share it
   static auto* const registry = new Registry;
   return *registry;
 }
