@@ -87,15 +87,13 @@ RealView reals(const mo_in* array, const char* name) {
 PointsView points_of(const mo_in* array, int dimension) {
   if (!is_given(array, "points")) return {};
   if (!is_real(array->type)) fail_type("points", array->type, kReals);
-  const auto numbers = static_cast<std::size_t>(array->size);
-  if (array->type == MO_FLOAT) {
-    const std::span coordinates(static_cast<const float*>(array->data), numbers);
-    return PointsView(coordinates,
-                      dimension);  // NOLINT(clang-diagnostic-return-stack-address): of the caller's array
+  if (dimension < 1 || dimension > 3 || array->size % dimension != 0) {
+    throw InvalidArgument("points: " + std::to_string(array->size) + " numbers do not make points of " +
+                          std::to_string(dimension) + " coordinates, which must be 1, 2 or 3");
   }
-  const std::span coordinates(static_cast<const double*>(array->data), numbers);
-  return PointsView(coordinates,
-                    dimension);  // NOLINT(clang-diagnostic-return-stack-address): of the caller's array
+  const std::int64_t count = array->size / dimension;
+  if (array->type == MO_FLOAT) return {static_cast<const float*>(array->data), count, dimension};
+  return {static_cast<const double*>(array->data), count, dimension};
 }
 
 /// Returns offsets, of which there is at least the first.
