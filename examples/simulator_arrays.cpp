@@ -42,9 +42,10 @@ Body sample(int side) {
   Body body;
   body.x.resize(static_cast<std::size_t>(n));
   for (int point = 0; point < n; ++point) {
+    const auto layer = point / (nx * nx);
+    const auto row = point / nx % nx;
     body.x[static_cast<std::size_t>(number(point))] = {static_cast<double>(point % nx),
-                                                       static_cast<double>(point / nx % nx),
-                                                       static_cast<double>(point / (nx * nx))};
+                                                       static_cast<double>(row), static_cast<double>(layer)};
   }
   body.v = body.x;
   for (const auto& x : body.x) body.mass.push_back(1 + x[2]);
