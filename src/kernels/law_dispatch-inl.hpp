@@ -9,6 +9,7 @@
 #include "kernels/projected-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
+// NOLINTBEGIN(misc-definitions-in-headers): each source that includes this is one law's own
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
@@ -85,3 +86,4 @@ ElasticKernels MESHORDER_LAW_KERNELS() {
 
 }  // namespace meshorder
 #endif
+// NOLINTEND(misc-definitions-in-headers)

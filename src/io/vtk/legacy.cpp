@@ -178,7 +178,7 @@ class Writer {
   // ---- arrays
 
   /// Returns the number type of an array: that of its file if it can hold the values.
-  std::string type_of(const DataArray& array, std::optional<Association> association) const {
+  [[nodiscard]] std::string type_of(const DataArray& array, std::optional<Association> association) const {
     const ArrayFacts* facts = find_facts(from_.metadata, association, array.name);
     std::string usual(kLegacyTypeNames[array.values.index()]);
     if (facts == nullptr || facts->type.empty()) return usual;

@@ -158,9 +158,9 @@ void add_array(Mesh& mesh, DataArray array) {
   mesh.data.push_back(std::move(array));
 }
 
-WriteContext::WriteContext(const Mesh& mesh_, const std::filesystem::path& path, Notes& notes_)
-    : mesh(mesh_),
-      notes(notes_),
+WriteContext::WriteContext(const Mesh& written, const std::filesystem::path& path, Notes& warnings)
+    : mesh(written),
+      notes(warnings),
       metadata(metadata_of(mesh, notes)),
       types(cell_types(mesh, path.string(), is_from_vtk(mesh))) {
   collect_arrays();

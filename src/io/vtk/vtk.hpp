@@ -207,7 +207,7 @@ Mesh read_vtu(const std::filesystem::path& path, Notes& notes);
 /// arrays "vertex_id" and "cell_id"; all of it noted. O(size of the arrays that are made).
 struct WriteContext {
   /// Throws Error for cells that VTK's formats do not have.
-  WriteContext(const Mesh& mesh, const std::filesystem::path& path, Notes& notes);
+  WriteContext(const Mesh& written, const std::filesystem::path& path, Notes& warnings);
 
   /// Returns the cells in VTK's order of vertices; of VTK before version 9 if `old_hexahedra`. The result
   /// belongs to the mesh or to this object.
