@@ -78,7 +78,7 @@ int main() {
   const bool found = order_in_window(graph, patient, untouched);
 
   Bar interrupted;
-  Button pressed_soon{2};
+  Button pressed_soon{1};
   const bool stopped = !order_in_window(graph, interrupted, pressed_soon);
   return found && patient.shown > 0 && stopped && interrupted.cleared ? 0 : 1;
 }

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/parallel.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/number_view.hpp>
 #include <meshorder/options.hpp>
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -31,8 +31,8 @@ void for_each_range(Offset n, Offset size, const Work& work) {
     if (n > 0) work(Offset{0}, n);
     return;
   }
-  tbb::parallel_for(Offset{0}, (n + size - 1) / size,
-                    [&](Offset range) { work(range * size, std::min(n, (range + 1) * size)); });
+  parallel_loop((n + size - 1) / size,
+                [&](Offset range) { work(range * size, std::min(n, (range + 1) * size)); });
 }
 
 }  // namespace meshorder

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "base/index.hpp"
+#include "base/run_scope.hpp"
+#include <meshorder/error.hpp>
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -21,6 +23,25 @@ inline Index thread_count() {
 /// How many chunks of `size` make up 0 … n−1, the last one perhaps shorter.
 constexpr Index chunk_count(Index n, Index size) { return static_cast<Index>((Offset{n} + size - 1) / size); }
 
+/// Calls `work(i)` for 0 … n−1, on all threads. Each turn on the calling thread polls.
+///
+/// A loop within a turn of another loop is cancelled with it, and TBB then returns from the inner one as if
+/// it were done: here it throws, so that nothing goes on with what was left out.
+///
+/// @throws what `work` and `poll` throw; Stopped within a loop that another thread has cancelled
+template <class Number, class Work, class... Partitioner>
+void parallel_loop(Number n, const Work& work, const Partitioner&... partitioner) {
+  tbb::task_group_context context;
+  tbb::parallel_for(
+      Number{0}, n,
+      [&](Number i) {
+        poll();
+        work(i);
+      },
+      partitioner..., context);
+  if (context.is_group_execution_cancelled()) throw Stopped();
+}
+
 /// Calls `work(chunk, begin, end)` for the chunks of `size` that make up 0 … n−1, on all threads. The chunks
 /// do not depend on the number of threads, so neither does what is computed chunk by chunk.
 template <class Work>
@@ -30,7 +51,7 @@ void for_each_chunk(Index n, Index size, Work work) {
     if (n > 0) work(Index{0}, Index{0}, n);
     return;
   }
-  tbb::parallel_for(Index{0}, chunks, [&](Index chunk) {
+  parallel_loop(chunks, [&](Index chunk) {
     const Index begin = chunk * size;
     work(chunk, begin, static_cast<Index>(std::min(Offset{begin} + size, Offset{n})));
   });
@@ -51,7 +72,7 @@ Sum sum_over_chunks(Index n, Index size, Part part) {
 /// possible the same as the last time, whose caches still hold what the part works on.
 template <class Work>
 void for_each_part(Index parts, Work work) {
-  tbb::parallel_for(Index{0}, parts, work, tbb::static_partitioner());
+  parallel_loop(parts, work, tbb::static_partitioner());
 }
 
 }  // namespace meshorder

@@ -10,12 +10,9 @@ namespace meshorder {
 namespace {
 
 constexpr auto kBetweenReports = std::chrono::milliseconds(50);
-constexpr unsigned kPollsBetweenLooks = 16;
 
-// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): the state of each thread
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the state of each thread
 thread_local RunScope* innermost = nullptr;
-thread_local unsigned polls = 0;
-// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 bool asks_for_nothing(const Run& run) { return !run.progress && std::isinf(run.time_limit); }
 
@@ -46,7 +43,7 @@ void report(std::string_view stage, double fraction) {
 }
 
 void poll() {
-  if (innermost != nullptr && ++polls % kPollsBetweenLooks == 0) innermost->tell();
+  if (innermost != nullptr) innermost->tell();
 }
 
 TimeLimit::TimeLimit() {

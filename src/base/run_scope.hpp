@@ -11,10 +11,10 @@ namespace meshorder {
 /// The call into the library that the current thread is in: reports its progress and ends it when the caller
 /// wants that.
 ///
-/// The scope belongs to the thread that made the call. `poll` does nothing on other threads, so a parallel
-/// loop may call it from every chunk: the calling thread works on chunks too, and an exception there cancels
-/// the loop on all threads. A call within a call (a user's own method) with a run that asks for nothing
-/// belongs to the outer one.
+/// The scope belongs to the thread that made the call. `poll` does nothing on other threads, so the loops of
+/// base/parallel.hpp call it from every chunk: the calling thread works on chunks too, and an exception there
+/// cancels the loop on all threads. A call within a call (a user's own method) with a run that asks for
+/// nothing belongs to the outer one.
 class RunScope {
  public:
   explicit RunScope(const Run& run);
@@ -45,11 +45,17 @@ class RunScope {
 /// @throws Stopped if the progress function returns false, and what it throws itself
 void report(std::string_view stage, double fraction = -1);
 
-/// Calls the user's progress function if 50 ms have passed since it was last called. Costs a few nanoseconds,
-/// every sixteenth time a look at the clock: to be called at least every millisecond or so of work.
+/// Calls the user's progress function if 50 ms have passed since it was last called. Costs a nanosecond where
+/// there is none to call, otherwise a look at the clock: to be called every 10 µs … 10 ms of work.
 ///
 /// @throws as `report`
 void poll();
+
+/// As `poll`, in every 1024th turn of a loop of short turns.
+template <class Turn>
+void poll_in_loop(Turn turn) {
+  if (turn % 1024 == 0) poll();
+}
 
 /// The moment at which the time limit of the calling thread's call ends. Copies may be asked on any thread.
 class TimeLimit {

@@ -33,7 +33,7 @@ std::vector<ElementFacet> matched_facets(const std::vector<ElementFacet>& facets
   std::vector<ElementFacet> result(facets.size());
   for (const ElementFacet& facet : facets) result[next[facet.corners[0]]++] = facet;
   for (Index v = 0; v < vertex_count; ++v) {
-    poll();
+    poll_in_loop(v);
     std::sort(result.begin() + starts[v], result.begin() + starts[v + 1],
               [](const ElementFacet& a, const ElementFacet& b) {
                 return a.corners != b.corners ? a.corners < b.corners : a.element < b.element;
@@ -50,7 +50,7 @@ std::vector<ElementFacet> matched_facets(const CellArrays& cells, const CellSele
   FacetsOfTypes facets_of;
   const IncidenceRef vertices = elements.incidence();
   for (Index e = 0; e < elements.size(); ++e) {
-    poll();
+    poll_in_loop(e);
     const auto cell = vertices[e];
     for (const std::vector<int>& positions :
          facets_of(cells.shapes[elements.cell(e)], static_cast<int>(cell.size()))) {

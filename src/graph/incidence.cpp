@@ -21,6 +21,7 @@ Incidence transposed(IncidenceRef incidence) {
   result.vertices.resize(incidence.vertices.size());
   std::vector<Offset> next(result.offsets.begin(), result.offsets.end() - 1);
   for (Index e = 0; e < incidence.size(); ++e) {
+    poll_in_loop(e);
     for (const Index v : incidence[e]) result.vertices[next[v]++] = e;
   }
   return result;
@@ -131,6 +132,7 @@ CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::span<const Rows> chu
   std::vector<Offset> next(offsets.begin(), offsets.end() - 1);
   graph.offsets = std::move(offsets);
   for (Index v = 0, chunk = 0; v < graph.size(); ++chunk) {
+    poll();
     const Rows& rows = chunks[chunk];
     Offset k = 0;
     for (const Index chunk_end = std::min(graph.size() - v, kChunk) + v; v < chunk_end; ++v) {

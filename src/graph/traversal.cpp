@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/traversal.hpp"
 
+#include "base/run_scope.hpp"
+
 #include <algorithm>
 
 namespace meshorder {
@@ -13,6 +15,7 @@ std::vector<std::vector<Index>> connected_components(GraphRef graph) {
     std::vector<Index> component{start};
     reached[start] = true;
     for (std::size_t k = 0; k < component.size(); ++k) {
+      poll_in_loop(k);
       for (const Index u : graph[component[k]]) {
         if (reached[u]) continue;
         reached[u] = true;
@@ -36,6 +39,7 @@ BreadthFirst breadth_first(GraphRef graph, Index start, std::vector<Index>& mark
     search.level_start.push_back(level_begin);
     const Index level_end = index_size(search.order);
     for (Index k = level_begin; k < level_end; ++k) {
+      poll_in_loop(k);
       for (const Index u : graph[search.order[k]]) {
         if (marks[u] == mark) continue;
         marks[u] = mark;

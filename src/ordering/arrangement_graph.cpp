@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "ordering/arrangement_graph.hpp"
 
+#include "base/run_scope.hpp"
+
 #include <cstdlib>
 
 namespace meshorder {
@@ -15,6 +17,7 @@ Index group(const ArrangementGraph& graph, const std::vector<Index>& order, std:
   group_of.assign(graph.size(), kNone);
   std::vector<Index> members;  // of each group
   for (const Index v : order) {
+    poll_in_loop(v);
     if (group_of[v] != kNone) continue;
     double strongest = 0;
     Index partner = kNone;
@@ -56,6 +59,7 @@ Offset total_span(const ArrangementGraph& graph, const std::vector<Index>& order
   const std::vector<Offset> middle = middles(graph, order);
   Offset sum = 0;
   for (Index v = 0; v < graph.size(); ++v) {
+    poll_in_loop(v);
     for (Offset k = graph.offsets[v]; k < graph.offsets[v + 1]; ++k) {
       sum += graph.weight(k) * std::abs(middle[v] - middle[graph.neighbours[k]]);
     }
@@ -82,6 +86,7 @@ CoarseArrangement coarsen(const ArrangementGraph& graph, const std::vector<Index
   coarse.offsets.reserve(Offset{count} + 1);
   std::vector<Offset> entry_of(count, -1);  // in the row at hand, or before it
   for (Index g = 0; g < count; ++g) {
+    poll_in_loop(g);
     const Offset row = coarse.offsets.back();
     for (Index m = first[g]; m < first[g + 1]; ++m) {
       const Index v = members[m];

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // The orders that others are measured against: the file's, and a random one.
 #include "base/random.hpp"
+#include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"
 
 #include <numeric>
@@ -15,6 +16,7 @@ Permutation shuffled(Index n, std::uint64_t seed) {
   std::iota(order.begin(), order.end(), Index{0});
   Random random(seed);
   for (Index i = n - 1; i > 0; --i) {
+    poll_in_loop(i);
     std::swap(order[i], order[random.below(static_cast<std::uint64_t>(i) + 1)]);
   }
   return Permutation::from_new_to_old(std::move(order));

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Elements sorted by one number that the ranks of their vertices give.
+#include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/sorted.hpp"
 
@@ -18,6 +19,7 @@ Order elements_by_ranks(const ElementInput& input, Key key) {
   keys.reserve(input.elements.size());
   std::vector<Index> ranks;
   for (Index e = 0; e < input.elements.size(); ++e) {
+    poll_in_loop(e);
     ranks.clear();
     for (const Index v : input.elements[e]) ranks.push_back(input.vertices.old_to_new()[v]);
     keys.push_back(key(std::span<const Index>(ranks)));

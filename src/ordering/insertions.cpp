@@ -2,6 +2,7 @@
 #include "ordering/insertions.hpp"
 
 #include "base/parallel.hpp"
+#include "base/run_scope.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -33,6 +34,7 @@ class InsertionSearch {
         chunk_of_(graph.size()) {
     for (Index k = 0; k < graph.size(); ++k) place_[order[k]] = k;
     for (Index k = 0; k < graph.size(); ++k) {
+      poll_in_loop(k);
       const Index v = order[k];
       volume_at_[k] = graph.volumes[v];
       for (Offset e = graph.offsets[v]; e < graph.offsets[v + 1]; ++e) {

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Orders by levels of a breadth-first search from a vertex at the rim. Cuthill, McKee: Reducing the Bandwidth
 // of Sparse Symmetric Matrices (1969); reversed after George (1971).
+#include "base/run_scope.hpp"
 #include "graph/traversal.hpp"
 #include "ordering/all_methods.hpp"
 
@@ -33,6 +34,7 @@ Order rcm_vertices(const VertexInput& input, const OrderOptions&) {
     new_to_old.push_back(start);
     placed[start] = true;
     for (auto k = begin; k < new_to_old.size(); ++k) {
+      poll_in_loop(k);
       const auto found = static_cast<std::ptrdiff_t>(new_to_old.size());
       for (const Index u : graph[new_to_old[k]]) {
         if (placed[u]) continue;

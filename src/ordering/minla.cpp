@@ -26,6 +26,7 @@ ArrangementGraph local_graph(GraphRef graph, const Permutation& order, Index fir
   local.offsets.reserve(Offset{count} + 1);
   local.volumes.assign(count, 1);
   for (Index k = first; k < first + count; ++k) {
+    poll_in_loop(k);
     for (const Index u : graph[order.new_to_old()[k]]) {
       local.neighbours.push_back(order.old_to_new()[u] - first);
     }
@@ -59,6 +60,7 @@ std::vector<Index> expanded(const std::vector<Index>& coarse_order, const std::v
 void search(const ArrangementGraph& graph, TimeLimit limit, std::vector<Index>& order) {
   Offset least = std::numeric_limits<Offset>::max();
   for (int visit = 0; visit < kVisits; ++visit) {
+    poll();
     std::vector<Index> candidate = order;
     bool twice = false;
     if (graph.size() > kCoarsest) {

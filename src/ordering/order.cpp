@@ -28,7 +28,7 @@ void check_points(const PointsView& points, std::size_t count, Check check) {
                           std::to_string(count) + " vertices");
   }
   for (std::size_t p = 0; p < points.size(); ++p) {
-    if (p % 4096 == 0) poll();
+    poll_in_loop(p);
     for (int axis = 0; axis < points.dimension(); ++axis) {
       if (std::isfinite(points(p, axis))) continue;
       throw InvalidArgument("points: coordinate " + std::to_string(axis) + " of point " + std::to_string(p) +

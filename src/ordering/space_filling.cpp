@@ -5,6 +5,7 @@
 
 #include "base/parallel.hpp"
 #include "base/point.hpp"
+#include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/sorted.hpp"
 #include <meshorder/error.hpp>
@@ -31,6 +32,7 @@ LatticePoints on_lattice(const PointsView& points) {
   Point low = point_at(points, 0);
   Point high = low;
   for (Index i = 0; i < n; ++i) {
+    poll_in_loop(i);
     const Point point = point_at(points, i);
     for (int a = 0; a < 3; ++a) {
       low[a] = std::min(low[a], point[a]);
@@ -51,6 +53,7 @@ LatticePoints on_lattice(const PointsView& points) {
   const double cells = std::ldexp(1.0, lattice.bits) - 1;
   lattice.coordinates.assign(points.size(), {0, 0, 0});
   for (Index i = 0; i < n; ++i) {
+    poll_in_loop(i);
     const Point point = point_at(points, i);
     for (int k = 0; k < lattice.axes; ++k) {
       const double share = (point[used[k]] - low[used[k]]) / extent;
@@ -98,14 +101,18 @@ std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x, int axes, int bits) {
   return interleaved(x, axes, bits);
 }
 
-Permutation along_hilbert_curve(const PointsView& points) {
-  const LatticePoints lattice = on_lattice(points);
-  std::vector<std::uint64_t> keys(points.size());
-  for_each_chunk(index_size(points), kPointsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
-    for (Index i = begin; i < end; ++i)
-      keys[i] = hilbert_key(lattice.coordinates[i], lattice.axes, lattice.bits);
+/// The number of each point along the curve that `key(coordinates, axes, bits)` gives.
+template <class Key>
+std::vector<std::uint64_t> keys_of(const LatticePoints& lattice, Key key) {
+  std::vector<std::uint64_t> keys(lattice.coordinates.size());
+  for_each_chunk(index_size(keys), kPointsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) keys[i] = key(lattice.coordinates[i], lattice.axes, lattice.bits);
   });
-  return sorted_by(keys);
+  return keys;
+}
+
+Permutation along_hilbert_curve(const PointsView& points) {
+  return sorted_by(keys_of(on_lattice(points), hilbert_key));
 }
 
 }  // namespace
@@ -113,10 +120,7 @@ Permutation along_hilbert_curve(const PointsView& points) {
 Order morton_vertices(const VertexInput& input, const OrderOptions&) {
   check_points(input.points, static_cast<std::size_t>(input.graph.size()), "morton");
   const LatticePoints lattice = on_lattice(input.points);
-  std::vector<std::uint64_t> keys;
-  keys.reserve(lattice.coordinates.size());
-  for (const auto& cell : lattice.coordinates) keys.push_back(interleaved(cell, lattice.axes, lattice.bits));
-  return {sorted_by(keys), {}};
+  return {sorted_by(keys_of(lattice, interleaved)), {}};
 }
 
 Order hilbert_vertices(const VertexInput& input, const OrderOptions&) {
@@ -129,6 +133,7 @@ Order hilbert_elements(const ElementInput& input, const OrderOptions&) {
   check_points(input.points, static_cast<std::size_t>(elements.vertex_count), "hilbert");
   std::vector<Point> centroids(elements.size(), Point{});
   for (Index e = 0; e < elements.size(); ++e) {
+    poll_in_loop(e);
     const double share = 1.0 / static_cast<double>(elements[e].size());
     for (const Index v : elements[e]) {
       for (int a = 0; a < 3; ++a) centroids[e][a] += share * input.points(static_cast<std::size_t>(v), a);

@@ -36,6 +36,7 @@ Piece whole_component(GraphRef graph, std::vector<Index> component, std::vector<
   for (Index k = 0; k < index_size(component); ++k) number[component[k]] = k;
   piece.graph.offsets.reserve(component.size() + 1);
   for (const Index v : component) {
+    poll_in_loop(v);
     for (const Index u : graph[v]) piece.graph.neighbours.push_back(number[u]);
     piece.graph.offsets.push_back(static_cast<Offset>(piece.graph.neighbours.size()));
   }
@@ -79,6 +80,7 @@ double mean_front(GraphRef graph, const std::vector<Index>& sequence) {
   for (Index k = 0; k < graph.size(); ++k) place[sequence[k]] = k;
   double sum = 0;
   for (Index v = 0; v < graph.size(); ++v) {
+    poll_in_loop(v);
     Index last = place[v];
     for (const Index u : graph[v]) last = std::max(last, place[u]);
     sum += last - place[v];

@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/component_numbering.hpp"
 
+#include "base/run_scope.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -42,6 +44,7 @@ void number_component(GraphRef graph, Index start, std::vector<Index>& found, Co
   numbering.order[tail++] = start;
   numbering.number[start] = 0;
   for (Index head = component_start; head < tail;) {
+    poll();
     const Index batch_end = std::min(tail, head + kBatch);
     found.clear();
     for (; head < batch_end; ++head) {
