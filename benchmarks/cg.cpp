@@ -102,7 +102,7 @@ std::vector<System> make_systems(const std::string& file, const std::string& ord
       systems.push_back(make_system(name, band.mesh));
       continue;
     }
-    mo::reorder(mesh, {.vertices = name, .elements = "lexmax", .ordering = {}});
+    mo::reorder(mesh, {.methods = {name, "lexmax"}});
     systems.push_back(make_system(name, mesh));
   }
   return systems;

@@ -59,7 +59,7 @@ void report(const std::string& name) {
   Mesh mesh;
   if (name.rfind("grid-", 0) == 0) {
     mesh = make_grid({.size = std::stoi(name.substr(5))});
-    reorder(mesh, {.vertices = "scrambled", .elements = "scrambled", .ordering = {}});
+    reorder(mesh, {.methods = {"scrambled", "scrambled"}});
   } else {
     mesh = read_mesh(name);
   }

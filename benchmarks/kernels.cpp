@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
   std::vector<std::array<double, mo::kKernels.size()>> bytes(orders.size());
   const auto prepare = [&](mo::Index order) {
     mo::Mesh mesh = grid;
-    mo::reorder(mesh, {.vertices = orders[order][0], .elements = orders[order][1], .ordering = {}});
+    mo::reorder(mesh, {.methods = {orders[order][0], orders[order][1]}});
     mo::KernelBench bench(mesh);
     for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
       bytes[order][k] = bench.streamed_bytes(mo::kKernels[k]);

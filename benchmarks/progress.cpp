@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
   const int size = argc > 1 ? std::atoi(argv[1]) : 122;
   const std::vector<std::string> wanted(argv + std::min(argc, 2), argv + argc);
   Mesh mesh = make_grid({.size = size});
-  reorder(mesh, {.vertices = "scrambled", .elements = "scrambled", .ordering = {}});
+  reorder(mesh, {.methods = {"scrambled", "scrambled"}});
   const CsrGraph graph = vertex_graph(mesh);
   const PointsView points(mesh.points);
   fmt::print("{} vertices, {} edges\n", graph.size(), graph.edge_count());

@@ -31,7 +31,7 @@ double megabytes(const std::string& key) {
 
 void make(mo::Index cubes, const std::string& file) {
   mo::Mesh mesh = mo::make_grid({.size = cubes});
-  mo::reorder(mesh, {.vertices = "scrambled", .elements = "scrambled", .ordering = {}});
+  mo::reorder(mesh, {.methods = {"scrambled", "scrambled"}});
   mo::write_mesh(mesh, file);
 }
 
@@ -46,8 +46,7 @@ void measure(bool of_vertices, const std::string& method, const std::string& fil
     (void)mo::order_graph(method, {graph, mesh.points});
     seconds = stopwatch.seconds();
   } else {
-    seconds = mo::compute_reordering(mesh, graph, {.vertices = "hilbert", .elements = method, .ordering = {}})
-                  .element_seconds;
+    seconds = mo::compute_reordering(mesh, graph, {.methods = {"hilbert", method}}).cells.seconds;
   }
   fmt::print("{} {} {:.6f} {:.1f} {:.1f}\n", mesh.vertex_count(), mesh.cell_count(), seconds, before,
              megabytes("VmHWM"));

@@ -35,7 +35,7 @@ void run(const ApplyArguments& arguments) {
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.5);
   Notes notes;
-  Mesh mesh = read_mesh(arguments.input, &notes);
+  Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
   Maps maps = read_maps(arguments.prefix, mesh);
   if (arguments.inverse) {
     maps.vertices = maps.vertices.inverse();

@@ -73,7 +73,7 @@ KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<Com
   const auto prepare = [&](Index i) {
     if (i == index_size(orders)) return KernelBench(band.mesh, band.graph, threads);
     Mesh ordered = mesh;
-    apply_reordering(ordered, orders[i].order.vertices, orders[i].order.cells);
+    apply_reordering(ordered, orders[i].order);
     KernelBench bench(ordered, renumbered(graph, orders[i].order.vertices.old_to_new()), threads);
     table.redundancy.push_back(bench.redundancy());
     return bench;
@@ -91,7 +91,7 @@ void run(const CompareArguments& arguments) {
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.05);
   Notes notes;
-  Mesh mesh = read_mesh(arguments.input, &notes);
+  Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
   mesh.cell_blocks.clear();  // orders are compared, not a file's layout
   const CsrGraph graph = vertex_graph(mesh);
 
@@ -102,10 +102,12 @@ void run(const CompareArguments& arguments) {
     ComparedOrder& c = comparison.orders[i];
     const double from = 0.05 + share * static_cast<double>(i);
     progress.stage("ordering by " + c.vertices + "/" + c.elements, from, from + share);
-    c.order = compute_reordering(mesh, graph, {c.vertices, c.elements, arguments.ordering});
-    c.span = edge_span(graph, c.order.vertices);
-    if (predicted) c.reuse = reuse_of_kernels(mesh, graph, c.order.vertices, c.order.cells);
-    note_convergence(c.order.vertex_fiedler, "the vertices by " + c.vertices, notes);
+    c.order =
+        compute_reordering(mesh, graph, {.methods = {c.vertices, c.elements}, .order = arguments.ordering});
+    c.span = edge_span(graph, c.order.vertices.permutation);
+    if (predicted)
+      c.reuse = reuse_of_kernels(mesh, graph, c.order.vertices.permutation, c.order.cells.permutation);
+    note_convergence(c.order.vertices.fiedler, "the vertices by " + c.vertices, notes);
   }
 
   progress.stage("running kernels", 0.4, 1);

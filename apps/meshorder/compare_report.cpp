@@ -25,11 +25,11 @@ void print_quality(const Console& console, const Comparison& comparison) {
                   with_commas(span.max), span.mean_log2);
   };
   for (const ComparedOrder& c : comparison.orders) {
-    print_row(c.vertices, c.elements, duration(c.order.vertex_seconds + c.order.element_seconds), c.span);
+    print_row(c.vertices, c.elements, duration(c.order.vertices.seconds + c.order.cells.seconds), c.span);
   }
   print_row(kFloor, kFloor, "-", comparison.floor_span);
   for (const ComparedOrder& c : comparison.orders) {
-    const MethodChoice& taken = c.order.vertex_method;
+    const MethodChoice& taken = c.order.vertices.method;
     if (!taken.reason.empty()) console.print("auto takes {}: {}", taken.name, taken.reason);
   }
 }
@@ -113,10 +113,10 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
     nlohmann::ordered_json method{
         {"vertices", c.vertices},
         {"elements", c.elements},
-        {"taken", {{"vertices", c.order.vertex_method.name}, {"elements", c.order.element_method.name}}},
-        {"seconds", c.order.vertex_seconds + c.order.element_seconds},
+        {"taken", {{"vertices", c.order.vertices.method.name}, {"elements", c.order.cells.method.name}}},
+        {"seconds", c.order.vertices.seconds + c.order.cells.seconds},
         {"edge_span", to_json(c.span)},
-        {"fiedler", to_json(c.order.vertex_fiedler)}};
+        {"fiedler", to_json(c.order.vertices.fiedler)}};
     if (c.reuse) method["reuse"] = to_json(*c.reuse, comparison.caches);
     add_kernels(method, comparison,
                 [&](const KernelTable& table) -> const OrderTimes& { return table.orders[i]; });

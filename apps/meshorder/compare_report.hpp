@@ -20,7 +20,7 @@ namespace meshorder::command {
 struct ComparedOrder {
   std::string vertices;
   std::string elements;
-  Reordering order;
+  MeshOrder order;
   EdgeSpan span;
   std::optional<KernelReuse> reuse;  ///< of a repeated run; none for a large mesh
 };

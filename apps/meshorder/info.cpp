@@ -5,14 +5,15 @@
 #include "console.hpp"
 #include "graph/traversal.hpp"
 #include "io/format.hpp"
+#include "mesh/degenerate.hpp"
 #include "mesh/graphs.hpp"
-#include "mesh/mesh.hpp"
 #include "metrics/edge_span.hpp"
 #include "payoff/machine.hpp"
 #include "progress.hpp"
 #include "reuse_report.hpp"
 #include "verdict.hpp"
 #include "wording.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -129,7 +130,7 @@ void run(const InfoArguments& arguments) {
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.3);
   Notes notes;
-  const Mesh mesh = read_mesh(arguments.input, &notes);
+  const Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
 
   progress.stage("measuring", 0.3, 0.6);
   const Stopwatch building_graph;
@@ -144,7 +145,7 @@ void run(const InfoArguments& arguments) {
   const auto isolated =
       std::count_if(components.begin(), components.end(), [](const auto& c) { return c.size() == 1; });
   const auto connected = static_cast<long long>(components.size()) - isolated;
-  const auto degenerate = static_cast<long long>(degenerate_cells(mesh).size());
+  const auto degenerate = static_cast<long long>(degenerate_cells(mesh.cells).size());
   progress.stage(arguments.measure ? "running kernels" : "predicting", 0.6, 1);
   const std::optional<Advice> advice = advice_on(arguments, mesh, graph, graph_seconds, since_start);
 

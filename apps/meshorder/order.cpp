@@ -5,7 +5,7 @@
 #include "io/format.hpp"
 #include "io/stream/output_file.hpp"
 #include "maps.hpp"
-#include "mesh/graphs.hpp"
+#include "mesh/groups.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
 #include "progress.hpp"
@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace meshorder::command {
@@ -24,18 +25,19 @@ struct OrderArguments : Common {
   std::string input;
   std::string output;
   std::string maps;
-  ReorderingOptions reordering;
+  ReorderOptions reordering;
+  std::string ids = "renumber";
 };
 
-void print_result(const Console& console, const Reordering& order, const EdgeSpan& before,
-                  const EdgeSpan& after) {
+void print_result(const Console& console, const MeshOrder& order, const std::optional<Grouping>& groups,
+                  const EdgeSpan& before, const EdgeSpan& after) {
   const auto print_method = [&](const char* of, const MethodChoice& method, double seconds) {
     console.print("{:<10} {:<14} {}", of, method_in_words(method), duration(seconds));
     if (!method.reason.empty()) console.print("{:<10} {}", "", method.reason);
   };
-  print_method("vertices", order.vertex_method, order.vertex_seconds);
-  print_method("elements", order.element_method, order.element_seconds);
-  if (order.groups) console.print("{:<10} {}", "groups", groups_in_words(*order.groups));
+  print_method("vertices", order.vertices.method, order.vertices.seconds);
+  print_method("elements", order.cells.method, order.cells.seconds);
+  if (groups) console.print("{:<10} {}", "groups", groups_in_words(*groups));
   console.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}", "edge span",
                 before.mean, after.mean, with_commas(before.max), with_commas(after.max), before.mean_log2,
                 after.mean_log2);
@@ -51,14 +53,16 @@ nlohmann::ordered_json half_json(Index count, const MethodChoice& method, double
 
 void run(const OrderArguments& arguments) {
   const Console console(arguments);
-  const Format& target = format_of(arguments.output);
+  ReorderOptions options = arguments.reordering;
+  options.ids = parse<Ids>(arguments.ids);
+  options.format = format_of(arguments.output).key();
   (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.4);
   const Stopwatch reading;
   Notes notes;
-  Mesh mesh = read_mesh(arguments.input, &notes);
+  Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
   const double read_seconds = reading.seconds();
 
   progress.stage("ordering", 0.4, 0.7);
@@ -66,17 +70,17 @@ void run(const OrderArguments& arguments) {
   Maps maps;
   maps.vertex_ids = mesh.vertex_ids;
   maps.cell_ids = mesh.cell_ids;
-  const Permutation arranged = arrange_cells(mesh, format_of(arguments.input), target);
-  const CsrGraph graph = vertex_graph(mesh);
-  const Reordering order = compute_reordering(mesh, graph, arguments.reordering);
-  apply_reordering(mesh, order.vertices, order.cells);
+  std::optional<Grouping> groups;
+  if (!options.group_by.empty()) groups = grouping_by(mesh, options.group_by);
+  CsrGraph graph;
+  const MeshOrder order = reorder(mesh, options, graph);
   const double order_seconds = ordering.seconds();
-  maps.vertices = order.vertices;
-  maps.cells = arranged.then(order.cells);
+  maps.vertices = order.vertices.permutation;
+  maps.cells = order.cells.permutation;
   const EdgeSpan before = edge_span(graph, Permutation::identity(mesh.vertex_count()));
-  const EdgeSpan after = edge_span(graph, order.vertices);
-  note_convergence(order.vertex_fiedler, "the vertices", notes);
-  note_convergence(order.element_fiedler, "the elements", notes);
+  const EdgeSpan after = edge_span(graph, maps.vertices);
+  note_convergence(order.vertices.fiedler, "the vertices", notes);
+  note_convergence(order.cells.fiedler, "the elements", notes);
 
   progress.stage("writing " + arguments.output, 0.7, 1);
   const Stopwatch writing;
@@ -87,19 +91,19 @@ void run(const OrderArguments& arguments) {
 
   progress.finish();
   console.log_notes(notes);
-  print_result(console, order, before, after);
+  print_result(console, order, groups, before, after);
   console.print("{:<10} {}", "wrote", arguments.output);
   for (const std::string& file : map_files) console.print("{:<10} {}", "", file);
   nlohmann::ordered_json result{
       {"input", arguments.input},
       {"output", arguments.output},
-      {"vertices", half_json(mesh.vertex_count(), order.vertex_method, order.vertex_seconds)},
-      {"elements", half_json(mesh.cell_count(), order.element_method, order.element_seconds)},
-      {"for", to_string(arguments.reordering.ordering.workload)},
-      {"group_by", order.groups ? to_json(*order.groups) : nullptr},
+      {"vertices", half_json(mesh.vertex_count(), order.vertices.method, order.vertices.seconds)},
+      {"elements", half_json(mesh.cell_count(), order.cells.method, order.cells.seconds)},
+      {"for", to_string(options.order.workload)},
+      {"group_by", groups ? to_json(*groups) : nullptr},
       {"edge_span", {{"before", to_json(before)}, {"after", to_json(after)}}},
-      {"fiedler", to_json(order.vertex_fiedler)},
-      {"element_fiedler", to_json(order.element_fiedler)},
+      {"fiedler", to_json(order.vertices.fiedler)},
+      {"element_fiedler", to_json(order.cells.fiedler)},
       {"maps", map_files},
       {"seconds", {{"read", read_seconds}, {"order", order_seconds}, {"write", write_seconds}}}};
   console.print_json(result);
@@ -119,11 +123,11 @@ void add_order(CLI::App& app) {
   subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
   subcommand->add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
   subcommand
-      ->add_option("--vertices", arguments->reordering.vertices,
+      ->add_option("--vertices", arguments->reordering.methods.vertices,
                    "Method for vertices, see `meshorder methods`")
       ->capture_default_str();
   subcommand
-      ->add_option("--elements", arguments->reordering.elements,
+      ->add_option("--elements", arguments->reordering.methods.elements,
                    "Method for elements, see `meshorder methods`")
       ->capture_default_str();
   subcommand
@@ -137,10 +141,18 @@ void add_order(CLI::App& app) {
           "the vertices. Write cells:NAME or vertices:NAME if both have that array (default: cells).\n"
           "Cells and vertices without a value come last")
       ->type_name("NAME");
+  subcommand
+      ->add_option(
+          "--ids", arguments->ids,
+          "Numbers that the file gives its vertices and cells: `renumber` sorts them along the new\n"
+          "order; `keep` leaves each with its vertex or cell, so that other files that name it stay\n"
+          "valid; `attach` sorts them, and adds the old ones as arrays `original`")
+      ->check(CLI::IsMember({"renumber", "keep", "attach"}))
+      ->capture_default_str();
   subcommand->add_option(
       "--maps", arguments->maps,
       "Also write the permutations as NumPy files: PREFIX.vertices.old_to_new.npy and so on");
-  add_ordering_options(*subcommand, arguments->reordering.ordering);
+  add_ordering_options(*subcommand, arguments->reordering.order);
   add_common(*subcommand, *arguments);
   subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

@@ -94,7 +94,7 @@ std::string unique_name(const std::string& file, const std::vector<MeshRecord>& 
 void add_mesh(Page& page, const std::string& file, const ReportArguments& arguments, Progress& progress,
               double from, double to, Notes& notes) {
   progress.stage("reading " + file, from, from + 0.1 * (to - from));
-  const Mesh mesh = read_mesh(file, &notes);
+  const Mesh mesh = read_mesh(file, {.notes = &notes});
   if (mesh.cells.highest_dimension() < 2)
     throw InputError(file, "has neither volume cells nor a surface to show",
                      "give a mesh with cells of two or three dimensions");
@@ -114,7 +114,7 @@ void add_mesh(Page& page, const std::string& file, const ReportArguments& argume
   std::vector<std::pair<std::string, Permutation>> orders;
   for (std::size_t i = 0; i < studied.orders.size(); ++i) {
     orders.emplace_back(studied.record.orders[i].ordering, studied.orders[i].vertices);
-    note_convergence(studied.orders[i].vertex_fiedler, "the vertices of " + name, notes);
+    note_convergence(studied.orders[i].vertices.fiedler, "the vertices of " + name, notes);
   }
   page.meshes.push_back(page_mesh(name, mesh, orders));
   page.results.meshes.push_back(std::move(studied.record));

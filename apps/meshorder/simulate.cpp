@@ -168,7 +168,7 @@ void run(const SimulateArguments& arguments) {
   progress.stage("reading " + path, 0.5, 0.7);
   const Stopwatch reading;
   Notes notes;
-  Mesh mesh = read_mesh(path, &notes);
+  Mesh mesh = read_mesh(path, {.notes = &notes});
   const double read_seconds = reading.seconds();
   progress.stage("setting up", 0.7, 1);
   Simulation simulation = set_up(std::move(scenario), std::move(mesh), path, arguments.ordering);

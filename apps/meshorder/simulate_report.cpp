@@ -237,8 +237,8 @@ void print_header(const Console& console, const Simulation& simulation, const st
                                                  : "";
   console.print("{:<10} {}: {} vertices, {} tetrahedra{}", "mesh", mesh,
                 with_commas(simulation.mesh.vertex_count()), with_commas(simulation.tetrahedra), size);
-  console.print("{:<10} vertices {}, elements {}", "order", method_in_words(simulation.order.vertex_method),
-                method_in_words(simulation.order.element_method));
+  console.print("{:<10} vertices {}, elements {}", "order", method_in_words(simulation.order.vertices.method),
+                method_in_words(simulation.order.cells.method));
   console.print("{:<10} {}", "material", material_in_words(scenario));
   console.print("{:<10} {} of {:g} s by {}, {} thread{}", "steps", scenario.steps,
                 scenario.motion().time_step,
@@ -298,8 +298,8 @@ nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord&
       {"steps", record.steps.size()},
       {"threads", thread_count()},
       {"order",
-       {{"vertices", half(simulation.order.vertex_method, simulation.order.vertex_seconds)},
-        {"elements", half(simulation.order.element_method, simulation.order.element_seconds)}}},
+       {{"vertices", half(simulation.order.vertices.method, simulation.order.vertices.seconds)},
+        {"elements", half(simulation.order.cells.method, simulation.order.cells.seconds)}}},
       {"material", material_json(scenario)}};
   std::visit(
       [&](const auto& options) {

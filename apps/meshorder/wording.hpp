@@ -4,10 +4,10 @@
 #include "graph/csr_graph.hpp"
 #include "io/format.hpp"
 #include "mesh/groups.hpp"
-#include "mesh/mesh.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"
 #include "spectral/fiedler.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <nlohmann/json_fwd.hpp>
 

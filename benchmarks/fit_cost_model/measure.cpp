@@ -98,11 +98,12 @@ void predict(const std::string& name, const mo::Caches& caches, const std::strin
   const mo::Simplices simplices = mo::cut_into_simplices(mesh);
   for (const std::string& order : orders) {
     const auto slash = order.find('/');
-    const mo::Reordering r = mo::compute_reordering(
-        mesh, graph, {.vertices = order.substr(0, slash), .elements = order.substr(slash + 1)});
-    mo::write_npy(r.vertices.old_to_new(), file_of(folder, order, "vertices"));
-    mo::write_npy(r.cells.old_to_new(), file_of(folder, order, "cells"));
-    const mo::KernelReuse reuse = mo::reuse_of_kernels(mesh, graph, r.vertices, r.cells, kHalvings);
+    const mo::MeshOrder r =
+        mo::compute_reordering(mesh, graph, {.methods = {order.substr(0, slash), order.substr(slash + 1)}});
+    mo::write_npy(r.vertices.permutation.old_to_new(), file_of(folder, order, "vertices"));
+    mo::write_npy(r.cells.permutation.old_to_new(), file_of(folder, order, "cells"));
+    const mo::KernelReuse reuse =
+        mo::reuse_of_kernels(mesh, graph, r.vertices.permutation, r.cells.permutation, kHalvings);
     for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
       fmt::print("{},{},{},{},{},{},{},{},{}\n", name, mesh.vertex_count(), simplices.size(),
                  simplices.dimension, order, mo::to_string(mo::kKernels[k]), reuse[k].all.accesses(),

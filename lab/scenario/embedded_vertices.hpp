@@ -3,7 +3,7 @@
 
 #include "kernels/simplices.hpp"
 #include "lab/motion/integrator.hpp"
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <array>
 #include <span>

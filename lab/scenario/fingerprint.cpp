@@ -77,10 +77,10 @@ std::uint64_t checksum_of(const std::vector<Point>& points, const Simplices& sim
   return sum.value();
 }
 
-std::uint64_t checksum_of(const Reordering& order) {
+std::uint64_t checksum_of(const MeshOrder& order) {
   Checksum sum;
-  sum.add_all(order.vertices.old_to_new());
-  sum.add_all(order.cells.old_to_new());
+  sum.add_all(order.vertices.permutation.old_to_new());
+  sum.add_all(order.cells.permutation.old_to_new());
   return sum.value();
 }
 

@@ -25,13 +25,15 @@ std::vector<Index> old_places(const Permutation& order) {
   return {order.new_to_old().begin(), order.new_to_old().end()};
 }
 
-std::vector<DataArray> own_arrays(const Mesh& mesh, const Reordering& order) {
+std::vector<DataArray> own_arrays(const Mesh& mesh, const MeshOrder& order) {
   std::vector<float> zeros(3 * mesh.points.size(), 0.0F);
   std::vector<DataArray> arrays(4);
   arrays[kDisplacement] = {"displacement", Association::vertices, 3, zeros, {}, {}};
   arrays[kVelocity] = {"velocity", Association::vertices, 3, std::move(zeros), {}, {}};
-  arrays[kOriginalVertex] = {"original_vertex", Association::vertices, 1, old_places(order.vertices), {}, {}};
-  arrays[kOriginalCell] = {"original_cell", Association::cells, 1, old_places(order.cells), {}, {}};
+  arrays[kOriginalVertex] = {
+      "original_vertex", Association::vertices, 1, old_places(order.vertices.permutation), {}, {}};
+  arrays[kOriginalCell] = {
+      "original_cell", Association::cells, 1, old_places(order.cells.permutation), {}, {}};
   return arrays;
 }
 

@@ -3,7 +3,7 @@
 
 #include "lab/contact/obstacles/obstacle.hpp"
 #include "lab/scenario/scenario.hpp"
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <memory>
 #include <span>

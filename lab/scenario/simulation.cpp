@@ -172,15 +172,16 @@ Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const O
   require_volume_cells(mesh, file);
   const Stopwatch ordering_time;
   mesh.cell_blocks.clear();  // they are a file's layout, and would keep cells from their places
-  Reordering order = compute_reordering(mesh, vertex_graph(mesh),
-                                        {scenario.vertex_order, scenario.element_order, ordering, {}});
+  MeshOrder order =
+      compute_reordering(mesh, vertex_graph(mesh),
+                         {.methods = {scenario.vertex_order, scenario.element_order}, .order = ordering});
   const double seconds = ordering_time.seconds();
   Simulation result = set_up(std::move(scenario), std::move(mesh), file, std::move(order));
   result.order_seconds += seconds;
   return result;
 }
 
-Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, Reordering order) {
+Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, MeshOrder order) {
   require_volume_cells(mesh, file);
   Notes notes;
   Simplices simplices = cut_into_simplices(mesh);
@@ -193,7 +194,7 @@ Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, Reorder
 
   const Stopwatch moving_time;
   mesh.cell_blocks.clear();
-  apply_reordering(mesh, order.vertices, order.cells);
+  apply_reordering(mesh, order);
   result.order_seconds = moving_time.seconds();
   result.order = std::move(order);
   result.fingerprint.order = checksum_of(result.order);

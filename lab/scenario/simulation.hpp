@@ -15,8 +15,8 @@ namespace meshorder {
 /// A scenario with its mesh, ready to be simulated.
 struct Simulation {
   Scenario scenario;
-  Mesh mesh;         ///< at rest, scaled, in the simulated order
-  Reordering order;  ///< from the mesh's own order to the simulated one
+  Mesh mesh;        ///< at rest, scaled, in the simulated order
+  MeshOrder order;  ///< from the mesh's own order to the simulated one
   Offset tetrahedra = 0;
   std::unique_ptr<Integrator> body;
   std::vector<Index> vertices;  ///< the vertices of volume cells, ascending
@@ -36,6 +36,6 @@ void require_volume_cells(const Mesh& mesh, const std::string& file);
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const OrderOptions& ordering = {});
 
 /// The same in a given order instead of the scenario's. Throws InvalidArgument if it is of another mesh.
-Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, Reordering order);
+Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, MeshOrder order);
 
 }  // namespace meshorder

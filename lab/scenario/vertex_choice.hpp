@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lab/scenario/scenario.hpp"
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <span>
 #include <string>

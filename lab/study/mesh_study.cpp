@@ -41,9 +41,9 @@ double best_seconds(tbb::task_arena& threads, Prepare prepare, Call call) {
 }
 
 /// The mesh's kernels in one order.
-KernelBench bench_of(const Mesh& mesh, const CsrGraph& graph, const Reordering& order) {
+KernelBench bench_of(const Mesh& mesh, const CsrGraph& graph, const MeshOrder& order) {
   Mesh ordered = mesh;
-  apply_reordering(ordered, order.vertices, order.cells);
+  apply_reordering(ordered, order);
   return {ordered, renumbered(graph, order.vertices.old_to_new())};
 }
 
@@ -71,14 +71,14 @@ class MeshStudy {
   }
 
   void add(const OrderingSpec& ordering) {
-    Reordering order;
+    MeshOrder order;
     MeshOrderRecord& record = result_.record.orders.emplace_back();
     record.ordering = ordering.name;
     record.seconds = compute(ordering, order);
-    record.vertex_method = order.vertex_method.name;
-    record.element_method = order.element_method.name;
-    record.span = edge_span(graph_, order.vertices);
-    record.span_histogram = span_histogram(graph_, order.vertices, result_.record.span_bin);
+    record.vertex_method = order.vertices.method.name;
+    record.element_method = order.cells.method.name;
+    record.span = edge_span(graph_, order.vertices.permutation);
+    record.span_histogram = span_histogram(graph_, order.vertices.permutation, result_.record.span_bin);
     simulate_caches(order, record);
     result_.orders.push_back(std::move(order));
   }
@@ -97,24 +97,25 @@ class MeshStudy {
 
  private:
   /// Returns what the order costs.
-  double compute(const OrderingSpec& ordering, Reordering& order) {
+  double compute(const OrderingSpec& ordering, MeshOrder& order) {
     Mesh moved;
     const double seconds = best_seconds(
         threads_, [&] { moved = mesh_; },
         [&] {
-          order = compute_reordering(mesh_, graph_,
-                                     {ordering.vertices, ordering.elements, options_.ordering, {}});
-          apply_reordering(moved, order.vertices, order.cells);
+          order = compute_reordering(
+              mesh_, graph_, {.methods = {ordering.vertices, ordering.elements}, .order = options_.ordering});
+          apply_reordering(moved, order);
         });
     const bool moves_nothing =
-        order.vertex_method.name == "original" && order.element_method.name == "original";
+        order.vertices.method.name == "original" && order.cells.method.name == "original";
     return moves_nothing ? 0.0 : graph_seconds_ + seconds;
   }
 
-  void simulate_caches(const Reordering& order, MeshOrderRecord& record) const {
+  void simulate_caches(const MeshOrder& order, MeshOrderRecord& record) const {
     const std::vector<NamedCaches>& hierarchies = result_.record.hierarchies;
     const int halvings = result_.record.tetrahedra > kMostExact ? kHalvings : 0;
-    const KernelReuse reuse = reuse_of_kernels(mesh_, graph_, order.vertices, order.cells, halvings);
+    const KernelReuse reuse =
+        reuse_of_kernels(mesh_, graph_, order.vertices.permutation, order.cells.permutation, halvings);
     const KernelMilliseconds predicted = predicted_ms(reuse, hierarchies.front().caches);
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
       KernelRecord& kernel = record.kernels[k];

@@ -14,7 +14,7 @@ namespace meshorder {
 /// A mesh record with the orders that it describes.
 struct OrderedMesh {
   MeshRecord record;
-  std::vector<Reordering> orders;  ///< in the sequence of record.orders
+  std::vector<MeshOrder> orders;  ///< in the sequence of record.orders
 };
 
 struct MeshStudyOptions {

@@ -30,9 +30,9 @@ Permutation order_of(const std::string& path, Index count, const std::string& wh
 Simulation set_up(const StepperTask& task) {
   Scenario scenario = find_scenario(task.scenario);
   Mesh mesh = read_mesh(task.mesh);
-  Reordering order;
-  order.vertices = order_of(task.vertex_order, mesh.vertex_count(), "vertices");
-  order.cells = order_of(task.cell_order, mesh.cells.size(), "cells");
+  MeshOrder order;
+  order.vertices.permutation = order_of(task.vertex_order, mesh.vertex_count(), "vertices");
+  order.cells.permutation = order_of(task.cell_order, mesh.cells.size(), "cells");
   return set_up(std::move(scenario), std::move(mesh), task.mesh, std::move(order));
 }
 
@@ -99,7 +99,7 @@ class Stepping {
   void add_frame() {
     MotionState state = simulation_.body->state();
     move_embedded(embedded_, simulation_.mesh.points, state);
-    frames_->add(in_own_order(state, simulation_.order.vertices));
+    frames_->add(in_own_order(state, simulation_.order.vertices.permutation));
   }
 
   Simulation simulation_;

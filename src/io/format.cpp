@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
 
+#include "base/text.hpp"
 #include "io/all_formats.hpp"
-#include "mesh/reorder.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -18,14 +18,54 @@ const std::array kFormats{
     vtk_format(),    off_format(),  obj_format(),  ply_format(),   stl_format(),
 };
 
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// Returns whether the size is that of a binary STL file of as many triangles as its header says.
+bool has_size_of_stl(std::string_view bytes) {
+  constexpr std::size_t kHeader = 80;
+  if (bytes.size() < kHeader + 4) return false;
+  std::uint64_t triangles = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    triangles |= std::uint64_t{static_cast<unsigned char>(bytes[kHeader + k])} << (8 * k);
+  }
+  return bytes.size() == kHeader + 4 + 50 * triangles;
+}
+
+/// Returns the name of the format whose files begin like this, or an empty text. Comments and empty lines
+/// before the first word are passed over.
+std::string_view format_that_begins(std::string_view bytes) {
+  while (!bytes.empty()) {
+    std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
+    bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
+    if (line.starts_with("# vtk DataFile")) return "VTK";
+    const std::string_view word = next_word(line);
+    if (word.empty() || word.front() == '#') continue;
+    if (word.starts_with("$")) return "Gmsh";
+    if (word.starts_with("MeshVersion")) return "Medit";
+    if (word.starts_with("<")) return "VTU";
+    if (word.starts_with("*")) return "Vega";
+    if (word.ends_with("OFF")) return "OFF";
+    if (word == "ply") return "PLY";
+    if (same_but_for_case(word, "solid")) return "STL";
+    constexpr std::array<std::string_view, 9> kObjWords{"v", "vn", "vt",     "f",     "o",
+                                                        "g", "s",  "mtllib", "usemtl"};
+    return std::find(kObjWords.begin(), kObjWords.end(), word) != kObjWords.end() ? "OBJ" : "";
+  }
+  return {};
+}
+
 }  // namespace
 
-std::span<const Format> formats() { return kFormats; }
+std::string Format::key() const { return lower_case(std::string(name)); }
+
+std::span<const Format> all_formats() { return kFormats; }
 
 const Format& format_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(path.extension().string());
   if (std::error_code code; extension.empty() && std::filesystem::is_directory(path, code)) {
     throw InputError(path.string(), "is a folder", "give a mesh file");
   }
@@ -41,36 +81,32 @@ const Format& format_of(const std::filesystem::path& path) {
                    "known are " + known);
 }
 
-Mesh read_mesh(const std::filesystem::path& path, Notes* notes) {
-  Notes ignored;
-  Notes& noted = notes != nullptr ? *notes : ignored;
-  Mesh mesh = format_of(path).read(path, noted);
-  if (mesh.cell_count() == 0) throw InputError(path.string(), "has no cells", "a mesh needs at least one");
-  try {
-    check_mesh(mesh);
-  } catch (const InvalidArgument& fault) {
-    throw InputError(path.string(), fault.what(), "the file may be damaged");
+const Format& format_named(std::string_view name) {
+  const auto found = std::find_if(kFormats.begin(), kFormats.end(),
+                                  [&](const Format& format) { return same_but_for_case(format.name, name); });
+  if (found != kFormats.end()) return *found;
+  throw InvalidArgument("unknown format '" + std::string(name) + "'; known are " +
+                        join(kFormats, [](const Format& format) { return format.key(); }));
+}
+
+const Format* format_of_bytes(std::string_view bytes) {
+  if (has_size_of_stl(bytes)) return &format_named("STL");
+  const std::string_view name = format_that_begins(bytes);
+  return name.empty() ? nullptr : &format_named(name);
+}
+
+inline namespace v0_2 {
+
+std::vector<FormatInfo> formats() {
+  std::vector<FormatInfo> result;
+  for (const Format& format : kFormats) {
+    result.push_back({.name = format.key(),
+                      .extensions = {format.extensions.begin(), format.extensions.end()},
+                      .single_file = format.name != "TetGen",
+                      .groups_cells_by_type = format.groups_cells_by_type});
   }
-  const std::vector<Index> degenerate = degenerate_cells(mesh);
-  if (!degenerate.empty()) {
-    noted.push_back(std::to_string(degenerate.size()) +
-                    (degenerate.size() == 1 ? " cell names a vertex twice and is kept"
-                                            : " cells name a vertex twice and are kept") +
-                    ": the first is cell " + std::to_string(degenerate.front()) + ", counted from 0");
-  }
-  return mesh;
+  return result;
 }
 
-void write_mesh(const Mesh& mesh, const std::filesystem::path& path, Notes* notes) {
-  Notes ignored;
-  check_mesh(mesh);
-  format_of(path).write(mesh, path, notes ? *notes : ignored);
-}
-
-Permutation arrange_cells(Mesh& mesh, const Format& from, const Format& to) {
-  if (from.name == to.name) return Permutation::identity(mesh.cell_count());
-  mesh.cell_blocks.clear();
-  return to.groups_cells_by_type ? group_cells_by_type(mesh) : Permutation::identity(mesh.cell_count());
-}
-
+}  // namespace v0_2
 }  // namespace meshorder

@@ -33,7 +33,7 @@ void note_metadata_unsupported(const Mesh& mesh, std::string_view format, Notes&
   }
 }
 
-void require_supported_cells(const Mesh& mesh, const std::filesystem::path& path, std::string_view format,
+void require_supported_cells(const Mesh& mesh, const FilePath& path, std::string_view format,
                              bool (*holds)(Shape shape, int vertices), const std::string& remedy) {
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const int vertices = mesh.cells.vertex_count(c);

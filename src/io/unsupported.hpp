@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/format.hpp"
+#include "io/stream/file_path.hpp"
 
 #include <filesystem>
 #include <string>
@@ -24,7 +25,7 @@ void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& note
 void note_metadata_unsupported(const Mesh& mesh, std::string_view format, Notes& notes);
 
 /// Throws Error, which names the cell type, if `holds(shape, vertices)` is false for a cell.
-void require_supported_cells(const Mesh& mesh, const std::filesystem::path& path, std::string_view format,
+void require_supported_cells(const Mesh& mesh, const FilePath& path, std::string_view format,
                              bool (*holds)(Shape shape, int vertices), const std::string& remedy);
 
 }  // namespace meshorder

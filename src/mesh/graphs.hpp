@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cells/cell_arrays.hpp"
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 
 namespace meshorder {
 

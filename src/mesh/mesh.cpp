@@ -1,13 +1,15 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "mesh/mesh.hpp"
-
-#include "base/parallel.hpp"
+#include "base/index.hpp"
+#include "base/point.hpp"
+#include "cells/cell_arrays.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace meshorder {
+inline namespace v0_2 {
 namespace {
 
 [[noreturn]] void fail(const std::string& what) { throw InvalidArgument("mesh: " + what); }
@@ -23,7 +25,8 @@ void check_members(const std::vector<Index>& members, Index count, const std::st
 void check_cells(const Mesh& mesh) {
   const Cells& cells = mesh.cells;
   if (cells.offsets.size() != cells.shapes.size() + 1 || cells.offsets.front() != 0 ||
-      cells.offsets.back() != static_cast<Offset>(cells.vertices.size())) {
+      cells.offsets.back() != static_cast<Offset>(cells.vertices.size()) ||
+      !std::is_sorted(cells.offsets.begin(), cells.offsets.end())) {
     fail("offsets do not fit the cells");
   }
   for (Index c = 0; c < cells.size(); ++c) {
@@ -35,12 +38,18 @@ void check_cells(const Mesh& mesh) {
   check_members(cells.vertices, mesh.vertex_count(), "a cell");
 }
 
+std::size_t value_count(const DataArray& array) {
+  return std::visit([](const auto& values) { return values.size(); }, array.values);
+}
+
 void check_data(const Mesh& mesh) {
   for (const DataArray& array : mesh.data) {
     const Index count = array.association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
     const std::string owner = "array '" + array.name + "'";
     const Index expected = array.is_dense() ? count : index_size(array.indices);
-    if (array.components < 1 || row_count(array) != expected) {
+    if (array.components < 1) fail(owner + " has " + std::to_string(array.components) + " components");
+    if (row_count(array) != expected ||
+        value_count(array) % static_cast<std::size_t>(array.components) != 0) {
       fail(owner + " has " + std::to_string(row_count(array)) + " rows for " + std::to_string(expected));
     }
     check_members(array.indices, count, owner);
@@ -60,16 +69,43 @@ void check_numbering(const Mesh& mesh) {
     fail("ids do not fit the cells");
   }
   if (!mesh.cell_blocks.empty() &&
-      (mesh.cell_blocks.front() != 0 || !std::is_sorted(mesh.cell_blocks.begin(), mesh.cell_blocks.end()))) {
-    fail("blocks of cells must ascend from 0");
+      (mesh.cell_blocks.front() != 0 || !std::is_sorted(mesh.cell_blocks.begin(), mesh.cell_blocks.end()) ||
+       mesh.cell_blocks.back() > mesh.cell_count())) {
+    fail("blocks of cells must ascend from 0 and begin at cells");
   }
 }
 
 }  // namespace
 
+void Cells::push_back(Shape shape, std::span<const Index> cell_vertices) {
+  shapes.push_back(shape);
+  vertices.insert(vertices.end(), cell_vertices.begin(), cell_vertices.end());
+  offsets.push_back(static_cast<Offset>(vertices.size()));
+}
+
+void Cells::reserve(Offset cells, Offset vertex_entries) {
+  shapes.reserve(cells);
+  offsets.reserve(cells + 1);
+  vertices.reserve(vertex_entries);
+}
+
+int Cells::highest_dimension() const {
+  int highest = -1;
+  for (int shape = 0; shape < kShapes; ++shape) {
+    const auto s = static_cast<Shape>(shape);
+    if (dimension(s) > highest && std::find(shapes.begin(), shapes.end(), s) != shapes.end()) {
+      highest = dimension(s);
+    }
+  }
+  return highest;
+}
+
+std::string_view to_string(Association association) {
+  return association == Association::vertices ? "vertices" : "cells";
+}
+
 Index row_count(const DataArray& array) {
-  const auto entries = std::visit([](const auto& values) { return values.size(); }, array.values);
-  return static_cast<Index>(entries / static_cast<std::size_t>(array.components));
+  return static_cast<Index>(value_count(array) / static_cast<std::size_t>(array.components));
 }
 
 const DataArray* find_array(const Mesh& mesh, std::string_view name, Association association) {
@@ -90,21 +126,29 @@ void check_mesh(const Mesh& mesh) {
   check_numbering(mesh);
 }
 
-std::vector<Index> degenerate_cells(const Mesh& mesh) {
-  constexpr Index kCellsAtOnce = 65536;
-  std::vector<std::vector<Index>> found(chunk_count(mesh.cell_count(), kCellsAtOnce));
-  for_each_chunk(mesh.cell_count(), kCellsAtOnce, [&](Index chunk, Index begin, Index end) {
-    std::vector<Index> sorted;
-    for (Index c = begin; c < end; ++c) {
-      const auto vertices = mesh.cells[c];
-      sorted.assign(vertices.begin(), vertices.end());
-      std::sort(sorted.begin(), sorted.end());
-      if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) found[chunk].push_back(c);
-    }
-  });
-  std::vector<Index> result;
-  for (const std::vector<Index>& cells : found) result.insert(result.end(), cells.begin(), cells.end());
-  return result;
+MeshView view(const Mesh& mesh) {
+  return {.points = PointsView(mesh.points),
+          .cells = CellsView::mixed(mesh.cells.offsets, mesh.cells.vertices, mesh.cells.shapes)};
 }
 
+Mesh make_mesh(const MeshView& view) {
+  const std::size_t n = view.vertex_count > 0 ? view.vertex_count : view.points.size();
+  const CellArrays cells = cell_arrays(view.cells, n, Check::full);
+  if (cells.shapes.empty() && cells.size() > 0) fail("the types of the cells are not known");
+  if (view.points.size() != n) {
+    fail(std::to_string(view.points.size()) + " points for " + std::to_string(n) + " vertices");
+  }
+  Mesh mesh;
+  mesh.dimension = view.points.dimension() == 2 ? 2 : 3;
+  mesh.points.resize(n);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) mesh.points[v] = point_at(view.points, v);
+  mesh.cells.shapes.assign(cells.shapes.begin(), cells.shapes.end());
+  mesh.cells.offsets.assign(cells.offsets.begin(), cells.offsets.end());
+  mesh.cells.vertices.assign(cells.vertices.begin(), cells.vertices.end());
+  mesh.cell_blocks.assign(cells.block_starts.begin(), cells.block_starts.end());
+  check_mesh(mesh);
+  return mesh;
+}
+
+}  // namespace v0_2
 }  // namespace meshorder

@@ -4,6 +4,7 @@
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "mesh/graphs.hpp"
+#include "mesh/groups.hpp"
 #include "ordering/method.hpp"
 #include "ordering/moved.hpp"
 #include "ordering/order_cells.hpp"
@@ -75,6 +76,30 @@ void move_all(Mesh& mesh, const Permutation& vertices, const Permutation& cells)
   }
 }
 
+void move_ids(std::vector<std::int64_t>& ids, const Permutation& order) {
+  if (!ids.empty()) ids = moved(order, ids);
+}
+
+/// Attaches the ids, or the positions where there are none, as the arrays `kOriginal`.
+void attach_ids(Mesh& mesh) {
+  for (const Association association : {Association::vertices, Association::cells}) {
+    if (find_array(mesh, kOriginal, association) != nullptr) {
+      throw InvalidArgument("reorder: the mesh has an array '" + std::string(kOriginal) + "' on " +
+                            std::string(to_string(association)) + " already");
+    }
+  }
+  const auto attach = [&](Association association, std::vector<std::int64_t> ids, Index count) {
+    if (ids.empty()) {
+      ids.resize(static_cast<std::size_t>(count));
+      std::iota(ids.begin(), ids.end(), std::int64_t{0});
+    }
+    mesh.data.push_back(
+        {.name = std::string(kOriginal), .association = association, .values = std::move(ids)});
+  };
+  attach(Association::vertices, mesh.vertex_ids, mesh.vertex_count());
+  attach(Association::cells, mesh.cell_ids, mesh.cell_count());
+}
+
 void check_fits(const Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
   if (vertices.size() != mesh.vertex_count() || cells.size() != mesh.cell_count()) {
     throw InvalidArgument("reorder: permutations of " + std::to_string(vertices.size()) + " vertices and " +
@@ -85,38 +110,35 @@ void check_fits(const Mesh& mesh, const Permutation& vertices, const Permutation
 
 }  // namespace
 
-Reordering compute_reordering(const Mesh& mesh, const CsrGraph& graph, const ReorderingOptions& options) {
-  Reordering result;
-  OrderOptions ordering = options.ordering;
+MeshOrder compute_reordering(const Mesh& mesh, const CsrGraph& graph, const ReorderOptions& options) {
+  OrderOptions ordering = options.order;
+  Grouping groups;
+  MeshOrder result;
   const Stopwatch vertices;
   if (!options.group_by.empty()) {
-    result.groups = grouping_by(mesh, options.group_by);
-    ordering.groups = result.groups->of_vertices;
-    if (result.groups->association == Association::cells) ordering.cell_groups = result.groups->of_cells;
+    if (!ordering.groups.empty() || !ordering.cell_groups.empty()) {
+      throw InvalidArgument("reorder: groups are given by name and by number; give one of them");
+    }
+    groups = grouping_by(mesh, options.group_by);
+    ordering.groups = groups.of_vertices;
+    if (groups.association == Association::cells) ordering.cell_groups = groups.of_cells;
   }
-  Order of_vertices = order_vertices_by_options(options.vertices, {graph, mesh.points}, ordering);
-  result.vertices = std::move(of_vertices.permutation);
-  result.vertex_fiedler = std::move(of_vertices.fiedler);
-  result.vertex_method = std::move(of_vertices.method);
-  result.vertex_seconds = vertices.seconds();
-
+  result.vertices = order_vertices_by_options(options.methods.vertices, {graph, mesh.points}, ordering);
+  result.vertices.seconds = vertices.seconds();
   const Stopwatch cells;
-  Order of_cells = order_cells(options.elements, cell_arrays(mesh), result.vertices, mesh.points,
-                               ordering.cell_groups, ordering);
-  result.cells = std::move(of_cells.permutation);
-  result.element_fiedler = std::move(of_cells.fiedler);
-  result.element_method = std::move(of_cells.method);
-  result.element_seconds = cells.seconds();
+  result.cells = order_cells(options.methods.elements, cell_arrays(mesh), result.vertices.permutation,
+                             mesh.points, ordering.cell_groups, ordering);
+  result.cells.seconds = cells.seconds();
   return result;
 }
 
-Reordering reorder(Mesh& mesh, const ReorderingOptions& options) {
-  Reordering result = compute_reordering(mesh, vertex_graph(mesh), options);
-  apply_reordering(mesh, result.vertices, result.cells);
-  return result;
+void apply_reordering(Mesh& mesh, const MeshOrder& order, Ids ids) {
+  apply_reordering(mesh, order.vertices.permutation, order.cells.permutation, ids);
 }
 
-void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
+inline namespace v0_2 {
+
+void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
   check_fits(mesh, vertices, cells);
   const std::vector<Index> classes = slot_classes(cell_arrays(mesh));
   const Index to_check = is_one_class(classes) ? 0 : mesh.cell_count();
@@ -126,28 +148,60 @@ void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation
                             " would leave its block or take the place of a cell of another dimension");
     }
   }
+  if (ids == Ids::attach) attach_ids(mesh);
   move_all(mesh, vertices, cells);
-  std::sort(mesh.vertex_ids.begin(), mesh.vertex_ids.end());
-  if (!mesh.cell_ids.empty()) sort_ids_within_classes(mesh.cell_ids, classes, class_count(mesh));
+  // an order that moves nothing leaves the ids as they are
+  if (ids == Ids::keep) {
+    move_ids(mesh.vertex_ids, vertices);
+    move_ids(mesh.cell_ids, cells);
+    return;
+  }
+  if (!vertices.is_identity()) std::sort(mesh.vertex_ids.begin(), mesh.vertex_ids.end());
+  if (!mesh.cell_ids.empty() && !cells.is_identity()) {
+    sort_ids_within_classes(mesh.cell_ids, classes, class_count(mesh));
+  }
+}
+
+}  // namespace v0_2
+
+namespace {
+
+/// What two cells of one type have in common; sorts by falling dimension.
+std::array<int, 3> type_of(const Cells& cells, Index c) {
+  const Shape shape = cells.shapes[c];
+  return {-dimension(shape), static_cast<int>(shape), cells.vertex_count(c)};
+}
+
+/// Moves the cells with their arrays, sets and ids, whatever their blocks.
+void move_cells(Mesh& mesh, const Permutation& places) {
+  if (places.is_identity()) return;
+  move_all(mesh, Permutation::identity(mesh.vertex_count()), places);
+  move_ids(mesh.cell_ids, places);
+}
+
+}  // namespace
+
+Permutation places_by_type(const Cells& cells) {
+  std::vector<Index> new_to_old(cells.shapes.size());
+  std::iota(new_to_old.begin(), new_to_old.end(), Index{0});
+  std::stable_sort(new_to_old.begin(), new_to_old.end(),
+                   [&](Index a, Index b) { return type_of(cells, a) < type_of(cells, b); });
+  return Permutation::from_new_to_old(std::move(new_to_old));
 }
 
 Permutation group_cells_by_type(Mesh& mesh) {
-  const Cells& cells = mesh.cells;
-  const auto type = [&](Index c) {
-    const Shape shape = cells.shapes[c];
-    return std::array<int, 3>{-dimension(shape), static_cast<int>(shape), cells.vertex_count(c)};
-  };
-  std::vector<Index> new_to_old(cells.shapes.size());
-  std::iota(new_to_old.begin(), new_to_old.end(), Index{0});
-  std::stable_sort(new_to_old.begin(), new_to_old.end(), [&](Index a, Index b) { return type(a) < type(b); });
-  Permutation order = Permutation::from_new_to_old(std::move(new_to_old));
-  move_all(mesh, Permutation::identity(mesh.vertex_count()), order);
-  if (!mesh.cell_ids.empty()) mesh.cell_ids = moved(order, mesh.cell_ids);
+  Permutation places = places_by_type(mesh.cells);
+  move_cells(mesh, places);
   mesh.cell_blocks.clear();
   for (Index c = 0; c < mesh.cell_count(); ++c) {
-    if (c == 0 || type(c) != type(c - 1)) mesh.cell_blocks.push_back(c);
+    if (c == 0 || type_of(mesh.cells, c) != type_of(mesh.cells, c - 1)) mesh.cell_blocks.push_back(c);
   }
-  return order;
+  return places;
+}
+
+void restore_cells(Mesh& mesh, const Permutation& arranged, std::vector<Index> blocks) {
+  move_cells(mesh, arranged.inverse());
+  mesh.cell_blocks = std::move(blocks);
 }
 
 }  // namespace meshorder

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <vector>
 

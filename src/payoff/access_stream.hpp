@@ -3,9 +3,9 @@
 
 #include "kernels/positions.hpp"
 #include "kernels/simplices.hpp"
-#include "mesh/mesh.hpp"
 #include "metrics/cache.hpp"
 #include "payoff/kernel_bench.hpp"
+#include <meshorder/mesh.hpp>
 #include <meshorder/permutation.hpp>
 
 #include <algorithm>

@@ -72,19 +72,19 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   orders.front().graph = graph;
   for (const Workload use : {Workload::all, Workload::springs}) {
     if (use == Workload::springs && !options.for_springs_too) continue;
-    ReorderingOptions reordering{.ordering = options.ordering};
-    reordering.ordering.workload = use;
+    ReorderOptions reordering{.order = options.ordering};
+    reordering.order.workload = use;
     const Stopwatch stopwatch;
-    const Reordering order = compute_reordering(mesh, graph, reordering);
+    const MeshOrder order = compute_reordering(mesh, graph, reordering);
     Ordered ordered = orders.front();
-    apply_reordering(ordered.mesh, order.vertices, order.cells);
+    apply_reordering(ordered.mesh, order);
     const double seconds = options.graph_seconds + stopwatch.seconds();
     if (!advice.candidates.empty() &&
-        advice.candidates.front().vertex_method.name == order.vertex_method.name)
+        advice.candidates.front().vertex_method.name == order.vertices.method.name)
       continue;
-    ordered.graph = renumbered(graph, order.vertices.old_to_new());
+    ordered.graph = renumbered(graph, order.vertices.permutation.old_to_new());
     orders.push_back(std::move(ordered));
-    advice.candidates.push_back({use, order.vertex_method, order.element_method, seconds, {}});
+    advice.candidates.push_back({use, order.vertices.method, order.cells.method, seconds, {}});
   }
   const auto costs_of = [&](std::size_t i) -> OrderCosts& {
     return i == 0 ? advice.as_is : advice.candidates[i - 1].costs;

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "payoff/cost_model.hpp"
 #include "payoff/kernel_timing.hpp"
 #include "payoff/machine.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <array>
 #include <cstddef>

@@ -4,7 +4,7 @@
 #include "base/text.hpp"
 #include "kernels/assembly.hpp"
 #include "kernels/springs.hpp"
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <array>
 #include <cstdint>

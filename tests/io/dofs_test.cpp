@@ -25,17 +25,17 @@ TEST(Dofs, FollowTheVertices) {
 
   // [docs/dofs.md
   mo::Mesh mesh = mo::read_mesh(path);
-  const mo::Reordering order = mo::reorder(mesh);
-  const auto old_to_new = order.vertices.old_to_new();
+  const mo::Permutation vertices = mo::reorder(mesh).vertices.permutation;
+  const auto old_to_new = vertices.old_to_new();
 
   // three numbers a vertex, node-major, follow the vertices
   std::vector<double> u_new(u.size());
-  order.vertices.move(u, u_new, 3);
+  vertices.move(u, u_new, 3);
 
   // the number of a degree of freedom
   const auto node_major = [&](mo::Index v, int c) { return 3 * mo::Offset{old_to_new[v]} + c; };
   const auto field_major = [&](mo::Index v, int c) {
-    return mo::Offset{order.vertices.size()} * c + old_to_new[v];
+    return mo::Offset{vertices.size()} * c + old_to_new[v];
   };
   // docs/dofs.md]
 

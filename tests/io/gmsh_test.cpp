@@ -25,7 +25,7 @@ using Reals = std::vector<double>;
 
 Mesh read_text(std::string_view content, Notes* notes = nullptr) {
   const TemporaryFolder folder;
-  return read_mesh(folder.file("mesh.msh", content), notes);
+  return read_mesh(folder.file("mesh.msh", content), {.notes = notes});
 }
 
 std::string written(const Mesh& mesh, Notes* notes = nullptr) {

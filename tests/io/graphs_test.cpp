@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/graphs.hpp"
 
-#include "mesh/cells.hpp"
 #include "mesh/procedural.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <gtest/gtest.h>
 

@@ -54,7 +54,7 @@ const std::vector<T>& values(const Mesh& mesh, std::string_view name, Associatio
 
 Mesh read(std::string_view content, Notes* notes = nullptr) {
   const TemporaryFolder folder;
-  return read_mesh(folder.file("m.mesh", content), notes);
+  return read_mesh(folder.file("m.mesh", content), {.notes = notes});
 }
 
 std::string written(const Mesh& mesh, Notes* notes = nullptr) {
@@ -177,7 +177,7 @@ TEST(Medit, NotesSolutionsBesideTheMesh) {
   const fs::path path = folder.file("m.mesh", kFile);
   (void)folder.file("m.sol", "MeshVersionFormatted 2\n");
   Notes notes;
-  const Mesh mesh = read_mesh(path, &notes);
+  const Mesh mesh = read_mesh(path, {.notes = &notes});
   EXPECT_THAT(notes, ElementsAre(AllOf(HasSubstr("m.sol"), HasSubstr("original order"))));
   notes.clear();
   write_mesh(mesh, path, &notes);

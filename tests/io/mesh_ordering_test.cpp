@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/graphs.hpp"
-#include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
 
 #include <gtest/gtest.h>
 
@@ -14,11 +14,8 @@
 namespace meshorder {
 namespace {
 
-ReorderingOptions methods(std::string vertices, std::string elements) {
-  ReorderingOptions options;
-  options.vertices = std::move(vertices);
-  options.elements = std::move(elements);
-  return options;
+ReorderOptions methods(std::string vertices, std::string elements) {
+  return {.methods = {std::move(vertices), std::move(elements)}};
 }
 
 /// The vertices of a cell, falling: what lexmax compares in a mesh whose vertices are already reordered.
@@ -68,14 +65,14 @@ TEST(MeshOrdering, CellsKeepToTheirBlocksAndDimensions) {
   Mesh mesh = test::mixed_mesh();
   mesh.cell_blocks = {0, 5, 5, 22, 40};
   const Mesh before = mesh;
-  const Reordering result = reorder(mesh, methods("fiedler", "lexmax"));
-  EXPECT_FALSE(result.cells.is_identity());
+  const MeshOrder result = reorder(mesh, methods("fiedler", "lexmax"));
+  EXPECT_FALSE(result.cells.permutation.is_identity());
   const std::vector<Index> ends{5, 5, 22, 40, mesh.cell_count()};
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const auto block = [&](Index cell) {
       return std::upper_bound(ends.begin(), ends.end(), cell) - ends.begin();
     };
-    EXPECT_EQ(block(result.cells.old_to_new()[c]), block(c));
+    EXPECT_EQ(block(result.cells.permutation.old_to_new()[c]), block(c));
     EXPECT_EQ(dimension(mesh.cells.shapes[c]), dimension(before.cells.shapes[c]));
   }
   for (std::size_t b = 0; b < ends.size(); ++b) {
@@ -87,9 +84,9 @@ TEST(MeshOrdering, CellsKeepToTheirBlocksAndDimensions) {
 TEST(MeshOrdering, OriginalAndOriginalIsTheIdentity) {
   Mesh mesh = bar_with_boundary();
   const Mesh before = mesh;
-  const Reordering result = reorder(mesh, methods("original", "original"));
-  EXPECT_TRUE(result.vertices.is_identity());
-  EXPECT_TRUE(result.cells.is_identity());
+  const MeshOrder result = reorder(mesh, methods("original", "original"));
+  EXPECT_TRUE(result.vertices.permutation.is_identity());
+  EXPECT_TRUE(result.cells.permutation.is_identity());
   test::expect_same(mesh, before);
 }
 
@@ -103,9 +100,9 @@ TEST(MeshOrdering, UnusedVerticesComeLastInOldOrder) {
   for (const MethodInfo& method : vertex_methods()) {
     if (method.name == "original") continue;
     const CsrGraph graph = vertex_graph(mesh);
-    const Reordering result = compute_reordering(mesh, graph, methods(std::string(method.name), "lexmax"));
-    const std::vector<Index> last(result.vertices.new_to_old().begin() + 5,
-                                  result.vertices.new_to_old().end());
+    const MeshOrder result = compute_reordering(mesh, graph, methods(std::string(method.name), "lexmax"));
+    const std::vector<Index> last(result.vertices.permutation.new_to_old().begin() + 5,
+                                  result.vertices.permutation.new_to_old().end());
     EXPECT_EQ(last, (std::vector<Index>{0, 2, 5, 7, 8, 10, 11})) << method.name;
   }
 }
@@ -114,11 +111,11 @@ TEST(MeshOrdering, IsTheSameTwice) {
   const Mesh mesh = bar_with_boundary();
   const CsrGraph graph = vertex_graph(mesh);
   for (const MethodInfo& method : vertex_methods()) {
-    const ReorderingOptions options = methods(std::string(method.name), "fiedler");
-    const Reordering once = compute_reordering(mesh, graph, options);
-    const Reordering again = compute_reordering(mesh, graph, options);
-    EXPECT_EQ(once.vertices, again.vertices) << method.name;
-    EXPECT_EQ(once.cells, again.cells) << method.name;
+    const ReorderOptions options = methods(std::string(method.name), "fiedler");
+    const MeshOrder once = compute_reordering(mesh, graph, options);
+    const MeshOrder again = compute_reordering(mesh, graph, options);
+    EXPECT_EQ(once.vertices.permutation, again.vertices.permutation) << method.name;
+    EXPECT_EQ(once.cells.permutation, again.cells.permutation) << method.name;
   }
 }
 
@@ -128,15 +125,14 @@ TEST(MeshOrdering, EveryPairOfMethodsGivesASoundMeshThatTheInverseRestores) {
     for (const MethodInfo& of_vertices : vertex_methods()) {
       for (const MethodInfo& of_elements : element_methods()) {
         SCOPED_TRACE(std::string(of_vertices.name) + " and " + std::string(of_elements.name));
-        const ReorderingOptions options =
-            methods(std::string(of_vertices.name), std::string(of_elements.name));
+        const ReorderOptions options = methods(std::string(of_vertices.name), std::string(of_elements.name));
         Mesh mesh = original;
-        const Reordering applied = reorder(mesh, options);
+        const MeshOrder applied = reorder(mesh, options);
         check_mesh(mesh);
-        const Reordering computed = compute_reordering(original, graph, options);
-        EXPECT_EQ(computed.vertices, applied.vertices);
-        EXPECT_EQ(computed.cells, applied.cells);
-        apply_reordering(mesh, applied.vertices.inverse(), applied.cells.inverse());
+        const MeshOrder computed = compute_reordering(original, graph, options);
+        EXPECT_EQ(computed.vertices.permutation, applied.vertices.permutation);
+        EXPECT_EQ(computed.cells.permutation, applied.cells.permutation);
+        apply_reordering(mesh, applied.vertices.permutation.inverse(), applied.cells.permutation.inverse());
         test::expect_same(mesh, original);
       }
     }
@@ -145,15 +141,15 @@ TEST(MeshOrdering, EveryPairOfMethodsGivesASoundMeshThatTheInverseRestores) {
 
 TEST(MeshOrdering, ReportsHowTheEigensolverFared) {
   Mesh mesh = bar_with_boundary();
-  const Reordering both = reorder(mesh, methods("fiedler", "fiedler"));
-  ASSERT_EQ(both.vertex_fiedler.size(), 1U);
-  ASSERT_EQ(both.element_fiedler.size(), 1U);
-  EXPECT_EQ(both.vertex_fiedler[0].size, mesh.vertex_count());
-  EXPECT_EQ(both.element_fiedler[0].size, 48);
-  EXPECT_TRUE(both.vertex_fiedler[0].converged && both.element_fiedler[0].converged);
-  const Reordering neither = reorder(mesh, methods("rcm", "lexmax"));
-  EXPECT_TRUE(neither.vertex_fiedler.empty());
-  EXPECT_TRUE(neither.element_fiedler.empty());
+  const MeshOrder both = reorder(mesh, methods("fiedler", "fiedler"));
+  ASSERT_EQ(both.vertices.fiedler.size(), 1U);
+  ASSERT_EQ(both.cells.fiedler.size(), 1U);
+  EXPECT_EQ(both.vertices.fiedler[0].size, mesh.vertex_count());
+  EXPECT_EQ(both.cells.fiedler[0].size, 48);
+  EXPECT_TRUE(both.vertices.fiedler[0].converged && both.cells.fiedler[0].converged);
+  const MeshOrder neither = reorder(mesh, methods("rcm", "lexmax"));
+  EXPECT_TRUE(neither.vertices.fiedler.empty());
+  EXPECT_TRUE(neither.cells.fiedler.empty());
 }
 
 TEST(MeshOrdering, ShortensTheSpansOfAScrambledBar) {

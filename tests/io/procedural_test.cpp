@@ -3,10 +3,10 @@
 
 #include "graph/traversal.hpp"
 #include "mesh/graphs.hpp"
-#include "mesh/mesh.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
 
 #include <gtest/gtest.h>
 

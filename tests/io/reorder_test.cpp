@@ -2,10 +2,10 @@
 #include "mesh/reorder.hpp"
 
 #include "mesh/graphs.hpp"
-#include "mesh/mesh.hpp"
 #include "ordering/order_cells.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -157,7 +157,7 @@ TEST(Stl, SaysWhenNormalsContradict) {
   std::string text(kTwoSolids);
   text.replace(text.find("0 0 1"), 5, "0 0 -1");
   Notes notes;
-  (void)read_mesh(folder.file("a.stl", text), &notes);
+  (void)read_mesh(folder.file("a.stl", text), {.notes = &notes});
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_NE(notes[0].find("the normals of 1 triangles"), std::string::npos);
 }

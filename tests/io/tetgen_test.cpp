@@ -67,7 +67,7 @@ fs::path put(const TemporaryFolder& folder, const Set4& files, const std::string
 
 Mesh read(const Set4& files, Notes* notes = nullptr) {
   const TemporaryFolder folder;
-  return read_mesh(put(folder, files), notes);
+  return read_mesh(put(folder, files), {.notes = notes});
 }
 
 std::string replaced(std::string_view text, std::string_view old, std::string_view by) {
@@ -417,7 +417,7 @@ TEST(TetGen, NotesCompanionsThatHoldForTheOldOrder) {
   (void)folder.file("m.poly", "# refers to m.node\n0 3 0 1\n");
   (void)folder.file("m.smesh", "8 3 0 1\n");  // has points of its own
   Notes notes;
-  const Mesh mesh = read_mesh(path, &notes);
+  const Mesh mesh = read_mesh(path, {.notes = &notes});
   EXPECT_THAT(notes,
               ElementsAre(AllOf(HasSubstr("m.neigh"), HasSubstr("original order")), HasSubstr("m.poly")));
   notes.clear();
@@ -566,7 +566,7 @@ TEST(TetGen, NoticesTruncationOfEveryFile) {
       fs::rename(folder.path() / "cut", folder.path() / name);
       Notes notes;
       try {
-        const Mesh part = read_mesh(folder.path() / "m.node", &notes);
+        const Mesh part = read_mesh(folder.path() / "m.node", {.notes = &notes});
         EXPECT_EQ(part.points, whole.points) << name << " cut after " << size;
         EXPECT_EQ(part.cells, whole.cells) << name << " cut after " << size;
         // only a last marker can lose digits, and that is noted; comments may be cut anywhere

@@ -55,8 +55,8 @@ Offset lru_misses(const AccessStream& stream, Offset bytes) {
 }
 
 /// A mesh in one of its orders.
-Mesh moved(Mesh mesh, const Reordering& order) {
-  apply_reordering(mesh, order.vertices, order.cells);
+Mesh moved(Mesh mesh, const MeshOrder& order) {
+  apply_reordering(mesh, order);
   return mesh;
 }
 
@@ -133,7 +133,7 @@ TEST(MeshStudy, SaysWhichMethodsWereTaken) {
   const OrderedMesh study = study_mesh(make_grid({.size = 6}), kOrderings, without_clock());
   EXPECT_EQ(study.record.orders[2].vertex_method, "scrambled");
   EXPECT_EQ(study.record.orders[2].element_method, "original");
-  EXPECT_EQ(study.record.orders[3].vertex_method, study.orders[3].vertex_method.name);
+  EXPECT_EQ(study.record.orders[3].vertex_method, study.orders[3].vertices.method.name);
   EXPECT_NE(study.record.orders[3].vertex_method, "auto");
 }
 

@@ -17,7 +17,7 @@ constexpr std::size_t kAssembly = 2;
 
 Mesh grid_in_order(const std::string& vertices, const std::string& elements) {
   Mesh mesh = make_grid({.size = 24});
-  reorder(mesh, {.vertices = vertices, .elements = elements});
+  reorder(mesh, {.methods = {vertices, elements}});
   return mesh;
 }
 

@@ -3,11 +3,11 @@
 
 #include "kernels/simplices.hpp"
 #include "mesh/graphs.hpp"
-#include "mesh/mesh.hpp"
 #include "mesh/procedural.hpp"
 #include "payoff/kernel_bench.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
 
 #include <gtest/gtest.h>
 

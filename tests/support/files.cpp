@@ -2,10 +2,10 @@
 #include "support/files.hpp"
 
 #include "io/format.hpp"
-#include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -3,7 +3,7 @@
 // For the tests that link VTK.
 #pragma once
 
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <gtest/gtest.h>
 #include <vtkCell.h>

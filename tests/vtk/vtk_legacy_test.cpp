@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
-#include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
 #include "support/vtk_grids.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -188,7 +188,7 @@ vtkSmartPointer<vtkUnstructuredGrid> grid_with_everything() {
 TEST(VtkLegacy, ReadsPointsCellsAndAllArrays) {
   const TemporaryFolder folder;
   Notes notes;
-  const Mesh mesh = read_mesh(folder.file("a.vtk", kSmall), &notes);
+  const Mesh mesh = read_mesh(folder.file("a.vtk", kSmall), {.notes = &notes});
   EXPECT_EQ(mesh.vertex_count(), 5);
   EXPECT_EQ(mesh.points[4], (Point{0.1, 0.2, 0.3}));
   EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::tetrahedron, Shape::triangle}));
@@ -438,7 +438,7 @@ TEST(VtkLegacy, FilesOfVtkAreReadAndVtkReadsOurs) {
       const auto path = folder.path() / "vtk.vtk";
       write_with_vtk(grid, path, binary, version);
       Notes notes;
-      const Mesh mesh = read_mesh(path, &notes);
+      const Mesh mesh = read_mesh(path, {.notes = &notes});
       EXPECT_EQ(notes, (Notes{"the array 'bits' holds bits, which are stored as bytes"}));
       if (binary) expect_same_grid(grid, mesh);  // VTK writes 11 digits as text
 

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
-#include "mesh/mesh.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
 #include "support/vtk_grids.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -165,7 +165,7 @@ void expect_same_grid(vtkUnstructuredGrid* grid, const Mesh& mesh) {
 TEST(Vtu, ReadsPointsCellsAndAllArrays) {
   const TemporaryFolder folder;
   Notes notes;
-  const Mesh mesh = read_mesh(folder.file("a.vtu", kSmall), &notes);
+  const Mesh mesh = read_mesh(folder.file("a.vtu", kSmall), {.notes = &notes});
   EXPECT_EQ(mesh.vertex_count(), 5);
   EXPECT_EQ(mesh.points[4], (Point{0.1, 0.2, 0.3}));
   EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::tetrahedron, Shape::triangle}));
@@ -483,7 +483,7 @@ TEST(Vtu, PixelsAndVoxelsBecomeQuadsAndHexahedra) {
                 ">4 7<", ">4 8<"),
            ">10 5<", ">8 9<");
   Notes notes;
-  const Mesh mesh = read_mesh(folder.file("a.vtu", text), &notes);
+  const Mesh mesh = read_mesh(folder.file("a.vtu", text), {.notes = &notes});
   EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::quad, Shape::quad}));
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 3, 2, 0, 1, 2, 4}));
   ASSERT_EQ(notes.size(), 1U);
@@ -497,7 +497,8 @@ TEST(Vtu, PiecesBecomeOne) {
   const std::string empty = "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"/>";
   const TemporaryFolder folder;
   Notes notes;
-  const Mesh mesh = read_mesh(folder.file("a.vtu", with(kSmall, piece, piece + empty + piece)), &notes);
+  const Mesh mesh =
+      read_mesh(folder.file("a.vtu", with(kSmall, piece, piece + empty + piece)), {.notes = &notes});
   EXPECT_EQ(mesh.vertex_count(), 10);
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 3, 1, 2, 4, 5, 6, 7, 8, 6, 7, 9}));
   EXPECT_EQ(std::get<std::vector<std::int64_t>>(find_array(mesh, "part", Association::cells)->values),

@@ -3,8 +3,8 @@
 
 #include "base/point.hpp"
 #include "kernels/simplices.hpp"
-#include "mesh/cells.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
 
 #include <algorithm>
 #include <functional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 #include <meshorder/permutation.hpp>
 
 #include <array>

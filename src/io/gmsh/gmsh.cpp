@@ -258,7 +258,7 @@ void finish(ReadContext& reading) {
   mesh.format_metadata = std::make_shared<Metadata>(std::move(reading.metadata));
 }
 
-Mesh read(const std::filesystem::path& path, Notes& notes) {
+Mesh read(const FilePath& path, Notes& notes) {
   ReadContext reading{NumberReader(path), {}, {}, {}, {}, {}, notes};
   Scanner& in = reading.source.scanner;
   while (!in.at_end()) {
@@ -280,7 +280,7 @@ Mesh read(const std::filesystem::path& path, Notes& notes) {
 // ---- writing
 
 /// Returns the type of every cell; throws Error for a cell that Gmsh does not have.
-std::vector<const ElementType*> types_of_cells(const Mesh& mesh, const std::filesystem::path& path) {
+std::vector<const ElementType*> types_of_cells(const Mesh& mesh, const FilePath& path) {
   require_supported_cells(
       mesh, path, "Gmsh", [](Shape shape, int nodes) { return find_type(shape, nodes) != nullptr; },
       "write another format, or split such cells into triangles and quads");
@@ -432,7 +432,7 @@ void write_section(NumberWriter& sink, const WriteContext& output, const Section
   sink.out.print("$End{}\n", section.name);
 }
 
-void write(const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
+void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   const bool keeps_layout = own && still_fits(mesh, *own);
   Metadata layout = keeps_layout ? *own : Metadata{};

@@ -5,7 +5,7 @@
 #include "io/stream/id_map.hpp"
 #include "io/stream/number_reader.hpp"
 #include "io/stream/output_file.hpp"
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <array>
 #include <bit>

@@ -16,8 +16,6 @@
 namespace meshorder::medit {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// The order of the sections, the cells of each and the position of each cell.
 struct Layout {
   std::array<std::vector<Index>, kCellKinds.size()> cells;
@@ -198,7 +196,7 @@ bool holds(Shape shape, int vertices) { return kind_of(shape, vertices) < kCellK
 
 }  // namespace
 
-void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
+void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   require_supported_cells(mesh, path, "Medit", holds, "write .msh, .vtu or .vtk instead");
   const WriteContext from{mesh, dynamic_cast<const Metadata*>(mesh.format_metadata.get()), layout_of(mesh),
                           labels_of(mesh, Association::vertices), labels_of(mesh, Association::cells)};

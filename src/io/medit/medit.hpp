@@ -116,9 +116,9 @@ std::vector<std::vector<int>> reference_nodes(Shape shape);
 std::size_t counted_kind(Shape target, std::span<const Index> counts);
 
 /// Notes a file of solutions beside the mesh.
-void note_solutions(const std::filesystem::path& path, std::string_view what, Notes& notes);
+void note_solutions(const FilePath& path, std::string_view what, Notes& notes);
 
-Mesh read(const std::filesystem::path& path, Notes& notes);
-void write(const Mesh& mesh, const std::filesystem::path& path, Notes& notes);
+Mesh read(const FilePath& path, Notes& notes);
+void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
 }  // namespace meshorder::medit

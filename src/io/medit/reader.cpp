@@ -17,8 +17,6 @@
 namespace meshorder::medit {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr char kComment = '#';
 
 /// A section that refers to no vertices or cells and is kept verbatim.
@@ -68,7 +66,7 @@ struct Pending {
 
 class Reader {
  public:
-  Reader(const fs::path& path, Notes& notes) : in_(path, kComment), notes_(notes) {}
+  Reader(const FilePath& path, Notes& notes) : in_(path, kComment), notes_(notes) {}
 
   Mesh read() {
     refuse_other_formats();
@@ -436,7 +434,7 @@ class Reader {
 
 }  // namespace
 
-Mesh read(const fs::path& path, Notes& notes) {
+Mesh read(const FilePath& path, Notes& notes) {
   note_solutions(path, "is not reordered: its values are in the original order", notes);
   return Reader(path, notes).read();
 }

@@ -104,13 +104,10 @@ std::size_t counted_kind(Shape target, std::span<const Index> counts) {
   return kCellKinds.size();
 }
 
-void note_solutions(const std::filesystem::path& path, std::string_view what, Notes& notes) {
+void note_solutions(const FilePath& path, std::string_view what, Notes& notes) {
   for (const char* extension : {".sol", ".solb"}) {
-    std::filesystem::path solutions = path;
-    solutions.replace_extension(extension);
-    std::error_code ignored;
-    if (std::filesystem::exists(solutions, ignored))
-      notes.push_back(solutions.string() + " " + std::string(what));
+    const FilePath solutions = path.companion(extension);
+    if (solutions.exists()) notes.push_back(solutions.string() + " " + std::string(what));
   }
 }
 

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/file_path.hpp"
 #include "io/stream/scanner.hpp"
 
 #include <bit>
@@ -14,7 +15,7 @@ namespace meshorder {
 /// Reads numbers that are text or binary, as the file's header says. Errors name the line of a text file, the
 /// byte of a binary one. `what` names the number in an error.
 struct NumberReader {
-  explicit NumberReader(const std::filesystem::path& path) : scanner(path) {}
+  explicit NumberReader(const FilePath& path) : scanner(path) {}
 
   /// Throws an Error at the current line or byte.
   [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;

@@ -24,21 +24,22 @@ struct OutputFile::Stream {
   fmt::memory_buffer buffer;
 };
 
-OutputFile::OutputFile(fs::path target) : target_(std::move(target)), stream_(std::make_unique<Stream>()) {
+OutputFile::OutputFile(FilePath target) : target_(std::move(target)), stream_(std::make_unique<Stream>()) {
+  if (target_.store() != nullptr) return;
+  const fs::path& path = target_.path();
   std::error_code code;
-  if (fs::is_directory(target_, code)) {
-    throw InputError(target_.string(), "is a folder", "give a file name for the output");
+  if (fs::is_directory(path, code)) {
+    throw InputError(path.string(), "is a folder", "give a file name for the output");
   }
-  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, code)) {
-    throw InputError(target_.string(), "its folder does not exist", "make " + folder.string() + " first");
+    throw InputError(path.string(), "its folder does not exist", "make " + folder.string() + " first");
   }
   // the process id keeps two runs with one target apart
-  temporary_ = folder / ("." + target_.stem().string() + ".tmp" + std::to_string(::getpid()) +
-                         target_.extension().string());
+  temporary_ =
+      folder / ("." + path.stem().string() + ".tmp" + std::to_string(::getpid()) + path.extension().string());
   stream_->file.open(temporary_, std::ios::binary | std::ios::trunc);
-  if (!stream_->file)
-    throw InputError(target_.string(), "cannot be written", "check the folder's permissions");
+  if (!stream_->file) throw InputError(path.string(), "cannot be written", "check the folder's permissions");
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
@@ -70,6 +71,7 @@ void OutputFile::integer(std::string_view before, std::int64_t value) {
 }
 
 void OutputFile::flush() {
+  if (target_.store() != nullptr) return;  // the buffer holds the whole file
   auto& [file, buffer] = *stream_;
   file.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
   buffer.clear();
@@ -86,8 +88,12 @@ void OutputFile::close() {
 void OutputFile::commit_all(std::span<OutputFile> files) {
   for (OutputFile& file : files) file.close();
   for (OutputFile& file : files) {
+    if (FileStore* const store = file.target_.store()) {
+      store->write(file.target(), fmt::to_string(file.stream_->buffer));
+      continue;
+    }
     std::error_code code;
-    fs::rename(file.temporary_, file.target_, code);
+    fs::rename(file.temporary_, file.target(), code);
     if (code)
       throw InputError(file.target_.string(), "cannot be replaced: " + code.message(), "check the target");
     file.temporary_.clear();

@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/file_path.hpp"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -15,11 +17,12 @@
 namespace meshorder {
 
 /// A file that appears complete or not at all: written to a temporary file beside its target, which `commit`
-/// renames into place. Without a commit the temporary is removed and the target stays unchanged.
+/// renames into place, or to memory, from where `commit` gives it to the target's store. Without a commit the
+/// temporary is removed and the target stays unchanged.
 class OutputFile {
  public:
   /// Throws Error if the folder does not exist or cannot be written, or the target is a folder.
-  explicit OutputFile(std::filesystem::path target);
+  explicit OutputFile(FilePath target);
   ~OutputFile();
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
@@ -45,8 +48,8 @@ class OutputFile {
     write({raw.data(), raw.size()});
   }
 
-  [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
-  /// Returns the path of the temporary file, for libraries that write by path (call `close` before they do).
+  [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_.path(); }
+  /// Returns the path of the temporary file on disk, for what writes by path (call `close` before).
   [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
 
   /// Writes what is buffered and closes the file. Throws Error if the disk is full.
@@ -63,7 +66,7 @@ class OutputFile {
   void print_all(fmt::string_view format, fmt::format_args args);
   void flush();
 
-  std::filesystem::path target_;
+  FilePath target_;
   std::filesystem::path temporary_;
   std::unique_ptr<Stream> stream_;
 };

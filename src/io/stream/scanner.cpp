@@ -20,23 +20,8 @@ std::string shown(std::string_view text) {
   return text.size() > 40 ? result + "…" : result;
 }
 
-Scanner::Scanner(const std::filesystem::path& path, char comment) : file_(path.string()), comment_(comment) {
-  std::error_code code;
-  const auto status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) throw InputError(file_, "no such file", "check the path");
-  if (std::filesystem::is_directory(status)) throw InputError(file_, "is a folder", "give a mesh file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(file_, "cannot be read", "check its permissions");
-  const auto size = std::filesystem::file_size(path, code);
-  if (!code) {
-    text_.resize(size);
-    stream.read(text_.data(), static_cast<std::streamsize>(size));
-    text_.resize(static_cast<std::size_t>(stream.gcount()));
-  } else {  // a pipe
-    text_.assign(std::istreambuf_iterator<char>(stream), {});
-  }
-  if (text_.empty()) throw InputError(file_, "is empty", "give a mesh file");
-}
+Scanner::Scanner(const FilePath& file, char comment)
+    : file_(file.string()), text_(file.read()), comment_(comment) {}
 
 void Scanner::seek(std::int64_t byte) {
   const auto target = std::min(static_cast<std::size_t>(byte), text_.size());

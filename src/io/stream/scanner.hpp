@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/index.hpp"
+#include "io/stream/file_path.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -23,7 +24,7 @@ namespace meshorder {
 class Scanner {
  public:
   /// Reads the whole file. Throws Error for a folder, an unreadable or an empty file.
-  explicit Scanner(const std::filesystem::path& path, char comment = '\0');
+  explicit Scanner(const FilePath& file, char comment = '\0');
 
   // ---- position
   [[nodiscard]] const std::string& file() const noexcept { return file_; }

@@ -18,7 +18,6 @@
 
 namespace meshorder {
 namespace {
-namespace fs = std::filesystem;
 using obj::kStates;
 using obj::Metadata;
 
@@ -41,7 +40,7 @@ std::vector<std::int32_t> cell_integers(const DataArray& array) {
 /// Writes one mesh: lists first, then cells in their order, with each state where it changes.
 class Writer {
  public:
-  Writer(const Mesh& mesh, const fs::path& path, Notes& notes)
+  Writer(const Mesh& mesh, const FilePath& path, Notes& notes)
       : mesh_(mesh),
         notes_(notes),
         native_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
@@ -313,7 +312,7 @@ class Writer {
   bool in_group_ = false;
 };
 
-void write_obj(const Mesh& mesh, const fs::path& path, Notes& notes) {
+void write_obj(const Mesh& mesh, const FilePath& path, Notes& notes) {
   require_supported_cells(mesh, path, "OBJ", obj_holds, "write .vtu or .msh");
   Writer(mesh, path, notes).write();
 }

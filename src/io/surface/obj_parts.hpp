@@ -2,7 +2,7 @@
 #pragma once
 
 #include "io/format.hpp"
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <array>
 #include <cstdint>
@@ -64,6 +64,6 @@ struct Metadata : FormatMetadata {
   }
 };
 
-Mesh read(const std::filesystem::path& path, Notes& notes);
+Mesh read(const FilePath& path, Notes& notes);
 
 }  // namespace meshorder::obj

@@ -95,7 +95,7 @@ struct List {
 
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& path) : scanner_(path) {}
+  explicit Reader(const FilePath& path) : scanner_(path) {}
 
   Mesh read() {
     while (scanner_.bytes_left() > 0) read_statement();
@@ -391,6 +391,6 @@ class Reader {
 
 }  // namespace
 
-Mesh read(const std::filesystem::path& path, Notes&) { return Reader(path).read(); }
+Mesh read(const FilePath& path, Notes&) { return Reader(path).read(); }
 
 }  // namespace meshorder::obj

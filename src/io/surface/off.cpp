@@ -19,7 +19,6 @@
 
 namespace meshorder {
 namespace {
-namespace fs = std::filesystem;
 
 struct OffMetadata : FormatMetadata {
   std::string comments;    ///< whole lines before the counts
@@ -225,7 +224,7 @@ void read_faces(Scanner& scanner, Index count, Mesh& mesh) {
   add_colors(std::move(colors), mesh);
 }
 
-Mesh read_off(const fs::path& path, Notes&) {
+Mesh read_off(const FilePath& path, Notes&) {
   Scanner scanner(path, '#');
   auto metadata = std::make_shared<OffMetadata>();
   take_comment_lines(scanner, metadata->comments);
@@ -341,7 +340,7 @@ void write_face_color(OutputFile& out, const Content& content, Index face) {
       array->values);
 }
 
-void write_off(const Mesh& mesh, const fs::path& path, Notes& notes) {
+void write_off(const Mesh& mesh, const FilePath& path, Notes& notes) {
   require_supported_cells(mesh, path, "OFF", off_holds, "write .vtu or .msh");
   const Content content = content_of(mesh);
   const auto* metadata = dynamic_cast<const OffMetadata*>(mesh.format_metadata.get());

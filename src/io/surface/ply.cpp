@@ -22,7 +22,6 @@
 
 namespace meshorder {
 namespace {
-namespace fs = std::filesystem;
 using ply::Element;
 using ply::Encoding;
 using ply::Metadata;
@@ -471,7 +470,7 @@ void note_losses(const Mesh& mesh, const std::vector<const DataArray*>& written,
   note_ids_unsupported(mesh, "PLY", notes);
 }
 
-void write_ply(const Mesh& mesh, const fs::path& path, Notes& notes) {
+void write_ply(const Mesh& mesh, const FilePath& path, Notes& notes) {
   require_supported_cells(mesh, path, "PLY", ply_holds, "write .vtu or .msh");
   const auto* metadata = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   const bool as_file = metadata && elements_fit(*metadata, mesh);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "io/format.hpp"
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -79,6 +79,6 @@ inline int end_of(const Property& property) {
   return property.name == "vertex1" ? 0 : property.name == "vertex2" ? 1 : -1;
 }
 
-Mesh read(const std::filesystem::path& path, Notes& notes);
+Mesh read(const FilePath& path, Notes& notes);
 
 }  // namespace meshorder::ply

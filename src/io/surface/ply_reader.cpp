@@ -326,7 +326,7 @@ std::int64_t min_bytes(const Element& element, const BodyReader& body) {
 
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& path) : body_(path) {
+  explicit Reader(const FilePath& path) : body_(path) {
     read_header(body_.scanner, *header_);
     body_.binary = header_->encoding != Encoding::ascii;
     body_.order = header_->encoding == Encoding::big_endian ? std::endian::big : std::endian::little;
@@ -508,6 +508,6 @@ class Reader {
 
 }  // namespace
 
-Mesh read(const std::filesystem::path& path, Notes&) { return Reader(path).read(); }
+Mesh read(const FilePath& path, Notes&) { return Reader(path).read(); }
 
 }  // namespace meshorder::ply

@@ -23,7 +23,6 @@
 
 namespace meshorder {
 namespace {
-namespace fs = std::filesystem;
 
 constexpr std::size_t kHeaderBytes = 80;
 constexpr std::int64_t kTriangleBytes = 50;
@@ -236,7 +235,7 @@ Mesh read_ascii(Scanner& scanner, StlMetadata& metadata, Notes& notes) {
   return std::move(mesh);
 }
 
-Mesh read_stl(const fs::path& path, Notes& notes) {
+Mesh read_stl(const FilePath& path, Notes& notes) {
   Scanner scanner(path);
   auto metadata = std::make_shared<StlMetadata>();
   const auto size = static_cast<std::int64_t>(scanner.all().size());
@@ -358,7 +357,7 @@ void write_ascii(const Mesh& mesh, const StlMetadata* metadata, const std::vecto
   }
 }
 
-void write_stl(const Mesh& mesh, const fs::path& path, Notes& notes) {
+void write_stl(const Mesh& mesh, const FilePath& path, Notes& notes) {
   require_supported_cells(mesh, path, "STL", stl_holds, "STL has triangles only; write .off, .vtu or .msh");
   // meshes of other formats are written as text, which keeps every bit
   const auto* metadata = dynamic_cast<const StlMetadata*>(mesh.format_metadata.get());

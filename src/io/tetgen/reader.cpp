@@ -18,8 +18,6 @@
 namespace meshorder::tetgen {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr char kComment = '#';
 
 /// The content of one file of cells.
@@ -379,7 +377,7 @@ void set_blocks(ReadContext& to) {
   }
 }
 
-void read_cell_file(const fs::path& path, File file, ReadContext& to, Notes& notes) {
+void read_cell_file(const FilePath& path, File file, ReadContext& to, Notes& notes) {
   Scanner in(path, kComment);
   const int nodes_in_ele = to.metadata->nodes_in_ele;
   if (file == kFace && (to.mesh.dimension == 2 || nodes_in_ele == 3 || nodes_in_ele == 6)) {
@@ -396,12 +394,12 @@ void read_cell_file(const fs::path& path, File file, ReadContext& to, Notes& not
 
 }  // namespace
 
-Mesh read(const fs::path& path, Notes& notes) {
-  if (!is_there(path)) throw InputError(path.string(), "no such file", "check the path");
-  const fs::path node_path = beside(path, ".node");
-  if (!is_there(node_path)) {
+Mesh read(const FilePath& path, Notes& notes) {
+  if (!path.exists()) throw InputError(path.string(), "no such file", "check the path");
+  const FilePath node_path = path.companion(".node");
+  if (!node_path.exists()) {
     throw InputError(path.string(), "has no .node file beside it",
-                     node_path.filename().string() + " is needed");
+                     node_path.path().filename().string() + " is needed");
   }
 
   ReadContext reading;
@@ -411,8 +409,8 @@ Mesh read(const fs::path& path, Notes& notes) {
     end_file(in, reading.metadata->parts[kNode], notes);
   }
   for (const File file : kCellFiles) {
-    const fs::path cell_path = beside(path, kExtensions[file]);
-    if (is_there(cell_path)) read_cell_file(cell_path, file, reading, notes);
+    const FilePath cell_path = path.companion(kExtensions[file]);
+    if (cell_path.exists()) read_cell_file(cell_path, file, reading, notes);
   }
   if (reading.mesh.cell_count() == 0) {
     throw InputError(path.string(), "has no cells",

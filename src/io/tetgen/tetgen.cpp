@@ -18,26 +18,16 @@
 #include <utility>
 
 namespace meshorder::tetgen {
-namespace fs = std::filesystem;
-
-fs::path beside(const fs::path& path, std::string_view extension) {
-  if (same_but_for_case(path.extension().string(), extension)) return path;
-  fs::path result = path;
-  return result.replace_extension(extension);
-}
-
-bool is_there(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
 
 namespace {
 
 /// Returns whether a .poly or .smesh file has no points of its own but refers to those of the .node file.
-bool refers_to_points(const fs::path& path) {
-  std::ifstream in(path);
-  for (std::string line; std::getline(in, line);) {
-    std::string_view rest = line;
+bool refers_to_points(const FilePath& path) {
+  const std::string text = path.is_empty() ? std::string() : path.read();
+  std::string_view lines = text;
+  while (!lines.empty()) {
+    std::string_view rest = lines.substr(0, lines.find('\n'));
+    lines.remove_prefix(std::min(rest.size() + 1, lines.size()));
     const std::string_view word = next_word(rest, " \t\r");
     if (!word.empty() && word.front() != '#') return word == "0";
   }
@@ -46,12 +36,12 @@ bool refers_to_points(const fs::path& path) {
 
 }  // namespace
 
-void note_other_companions(const fs::path& path, std::string_view what, Notes& notes) {
+void note_other_companions(const FilePath& path, std::string_view what, Notes& notes) {
   for (const std::string_view extension :
        {".neigh", ".t2f", ".t2e", ".f2e", ".f2t", ".p2t", ".mtr", ".vol", ".var", ".area", ".v.node",
         ".v.edge", ".v.face", ".v.cell", ".poly", ".smesh"}) {
-    const fs::path other = beside(path, extension);
-    if (!is_there(other)) continue;
+    const FilePath other = path.companion(extension);
+    if (!other.is_file()) continue;
     const bool surface = extension == ".poly" || extension == ".smesh";
     if (!surface || refers_to_points(other)) notes.push_back(fmt::format("{} {}", other.string(), what));
   }
@@ -74,7 +64,7 @@ bool holds(Shape shape, int vertices) {
          (shape == Shape::line && (vertices == 2 || vertices == 3));
 }
 
-Layout layout_of(const Mesh& mesh, const Metadata& metadata, const fs::path& path) {
+Layout layout_of(const Mesh& mesh, const Metadata& metadata, const FilePath& path) {
   const auto& shapes = mesh.cells.shapes;
   const bool solid = std::find(shapes.begin(), shapes.end(), Shape::tetrahedron) != shapes.end();
   Layout layout;
@@ -106,14 +96,14 @@ Layout layout_of(const Mesh& mesh, const Metadata& metadata, const fs::path& pat
 }
 
 /// Fails if a file of an earlier mesh would be read as part of this one.
-void refuse_leftovers(const Layout& layout, const Metadata& metadata, const fs::path& path) {
+void refuse_leftovers(const Layout& layout, const Metadata& metadata, const FilePath& path) {
   for (const File file : kCellFiles) {
-    const fs::path other = beside(path, kExtensions[file]);
-    if (!layout.cells[file].empty() || metadata.parts[file].present || !is_there(other)) continue;
-    throw InputError(
-        path.string(),
-        fmt::format("{} is beside it and would be read as part of this mesh", other.filename().string()),
-        "remove that file or choose another name");
+    const FilePath other = path.companion(kExtensions[file]);
+    if (!layout.cells[file].empty() || metadata.parts[file].present || !other.exists()) continue;
+    throw InputError(path.string(),
+                     fmt::format("{} is beside it and would be read as part of this mesh",
+                                 other.path().filename().string()),
+                     "remove that file or choose another name");
   }
 }
 
@@ -283,7 +273,7 @@ void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes&
 
 }  // namespace
 
-void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
+void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const Metadata standard;
   const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   require_supported_cells(mesh, path, "TetGen", holds, "write .msh, .vtu or .mesh instead");
@@ -301,7 +291,7 @@ void write(const Mesh& mesh, const fs::path& path, Notes& notes) {
   for (const File file : {kNode, kEle, kFace, kEdge}) {
     const Metadata::Part& part = from.metadata.parts[file];
     if (file != kNode && !part.present && from.layout.cells[file].empty()) continue;
-    OutputFile& out = files.emplace_back(beside(path, kExtensions[file]));
+    OutputFile& out = files.emplace_back(path.companion(kExtensions[file]));
     out.write(part.comments_before);
     if (file == kNode) {
       write_points(out, from, notes);

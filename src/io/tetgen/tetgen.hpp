@@ -53,17 +53,10 @@ inline std::span<const int> places(File file, int nodes, bool faces_name_opposit
   return {(opposite ? kTriangleOpposite : kTriangle).data(), static_cast<std::size_t>(nodes)};
 }
 
-/// Returns the path of a companion, "mesh.ele" for "mesh.node"; `path` itself if it has this extension (in
-/// any case).
-std::filesystem::path beside(const std::filesystem::path& path, std::string_view extension);
-
-/// Returns whether the path exists; false also if the system denies access.
-bool is_there(const std::filesystem::path& path);
-
 /// Notes files beside `path` that refer to the points or cells of the mesh but are not rewritten.
-void note_other_companions(const std::filesystem::path& path, std::string_view what, Notes& notes);
+void note_other_companions(const FilePath& path, std::string_view what, Notes& notes);
 
-Mesh read(const std::filesystem::path& path, Notes& notes);
-void write(const Mesh& mesh, const std::filesystem::path& path, Notes& notes);
+Mesh read(const FilePath& path, Notes& notes);
+void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
 }  // namespace meshorder::tetgen

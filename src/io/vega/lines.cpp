@@ -6,11 +6,10 @@
 #include <system_error>
 
 namespace meshorder {
-namespace fs = std::filesystem;
 
-VegaLines::VegaLines(const fs::path& path) : folder_(path.parent_path()) { open(path); }
+VegaLines::VegaLines(const FilePath& path) : main_(path) { open(path); }
 
-void VegaLines::open(const fs::path& path) { files_.push_back({path, std::make_unique<Scanner>(path)}); }
+void VegaLines::open(const FilePath& path) { files_.push_back({path, std::make_unique<Scanner>(path)}); }
 
 bool VegaLines::peek(std::string_view& line) {
   while (true) {
@@ -35,14 +34,13 @@ bool VegaLines::peek(std::string_view& line) {
 void VegaLines::include(const std::string& name) {
   if (name.empty()) at().fail("*INCLUDE names no file", "write *INCLUDE and a file name");
   // beside the file that includes it or, as Vega itself looks, beside the main file
-  std::error_code code;
-  fs::path path = files_.back().path.parent_path() / name;
-  if (!fs::exists(path, code)) path = folder_ / name;
-  if (!fs::is_regular_file(path, code)) {
+  FilePath path = files_.back().path.beside(name);
+  if (!path.exists()) path = main_.beside(name);
+  if (!path.is_file()) {
     at().fail("the included file '" + name + "' does not exist", "put it beside this file");
   }
   for (const OpenFile& file : files_) {
-    if (fs::equivalent(file.path, path, code)) {
+    if (file.path.is_same(path)) {
       at().fail("the included file '" + name + "' includes itself", "remove the circle");
     }
   }
@@ -50,7 +48,7 @@ void VegaLines::include(const std::string& name) {
   if (included_.size() == kMost) at().fail("more than 10000 files are included", "join them");
   included_.push_back(name);
   take();
-  if (fs::file_size(path, code) > 0) open(path);
+  if (!path.is_empty()) open(path);
 }
 
 }  // namespace meshorder

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/file_path.hpp"
 #include "io/stream/scanner.hpp"
 
 #include <filesystem>
@@ -15,7 +16,7 @@ namespace meshorder {
 /// The lines of a Vega file and, in place, of the files that it includes, without comments and blank lines.
 class VegaLines {
  public:
-  explicit VegaLines(const std::filesystem::path& path);
+  explicit VegaLines(const FilePath& path);
 
   /// Gives the next line, trimmed, without taking it; returns false at the end. The line is valid until the
   /// next peek.
@@ -33,14 +34,14 @@ class VegaLines {
 
  private:
   struct OpenFile {
-    std::filesystem::path path;
+    FilePath path;
     std::unique_ptr<Scanner> scanner;
   };
 
-  void open(const std::filesystem::path& path);
+  void open(const FilePath& path);
   void include(const std::string& name);
 
-  std::filesystem::path folder_;
+  FilePath main_;
   std::vector<OpenFile> files_;
   std::string comments_;
   std::vector<std::string> included_;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "io/format.hpp"
-#include "mesh/mesh.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -57,6 +57,6 @@ struct Metadata : FormatMetadata {
 /// regions.
 std::vector<std::int32_t> region_numbers(const Metadata& metadata, const Mesh& mesh);
 
-Mesh read(const std::filesystem::path& path, Notes& notes);
+Mesh read(const FilePath& path, Notes& notes);
 
 }  // namespace meshorder::vega

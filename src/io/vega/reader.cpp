@@ -22,7 +22,7 @@ std::string_view without_comment(std::string_view line) { return line.substr(0, 
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& path, Notes& notes) : lines_(path), notes_(notes) {
+  Reader(const FilePath& path, Notes& notes) : lines_(path), notes_(notes) {
     if (lines_.at().all().find('\0') != std::string_view::npos) {
       throw InputError(path.string(), "is a binary Vega file", "save it as text (.veg)");
     }
@@ -375,6 +375,6 @@ std::vector<std::int32_t> region_numbers(const Metadata& metadata, const Mesh& m
   return numbers;
 }
 
-Mesh read(const std::filesystem::path& path, Notes& notes) { return Reader(path, notes).read(); }
+Mesh read(const FilePath& path, Notes& notes) { return Reader(path, notes).read(); }
 
 }  // namespace meshorder::vega

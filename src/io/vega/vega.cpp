@@ -18,7 +18,6 @@
 
 namespace meshorder {
 namespace {
-namespace fs = std::filesystem;
 using vega::Kind;
 using vega::Metadata;
 using vega::Section;
@@ -30,7 +29,7 @@ bool vega_holds(Shape shape, int vertices) {
 /// Writes one mesh; the sections of a Vega file in their order, those of other meshes in the usual one.
 class Writer {
  public:
-  Writer(const Mesh& mesh, const fs::path& path, Notes& notes)
+  Writer(const Mesh& mesh, const FilePath& path, Notes& notes)
       : mesh_(mesh),
         notes_(notes),
         native_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
@@ -250,7 +249,7 @@ class Writer {
   std::vector<EntitySet> label_sets_;
 };
 
-void write_vega(const Mesh& mesh, const fs::path& path, Notes& notes) {
+void write_vega(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const std::string remedy = "write .vtu or .msh";
   require_supported_cells(mesh, path, "Vega", vega_holds, remedy);
   for (Index c = 1; c < mesh.cell_count(); ++c) {

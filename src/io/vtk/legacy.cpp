@@ -72,7 +72,7 @@ bool fits_polydata(const Cells& cells, const std::vector<std::uint8_t>& types) {
 
 class Writer {
  public:
-  Writer(const Mesh& mesh, const std::filesystem::path& path, Notes& notes)
+  Writer(const Mesh& mesh, const FilePath& path, Notes& notes)
       : from_(mesh, path, notes), layout_(from_.metadata.legacy.value_or(LegacyLayout{})), out_(path) {}
 
   void write() {
@@ -396,9 +396,7 @@ class Writer {
   bool offsets_ = false;  // cells by their offsets, as from version 5 on
 };
 
-void write_legacy(const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
-  Writer(mesh, path, notes).write();
-}
+void write_legacy(const Mesh& mesh, const FilePath& path, Notes& notes) { Writer(mesh, path, notes).write(); }
 
 }  // namespace
 }  // namespace meshorder::vtk

@@ -23,7 +23,7 @@ std::string percent_decoded(std::string_view text);
 /// Reads words, counts and arrays of a legacy file, text or binary.
 class LegacyInput : public NumberReader {
  public:
-  explicit LegacyInput(const std::filesystem::path& path) : NumberReader(path) { order = std::endian::big; }
+  explicit LegacyInput(const FilePath& path) : NumberReader(path) { order = std::endian::big; }
 
   /// Makes the Error for a fault in a section that began at that line.
   [[nodiscard]] InputError section_error(std::int64_t line, const std::string& what,

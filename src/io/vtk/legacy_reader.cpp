@@ -24,7 +24,7 @@ constexpr int kLastVersion = 51;
 
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& path) : in_(path) {}
+  explicit Reader(const FilePath& path) : in_(path) {}
 
   Mesh read(Notes& notes) {
     read_header();
@@ -421,6 +421,6 @@ class Reader {
 
 }  // namespace
 
-Mesh read_legacy(const std::filesystem::path& path, Notes& notes) { return Reader(path).read(notes); }
+Mesh read_legacy(const FilePath& path, Notes& notes) { return Reader(path).read(notes); }
 
 }  // namespace meshorder::vtk

@@ -158,7 +158,7 @@ void add_array(Mesh& mesh, DataArray array) {
   mesh.data.push_back(std::move(array));
 }
 
-WriteContext::WriteContext(const Mesh& written, const std::filesystem::path& path, Notes& warnings)
+WriteContext::WriteContext(const Mesh& written, const FilePath& path, Notes& warnings)
     : mesh(written),
       notes(warnings),
       metadata(metadata_of(mesh, notes)),

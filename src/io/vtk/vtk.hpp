@@ -3,8 +3,8 @@
 
 #include "io/format.hpp"
 #include "io/vtu.hpp"
-#include "mesh/mesh.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
 
 #include <array>
 #include <cstddef>
@@ -196,8 +196,8 @@ void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& ty
 /// from 1) become the set NAME.
 void add_array(Mesh& mesh, DataArray array);
 
-Mesh read_legacy(const std::filesystem::path& path, Notes& notes);
-Mesh read_vtu(const std::filesystem::path& path, Notes& notes);
+Mesh read_legacy(const FilePath& path, Notes& notes);
+Mesh read_vtu(const FilePath& path, Notes& notes);
 
 // ---- writing
 
@@ -207,7 +207,7 @@ Mesh read_vtu(const std::filesystem::path& path, Notes& notes);
 /// arrays "vertex_id" and "cell_id"; all of it noted. O(size of the arrays that are made).
 struct WriteContext {
   /// Throws Error for cells that VTK's formats do not have.
-  WriteContext(const Mesh& written, const std::filesystem::path& path, Notes& warnings);
+  WriteContext(const Mesh& written, const FilePath& path, Notes& warnings);
 
   /// Returns the cells in VTK's order of vertices; of VTK before version 9 if `old_hexahedra`. The result
   /// belongs to the mesh or to this object.
@@ -230,6 +230,6 @@ struct WriteContext {
   Cells changed_;
 };
 
-void write_vtu(const Mesh& mesh, const std::filesystem::path& path, Notes& notes);
+void write_vtu(const Mesh& mesh, const FilePath& path, Notes& notes);
 
 }  // namespace meshorder::vtk

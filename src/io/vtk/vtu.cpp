@@ -55,7 +55,7 @@ struct Section {
 
 class Writer {
  public:
-  Writer(const Mesh& mesh, const std::filesystem::path& path, Notes& notes)
+  Writer(const Mesh& mesh, const FilePath& path, Notes& notes)
       : from_(mesh, path, notes), encoding_(from_.metadata.vtu.value_or(VtuEncoding{})), out_(path) {}
 
   void write() {
@@ -404,9 +404,7 @@ class Writer {
 
 }  // namespace
 
-void write_vtu(const Mesh& mesh, const std::filesystem::path& path, Notes& notes) {
-  Writer(mesh, path, notes).write();
-}
+void write_vtu(const Mesh& mesh, const FilePath& path, Notes& notes) { Writer(mesh, path, notes).write(); }
 
 }  // namespace meshorder::vtk
 

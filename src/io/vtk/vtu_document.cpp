@@ -77,7 +77,7 @@ const VtuElement* VtuElement::child(std::string_view wanted) const {
   return found == children.end() ? nullptr : &*found;
 }
 
-VtuDocument::VtuDocument(const std::filesystem::path& path) : scanner_(path) {
+VtuDocument::VtuDocument(const FilePath& path) : scanner_(path) {
   parse();
   read_root();
 }

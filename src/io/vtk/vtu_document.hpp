@@ -34,7 +34,7 @@ struct VtuElement {
 class VtuDocument {
  public:
   /// Throws Error for a file that is not XML, ends early or is not of the type UnstructuredGrid.
-  explicit VtuDocument(const std::filesystem::path& path);
+  explicit VtuDocument(const FilePath& path);
 
   [[nodiscard]] const VtuElement& root() const noexcept { return root_; }
   [[nodiscard]] const VtuEncoding& encoding() const noexcept { return encoding_; }

@@ -31,7 +31,7 @@ void append(Values& values, Values more) {
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& path, Notes& notes) : file_(path), notes_(notes) {}
+  Reader(const FilePath& path, Notes& notes) : file_(path), notes_(notes) {}
 
   Mesh read() {
     const VtuElement* grid = file_.root().child("UnstructuredGrid");
@@ -323,6 +323,6 @@ class Reader {
 
 }  // namespace
 
-Mesh read_vtu(const std::filesystem::path& path, Notes& notes) { return Reader(path, notes).read(); }
+Mesh read_vtu(const FilePath& path, Notes& notes) { return Reader(path, notes).read(); }
 
 }  // namespace meshorder::vtk

@@ -22,9 +22,12 @@
 namespace meshorder {
 inline namespace v0_2 {
 
-/// Cells of any types in file order: cell c has shape `shapes[c]` and the vertices
-/// `vertices[offsets[c]] … vertices[offsets[c + 1] − 1]`, in the order that `Shape` tells. Cells of more than
-/// second order keep the order of the file that they came from.
+/// Cells of any types, mixed, in file order: cell c has shape `shapes[c]` and the vertices
+/// `vertices[offsets[c]] … vertices[offsets[c + 1] − 1]`.
+///
+/// Corners come first, in VTK's order except for linear wedges: the first triangle of every wedge faces
+/// inward, as in Gmsh. In second-order cells follow the nodes of edges, faces and interior, in VTK's order
+/// for the types that VTK has. Higher orders keep the order of the file they came from.
 struct MESHORDER_API Cells {
   std::vector<Shape> shapes;
   std::vector<Offset> offsets{0};  ///< cells + 1, ascending
@@ -68,8 +71,8 @@ using Values = std::variant<std::vector<double>, std::vector<float>, std::vector
                             std::vector<std::int32_t>, std::vector<std::uint32_t>, std::vector<std::int64_t>,
                             std::vector<std::uint64_t>, std::vector<std::string>>;
 
-/// Array name of the integer label of vertices or cells. Formats translate their own label field to and from
-/// it: a Medit reference, a TetGen boundary marker, the first physical group of Gmsh.
+/// Name of the array of integer labels, one for each vertex or cell. Formats translate their own label to and
+/// from it: a Medit reference, a TetGen boundary marker, the first physical group of Gmsh.
 inline constexpr std::string_view kLabel = "label";
 
 /// Values that belong to vertices or cells, `components` for each, row after row.
@@ -97,7 +100,7 @@ struct EntitySet {
   bool operator==(const EntitySet&) const = default;
 };
 
-/// Format-specific data, preserved for writing the same format again: materials, encodings, whole sections of
+/// Data that only one format has, kept by its reader for its writer: materials, encodings, whole sections of
 /// text. Must not depend on the order of vertices or cells. Only the formats of this library derive from it.
 class MESHORDER_API FormatMetadata {
  public:
@@ -107,13 +110,12 @@ class MESHORDER_API FormatMetadata {
   FormatMetadata& operator=(const FormatMetadata&) = default;
   FormatMetadata& operator=(FormatMetadata&&) = default;
   virtual ~FormatMetadata() = default;
-  /// Returns what is lost when another format is written, in a user's words: {"2 materials", "the section
-  /// $Periodic"}.
+  /// Lists, in a user's words, the parts that another format loses: {"2 materials", "Gmsh's $Periodic"}.
   [[nodiscard]] virtual std::vector<std::string> contents() const = 0;
 };
 
-/// A simulation mesh with everything that its file attached to it. Plain data: whoever changes one member
-/// keeps the others in step; `check_mesh` verifies it.
+/// A simulation mesh with the arrays, sets and ids of its file. Plain data: who changes one member keeps the
+/// others in step; `check_mesh` verifies it.
 struct Mesh {
   std::vector<Point> points = {};  ///< one for each vertex; the third coordinate is 0 where the file has two
   int dimension = 3;               ///< coordinates that the file gives to a point: 2 or 3
@@ -127,7 +129,7 @@ struct Mesh {
   /// The first cell of each block of cells that the format keeps together (Gmsh 4.1's entities), ascending
   /// from 0; empty for one block. Reordering keeps every cell in its block.
   std::vector<Index> cell_blocks = {};
-  std::string format = {};  ///< name of the format that it was read from; empty for a mesh made in memory
+  std::string format = {};  ///< that it was read from, "gmsh"; empty for a mesh made in memory
   std::shared_ptr<const FormatMetadata> format_metadata = {};
 
   [[nodiscard]] Index vertex_count() const noexcept { return static_cast<Index>(points.size()); }
@@ -142,31 +144,35 @@ MESHORDER_API const DataArray* find_array(const Mesh& mesh MESHORDER_LIFETIMEBOU
                                           Association association);
 const DataArray* find_array(const Mesh&& mesh, std::string_view name, Association association) = delete;
 
-/// Checks that a mesh is sound: every cell has vertices that exist and as many as its shape needs,
-/// coordinates are finite, arrays have as many rows as what they belong to (or indices that exist), members
-/// of sets exist, ids and blocks fit.
+/// Checks that the members of a mesh are consistent: coordinates are finite, every cell has as many vertices
+/// as its shape has corners, and all exist, every array has one row for each vertex or cell (or for each of
+/// its existing indices), members of sets exist, ids and blocks fit.
 ///
 /// @throws InvalidArgument for the first fault, which the message names
 /// @note O(size of the mesh).
 MESHORDER_API void check_mesh(const Mesh& mesh);
 
-/// Views the points and cells of a mesh; nothing is copied. Valid until either changes its size. O(1).
+/// Views the points and cells of a mesh, without its blocks of cells; nothing is copied. Valid until either
+/// changes its size. O(1).
 [[nodiscard]] MESHORDER_API MeshView view(const Mesh& mesh MESHORDER_LIFETIMEBOUND);
 MeshView view(const Mesh&& mesh) = delete;
 
 /// Copies a view into a mesh without data, sets and ids. Blocks become `cell_blocks`.
 ///
 /// @throws InvalidArgument for sizes that do not match, a vertex out of range, an unknown VTK type, and cells
-/// without
-///         types
+///         without types
 /// @note O(size of the mesh).
 [[nodiscard]] MESHORDER_API Mesh make_mesh(const MeshView& mesh);
 
-/// What becomes of the ids of vertices and cells.
+/// Name of the arrays that `Ids::attach` adds.
+inline constexpr std::string_view kOriginal = "original";
+
+/// What becomes of the ids of vertices and cells. An order that moves no vertex leaves the ids of vertices as
+/// they are; likewise for cells.
 enum class Ids : std::uint8_t {
   renumber,  ///< the same numbers, ascending along the new order (cells: within each dimension of each block)
   keep,      ///< every vertex and cell keeps its id, so that other files that name it stay valid
-  attach,    ///< as `renumber`, and each old id, or old position from 0, is attached as the array "original"
+  attach,    ///< as `renumber`; the arrays `kOriginal` hold the old ids, or old positions from 0
 };
 
 /// Options of `reorder`.
@@ -179,32 +185,34 @@ struct ReorderOptions {
   /// and "vertices:NAME" tell arrays of one name apart; "sets" groups by the sets of cells. Empty: no groups.
   std::string group_by = {};
   /// Name of the format that the mesh will be written in: one that keeps cells of a type together gets them
-  /// so before they are ordered. Empty: the one that it was read from.
+  /// so before they are ordered. Empty: `Mesh::format`.
   std::string format = {};
 };
 
-/// Orders a mesh and moves its vertices and cells, with everything attached to them.
+/// Orders a mesh and moves its vertices and cells, together with all that belongs to them.
 ///
-/// @param mesh     changed in place; unchanged after an exception
+/// @param mesh     changed in place; unchanged after an exception other than std::bad_alloc
 /// @param options  see `ReorderOptions`
-/// @return where everything went: `cells.permutation` holds all moves of cells, those for the format among
-/// them, so
-///         that it describes the file that `write_mesh` makes. An identity order changes nothing, not even
-///         ids
-/// @throws as `order_mesh`, and InvalidArgument for a mesh that `check_mesh` refuses, an unknown array or
-/// format
-/// @note Cost of `order_mesh`, then O(size of the mesh) and a copy of its largest part at a time.
+/// @return the new places. `cells.permutation` holds all moves of cells, those for the format among them, so
+///         that it describes the file that `write_mesh` makes
+/// @throws as `order_mesh`, and InvalidArgument for a mesh that `check_mesh` refuses and for an unknown array
+///         or format
+/// @note Cost of `order_mesh`, then O(size of the mesh) and a copy of its largest part at a time; where cells
+///       move for the format, a copy of the mesh.
 MESHORDER_API MeshOrder reorder(Mesh& mesh, const ReorderOptions& options = {});
 
-/// Moves the vertices and cells of a mesh to given places, with everything attached to them: cells name their
-/// renumbered vertices, arrays and sets follow.
+/// Moves the vertices and cells of a mesh to given places, together with all that belongs to them: cells name
+/// the renumbered vertices, arrays and sets follow their vertices and cells.
 ///
-/// @param mesh      changed in place; unchanged after an exception
+/// @param mesh      a mesh that `check_mesh` accepts, changed in place; unchanged after an exception other
+///                  than std::bad_alloc
 /// @param vertices  vertex_count() places
 /// @param cells     cell_count() places; keeps each cell in its block and at the place of a cell of its
-/// dimension
+///                  dimension
 /// @param ids       what becomes of ids
-/// @throws InvalidArgument if a size does not match or `cells` breaks that rule
+/// @throws InvalidArgument if a size does not match, if `cells` breaks that rule, and for `Ids::attach` if
+/// the
+///         mesh has an array "original" already
 /// @note O(size of the mesh); a copy of its largest part at a time.
 MESHORDER_API void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells,
                                     Ids ids = Ids::renumber);

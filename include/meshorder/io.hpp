@@ -18,8 +18,7 @@
 namespace meshorder {
 inline namespace v0_2 {
 
-/// Warnings of a reader or writer, a sentence each: what was dropped, repaired or looks wrong. The library
-/// never prints.
+/// Warnings of a reader or writer: what was dropped, repaired or looks wrong. The library never prints.
 using Notes = std::vector<std::string>;
 
 /// Description of a file format.
@@ -28,7 +27,6 @@ struct FormatInfo {
   std::vector<std::string> extensions = {};  ///< lower case, with the dot
   bool single_file = true;                   ///< false for formats of several files (TetGen)
   bool groups_cells_by_type = false;         ///< cells of a type stand together in the file
-  std::vector<std::string> keeps = {};  ///< what of a mesh it holds: "points", "cell data", "sets", "ids", …
 };
 
 /// Lists the formats of this build, in the order in which help shows them.
@@ -37,12 +35,12 @@ struct FormatInfo {
 /// Options of `read_mesh`.
 struct ReadOptions {
   std::string format = {};  ///< name of the format; empty: by the extension, in memory by the first bytes
-  std::string name = "<memory>";  ///< for messages about bytes and streams
-  /// For formats of several files in memory: returns the bytes of the file of that name. An exception passes
-  /// through.
+  std::string name = {};    ///< of bytes and streams in messages; its extension is not looked at
+  /// For formats of several files in memory: returns the bytes of the file of that name, none where there is
+  /// no such file. An exception passes through.
   std::function<std::string(std::string_view name)> companion = {};
   Notes* notes = nullptr;  ///< receives warnings; null: they are dropped
-  Run run = {};            ///< threads, progress
+  Run run = {};            ///< `threads`; readers report no progress
 };
 
 /// Reads a mesh from a file.
@@ -50,30 +48,30 @@ struct ReadOptions {
 /// @param path     the file; for formats of several, any of them
 /// @param options  see `ReadOptions`
 /// @return a mesh with at least one cell that `check_mesh` accepts
-/// @throws InputError for a file that is missing, faulty or without cells, with place and remedy, and for an
-/// unknown
-///         extension or format, with the known ones
-/// @throws TooLarge for more than 2,147,483,647 vertices or cells
+/// @throws InputError for a file that is missing, faulty or without cells, with place and remedy; for more
+/// than
+///         2,147,483,647 vertices or cells; for an unknown extension, with the known ones
+/// @throws InvalidArgument for an unknown format, with the known ones
 /// @throws Unavailable for a compression that this build lacks
-/// @throws Stopped if the progress callback returned false
 [[nodiscard]] MESHORDER_API Mesh read_mesh(const std::filesystem::path& path,
                                            const ReadOptions& options = {});
 
 /// Reads a mesh from the bytes of a file; throws likewise. Nothing of `bytes` is referred to afterwards.
-[[nodiscard]] MESHORDER_API Mesh read_mesh(std::span<const std::byte> bytes, const ReadOptions& options);
+[[nodiscard]] MESHORDER_API Mesh read_mesh(std::span<const std::byte> bytes, const ReadOptions& options = {});
 
 /// Reads a mesh from the rest of a stream, which is read to its end; throws likewise.
-[[nodiscard]] MESHORDER_API Mesh read_mesh(std::istream& stream, const ReadOptions& options);
+[[nodiscard]] MESHORDER_API Mesh read_mesh(std::istream& stream, const ReadOptions& options = {});
 
 /// Writes a mesh to a file in the format that the extension names.
 ///
 /// @param mesh   not changed
 /// @param path   replaced when all is written; nothing is left behind after an exception
 /// @param notes  receives what the format cannot hold; null: dropped
-/// @return the permutation of cells that the format required; the identity after `reorder` for that format
-/// @throws InvalidArgument for a mesh that `check_mesh` refuses or the format cannot hold
-/// @throws InputError for an unknown extension
-/// @throws Error of `Code::io` if the file cannot be written
+/// @return the places that the cells have in the file; the identity after `reorder` for that format
+/// @throws InvalidArgument for a mesh that `check_mesh` refuses
+/// @throws InputError for an unknown extension, for cells that the format cannot hold, and if the file cannot
+/// be
+///         written
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path,
                                      Notes* notes = nullptr);
 
@@ -81,6 +79,7 @@ MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::pa
 ///
 /// @param format  name of the format
 /// @throws InvalidArgument also for an unknown format and one of several files
+/// @throws Error of `Code::io` if the stream fails
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, std::ostream& stream, std::string_view format,
                                      Notes* notes = nullptr);
 
@@ -90,7 +89,7 @@ struct MemoryFile {
   std::string bytes;
 };
 
-/// The files that `write_mesh` would have made, and the permutation of cells that it would have returned.
+/// The files that `write_mesh` would have made, and what it would have returned.
 struct MemoryFiles {
   std::vector<MemoryFile> files;  ///< one, or several for TetGen; at least one
   Permutation cells;
@@ -99,7 +98,7 @@ struct MemoryFiles {
 /// Writes a mesh to memory; throws as `write_mesh`.
 ///
 /// @param format  name of the format
-/// @param name    name of the first file, from which those of the others follow
+/// @param name    name of the file, from which those of its companions follow
 [[nodiscard]] MESHORDER_API MemoryFiles write_mesh_to_memory(const Mesh& mesh, std::string_view format,
                                                              std::string_view name, Notes* notes = nullptr);
 

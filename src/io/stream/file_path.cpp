@@ -1,0 +1,81 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/stream/file_path.hpp"
+
+#include "base/text.hpp"
+#include <meshorder/error.hpp>
+
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+namespace meshorder {
+namespace fs = std::filesystem;
+namespace {
+
+std::string read_from_disk(const fs::path& path) {
+  const std::string name = path.string();
+  std::error_code code;
+  const auto status = fs::status(path, code);
+  if (!fs::exists(status)) throw InputError(name, "no such file", "check the path");
+  if (fs::is_directory(status)) throw InputError(name, "is a folder", "give a mesh file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(name, "cannot be read", "check its permissions");
+  std::string bytes;
+  const auto size = fs::file_size(path, code);
+  if (!code) {
+    bytes.resize(size);
+    stream.read(bytes.data(), static_cast<std::streamsize>(size));
+    bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  } else {  // a pipe
+    bytes.assign(std::istreambuf_iterator<char>(stream), {});
+  }
+  return bytes;
+}
+
+}  // namespace
+
+bool FilePath::exists() const {
+  if (store_ != nullptr) return store_->has(path_);
+  std::error_code ignored;
+  return fs::exists(path_, ignored);
+}
+
+bool FilePath::is_file() const {
+  if (store_ != nullptr) return store_->has(path_);
+  std::error_code ignored;
+  return fs::is_regular_file(path_, ignored);
+}
+
+bool FilePath::is_empty() const {
+  if (store_ != nullptr) return store_->read(path_).empty();
+  std::error_code failed;
+  return fs::file_size(path_, failed) == 0 || failed;
+}
+
+bool FilePath::is_same(const FilePath& other) const {
+  if (store_ != nullptr) return path_.lexically_normal() == other.path_.lexically_normal();
+  std::error_code ignored;
+  return fs::equivalent(path_, other.path_, ignored);
+}
+
+std::string FilePath::read() const {
+  std::string bytes = store_ != nullptr ? store_->read(path_) : read_from_disk(path_);
+  if (bytes.empty()) throw InputError(string(), "is empty", "give a mesh file");
+  return bytes;
+}
+
+FilePath FilePath::at(fs::path path) const {
+  FilePath result = *this;
+  result.path_ = std::move(path);
+  return result;
+}
+
+FilePath FilePath::beside(const fs::path& name) const { return at(path_.parent_path() / name); }
+
+FilePath FilePath::companion(std::string_view extension) const {
+  if (same_but_for_case(path_.extension().string(), extension)) return *this;
+  fs::path path = path_;
+  return at(path.replace_extension(extension));
+}
+
+}  // namespace meshorder

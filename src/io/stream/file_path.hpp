@@ -1,0 +1,68 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+
+/// Files kept elsewhere than on disk.
+class FileStore {
+ public:
+  FileStore() = default;
+  FileStore(const FileStore&) = delete;
+  FileStore(FileStore&&) = delete;
+  FileStore& operator=(const FileStore&) = delete;
+  FileStore& operator=(FileStore&&) = delete;
+  virtual ~FileStore() = default;
+
+  [[nodiscard]] virtual bool has(const std::filesystem::path& path) const = 0;
+  /// Returns the bytes of a file, none if it is not there.
+  [[nodiscard]] virtual std::string read(const std::filesystem::path& path) const = 0;
+  /// Adds a file or replaces it.
+  virtual void write(const std::filesystem::path& path, std::string bytes) = 0;
+};
+
+/// A file on disk or in a store, whether it exists or not.
+class FilePath {
+ public:
+  /// A file on disk.
+  template <class Path>
+  requires std::is_convertible_v<Path, std::filesystem::path> FilePath(Path&& path)
+      : path_(std::forward<Path>(path)) {}  // NOLINT(google-explicit-constructor)
+  /// A file in a store, which must outlive this object.
+  FilePath(std::filesystem::path path, FileStore& store) : path_(std::move(path)), store_(&store) {}
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  /// Returns the path as text, for messages.
+  [[nodiscard]] std::string string() const { return path_.string(); }
+  /// Returns the store, null for a file on disk.
+  [[nodiscard]] FileStore* store() const noexcept { return store_; }
+
+  /// Returns whether the file exists; false also if the system denies access.
+  [[nodiscard]] bool exists() const;
+  /// Returns whether it exists and is a file, not a folder.
+  [[nodiscard]] bool is_file() const;
+  [[nodiscard]] bool is_empty() const;
+  /// Returns whether two paths lead to one file.
+  [[nodiscard]] bool is_same(const FilePath& other) const;
+  /// Returns the bytes of the file. Throws InputError for a folder, an unreadable or an empty file.
+  [[nodiscard]] std::string read() const;
+
+  /// Returns the file of that name in the same folder.
+  [[nodiscard]] FilePath beside(const std::filesystem::path& name) const;
+  /// Returns the companion with that extension, "mesh.ele" for "mesh.node"; this file if it has the extension
+  /// (in any case).
+  [[nodiscard]] FilePath companion(std::string_view extension) const;
+
+ private:
+  [[nodiscard]] FilePath at(std::filesystem::path path) const;
+
+  std::filesystem::path path_;
+  FileStore* store_ = nullptr;
+};
+
+}  // namespace meshorder
