@@ -74,7 +74,7 @@ KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<Com
     if (i == index_size(orders)) return KernelBench(band.mesh, band.graph, threads);
     Mesh ordered = mesh;
     apply_reordering(ordered, orders[i].order);
-    KernelBench bench(ordered, renumbered(graph, orders[i].order.vertices.old_to_new()), threads);
+    KernelBench bench(ordered, renumbered(graph, orders[i].order.vertices.permutation.old_to_new()), threads);
     table.redundancy.push_back(bench.redundancy());
     return bench;
   };

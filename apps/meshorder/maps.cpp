@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "maps.hpp"
 
+#include "base/index.hpp"
 #include "io/npy.hpp"
 #include <meshorder/error.hpp>
 

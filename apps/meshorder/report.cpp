@@ -113,7 +113,7 @@ void add_mesh(Page& page, const std::string& file, const ReportArguments& argume
   progress.stage("the surface of " + name, from + 0.9 * (to - from), to);
   std::vector<std::pair<std::string, Permutation>> orders;
   for (std::size_t i = 0; i < studied.orders.size(); ++i) {
-    orders.emplace_back(studied.record.orders[i].ordering, studied.orders[i].vertices);
+    orders.emplace_back(studied.record.orders[i].ordering, studied.orders[i].vertices.permutation);
     note_convergence(studied.orders[i].vertices.fiedler, "the vertices of " + name, notes);
   }
   page.meshes.push_back(page_mesh(name, mesh, orders));

@@ -44,7 +44,7 @@ double best_seconds(tbb::task_arena& threads, Prepare prepare, Call call) {
 KernelBench bench_of(const Mesh& mesh, const CsrGraph& graph, const MeshOrder& order) {
   Mesh ordered = mesh;
   apply_reordering(ordered, order);
-  return {ordered, renumbered(graph, order.vertices.old_to_new())};
+  return {ordered, renumbered(graph, order.vertices.permutation.old_to_new())};
 }
 
 Mesh points_and_cells(const Mesh& mesh) {

@@ -122,8 +122,8 @@ void StudyStore::keep(const Mesh& mesh, OrderedMesh studied) {
   const std::string& name = studied.record.name;
   for (std::size_t i = 0; i < studied.orders.size(); ++i) {
     const std::string& ordering = studied.record.orders[i].ordering;
-    write_npy(studied.orders[i].vertices.old_to_new(), folder_.vertex_order(name, ordering));
-    write_npy(studied.orders[i].cells.old_to_new(), folder_.cell_order(name, ordering));
+    write_npy(studied.orders[i].vertices.permutation.old_to_new(), folder_.vertex_order(name, ordering));
+    write_npy(studied.orders[i].cells.permutation.old_to_new(), folder_.cell_order(name, ordering));
   }
   Mesh bare;
   bare.points = mesh.points;

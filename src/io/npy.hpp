@@ -13,15 +13,15 @@ namespace meshorder {
 
 /// Writes a one-dimensional NumPy array (format 1.0, little endian) for `numpy.load`. Throws Error, and
 /// leaves no file, if the target cannot be written.
-void write_npy(std::span<const std::int32_t> values, const FilePath& path);
-void write_npy(std::span<const std::int64_t> values, const FilePath& path);
+void write_npy(std::span<const std::int32_t> values, const std::filesystem::path& path);
+void write_npy(std::span<const std::int64_t> values, const std::filesystem::path& path);
 
 /// Reads a one-dimensional NumPy array of 32- or 64-bit integers, signed or not. Throws Error, with the byte,
 /// for anything else.
-std::vector<std::int64_t> read_npy(const FilePath& path);
+std::vector<std::int64_t> read_npy(const std::filesystem::path& path);
 
 /// Reads the new position of each of `count` vertices or cells; `what` names them in the plural. Throws Error
 /// if their number differs or the file does not hold a permutation.
-Permutation read_permutation(const FilePath& path, Index count, const std::string& what);
+Permutation read_permutation(const std::filesystem::path& path, Index count, const std::string& what);
 
 }  // namespace meshorder

@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "kernels/simplices.hpp"
 
+#include "base/point.hpp"
+
 #include <array>
 #include <cmath>
 

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/boundary.hpp"
 
+#include "base/point.hpp"
 #include "cells/facets.hpp"
 #include "mesh/graphs.hpp"
 #include <meshorder/error.hpp>

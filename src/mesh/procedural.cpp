@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/procedural.hpp"
 
+#include "base/index.hpp"
 #include "base/random.hpp"
 #include <meshorder/error.hpp>
 

@@ -5,6 +5,7 @@
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/mesh.hpp>
+#include <meshorder/registry.hpp>
 
 #include <gtest/gtest.h>
 

@@ -106,7 +106,7 @@ TEST(Vega, NumbersWithGapsAndInAnyOrderRunInTheNewOrder) {
                                     "*VERTICES\n4 3 0 0\n9000000000 0 0 0\n7 1 0 0\n20 0 1 0\n3 0 0 1\n"
                                     "*ELEMENTS\nTET\n2 4 0\n50 9000000000 7 20 3\n40 7 9000000000 20 3\n"
                                     "*SET a\n50\n"),
-                        &notes);
+                        {.notes = &notes});
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 3, 1, 0, 2, 3}));
   EXPECT_EQ(mesh.sets[0].members, std::vector<Index>{0});
   EXPECT_EQ(notes.size(), 1U);

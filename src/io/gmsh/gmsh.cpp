@@ -259,7 +259,7 @@ void finish(ReadContext& reading) {
 }
 
 Mesh read(const FilePath& path, Notes& notes) {
-  ReadContext reading{NumberReader(path), {}, {}, {}, {}, {}, notes};
+  ReadContext reading(path, notes);
   Scanner& in = reading.source.scanner;
   while (!in.at_end()) {
     const std::string word(in.peek_word());

@@ -131,6 +131,8 @@ void expect_end(NumberReader& source, std::string_view section);
 
 /// The state of the reader.
 struct ReadContext {
+  ReadContext(const FilePath& path, Notes& warnings) : source(path), notes(warnings) {}
+
   NumberReader source;
   Mesh mesh;
   Metadata metadata;
