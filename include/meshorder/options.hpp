@@ -45,7 +45,7 @@ enum class Check : std::uint8_t {
   /// pattern and weights symmetric. Symmetry is decided by a 64-bit hash sum over the entries, which misses a
   /// random fault with probability 2⁻⁶⁴.
   full,
-  /// Everything but symmetry. An asymmetric graph gives an unspecified, valid order.
+  /// The same, but an asymmetric graph is not refused: it gives an unspecified, valid order.
   fast,
   /// Nothing. The graph must be what `full` accepts, with ascending rows, no loops and no repeats; anything
   /// else is undefined behaviour.
