@@ -56,13 +56,13 @@ struct MeshMethods {
 
 /// Orders the vertices of a graph or the rows of a matrix. Nothing is changed.
 ///
-/// Vertices without neighbours come last, in their old order, except under `original`. With `options.groups`
-/// the groups ascend and each is ordered by the method.
+/// Vertices without neighbours come last, in their old order, except under `original` and registered methods.
+/// With `options.groups` the groups ascend and each is ordered by the method.
 ///
 /// @param graph    n vertices, any integer types; see `GraphView`
 /// @param method   name of a vertex method
 /// @param options  see `OrderOptions`
-/// @param points   n points for geometric methods (hilbert, morton), else ignored
+/// @param points   n points for geometric methods (hilbert, morton); n or none for others, which ignore them
 /// @throws InvalidArgument for an unknown method (the message lists the known ones), for a geometric method
 ///         without coordinates, for sizes that do not match, and for what `check` refuses
 /// @throws TooLarge for more than 2,147,483,647 vertices, or entries beyond the index type of METIS
@@ -86,7 +86,7 @@ MESHORDER_API Order order_vertices(const GraphView& graph, std::string_view meth
 /// @param vertices  order of the n vertices, which most element orders follow
 /// @param method    name of an element method
 /// @param options   see `OrderOptions`; `cell_groups` has m entries or none, `groups` is not used
-/// @param points    n points in their old order for geometric methods, else ignored
+/// @param points    n points in their old order for geometric methods; n or none for others
 /// @return permutation of all m cells
 /// @throws as `order_vertices`
 /// @note lexmax, mean, min, max O(entries + m log m); fiedler as for vertices, on the dual graph. Determinism

@@ -20,7 +20,7 @@ inline namespace v0_2 {
 
 /// Description of a method, as lists of methods show it.
 struct MethodInfo {
-  std::string name = {};         ///< lower case letters, digits and '-'; unique
+  std::string name = {};         ///< lower case letters, digits, '-' and '_'; unique
   std::string description = {};  ///< one line
   bool needs_points = false;     ///< InvalidArgument without coordinates
   bool deterministic = true;     ///< the same result on every run and for any number of threads
