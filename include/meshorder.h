@@ -210,7 +210,7 @@ typedef mo_status (*mo_register_fn)(const char* name, const char* description, i
 /**
  * Adds a vertex method for the rest of the process.
  *
- * @param name          lower case letters, digits and '-'; not taken yet; copied
+ * @param name          lower case letters, digits, '-' and '_'; not taken yet; copied
  * @param description   one line; copied
  * @param needs_points  non-zero: refuse to be called without coordinates
  * @param method        may be called by several threads at once

@@ -43,19 +43,15 @@ struct Fiedler {
 ///
 /// @param graph    n vertices; weights > 0 or none
 /// @param options  tolerance, max_iterations, seed, start, check, symmetry and run; the rest is not used. The
-/// default
-///                 tolerance of 0.1 suffices for an order; take 1e-8 for a vector to be used as such
+///                 default tolerance of 0.1 suffices for an order; take 1e-8 for a vector to be used as such
 /// @return vector and report for each component. A component that does not converge keeps its best vector,
-/// with
-///         `converged` false: a status, not an error
+///         with `converged` false: a status, not an error
 /// @throws InvalidArgument if `check` refuses the graph, or `start` has neither n nor no entries or one that
-/// is not
-///         finite
+///         is not finite
 /// @throws TooLarge for more than 2,147,483,647 vertices
 /// @throws Stopped if the progress callback returned false
 /// @note O((n + edges) · iterations), about six iterations on meshes; memory about 3.5 times the graph's. The
-/// result
-///       does not depend on the number of threads, in any bit. Reentrant.
+///       result does not depend on the number of threads, in any bit. Reentrant.
 MESHORDER_API Fiedler fiedler_vector(const GraphView& graph, const OrderOptions& options = {});
 
 }  // namespace v0_2

@@ -25,9 +25,8 @@ using Offset = std::int64_t;
 /// `std::vector<std::array<int, 4>>` are 40 numbers. bool, character types and other sizes do not compile.
 ///
 /// @note Nothing is copied: the array must live, at the same address, as long as the view is used. Functions
-/// of
-///       meshorder use views only until they return. The view keeps the type by value, so that the library is
-///       compiled once for all types.
+///       of meshorder use views only until they return. The view keeps the type by value, so that the library
+///       is compiled once for all types.
 class IndexView {
  public:
   /// A view of no numbers.

@@ -42,16 +42,13 @@ MESHORDER_API Workload parse_workload(std::string_view name);
 /// level but `none` throw InvalidArgument.
 enum class Check : std::uint8_t {
   /// Everything: sizes; ascending offsets; numbers in range; weights positive and finite; coordinates finite;
-  /// pattern
-  /// and weights symmetric. Symmetry is decided by a 64-bit hash sum over the entries, which misses a random
-  /// fault with
-  /// probability 2⁻⁶⁴.
+  /// pattern and weights symmetric. Symmetry is decided by a 64-bit hash sum over the entries, which misses a
+  /// random fault with probability 2⁻⁶⁴.
   full,
-  /// Everything but symmetry. An asymmetric graph gives an unspecified, valid order.
+  /// The same, but an asymmetric graph is not refused: it gives an unspecified, valid order.
   fast,
   /// Nothing. The graph must be what `full` accepts, with ascending rows, no loops and no repeats; anything
-  /// else is
-  /// undefined behaviour.
+  /// else is undefined behaviour.
   none,
 };
 
@@ -89,8 +86,8 @@ struct Run {
 /// `{.seed = 7, .run = {.threads = 4}}`.
 struct OrderOptions {
   std::uint64_t seed = 0;  ///< of `scrambled`, of METIS and of start vectors
-  double tolerance =
-      0.1;  ///< of Fiedler vectors: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖, > 0; 0.1 suffices for orders
+  /// Of Fiedler vectors: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖, > 0; 0.1 suffices for orders.
+  double tolerance = 0.1;
   int max_iterations = 500;           ///< of the eigensolver on the whole graph, ≥ 1
   Workload workload = Workload::all;  ///< what `auto` chooses its method for
   RealView start = {};    ///< n numbers near the Fiedler vector, as `Order::vector` has them; or none

@@ -29,14 +29,14 @@ struct MethodChoice {
 struct Order {
   Permutation permutation;
   MethodChoice method = {};
-  std::vector<FiedlerComponent> fiedler =
-      {};  ///< of methods that use Fiedler vectors: a report for each component
-  std::vector<double> vector =
-      {};                ///< of `fiedler` and `minla`: n entries, the next call's `OrderOptions::start`
+  /// Of methods that use Fiedler vectors: a report for each component.
+  std::vector<FiedlerComponent> fiedler = {};
+  /// Of `fiedler` and `minla`: n entries, the next call's `OrderOptions::start`.
+  std::vector<double> vector = {};
   bool complete = true;  ///< false: `Run::time_limit` ended the method early
   double seconds = 0;    ///< wall-clock time of the call
-  std::vector<std::string> notes =
-      {};  ///< what was cleaned or converted: "12 loops dropped", "indices narrowed"
+  /// What was cleaned or converted: "12 loops dropped", "indices narrowed".
+  std::vector<std::string> notes = {};
 };
 
 /// Orders of a mesh's vertices and of all its cells.
@@ -56,25 +56,23 @@ struct MeshMethods {
 
 /// Orders the vertices of a graph or the rows of a matrix. Nothing is changed.
 ///
-/// Vertices without neighbours come last, in their old order, except under `original`. With `options.groups`
-/// the groups ascend and each is ordered by the method.
+/// Vertices without neighbours come last, in their old order, except under `original` and registered methods.
+/// With `options.groups` the groups ascend and each is ordered by the method.
 ///
 /// @param graph    n vertices, any integer types; see `GraphView`
 /// @param method   name of a vertex method
 /// @param options  see `OrderOptions`
-/// @param points   n points for geometric methods (hilbert, morton), else ignored
+/// @param points   n points for geometric methods (hilbert, morton); n or none for others, which ignore them
 /// @throws InvalidArgument for an unknown method (the message lists the known ones), for a geometric method
-/// without
-///         coordinates, for sizes that do not match, and for what `check` refuses
+///         without coordinates, for sizes that do not match, and for what `check` refuses
 /// @throws TooLarge for more than 2,147,483,647 vertices, or entries beyond the index type of METIS
 /// @throws Unavailable for a method that this build lacks
 /// @throws Stopped if the progress callback returned false
 /// @note rcm and bfs O(n + entries · log degree); hilbert and morton O(n log n); fiedler O((n + entries) ·
-/// iterations),
-///       about six; spectral that times log n; minla that and O(n + entries) a pass. No copy of a clean graph
-///       with int64 offsets and int32 neighbours; other offsets take 8 bytes a vertex, other neighbours 4
-///       bytes an entry. The same input, options and version give the same order on any number of threads and
-///       for any integer types. Reentrant.
+///       iterations), about six; spectral that times log n; minla that and O(n + entries) a pass. No copy of
+///       a clean graph with int64 offsets and int32 neighbours; other offsets take 8 bytes a vertex, other
+///       neighbours 4 bytes an entry. The same input, options and version give the same order on any number
+///       of threads and for any integer types. Reentrant.
 MESHORDER_API Order order_vertices(const GraphView& graph, std::string_view method = "auto",
                                    const OrderOptions& options = {}, const PointsView& points = {});
 
@@ -88,11 +86,11 @@ MESHORDER_API Order order_vertices(const GraphView& graph, std::string_view meth
 /// @param vertices  order of the n vertices, which most element orders follow
 /// @param method    name of an element method
 /// @param options   see `OrderOptions`; `cell_groups` has m entries or none, `groups` is not used
-/// @param points    n points in their old order for geometric methods, else ignored
+/// @param points    n points in their old order for geometric methods; n or none for others
 /// @return permutation of all m cells
 /// @throws as `order_vertices`
 /// @note lexmax, mean, min, max O(entries + m log m); fiedler as for vertices, on the dual graph. Determinism
-/// as above.
+///       as above.
 MESHORDER_API Order order_elements(const CellsView& cells, const Permutation& vertices,
                                    std::string_view method = "auto", const OrderOptions& options = {},
                                    const PointsView& points = {});
@@ -102,8 +100,7 @@ MESHORDER_API Order order_elements(const CellsView& cells, const Permutation& ve
 /// @param mesh     n vertices, m cells
 /// @param methods  names of the two methods
 /// @param options  see `OrderOptions`; `groups` has n entries or none, `cell_groups` m or none; the time
-/// limit and the
-///                 progress are those of the whole call
+///                 limit and the progress are those of the whole call
 /// @throws as `order_vertices`, and InvalidArgument for faulty cells
 /// @note The graph costs O(Σ (vertices of an element)²) and about 60 bytes a tetrahedron.
 MESHORDER_API MeshOrder order_mesh(const MeshView& mesh, const MeshMethods& methods = {},
@@ -177,9 +174,8 @@ class MESHORDER_API Graph {
 /// @param cells         the cells; vertex e of the graph is the e-th cell of the highest dimension
 /// @param vertex_count  number of the mesh's vertices
 /// @param by_facet      true: join elements that share a face (volumes), an edge (surfaces) or an end
-/// (lines); where
-///                      more than two share it, each is joined to the next. false: join those that share a
-///                      vertex, about 50 neighbours for a tetrahedron
+///                      (lines); where more than two share it, each is joined to the next. false: join those
+///                      that share a vertex, about 50 neighbours for a tetrahedron
 /// @param run           threads, progress
 /// @throws as `vertex_graph`; InvalidArgument for `by_facet` with cells of unknown shape
 /// @note By facet O(facets · log facets at a vertex), by vertex O(Σ (elements at a vertex)²).
@@ -190,8 +186,7 @@ class MESHORDER_API Graph {
 ///
 /// @param graph     n vertices; offsets and numbers must be in range
 /// @param symmetry  mirror: adds the missing entries, weights become those of (A + Aᵀ) / 2; require: throws
-/// if entries
-///                  or weights are missing on one side
+///                  if entries or weights are missing on one side
 /// @param run       threads
 /// @throws InvalidArgument as `check`, but for asymmetry only under `Symmetry::require`
 /// @throws TooLarge for more than 2,147,483,647 vertices
@@ -207,8 +202,7 @@ class MESHORDER_API Graph {
 /// @throws InvalidArgument for the first fault, in words that name the row, the entry and the fault
 /// @throws TooLarge for more than 2,147,483,647 vertices
 /// @note O(n + entries), on all threads; row by row with a sorted copy only where symmetry fails. No memory
-/// for int64
-///       offsets and int32 neighbours, else as `order_vertices`.
+///       for int64 offsets and int32 neighbours, else as `order_vertices`.
 MESHORDER_API void check(const GraphView& graph, Check level = Check::full);
 
 }  // namespace v0_2

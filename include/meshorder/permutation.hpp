@@ -42,7 +42,7 @@ class MESHORDER_API Permutation {
   /// Makes a permutation of a map from old to new places: `map[i]` is the new place of old i.
   ///
   /// @throws InvalidArgument if the map is no bijection of 0 … n−1; the message names the first faulty
-  /// entries
+  ///         entries
   /// @throws TooLarge for more than 2,147,483,647 entries
   /// @note O(n), on all threads.
   static Permutation from_old_to_new(IndexView map);
@@ -115,8 +115,8 @@ class MESHORDER_API Permutation {
   /// @param width   values in a row
   /// @throws InvalidArgument if the size is not n · width
   /// @note O(n · width) on one thread. Trivially copyable types follow the cycles of the permutation and need
-  /// n / 8
-  ///       bytes and one row of memory; others need a second array. `move` is faster where there is memory.
+  ///       n / 8 bytes and one row of memory; others need a second array. `move` is faster where there is
+  ///       memory.
   template <std::ranges::contiguous_range R>
   void move_in_place(R&& values, std::size_t width = 1) const;
 
@@ -125,7 +125,7 @@ class MESHORDER_API Permutation {
   /// @param from         row i is at `from + i · from_stride` bytes
   /// @param from_stride  bytes from a row to the next; may be larger than the row, or negative
   /// @param to           row k is at `to + k · to_stride` bytes; rows must not overlap each other or those of
-  /// `from`
+  ///                     `from`
   /// @param to_stride    likewise
   /// @param row_bytes    bytes of a row
   /// @param run          threads; progress and time limit are not used
@@ -157,8 +157,7 @@ class MESHORDER_API Permutation {
   /// @throws InvalidArgument if sizes do not match, A is faulty or an output overlaps an input
   /// @throws TooLarge if an output type cannot hold its numbers
   /// @note O(n + entries · log row), on all threads. Memory: 8 (n + 1) bytes and a row for each thread; for
-  /// other than
-  ///       int64 offsets and int32 columns of base 0 another 8 (n + 1) bytes, 4 bytes an entry.
+  ///       other than int64 offsets and int32 columns of base 0 another 8 (n + 1) bytes, 4 bytes an entry.
   void move_csr(const GraphView& matrix, std::span<const std::byte> values, IndexSpan offsets,
                 IndexSpan columns, std::span<std::byte> moved) const;
 

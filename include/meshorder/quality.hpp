@@ -17,8 +17,8 @@ inline namespace v0_2 {
 struct Quality {
   Offset edges = 0;      ///< loops not counted, repeats once
   double mean_span = 0;  ///< ≥ 1; about n/3 for a random order
-  double mean_log2_span =
-      0;  ///< mean of log₂ span: what stays near counts, where mean_span is ruled by what is far
+  /// Mean of log₂ span: what stays near counts, where mean_span is ruled by what is far.
+  double mean_log2_span = 0;
   Index bandwidth = 0;  ///< the largest span: the half bandwidth of the matrix with this pattern
   Offset profile = 0;   ///< Σ over rows of the distance from the first neighbour before the diagonal to it
   std::vector<Offset> histogram_log2 = {};  ///< entry k: the number of edges with span in [2ᵏ, 2ᵏ⁺¹)
@@ -32,8 +32,7 @@ struct Quality {
 /// @param run    threads, progress
 /// @throws InvalidArgument if `check` refuses the graph
 /// @note O(n + edges). The result does not depend on the number of threads. Cache lines, prefetching and the
-/// traversal
-///       of elements are not modelled; see payoff.hpp.
+///       traversal of elements are not modelled; see payoff.hpp.
 MESHORDER_API Quality quality(const GraphView& graph, const Run& run = {});
 
 /// Measures another order of a graph's vertices, without moving them.

@@ -20,7 +20,7 @@ inline namespace v0_2 {
 
 /// Description of a method, as lists of methods show it.
 struct MethodInfo {
-  std::string name = {};         ///< lower case letters, digits and '-'; unique
+  std::string name = {};         ///< lower case letters, digits, '-' and '_'; unique
   std::string description = {};  ///< one line
   bool needs_points = false;     ///< InvalidArgument without coordinates
   bool deterministic = true;     ///< the same result on every run and for any number of threads
@@ -79,7 +79,7 @@ class [[nodiscard]] MESHORDER_API Registration {
 /// @param info    name and description
 /// @param method  must not be empty; its result is checked to have n places
 /// @throws InvalidArgument for a name that is taken, "auto" or not of the permitted characters, and for no
-/// method
+///         method
 /// @note Thread-safe.
 MESHORDER_API Registration register_vertex_method(MethodInfo info, VertexMethod method);
 
@@ -95,7 +95,7 @@ MESHORDER_API Registration register_element_method(MethodInfo info, ElementMetho
 /// library is never unloaded.
 ///
 /// @throws Unavailable if it cannot be loaded or lacks that function, or where the platform has no shared
-/// libraries
+///         libraries
 /// @throws InvalidArgument if the function returns other than 0
 /// @warning Runs code of that library.
 MESHORDER_API void load_methods(const std::filesystem::path& shared_library);

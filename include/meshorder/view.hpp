@@ -26,12 +26,14 @@ inline namespace v0_2 {
 ///
 /// Brace initialisation works from any mix of integer types: `GraphView{row_start, column}`.
 struct GraphView {
-  IndexView offsets =
-      {};  ///< n + 1 numbers that ascend, the first is `base`; none at all is the graph without vertices
-  IndexView neighbours = {};  ///< offsets[n] − base numbers in base … base + n − 1
-  RealView weights =
-      {};        ///< one for each neighbour, > 0, finite, equal in both rows of an edge; or none: all 1
-  int base = 0;  ///< 0, or 1 for arrays of Fortran and Julia
+  /// n + 1 numbers that ascend, the first is `base`; none at all is the graph without vertices.
+  IndexView offsets = {};
+  /// offsets[n] − base numbers in base … base + n − 1.
+  IndexView neighbours = {};
+  /// One for each neighbour, > 0, finite, equal in both rows of an edge; or none: all 1.
+  RealView weights = {};
+  /// 0, or 1 for arrays of Fortran and Julia.
+  int base = 0;
 };
 
 /// Coordinates x, y, z; z is 0 in the plane.
@@ -158,7 +160,7 @@ class CellsView {
   /// @param shape              shape of every cell
   /// @param vertices_per_cell  vertices of every cell, ≥ 1: 4 for linear, 10 for quadratic tetrahedra
   /// @param vertices           vertices_per_cell numbers for each cell; may be a range of std::array<integer,
-  /// …>
+  ///                           …>
   /// @param base               number of the first vertex, 0 or 1
   static CellsView uniform(Shape shape, int vertices_per_cell, IndexView vertices MESHORDER_LIFETIMEBOUND,
                            int base = 0) {
@@ -182,8 +184,7 @@ class CellsView {
   /// @param offsets    cells + 1 numbers that ascend, the first is `base`
   /// @param vertices   offsets[cells] − base vertex numbers
   /// @param vtk_types  VTK's type number of each cell; without them every vertex counts as a corner, all
-  /// cells have the
-  ///                   same dimension and facets are unknown
+  ///                   cells have the same dimension and facets are unknown
   /// @param base       number of the first vertex and first offset, 0 or 1
   static CellsView mixed(IndexView offsets MESHORDER_LIFETIMEBOUND,
                          IndexView vertices MESHORDER_LIFETIMEBOUND,

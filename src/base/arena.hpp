@@ -6,9 +6,11 @@
 #include <meshorder/number_view.hpp>
 #include <meshorder/options.hpp>
 
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace meshorder {
@@ -19,7 +21,10 @@ namespace meshorder {
 template <class Work>
 decltype(auto) in_arena(const Run& run, Work&& work) {
   if (run.threads < 0) throw InvalidArgument("run: threads must not be negative");
-  tbb::task_arena arena(run.threads > 0 ? run.threads : tbb::this_task_arena::max_concurrency());
+  // TBB warns on stderr of a wish for more threads than it may start, and sets aside memory for all of them
+  const std::size_t limit = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const int wanted = run.threads > 0 ? run.threads : tbb::this_task_arena::max_concurrency();
+  tbb::task_arena arena(std::cmp_less(wanted, limit) ? wanted : static_cast<int>(limit));
   return arena.execute(std::forward<Work>(work));
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -13,6 +14,21 @@ constexpr auto kBetweenReports = std::chrono::milliseconds(50);
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the state of each thread
 thread_local RunScope* innermost = nullptr;
+
+/// While the user's progress function runs: what it asks of the library is no part of the call that it
+/// watches, and does not call it again.
+class OutsideOfCalls {
+ public:
+  OutsideOfCalls() : scope_(std::exchange(innermost, nullptr)) {}
+  ~OutsideOfCalls() { innermost = scope_; }
+  OutsideOfCalls(const OutsideOfCalls&) = delete;
+  OutsideOfCalls(OutsideOfCalls&&) = delete;
+  OutsideOfCalls& operator=(const OutsideOfCalls&) = delete;
+  OutsideOfCalls& operator=(OutsideOfCalls&&) = delete;
+
+ private:
+  RunScope* scope_;
+};
 
 bool asks_for_nothing(const Run& run) { return !run.progress && std::isinf(run.time_limit); }
 
@@ -30,9 +46,11 @@ RunScope::~RunScope() { innermost = outer_; }
 void RunScope::tell() {
   const auto now = std::chrono::steady_clock::now();
   if (!run_.progress || now - told_ < kBetweenReports) return;
-  told_ = now;
   const double seconds = std::chrono::duration<double>(now - start_).count();
+  const OutsideOfCalls outside;
   if (!run_.progress({.stage = stage_, .fraction = fraction_, .seconds = seconds})) throw Stopped();
+  // not `now`: a slow function would be called again at every poll
+  told_ = std::chrono::steady_clock::now();
 }
 
 void report(std::string_view stage, double fraction) {

@@ -137,6 +137,15 @@ void check_vertices(const CellArrays& cells, int base) {
   }
 }
 
+/// Throws InvalidArgument for a shape that is none of the enumeration's.
+void check_shapes(const CellArrays& cells) {
+  const auto unknown = std::find_if(cells.shapes.begin(), cells.shapes.end(),
+                                    [](Shape shape) { return static_cast<int>(shape) >= kShapes; });
+  if (unknown == cells.shapes.end()) return;
+  throw InvalidArgument("cells: cell " + std::to_string(unknown - cells.shapes.begin()) + " has the shape " +
+                        std::to_string(static_cast<int>(*unknown)) + ", which is none of Shape");
+}
+
 void check_corners(const CellArrays& cells) {
   for (Index c = 0; c < cells.size(); ++c) {
     const Offset count = cells.offsets[c + 1] - cells.offsets[c];
@@ -156,7 +165,11 @@ void take_mixed(const CellsView& view, bool trusted, CellArrays& cells) {
     cells.offsets = {static_cast<const Offset*>(offsets.data()), offsets.size()};
   } else {
     cells.own_offsets.resize(offsets.size());
-    for (std::size_t c = 0; c < offsets.size(); ++c) cells.own_offsets[c] = offsets[c] - view.base();
+    for (std::size_t c = 0; c < offsets.size(); ++c) {
+      // a faulty offset may be the least number that there is
+      cells.own_offsets[c] = static_cast<Offset>(static_cast<std::uint64_t>(offsets[c]) -
+                                                 static_cast<std::uint64_t>(view.base()));
+    }
     cells.offsets = cells.own_offsets;
   }
   cells.vertices = narrowed(view.vertices(), view.base(), cells.own_vertices);
@@ -254,6 +267,7 @@ CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check ch
     take_blocks(view, cells);
   }
   if (check != Check::none) {
+    check_shapes(cells);
     check_corners(cells);
     check_vertices(cells, view.base());
   }

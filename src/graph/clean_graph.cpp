@@ -118,9 +118,10 @@ GraphArrays clean_graph(const GraphView& graph, Check check, Symmetry symmetry) 
   const bool trusted = check == Check::none;
   GraphArrays arrays = graph_arrays(graph, trusted);
   if (trusted && symmetry == Symmetry::require) return arrays;
-  const GraphFindings found = examine(arrays, check == Check::full || symmetry == Symmetry::mirror);
+  // Asymmetry is looked for even by Check::fast: the methods would leave their arrays on an asymmetric graph.
+  const GraphFindings found = examine(arrays, true);
   refuse_faults(graph, arrays, found);
-  const bool mirror = symmetry == Symmetry::mirror && found.asymmetry != 0;
+  const bool mirror = found.asymmetry != 0 && (symmetry == Symmetry::mirror || check == Check::fast);
   if (found.is_clean() && !mirror) {
     if (found.asymmetry != 0) refuse_asymmetry(arrays.offsets, arrays.neighbours, arrays.weights, graph.base);
     return arrays;

@@ -15,6 +15,14 @@ namespace {
 
 constexpr Offset kEntries = 262144;  // that a thread converts together
 
+/// number ± base as unsigned arithmetic has it: a faulty offset may stand at the end of the range.
+Offset less_base(std::int64_t number, int base) {
+  return static_cast<Offset>(static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(base));
+}
+Offset plus_base(std::int64_t number, int base) {
+  return static_cast<Offset>(static_cast<std::uint64_t>(number) + static_cast<std::uint64_t>(base));
+}
+
 /// Takes the offsets as they are, or widened and counted from 0.
 void take_offsets(const GraphView& graph, GraphArrays& arrays) {
   const IndexView& offsets = graph.offsets;
@@ -27,7 +35,7 @@ void take_offsets(const GraphView& graph, GraphArrays& arrays) {
     arrays.own_offsets.resize(offsets.size());
     with_type(offsets, [&](auto entries) {
       for (std::size_t v = 0; v < entries.size(); ++v) {
-        arrays.own_offsets[v] = static_cast<Offset>(entries[v]) - graph.base;
+        arrays.own_offsets[v] = less_base(static_cast<std::int64_t>(entries[v]), graph.base);
       }
     });
     arrays.notes.emplace_back(offsets.bytes() == 4 ? "offsets widened" : "offsets copied to count from 0");
@@ -69,7 +77,7 @@ void take_weights(const RealView& weights, GraphArrays& arrays) {
 }
 
 void check_offsets(const GraphView& graph, std::span<const Offset> offsets) {
-  const auto given = [&](std::size_t v) { return std::to_string(offsets[v] + graph.base); };
+  const auto given = [&](std::size_t v) { return std::to_string(plus_base(offsets[v], graph.base)); };
   if (offsets.front() != 0) {
     throw InvalidArgument("graph: the first offset is " + given(0) + ", must be the base " +
                           std::to_string(graph.base));
@@ -97,7 +105,8 @@ GraphArrays graph_arrays(const GraphView& graph, bool trusted) {
   take_offsets(graph, arrays);
   if (!trusted) check_offsets(graph, arrays.offsets);
   if (std::cmp_not_equal(arrays.offsets.back(), graph.neighbours.size())) {
-    throw InvalidArgument("graph: the offsets end at " + std::to_string(arrays.offsets.back() + graph.base) +
+    throw InvalidArgument("graph: the offsets end at " +
+                          std::to_string(plus_base(arrays.offsets.back(), graph.base)) +
                           ", which does not fit " + std::to_string(graph.neighbours.size()) + " neighbours");
   }
   if (!graph.weights.empty() && graph.weights.size() != graph.neighbours.size()) {

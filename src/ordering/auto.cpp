@@ -50,7 +50,7 @@ bool fits(const Rule& rule, Index vertices, bool coordinates, Workload workload)
 
 /// Returns whether there are coordinates and at least two vertices differ in them.
 bool has_coordinates(const VertexInput& input) {
-  if (index_size(input.points) != input.graph.size() || input.graph.size() == 0) return false;
+  if (std::cmp_not_equal(input.points.size(), input.graph.size()) || input.graph.size() == 0) return false;
   const Point first = point_at(input.points, 0);
   for (Index v = 1; v < input.graph.size(); ++v) {
     if (point_at(input.points, v) != first) return true;

@@ -22,12 +22,8 @@ std::vector<double> coordinates(const PointsView& points) {
 
 }  // namespace
 
-VertexMethod foreign_vertex_method(std::string name, bool needs_points, mo_method method, void* user) {
-  return [name = std::move(name), needs_points, method, user](const VertexProblem& problem,
-                                                              const OrderOptions&) {
-    if (needs_points && problem.points.empty()) {
-      throw InvalidArgument("order '" + name + "' needs the coordinates of all vertices");
-    }
+VertexMethod foreign_vertex_method(std::string name, mo_method method, void* user) {
+  return [name = std::move(name), method, user](const VertexProblem& problem, const OrderOptions&) {
     const std::vector<double> xyz = coordinates(problem.points);
     const std::size_t n = problem.offsets.size() - 1;
     std::vector<Index> new_to_old(n, -1);
@@ -53,7 +49,7 @@ void register_foreign_method(const char* name, const char* description, std::int
                           .description = description != nullptr ? description : "",
                           .needs_points = needs_points != 0,
                           .source = source},
-                         foreign_vertex_method(name, needs_points != 0, method, user))
+                         foreign_vertex_method(name, method, user))
       .keep();
 }
 

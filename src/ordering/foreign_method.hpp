@@ -12,9 +12,8 @@ namespace meshorder {
 
 /// Wraps a method of the C interface: gives it the arrays of the graph, and checks what it returns.
 ///
-/// The wrapper throws InternalError if the method fails or returns no bijection, InvalidArgument if it needs
-/// coordinates and there are none.
-VertexMethod foreign_vertex_method(std::string name, bool needs_points, mo_method method, void* user);
+/// The wrapper throws InternalError if the method fails or returns no bijection.
+VertexMethod foreign_vertex_method(std::string name, mo_method method, void* user);
 
 /// Registers a method of the C interface for the rest of the program; the parameters are those of
 /// `mo_register`.

@@ -34,18 +34,32 @@ Sorted sorted_into_groups(std::span<const Index> group_of, Index groups) {
   return sorted;
 }
 
-/// The graph of one group's vertices among themselves. Unlike induced_subgraph it takes time for the group
-/// alone, since there may be as many groups as vertices.
-CsrGraph graph_of_group(GraphRef graph, const Sorted& sorted, Index group) {
+/// The part of the input that belongs to a group.
+struct GroupInput {
+  CsrGraph graph;
+  std::vector<double> weights;
+  std::vector<Point> points;
+  std::vector<double> start;  ///< of the eigensolver
+};
+
+/// The graph of one group's vertices among themselves, and what else is known of them. Unlike
+/// induced_subgraph it takes time for the group alone, since there may be as many groups as vertices.
+GroupInput input_of_group(const VertexInput& input, RealView start, const Sorted& sorted, Index group) {
   const Index begin = sorted.starts[group];
   const Index end = sorted.starts[group + 1];
-  CsrGraph result;
+  GroupInput result;
+  CsrGraph& graph = result.graph;
   for (Index place = begin; place < end; ++place) {
-    for (const Index neighbour : graph[sorted.vertices[place]]) {
-      const Index there = sorted.places[neighbour];
-      if (there >= begin && there < end) result.neighbours.push_back(there - begin);
+    const Index v = sorted.vertices[place];
+    for (Offset k = input.graph.offsets[v]; k < input.graph.offsets[v + 1]; ++k) {
+      const Index there = sorted.places[input.graph.neighbours[k]];
+      if (there < begin || there >= end) continue;
+      graph.neighbours.push_back(there - begin);
+      if (!input.weights.empty()) result.weights.push_back(input.weights[k]);
     }
-    result.offsets.push_back(static_cast<Offset>(result.neighbours.size()));
+    graph.offsets.push_back(static_cast<Offset>(graph.neighbours.size()));
+    if (!input.points.empty()) result.points.push_back(point_at(input.points, v));
+    if (!start.empty()) result.start.push_back(start[static_cast<std::size_t>(v)]);
   }
   return result;
 }
@@ -59,29 +73,40 @@ void check_groups(GraphRef graph, std::span<const Index> group_of, Index groups)
   }
 }
 
+void check_start(RealView start, Index vertices) {
+  if (!start.empty() && std::cmp_not_equal(start.size(), vertices)) {
+    throw InvalidArgument("options: a start vector of " + std::to_string(start.size()) + " entries for " +
+                          std::to_string(vertices) + " vertices");
+  }
+}
+
 }  // namespace
 
 Order order_graph_in_groups(std::string_view method, const VertexInput& input,
                             std::span<const Index> group_of, Index groups, const OrderOptions& options) {
   check_groups(input.graph, group_of, groups);
+  check_start(options.start, input.graph.size());
   Order result;
   result.method = method == "auto" ? choose_vertex_method(input, options.workload)
                                    : MethodChoice{std::string(method), ""};
   const Sorted sorted = sorted_into_groups(group_of, groups);
   std::vector<Index> new_to_old;
   new_to_old.reserve(sorted.vertices.size());
-  std::vector<Point> points;
+  OrderOptions of_group = options;
   for (Index group = 0; group < groups; ++group) {
     const std::span<const Index> members(sorted.vertices.data() + sorted.starts[group],
                                          sorted.vertices.data() + sorted.starts[group + 1]);
-    points.clear();
-    if (input.points.size() > 0) {
-      for (const Index v : members) points.push_back(point_at(input.points, v));
-    }
-    const CsrGraph graph = graph_of_group(input.graph, sorted, group);
-    const Order ordering = order_graph(result.method.name, {graph, PointsView(points)}, options);
+    const GroupInput part = input_of_group(input, options.start, sorted, group);
+    of_group.start = part.start;
+    const Order ordering =
+        order_graph(result.method.name, {part.graph, PointsView(part.points), part.weights}, of_group);
     for (const Index k : ordering.permutation.new_to_old()) new_to_old.push_back(members[k]);
     result.fiedler.insert(result.fiedler.end(), ordering.fiedler.begin(), ordering.fiedler.end());
+    if (!ordering.vector.empty()) {
+      result.vector.resize(sorted.vertices.size());
+      for (std::size_t k = 0; k < members.size(); ++k) result.vector[members[k]] = ordering.vector[k];
+    }
+    result.complete = result.complete && ordering.complete;
   }
   result.permutation = Permutation::from_new_to_old(std::move(new_to_old));
   return result;

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Karypis, Kumar: A Fast and High Quality Multilevel Scheme for Partitioning Irregular Graphs (1998).
+#include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"
 #include <meshorder/error.hpp>
 
@@ -46,6 +47,7 @@ constexpr Index kLeaf = 8;  // smaller leaves cost METIS more and no longer shor
 
 /// Which half each vertex belongs to, 0 or 1.
 std::vector<idx_t> halves(GraphRef graph, std::uint64_t seed) {
+  report("metis");
   MetisGraph metis(graph, seed);
   idx_t constraints = 1;
   idx_t parts = 2;
@@ -82,6 +84,7 @@ void append_bisected(GraphRef graph, const std::vector<Index>& vertices, std::ui
 
 Order metis_nd_vertices(const VertexInput& input, const OrderOptions& options) {
   if (input.graph.neighbours.empty()) return {Permutation::identity(input.graph.size()), {}};
+  report("metis");
   MetisGraph graph(input.graph, options.seed);
   std::vector<idx_t> new_to_old(input.graph.size());
   std::vector<idx_t> old_to_new(input.graph.size());

@@ -20,7 +20,7 @@ bool is_one_class(std::span<const Index> classes) {
 
 /// Returns the numbers of a view as ranks of their values, 0 … `count` − 1.
 std::vector<Index> dense_groups(const IndexView& groups, Index size, const char* what, Index& count) {
-  if (index_size(groups) != size) {
+  if (std::cmp_not_equal(groups.size(), size)) {
     throw InvalidArgument("groups: " + std::to_string(groups.size()) + " numbers for " +
                           std::to_string(size) + " " + what);
   }
@@ -104,7 +104,6 @@ Order order_vertices_by_options(std::string_view method, const VertexInput& inpu
   const std::vector<Index> group_of = dense_groups(options.groups, input.graph.size(), "vertices", count);
   OrderOptions of_group = options;
   of_group.groups = {};
-  of_group.start = {};
   return order_graph_in_groups(method, input, group_of, count, of_group);
 }
 

@@ -95,12 +95,41 @@ Method method_of_name(std::string_view name, std::vector<Entry<Method>> Registry
   return {};
 }
 
+/// Takes the entry of that number, if there is one, out of the list and its function into `method`.
+template <class Method>
+void take_out(std::vector<Entry<Method>>& list, std::uint64_t id, Method& method) {
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const auto& entry) { return entry.id == id; });
+  if (found == list.end()) return;
+  method = std::move(found->method);
+  list.erase(found);
+}
+
 void remove(std::uint64_t id) {
   if (id == 0) return;
   Registry& all = registry();
+  // destroyed without the lock: what the user's functions own may come back here
+  VertexMethod vertex_method;
+  ElementMethod element_method;
   const std::unique_lock lock(all.mutex);
-  std::erase_if(all.vertex_methods, [&](const auto& entry) { return entry.id == id; });
-  std::erase_if(all.element_methods, [&](const auto& entry) { return entry.id == id; });
+  take_out(all.vertex_methods, id, vertex_method);
+  take_out(all.element_methods, id, element_method);
+}
+
+/// A method that refuses to work without the coordinates of all vertices. `vertices(problem)` is their
+/// number.
+template <class Problem, class Method, class Vertices>
+Method with_points(const MethodInfo& info, Method method, Vertices vertices) {
+  if (!info.needs_points || !method) return method;
+  return [name = info.name, method = std::move(method), vertices](const Problem& problem,
+                                                                  const OrderOptions& options) {
+    if (problem.points.size() != vertices(problem)) {
+      throw InvalidArgument("order '" + name + "' needs the coordinates of all " +
+                            std::to_string(vertices(problem)) + " vertices, got " +
+                            std::to_string(problem.points.size()));
+    }
+    return method(problem, options);
+  };
 }
 
 }  // namespace
@@ -129,11 +158,15 @@ Registration& Registration::operator=(Registration&& other) noexcept {
 Registration::~Registration() { remove(id_); }
 
 Registration register_vertex_method(MethodInfo info, VertexMethod method) {
+  method = with_points<VertexProblem>(
+      info, std::move(method), [](const VertexProblem& problem) { return problem.offsets.size() - 1; });
   return Registration(
       add(std::move(info), std::move(method), built_in_vertex_methods(), &Registry::vertex_methods));
 }
 
 Registration register_element_method(MethodInfo info, ElementMethod method) {
+  method = with_points<ElementProblem>(
+      info, std::move(method), [](const ElementProblem& problem) { return problem.vertex_ranks.size(); });
   return Registration(
       add(std::move(info), std::move(method), built_in_element_methods(), &Registry::element_methods));
 }

@@ -11,6 +11,7 @@
 #include <meshorder/error.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -49,6 +50,13 @@ LatticePoints on_lattice(const PointsView& points) {
   }
   lattice.bits = lattice.axes == 3 ? 21 : 31;
 
+  // a box whose extent no double holds is halved
+  const double shrink = std::isfinite(extent) ? 1 : 0.5;
+  if (shrink < 1) {
+    extent = 0;
+    for (int a = 0; a < 3; ++a) extent = std::max(extent, shrink * high[a] - shrink * low[a]);
+  }
+
   // one scale for all axes, so that cells are cubes
   const double cells = std::ldexp(1.0, lattice.bits) - 1;
   lattice.coordinates.assign(points.size(), {0, 0, 0});
@@ -56,8 +64,8 @@ LatticePoints on_lattice(const PointsView& points) {
     poll_in_loop(i);
     const Point point = point_at(points, i);
     for (int k = 0; k < lattice.axes; ++k) {
-      const double share = (point[used[k]] - low[used[k]]) / extent;
-      lattice.coordinates[i][k] = static_cast<std::uint32_t>(std::clamp(share, 0.0, 1.0) * cells);
+      const double share = (shrink * point[used[k]] - shrink * low[used[k]]) / extent;
+      lattice.coordinates[i][k] = static_cast<std::uint32_t>(share > 0 ? std::min(share, 1.0) * cells : 0);
     }
   }
   return lattice;

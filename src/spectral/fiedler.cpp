@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -114,7 +115,7 @@ void normalise(std::vector<double>& values, const std::vector<Index>& vertices) 
     norm_squared += values[v] * values[v];
     largest = std::max(largest, std::abs(values[v]));
   }
-  if (!(largest > 0)) {  // no vector was found; sorting needs numbers
+  if (!(norm_squared > 0) || !std::isfinite(norm_squared)) {  // no vector was found; sorting needs numbers
     for (const Index v : vertices) values[v] = 0;
     return;
   }
@@ -160,7 +161,7 @@ void check_input(GraphRef graph, std::span<const double> weights, RealView start
     throw InvalidArgument("fiedler_vector: weight " + std::to_string(bad - weights.begin()) + " is " +
                           std::to_string(*bad) + "; weights must be positive and finite");
   }
-  if (!start.empty() && index_size(start) != graph.size()) {
+  if (!start.empty() && std::cmp_not_equal(start.size(), graph.size())) {
     throw InvalidArgument("fiedler_vector: a start vector of " + std::to_string(start.size()) +
                           " entries for " + std::to_string(graph.size()) + " vertices");
   }

@@ -199,10 +199,10 @@ static void test_mesh(void) {
 static void test_fiedler(void) {
   enum { LENGTH = 10 };
   const double lambda2 = 0.0978869674096928558; /* 2 - 2 cos(pi / 10) */
-  int32_t path_offsets[LENGTH + 1];
-  int32_t path_neighbours[2 * LENGTH - 2];
-  double values[LENGTH];
-  float narrow[LENGTH];
+  int32_t path_offsets[LENGTH + 1] = {0};
+  int32_t path_neighbours[2 * LENGTH - 2] = {0};
+  double values[LENGTH] = {0};
+  float narrow[LENGTH] = {0};
   mo_in offsets = in32(path_offsets, LENGTH + 1);
   mo_in neighbours = in32(path_neighbours, 2 * LENGTH - 2);
   mo_out output;

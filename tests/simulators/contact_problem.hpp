@@ -124,7 +124,7 @@ inline void add_random_contacts(ContactProblem& problem, int count, bool with_it
 }
 
 /// A for x, y and z of all vertices.
-inline Eigen::MatrixXd dense(const SparseMatrix& matrix) {
+inline Eigen::MatrixXd dense_in_space(const SparseMatrix& matrix) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * matrix.size(), 3 * matrix.size());
   for (Index row = 0; row < matrix.size(); ++row) {
     for (Offset k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k) {
@@ -168,7 +168,7 @@ struct DenseSolution {
 
 /// By trying all sets of contacts that push, for at most some ten contacts.
 inline DenseSolution by_enumeration(const ContactProblem& problem) {
-  const Eigen::LLT<Eigen::MatrixXd> factor(dense(problem.matrix));
+  const Eigen::LLT<Eigen::MatrixXd> factor(dense_in_space(problem.matrix));
   const Eigen::MatrixXd rows = dense_rows(problem);
   const Eigen::VectorXd free = factor.solve(compact(problem.b));
   const Eigen::VectorXd depths = offsets(problem) - rows * free;
@@ -193,7 +193,7 @@ inline DenseSolution by_enumeration(const ContactProblem& problem) {
 
 /// By going through the contacts one after the other, again and again (Hildreth 1957).
 inline DenseSolution by_coordinates(const ContactProblem& problem) {
-  const Eigen::LLT<Eigen::MatrixXd> factor(dense(problem.matrix));
+  const Eigen::LLT<Eigen::MatrixXd> factor(dense_in_space(problem.matrix));
   const Eigen::MatrixXd rows = dense_rows(problem);
   const Eigen::VectorXd free = factor.solve(compact(problem.b));
   Eigen::VectorXd left = offsets(problem) - rows * free;

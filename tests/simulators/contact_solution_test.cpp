@@ -158,7 +158,7 @@ TEST(ContactSolution, KeepsTheMomentumOfABodyThatTouchesItself) {
   EXPECT_TRUE(run.report.converged);
   EXPECT_GT(run.report.pushing, 5);
   // A x − b are the forces of contacts
-  const Eigen::VectorXd forces = test::dense(problem.matrix) * compact(run.x) - compact(problem.b);
+  const Eigen::VectorXd forces = test::dense_in_space(problem.matrix) * compact(run.x) - compact(problem.b);
   EXPECT_GT(forces.cwiseAbs().maxCoeff(), 0.1);
   const Eigen::Vector3d sum = forces.reshaped(3, forces.size() / 3).rowwise().sum();
   EXPECT_LE(sum.norm(), 1e-7);
@@ -180,7 +180,7 @@ TEST(ContactSolution, HoldsABlockOnASlopeThatIsLessSteepThanTheFriction) {
   EXPECT_TRUE(run.report.converged);
   const double total = Eigen::Map<Eigen::VectorXd>(problem.masses.data(), problem.size()).sum();
   const Eigen::VectorXd moved = compact(run.x) - compact(problem.rest);
-  const Eigen::VectorXd pull = test::dense(problem.matrix) * compact(run.x) - compact(problem.b);
+  const Eigen::VectorXd pull = test::dense_in_space(problem.matrix) * compact(run.x) - compact(problem.b);
   const Eigen::Vector3d force = pull.reshaped(3, pull.size() / 3).rowwise().sum();
   // the forces that hold a block at rest, up to the solver's softness
   const double weight = total * 9.81 * 1e-4;
@@ -195,7 +195,7 @@ TEST(ContactSolution, LetsABlockSlideDownASlopeThatIsSteeperThanTheFriction) {
   ContactProblem problem = block_on_slope(angle, friction);
   Solved<double> run(problem, kExact);
   EXPECT_TRUE(run.report.converged);
-  const Eigen::VectorXd pull = test::dense(problem.matrix) * compact(run.x) - compact(problem.b);
+  const Eigen::VectorXd pull = test::dense_in_space(problem.matrix) * compact(run.x) - compact(problem.b);
   const Eigen::Vector3d force = pull.reshaped(3, pull.size() / 3).rowwise().sum();
   EXPECT_NEAR(force.x(), -friction * force.y(), 1e-6 * force.y());
   EXPECT_NEAR(force.z(), 0.0, 0.01 * force.y());
@@ -218,7 +218,7 @@ TEST(ContactSolution, KeepsForcesWithinTheConeOfFrictionAndAgainstTheMotion) {
     problem.add_plane({0, 1, 0}, -1.0, 0.7, 0, friction);
     Solved<double> run(problem, kExact);
     EXPECT_TRUE(run.report.converged) << friction;
-    const Eigen::VectorXd pull = test::dense(problem.matrix) * compact(run.x) - compact(problem.b);
+    const Eigen::VectorXd pull = test::dense_in_space(problem.matrix) * compact(run.x) - compact(problem.b);
     const Eigen::VectorXd moved = compact(run.x) - compact(problem.rest);
     int sticking = 0;
     int sliding = 0;
