@@ -97,6 +97,15 @@ def test_public_headers_are_few_and_name_no_other_library(prefix):
         assert not found, path
 
 
+@pytest.mark.parametrize("compiler", ["c++", "clang++"])
+def test_public_headers_compile_as_those_of_a_shared_library(prefix, tmp_path, compiler):
+    if not shutil.which(compiler):
+        pytest.skip(f"no {compiler}")
+    (tmp_path / "all.cpp").write_text("#include <meshorder/meshorder.hpp>\n")
+    run(compiler, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-DMESHORDER_SHARED",
+        f"-I{prefix / 'include'}", tmp_path / "all.cpp")
+
+
 def test_the_installed_command_works(prefix, tmp_path):
     (tmp_path / "path.off").write_text("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n")
     run(prefix / "bin" / "meshorder", "order", "path.off", "-o", "ordered.off", cwd=tmp_path)
