@@ -1,32 +1,18 @@
 # Debian 12's packages. Each part of the tree asks for what it needs, so that a build of the core alone looks for TBB
 # and Eigen only.
 
-# meshorder_find_library(<target> <header> <library> [suffix of the include folder]): libraries without a CMake file
-function(meshorder_find_library target header library)
-  if(TARGET ${target})
-    return()
-  endif()
-  string(MAKE_C_IDENTIFIER ${library} id)
-  string(TOUPPER ${id} id)
-  find_path(${id}_INCLUDE_DIR ${header} PATH_SUFFIXES ${ARGN})
-  find_library(${id}_LIBRARY ${library})
-  mark_as_advanced(${id}_INCLUDE_DIR ${id}_LIBRARY)
-  if(${id}_INCLUDE_DIR AND ${id}_LIBRARY)
-    add_library(${target} UNKNOWN IMPORTED)
-    set_target_properties(${target} PROPERTIES IMPORTED_LOCATION ${${id}_LIBRARY}
-                                               INTERFACE_INCLUDE_DIRECTORIES ${${id}_INCLUDE_DIR})
-  endif()
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/find_library.cmake)
 
-# meshorder_switch(<option> <target>): an option AUTO, ON or OFF for a library that the build can do without. Sets
-# MESHORDER_HAS_<option>; ON without the library is an error.
-function(meshorder_switch option target)
+# meshorder_switch(<option> <target> <list>): an option AUTO, ON or OFF for a library that the build can do without. Sets
+# MESHORDER_HAS_<option>, and adds the target to the list if it is used; ON without the library is an error.
+function(meshorder_switch option target list)
   set(MESHORDER_HAS_${option} OFF PARENT_SCOPE)
   if(MESHORDER_${option} STREQUAL "OFF")
     return()
   endif()
   if(TARGET ${target})
     set(MESHORDER_HAS_${option} ON PARENT_SCOPE)
+    set(${list} ${${list}} ${target} PARENT_SCOPE)
   elseif(NOT MESHORDER_${option} STREQUAL "AUTO")
     message(FATAL_ERROR "MESHORDER_${option} is ON, but its library was not found")
   endif()
@@ -37,7 +23,8 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # small dense eigenproblems; needed
 if(NOT MESHORDER_METIS STREQUAL "OFF")
   meshorder_find_library(metis::metis metis.h metis)
 endif()
-meshorder_switch(METIS metis::metis)
+set(metis "")
+meshorder_switch(METIS metis::metis metis)
 
 if("io" IN_LIST components)
   find_package(fmt REQUIRED)                 # text
@@ -50,9 +37,10 @@ if("io" IN_LIST components)
   if(NOT MESHORDER_LZ4 STREQUAL "OFF")
     meshorder_find_library(lz4::lz4 lz4.h lz4)
   endif()
-  meshorder_switch(ZLIB ZLIB::ZLIB)
-  meshorder_switch(LZMA LibLZMA::LibLZMA)
-  meshorder_switch(LZ4 lz4::lz4)
+  set(compressions "")
+  meshorder_switch(ZLIB ZLIB::ZLIB compressions)
+  meshorder_switch(LZMA LibLZMA::LibLZMA compressions)
+  meshorder_switch(LZ4 lz4::lz4 compressions)
 endif()
 if("payoff" IN_LIST components)
   find_package(hwy REQUIRED)                 # SIMD chosen at run time

@@ -10,7 +10,7 @@
 #if !defined(MESHORDER_SHARED)
 #define MESHORDER_API
 #elif !defined(_WIN32)
-#define MESHORDER_API __attribute__((visibility("default")))
+#define MESHORDER_API [[gnu::visibility("default")]]
 #elif defined(MESHORDER_BUILDING)
 #define MESHORDER_API __declspec(dllexport)
 #else

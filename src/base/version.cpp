@@ -28,6 +28,15 @@ std::string build_info() {
 #ifdef MESHORDER_HAS_METIS
   info += " metis " + number(METIS_VER_MAJOR, METIS_VER_MINOR) + "/" + std::to_string(IDXTYPEWIDTH);
 #endif
+#ifdef MESHORDER_HAS_ZLIB
+  info += " zlib";
+#endif
+#ifdef MESHORDER_HAS_LZMA
+  info += " lzma";
+#endif
+#ifdef MESHORDER_HAS_LZ4
+  info += " lz4";
+#endif
   return info;
 }
 

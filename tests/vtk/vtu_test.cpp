@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
+#include "io/vtk/vtu_compressor.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
@@ -22,6 +23,7 @@
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <array>
 #include <csignal>
 #include <limits>
 #include <random>
@@ -66,19 +68,25 @@ std::string with(std::string text, std::string_view old, std::string_view fresh)
   return text.replace(at, old.size(), fresh);
 }
 
+/// The compressors of VTK's own writer: none, LZ4, zlib, LZMA.
+constexpr std::array kCompressorsOfVtk{VtuEncoding::Compressor::none, VtuEncoding::Compressor::lz4,
+                                       VtuEncoding::Compressor::zlib, VtuEncoding::Compressor::lzma};
+
 /// How VTK's own writer is to store a grid.
 struct Encoding {
   std::string name;
   int mode;        // 0 text, 1 base64, 2 appended
   bool base64;     // appended as base64
-  int compressor;  // none, LZ4, zlib, LZMA
+  int compressor;  // of kCompressorsOfVtk
   bool big_endian;
   bool wide;
 };
 
+/// Returns all encodings that this build can read.
 std::vector<Encoding> all_encodings() {
   std::vector<Encoding> result;
   for (const int compressor : {0, 1, 2, 3}) {
+    if (!vtk::VtuCompressor::available(kCompressorsOfVtk[static_cast<std::size_t>(compressor)])) continue;
     for (const bool big_endian : {false, true}) {
       for (const bool wide : {false, true}) {
         const std::string name =

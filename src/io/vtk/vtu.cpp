@@ -56,7 +56,14 @@ struct Section {
 class Writer {
  public:
   Writer(const Mesh& mesh, const FilePath& path, Notes& notes)
-      : from_(mesh, path, notes), encoding_(from_.metadata.vtu.value_or(VtuEncoding{})), out_(path) {}
+      : from_(mesh, path, notes), encoding_(from_.metadata.vtu.value_or(VtuEncoding{})), out_(path) {
+    if (VtuCompressor::available(encoding_.compressor)) return;
+    if (encoding_.mode != Mode::ascii)
+      notes.push_back(fmt::format("written without compression: this build of meshorder lacks {} ({}=ON)",
+                                  VtuCompressor::library(encoding_.compressor),
+                                  VtuCompressor::option(encoding_.compressor)));
+    encoding_.compressor = Compressor::none;
+  }
 
   void write() {
     note_legacy_parts();

@@ -1,46 +1,122 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/vtk/vtu_compressor.hpp"
 
+#ifdef MESHORDER_HAS_LZ4
 #include <lz4.h>
+#endif
+#ifdef MESHORDER_HAS_LZMA
 #include <lzma.h>
+#endif
+#ifdef MESHORDER_HAS_ZLIB
 #include <zlib.h>
+#endif
 
+#include <array>
 #include <limits>
 #include <stdexcept>
 
 namespace meshorder::vtk {
 namespace {
 
-constexpr int kLevel = 5;  // VTK's default, of 1 to 9
+/// The functions of a library. A library that the build lacks has none.
+struct Codec {
+  /// Returns an upper bound on the bytes that so many take compressed.
+  std::size_t (*bound)(std::size_t bytes) = nullptr;
+  /// Compresses into `room`; returns the bytes that took, 0 on failure.
+  std::size_t (*compress)(std::span<const char> bytes, std::span<char> room) = nullptr;
+  /// Fills `target`; returns false if `bytes` do not hold exactly that many.
+  bool (*uncompress)(std::span<const char> bytes, std::span<char> target) = nullptr;
+};
 
-const Bytef* bytes_of(std::span<const char> bytes) { return reinterpret_cast<const Bytef*>(bytes.data()); }
+[[maybe_unused]] constexpr int kLevel = 5;  // VTK's default, of 1 to 9
 
-/// Compresses `bytes` into `room`; the bytes that took, 0 on failure.
-std::size_t compress_with(VtuEncoding::Compressor kind, std::span<const char> bytes, std::span<char> room) {
-  auto* const target = reinterpret_cast<Bytef*>(room.data());
-  if (kind == VtuEncoding::Compressor::zlib) {
+[[maybe_unused]] const std::uint8_t* unsigned_bytes(std::span<const char> bytes) {
+  return reinterpret_cast<const std::uint8_t*>(bytes.data());
+}
+[[maybe_unused]] std::uint8_t* unsigned_bytes(std::span<char> bytes) {
+  return reinterpret_cast<std::uint8_t*>(bytes.data());
+}
+
+constexpr Codec zlib_codec() {
+  Codec codec;
+#ifdef MESHORDER_HAS_ZLIB
+  codec.bound = [](std::size_t bytes) -> std::size_t { return compressBound(bytes); };
+  codec.compress = [](std::span<const char> bytes, std::span<char> room) -> std::size_t {
     uLongf size = room.size();
-    return compress2(target, &size, bytes_of(bytes), bytes.size(), kLevel) == Z_OK ? size : 0;
-  }
-  if (kind == VtuEncoding::Compressor::lz4) {
+    return compress2(unsigned_bytes(room), &size, unsigned_bytes(bytes), bytes.size(), kLevel) == Z_OK ? size
+                                                                                                       : 0;
+  };
+  codec.uncompress = [](std::span<const char> bytes, std::span<char> target) {
+    uLongf size = target.size();
+    return ::uncompress(unsigned_bytes(target), &size, unsigned_bytes(bytes), bytes.size()) == Z_OK &&
+           size == target.size();
+  };
+#endif
+  return codec;
+}
+
+constexpr Codec lz4_codec() {
+  Codec codec;
+#ifdef MESHORDER_HAS_LZ4
+  codec.bound = [](std::size_t bytes) {
+    return static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(bytes)));
+  };
+  codec.compress = [](std::span<const char> bytes, std::span<char> room) {
     return static_cast<std::size_t>(LZ4_compress_default(
         bytes.data(), room.data(), static_cast<int>(bytes.size()), static_cast<int>(room.size())));
-  }
-  std::size_t size = 0;
-  const lzma_ret status = lzma_easy_buffer_encode(kLevel, LZMA_CHECK_CRC32, nullptr, bytes_of(bytes),
-                                                  bytes.size(), target, &size, room.size());
-  return status == LZMA_OK ? size : 0;
+  };
+  codec.uncompress = [](std::span<const char> bytes, std::span<char> target) {
+    constexpr std::size_t kMost = std::numeric_limits<int>::max();
+    if (bytes.size() > kMost || target.size() > kMost) return false;
+    return LZ4_decompress_safe(bytes.data(), target.data(), static_cast<int>(bytes.size()),
+                               static_cast<int>(target.size())) == static_cast<int>(target.size());
+  };
+#endif
+  return codec;
 }
 
-std::size_t greatest_size(VtuEncoding::Compressor kind, std::size_t bytes) {
-  if (kind == VtuEncoding::Compressor::zlib) return compressBound(bytes);
-  if (kind == VtuEncoding::Compressor::lz4) {
-    return static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(bytes)));
-  }
-  return lzma_stream_buffer_bound(bytes);
+constexpr Codec lzma_codec() {
+  Codec codec;
+#ifdef MESHORDER_HAS_LZMA
+  codec.bound = [](std::size_t bytes) { return lzma_stream_buffer_bound(bytes); };
+  codec.compress = [](std::span<const char> bytes, std::span<char> room) {
+    std::size_t size = 0;
+    const lzma_ret status = lzma_easy_buffer_encode(kLevel, LZMA_CHECK_CRC32, nullptr, unsigned_bytes(bytes),
+                                                    bytes.size(), unsigned_bytes(room), &size, room.size());
+    return status == LZMA_OK ? size : 0;
+  };
+  codec.uncompress = [](std::span<const char> bytes, std::span<char> target) {
+    std::uint64_t memory = std::uint64_t{1} << 30;
+    std::size_t read = 0;
+    std::size_t written = 0;
+    return lzma_stream_buffer_decode(&memory, 0, nullptr, unsigned_bytes(bytes), &read, bytes.size(),
+                                     unsigned_bytes(target), &written, target.size()) == LZMA_OK &&
+           written == target.size();
+  };
+#endif
+  return codec;
 }
+
+/// Codecs, libraries and CMake options in the order of VtuEncoding::Compressor.
+constexpr std::array kCodecs{Codec{}, zlib_codec(), lz4_codec(), lzma_codec()};
+constexpr std::array<std::string_view, 4> kLibraries{"", "zlib", "LZ4", "LZMA"};
+constexpr std::array<std::string_view, 4> kOptions{"", "MESHORDER_ZLIB", "MESHORDER_LZ4", "MESHORDER_LZMA"};
+
+const Codec& codec_of(VtuEncoding::Compressor kind) { return kCodecs[static_cast<std::size_t>(kind)]; }
 
 }  // namespace
+
+bool VtuCompressor::available(VtuEncoding::Compressor kind) {
+  return kind == VtuEncoding::Compressor::none || codec_of(kind).compress != nullptr;
+}
+
+std::string_view VtuCompressor::library(VtuEncoding::Compressor kind) {
+  return kLibraries[static_cast<std::size_t>(kind)];
+}
+
+std::string_view VtuCompressor::option(VtuEncoding::Compressor kind) {
+  return kOptions[static_cast<std::size_t>(kind)];
+}
 
 std::uint64_t VtuCompressor::greatest_ratio(VtuEncoding::Compressor kind) {
   switch (kind) {
@@ -57,33 +133,16 @@ std::uint64_t VtuCompressor::greatest_ratio(VtuEncoding::Compressor kind) {
 }
 
 std::string VtuCompressor::compress(std::span<const char> bytes) const {
-  std::string result(greatest_size(kind_, bytes.size()), '\0');
-  result.resize(compress_with(kind_, bytes, result));
+  const Codec& codec = codec_of(kind_);
+  std::string result(codec.bound(bytes.size()), '\0');
+  result.resize(codec.compress(bytes, result));
   if (result.empty()) throw std::runtime_error("a block of an array could not be compressed");
   return result;
 }
 
 bool VtuCompressor::uncompress(std::span<const char> bytes, std::span<char> target) const {
   if (bytes.empty() || target.empty()) return target.empty();
-  if (kind_ == VtuEncoding::Compressor::zlib) {
-    uLongf size = target.size();
-    return ::uncompress(reinterpret_cast<Bytef*>(target.data()), &size, bytes_of(bytes), bytes.size()) ==
-               Z_OK &&
-           size == target.size();
-  }
-  if (kind_ == VtuEncoding::Compressor::lz4) {
-    constexpr std::size_t kMost = std::numeric_limits<int>::max();
-    if (bytes.size() > kMost || target.size() > kMost) return false;
-    return LZ4_decompress_safe(bytes.data(), target.data(), static_cast<int>(bytes.size()),
-                               static_cast<int>(target.size())) == static_cast<int>(target.size());
-  }
-  std::uint64_t memory = std::uint64_t{1} << 30;
-  std::size_t read = 0;
-  std::size_t written = 0;
-  return lzma_stream_buffer_decode(&memory, 0, nullptr, bytes_of(bytes), &read, bytes.size(),
-                                   reinterpret_cast<Bytef*>(target.data()), &written,
-                                   target.size()) == LZMA_OK &&
-         written == target.size();
+  return codec_of(kind_).uncompress(bytes, target);
 }
 
 }  // namespace meshorder::vtk

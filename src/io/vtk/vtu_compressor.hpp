@@ -6,15 +6,23 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace meshorder::vtk {
 
 /// One of the compressors of .vtu files: zlib, LZ4 blocks, or xz streams, as VTK's vtkZLibDataCompressor,
-/// vtkLZ4DataCompressor and vtkLZMADataCompressor write them.
+/// vtkLZ4DataCompressor and vtkLZMADataCompressor write them. The build may lack some of their libraries.
 class VtuCompressor {
  public:
-  /// `kind` is not `none`.
+  /// `kind` is not `none`, and available.
   explicit VtuCompressor(VtuEncoding::Compressor kind) : kind_(kind) {}
+
+  /// Returns whether this build can compress and uncompress so; true for `none`.
+  static bool available(VtuEncoding::Compressor kind);
+
+  /// Returns the name of the library and that of the CMake option that brings it; empty for `none`.
+  static std::string_view library(VtuEncoding::Compressor kind);
+  static std::string_view option(VtuEncoding::Compressor kind);
 
   /// Returns an upper bound on the number of bytes that one compressed byte can hold.
   static std::uint64_t greatest_ratio(VtuEncoding::Compressor kind);

@@ -103,7 +103,16 @@ VtuDocument::Stored VtuDocument::locate(const VtuElement& array) const {
 
   Stored stored;
   const bool coded = how != VtuEncoding::Mode::appended_raw;
-  if (encoding_.compressor != VtuEncoding::Compressor::none) {
+  if (const auto kind = encoding_.compressor; kind != VtuEncoding::Compressor::none) {
+    if (!VtuCompressor::available(kind)) {
+      throw Unavailable(
+          error(array,
+                fmt::format("the array is compressed by {}, which this build of meshorder lacks",
+                            VtuCompressor::library(kind)),
+                fmt::format("build it with {}=ON, or write the file without compression",
+                            VtuCompressor::option(kind)))
+              .what());
+    }
     locate_blocks(array, data, coded, stored);
     return stored;
   }

@@ -1,0 +1,137 @@
+# What `cmake --install` puts where. Install components: library (shared C++ library), c (shared C library), development
+# (headers, archives, CMake and pkg-config files, examples), command (program, manual, completions, documents) and
+# licence. All paths are relative to the prefix, so that an installed tree can be moved.
+
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/meshorder)
+set(generated ${CMAKE_CURRENT_BINARY_DIR}/installed)
+
+# ---- libraries and headers, each component with an export of its own
+
+foreach(component IN LISTS components)
+  set(runtime library)
+  set(targets meshorder_${component})
+  if(component STREQUAL "c")
+    set(runtime c)
+  elseif(component STREQUAL "core" AND BUILD_SHARED_LIBS)
+    list(APPEND targets meshorder_library)
+  endif()
+  set(export meshorder-${component}-targets)
+  install(
+    TARGETS ${targets}
+    EXPORT ${export}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${runtime} NAMELINK_COMPONENT development
+    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${runtime}
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+  install(EXPORT ${export} NAMESPACE meshorder:: DESTINATION ${cmake_folder} COMPONENT development)
+endforeach()
+
+# ---- find_package(meshorder)
+
+# an archive leaves the libraries that it needs to whoever links it
+set(MESHORDER_STATIC ON)
+if(BUILD_SHARED_LIBS)
+  set(MESHORDER_STATIC OFF)
+endif()
+configure_package_config_file(
+  cmake/meshorder-config.cmake.in ${generated}/meshorder-config.cmake INSTALL_DESTINATION ${cmake_folder}
+  NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+write_basic_package_version_file(${generated}/meshorder-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${generated}/meshorder-config.cmake ${generated}/meshorder-config-version.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/find_library.cmake
+        DESTINATION ${cmake_folder} COMPONENT development)
+
+# ---- pkg-config
+
+# meshorder_pkg_config(<component> DESCRIPTION … REQUIRES <modules> LIBRARIES <flags> DEFINITIONS <flags>)
+function(meshorder_pkg_config component)
+  cmake_parse_arguments(PC "" "DESCRIPTION" "REQUIRES;LIBRARIES;DEFINITIONS" ${ARGN})
+  set(prefix ${CMAKE_INSTALL_PREFIX})
+  if(NOT IS_ABSOLUTE ${CMAKE_INSTALL_LIBDIR})
+    file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+    string(REGEX REPLACE "/$" "" prefix "\${pcfiledir}/${up}")
+  endif()
+  foreach(folder LIBDIR INCLUDEDIR)
+    set(${folder} "\${prefix}/${CMAKE_INSTALL_${folder}}")
+    if(IS_ABSOLUTE ${CMAKE_INSTALL_${folder}})
+      set(${folder} ${CMAKE_INSTALL_${folder}})
+    endif()
+  endforeach()
+  list(JOIN PC_REQUIRES " " requires)
+  list(JOIN PC_LIBRARIES " " libraries)
+  list(JOIN PC_DEFINITIONS " " definitions)
+  configure_file(cmake/component.pc.in ${generated}/meshorder-${component}.pc @ONLY)
+  install(FILES ${generated}/meshorder-${component}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+          COMPONENT development)
+endfunction()
+
+set(core_text "orders of graphs and meshes, C++20")
+set(core_requires tbb)
+set(core_libraries ${CMAKE_DL_LIBS})
+if(MESHORDER_HAS_METIS)
+  list(PREPEND core_libraries metis)
+endif()
+set(io_text "meshes with files, C++20")
+set(io_requires meshorder-core fmt)
+foreach(library IN ITEMS ZLIB.zlib LZMA.liblzma LZ4.liblz4)
+  string(REPLACE "." ";" library ${library})
+  list(GET library 0 option)
+  list(GET library 1 module)
+  if(MESHORDER_HAS_${option})
+    list(APPEND io_requires ${module})
+  endif()
+endforeach()
+set(payoff_text "what an order is worth, C++20")
+set(payoff_requires meshorder-io libhwy fmt)
+foreach(component IN LISTS components)
+  if(component STREQUAL "c")
+    meshorder_pkg_config(c DESCRIPTION "orders of graphs and meshes, C" LIBRARIES -lmeshorder_c)
+  elseif(BUILD_SHARED_LIBS)
+    meshorder_pkg_config(${component} DESCRIPTION ${${component}_text} LIBRARIES -lmeshorder
+                         DEFINITIONS -DMESHORDER_SHARED)
+  else()
+    list(TRANSFORM ${component}_libraries PREPEND -l)
+    meshorder_pkg_config(${component} DESCRIPTION ${${component}_text} REQUIRES ${${component}_requires}
+                         LIBRARIES -lmeshorder_${component} ${${component}_libraries})
+  endif()
+endforeach()
+
+# ---- the command, with what its own help says as manual and completions
+
+set(MESHORDER_ZSH_FOLDER ${CMAKE_INSTALL_DATADIR}/zsh/site-functions CACHE STRING "Where zsh looks for completions")
+if(TARGET meshorder)
+  install(TARGETS meshorder RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
+  find_package(Python3 3.9 COMPONENTS Interpreter)
+  if(CMAKE_CROSSCOMPILING OR NOT Python3_Interpreter_FOUND)
+    message(STATUS "No manual pages and completions: they are made by running the command and Python")
+  else()
+    set(pages ${CMAKE_CURRENT_BINARY_DIR}/pages)
+    add_custom_command(
+      OUTPUT ${pages}/made
+      COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/command_pages.py $<TARGET_FILE:meshorder> ${pages}
+      COMMAND ${CMAKE_COMMAND} -E touch ${pages}/made
+      DEPENDS meshorder ${PROJECT_SOURCE_DIR}/scripts/command_pages.py
+      COMMENT "Writing manual pages and completions"
+      VERBATIM)
+    add_custom_target(meshorder_pages ALL DEPENDS ${pages}/made)
+    install(DIRECTORY ${pages}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT command)
+    install(FILES ${pages}/completions/meshorder DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+            COMPONENT command)
+    install(FILES ${pages}/completions/_meshorder DESTINATION ${MESHORDER_ZSH_FOLDER} COMPONENT command)
+    install(FILES ${pages}/completions/meshorder.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d
+            COMPONENT command)
+  endif()
+  install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command FILES_MATCHING PATTERN *.md PATTERN *.json
+          PATTERN pictures EXCLUDE PATTERN reproduction EXCLUDE)
+  install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)
+endif()
+
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development FILES_MATCHING PATTERN *.cpp)
+install(FILES LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
+
+if(PROJECT_IS_TOP_LEVEL)
+  include(cmake/packages.cmake)
+endif()

@@ -1,0 +1,96 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Who includes whom: the table of CONTRIBUTING.md, read off the include lines."""
+import pathlib
+import re
+
+import pytest
+
+pytestmark = pytest.mark.package
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+
+# folders of src/, each with the others that it may include; all may include public headers
+CORE = {"base": set(), "graph": {"base"}}
+CORE["cells"] = {"base", "graph"}
+CORE["spectral"] = {"base", "graph"}
+CORE["ordering"] = {"base", "graph", "cells", "spectral"}
+CORE["metrics"] = {"base", "graph", "ordering"}
+LAYERS = {
+    **CORE,
+    "c": set(CORE),
+    "mesh": set(CORE),
+    "io": {*CORE, "mesh"},
+    "kernels": {*CORE, "mesh"},
+    "payoff": {*CORE, "mesh", "kernels"},
+}
+# libraries, by the first word of their headers, and the folders that may include them
+LIBRARIES = {
+    "tbb": {*CORE, "kernels", "payoff"},
+    "Eigen": set(CORE),
+    "metis.h": {"base", "ordering"},
+    "fmt": {"mesh", "io", "kernels", "payoff"},
+    "hwy": {"kernels", "payoff"},
+    "lz4.h": {"io"},
+    "lzma.h": {"io"},
+    "zlib.h": {"io"},
+}
+SYSTEM = re.compile(r"(dlfcn|fcntl|sched|spawn|unistd|sys/\w+)\.h")
+
+
+def files(folder):
+    return sorted(path for path in (ROOT / folder).rglob("*") if path.suffix in (".cpp", ".hpp", ".h", ".c", ".in"))
+
+
+def includes(path):
+    """Returns pairs (angle or quote, header)."""
+    return INCLUDE.findall(path.read_text(encoding="utf-8"))
+
+
+def is_standard(header):
+    return re.fullmatch(r"[a-z_]+|std\w+\.h", header) is not None
+
+
+def test_public_headers_include_public_and_standard_headers_only():
+    wrong = [f"{path.name}: {header}" for path in files("include") for kind, header in includes(path)
+             if kind != "<" or not (header.startswith("meshorder/") or is_standard(header))]
+    assert not wrong
+
+
+def test_every_public_header_that_is_included_exists():
+    there = {str(path.relative_to(ROOT / "include")).removesuffix(".in") for path in files("include")}
+    wrong = [f"{path}: {header}" for top in ("include", "src", "lab", "apps", "examples") for path in files(top)
+             for kind, header in includes(path)
+             if kind == "<" and header.startswith("meshorder") and header not in there]
+    assert not wrong
+
+
+def test_every_folder_of_src_has_a_row():
+    assert {path.name for path in (ROOT / "src").iterdir() if path.is_dir()} == set(LAYERS)
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_layer_includes_only_those_below(layer):
+    wrong = []
+    for path in files(f"src/{layer}"):
+        for kind, header in includes(path):
+            first = header.split("/")[0]
+            if kind == '"':
+                fine = (ROOT / "src" / header).exists() and (first == layer or first in LAYERS[layer])
+            elif first in LIBRARIES:
+                fine = layer in LIBRARIES[first]
+            else:
+                fine = header.startswith("meshorder") or is_standard(header) or SYSTEM.fullmatch(header)
+            if not fine:
+                wrong.append(f"{path.relative_to(ROOT)}: {header}")
+    assert not wrong
+
+
+@pytest.mark.parametrize("folder, above", [("src", ("lab/", "apps/", "tests/")), ("lab", ("apps/", "tests/"))])
+def test_nothing_below_includes_what_stands_above(folder, above):
+    def target(path, header):
+        beside = (path.parent / header).resolve()
+        return str(beside.relative_to(ROOT)) if beside.exists() and ROOT in beside.parents else header
+
+    wrong = [f"{path.relative_to(ROOT)}: {header}" for path in files(folder) for kind, header in includes(path)
+             if kind == '"' and target(path, header).startswith(above)]
+    assert not wrong
