@@ -178,7 +178,6 @@ enum class Ids : std::uint8_t {
 /// Options of `reorder`.
 struct ReorderOptions {
   MeshMethods methods = {};
-  OrderOptions order = {};  ///< `groups` and `cell_groups` must be empty where `group_by` is not
   Ids ids = Ids::renumber;
   /// Name of an array of whole numbers whose groups stay together, ascending; what has no value comes last.
   /// An array on cells groups cells and, by the smallest value among its elements, each vertex; "cells:NAME"
@@ -187,6 +186,7 @@ struct ReorderOptions {
   /// Name of the format that the mesh will be written in: one that keeps cells of a type together gets them
   /// so before they are ordered. Empty: `Mesh::format`.
   std::string format = {};
+  OrderOptions order = {};  ///< `groups` and `cell_groups` must be empty where `group_by` is not
 };
 
 /// Orders a mesh and moves its vertices and cells, together with all that belongs to them.

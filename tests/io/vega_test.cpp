@@ -99,7 +99,7 @@ TEST(Vega, TakesNumbersFromZeroCommasAnyCaseAndMixedLineEnds) {
             "*ELEMENTS\nTET\n1 4 0\n0 0 1 2 3\n\n*SET a\n0\n\n");
 }
 
-TEST(Vega, NumbersWithGapsAndInAnyOrderRunInTheNewOrder) {
+TEST(Vega, NumbersWithGapsRunInTheNewOrderOfWhatMoves) {
   const TemporaryFolder folder;
   Notes notes;
   Mesh mesh = read_mesh(folder.file("a.veg",
@@ -114,7 +114,7 @@ TEST(Vega, NumbersWithGapsAndInAnyOrderRunInTheNewOrder) {
   write_mesh(mesh, folder.path() / "b.veg");
   EXPECT_EQ(content_of(folder.path() / "b.veg"),
             "*VERTICES\n4 3 0 0\n3 1 0 0\n7 0 0 0\n20 0 1 0\n9000000000 0 0 1\n\n"
-            "*ELEMENTS\nTET\n2 4 0\n40 7 3 20 9000000000\n50 3 7 20 9000000000\n\n*SET a\n40\n\n");
+            "*ELEMENTS\nTET\n2 4 0\n50 7 3 20 9000000000\n40 3 7 20 9000000000\n\n*SET a\n50\n\n");
 }
 
 TEST(Vega, KeepsAttributesAndMarkersOfIncludedTetgenFiles) {
