@@ -99,6 +99,7 @@ inline namespace v0_2 {
 
 std::vector<FormatInfo> formats() {
   std::vector<FormatInfo> result;
+  result.reserve(kFormats.size());
   for (const Format& format : kFormats) {
     result.push_back({.name = format.key(),
                       .extensions = {format.extensions.begin(), format.extensions.end()},

@@ -23,8 +23,8 @@ class MemoryStore : public FileStore {
  public:
   MemoryStore() = default;
   MemoryStore(const std::filesystem::path& path, std::string bytes,
-              const std::function<std::string(std::string_view)>& companion)
-      : companion_(companion) {
+              std::function<std::string(std::string_view)> companion)
+      : companion_(std::move(companion)) {
     files_.push_back({path.string(), std::move(bytes)});
   }
 

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 namespace meshorder {
@@ -29,10 +28,12 @@ class FileStore {
 /// A file on disk or in a store, whether it exists or not.
 class FilePath {
  public:
+  // NOLINTBEGIN(google-explicit-constructor): a file on disk is what a path says
   /// A file on disk.
-  template <class Path>
-  requires std::is_convertible_v<Path, std::filesystem::path> FilePath(Path&& path)
-      : path_(std::forward<Path>(path)) {}  // NOLINT(google-explicit-constructor)
+  FilePath(std::filesystem::path path) : path_(std::move(path)) {}
+  FilePath(const std::string& path) : path_(path) {}
+  FilePath(const char* path) : path_(path) {}
+  // NOLINTEND(google-explicit-constructor)
   /// A file in a store, which must outlive this object.
   FilePath(std::filesystem::path path, FileStore& store) : path_(std::move(path)), store_(&store) {}
 
