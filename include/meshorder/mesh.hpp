@@ -36,13 +36,15 @@ struct MESHORDER_API Cells {
   /// Returns the number of cells. O(1).
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(shapes.size()); }
   /// Returns the number of vertices of a cell < size(). O(1).
-  [[nodiscard]] int vertex_count(Index cell) const { return static_cast<int>(end(cell) - begin(cell)); }
+  [[nodiscard]] int vertex_count(Index cell) const {
+    return static_cast<int>(row_end(cell) - row_begin(cell));
+  }
   /// Returns the vertices of a cell < size(). Valid until `vertices` changes its size. O(1).
   [[nodiscard]] std::span<const Index> operator[](Index cell) const {
-    return {vertices.data() + begin(cell), vertices.data() + end(cell)};
+    return {vertices.data() + row_begin(cell), vertices.data() + row_end(cell)};
   }
   [[nodiscard]] std::span<Index> operator[](Index cell) {
-    return {vertices.data() + begin(cell), vertices.data() + end(cell)};
+    return {vertices.data() + row_begin(cell), vertices.data() + row_end(cell)};
   }
   /// Appends a cell. The vertices are not checked, and must not be part of this object. Amortised
   /// O(vertices).
@@ -55,8 +57,8 @@ struct MESHORDER_API Cells {
   bool operator==(const Cells&) const = default;
 
  private:
-  [[nodiscard]] Offset begin(Index cell) const { return offsets[static_cast<std::size_t>(cell)]; }
-  [[nodiscard]] Offset end(Index cell) const { return offsets[static_cast<std::size_t>(cell) + 1]; }
+  [[nodiscard]] Offset row_begin(Index cell) const { return offsets[static_cast<std::size_t>(cell)]; }
+  [[nodiscard]] Offset row_end(Index cell) const { return offsets[static_cast<std::size_t>(cell) + 1]; }
 };
 
 /// What an array or a set belongs to.
@@ -162,7 +164,7 @@ MeshView view(const Mesh&& mesh) = delete;
 /// @throws InvalidArgument for sizes that do not match, a vertex out of range, an unknown VTK type, and cells
 ///         without types
 /// @note O(size of the mesh).
-[[nodiscard]] MESHORDER_API Mesh make_mesh(const MeshView& mesh);
+[[nodiscard]] MESHORDER_API Mesh make_mesh(const MeshView& view);
 
 /// Name of the arrays that `Ids::attach` adds.
 inline constexpr std::string_view kOriginal = "original";

@@ -4,12 +4,42 @@
 #include "mesh/reorder.hpp"
 
 #include "base/call.hpp"
+#include "base/text.hpp"
 #include "io/format.hpp"
+#include "io/tetgen/tetgen.hpp"
+#include "io/vega/parts.hpp"
 #include "mesh/graphs.hpp"
+#include "mesh/move.hpp"
+#include <meshorder/error.hpp>
 
+#include <numeric>
 #include <utility>
 
 namespace meshorder {
+namespace {
+
+/// Returns the number that the mesh's file gives its first vertex, where no ids say otherwise.
+std::int64_t first_number(const Mesh& mesh) {
+  const FormatMetadata* const metadata = mesh.format_metadata.get();
+  if (const auto* of_tetgen = dynamic_cast<const tetgen::Metadata*>(metadata)) return of_tetgen->base;
+  if (const auto* of_vega = dynamic_cast<const vega::Metadata*>(metadata)) return of_vega->vertex_base;
+  return mesh.format == "gmsh" || mesh.format == "medit" ? 1 : 0;
+}
+
+/// Writes the numbers down that a file gives by position, so that they can move with what they belong to.
+void write_down_ids(Mesh& mesh, bool of_vertices, bool of_cells) {
+  const std::int64_t first = first_number(mesh);
+  if (of_vertices && mesh.vertex_ids.empty()) {
+    mesh.vertex_ids.resize(mesh.points.size());
+    std::iota(mesh.vertex_ids.begin(), mesh.vertex_ids.end(), first);
+  }
+  if (of_cells && mesh.cell_ids.empty()) {
+    mesh.cell_ids.resize(mesh.cells.shapes.size());
+    std::iota(mesh.cell_ids.begin(), mesh.cell_ids.end(), first);
+  }
+}
+
+}  // namespace
 
 Permutation arrange_cells(Mesh& mesh, const Format& to) {
   if (mesh.format == to.key()) return Permutation::identity(mesh.cell_count());
@@ -20,13 +50,17 @@ Permutation arrange_cells(Mesh& mesh, const Format& to) {
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, CsrGraph& graph) {
   return in_call(options.order.run, [&] {
     if (options.order.check != Check::none) check_mesh(mesh);
+    if (options.ids == Ids::keep && same_but_for_case(options.format, "tetgen")) {
+      throw InvalidArgument(
+          "reorder: TetGen numbers points and cells by their places; their ids cannot be kept");
+    }
     const std::vector<Index> blocks = mesh.cell_blocks;
     const Permutation arranged = options.format.empty() ? Permutation::identity(mesh.cell_count())
                                                         : arrange_cells(mesh, format_named(options.format));
     try {
       graph = vertex_graph(mesh);
       MeshOrder order = compute_reordering(mesh, graph, options);
-      apply_reordering(mesh, order, options.ids);
+      apply_reordering(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
       order.cells.permutation = arranged.then(order.cells.permutation);
       return order;
     } catch (...) {
@@ -41,6 +75,19 @@ inline namespace v0_2 {
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options) {
   CsrGraph graph;
   return reorder(mesh, options, graph);
+}
+
+void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
+  const bool has_vertex_ids = !mesh.vertex_ids.empty();
+  const bool has_cell_ids = !mesh.cell_ids.empty();
+  if (ids == Ids::keep) write_down_ids(mesh, !vertices.is_identity(), !cells.is_identity());
+  try {
+    move_mesh(mesh, vertices, cells, ids);
+  } catch (...) {
+    if (!has_vertex_ids) mesh.vertex_ids.clear();
+    if (!has_cell_ids) mesh.cell_ids.clear();
+    throw;
+  }
 }
 
 }  // namespace v0_2

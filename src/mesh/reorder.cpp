@@ -5,6 +5,7 @@
 #include "base/stopwatch.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
+#include "mesh/move.hpp"
 #include "ordering/method.hpp"
 #include "ordering/moved.hpp"
 #include "ordering/order_cells.hpp"
@@ -133,12 +134,10 @@ MeshOrder compute_reordering(const Mesh& mesh, const CsrGraph& graph, const Reor
 }
 
 void apply_reordering(Mesh& mesh, const MeshOrder& order, Ids ids) {
-  apply_reordering(mesh, order.vertices.permutation, order.cells.permutation, ids);
+  move_mesh(mesh, order.vertices.permutation, order.cells.permutation, ids);
 }
 
-inline namespace v0_2 {
-
-void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
+void move_mesh(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
   check_fits(mesh, vertices, cells);
   const std::vector<Index> classes = slot_classes(cell_arrays(mesh));
   const Index to_check = is_one_class(classes) ? 0 : mesh.cell_count();
@@ -161,8 +160,6 @@ void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation
     sort_ids_within_classes(mesh.cell_ids, classes, class_count(mesh));
   }
 }
-
-}  // namespace v0_2
 
 namespace {
 

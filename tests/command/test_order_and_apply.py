@@ -33,6 +33,51 @@ def test_inverse_gives_the_file_back(command, shared, tmp_path, name):
     assert (tmp_path / f"again{extension}").read_bytes() == (tmp_path / f"ordered{extension}").read_bytes()
 
 
+def numbered_points(path):
+    """The points of a Gmsh 4.1 file by the numbers that it gives them."""
+    lines = iter(path.read_text().split("$Nodes\n")[1].split("$EndNodes")[0].splitlines())
+    points = {}
+    for _ in range(int(next(lines).split()[0])):
+        count = int(next(lines).split()[3])
+        numbers = [int(next(lines)) for _ in range(count)]
+        points.update((number, tuple(map(float, next(lines).split()[:3]))) for number in numbers)
+    return points
+
+
+def numbered_cells(path):
+    """The vertices of a Gmsh 4.1 file's cells by the numbers that it gives these."""
+    lines = iter(path.read_text().split("$Elements\n")[1].split("$EndElements")[0].splitlines())
+    cells = {}
+    for _ in range(int(next(lines).split()[0])):
+        for _ in range(int(next(lines).split()[3])):
+            number, *vertices = map(int, next(lines).split())
+            cells[number] = vertices
+    return cells
+
+
+def test_ids_stay_with_their_vertices_and_cells(command, tmp_path):
+    meshes.write_tetgen(tmp_path)
+    command.ok("order", "mesh.node", "-o", "a.msh", "--vertices", "original", "--elements", "original")
+    command.ok("order", "a.msh", "-o", "kept.msh", "--vertices", "scrambled", "--elements", "scrambled", "--ids", "keep")
+    points = numbered_points(tmp_path / "a.msh")
+    kept = numbered_points(tmp_path / "kept.msh")
+    assert kept == points and list(kept) != list(points)
+    assert numbered_cells(tmp_path / "kept.msh") == numbered_cells(tmp_path / "a.msh")
+    command.ok("order", "a.msh", "-o", "sorted.msh", "--vertices", "scrambled", "--elements", "scrambled")
+    assert list(numbered_points(tmp_path / "sorted.msh")) == list(points)
+
+
+def test_old_ids_are_attached_as_arrays(command, tmp_path):
+    meshes.write_tetgen(tmp_path)
+    command.ok("order", "mesh.node", "-o", "a.vtu", "--vertices", "scrambled", "--elements", "scrambled", "--seed", "3",
+               "--ids", "attach", "--maps", "m")
+    mesh = meshio.read(tmp_path / "a.vtu")
+    assert (mesh.point_data["original"] == load(tmp_path, "m", "vertices")[1]).all()
+    command.fails("order", "a.vtu", "-o", "b.vtu", "--ids", "attach")
+    command.fails("order", "mesh.node", "-o", "b.node", "--ids", "keep")
+    assert not (tmp_path / "b.node").exists()
+
+
 def test_maps_tell_which_was_which(command, tmp_path):
     meshes.write_tetgen(tmp_path)
     command.ok("order", "mesh.node", "-o", "new.node", "--vertices", "scrambled", "--elements", "scrambled", "--seed",
