@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/stopwatch.hpp"
+#include "base/text.hpp"
 #include "command.hpp"
 #include "compare_report.hpp"
 #include "console.hpp"
@@ -19,6 +20,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -29,7 +31,7 @@ namespace {
 
 struct CompareArguments : Common {
   std::string input;
-  std::vector<std::string> methods;
+  std::vector<std::string> methods;  ///< empty: all
   OrderOptions ordering;
   double budget_seconds = TimingOptions{}.budget_seconds;
   std::string caches;  ///< empty: this machine's, unless that takes long
@@ -95,7 +97,7 @@ void run(const CompareArguments& arguments) {
   mesh.cell_blocks.clear();  // orders are compared, not a file's layout
   const CsrGraph graph = vertex_graph(mesh);
 
-  comparison.orders = orders_of(arguments.methods);
+  comparison.orders = orders_of(arguments.methods.empty() ? default_methods() : arguments.methods);
   const bool predicted = !arguments.caches.empty() || is_quick_to_predict(mesh);
   const double share = 0.35 / static_cast<double>(comparison.orders.size());
   for (std::size_t i = 0; i < comparison.orders.size(); ++i) {
@@ -146,13 +148,12 @@ void add_compare(CLI::App& app) {
       "Example:\n"
       "  meshorder compare dragon.veg --methods hilbert,fiedler,metis-nd");
   const auto arguments = std::make_shared<CompareArguments>();
-  arguments->methods = default_methods();
   subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
   subcommand
       ->add_option("--methods", arguments->methods,
                    "Orders to compare, VERTICES or VERTICES/ELEMENTS, separated by commas")
       ->delimiter(',')
-      ->capture_default_str();
+      ->default_str(join(default_methods(), std::identity(), ","));
   subcommand->add_option("--budget", arguments->budget_seconds, "Seconds to spend on running the kernels")
       ->check(positive())
       ->capture_default_str();

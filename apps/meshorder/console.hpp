@@ -3,7 +3,7 @@
 
 #include "command.hpp"
 #include "io/format.hpp"
-#include "lab/support/quantities.hpp"
+#include "payoff/quantities.hpp"
 
 #include <fmt/core.h>
 #include <nlohmann/json_fwd.hpp>

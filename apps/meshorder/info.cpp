@@ -8,6 +8,7 @@
 #include "mesh/degenerate.hpp"
 #include "mesh/graphs.hpp"
 #include "metrics/edge_span.hpp"
+#include "payoff/advice.hpp"
 #include "payoff/machine.hpp"
 #include "progress.hpp"
 #include "reuse_report.hpp"

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/registry.hpp>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -80,6 +81,16 @@ int main(int argc, char** argv) {
       "meshorder"};
   app.set_version_flag("-V,--version", MESHORDER_VERSION);
   app.require_subcommand(1);
+  app.fallthrough();  // subcommands take --plugin, too
+  app.add_option_function<std::vector<std::string>>(
+         "--plugin",
+         [](const std::vector<std::string>& files) {
+           for (const std::string& file : files) meshorder::load_methods(file);
+         },
+         "Shared library with methods of your own (see examples/own_method.cpp); may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->trigger_on_parse();
   meshorder::command::add_order(app);
   meshorder::command::add_apply(app);
   meshorder::command::add_info(app);

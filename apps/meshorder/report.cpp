@@ -8,8 +8,8 @@
 #include "lab/study/mesh_study.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/support/machine.hpp"
+#include "payoff/advice.hpp"
 #include "progress.hpp"
-#include "verdict.hpp"
 #include "wording.hpp"
 #include <meshorder/error.hpp>
 
@@ -69,12 +69,14 @@ std::string verdict_on(const MeshRecord& record) {
   const auto as_it_is = order(kAsItIs);
   const auto ordered = order(kOrdered);
   if (as_it_is == record.orders.end() || ordered == record.orders.end()) return "";
-  Candidate candidate;
-  candidate.vertex_method.name = ordered->vertex_method;
-  candidate.element_method.name = ordered->element_method;
-  candidate.seconds = ordered->seconds;
-  candidate.costs = costs_of(*ordered);
-  return verdict_sentence({costs_of(*as_it_is), {candidate}});
+  Advice advice;
+  advice.as_is.costs = costs_of(*as_it_is);
+  advice.candidates.push_back({.vertices = {ordered->vertex_method, "chosen by auto"},
+                               .elements = {ordered->element_method, "chosen by auto"},
+                               .costs = costs_of(*ordered),
+                               .order_seconds = ordered->seconds});
+  advice.kernels = kernel_advice(advice);
+  return to_string(advice);
 }
 
 /// Returns the file's name without its extension, with a number if another mesh has that name.

@@ -49,8 +49,7 @@ struct ReadOptions {
 /// @param options  see `ReadOptions`
 /// @return a mesh with at least one cell that `check_mesh` accepts
 /// @throws InputError for a file that is missing, faulty or without cells, with place and remedy; for more
-/// than
-///         2,147,483,647 vertices or cells; for an unknown extension, with the known ones
+///         than 2,147,483,647 vertices or cells; for an unknown extension, with the known ones
 /// @throws InvalidArgument for an unknown format, with the known ones
 /// @throws Unavailable for a compression that this build lacks
 [[nodiscard]] MESHORDER_API Mesh read_mesh(const std::filesystem::path& path,
@@ -69,9 +68,8 @@ struct ReadOptions {
 /// @param notes  receives what the format cannot hold; null: dropped
 /// @return the places that the cells have in the file; the identity after `reorder` for that format
 /// @throws InvalidArgument for a mesh that `check_mesh` refuses
-/// @throws InputError for an unknown extension, for cells that the format cannot hold, and if the file cannot
-/// be
-///         written
+/// @throws InputError for an unknown extension, for cells that the format cannot hold, and if the file
+///         cannot be written
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path,
                                      Notes* notes = nullptr);
 

@@ -213,8 +213,7 @@ MESHORDER_API MeshOrder reorder(Mesh& mesh, const ReorderOptions& options = {});
 ///                  dimension
 /// @param ids       what becomes of ids
 /// @throws InvalidArgument if a size does not match, if `cells` breaks that rule, and for `Ids::attach` if
-/// the
-///         mesh has an array "original" already
+///         the mesh has an array "original" already
 /// @note O(size of the mesh); a copy of its largest part at a time.
 MESHORDER_API void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells,
                                     Ids ids = Ids::renumber);

@@ -14,3 +14,11 @@
 #include <meshorder/shape.hpp>
 #include <meshorder/version.hpp>
 #include <meshorder/view.hpp>
+
+#if __has_include(<meshorder/io.hpp>)
+#include <meshorder/io.hpp>
+#include <meshorder/mesh.hpp>
+#endif
+#if __has_include(<meshorder/payoff.hpp>)
+#include <meshorder/payoff.hpp>
+#endif

@@ -179,29 +179,35 @@ class CellsView {
     return view;
   }
 
-  /// Cells of any types in compressed form: cell c has `vertices[offsets[c] − base] …`.
+  /// Cells of unknown types in compressed form: cell c has `vertices[offsets[c] − base] …`. Every vertex
+  /// counts as a corner, all cells have the same dimension and facets are unknown.
   ///
-  /// @param offsets    cells + 1 numbers that ascend, the first is `base`
-  /// @param vertices   offsets[cells] − base vertex numbers
-  /// @param vtk_types  VTK's type number of each cell; without them every vertex counts as a corner, all
-  ///                   cells have the same dimension and facets are unknown
-  /// @param base       number of the first vertex and first offset, 0 or 1
+  /// @param offsets   cells + 1 numbers that ascend, the first is `base`
+  /// @param vertices  offsets[cells] − base vertex numbers
+  /// @param base      number of the first vertex and first offset, 0 or 1
   static CellsView mixed(IndexView offsets MESHORDER_LIFETIMEBOUND,
-                         IndexView vertices MESHORDER_LIFETIMEBOUND,
-                         std::span<const std::uint8_t> vtk_types = {}, int base = 0) {
+                         IndexView vertices MESHORDER_LIFETIMEBOUND, int base = 0) {
     CellsView view;
     view.offsets_ = offsets;
     view.vertices_ = vertices;
-    view.vtk_types_ = vtk_types;
     view.base_ = base;
     return view;
   }
 
-  /// The same with the shape of each cell.
+  /// The same with VTK's type number of each cell; none where they are not known.
+  static CellsView mixed(IndexView offsets MESHORDER_LIFETIMEBOUND,
+                         IndexView vertices MESHORDER_LIFETIMEBOUND, std::span<const std::uint8_t> vtk_types,
+                         int base = 0) {
+    CellsView view = mixed(offsets, vertices, base);
+    view.vtk_types_ = vtk_types;
+    return view;
+  }
+
+  /// The same with the shape of each cell; none where they are not known.
   static CellsView mixed(IndexView offsets MESHORDER_LIFETIMEBOUND,
                          IndexView vertices MESHORDER_LIFETIMEBOUND, std::span<const Shape> shapes,
                          int base = 0) {
-    CellsView view = mixed(offsets, vertices, std::span<const std::uint8_t>{}, base);
+    CellsView view = mixed(offsets, vertices, base);
     view.shapes_ = shapes;
     return view;
   }

@@ -3,6 +3,7 @@
 
 #include "graph/csr_graph.hpp"
 #include <meshorder/permutation.hpp>
+#include <meshorder/quality.hpp>
 
 #include <vector>
 
@@ -24,6 +25,9 @@ EdgeSpan edge_span(GraphRef graph, const Permutation& order);
 /// Σ over vertices of the distance to the first neighbour before them in the order: the size of the envelope
 /// of a matrix with this pattern (diagonal not counted). O(n + edges).
 Offset profile(GraphRef graph, const Permutation& order);
+
+/// All of them, as the public `quality` returns them. O(n + edges).
+Quality quality_of(GraphRef graph, const Permutation& order);
 
 /// The number of edges whose span is in [2^k, 2^(k+1)), for k from 0 to that of the largest. O(n + edges).
 std::vector<Offset> span_histogram_log2(GraphRef graph, const Permutation& order);

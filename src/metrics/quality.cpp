@@ -8,6 +8,17 @@
 #include <string>
 
 namespace meshorder {
+
+Quality quality_of(GraphRef graph, const Permutation& order) {
+  const EdgeSpan span = edge_span(graph, order);
+  return {.edges = graph.edge_count(),
+          .mean_span = span.mean,
+          .mean_log2_span = span.mean_log2,
+          .bandwidth = span.max,
+          .profile = profile(graph, order),
+          .histogram_log2 = span_histogram_log2(graph, order)};
+}
+
 inline namespace v0_2 {
 namespace {
 
@@ -24,16 +35,6 @@ auto measured(const GraphView& graph, const Permutation* order, const Run& run, 
     const GraphRef arrays(clean.offsets, clean.neighbours);
     return order != nullptr ? measure(arrays, *order) : measure(arrays, Permutation::identity(clean.size()));
   });
-}
-
-Quality quality_of(GraphRef graph, const Permutation& order) {
-  const EdgeSpan span = edge_span(graph, order);
-  return {.edges = graph.edge_count(),
-          .mean_span = span.mean,
-          .mean_log2_span = span.mean_log2,
-          .bandwidth = span.max,
-          .profile = profile(graph, order),
-          .histogram_log2 = span_histogram_log2(graph, order)};
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 
 #include <meshorder.h>
 
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 #if defined(__unix__) || defined(__APPLE__)
 #include <dlfcn.h>
@@ -37,7 +39,12 @@ inline namespace v0_2 {
 
 void load_methods(const std::filesystem::path& shared_library) {
 #if defined(__unix__) || defined(__APPLE__)
-  void* const library = dlopen(shared_library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  // a name without a folder would be looked for among the system's libraries only
+  std::error_code failed_to_look;
+  const std::filesystem::path file = std::filesystem::exists(shared_library, failed_to_look)
+                                         ? std::filesystem::absolute(shared_library)
+                                         : shared_library;
+  void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw Unavailable("plug-in: " + std::string(dlerror()));
   using Plugin = mo_status (*)(mo_register_fn);
   const auto plugin = reinterpret_cast<Plugin>(dlsym(library, "meshorder_plugin_v1"));

@@ -2,10 +2,12 @@
 #include "payoff/access_stream.hpp"
 
 #include "base/parallel.hpp"
+#include "base/run_scope.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/reuse_sample.hpp"
 #include <meshorder/error.hpp>
 
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -58,7 +60,11 @@ AccessStream::Array AccessStream::place(Offset bytes) {
 Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings) {
   const AccessStream stream(kernel, graph, simplices);
   ReuseSample reuse(stream.line_count(), halvings);
-  stream.visit([&](Index line) { reuse.access(line); });
+  std::uint32_t accesses = 0;
+  stream.visit([&](Index line) {
+    if (++accesses % 0x10000 == 0) poll();
+    reuse.access(line);
+  });
   return std::move(reuse).repeated();
 }
 

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "mesh/reorder.hpp"
-#include "payoff/cost_model.hpp"
-#include "payoff/kernel_timing.hpp"
+#include "graph/csr_graph.hpp"
+#include "metrics/cache.hpp"
 #include "payoff/machine.hpp"
 #include <meshorder/mesh.hpp>
+#include <meshorder/payoff.hpp>
 
 #include <array>
 #include <cstddef>
@@ -18,39 +18,8 @@ namespace meshorder {
 /// forces and assembles once, and takes 100 iterations of conjugate gradients.
 inline constexpr std::array<int, kKernels.size()> kRunsInTimeStep{100, 1, 1, 0};
 
-/// Times of the kernels in one order, in milliseconds.
-struct OrderCosts {
-  std::optional<KernelMilliseconds> predicted;
-  std::optional<KernelMilliseconds> measured;  ///< best of interleaved rounds
-
-  /// Returns the measured times, else the predicted ones. One of them must be set.
-  [[nodiscard]] const KernelMilliseconds& best_known() const { return measured ? *measured : *predicted; }
-};
-
-/// An order for the mesh.
-struct Candidate {
-  Workload use = Workload::all;  ///< the kernel that `auto` chose it for
-  MethodChoice vertex_method;
-  MethodChoice element_method;
-  double seconds = 0;  ///< its cost: the graph, both orders, moving the mesh
-  OrderCosts costs;
-};
-
-/// Times of a mesh in its own order and in others.
-struct Advice {
-  OrderCosts as_is;
-  std::vector<Candidate> candidates;  ///< the first is the default of `meshorder order`
-};
-
-/// The best candidate for one kernel.
-struct KernelAdvice {
-  std::size_t candidate = 0;  ///< index of the candidate in which it runs fastest
-  double factor =
-      1;  ///< its time in the mesh's order divided by that in the candidate; 1 if nothing is gained
-  double runs_to_pay = 0;  ///< runs after which the order has paid for itself; 0 if nothing is gained
-};
-
 struct AdviceOptions {
+  std::vector<MeshMethods> methods = {};  ///< as in `PayoffOptions`
   Caches caches = caches_of_this_machine();
   OrderOptions ordering = {};
   double graph_seconds = 0;  ///< time that the vertex graph took
@@ -64,9 +33,8 @@ struct AdviceOptions {
   std::optional<double> measure_within = {};
 };
 
-/// Computes the orders that `auto` chooses, and the times of the kernels in them and in the mesh's own order.
-/// `graph` is the vertex graph of `mesh`. Predictions are the same on every run. Throws InvalidArgument if
-/// neither prediction nor measurement is wanted.
+/// Computes the candidates and the times of the kernels in them and in the mesh's own order. `graph` is the
+/// vertex graph of `mesh`. Throws InvalidArgument if neither prediction nor measurement is wanted.
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options = {});
 
 /// Returns the factor up to which two times of a kernel count as equal: 1.05 for measured times; 1.1 for
@@ -81,5 +49,11 @@ std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice);
 /// Returns the milliseconds that a candidate saves in each time step (see kRunsInTimeStep), negative if it is
 /// slower. Differences within same_time do not count.
 double saved_in_time_step(const Advice& advice, std::size_t candidate);
+
+/// Returns the time steps after which a candidate has paid for itself, 0 if it never does.
+double steps_to_pay(const Advice& advice, std::size_t candidate);
+
+/// Returns the command that gives a mesh the order of a candidate: "meshorder order --for springs".
+std::string command_for(const Candidate& candidate);
 
 }  // namespace meshorder

@@ -37,8 +37,7 @@ const CostModel& zen5_costs();
 double predicted_ms(Kernel kernel, const Reuse& reuse, const Caches& caches,
                     const CostModel& model = zen5_costs());
 
-/// Milliseconds of all kernels, as kKernels lists them.
-using KernelMilliseconds = std::array<double, kKernels.size()>;
+/// As above, for all kernels.
 KernelMilliseconds predicted_ms(const KernelReuse& reuse, const Caches& caches,
                                 const CostModel& model = zen5_costs());
 

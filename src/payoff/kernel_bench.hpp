@@ -5,21 +5,15 @@
 #include "kernels/assembly.hpp"
 #include "kernels/springs.hpp"
 #include <meshorder/mesh.hpp>
+#include <meshorder/payoff.hpp>
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace meshorder {
-
-/// The simulators' hot loops: the product of the stiffness matrix with a vector, the forces of elastic
-/// elements, the assembly of the stiffness matrix, and the forces of springs along the edges.
-enum class Kernel : std::uint8_t { spmv, element, assembly, springs };
-
-inline constexpr std::array kKernels{Kernel::spmv, Kernel::element, Kernel::assembly, Kernel::springs};
 
 template <>
 struct EnumNames<Kernel> {

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/kernel_timing.hpp"
 
+#include "base/run_scope.hpp"
 #include "base/stopwatch.hpp"
 #include "payoff/machine.hpp"
 
@@ -44,6 +45,7 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
   std::vector<std::array<Plan, kKernels.size()>> plans(orders);
   for (std::size_t i = 0; i < orders; ++i) {
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
+      poll();
       plans[i][k] = plan_samples(*benches[i], kKernels[k], options.sample_seconds);
     }
   }
@@ -56,6 +58,7 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
       for (std::size_t i = 0; i < orders; ++i) {
         const std::size_t order = (i + static_cast<std::size_t>(round)) % orders;
         const Plan& plan = plans[order][k];
+        poll();
         if (plan.warm) benches[order]->run(kKernels[k]);
         samples[order][k].push_back(seconds_per_run(*benches[order], kKernels[k], plan.repeats));
       }

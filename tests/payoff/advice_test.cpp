@@ -31,10 +31,10 @@ Advice advice_on(const Mesh& mesh, AdviceOptions options = quick()) {
 Advice made_up(const KernelMilliseconds& as_is, const KernelMilliseconds& first,
                const KernelMilliseconds& second) {
   Advice advice;
-  advice.as_is.predicted = as_is;
+  advice.as_is.costs.predicted = as_is;
   for (const KernelMilliseconds& predicted : {first, second}) {
     Candidate candidate;
-    candidate.seconds = 0.02;
+    candidate.order_seconds = 0.02;
     candidate.costs.predicted = predicted;
     advice.candidates.push_back(candidate);
   }
@@ -55,7 +55,7 @@ TEST(Advice, AMeshInTheOrderThatIsAdvisedHasNothingToGain) {
   ASSERT_FALSE(advice.candidates.empty());
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     EXPECT_EQ(kernel_advice(advice)[k].runs_to_pay, 0) << to_string(kKernels[k]);
-    EXPECT_NEAR((*advice.candidates[0].costs.predicted)[k] / (*advice.as_is.predicted)[k], 1, 0.01);
+    EXPECT_NEAR((*advice.candidates[0].costs.predicted)[k] / (*advice.as_is.costs.predicted)[k], 1, 0.01);
   }
   EXPECT_EQ(saved_in_time_step(advice, 0), 0);
 }
@@ -66,11 +66,11 @@ TEST(Advice, SamplingChangesPredictedRatiosLittle) {
   exact.sample_from = 1'000'000'000;
   const Advice sampled = advice_on(mesh);
   const Advice measured = advice_on(mesh, exact);
-  EXPECT_NE(*sampled.as_is.predicted, *measured.as_is.predicted);
+  EXPECT_NE(*sampled.as_is.costs.predicted, *measured.as_is.costs.predicted);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     // not the advice's factors, which are 1 below a threshold
     const auto ratio = [&](const Advice& advice) {
-      return (*advice.as_is.predicted)[k] / (*advice.candidates.front().costs.predicted)[k];
+      return (*advice.as_is.costs.predicted)[k] / (*advice.candidates.front().costs.predicted)[k];
     };
     EXPECT_NEAR(ratio(sampled) / ratio(measured), 1, 0.06) << to_string(kKernels[k]);
   }
@@ -82,9 +82,9 @@ TEST(Advice, MeasuresWhereItIsAskedTo) {
   EXPECT_THROW((void)advice_on(make_grid({.size = 4}), options), InvalidArgument);
   options.measure_within = 0.0;
   const Advice advice = advice_on(make_grid({.size = 8}), options);
-  EXPECT_FALSE(advice.as_is.predicted);
+  EXPECT_FALSE(advice.as_is.costs.predicted);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    EXPECT_GT((*advice.as_is.measured)[k], 0);
+    EXPECT_GT((*advice.as_is.costs.measured)[k], 0);
     EXPECT_GT((*advice.candidates.front().costs.measured)[k], 0);
   }
 }
@@ -104,7 +104,7 @@ TEST(KernelAdvice, TakesTheFastestCandidateAndTellsWhenItHasPaid) {
 
 TEST(KernelAdvice, TrustsMeasurementsMoreThanPredictions) {
   Advice advice = made_up({2, 2, 2, 2}, {1, 1, 1, 1}, {1, 1, 1, 1});
-  advice.as_is.measured = {3, 2, 2, 2};
+  advice.as_is.costs.measured = {3, 2, 2, 2};
   for (Candidate& candidate : advice.candidates) candidate.costs.measured = {1, 2, 2, 2};
   EXPECT_DOUBLE_EQ(kernel_advice(advice)[kSpmv].factor, 3);
   EXPECT_DOUBLE_EQ(kernel_advice(advice)[kElement].factor, 1);

@@ -2,7 +2,7 @@
 #include "lab/report/findings/numbers_in_words.hpp"
 
 #include "lab/report/findings/lookup.hpp"
-#include "lab/support/quantities.hpp"
+#include "payoff/quantities.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

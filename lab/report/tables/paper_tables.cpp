@@ -4,7 +4,7 @@
 #include "lab/report/findings/lookup.hpp"
 #include "lab/report/findings/numbers_in_words.hpp"
 #include "lab/report/findings/paper.hpp"
-#include "lab/support/quantities.hpp"
+#include "payoff/quantities.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/support/quantities.hpp"
+#include "payoff/quantities.hpp"
 
 #include <fmt/format.h>
 

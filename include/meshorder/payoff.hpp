@@ -1,0 +1,113 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// What reordering a mesh is worth, before it is done. Experimental: may change in any version below 1.0.
+
+#include <meshorder/export.hpp>
+#include <meshorder/options.hpp>
+#include <meshorder/order.hpp>
+#include <meshorder/quality.hpp>
+#include <meshorder/view.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshorder {
+inline namespace v0_2 {
+
+/// The hot loops of simulators that are predicted and measured.
+enum class Kernel : std::uint8_t {
+  spmv,      ///< product of the stiffness matrix with a vector: 3×3 blocks
+  element,   ///< elastic forces of the elements
+  assembly,  ///< assembly of the stiffness matrix
+  springs,   ///< forces of springs along the edges
+};
+
+/// All values of `Kernel`. Arrays by kernel have this order.
+inline constexpr std::array kKernels{Kernel::spmv, Kernel::element, Kernel::assembly, Kernel::springs};
+
+/// Returns "spmv", "element", "assembly" or "springs". Valid for the life of the program.
+MESHORDER_API std::string_view to_string(Kernel kernel);
+
+/// Milliseconds of one run of each kernel, when it is repeated on one thread.
+using KernelMilliseconds = std::array<double, kKernels.size()>;
+
+/// Times of the kernels in one order.
+struct OrderCosts {
+  /// By reuse distances and a cost model (docs/prediction.md). Compare them with each other only: they are
+  /// those of the machine that the model was fitted on, with the caches of this one.
+  std::optional<KernelMilliseconds> predicted = {};
+  std::optional<KernelMilliseconds> measured = {};  ///< the best of interleaved rounds
+
+  /// Returns the measured times, else the predicted ones; one of them must be set.
+  [[nodiscard]] const KernelMilliseconds& best_known() const { return measured ? *measured : *predicted; }
+};
+
+/// An order of the mesh, and what the kernels take in it.
+struct Candidate {
+  MethodChoice vertices = {};
+  MethodChoice elements = {};
+  Workload workload = Workload::all;  ///< what `auto` chose the methods for
+  Quality spans = {};                 ///< of the vertex graph in this order
+  OrderCosts costs = {};
+  double order_seconds = 0;  ///< cost of the order: graph, both methods, moving the mesh; 0 for "original"
+};
+
+/// The best candidate for one kernel.
+struct KernelAdvice {
+  std::size_t candidate = 0;  ///< place in `Advice::candidates` of the one in which it runs fastest
+  double factor = 1;       ///< time as the mesh is / time in that candidate; 1 where there is nothing to gain
+  double runs_to_pay = 0;  ///< runs after which the order has paid for itself; 0 where nothing is gained
+};
+
+/// What reordering a mesh would be worth.
+struct Advice {
+  Candidate as_is = {};                    ///< the order that the mesh has
+  std::vector<Candidate> candidates = {};  ///< the first is what `reorder` does without options
+  std::array<KernelAdvice, kKernels.size()> kernels = {};
+};
+
+/// Returns the verdict in one English sentence: which kernel loses most as the mesh is, which order mends it
+/// and when that has paid for itself; or that there is nothing to gain.
+[[nodiscard]] MESHORDER_API std::string to_string(const Advice& advice);
+
+/// Options of `advise` and `compare`.
+struct PayoffOptions {
+  /// The candidates; empty: what `auto` takes for all kernels, and for springs where that differs.
+  std::vector<MeshMethods> methods = {};
+  bool predict = true;   ///< gives the same times on every run
+  bool measure = false;  ///< runs the kernels here, on one thread
+  /// Seconds after the call, ≥ 0: no round of measurements begins that would end later, but two are run.
+  double budget_seconds = 10;
+  OrderOptions order = {};  ///< `groups` has n entries or none, `cell_groups` m or none
+};
+
+/// Tells what other orders of a mesh are worth. The mesh is not changed.
+///
+/// @param mesh     n vertices with points, m cells with types, at least one of them a line, surface or volume
+/// @param options  see `PayoffOptions`
+/// @return the kernels' times as the mesh is and in every candidate, and the best candidate for each kernel.
+///         Times that differ by less than 5 % (measured), 10 % (predicted) or 25 % (predicted products) count
+///         as equal
+/// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for types that are not known,
+///         and where neither prediction nor measurement is asked for
+/// @note Orders and, to predict, about a second for a million tetrahedra and candidate; to measure, the
+/// budget.
+///       Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex of a tetrahedral mesh,
+///       and while it is measured 2.5 KB a vertex more. Stages of progress: those of `order_mesh`, "predict"
+///       and "measure".
+[[nodiscard]] MESHORDER_API Advice advise(const MeshView& mesh, const PayoffOptions& options = {});
+
+/// Compares orders of a mesh: the one that it has, then `options.methods`. Parameters, exceptions and cost as
+/// of `advise`.
+[[nodiscard]] MESHORDER_API std::vector<Candidate> compare(const MeshView& mesh,
+                                                           const PayoffOptions& options = {});
+
+}  // namespace v0_2
+}  // namespace meshorder

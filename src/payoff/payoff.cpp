@@ -1,0 +1,61 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/call.hpp"
+#include "base/stopwatch.hpp"
+#include "kernels/simplices.hpp"
+#include "mesh/graphs.hpp"
+#include "payoff/advice.hpp"
+#include "payoff/kernel_bench.hpp"
+#include <meshorder/error.hpp>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace meshorder {
+inline namespace v0_2 {
+namespace {
+
+/// Throws InvalidArgument unless the mesh has cells that the kernels take.
+void check_kernels_run(const Mesh& mesh) {
+  if (mesh.cells.highest_dimension() < 1 || cut_into_simplices(mesh).size() == 0) {
+    throw InvalidArgument("advise: the mesh has no lines, surfaces or volumes, which the kernels work on");
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(Kernel kernel) { return to_string<Kernel>(kernel); }
+
+Advice advise(const MeshView& mesh, const PayoffOptions& options) {
+  return in_call(options.order.run, [&] {
+    if (!(options.budget_seconds >= 0)) {
+      throw InvalidArgument("advise: a budget of " + std::to_string(options.budget_seconds) + " s");
+    }
+    report("check");
+    const Mesh copy = make_mesh(mesh);
+    if (options.order.check != Check::none) check_mesh(copy);
+    check_kernels_run(copy);
+    report("graph");
+    const Stopwatch stopwatch;
+    const CsrGraph graph = vertex_graph(copy);
+    AdviceOptions inside{.methods = options.methods,
+                         .ordering = options.order,
+                         .graph_seconds = stopwatch.seconds(),
+                         .predict = options.predict};
+    if (options.measure) inside.measure_within = options.budget_seconds;
+    return advise(copy, graph, inside);
+  });
+}
+
+std::vector<Candidate> compare(const MeshView& mesh, const PayoffOptions& options) {
+  Advice advice = advise(mesh, options);
+  std::vector<Candidate> candidates;
+  candidates.reserve(1 + advice.candidates.size());
+  candidates.push_back(std::move(advice.as_is));
+  for (Candidate& candidate : advice.candidates) candidates.push_back(std::move(candidate));
+  return candidates;
+}
+
+}  // namespace v0_2
+}  // namespace meshorder

@@ -1,0 +1,84 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/advice.hpp"
+#include "payoff/kernel_bench.hpp"
+#include "payoff/quantities.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshorder {
+
+std::string command_for(const Candidate& candidate) {
+  const bool by_auto = !candidate.vertices.reason.empty() && !candidate.elements.reason.empty();
+  if (!by_auto) {
+    return fmt::format("meshorder order --vertices {} --elements {}", candidate.vertices.name,
+                       candidate.elements.name);
+  }
+  return candidate.workload == Workload::all
+             ? "meshorder order"
+             : fmt::format("meshorder order --for {}", to_string(candidate.workload));
+}
+
+namespace {
+
+std::string times(double count, const char* what) {
+  return fmt::format("{} {}{}", with_commas(std::lround(count)), what, count == 1 ? "" : "s");
+}
+
+/// Returns the kernel that loses most in the mesh's order.
+std::size_t worst(const std::array<KernelAdvice, kKernels.size()>& kernels) {
+  const auto less = [](const KernelAdvice& a, const KernelAdvice& b) { return a.factor < b.factor; };
+  return static_cast<std::size_t>(std::max_element(kernels.begin(), kernels.end(), less) - kernels.begin());
+}
+
+/// Returns the kernels that run slower in a candidate: "; it makes the springs kernel 1.2× slower".
+std::string losses(const Advice& advice, std::size_t candidate) {
+  std::string words;
+  const KernelMilliseconds& ordered = advice.candidates[candidate].costs.best_known();
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    const double as_is = advice.as_is.costs.best_known()[k];
+    if (as_is <= 0 || ordered[k] < same_time(kKernels[k], !advice.as_is.costs.measured) * as_is) continue;
+    words += fmt::format("{} the {} kernel {:.2g}× slower", words.empty() ? "; it makes" : " and",
+                         kKernelTitles[k], ordered[k] / as_is);
+  }
+  return words;
+}
+
+}  // namespace
+
+inline namespace v0_2 {
+
+std::string to_string(const Advice& advice) {
+  const bool measured = advice.as_is.costs.measured.has_value();
+  const auto& kernels = advice.kernels;
+  const std::size_t k = worst(kernels);
+  if (kernels[k].factor <= 1) {
+    return fmt::format(
+        "nothing to gain: no kernel runs faster in another order, beyond the uncertainty of {}",
+        measured ? "the measurement" : "the prediction");
+  }
+  // the order for all kernels, unless only another one makes this kernel faster
+  const double with_first =
+      advice.as_is.costs.best_known()[k] / advice.candidates.front().costs.best_known()[k];
+  const std::size_t taken = with_first >= same_time(kKernels[k], !measured) ? 0 : kernels[k].candidate;
+  const Candidate& candidate = advice.candidates[taken];
+  const double steps = steps_to_pay(advice, taken);
+  const double factor = advice.as_is.costs.best_known()[k] / candidate.costs.best_known()[k];
+  const std::string pays =
+      steps > 0 ? "within " + times(steps, "time step")
+                : fmt::format(
+                      "within {} of the {} kernel",
+                      times(std::ceil(1e3 * candidate.order_seconds /
+                                      (advice.as_is.costs.best_known()[k] - candidate.costs.best_known()[k])),
+                            "run"),
+                      kKernelTitles[k]);
+  return fmt::format(
+      "as it is, the {} kernel runs {:.1f}× slower than it could{}; `{}` takes {} and pays for itself {}{}",
+      kKernelTitles[k], factor, measured ? "" : " (predicted)", command_for(candidate),
+      duration(candidate.order_seconds), pays, losses(advice, taken));
+}
+
+}  // namespace v0_2
+}  // namespace meshorder

@@ -1,0 +1,142 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "mesh/procedural.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
+#include <meshorder/payoff.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr auto kAssembly = static_cast<std::size_t>(Kernel::assembly);
+
+Mesh scrambled_grid(Index size) {
+  Mesh mesh = make_grid({.size = size});
+  (void)reorder(mesh, {.methods = {"scrambled", "scrambled"}});
+  return mesh;
+}
+
+TEST(PublicAdvise, TellsWhatAScrambledGridCouldGain) {
+  const Mesh mesh = scrambled_grid(24);
+  const Advice advice = advise(view(mesh));
+  EXPECT_EQ(advice.as_is.vertices.name, "original");
+  EXPECT_EQ(advice.as_is.order_seconds, 0);
+  ASSERT_FALSE(advice.candidates.empty());
+  EXPECT_FALSE(advice.as_is.costs.measured);
+  const KernelAdvice& assembly = advice.kernels[kAssembly];
+  const Candidate& best = advice.candidates[assembly.candidate];
+  EXPECT_GT(assembly.factor, 1.5);
+  EXPECT_DOUBLE_EQ(assembly.factor,
+                   (*advice.as_is.costs.predicted)[kAssembly] / (*best.costs.predicted)[kAssembly]);
+  EXPECT_GE(assembly.runs_to_pay, 1);
+  EXPECT_GT(best.order_seconds, 0);
+  EXPECT_LT(best.spans.mean_span, advice.as_is.spans.mean_span);
+  const std::string verdict = to_string(advice);
+  EXPECT_THAT(verdict, HasSubstr("slower than it could"));
+  EXPECT_THAT(verdict, HasSubstr("`meshorder order` takes"));
+}
+
+TEST(PublicAdvise, TakesArraysOfItsCaller) {
+  const Mesh mesh = scrambled_grid(6);
+  std::vector<std::array<float, 3>> points;
+  for (const Point& p : mesh.points) {
+    points.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+  }
+  std::vector<std::int64_t> tetrahedra;
+  for (const Index v : mesh.cells.vertices) tetrahedra.push_back(v + 1);
+  const MeshView arrays{.points = points, .cells = CellsView::uniform(Shape::tetrahedron, 4, tetrahedra, 1)};
+  const Advice of_arrays = advise(arrays);
+  const Advice of_mesh = advise(view(mesh));
+  EXPECT_EQ(of_arrays.as_is.costs.predicted, of_mesh.as_is.costs.predicted);
+  EXPECT_EQ(of_arrays.as_is.spans, of_mesh.as_is.spans);
+}
+
+TEST(PublicAdvise, PredictsTheSameOnAnyNumberOfThreads) {
+  const Mesh mesh = scrambled_grid(24);
+  const Advice one = advise(view(mesh), {.order = {.run = {.threads = 1}}});
+  const Advice two = advise(view(mesh), {.order = {.run = {.threads = 2}}});
+  ASSERT_EQ(one.candidates.size(), two.candidates.size());
+  EXPECT_EQ(one.as_is.costs.predicted, two.as_is.costs.predicted);
+  EXPECT_EQ(one.candidates.front().costs.predicted, two.candidates.front().costs.predicted);
+}
+
+TEST(PublicAdvise, HasNothingToSayForTheOrderThatItAdvises) {
+  Mesh mesh = scrambled_grid(16);
+  (void)reorder(mesh);
+  EXPECT_THAT(to_string(advise(view(mesh))), HasSubstr("nothing to gain"));
+}
+
+TEST(PublicCompare, ListsTheMeshAsItIsAndThenWhatWasAskedFor) {
+  const Mesh mesh = scrambled_grid(8);
+  const std::vector<Candidate> candidates = compare(
+      view(mesh),
+      {.methods = {{"fiedler", "fiedler"}, {"original", "original"}, {"auto", "auto"}}, .predict = true});
+  ASSERT_EQ(candidates.size(), 4U);
+  EXPECT_EQ(candidates[0].vertices.name, "original");
+  EXPECT_EQ(candidates[1].vertices.name, "fiedler");
+  EXPECT_EQ(candidates[1].elements.name, "fiedler");
+  EXPECT_EQ(candidates[2].costs.predicted, candidates[0].costs.predicted);
+  EXPECT_EQ(candidates[2].spans, candidates[0].spans);
+  EXPECT_EQ(candidates[2].order_seconds, 0);
+  EXPECT_NE(candidates[3].vertices.name, "auto");
+  EXPECT_FALSE(candidates[3].vertices.reason.empty());
+}
+
+TEST(PublicCompare, MeasuresWhereItIsAskedTo) {
+  const Mesh mesh = scrambled_grid(4);
+  const std::vector<Candidate> candidates = compare(
+      view(mesh), {.methods = {{"rcm", "auto"}}, .predict = false, .measure = true, .budget_seconds = 0});
+  for (const Candidate& candidate : candidates) {
+    EXPECT_FALSE(candidate.costs.predicted);
+    ASSERT_TRUE(candidate.costs.measured);
+    EXPECT_GT(*std::min_element(candidate.costs.measured->begin(), candidate.costs.measured->end()), 0);
+  }
+}
+
+TEST(PublicAdvise, RefusesWhatCannotBeAdvisedOn) {
+  const Mesh mesh = make_grid({.size = 3});
+  EXPECT_THROW((void)advise(MeshView{}), InvalidArgument);
+  EXPECT_THROW((void)advise(view(mesh), {.predict = false}), InvalidArgument);
+  EXPECT_THROW((void)advise(view(mesh), {.budget_seconds = -1}), InvalidArgument);
+  EXPECT_THROW((void)advise(view(mesh), {.methods = {{"nonsense", "auto"}}}), InvalidArgument);
+  Mesh broken = mesh;
+  broken.points.front()[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)advise(view(broken)), InvalidArgument);
+  broken = mesh;
+  broken.cells.vertices.front() = mesh.vertex_count();
+  EXPECT_THROW((void)advise(view(broken)), InvalidArgument);
+  Mesh of_points;
+  of_points.points = {{0, 0, 0}, {1, 0, 0}};
+  of_points.cells.push_back(Shape::vertex, std::array<Index, 1>{1});
+  EXPECT_THROW((void)advise(view(of_points)), InvalidArgument);
+}
+
+TEST(PublicAdvise, EndsWhenItsProgressFunctionSaysSo) {
+  const Mesh mesh = scrambled_grid(40);
+  std::vector<std::string> stages;
+  const meshorder::Run run{.threads = 1, .progress = [&](const Progress& progress) {
+                             if (stages.empty() || stages.back() != progress.stage)
+                               stages.emplace_back(progress.stage);
+                             return progress.stage != "predict";
+                           }};
+  EXPECT_THROW((void)advise(view(mesh), {.order = {.run = run}}), Stopped);
+  EXPECT_EQ(stages.back(), "predict");
+}
+
+TEST(PublicKernel, HasAName) {
+  for (const Kernel kernel : kKernels) EXPECT_FALSE(to_string(kernel).empty());
+  EXPECT_EQ(to_string(Kernel::assembly), "assembly");
+}
+
+}  // namespace
+}  // namespace meshorder
