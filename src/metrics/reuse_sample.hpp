@@ -15,8 +15,8 @@ namespace meshorder {
 /// Sampled are blocks of five lines, by a hash of their number, of which the last three count: whether a
 /// stream leads to one is seen on the two before. Five divides no period of a kernel's arrays, such as the 9
 /// lines of 8 matrix blocks. Other accesses cost a hash each. The same stream gives the same
-/// estimate on every run; how far off it is falls with the root of the lines sampled and of the cache's size,
-/// so that caches of less than some 100 lines · 2^halvings are seen as through frosted glass.
+/// estimate on every run. Its error falls with the root of the lines sampled and of the cache's size:
+/// estimates for caches below about 100 · 2^halvings lines are unreliable.
 class ReuseSample {
  public:
   /// For accesses to lines 0 … lines − 1, of which 2^-halvings are sampled; 0 halvings measure exactly.

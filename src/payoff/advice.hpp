@@ -28,8 +28,8 @@ struct AdviceOptions {
   /// Reuse is estimated from 2^-halvings of the lines for meshes of at least `sample_from` simplices.
   int halvings = 3;
   Offset sample_from = 50'000;
-  /// Time the kernels, in the mesh's order and in every candidate, in as many rounds as end within so many
-  /// seconds after the call, at least two; unset: do not time them.
+  /// Time the kernels, in the mesh's order and in every candidate, in as many rounds as end within this
+  /// number of seconds after the call, at least two; unset: do not time them.
   std::optional<double> measure_within = {};
 };
 

@@ -33,8 +33,8 @@ def test_a_plugins_method_is_listed_ordered_by_and_compared(command, plugin, tmp
             neighbours[v] |= set(cell) - {v}
     degrees = [len(neighbours[v]) for v in new_to_old]
     assert degrees == sorted(degrees, reverse=True)
-    orders = command.json("--plugin", plugin, "compare", "mesh.node", "--budget", "0.1")["orders"]
-    assert "degree" in [order["vertices"] for order in orders]
+    methods = command.json("--plugin", plugin, "compare", "mesh.node", "--budget", "0.1")["methods"]
+    assert "degree" in [method["vertices"] for method in methods]
 
 
 def test_what_is_no_plugin_is_refused(command, tmp_path):

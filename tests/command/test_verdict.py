@@ -1,7 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """What `info` says at its end: what the order costs, and what another is worth."""
-import time
-
 import pytest
 
 KERNELS = {"spmv", "element", "assembly", "springs"}
@@ -51,9 +49,7 @@ def test_verdict_keys(command, scrambled):
 
 
 def test_measuring_replaces_what_is_predicted(command, scrambled):
-    start = time.monotonic()
     result = command.json("info", scrambled, "--measure")["verdict"]
-    assert time.monotonic() - start < 15  # 5 on a machine that does nothing else
     assert result["by"] == "measurement"
     for costs in [result["as_it_is"], *result["orders"]]:
         assert set(costs["measured_milliseconds"]) == set(costs["predicted_milliseconds"]) == KERNELS

@@ -2,6 +2,7 @@
 #include "lab/contact/search/body_surface.hpp"
 
 #include "base/point.hpp"
+#include "mesh/boundary.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -30,34 +31,8 @@ void check(const Simplices& simplices, std::size_t points) {
 
 BodySurface body_surface(const Simplices& simplices, std::span<const Point> points) {
   check(simplices, points.size());
-  struct Face {
-    std::array<Index, 3> key{};
-    Offset number = 0;  // 4 · tetrahedron + face
-  };
-  std::vector<Face> faces;
-  faces.reserve(simplices.vertices.size());
-  for (Offset t = 0; 4 * t < static_cast<Offset>(simplices.vertices.size()); ++t) {
-    const Index* const corner = simplices.vertices.data() + 4 * t;
-    for (int k = 0; k < 4; ++k) {
-      Face face{{corner[kFaces[k][0]], corner[kFaces[k][1]], corner[kFaces[k][2]]}, 4 * t + k};
-      std::sort(face.key.begin(), face.key.end());
-      faces.push_back(face);
-    }
-  }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    return a.key < b.key || (a.key == b.key && a.number < b.number);
-  });
-  std::vector<Offset> alone;
-  for (std::size_t i = 0; i < faces.size();) {
-    std::size_t end = i + 1;
-    while (end < faces.size() && faces[end].key == faces[i].key) ++end;
-    if (end == i + 1) alone.push_back(faces[i].number);
-    i = end;
-  }
-  std::sort(alone.begin(), alone.end());
-
   BodySurface result;
-  for (const Offset number : alone) {
+  for (const Offset number : boundary_faces(simplices, static_cast<Index>(points.size()))) {
     const Index* const corner = simplices.vertices.data() + number / 4 * 4;
     const std::array<int, 3>& face = kFaces[number % 4];
     std::array<Index, 3> triangle{corner[face[0]], corner[face[1]], corner[face[2]]};

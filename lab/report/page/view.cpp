@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/view.hpp"
 
-#include "lab/report/page/outer_triangles.hpp"
 #include "lab/scenario/vertex_choice.hpp"
+#include "mesh/boundary.hpp"
 
 #include <meshoptimizer.h>
 
@@ -62,7 +62,7 @@ void order_for_drawing(std::vector<unsigned>& corners, std::vector<Index>& verti
 }  // namespace
 
 SurfaceView surface_view(const Mesh& mesh, Index most_triangles) {
-  const std::vector<std::array<Index, 3>> triangles = outer_triangles(mesh);
+  const std::vector<std::array<Index, 3>> triangles = boundary_triangles(mesh);
   SurfaceView view;
   std::vector<unsigned> corners;
   std::vector<Index> numbers(mesh.points.size(), -1);  // of the mesh's vertices in the view

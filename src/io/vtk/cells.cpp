@@ -17,7 +17,7 @@ struct CellType {
   int number;
   std::string_view name;
   Shape shape;
-  int vertices;  // exactly so many, or at least −vertices
+  int vertices;  // their exact number; if negative, −vertices at least
 
   // positions whose vertices are swapped in a Mesh; {0, 0} is none
   std::array<std::pair<int, int>, 2> swapped{};

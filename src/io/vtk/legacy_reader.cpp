@@ -92,8 +92,8 @@ class Reader {
     } else if (key == "LOOKUP_TABLE" && on_) {
       read_lookup_table();
     } else if (key == "METADATA") {
-      DataArray nobody;
-      in_.metadata(nobody, {});
+      DataArray unnamed;
+      in_.metadata(unnamed, {});
     } else if (on_ && read_attribute(key)) {
       return;
     } else {

@@ -20,7 +20,7 @@ namespace {
 
 /// The functions of a library. A library that the build lacks has none.
 struct Codec {
-  /// Returns an upper bound on the bytes that so many take compressed.
+  /// Returns an upper bound on the compressed size of that number of bytes.
   std::size_t (*bound)(std::size_t bytes) = nullptr;
   /// Compresses into `room`; returns the bytes that took, 0 on failure.
   std::size_t (*compress)(std::span<const char> bytes, std::span<char> room) = nullptr;
