@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/stopwatch.hpp"
+#include "base/text.hpp"
 #include "command.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
@@ -14,7 +15,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 
 namespace meshorder::command {
 namespace {
@@ -23,26 +23,28 @@ struct ApplyArguments : Common {
   std::string prefix;
   std::string input;
   std::string output;
+  std::string ids = "renumber";
   bool inverse = false;
 };
 
 void run(const ApplyArguments& arguments) {
   const Console console(arguments);
   const Stopwatch total;
-  (void)format_of(arguments.output);
+  const Format& format = format_of(arguments.output);
   (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.5);
   Notes notes;
   Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
-  Maps maps = read_maps(arguments.prefix, mesh);
-  if (arguments.inverse) {
-    maps.vertices = maps.vertices.inverse();
-    maps.cells = maps.cells.inverse();
-  }
+  check_holds_ids(format, parse<Ids>(arguments.ids));
+  const Maps maps = read_maps(arguments.prefix, mesh);
   try {
-    apply_reordering(mesh, maps.vertices, maps.cells);
+    if (arguments.inverse) {
+      undo_reordering(mesh, format, maps.vertices, maps.cells);
+    } else {
+      apply_reordering(mesh, format, maps.vertices, maps.cells, parse<Ids>(arguments.ids));
+    }
   } catch (const InvalidArgument& error) {
     throw InputError(arguments.input, error.what(), "give the maps that were written with this mesh");
   }
@@ -84,7 +86,9 @@ void add_apply(CLI::App& app) {
       ->add_option("MESH", arguments->input, "Mesh file: in its old order or, with --inverse, reordered")
       ->required();
   subcommand->add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
-  subcommand->add_flag("--inverse", arguments->inverse, "Restore the old order");
+  CLI::Option* const inverse =
+      subcommand->add_flag("--inverse", arguments->inverse, "Restore the old order, with the old ids");
+  add_ids_option(*subcommand, arguments->ids)->excludes(inverse);
   add_common(*subcommand, *arguments);
   subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

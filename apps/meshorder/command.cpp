@@ -79,6 +79,16 @@ void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
       ->capture_default_str();
 }
 
+CLI::Option* add_ids_option(CLI::App& subcommand, std::string& ids) {
+  return subcommand
+      .add_option("--ids", ids,
+                  "Numbers that the file gives its vertices and cells: `renumber` sorts them along the new\n"
+                  "order; `keep` leaves each with its vertex or cell, so that other files that name it stay\n"
+                  "valid; `attach` sorts them, and adds the old ones as arrays `original`")
+      ->check(CLI::IsMember({"renumber", "keep", "attach"}))
+      ->capture_default_str();
+}
+
 void add_cache_option(CLI::App& subcommand, std::string& caches) {
   subcommand.add_option(
       "--cache", caches,

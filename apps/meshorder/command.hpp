@@ -9,6 +9,7 @@
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
 class App;
+class Option;
 class Validator;
 }  // namespace CLI
 
@@ -55,6 +56,9 @@ void add_common(CLI::App& subcommand, Common& common);
 
 /// Adds --for, --seed and --tolerance.
 void add_ordering_options(CLI::App& subcommand, OrderOptions& options);
+
+/// Adds --ids, whose value parse<Ids> reads.
+CLI::Option* add_ids_option(CLI::App& subcommand, std::string& ids);
 
 /// Adds --cache, whose value parse_caches reads.
 void add_cache_option(CLI::App& subcommand, std::string& caches);

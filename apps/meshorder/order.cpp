@@ -141,14 +141,7 @@ void add_order(CLI::App& app) {
           "the vertices. Write cells:NAME or vertices:NAME if both have that array (default: cells).\n"
           "Cells and vertices without a value come last")
       ->type_name("NAME");
-  subcommand
-      ->add_option(
-          "--ids", arguments->ids,
-          "Numbers that the file gives its vertices and cells: `renumber` sorts them along the new\n"
-          "order; `keep` leaves each with its vertex or cell, so that other files that name it stay\n"
-          "valid; `attach` sorts them, and adds the old ones as arrays `original`")
-      ->check(CLI::IsMember({"renumber", "keep", "attach"}))
-      ->capture_default_str();
+  add_ids_option(*subcommand, arguments->ids);
   subcommand->add_option(
       "--maps", arguments->maps,
       "Also write the permutations as NumPy files: PREFIX.vertices.old_to_new.npy and so on");

@@ -49,6 +49,19 @@ const Format* format_of_bytes(std::string_view bytes);
 /// file.
 Permutation arrange_cells(Mesh& mesh, const Format& to);
 
+/// Throws InvalidArgument if files of the format number vertices and cells by their places, so that
+/// `Ids::keep` would be without effect.
+void check_holds_ids(const Format& format, Ids ids);
+
+/// Moves a mesh to the places that `reorder` returned for one that is written in the format `to`; throws as
+/// the public `apply_reordering`, and as `check_holds_ids`.
+void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,
+                      Ids ids);
+
+/// Moves a mesh that was moved to these places back, to be written in the format `to`; throws likewise. Ids
+/// are sorted.
+void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells);
+
 /// As the public function; `graph` receives the vertex graph of the mesh in its old order.
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, CsrGraph& graph);
 

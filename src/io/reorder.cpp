@@ -4,7 +4,6 @@
 #include "mesh/reorder.hpp"
 
 #include "base/call.hpp"
-#include "base/text.hpp"
 #include "io/format.hpp"
 #include "io/tetgen/tetgen.hpp"
 #include "io/vega/parts.hpp"
@@ -47,13 +46,29 @@ Permutation arrange_cells(Mesh& mesh, const Format& to) {
   return to.groups_cells_by_type ? group_cells_by_type(mesh) : Permutation::identity(mesh.cell_count());
 }
 
+void check_holds_ids(const Format& format, Ids ids) {
+  if (ids == Ids::keep && format.name == "TetGen") {
+    throw InvalidArgument("reorder: TetGen numbers points and cells by their places; ids cannot be kept");
+  }
+}
+
+void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,
+                      Ids ids) {
+  check_holds_ids(to, ids);
+  const Permutation arranged = arrange_cells(mesh, to);
+  apply_reordering(mesh, vertices, arranged.inverse().then(cells), ids);
+}
+
+void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells) {
+  if (mesh.format == to.key()) return apply_reordering(mesh, vertices.inverse(), cells.inverse());
+  restore_cells(mesh, cells, {});  // the old places may mix what this file keeps apart
+  apply_reordering(mesh, vertices.inverse(), Permutation::identity(mesh.cell_count()));
+}
+
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, CsrGraph& graph) {
   return in_call(options.order.run, [&] {
     if (options.order.check != Check::none) check_mesh(mesh);
-    if (options.ids == Ids::keep && same_but_for_case(options.format, "tetgen")) {
-      throw InvalidArgument(
-          "reorder: TetGen numbers points and cells by their places; their ids cannot be kept");
-    }
+    if (!options.format.empty()) check_holds_ids(format_named(options.format), options.ids);
     const std::vector<Index> blocks = mesh.cell_blocks;
     const Permutation arranged = options.format.empty() ? Permutation::identity(mesh.cell_count())
                                                         : arrange_cells(mesh, format_named(options.format));

@@ -78,6 +78,40 @@ def test_old_ids_are_attached_as_arrays(command, tmp_path):
     assert not (tmp_path / "b.node").exists()
 
 
+def write_interleaved(path):
+    """Tetrahedra in a row, each followed by one of its triangles: formats that group cells have to move them."""
+    points = numpy.array([[i // 2, i % 2, (i // 3) % 2 + 0.1 * i] for i in range(12)], dtype=float)
+    cells = []
+    for i in range(9):
+        cells += [("tetra", numpy.array([[i, i + 1, i + 2, i + 3]])), ("triangle", numpy.array([[i, i + 1, i + 2]]))]
+    meshio.write(path, meshio.Mesh(points, cells))
+
+
+def cells_in_order(path):
+    return [tuple(cell) for block in meshio.read(path).cells for cell in block.data]
+
+
+def test_maps_serve_between_formats_that_group_cells_and_others(command, tmp_path):
+    write_interleaved(tmp_path / "a.vtu")
+    command.ok("order", "a.vtu", "-o", "b.msh", "--vertices", "scrambled", "--elements", "scrambled", "--maps", "m")
+    command.ok("apply", "m", "a.vtu", "-o", "c.msh")
+    assert (tmp_path / "c.msh").read_bytes() == (tmp_path / "b.msh").read_bytes()
+    command.ok("apply", "m", "b.msh", "-o", "d.vtu", "--inverse")
+    assert cells_in_order(tmp_path / "d.vtu") == cells_in_order(tmp_path / "a.vtu")
+    assert (meshio.read(tmp_path / "d.vtu").points == meshio.read(tmp_path / "a.vtu").points).all()
+
+
+def test_apply_treats_ids_as_order_did(command, tmp_path):
+    meshes.write_tetgen(tmp_path)
+    command.ok("order", "mesh.node", "-o", "a.msh", "--vertices", "original", "--elements", "original")
+    for ids in ("keep", "attach", "renumber"):
+        command.ok("order", "a.msh", "-o", "b.msh", "--vertices", "scrambled", "--ids", ids, "--maps", "m")
+        command.ok("apply", "m", "a.msh", "-o", "c.msh", "--ids", ids)
+        assert (tmp_path / "c.msh").read_bytes() == (tmp_path / "b.msh").read_bytes()
+    command.fails("apply", "m", "b.msh", "-o", "c.msh", "--inverse", "--ids", "keep")
+    command.fails("apply", "m", "a.msh", "-o", "c.node", "--ids", "keep")
+
+
 def test_maps_tell_which_was_which(command, tmp_path):
     meshes.write_tetgen(tmp_path)
     command.ok("order", "mesh.node", "-o", "new.node", "--vertices", "scrambled", "--elements", "scrambled", "--seed",
