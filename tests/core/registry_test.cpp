@@ -280,5 +280,13 @@ TEST_F(Registry, IsUsedByManyThreadsAtOnce) {
   EXPECT_EQ(done, kThreads * kTurns);
 }
 
+TEST_F(Registry, KeepsWhatItsOwnerLeavesThere) {
+  {
+    Registration registration = register_vertex_method({.name = "kept-method"}, reversed_vertices);
+    std::move(registration).keep();
+  }
+  EXPECT_TRUE(find(vertex_methods(), "kept-method"));
+}
+
 }  // namespace
 }  // namespace meshorder

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/search/body_surface.hpp"
 
+#include "base/index.hpp"
 #include "mesh/procedural.hpp"
 #include "simulators/surfaces.hpp"
 #include <meshorder/error.hpp>
