@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/csr_graph.hpp"
 
+#include "base/run_scope.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -72,6 +73,7 @@ CsrGraph induced_subgraph(GraphRef graph, std::span<const Index> vertices) {
   CsrGraph result;
   result.offsets.reserve(vertices.size() + 1);
   for (const Index v : vertices) {
+    poll_in_loop(result.offsets.size());
     const auto row = static_cast<std::ptrdiff_t>(result.neighbours.size());
     for (const Index u : graph[v]) {
       if (local[u] >= 0) result.neighbours.push_back(local[u]);

@@ -2,6 +2,7 @@
 #include "graph/incidence.hpp"
 
 #include "base/parallel.hpp"
+#include "base/resize_in_steps.hpp"
 #include "base/run_scope.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -125,10 +126,10 @@ std::vector<Rows> find_rows(IncidenceRef elements, std::vector<Offset>& degrees)
 }
 
 /// The symmetric graph with these rows, kChunk in each of `chunks`, each sorted: reading the rows in turn and
-/// the entries the other way sorts them all in one pass.
-CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::span<const Rows> chunks) {
+/// the entries the other way sorts them all in one pass. Chunks are freed once they are read.
+CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> chunks) {
   CsrGraph graph;
-  graph.neighbours.resize(offsets.back());
+  resize_in_steps(graph.neighbours, offsets.back());
   std::vector<Offset> next(offsets.begin(), offsets.end() - 1);
   graph.offsets = std::move(offsets);
   for (Index v = 0, chunk = 0; v < graph.size(); ++chunk) {
@@ -140,6 +141,7 @@ CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::span<const Rows> chu
         graph.neighbours[next[rows.neighbours[k]]++] = v;
       }
     }
+    chunks[chunk] = {};
   }
   return graph;
 }
@@ -148,9 +150,9 @@ CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::span<const Rows> chu
 
 CsrGraph joined_vertices(IncidenceRef elements) {
   std::vector<Offset> offsets(Offset{elements.vertex_count} + 1, 0);
-  const std::vector<Rows> rows = find_rows(elements, offsets);
+  std::vector<Rows> rows = find_rows(elements, offsets);
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
-  return with_sorted_rows(std::move(offsets), rows);
+  return with_sorted_rows(std::move(offsets), std::move(rows));
 }
 
 CsrGraph joined_by_vertex(IncidenceRef elements) { return joined_vertices(transposed(elements)); }

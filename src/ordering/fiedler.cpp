@@ -5,6 +5,7 @@
 
 #include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"
+#include "ordering/sorted.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -23,7 +24,7 @@ Order by_fiedler_vector(GraphRef graph, std::span<const double> weights, const O
     poll();
     sorted.clear();
     for (const Index v : component) sorted.emplace_back(fiedler.values[v], v);
-    std::sort(sorted.begin(), sorted.end());
+    sort_distinct(sorted);
     for (const auto& [value, v] : sorted) new_to_old.push_back(v);
   }
   return {.permutation = Permutation::from_new_to_old(std::move(new_to_old)),

@@ -7,6 +7,7 @@
 #include "graph/traversal.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/smoothed_bisection.hpp"
+#include "ordering/sorted.hpp"
 #include "spectral/fiedler.hpp"
 
 #include <algorithm>
@@ -67,7 +68,7 @@ std::vector<Index> along_fiedler_vector(const Piece& piece, std::uint64_t seed) 
     const double sign = along > 0 ? -1 : 1;
     sorted.clear();
     for (const Index v : vertices) sorted.emplace_back(sign * fiedler.values[v], v);
-    std::sort(sorted.begin(), sorted.end());
+    sort_distinct(sorted);
     for (const auto& entry : sorted) sequence.push_back(entry.second);
   }
   return sequence;
@@ -121,6 +122,7 @@ Piece piece_of(const Piece& whole, const Slabs& slabs, Index slab) {
   piece.names.reserve(vertices.size());
   piece.pull.reserve(vertices.size());
   for (const Index v : vertices) {
+    poll_in_loop(piece.names.size());
     Index pull = 0;
     for (const Index u : whole.graph[v]) {
       if (slabs.slab_of[u] < slab) ++pull;

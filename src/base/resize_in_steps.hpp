@@ -1,0 +1,23 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/run_scope.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace meshorder {
+
+/// As `values.resize(size)`, with polls: the system clears gigabytes when they are touched first.
+template <class T>
+void resize_in_steps(std::vector<T>& values, std::size_t size) {
+  constexpr std::size_t kStep = (std::size_t{1} << 22) / sizeof(T);
+  values.reserve(size);
+  while (values.size() < size) {
+    poll();
+    values.resize(std::min(size, values.size() + kStep));
+  }
+}
+
+}  // namespace meshorder
