@@ -19,7 +19,7 @@ Incidence transposed(IncidenceRef incidence) {
   result.offsets.assign(Offset{incidence.vertex_count} + 1, 0);
   for (const Index v : incidence.vertices) ++result.offsets[v + 1];
   std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
-  result.vertices.resize(incidence.vertices.size());
+  resize_in_steps(result.vertices, incidence.vertices.size());
   std::vector<Offset> next(result.offsets.begin(), result.offsets.end() - 1);
   for (Index e = 0; e < incidence.size(); ++e) {
     poll_in_loop(e);

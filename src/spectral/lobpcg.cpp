@@ -1,6 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/lobpcg.hpp"
 
+#include "base/resize_in_steps.hpp"
+#include "base/run_scope.hpp"
+
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
 
@@ -30,7 +33,9 @@ struct WithImage {
   VectorBlock<M> images;
 
   explicit WithImage(std::size_t n) : WithImage(VectorBlock<M>(n, std::array<double, M>{})) {}
-  explicit WithImage(VectorBlock<M> block) : vectors(std::move(block)), images(vectors.size()) {}
+  explicit WithImage(VectorBlock<M> block) : vectors(std::move(block)) {
+    resize_in_steps(images, vectors.size());
+  }
 };
 
 /// The blocks whose span an iteration searches: iterates, preconditioned residuals, last directions, and C
@@ -224,7 +229,10 @@ LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& 
   const Level& here = hierarchy.levels()[level];
   const Index n = here.laplacian.size();
   double total_mass = 0;
-  for (Index v = 0; v < n; ++v) total_mass += here.mass(v);
+  for (Index v = 0; v < n; ++v) {
+    poll_in_loop(v);
+    total_mass += here.mass(v);
+  }
 
   SearchSpace<M, Companions> s(std::move(x), std::move(companions));
   VectorBlock<M> r(n);
