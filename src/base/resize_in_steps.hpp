@@ -9,10 +9,12 @@
 
 namespace meshorder {
 
-/// As `values.resize(size)`, with polls: the system clears gigabytes when they are touched first.
+/// As `values.resize(size)`, with polls where that takes long: the system clears memory that is touched
+/// first.
 template <class T>
 void resize_in_steps(std::vector<T>& values, std::size_t size) {
-  constexpr std::size_t kStep = (std::size_t{1} << 22) / sizeof(T);
+  constexpr std::size_t kStep = (std::size_t{1} << 25) / sizeof(T);
+  if (size <= kStep) return values.resize(size);
   values.reserve(size);
   while (values.size() < size) {
     poll();
