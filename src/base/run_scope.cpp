@@ -3,6 +3,8 @@
 
 #include <meshorder/error.hpp>
 
+#include <tbb/task_group.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -61,7 +63,9 @@ void report(std::string_view stage, double fraction) {
 }
 
 void poll() {
-  if (innermost != nullptr) innermost->tell();
+  if (innermost != nullptr) return innermost->tell();
+  // a helping thread: does the call's own thread, or another, want the end?
+  if (tbb::is_current_task_group_canceling()) throw Stopped();
 }
 
 TimeLimit::TimeLimit() {
