@@ -5,41 +5,42 @@
 #include "base/run_scope.hpp"
 #include <meshorder/error.hpp>
 
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 namespace meshorder {
 
 /// How many threads work at most: those of the machine, or the limit that is set (tbb::global_control).
-inline Index thread_count() {
-  const std::size_t limit = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return std::min(static_cast<Index>(limit), Index{tbb::this_task_arena::max_concurrency()});
-}
+[[nodiscard]] Index thread_count();
 
 /// How many chunks of `size` make up 0 … n−1, the last one perhaps shorter.
 constexpr Index chunk_count(Index n, Index size) { return static_cast<Index>((Offset{n} + size - 1) / size); }
 
-/// Calls `work(i)` for 0 … n−1, on all threads. Each turn on the calling thread polls.
+/// Which thread takes which turns of a loop: whichever has none left, or as far as possible the one that took
+/// them the last time, whose caches still hold what they work on.
+enum class Sharing { balanced, repeated };
+
+/// Calls `work(begin, end)` for ranges that make up 0 … n−1, on all threads. The ranges vary from call to call.
 ///
 /// A loop within a turn of another loop is cancelled with it, and TBB then returns from the inner one as if
 /// it were done: here it throws, so that nothing goes on with what was left out.
 ///
-/// @throws what `work` and `poll` throw; Stopped within a loop that another thread has cancelled
-template <class Number, class Work, class... Partitioner>
-void parallel_loop(Number n, const Work& work, const Partitioner&... partitioner) {
-  tbb::task_group_context context;
-  tbb::parallel_for(
-      Number{0}, n,
-      [&](Number i) {
-        poll();
-        work(i);
-      },
-      partitioner..., context);
-  if (context.is_group_execution_cancelled()) throw Stopped();
+/// @throws what `work` throws; Stopped within a loop that another thread has cancelled
+void share_turns(Offset n, Sharing sharing, const std::function<void(Offset begin, Offset end)>& work);
+
+/// Calls `work(i)` for 0 … n−1, on all threads. Each turn on the calling thread polls.
+///
+/// @throws what `work` and `poll` throw, and as `share_turns`
+template <class Number, class Work>
+void parallel_loop(Number n, const Work& work, Sharing sharing = Sharing::balanced) {
+  const auto turns = [&](Offset begin, Offset end) {
+    for (Offset i = begin; i < end; ++i) {
+      poll();
+      work(static_cast<Number>(i));
+    }
+  };
+  share_turns(n, sharing, std::cref(turns));
 }
 
 /// Calls `work(chunk, begin, end)` for the chunks of `size` that make up 0 … n−1, on all threads. The chunks
@@ -69,10 +70,22 @@ Sum sum_over_chunks(Index n, Index size, Part part) {
 }
 
 /// Calls `work(part)` for 0 … parts−1, each on a thread of its own as far as there are threads, and as far as
-/// possible the same as the last time, whose caches still hold what the part works on.
+/// possible the same as the last time.
 template <class Work>
 void for_each_part(Index parts, Work work) {
-  parallel_loop(parts, work, tbb::static_partitioner());
+  parallel_loop(parts, work, Sharing::repeated);
+}
+
+/// Calls `work(begin, end)` for the ranges of `size` that make up 0 … n−1, on all threads. The ranges do not
+/// depend on the number of threads. As for_each_chunk, for more than 2³¹ entries.
+template <class Work>
+void for_each_range(Offset n, Offset size, const Work& work) {
+  if (n <= size) {
+    if (n > 0) work(Offset{0}, n);
+    return;
+  }
+  parallel_loop((n + size - 1) / size,
+                [&](Offset range) { work(range * size, std::min(n, (range + 1) * size)); });
 }
 
 }  // namespace meshorder

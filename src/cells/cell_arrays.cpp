@@ -2,6 +2,7 @@
 #include "cells/cell_arrays.hpp"
 
 #include "base/arena.hpp"
+#include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include "base/typed.hpp"
 #include <meshorder/error.hpp>

@@ -2,6 +2,7 @@
 #include "graph/graph_arrays.hpp"
 
 #include "base/arena.hpp"
+#include "base/parallel.hpp"
 #include "base/typed.hpp"
 #include <meshorder/error.hpp>
 

@@ -3,7 +3,7 @@
 // Reordering a mesh for the format that it will be written in.
 #include "mesh/reorder.hpp"
 
-#include "base/call.hpp"
+#include "base/arena.hpp"
 #include "io/format.hpp"
 #include "io/tetgen/tetgen.hpp"
 #include "io/vega/parts.hpp"

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/call.hpp"
+#include "base/arena.hpp"
 #include "graph/clean_graph.hpp"
 #include "metrics/edge_span.hpp"
 #include <meshorder/error.hpp>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // The public functions: they check what the caller gave, bring it into the library's types, and call the
 // method.
-#include "base/call.hpp"
+#include "base/arena.hpp"
 #include "base/stopwatch.hpp"
 #include "cells/facets.hpp"
 #include "graph/clean_graph.hpp"

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/call.hpp"
+#include "base/arena.hpp"
 #include "base/stopwatch.hpp"
 #include "kernels/simplices.hpp"
 #include "mesh/graphs.hpp"

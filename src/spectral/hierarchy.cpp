@@ -2,8 +2,7 @@
 #include "spectral/hierarchy.hpp"
 
 #include "spectral/coarsening.hpp"
-
-#include <Eigen/Eigenvalues>
+#include "spectral/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +68,7 @@ Eigen::MatrixXd dense_inverse(const Laplacian& laplacian) {
   const double scale = shifted.diagonal().maxCoeff();
   if (!(scale > 0)) return Eigen::MatrixXd::Zero(n, n);  // one vertex
   shifted.array() += scale / n;                          // lifts the constant vector out of the null space
-  return shifted.llt().solve(Eigen::MatrixXd::Identity(n, n));
+  return inverse(shifted);
 }
 
 /// x in row v so that the row of L x = b holds.
@@ -215,10 +214,10 @@ VectorBlock<M> Hierarchy::coarsest_eigenvectors() const {
   const Eigen::VectorXd scale = Eigen::VectorXd::NullaryExpr(
       n, [&](Eigen::Index v) { return 1 / std::sqrt(coarsest.mass(static_cast<Index>(v))); });
   const Eigen::MatrixXd scaled = scale.asDiagonal() * dense(coarsest.laplacian) * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
+  const Eigenpairs pairs = eigenpairs(scaled);
   VectorBlock<M> result(n, std::array<double, M>{});
   for (int m = 0; m < std::min<int>(M, n - 1); ++m) {
-    for (Index v = 0; v < n; ++v) result[v][m] = scale[v] * solver.eigenvectors()(v, m + 1);
+    for (Index v = 0; v < n; ++v) result[v][m] = scale[v] * pairs.vectors(v, m + 1);
   }
   return result;
 }

@@ -5,7 +5,7 @@
 #include "spectral/coarsening.hpp"
 #include "spectral/row_chunks.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <vector>
 

@@ -3,9 +3,7 @@
 
 #include "base/resize_in_steps.hpp"
 #include "base/run_scope.hpp"
-
-#include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
+#include "spectral/dense.hpp"
 
 #include <cmath>
 #include <utility>
@@ -111,23 +109,21 @@ void rayleigh_ritz(const Square<N>& gram, const Square<N>& energy, Eigen::Matrix
   constexpr double kDependent = 1e-12;
   Eigen::Matrix<double, N, 1> scale = gram.diagonal();
   for (int i = 0; i < N; ++i) scale[i] = scale[i] > 0 ? 1 / std::sqrt(scale[i]) : 0;
-  const Eigen::SelfAdjointEigenSolver<Square<N>> independent(
-      Square<N>(scale.asDiagonal() * gram * scale.asDiagonal()));
+  const Eigenpairs independent = eigenpairs(scale.asDiagonal() * gram * scale.asDiagonal());
   int kept = 0;
   Eigen::Matrix<double, N, Eigen::Dynamic> basis(N, N);
   for (int i = N - 1; i >= 0; --i) {
-    const double eigenvalue = independent.eigenvalues()[i];
+    const double eigenvalue = independent.values[i];
     if (eigenvalue < kDependent) break;
-    basis.col(kept++) = scale.asDiagonal() * independent.eigenvectors().col(i) / std::sqrt(eigenvalue);
+    basis.col(kept++) = scale.asDiagonal() * independent.vectors.col(i) / std::sqrt(eigenvalue);
   }
   basis.conservativeResize(Eigen::NoChange, kept);
-  const Eigen::MatrixXd projected = basis.transpose() * energy * basis;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(projected);
+  const Eigenpairs projected = eigenpairs(basis.transpose() * energy * basis);
   coefficients.setZero();
   values.setZero();
   for (int m = 0; m < std::min(M, kept); ++m) {
-    coefficients.col(m) = basis * solver.eigenvectors().col(m);
-    values[m] = solver.eigenvalues()[m];
+    coefficients.col(m) = basis * projected.vectors.col(m);
+    values[m] = projected.values[m];
   }
 }
 

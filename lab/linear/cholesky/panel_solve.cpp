@@ -65,8 +65,7 @@ class Solve {
       if (takes_part(child)) work(child);
     };
     if (shared_ && task.children.size() > 1) {
-      tbb::parallel_for(std::size_t{0}, task.children.size(),
-                        [&](std::size_t k) { work_on(task.children[k]); });
+      parallel_loop(index_size(task.children), [&](Index k) { work_on(task.children[k]); });
     } else {
       for (const Index child : task.children) work_on(child);
     }
