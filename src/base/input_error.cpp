@@ -10,11 +10,13 @@ namespace {
 
 std::string format_message(const Location& location, const std::string& what, const std::string& remedy) {
   std::string text = location.file;
-  if (location.line > 0) text += ":" + std::to_string(location.line);
-  text += ": ";
-  if (location.line <= 0 && location.byte >= 0) text += "byte " + std::to_string(location.byte) + ": ";
-  text += what;
-  if (!remedy.empty()) text += "; " + remedy;
+  if (location.line > 0) text.append(":").append(std::to_string(location.line));
+  text.append(": ");
+  if (location.line <= 0 && location.byte >= 0) {
+    text.append("byte ").append(std::to_string(location.byte)).append(": ");
+  }
+  text.append(what);
+  if (!remedy.empty()) text.append("; ").append(remedy);
   return text;
 }
 

@@ -67,12 +67,10 @@ std::array<double, SearchSpace<M, C>::kSize> row(const SearchSpace<M, C>& s, Ind
 constexpr auto kVectors = [](auto& block) -> auto& { return block.vectors; };
 constexpr auto kImages = [](auto& block) -> auto& { return block.images; };
 
-template <int N>
-using Square = Eigen::Matrix<double, N, N>;
-
 /// Sᵀ B S and Sᵀ L S of the search space S.
 template <int M, int C, int N = SearchSpace<M, C>::kSize>
-void gram_matrices(const SearchSpace<M, C>& s, const Level& level, Square<N>& gram, Square<N>& energy) {
+void gram_matrices(const SearchSpace<M, C>& s, const Level& level, Eigen::MatrixXd& gram,
+                   Eigen::MatrixXd& energy) {
   using Squares = Sums<std::size_t{2} * N * N>;
   auto sums = sum_over_chunks<Squares>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
     Squares part;
@@ -93,6 +91,8 @@ void gram_matrices(const SearchSpace<M, C>& s, const Level& level, Square<N>& gr
     }
     return part;
   });
+  gram.resize(N, N);
+  energy.resize(N, N);
   for (int i = 0; i < N; ++i) {
     for (int j = i; j < N; ++j) {
       gram(i, j) = gram(j, i) = sums[N * i + j];
@@ -101,30 +101,35 @@ void gram_matrices(const SearchSpace<M, C>& s, const Level& level, Square<N>& gr
   }
 }
 
-/// The coefficients of the M Ritz vectors with the smallest Ritz values, and those values. Directions of the
-/// basis that nearly depend on the others are left out.
-template <int M, int N>
-void rayleigh_ritz(const Square<N>& gram, const Square<N>& energy, Eigen::Matrix<double, N, M>& coefficients,
-                   Eigen::Matrix<double, M, 1>& values) {
+/// What a search in a subspace finds: column m of `coefficients` makes the m-th Ritz vector from the basis.
+struct Ritz {
+  Eigen::MatrixXd coefficients;
+  Eigen::VectorXd values;
+};
+
+/// The `wanted` Ritz vectors with the smallest Ritz values. Directions of the basis that nearly depend on the
+/// others are left out; Ritz vectors that do not exist are 0.
+Ritz rayleigh_ritz(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& energy, int wanted) {
   constexpr double kDependent = 1e-12;
-  Eigen::Matrix<double, N, 1> scale = gram.diagonal();
-  for (int i = 0; i < N; ++i) scale[i] = scale[i] > 0 ? 1 / std::sqrt(scale[i]) : 0;
+  const Eigen::Index size = gram.rows();
+  Eigen::VectorXd scale = gram.diagonal();
+  for (Eigen::Index i = 0; i < size; ++i) scale[i] = scale[i] > 0 ? 1 / std::sqrt(scale[i]) : 0;
   const Eigenpairs independent = eigenpairs(scale.asDiagonal() * gram * scale.asDiagonal());
-  int kept = 0;
-  Eigen::Matrix<double, N, Eigen::Dynamic> basis(N, N);
-  for (int i = N - 1; i >= 0; --i) {
+  Eigen::Index kept = 0;
+  Eigen::MatrixXd basis(size, size);
+  for (Eigen::Index i = size - 1; i >= 0; --i) {
     const double eigenvalue = independent.values[i];
     if (eigenvalue < kDependent) break;
     basis.col(kept++) = scale.asDiagonal() * independent.vectors.col(i) / std::sqrt(eigenvalue);
   }
   basis.conservativeResize(Eigen::NoChange, kept);
   const Eigenpairs projected = eigenpairs(basis.transpose() * energy * basis);
-  coefficients.setZero();
-  values.setZero();
-  for (int m = 0; m < std::min(M, kept); ++m) {
-    coefficients.col(m) = basis * projected.vectors.col(m);
-    values[m] = projected.values[m];
+  Ritz ritz{Eigen::MatrixXd::Zero(size, wanted), Eigen::VectorXd::Zero(wanted)};
+  for (Eigen::Index m = 0; m < std::min<Eigen::Index>(wanted, kept); ++m) {
+    ritz.coefficients.col(m) = basis * projected.vectors.col(m);
+    ritz.values[m] = projected.values[m];
   }
+  return ritz;
 }
 
 /// ‖r‖² and ‖x‖² of the first column.
@@ -132,7 +137,7 @@ using Norms = Sums<2>;
 
 /// r = L x − λ B x in row v, and its part in the norms.
 template <int M>
-void residual_of_row(const WithImage<M>& x, const Eigen::Matrix<double, M, 1>& values, double mass, Index v,
+void residual_of_row(const WithImage<M>& x, const Eigen::VectorXd& values, double mass, Index v,
                      VectorBlock<M>& r, Norms& norms) {
   for (int m = 0; m < M; ++m) r[v][m] = x.images[v][m] - values[m] * mass * x.vectors[v][m];
   norms[0] += r[v][0] * r[v][0];
@@ -142,11 +147,10 @@ void residual_of_row(const WithImage<M>& x, const Eigen::Matrix<double, M, 1>& v
 /// x ← S c, p ← the part of that which is not from x, the same for the images, and r = L x − λ B x. Returns
 /// ‖r‖ / ‖x‖ of the first column.
 template <int M, int C, int N = SearchSpace<M, C>::kSize>
-double update(SearchSpace<M, C>& s, const Eigen::Matrix<double, N, M>& coefficients,
-              const Eigen::Matrix<double, M, 1>& values, const Level& level, VectorBlock<M>& r) {
+double update(SearchSpace<M, C>& s, const Ritz& ritz, const Level& level, VectorBlock<M>& r) {
   std::array<std::array<double, M>, N> c;
   for (int i = 0; i < N; ++i) {
-    for (int m = 0; m < M; ++m) c[i][m] = coefficients(i, m);
+    for (int m = 0; m < M; ++m) c[i][m] = ritz.coefficients(i, m);
   }
   const auto combine = [&](Index v, auto part) {
     const auto old = row(s, v, part);
@@ -164,7 +168,7 @@ double update(SearchSpace<M, C>& s, const Eigen::Matrix<double, N, M>& coefficie
     for (Index v = begin; v < end; ++v) {
       combine(v, kVectors);
       combine(v, kImages);
-      residual_of_row<M>(s.x, values, level.mass(v), v, r, part);
+      residual_of_row<M>(s.x, ritz.values, level.mass(v), v, r, part);
     }
     return part;
   });
@@ -174,7 +178,7 @@ double update(SearchSpace<M, C>& s, const Eigen::Matrix<double, N, M>& coefficie
 /// Computes L x afresh, since images that follow x by recurrence drift by rounding, and with it the Rayleigh
 /// quotients and r. Returns what `update` does.
 template <int M>
-double refresh(WithImage<M>& x, const Level& level, Eigen::Matrix<double, M, 1>& values, VectorBlock<M>& r) {
+double refresh(WithImage<M>& x, const Level& level, Eigen::VectorXd& values, VectorBlock<M>& r) {
   level.laplacian.apply<M>(x.vectors, x.images);
   using Quotients = Sums<std::size_t{2} * M>;
   auto quotients = sum_over_chunks<Quotients>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
@@ -221,7 +225,6 @@ void prepare(const Level& level, double total_mass, WithImage<M>& block) {
 template <int M, int Companions>
 LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
                     VectorBlock<Companions> companions) {
-  constexpr int kSize = SearchSpace<M, Companions>::kSize;
   const Level& here = hierarchy.levels()[level];
   const Index n = here.laplacian.size();
   double total_mass = 0;
@@ -233,32 +236,31 @@ LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& 
   SearchSpace<M, Companions> s(std::move(x), std::move(companions));
   VectorBlock<M> r(n);
   CycleWorkspace<M> workspace;
-  Square<kSize> gram, energy;
-  Eigen::Matrix<double, kSize, M> coefficients;
-  Eigen::Matrix<double, M, 1> values;
+  Eigen::MatrixXd gram, energy;
+  Ritz ritz;
   const auto search = [&] {
     gram_matrices<M, Companions>(s, here, gram, energy);
-    rayleigh_ritz<M, kSize>(gram, energy, coefficients, values);
-    return update<M, Companions>(s, coefficients, values, here, r);
+    ritz = rayleigh_ritz(gram, energy, M);
+    return update<M, Companions>(s, ritz, here, r);
   };
 
   prepare(here, total_mass, s.x);
   if constexpr (Companions > 0) prepare(here, total_mass, s.companions);
   LobpcgResult result;
   result.residual = search();
-  const auto converged = [&] { return result.residual <= options.tolerance * values[0]; };
+  const auto converged = [&] { return result.residual <= options.tolerance * ritz.values[0]; };
   for (;; ++result.iterations) {
     report("eigenvector");
     const bool last = result.iterations >= options.max_iterations || options.limit.is_over();
     if (last || converged()) {
-      result.residual = refresh<M>(s.x, here, values, r);
+      result.residual = refresh<M>(s.x, here, ritz.values, r);
       if (last || converged()) break;
     }
     hierarchy.cycle<M>(level, r, s.w.vectors, workspace);
     prepare(here, total_mass, s.w);
     result.residual = search();
   }
-  result.eigenvalue = values[0];
+  result.eigenvalue = ritz.values[0];
   result.converged = converged();
   x = std::move(s.x.vectors);
   return result;
