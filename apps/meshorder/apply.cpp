@@ -31,19 +31,20 @@ void run(const ApplyArguments& arguments) {
   const Console console(arguments);
   const Stopwatch total;
   const Format& format = format_of(arguments.output);
+  const Ids ids = parse<Ids>(arguments.ids);
+  check_holds_ids(format, ids);
   (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.5);
   Notes notes;
   Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
-  check_holds_ids(format, parse<Ids>(arguments.ids));
   const Maps maps = read_maps(arguments.prefix, mesh);
   try {
     if (arguments.inverse) {
       undo_reordering(mesh, format, maps.vertices, maps.cells);
     } else {
-      apply_reordering(mesh, format, maps.vertices, maps.cells, parse<Ids>(arguments.ids));
+      apply_reordering(mesh, format, maps.vertices, maps.cells, ids);
     }
   } catch (const InvalidArgument& error) {
     throw InputError(arguments.input, error.what(), "give the maps that were written with this mesh");

@@ -84,30 +84,4 @@ CsrGraph induced_subgraph(GraphRef graph, std::span<const Index> vertices) {
   return result;
 }
 
-void check_graph(GraphRef graph) {
-  if (graph.offsets.empty() || graph.offsets.front() != 0 ||
-      graph.offsets.back() != static_cast<Offset>(graph.neighbours.size()) ||
-      !std::is_sorted(graph.offsets.begin(), graph.offsets.end())) {
-    throw InvalidArgument("graph: offsets do not fit the neighbours");
-  }
-  for (Index v = 0; v < graph.size(); ++v) {
-    Index last = -1;
-    for (const Index u : graph[v]) {
-      if (u <= last || u >= graph.size() || u == v) {
-        throw InvalidArgument("graph: the neighbours of " + std::to_string(v) +
-                              " must rise within the graph and leave out " + std::to_string(v));
-      }
-      last = u;
-    }
-  }
-  for (Index v = 0; v < graph.size(); ++v) {
-    for (const Index u : graph[v]) {
-      if (!std::binary_search(graph[u].begin(), graph[u].end(), v)) {
-        throw InvalidArgument("graph: edge " + std::to_string(v) + "–" + std::to_string(u) +
-                              " stands in one row only");
-      }
-    }
-  }
-}
-
 }  // namespace meshorder

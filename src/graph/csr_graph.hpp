@@ -60,7 +60,4 @@ CsrGraph renumbered(GraphRef graph, std::span<const Index> old_to_new);
 /// the list are dropped. O(n of `graph` + entries of the listed rows · log degree).
 CsrGraph induced_subgraph(GraphRef graph, std::span<const Index> vertices);
 
-/// Throws InvalidArgument unless the graph keeps the promises of its type. O(n + edges · log degree).
-void check_graph(GraphRef graph);
-
 }  // namespace meshorder

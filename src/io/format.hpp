@@ -53,8 +53,8 @@ Permutation arrange_cells(Mesh& mesh, const Format& to);
 /// `Ids::keep` would be without effect.
 void check_holds_ids(const Format& format, Ids ids);
 
-/// Moves a mesh to the places that `reorder` returned for one that is written in the format `to`; throws as
-/// the public `apply_reordering`, and as `check_holds_ids`.
+/// Moves a mesh to the places that `reorder` returned for one that is written in the format `to`, which
+/// `check_holds_ids`; throws as the public `apply_reordering`.
 void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,
                       Ids ids);
 

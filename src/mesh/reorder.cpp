@@ -5,7 +5,6 @@
 #include "base/stopwatch.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
-#include "mesh/move.hpp"
 #include "ordering/method.hpp"
 #include "ordering/moved.hpp"
 #include "ordering/order_cells.hpp"

@@ -27,6 +27,9 @@ MeshOrder compute_reordering(const Mesh& mesh, const CsrGraph& graph, const Reor
 /// As the public function, by what `compute_reordering` returned.
 void apply_reordering(Mesh& mesh, const MeshOrder& order, Ids ids = Ids::renumber);
 
+/// As the public `apply_reordering`, for a mesh whose ids are there where `Ids::keep` wants to keep them.
+void move_mesh(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids);
+
 /// Returns the places of cells sorted by dimension, highest first, then by type, in their old order within a
 /// type. For formats that keep the cells of a type together. O(cells).
 Permutation places_by_type(const Cells& cells);

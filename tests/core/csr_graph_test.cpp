@@ -3,6 +3,7 @@
 
 #include "graph/incidence.hpp"
 #include "graph/traversal.hpp"
+#include "support/sample_graphs.hpp"
 #include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ Incidence random_elements(Index vertices, Index elements, int size, unsigned see
 TEST(CsrGraph, FromEdgesDropsLoopsAndRepeats) {
   const std::vector<Edge> edges{{0, 1}, {1, 0}, {2, 2}, {3, 1}};
   const CsrGraph graph = graph_from_edges(4, edges);
-  check_graph(graph);
+  test::check_graph(graph);
   EXPECT_EQ(graph.neighbours, (std::vector<Index>{1, 0, 3, 1}));
   EXPECT_EQ(graph.edge_count(), 2);
   EXPECT_THROW(graph_from_edges(2, edges), InvalidArgument);
@@ -45,7 +46,7 @@ TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
     }
   }
   const CsrGraph graph = joined_vertices(elements);
-  check_graph(graph);
+  test::check_graph(graph);
   std::set<std::pair<Index, Index>> found;
   for (Index v = 0; v < graph.size(); ++v) {
     for (const Index u : graph[v]) found.emplace(v, u);
@@ -56,7 +57,7 @@ TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
 TEST(DualGraphByVertex, JoinsExactlyTheElementsThatShareAVertex) {
   const Incidence elements = random_elements(80, 40, 3, 2);
   const CsrGraph dual = joined_by_vertex(elements);
-  check_graph(dual);
+  test::check_graph(dual);
   for (Index e = 0; e < elements.size(); ++e) {
     for (Index f = 0; f < elements.size(); ++f) {
       const std::set<Index> mine(elements[e].begin(), elements[e].end());
@@ -73,7 +74,7 @@ TEST(Renumbered, KeepsEveryEdge) {
   std::vector<Index> reversed(30);
   for (Index v = 0; v < 30; ++v) reversed[v] = 29 - v;
   const CsrGraph renamed = renumbered(graph, reversed);
-  check_graph(renamed);
+  test::check_graph(renamed);
   EXPECT_NE(renamed, graph);
   EXPECT_EQ(renumbered(renamed, reversed), graph);
 }
@@ -90,7 +91,7 @@ TEST(InducedSubgraph, DropsEdgesThatLeave) {
   const CsrGraph path = graph_from_edges(4, edges);
   const std::vector<Index> some{3, 2, 0};
   const CsrGraph part = induced_subgraph(path, some);
-  check_graph(part);
+  test::check_graph(part);
   EXPECT_EQ(part.neighbours, (std::vector<Index>{1, 0}));
 }
 

@@ -2,6 +2,7 @@
 #include "mesh/graphs.hpp"
 
 #include "mesh/procedural.hpp"
+#include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/mesh.hpp>
 
@@ -34,7 +35,7 @@ Mesh mesh_of(const std::vector<Cell>& cells) {
 
 /// The edges of a graph, smaller end first.
 Pairs edges_of(const CsrGraph& graph) {
-  check_graph(graph);
+  test::check_graph(graph);
   Pairs result;
   for (Index v = 0; v < graph.size(); ++v) {
     for (const Index u : graph[v]) result.insert(std::minmax(u, v));

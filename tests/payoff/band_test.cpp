@@ -5,6 +5,7 @@
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "payoff/kernel_bench.hpp"
+#include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/mesh.hpp>
@@ -40,7 +41,7 @@ TEST(IdealBand, HasTheVerticesEdgesAndSimplicesOfTheMesh) {
     const CsrGraph graph = vertex_graph(mesh);
     const Band band = ideal_band(mesh, graph);
     check_mesh(band.mesh);
-    check_graph(band.graph);
+    test::check_graph(band.graph);
     EXPECT_EQ(band.mesh.vertex_count(), mesh.vertex_count());
     EXPECT_EQ(band.graph.size(), mesh.vertex_count());
     EXPECT_EQ(band.graph.edge_count(), graph.edge_count());

@@ -2,8 +2,11 @@
 #include "support/sample_graphs.hpp"
 
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
+#include <algorithm>
 #include <random>
+#include <string>
 
 namespace meshorder::test {
 namespace {
@@ -114,6 +117,32 @@ CsrGraph disjoint_union(const std::vector<CsrGraph>& graphs) {
     }
   }
   return result;
+}
+
+void check_graph(GraphRef graph) {
+  if (graph.offsets.empty() || graph.offsets.front() != 0 ||
+      graph.offsets.back() != static_cast<Offset>(graph.neighbours.size()) ||
+      !std::is_sorted(graph.offsets.begin(), graph.offsets.end())) {
+    throw InvalidArgument("graph: offsets do not fit the neighbours");
+  }
+  for (Index v = 0; v < graph.size(); ++v) {
+    Index last = -1;
+    for (const Index u : graph[v]) {
+      if (u <= last || u >= graph.size() || u == v) {
+        throw InvalidArgument("graph: the neighbours of " + std::to_string(v) +
+                              " must rise within the graph and leave out " + std::to_string(v));
+      }
+      last = u;
+    }
+  }
+  for (Index v = 0; v < graph.size(); ++v) {
+    for (const Index u : graph[v]) {
+      if (!std::binary_search(graph[u].begin(), graph[u].end(), v)) {
+        throw InvalidArgument("graph: edge " + std::to_string(v) + "–" + std::to_string(u) +
+                              " stands in one row only");
+      }
+    }
+  }
 }
 
 }  // namespace meshorder::test

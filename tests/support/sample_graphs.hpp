@@ -45,4 +45,7 @@ CsrGraph preferential_attachment(Index n, Index m, std::uint64_t seed);
 /// The graphs side by side, in their order.
 CsrGraph disjoint_union(const std::vector<CsrGraph>& graphs);
 
+/// Throws InvalidArgument unless the graph keeps the promises of its type.
+void check_graph(GraphRef graph);
+
 }  // namespace meshorder::test
