@@ -36,6 +36,8 @@ packages_to_test=(
   libgmock-dev         "matchers of the unit tests"
   python3              "end-to-end tests"
   python3-pytest       "end-to-end tests"
+  python3-dev          "compiles the Python package"
+  python3-venv         "tests the Python package apart from the system's own"
   python3-numpy        "independent answers for the end-to-end tests"
   python3-scipy        "independent answers for the end-to-end tests"
   python3-meshio       "an independent reader of mesh files"

@@ -1,0 +1,44 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/number_view.hpp>
+#include <meshorder/permutation.hpp>
+#include <meshorder/view.hpp>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace meshorder::python {
+
+namespace nb = nanobind;
+
+/// An array of the caller's, of any type and rank, row after row in the memory of the CPU. The module's
+/// Python half brings everything else into this form (meshorder/_arrays.py).
+using Array = nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu>;
+using MutableArray = nb::ndarray<nb::c_contig, nb::device::cpu>;
+
+/// A one-dimensional array that Python owns and may not change.
+template <class T>
+using Result = nb::ndarray<nb::numpy, const T, nb::ndim<1>>;
+
+/// Views integers of 32 or 64 bits, of any rank, without a copy. Throws InvalidArgument for other types.
+IndexView index_view(const Array& array);
+IndexSpan index_span(const MutableArray& array);
+/// Views float or double numbers; throws likewise.
+RealView real_view(const Array& array);
+/// Views points: one in each row of one to three coordinates, float or double. Throws InvalidArgument.
+PointsView points_view(const nb::ndarray<nb::ro, nb::device::cpu>& array);
+
+/// Hands a vector to Python, without a copy.
+template <class T>
+Result<T> given(std::vector<T> values) {
+  auto* const kept = new std::vector<T>(std::move(values));
+  nb::capsule owner(kept, [](void* vector) noexcept { delete static_cast<std::vector<T>*>(vector); });
+  return Result<T>(kept->data(), {kept->size()}, owner);
+}
+
+}  // namespace meshorder::python

@@ -1,0 +1,272 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Orders of meshes that are given as arrays, and meshes of files.
+#include "module.hpp"
+#include "options.hpp"
+#include "results.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/io.hpp>
+#include <meshorder/mesh.hpp>
+#include <meshorder/payoff.hpp>
+
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <variant>
+
+namespace meshorder::python {
+namespace {
+
+using python::described;
+
+/// Cells as Python gives them: blocks of one shape each, or offsets, vertices and VTK's types (or none).
+using Blocks = std::vector<std::pair<std::string, Array>>;
+using Mixed = std::tuple<Array, Array, std::optional<Array>>;
+using GivenCells = std::variant<Blocks, Mixed>;
+using GivenPoints = std::optional<nb::ndarray<nb::ro, nb::device::cpu>>;
+
+Shape parse_shape(const std::string& name) {
+  for (int s = 0; s < kShapes; ++s) {
+    if (to_string(static_cast<Shape>(s)) == name) return static_cast<Shape>(s);
+  }
+  throw InvalidArgument("cells: unknown shape '" + name + "'");
+}
+
+CellsView cells_view(const Blocks& given) {
+  std::vector<CellBlock> blocks;
+  for (const auto& [shape, vertices] : given) {
+    if (vertices.ndim() != 2) throw InvalidArgument("cells: expected a row of vertices for each cell");
+    blocks.push_back({parse_shape(shape), static_cast<int>(vertices.shape(1)), index_view(vertices)});
+  }
+  return CellsView::blocks(blocks);
+}
+
+CellsView cells_view(const Mixed& given) {
+  const auto& [offsets, vertices, types] = given;
+  std::span<const std::uint8_t> vtk_types;
+  if (types) vtk_types = {static_cast<const std::uint8_t*>(types->data()), types->size()};
+  return CellsView::mixed(index_view(offsets), index_view(vertices), vtk_types);
+}
+
+MeshView mesh_view(const GivenPoints& points, const GivenCells& cells, std::size_t vertex_count) {
+  return {.points = points ? points_view(*points) : PointsView(),
+          .cells = std::visit([](const auto& given) { return cells_view(given); }, cells),
+          .vertex_count = vertex_count};
+}
+
+nb::tuple described(MeshOrder order) {
+  return nb::make_tuple(described(std::move(order.vertices)), described(std::move(order.cells)));
+}
+
+nb::tuple order_of_mesh(const GivenPoints& points, const GivenCells& cells, std::size_t vertex_count,
+                        const MeshMethods& methods, const nb::dict& options) {
+  const Options given_options(options);
+  const MeshView mesh = mesh_view(points, cells, vertex_count);
+  return described(unlocked([&] { return order_mesh(mesh, methods, given_options.order()); }));
+}
+
+nb::object milliseconds(const std::optional<KernelMilliseconds>& times) {
+  if (!times) return nb::none();
+  nb::dict result;
+  for (const Kernel kernel : kKernels) {
+    const std::string_view name = to_string(kernel);
+    result[nb::str(name.data(), name.size())] = (*times)[static_cast<std::size_t>(kernel)];
+  }
+  return result;
+}
+
+nb::dict described(const Candidate& candidate) {
+  nb::dict result;
+  result["vertices"] = candidate.vertices.name;
+  result["elements"] = candidate.elements.name;
+  result["reason"] = candidate.vertices.reason;
+  result["workload"] = std::string(to_string(candidate.workload));
+  result["spans"] = described(candidate.spans);
+  result["predicted"] = milliseconds(candidate.costs.predicted);
+  result["measured"] = milliseconds(candidate.costs.measured);
+  result["order_seconds"] = candidate.order_seconds;
+  return result;
+}
+
+PayoffOptions payoff_options(const std::vector<std::pair<std::string, std::string>>& methods, bool predict,
+                             bool measure, double budget, const OrderOptions& order) {
+  PayoffOptions options{.predict = predict, .measure = measure, .budget_seconds = budget, .order = order};
+  for (const auto& [vertices, elements] : methods) options.methods.push_back({vertices, elements});
+  return options;
+}
+
+using MethodPairs = std::vector<std::pair<std::string, std::string>>;
+
+nb::tuple advise_mesh(const MeshView& mesh, const PayoffOptions& options) {
+  const Advice advice = unlocked([&] { return advise(mesh, options); });
+  nb::list candidates;
+  for (const Candidate& candidate : advice.candidates) candidates.append(described(candidate));
+  nb::dict kernels;
+  for (const Kernel kernel : kKernels) {
+    const KernelAdvice& best = advice.kernels[static_cast<std::size_t>(kernel)];
+    const std::string_view name = to_string(kernel);
+    kernels[nb::str(name.data(), name.size())] =
+        nb::make_tuple(best.candidate, best.factor, best.runs_to_pay);
+  }
+  return nb::make_tuple(to_string(advice), described(advice.as_is), candidates, kernels);
+}
+
+nb::list compare_mesh(const MeshView& mesh, const PayoffOptions& options) {
+  nb::list list;
+  for (const Candidate& candidate : unlocked([&] { return compare(mesh, options); }))
+    list.append(described(candidate));
+  return list;
+}
+
+/// An array of a mesh's, viewed as long as the mesh lives.
+template <class T>
+nb::object viewed(nb::handle mesh, const std::vector<T>& values) {
+  return nb::cast(Result<T>(values.data(), {values.size()}, mesh));
+}
+
+nb::object values_of(nb::handle mesh, const DataArray& array) {
+  return std::visit(
+      [&]<class T>(const std::vector<T>& values) -> nb::object {
+        if constexpr (std::is_same_v<T, std::string>) {
+          return nb::cast(values);
+        } else {
+          const auto width = static_cast<std::size_t>(array.components);
+          if (width == 1) return viewed(mesh, values);
+          return nb::cast(nb::ndarray<nb::numpy, const T, nb::ndim<2>>(values.data(),
+                                                                       {values.size() / width, width}, mesh));
+        }
+      },
+      array.values);
+}
+
+void add_mesh_class(nb::module_& module) {
+  using Self = nb::handle_t<Mesh>;
+  const auto of = [](Self self) -> const Mesh& { return nb::cast<const Mesh&>(self); };
+  nb::class_<Mesh>(module, "Mesh")
+      .def_prop_ro("points",
+                   [of](Self self) {
+                     const std::vector<Point>& points = of(self).points;
+                     return nb::ndarray<nb::numpy, const double, nb::shape<-1, 3>>(
+                         points.empty() ? nullptr : points.front().data(), {points.size(), 3}, self);
+                   })
+      .def_prop_ro("dimension", [of](Self self) { return of(self).dimension; })
+      .def_prop_ro("format", [of](Self self) { return of(self).format; })
+      .def_prop_ro("offsets", [of](Self self) { return viewed(self, of(self).cells.offsets); })
+      .def_prop_ro("connectivity", [of](Self self) { return viewed(self, of(self).cells.vertices); })
+      .def_prop_ro("shapes",
+                   [of](Self self) {
+                     const std::vector<Shape>& shapes = of(self).cells.shapes;
+                     return Result<std::uint8_t>(reinterpret_cast<const std::uint8_t*>(shapes.data()),
+                                                 {shapes.size()}, self);
+                   })
+      .def_prop_ro("vertex_ids", [of](Self self) { return viewed(self, of(self).vertex_ids); })
+      .def_prop_ro("cell_ids", [of](Self self) { return viewed(self, of(self).cell_ids); })
+      .def_prop_ro("data",
+                   [of](Self self) {
+                     nb::list list;
+                     for (const DataArray& array : of(self).data) {
+                       list.append(nb::make_tuple(array.name, array.association == Association::vertices,
+                                                  values_of(self, array), viewed(self, array.indices)));
+                     }
+                     return list;
+                   })
+      .def_prop_ro("sets",
+                   [of](Self self) {
+                     nb::list list;
+                     for (const EntitySet& set : of(self).sets) {
+                       list.append(nb::make_tuple(set.name, set.association == Association::vertices,
+                                                  viewed(self, set.members)));
+                     }
+                     return list;
+                   })
+      .def("copy", [](const Mesh& self) { return Mesh(self); })
+      .def("reorder",
+           [](Mesh& self, const std::string& vertices, const std::string& elements, const std::string& ids,
+              const std::string& group_by, const std::string& format, const nb::dict& options) {
+             const Options given_options(options);
+             ReorderOptions wanted{.methods = {vertices, elements},
+                                   .group_by = group_by,
+                                   .format = format,
+                                   .order = given_options.order()};
+             if (ids == "keep")
+               wanted.ids = Ids::keep;
+             else if (ids == "attach")
+               wanted.ids = Ids::attach;
+             else if (ids != "renumber")
+               throw InvalidArgument("ids: expected 'renumber', 'keep' or 'attach', not '" + ids + "'");
+             return described(unlocked([&] { return reorder(self, wanted); }));
+           })
+      .def("advise",
+           [](const Mesh& self, const MethodPairs& methods, bool predict, bool measure, double budget,
+              const nb::dict& options) {
+             const Options given_options(options);
+             return advise_mesh(view(self),
+                                payoff_options(methods, predict, measure, budget, given_options.order()));
+           })
+      .def("compare",
+           [](const Mesh& self, const MethodPairs& methods, bool predict, bool measure, double budget,
+              const nb::dict& options) {
+             const Options given_options(options);
+             return compare_mesh(view(self),
+                                 payoff_options(methods, predict, measure, budget, given_options.order()));
+           })
+      .def("write",
+           [](const Mesh& self, const std::filesystem::path& path) {
+             Notes notes;
+             (void)unlocked([&] { return write_mesh(self, path, &notes); });
+             return notes;
+           })
+      .def("to_bytes", [](const Mesh& self, const std::string& format, const std::string& name) {
+        MemoryFiles files = unlocked([&] { return write_mesh_to_memory(self, format, name); });
+        if (files.files.size() != 1) {
+          throw InvalidArgument("to_bytes: " + format + " takes several files; use write");
+        }
+        return nb::bytes(files.files.front().bytes.data(), files.files.front().bytes.size());
+      });
+}
+
+}  // namespace
+
+void add_meshes(nb::module_& module) {
+  add_mesh_class(module);
+  module.def(
+      "order_mesh",
+      [](const GivenPoints& points, const GivenCells& cells, std::size_t vertex_count,
+         const std::string& vertices, const std::string& elements, const nb::dict& options) {
+        return order_of_mesh(points, cells, vertex_count, {vertices, elements}, options);
+      },
+      nb::arg().none(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg());
+  module.def("make_mesh", [](const GivenPoints& points, const GivenCells& cells) {
+    const MeshView view = mesh_view(points, cells, 0);
+    return unlocked([&] { return make_mesh(view); });
+  });
+  module.def("read", [](const std::filesystem::path& path, const std::string& format) {
+    Notes notes;
+    Mesh mesh = unlocked([&] { return read_mesh(path, {.format = format, .notes = &notes}); });
+    return nb::make_tuple(nb::cast(std::move(mesh)), notes);
+  });
+  module.def("read_bytes", [](const nb::bytes& bytes, const std::string& format) {
+    Notes notes;
+    const std::span data(static_cast<const std::byte*>(bytes.data()), bytes.size());
+    Mesh mesh =
+        unlocked([&] { return read_mesh(data, {.format = format, .name = "bytes", .notes = &notes}); });
+    return nb::make_tuple(nb::cast(std::move(mesh)), notes);
+  });
+  module.def("formats", [] {
+    nb::list list;
+    for (const FormatInfo& format : formats())
+      list.append(nb::make_tuple(format.name, format.extensions, format.single_file));
+    return list;
+  });
+}
+
+}  // namespace meshorder::python

@@ -1,0 +1,20 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// meshorder._core: the library's functions on arrays. What users call is Python's half of the package, which
+// brings their objects into arrays and the arrays back.
+#include "module.hpp"
+
+#include <meshorder/version.hpp>
+
+#include <nanobind/stl/string.h>
+
+NB_MODULE(_core, module) {
+  using namespace meshorder::python;
+  add_errors(module);
+  add_permutation(module);
+  add_graphs(module);
+  add_meshes(module);
+  add_methods(module);
+  module.def("build_info", &meshorder::build_info);
+  module.attr("version") = MESHORDER_VERSION_STRING;
+}

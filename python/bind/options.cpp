@@ -1,0 +1,64 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "options.hpp"
+
+#include <meshorder/error.hpp>
+
+#include <nanobind/stl/string.h>
+
+#include <string>
+
+namespace meshorder::python {
+namespace {
+
+/// Reports to a Python function, or to none, and lets signals through: Ctrl-C ends the call as
+/// KeyboardInterrupt. Only the function's False stops; its None goes on.
+std::function<bool(const Progress&)> reporter(const nb::object& function) {
+  return [function](const Progress& progress) {
+    const nb::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    if (function.is_none()) return true;
+    const nb::object answer =
+        function(nb::str(progress.stage.data(), progress.stage.size()), progress.fraction);
+    return !answer.is(Py_False);
+  };
+}
+
+Check parse_check(const std::string& name) {
+  if (name == "full") return Check::full;
+  if (name == "fast") return Check::fast;
+  if (name == "none") return Check::none;
+  throw InvalidArgument("check: expected 'full', 'fast' or 'none', not '" + name + "'");
+}
+
+}  // namespace
+
+Options::Options(const nb::dict& given) {
+  const auto value = [&](const char* name) { return given.get(name, nb::none()); };
+  const auto take = [&]<class T>(const char* name, T& into) {
+    if (const nb::object object = value(name); !object.is_none()) into = nb::cast<T>(object);
+  };
+  const auto view = [&](const char* name, auto& into, auto viewed) {
+    const nb::object object = value(name);
+    if (object.is_none()) return;
+    arrays_.push_back(nb::cast<Array>(object));
+    into = viewed(arrays_.back());
+  };
+  take("seed", order_.seed);
+  take("tolerance", order_.tolerance);
+  take("max_iterations", order_.max_iterations);
+  take("threads", order_.run.threads);
+  take("time_limit", order_.run.time_limit);
+  if (const nb::object name = value("workload"); !name.is_none()) {
+    order_.workload = parse_workload(nb::cast<std::string>(name));
+  }
+  if (const nb::object name = value("check"); !name.is_none()) {
+    order_.check = parse_check(nb::cast<std::string>(name));
+  }
+  if (const nb::object mirror = value("mirror"); mirror.is(Py_True)) order_.symmetry = Symmetry::mirror;
+  view("start", order_.start, real_view);
+  view("groups", order_.groups, index_view);
+  view("cell_groups", order_.cell_groups, index_view);
+  order_.run.progress = reporter(value("progress"));
+}
+
+}  // namespace meshorder::python

@@ -1,0 +1,18 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "arrays.hpp"
+#include <meshorder/fiedler.hpp>
+#include <meshorder/order.hpp>
+#include <meshorder/quality.hpp>
+
+#include <vector>
+
+namespace meshorder::python {
+
+/// Results as dicts with the names of their members; arrays are handed over without a copy.
+nb::dict described(Order order);
+nb::dict described(const Quality& quality);
+nb::list described(const std::vector<FiedlerComponent>& components);
+
+}  // namespace meshorder::python

@@ -1,0 +1,37 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Reorders simulation meshes and sparse matrices so that physics on them runs faster.
+
+    >>> import meshorder
+    >>> order = meshorder.order(matrix)                  # a SciPy matrix, or (indptr, indices)
+    >>> faster = order.permutation.move(matrix)
+    >>> mesh, order = meshorder.reorder(meshorder.read("dragon.msh"))
+    >>> print(meshorder.advise(mesh))
+"""
+
+import importlib
+from typing import Any
+
+from ._core import build_info
+from ._core import version as __version__
+from ._errors import Error, InputError, InternalError, InvalidArgument, Stopped, TooLarge, Unavailable
+from ._graphs import Fiedler, FiedlerComponent, Order, Quality, fiedler, order, quality
+from ._meshes import Mesh, MeshOrder, make_mesh, order_mesh, read, reorder, to_bytes, write
+from ._methods import MethodInfo, load_methods, methods, register, unregister
+from ._options import Options
+from ._payoff import Advice, Candidate, Comparison, advise, compare
+from ._permutation import Permutation
+
+
+__all__ = [
+    "Advice", "Candidate", "Comparison", "Error", "Fiedler", "FiedlerComponent", "InputError", "InternalError",
+    "InvalidArgument", "Mesh", "MeshOrder", "MethodInfo", "Options", "Order", "Permutation", "Quality", "Stopped",
+    "TooLarge", "Unavailable", "__version__", "advise", "build_info", "compare", "fiedler", "load_methods", "make_mesh",
+    "methods", "order", "order_mesh", "quality", "read", "register", "reorder", "to_bytes", "unregister", "write",
+]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """Loads the modules that need SciPy or networkx when they are first used."""
+    if name in ("csgraph", "networkx"):
+        return importlib.import_module(f"{__name__}.{name}")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

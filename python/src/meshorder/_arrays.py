@@ -1,0 +1,71 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Users' arrays in the form that the library reads: contiguous, in the machine's byte order.
+
+An array that has that form already is passed on as it is; others are copied.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._errors import InvalidArgument
+
+
+def _as_array(values: Any, name: str) -> NDArray[Any]:
+    if isinstance(values, np.ma.MaskedArray):
+        raise InvalidArgument(f"{name}: a masked array has entries without a value; fill them first")
+    if getattr(values, "__dlpack_device__", None) is not None and not isinstance(values, np.ndarray):
+        if int(values.__dlpack_device__()[0]) != 1:
+            raise InvalidArgument(f"{name}: the array is on a GPU; bring it to the CPU first, by .cpu() or .get()")
+    try:
+        array = np.asarray(values)
+    except ValueError as error:  # ragged lists
+        raise InvalidArgument(f"{name}: {error}") from None
+    return array
+
+
+def _native(array: NDArray[Any], dtype: Any) -> NDArray[Any]:
+    return np.ascontiguousarray(array, dtype=dtype)
+
+
+def integers(values: Any, name: str, rank: int | None = 1) -> NDArray[Any]:
+    """Integers of 32 or 64 bits; smaller ones are widened."""
+    array = _as_array(values, name)
+    if rank is not None and array.ndim != rank:
+        raise InvalidArgument(f"{name}: expected an array of rank {rank}, not {array.ndim}")
+    if array.dtype.kind not in "iu":
+        if array.size == 0:
+            return np.zeros(array.shape, dtype=np.int32)
+        raise InvalidArgument(f"{name}: expected integers, not {array.dtype}")
+    dtype = array.dtype.newbyteorder("=") if array.dtype.itemsize >= 4 else np.dtype(np.int32)
+    return _native(array, dtype)
+
+
+def reals(values: Any, name: str, rank: int = 1) -> NDArray[Any]:
+    """float32 or float64; other real numbers become float64."""
+    array = _as_array(values, name)
+    if array.ndim != rank:
+        raise InvalidArgument(f"{name}: expected an array of rank {rank}, not {array.ndim}")
+    if array.dtype.kind not in "fiu":
+        raise InvalidArgument(f"{name}: expected real numbers, not {array.dtype}")
+    dtype = np.float32 if array.dtype == np.float32 else np.float64
+    return _native(array, dtype)
+
+
+def points(values: Any, name: str = "points") -> NDArray[Any]:
+    """One row of one to three coordinates for each point, in any regular layout."""
+    array = _as_array(values, name)
+    if array.ndim == 1 and array.size:
+        array = array[:, np.newaxis]
+    if array.ndim != 2 or not 1 <= array.shape[1] <= 3:
+        if array.size == 0:
+            return np.zeros((0, 3))
+        raise InvalidArgument(f"{name}: expected one row of 1 to 3 coordinates for each, not the shape {array.shape}")
+    if array.dtype not in (np.float32, np.float64) or not array.dtype.isnative:
+        if array.dtype.kind not in "fiu":
+            raise InvalidArgument(f"{name}: expected real numbers, not {array.dtype}")
+        array = array.astype(np.float64)
+    return array

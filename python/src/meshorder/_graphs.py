@@ -1,0 +1,215 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Orders, Fiedler vectors and the quality of orders, of graphs and matrices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._arrays import integers, reals
+from ._arrays import points as as_points
+from ._errors import InvalidArgument
+from ._options import prepared
+from ._permutation import Permutation
+
+
+class FiedlerComponent(NamedTuple):
+    """The eigensolver's report on a connected component."""
+
+    size: int
+    lambda2: float
+    residual: float
+    iterations: int
+    converged: bool
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Order:
+    """An order and how it was found.
+
+    Attributes:
+        permutation: the new places.
+        method: that made it; never "auto".
+        reason: why "auto" took it; empty where it was asked for.
+        fiedler: a report for each component, of methods that use Fiedler vectors.
+        vector: of "fiedler" and "minla": the next call's ``start``; else None.
+        complete: False if the time limit ended the method early.
+        seconds: wall-clock time of the call.
+        notes: what was cleaned or converted: "12 loops dropped".
+    """
+
+    permutation: Permutation
+    method: str
+    reason: str
+    fiedler: list[FiedlerComponent]
+    vector: NDArray[np.float64] | None
+    complete: bool
+    seconds: float
+    notes: list[str]
+
+    @classmethod
+    def _of(cls, made: dict[str, Any]) -> Order:
+        made["permutation"] = Permutation._of(made["permutation"])
+        made["fiedler"] = [FiedlerComponent(*component) for component in made["fiedler"]]
+        return cls(**made)
+
+    @property
+    def old_to_new(self) -> NDArray[np.int32]:
+        """Of the permutation."""
+        return self.permutation.old_to_new
+
+    @property
+    def new_to_old(self) -> NDArray[np.int32]:
+        """Of the permutation."""
+        return self.permutation.new_to_old
+
+    def __repr__(self) -> str:
+        n = len(self.permutation)
+        return f"<Order of {n:,} by {self.method} in {self.seconds:.3g} s{'' if self.complete else ', incomplete'}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fiedler:
+    """The Fiedler vectors of all components of a graph.
+
+    Attributes:
+        values: in each component of norm 1 and sum 0; 0 for vertices without neighbours.
+        components: a report for each, largest first.
+        component_of: the component of each vertex.
+        complete: False if the time limit ended the iteration.
+        notes: what was cleaned.
+    """
+
+    values: NDArray[np.float64]
+    component_of: NDArray[np.int32]
+    components: list[FiedlerComponent]
+    complete: bool
+    notes: list[str]
+
+    @property
+    def lambda2(self) -> float:
+        """The second-smallest eigenvalue of the largest component's Laplacian."""
+        return self.components[0].lambda2 if self.components else 0.0
+
+    @property
+    def residual(self) -> float:
+        """‖L x − λ x‖ / ‖x‖, the largest of all components."""
+        return max((component.residual for component in self.components), default=0.0)
+
+    @property
+    def converged(self) -> bool:
+        """Whether all components did."""
+        return all(component.converged for component in self.components)
+
+    def __repr__(self) -> str:
+        parts = len(self.components)
+        return (
+            f"<Fiedler vector of {len(self.values):,} vertices, λ₂ = {self.lambda2:.6g}, residual {self.residual:.2g}"
+            f"{f', {parts:,} components' if parts != 1 else ''}{'' if self.converged else ', not converged'}>"
+        )
+
+
+@dataclass(frozen=True)
+class Quality:
+    """How near the ends of edges stand in an order. The span of an edge is the distance of its ends' places.
+
+    Attributes:
+        edges: loops not counted, repeats once.
+        mean_span: about n/3 for a random order.
+        mean_log2_span: mean of log₂ span.
+        bandwidth: the largest span, the half bandwidth of the matrix.
+        profile: sum over rows of the distance from the first neighbour before the diagonal to it.
+        histogram_log2: entry k is the number of edges with a span of 2ᵏ … 2ᵏ⁺¹ − 1.
+    """
+
+    edges: int
+    mean_span: float
+    mean_log2_span: float
+    bandwidth: int
+    profile: int
+    histogram_log2: list[int]
+
+
+def graph_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any] | None]:
+    """Offsets, neighbours and weights (or None) of what users call a graph."""
+    if hasattr(graph, "tocsr") and hasattr(graph, "nnz"):
+        matrix = graph.tocsr()
+        if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
+            raise InvalidArgument(f"graph: a square matrix is needed, not one of shape {matrix.shape}")
+        return integers(matrix.indptr, "indptr"), integers(matrix.indices, "indices"), None
+    if hasattr(graph, "adj") and hasattr(graph, "number_of_nodes"):
+        return _networkx_arrays(graph)
+    if hasattr(graph, "crow_indices"):
+        return integers(graph.crow_indices(), "crow_indices"), integers(graph.col_indices(), "col_indices"), None
+    if isinstance(graph, (tuple, list)) and len(graph) == 2:
+        return integers(graph[0], "indptr"), integers(graph[1], "indices"), None
+    raise InvalidArgument(
+        f"graph: expected a SciPy matrix, (indptr, indices) or a networkx graph, not {type(graph).__name__}"
+    )
+
+
+def _networkx_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any] | None]:
+    place = {node: number for number, node in enumerate(graph)}
+    offsets = np.zeros(len(place) + 1, dtype=np.int64)
+    np.cumsum([len(neighbours) for neighbours in graph.adj.values()], out=offsets[1:])
+    entries = (place[neighbour] for neighbours in graph.adj.values() for neighbour in neighbours)
+    return offsets, np.fromiter(entries, dtype=np.int32, count=int(offsets[-1])), None
+
+
+def order(
+    graph: Any, method: str = "auto", *, points: Any = None, weights: Any = None, **options: Any
+) -> Order:
+    """New places for the vertices of a graph, or the rows and columns of a matrix.
+
+    Args:
+        graph: a square SciPy matrix (CSR is read in place, others are converted), ``(indptr, indices)``, a networkx
+            graph (vertices in the order of its nodes) or a torch matrix in CSR form. Diagonals are ignored.
+        method: "auto" or one of `methods`.
+        points: coordinates, for geometric methods.
+        weights: > 0, one for each entry of the graph, equal on both sides of the diagonal.
+        **options: see `Options`.
+
+    Raises:
+        InvalidArgument: a faulty graph, an unknown method, sizes that do not match.
+        TooLarge: 2³¹ or more vertices.
+        Stopped: ``progress`` returned False.
+    """
+    offsets, neighbours, own_weights = graph_arrays(graph)
+    given_weights = own_weights if weights is None else reals(weights, "weights")
+    coordinates = None if points is None else as_points(points)
+    with prepared(options) as given:
+        return Order._of(_core.order(offsets, neighbours, given_weights, coordinates, method, given))
+
+
+def fiedler(graph: Any, *, weights: Any = None, tolerance: float = 1e-8, **options: Any) -> Fiedler:
+    """The Fiedler vector of each component: the eigenvector of the Laplacian's second-smallest eigenvalue.
+
+    Args:
+        graph: as of `order`.
+        weights: > 0, one for each entry.
+        tolerance: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖.
+        **options: see `Options`.
+    """
+    offsets, neighbours, own_weights = graph_arrays(graph)
+    given_weights = own_weights if weights is None else reals(weights, "weights")
+    with prepared({**options, "tolerance": tolerance}) as given:
+        made = _core.fiedler(offsets, neighbours, given_weights, given)
+    made["components"] = [FiedlerComponent(*component) for component in made["components"]]
+    return Fiedler(**made)
+
+
+def quality(graph: Any, order: Order | Permutation | None = None) -> Quality:
+    """Measures the order that a graph's vertices have, or another one.
+
+    Args:
+        graph: as of `order`; must be symmetric.
+        order: None: the order that the vertices have.
+    """
+    offsets, neighbours, _ = graph_arrays(graph)
+    permutation = order.permutation if isinstance(order, Order) else order
+    made = _core.quality(offsets, neighbours, None if permutation is None else permutation._core, {})
+    return Quality(**made)

@@ -1,0 +1,90 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Options that several functions share."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator
+from typing import Any, TypedDict, Union
+
+from ._arrays import integers, reals
+from ._errors import InvalidArgument
+
+#: A function of the stage's name and the part that is done (0 … 1, or −1 where that is unknown), which may return
+#: False to stop; or True for a bar by tqdm.
+ProgressFunction = Union[Callable[[str, float], Any], bool, None]
+
+
+class Options(TypedDict, total=False):
+    """Keyword arguments that orders have in common.
+
+    Attributes:
+        workload: what ``auto`` chooses its method for: "all", "element", "spmv", "assembly", "springs", "bandwidth"
+            or "fill".
+        seed: of "scrambled", of METIS and of start vectors.
+        tolerance: of Fiedler vectors: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖; 0.1 suffices for orders.
+        max_iterations: of the eigensolver.
+        start: n numbers near the Fiedler vector, as the ``vector`` of an earlier result.
+        groups: a whole number for each vertex; groups stay together, ascending.
+        cell_groups: likewise for each cell.
+        symmetric: of graphs: True refuses an asymmetric pattern, None and False order A + Aᵀ.
+        check: "full", "fast" (does not look for asymmetry) or "none" (nothing: faulty arrays crash).
+        threads: at most; None: all.
+        time_limit: seconds after which the best order so far is returned, with ``complete`` False.
+        progress: see `ProgressFunction`.
+    """
+
+    workload: str
+    seed: int
+    tolerance: float
+    max_iterations: int
+    start: Any
+    groups: Any
+    cell_groups: Any
+    symmetric: bool | None
+    check: str
+    threads: int | None
+    time_limit: float | None
+    progress: ProgressFunction
+
+
+@contextlib.contextmanager
+def prepared(options: Options | dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """The options in the library's form."""
+    unknown = options.keys() - Options.__annotations__.keys()
+    if unknown:
+        raise TypeError(f"unexpected keyword argument {sorted(unknown)[0]!r}")
+    given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
+    given["mirror"] = not given.pop("symmetric", False)
+    if "start" in given:
+        given["start"] = reals(given["start"], "start")
+    for name in ("groups", "cell_groups"):
+        if name in given:
+            given[name] = integers(given[name], name)
+    for name in ("seed", "max_iterations", "threads"):
+        if name in given and (not isinstance(given[name], int) and not hasattr(given[name], "__index__")):
+            raise InvalidArgument(f"{name}: expected a whole number, not {given[name]!r}")
+    if given.get("seed", 0) < 0:
+        raise InvalidArgument("seed: must not be negative")
+    progress = given.pop("progress", None)
+    if progress is True:
+        with _bar() as given["progress"]:
+            yield given
+        return
+    if progress is not None and progress is not False:
+        given["progress"] = progress
+    yield given
+
+
+@contextlib.contextmanager
+def _bar() -> Iterator[Callable[[str, float], None]]:
+    from tqdm.auto import tqdm
+
+    with tqdm(total=100, bar_format="{desc:12} {bar} {n:3.0f} % {elapsed}") as bar:
+
+        def show(stage: str, fraction: float) -> None:
+            bar.set_description(stage, refresh=False)
+            bar.n = max(bar.n, round(100 * fraction))
+            bar.refresh()
+
+        yield show

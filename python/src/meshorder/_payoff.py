@@ -1,0 +1,174 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""What other orders of a mesh are worth."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from ._graphs import Quality
+from ._meshes import Mesh, make_mesh, read
+from ._options import prepared
+
+KERNELS = ("spmv", "element", "assembly", "springs")
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An order of the mesh, and what the kernels take in it.
+
+    Attributes:
+        vertices, elements: the methods.
+        reason: why "auto" took the method for the vertices.
+        workload: what "auto" chose for.
+        spans: of the vertex graph in this order.
+        predicted: milliseconds of each kernel by the cost model, to be compared with each other only; or None.
+        measured: milliseconds of each kernel here, the best of interleaved rounds; or None.
+        order_seconds: cost of the order.
+    """
+
+    vertices: str
+    elements: str
+    reason: str
+    workload: str
+    spans: Quality
+    predicted: dict[str, float] | None
+    measured: dict[str, float] | None
+    order_seconds: float
+
+    @classmethod
+    def _of(cls, made: dict[str, Any]) -> Candidate:
+        return cls(**{**made, "spans": Quality(**made["spans"])})
+
+    @property
+    def milliseconds(self) -> dict[str, float]:
+        """The measured times, else the predicted ones."""
+        return self.measured or self.predicted or {}
+
+
+class KernelAdvice(NamedTuple):
+    """The best candidate for a kernel: its place, how many times faster it is, runs until it has paid."""
+
+    candidate: int
+    factor: float
+    runs_to_pay: float
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What reordering a mesh would be worth; ``str(advice)`` is the verdict in one sentence."""
+
+    verdict: str
+    as_is: Candidate
+    candidates: list[Candidate]
+    kernels: dict[str, KernelAdvice]
+
+    def __str__(self) -> str:
+        return self.verdict
+
+
+class Comparison(Sequence[Candidate]):
+    """Orders of a mesh: the one that it has, then those asked for."""
+
+    def __init__(self, candidates: list[Candidate]) -> None:
+        self._candidates = candidates
+
+    def __len__(self) -> int:
+        return len(self._candidates)
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._candidates[place]
+
+    def rows(self) -> list[dict[str, Any]]:
+        """A flat dict for each order."""
+        return [
+            {
+                "vertices": candidate.vertices,
+                "elements": candidate.elements,
+                "mean span": candidate.spans.mean_span,
+                "order seconds": candidate.order_seconds,
+                **{f"{kernel} ms": candidate.milliseconds[kernel] for kernel in KERNELS},
+            }
+            for candidate in self
+        ]
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame."""
+        import pandas
+
+        return pandas.DataFrame(self.rows())
+
+    def __repr__(self) -> str:
+        rows = [["vertices", "elements", "mean span", *(f"{kernel} ms" for kernel in KERNELS)]]
+        for row in self.rows():
+            numbers = [f"{row['mean span']:,.1f}", *(f"{row[f'{kernel} ms']:.3g}" for kernel in KERNELS)]
+            rows.append([row["vertices"], row["elements"], *numbers])
+        widths = [max(map(len, column)) for column in zip(*rows)]
+        return "\n".join("  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows)
+
+    def _repr_html_(self) -> str:
+        slowest = {kernel: max(c.milliseconds[kernel] for c in self) or 1.0 for kernel in KERNELS}
+        head = "".join(f"<th>{name}</th>" for name in ("vertices", "elements", "mean span", *KERNELS))
+        body = ""
+        for candidate in self:
+            cells = f"<td>{candidate.vertices}</td><td>{candidate.elements}</td><td>{candidate.spans.mean_span:,.1f}</td>"
+            for kernel in KERNELS:
+                time = candidate.milliseconds[kernel]
+                part = 100 * time / slowest[kernel]
+                bar = f"background:linear-gradient(90deg,#9cc5e8 {part:.0f}%,transparent {part:.0f}%)"
+                cells += f'<td style="{bar}">{time:.3g} ms</td>'
+            body += f"<tr>{cells}</tr>"
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _mesh(mesh: Any) -> Mesh:
+    if isinstance(mesh, Mesh):
+        return mesh
+    if isinstance(mesh, (str, os.PathLike)):
+        return read(mesh)
+    if isinstance(mesh, tuple) and len(mesh) == 2:
+        return make_mesh(*mesh)
+    return make_mesh(mesh.points, mesh.cells)
+
+
+def _pairs(methods: Any) -> list[tuple[str, str]]:
+    return [(method, "auto") if isinstance(method, str) else tuple(method) for method in methods or []]
+
+
+def advise(mesh: Any, *, measure: bool = False, budget: float = 10, **options: Any) -> Advice:
+    """Tells what reordering a mesh would be worth, before it is done.
+
+    Args:
+        mesh: a `Mesh`, a path, a meshio.Mesh or ``(points, cells)``.
+        measure: runs the kernels here; otherwise they are predicted.
+        budget: seconds for that.
+        **options: see `Options`.
+    """
+    with prepared(options) as given:
+        verdict, as_is, candidates, kernels = _mesh(mesh)._core.advise([], not measure, measure, budget, given)
+    return Advice(
+        verdict,
+        Candidate._of(as_is),
+        [Candidate._of(candidate) for candidate in candidates],
+        {kernel: KernelAdvice(*best) for kernel, best in kernels.items()},
+    )
+
+
+def compare(
+    mesh: Any, methods: Any = None, *, measure: bool = False, budget: float = 10, predict: bool = True, **options: Any
+) -> Comparison:
+    """Compares orders of a mesh: their spans and the time of four kernels of simulators.
+
+    Args:
+        mesh: as of `advise`.
+        methods: names of methods for the vertices, or pairs of those for vertices and elements; None: what "auto" takes.
+        measure: runs the kernels here, on one thread.
+        budget: seconds for that.
+        predict: by reuse distances and a cost model.
+        **options: see `Options`.
+    """
+    with prepared(options) as given:
+        made = _mesh(mesh)._core.compare(_pairs(methods), predict, measure, budget, given)
+    return Comparison([Candidate._of(candidate) for candidate in made])

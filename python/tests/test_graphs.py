@@ -1,0 +1,304 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Orders, Fiedler vectors and quality against SciPy, networkx and NumPy."""
+
+import multiprocessing
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+import tracemalloc
+
+import meshorder
+import networkx as nx
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from conftest import lattice
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from meshorder import InvalidArgument, Stopped
+from scipy.sparse.csgraph import reverse_cuthill_mckee as scipys_rcm
+
+
+def bandwidth(a, p):
+    moved = sp.coo_array(a[p][:, p])
+    return int(np.abs(moved.row - moved.col).max(initial=0))
+
+
+@pytest.mark.parametrize("method", [m.name for m in meshorder.methods() if not m.needs_points])
+def test_every_method_gives_the_same_order_for_every_type(graph, method):
+    expected = meshorder.order(graph, method).permutation
+    for offsets in (np.int32, np.int64, np.uint32, np.uint64):
+        for neighbours in (np.int32, np.int64):
+            arrays = graph.indptr.astype(offsets), graph.indices.astype(neighbours)
+            assert meshorder.order(arrays, method).permutation == expected
+    assert meshorder.order(graph.tocoo(), method).permutation == expected
+    assert meshorder.order(sp.csr_matrix(graph), method, threads=1).permutation == expected
+
+
+def test_quality_is_that_of_the_moved_matrix(graph):
+    order = meshorder.order(graph, "rcm")
+    moved = sp.coo_array(order.permutation.move(graph))
+    spans = np.abs(moved.row - moved.col)
+    found = meshorder.quality(graph, order)
+    assert found == meshorder.quality(moved.tocsr())
+    assert found.bandwidth == spans.max() and found.edges == len(spans) // 2
+    assert found.mean_span == pytest.approx(spans.mean())
+
+
+def test_fiedler_vector_is_the_eigenvector():
+    graph = lattice(12, 10, 7)
+    found = meshorder.fiedler(graph)
+    values, vectors = np.linalg.eigh(sp.csgraph.laplacian(graph).toarray())
+    assert found.lambda2 == pytest.approx(values[1]) and found.converged
+    assert abs(vectors[:, 1] @ found.values) == pytest.approx(1, abs=1e-6)
+    again = meshorder.fiedler(graph, start=found.values)
+    assert again.components[0].iterations <= 1
+
+
+def test_order_keeps_what_it_found(graph):
+    order = meshorder.order(graph, "fiedler")
+    assert order.method == "fiedler" and order.complete and order.fiedler[0].converged
+    np.testing.assert_array_equal(np.argsort(order.vector, kind="stable")[[0, -1]], order.new_to_old[[0, -1]])
+    copy = pickle.loads(pickle.dumps(order))
+    assert copy.permutation == order.permutation and "fiedler" in repr(copy)
+
+
+def test_clean_input_is_not_copied():
+    graph = lattice(40, 40, 40)
+    arrays = graph.indptr.astype(np.int64), graph.indices.astype(np.int32)
+    tracemalloc.start()
+    order = meshorder.order(arrays, "rcm", symmetric=True)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert order.notes == []
+    assert peak < arrays[1].nbytes / 10
+
+
+def test_asymmetric_patterns():
+    a = sp.csr_array(np.triu(np.ones((4, 4))))
+    with pytest.raises(InvalidArgument, match="row 0 has the neighbour 1"):
+        meshorder.order(a, "rcm", symmetric=True)
+    assert meshorder.order(a, "rcm").permutation == meshorder.order(sp.csr_array(np.ones((4, 4))), "rcm").permutation
+
+
+@pytest.mark.parametrize("sizes", [(9, 9, 9), (100, 3), (40, 30)])
+def test_csgraph_is_about_as_good_as_scipys(sizes):
+    graph = lattice(*sizes)
+    found = meshorder.csgraph.reverse_cuthill_mckee(graph)
+    assert found.dtype == np.int32 and sorted(found) == list(range(graph.shape[0]))
+    # ties are broken otherwise
+    assert bandwidth(graph, found) <= 1.05 * bandwidth(graph, scipys_rcm(sp.csr_matrix(graph)))
+
+
+def test_csgraph_on_scipys_own_example():
+    # scipy.sparse.csgraph.reverse_cuthill_mckee's documentation
+    graph = sp.csr_matrix([[0, 1, 2, 0], [0, 0, 0, 1], [2, 0, 0, 3], [0, 0, 0, 0]])
+    found = meshorder.csgraph.reverse_cuthill_mckee(graph)
+    both = graph + graph.T
+    assert bandwidth(both, found) <= bandwidth(both, scipys_rcm(graph))
+
+
+@given(st.integers(2, 25), st.integers(0, 40), st.integers(0, 1000))
+@settings(deadline=None)
+def test_networkx_functions_agree_with_networkx(n, extra, seed):
+    graph = nx.path_graph(n)
+    random = np.random.default_rng(seed)
+    for a, b, weight in zip(random.integers(n, size=extra), random.integers(n, size=extra), random.random(extra)):
+        if a != b:
+            graph.add_edge(int(a), int(b), weight=0.5 + weight)
+    laplacian = nx.laplacian_matrix(graph).toarray()
+    eigenvalue = np.linalg.eigvalsh(laplacian)[1]
+    assert meshorder.networkx.algebraic_connectivity(graph) == pytest.approx(eigenvalue, abs=1e-7)
+    vector = meshorder.networkx.fiedler_vector(graph)
+    assert np.linalg.norm(laplacian @ vector - eigenvalue * vector) < 1e-5
+    assert sorted(meshorder.networkx.spectral_ordering(graph)) == list(graph)
+
+
+def test_networkx_backend():
+    graph = nx.barbell_graph(5, 6)
+    with nx.config(cache_converted_graphs=False):
+        assert nx.algebraic_connectivity(graph, backend="meshorder") == pytest.approx(nx.algebraic_connectivity(graph))
+        ours = nx.spectral_ordering(graph, backend="meshorder")
+        normalized = nx.fiedler_vector(graph, normalized=True, seed=1)
+    assert ours in (nx.spectral_ordering(graph), ours[::-1]) or set(ours[:5]) in ({*range(5)}, {*range(11, 16)})
+    assert len(normalized) == 16
+
+
+def test_networkx_refusals():
+    with pytest.raises(nx.NetworkXError):
+        meshorder.networkx.fiedler_vector(nx.empty_graph(3))
+    with pytest.raises(nx.NetworkXError):
+        meshorder.networkx.fiedler_vector(nx.empty_graph(1))
+    with pytest.raises(nx.NetworkXNotImplemented):
+        meshorder.networkx.fiedler_vector(nx.DiGraph([(0, 1)]))
+    assert meshorder.networkx.algebraic_connectivity(nx.empty_graph(3)) == 0
+
+
+def test_networkx_graphs_that_once_hung():
+    # six nodes with weights, on which networkx's own solver ran for ever (its issue 2381)
+    graph = nx.Graph()
+    graph.add_weighted_edges_from([(0, 1, 1e-3), (1, 2, 1), (2, 3, 1e3), (3, 4, 1), (4, 5, 1e-3), (5, 0, 1)])
+    expected = np.linalg.eigvalsh(nx.laplacian_matrix(graph).toarray())[1]
+    assert meshorder.networkx.algebraic_connectivity(graph) == pytest.approx(expected, rel=1e-5)
+
+
+def test_progress_and_stop(graph):
+    heard = []
+    large = lattice(60, 60, 40)
+    meshorder.order(large, "spectral", progress=lambda stage, fraction: heard.append((stage, fraction)))
+    assert heard and all(isinstance(stage, str) for stage, _ in heard)
+    assert [f for _, f in heard] == sorted(f for _, f in heard)
+    with pytest.raises(Stopped):
+        meshorder.order(large, "spectral", progress=lambda stage, fraction: False)
+    with pytest.raises(ZeroDivisionError):
+        meshorder.order(large, "spectral", progress=lambda stage, fraction: 1 / 0)
+
+
+def test_interrupt_ends_the_call():
+    large = lattice(90, 90, 90)
+    called = []
+
+    def interrupt():
+        called.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(0.5, interrupt)
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        while True:
+            meshorder.order(large, "spectral")
+    timer.join()
+    assert called
+
+
+def test_other_threads_go_on():
+    large = lattice(60, 60, 60)
+    turns, done = [], threading.Event()
+
+    def count():
+        while not done.is_set():
+            turns.append(1)
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    before = len(turns)
+    meshorder.order(large, "spectral")
+    after = len(turns)
+    done.set()
+    thread.join()
+    assert after - before > 20
+
+
+def _order_in_child(arrays):
+    return meshorder.order(arrays, "rcm", threads=1).permutation
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_processes_forked_after_use(graph):
+    arrays = graph.indptr, graph.indices
+    expected = meshorder.order(arrays, "rcm").permutation
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        assert pool.map_async(_order_in_child, [arrays] * 4).get(timeout=60) == [expected] * 4
+
+
+def test_interpreter_may_end_while_a_thread_works():
+    program = """
+import threading, numpy as np, meshorder
+n = 300_000
+arrays = np.arange(0, 2 * n + 1, 2), np.stack([np.roll(np.arange(n), 1), np.roll(np.arange(n), -1)], 1).ravel()
+@meshorder.register("own")
+def own(graph, points): return np.arange(len(graph[0]) - 1)
+threading.Thread(target=lambda: [meshorder.order(arrays, "fiedler", tolerance=1e-9) for _ in range(50)], daemon=True).start()
+meshorder.order(arrays, "own")
+"""
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120)
+    assert ended.returncode == 0, ended.stderr
+
+
+def test_methods_of_ones_own(graph):
+    @meshorder.register("few-first", "vertices with few neighbours first")
+    def few_first(given, points):
+        assert points.shape == (0, 3)
+        return np.argsort(np.diff(given[0]), kind="stable")
+
+    try:
+        assert "few-first" in [method.name for method in meshorder.methods()]
+        order = meshorder.order(graph, "few-first")
+        np.testing.assert_array_equal(order.new_to_old, np.argsort(np.diff(graph.indptr), kind="stable"))
+        with pytest.raises(InvalidArgument):
+            meshorder.register("few-first")(few_first)
+    finally:
+        meshorder.unregister("few-first")
+    with pytest.raises(InvalidArgument, match="unknown"):
+        meshorder.order(graph, "few-first")
+
+    @meshorder.register("wrong")
+    def wrong(given, points):
+        return [0, 0]
+
+    try:
+        with pytest.raises(InvalidArgument):
+            meshorder.order(graph, "wrong")
+    finally:
+        meshorder.unregister("wrong")
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        lambda: meshorder.order("graph"),
+        lambda: meshorder.order(sp.csr_array(np.ones((2, 3)))),
+        lambda: meshorder.order(([0, 1], [5])),
+        lambda: meshorder.order(([0, 2, 1], [1, 0])),
+        lambda: meshorder.order(([0, 1.5], [0])),
+        lambda: meshorder.order((np.ma.masked_array([0, 1], [0, 1]), [0])),
+        lambda: meshorder.order(([], [1])),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), "hilbert"),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), "hilbert", points=[[0, 0], [np.nan, 1]]),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), points=np.zeros((2, 4))),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), "no method"),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), "fiedler", weights=[-1, -1]),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), check="some"),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), workload="play"),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), threads=-1),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), seed=-1),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), time_limit=-1.0),
+    ],
+)
+def test_refuses(wrong):
+    with pytest.raises(ValueError) as caught:
+        wrong()
+    assert type(caught.value) is InvalidArgument
+
+
+def test_unknown_options_are_type_errors():
+    with pytest.raises(TypeError, match="colour"):
+        meshorder.order(([0, 1, 2], [1, 0]), colour="red")
+
+
+any_array = st.sampled_from(["i1", "u2", "i4", ">i4", "u4", "i8", "u8", "f8", "O", "U3", "?", "c8"]).flatmap(
+    lambda dtype: hnp.arrays(dtype, hnp.array_shapes(min_dims=0, max_dims=2, min_side=0, max_side=6))
+    if dtype != "O"
+    else hnp.arrays(object, 3, elements=st.none() | st.integers(-2, 3))
+)
+
+
+@given(any_array, any_array, st.booleans())
+@settings(deadline=None, max_examples=300)
+def test_any_arrays_give_an_order_or_an_error(offsets, neighbours, strided):
+    if strided and neighbours.ndim == 1:
+        neighbours = np.repeat(neighbours, 2)[::2]
+    for array in (offsets, neighbours):
+        array.flags.writeable = False
+    try:
+        order = meshorder.order((offsets, neighbours), "rcm")
+    except (ValueError, OverflowError) as error:
+        assert isinstance(error, meshorder.Error)
+        return
+    assert len(order.permutation) == max(offsets.size - 1, 0)

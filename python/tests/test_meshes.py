@@ -1,0 +1,159 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Meshes as arrays, as files and as meshio's, by what meshio reads."""
+
+import pathlib
+
+import meshio
+import meshorder
+import numpy as np
+import pytest
+from meshorder import InputError, InvalidArgument
+
+MESHES = pathlib.Path(__file__).parents[3] / "shared" / "meshes"
+
+
+def volumes(points, cells):
+    a, b, c, d = (points[cells[:, k]] for k in range(4))
+    return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
+
+
+def test_all_forms_of_cells_give_the_same_order(mesh):
+    points, cells = mesh
+    expected = meshorder.order_mesh(points, cells)
+    offsets = np.arange(0, cells.size + 1, 4)
+    forms = [
+        {"tetra": cells}, [("tetrahedron", cells)], [meshio.CellBlock("tetra", cells)], cells.astype(np.uint32).tolist(),
+        (offsets, cells.ravel(), np.full(len(cells), 10)),
+    ]  # fmt: skip
+    for form in forms:
+        found = meshorder.order_mesh(points, form)
+        assert found.vertices.permutation == expected.vertices.permutation
+        assert found.cells.permutation == expected.cells.permutation
+    for layout in (points.astype(np.float32), np.asfortranarray(points), np.pad(points, ((0, 0), (0, 1)))[:, :3]):
+        found = meshorder.order_mesh(layout, cells, vertices="hilbert")
+        assert len(found.vertices.permutation) == len(points)
+    strided = meshorder.order_mesh(np.asfortranarray(points), cells, vertices="hilbert")
+    assert strided.vertices.permutation == meshorder.order_mesh(points, cells, vertices="hilbert").vertices.permutation
+
+
+def test_order_of_the_mesh_is_that_of_its_graph(mesh):
+    points, cells = mesh
+    n = len(points)
+    pairs = np.unique(np.concatenate([cells[:, [i, j]] for i in range(4) for j in range(4) if i != j]), axis=0)
+    offsets = np.searchsorted(pairs[:, 0], np.arange(n + 1))
+    by_graph = meshorder.order((offsets, pairs[:, 1]), "fiedler").permutation
+    assert meshorder.order_mesh(points, cells, vertices="fiedler").vertices.permutation == by_graph
+    assert meshorder.order_mesh(None, cells, vertices="fiedler", vertex_count=n).vertices.permutation == by_graph
+
+
+def labelled(mesh):
+    points, cells = mesh
+    random = np.random.default_rng(6)
+    edges = cells[:50, :2]
+    return meshio.Mesh(
+        points.copy(),
+        [("line", edges.copy()), ("tetra", cells[:1000].copy()), ("tetra", cells[1000:].copy())],
+        point_data={"p": points.sum(axis=1), "u": random.random((len(points), 3))},
+        cell_data={"centre": [points[c].mean(axis=1) for c in (edges, cells[:1000], cells[1000:])]},
+        point_sets={"left": np.flatnonzero(points[:, 0] == 0)},
+        cell_sets={"first": [np.arange(5), np.arange(7), None]},
+    )
+
+
+@pytest.mark.parametrize("inplace", [False, True])
+def test_everything_of_a_meshio_mesh_moves_along(mesh, inplace):
+    given, before = labelled(mesh), labelled(mesh)
+    moved, order = meshorder.reorder(given, vertices="rcm", inplace=inplace)
+    assert (moved is given) == inplace and isinstance(moved, meshio.Mesh)
+    if not inplace:
+        np.testing.assert_array_equal(given.points, before.points)
+        np.testing.assert_array_equal(given.cells[1].data, before.cells[1].data)
+    np.testing.assert_array_equal(moved.points, before.points[order.vertices.new_to_old])
+    np.testing.assert_allclose(moved.point_data["p"], moved.points.sum(axis=1))
+    assert (moved.points[moved.point_sets["left"]][:, 0] == 0).all() and len(moved.point_sets["left"]) == 81
+    for block, old, centres in zip(moved.cells, before.cells, moved.cell_data["centre"]):
+        assert block.type == old.type and len(block.data) == len(old.data)
+        np.testing.assert_allclose(moved.points[block.data].mean(axis=1), centres)
+    firsts = before.points[before.cells[1].data[:7]].mean(axis=1)
+    found = moved.points[moved.cells[1].data[moved.cell_sets["first"][1]]].mean(axis=1)
+    np.testing.assert_allclose(np.sort(found, axis=0), np.sort(firsts, axis=0))
+    assert moved.cell_sets["first"][2] is None
+    assert meshorder.order_mesh(moved.points, moved.cells, vertices="rcm") is not None
+    graph = meshorder.make_mesh(moved.points, moved.cells).cells
+    assert sum(len(rows) for _, rows in graph) == 50 + len(mesh[1])
+
+
+@pytest.mark.parametrize("suffix, reads", [(".vtu", "vtu"), (".msh", "gmsh"), (".mesh", "medit")])
+def test_files_are_what_meshio_reads(mesh, tmp_path, suffix, reads):
+    points, cells = mesh
+    ours = meshorder.make_mesh(points, cells)
+    moved, order = meshorder.reorder(ours, vertices="rcm", format=reads)
+    path = tmp_path / f"moved{suffix}"
+    assert meshorder.write(moved, path) == []
+    read = meshio.read(path)
+    np.testing.assert_allclose(read.points, points[order.vertices.new_to_old])
+    expected = order.vertices.old_to_new[cells][order.cells.new_to_old]
+    np.testing.assert_array_equal(np.concatenate([block.data for block in read.cells]), expected)
+    np.testing.assert_allclose(volumes(read.points, expected), volumes(points, cells)[order.cells.new_to_old])
+    again = meshorder.read(meshorder.to_bytes(moved, reads))
+    np.testing.assert_array_equal(again.connectivity, moved.connectivity)
+    np.testing.assert_array_equal(ours.points, points)
+
+
+@pytest.mark.skipif(not MESHES.exists(), reason="no meshes beside the project")
+@pytest.mark.parametrize("name", ["monkey.msh", "multimaterial-cubes-v22.msh", "simpleBridge-hex.veg", "torus.node"])
+def test_files_of_others(name):
+    mesh = meshorder.read(MESHES / name)
+    moved, order = meshorder.reorder(mesh)
+    assert len(mesh.points) == len(moved.points) and "vertices" in repr(mesh)
+    np.testing.assert_array_equal(moved.points, mesh.points[order.vertices.new_to_old])
+    for data in (moved.point_data, moved.cell_data):
+        assert all(len(values) in (len(moved.points), len(moved.shapes)) for values in data.values())
+    assert str(meshorder.advise(MESHES / name))
+
+
+def test_arrays_of_a_mesh_outlive_it(mesh):
+    points = meshorder.make_mesh(*mesh).points
+    np.testing.assert_array_equal(points, mesh[0])
+    assert not points.flags.writeable
+
+
+def test_comparison_and_advice(mesh):
+    comparison = meshorder.compare(mesh, ["rcm", ("fiedler", "lexmax")])
+    assert [candidate.vertices for candidate in comparison] == ["original", "rcm", "fiedler"]
+    assert comparison[1].spans.mean_span < comparison[0].spans.mean_span and comparison[0].measured is None
+    assert comparison._repr_html_().count("<tr>") == 4 and "rcm" in repr(comparison)
+    measured = meshorder.compare(mesh, ["rcm"], measure=True, predict=False, budget=0)
+    assert all(time > 0 for candidate in measured for time in candidate.measured.values())
+    advice = meshorder.advise(mesh)
+    assert str(advice) == advice.verdict and set(advice.kernels) == {"spmv", "element", "assembly", "springs"}
+
+
+def test_bad_files(tmp_path):
+    with pytest.raises(InputError, match="no such file"):
+        meshorder.read(tmp_path / "missing.msh")
+    (tmp_path / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
+    with pytest.raises(ValueError) as caught:
+        meshorder.read(tmp_path / "bad.obj")
+    assert caught.value.line == 2 and caught.value.file.endswith("bad.obj")
+    with pytest.raises(meshorder.Error):
+        meshorder.read(b"nothing")
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [[[0, 1, 2, 9]], [[0, 1, 2, -1]], [[0, 1, 2, 3, 4]], {"tetra": [[0, 1, 2]]}, {"blob": [[0, 1]]}, [0, 1, 2, 3],
+     ([0, 4], [0, 1, 2]), ([0, 4], [0, 1, 2, 3], [10, 10]), [[0.5, 1, 2, 3]], [[0, 1], [0, 1, 2]]],
+)  # fmt: skip
+def test_refuses_faulty_cells(cells):
+    with pytest.raises(InvalidArgument):
+        meshorder.order_mesh(np.eye(4, 3), cells)
+
+
+def test_refuses_faulty_points(mesh):
+    with pytest.raises(InvalidArgument):
+        meshorder.order_mesh(np.full((4, 3), np.nan), [[0, 1, 2, 3]], vertices="hilbert")
+    with pytest.raises(InvalidArgument):
+        meshorder.order_mesh(None, [[0, 1, 2, 3]])
+    with pytest.raises(InvalidArgument):
+        meshorder.reorder("mesh.msh")
