@@ -21,7 +21,8 @@ constexpr Index chunk_count(Index n, Index size) { return static_cast<Index>((Of
 /// them the last time, whose caches still hold what they work on.
 enum class Sharing { balanced, repeated };
 
-/// Calls `work(begin, end)` for ranges that make up 0 … n−1, on all threads. The ranges vary from call to call.
+/// Calls `work(begin, end)` for ranges that make up 0 … n−1, on all threads. The ranges vary from call to
+/// call.
 ///
 /// A loop within a turn of another loop is cancelled with it, and TBB then returns from the inner one as if
 /// it were done: here it throws, so that nothing goes on with what was left out.
