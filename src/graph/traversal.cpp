@@ -52,13 +52,50 @@ BreadthFirst breadth_first(GraphRef graph, Index start, std::vector<Index>& mark
   return search;
 }
 
-Index pseudo_peripheral_vertex(GraphRef graph, Index start, std::vector<Index>& marks) {
+BreadthFirstCopy breadth_first_copy(GraphRef graph) {
+  constexpr Index kAhead = 8;  // rows lie anywhere in memory and are asked for early
+  const Index n = graph.size();
+  BreadthFirstCopy copy;
+  copy.offsets.reserve(std::size_t(n) + 1);
+  copy.offsets.push_back(0);
+  copy.neighbours.reserve(graph.neighbours.size());
+  copy.old_numbers.reserve(n);
+  std::vector<Index> number(n, -1);
+  const auto find = [&](Index v) {
+    number[v] = index_size(copy.old_numbers);
+    copy.old_numbers.push_back(v);
+  };
+  for (Index v = 0; v < n; ++v) {
+    if (number[v] >= 0) continue;
+    const Index first = index_size(copy.old_numbers);
+    find(v);
+    for (Index k = first; k < index_size(copy.old_numbers); ++k) {
+      poll_in_loop(k);
+      if (k + kAhead < index_size(copy.old_numbers)) {
+        __builtin_prefetch(graph.neighbours.data() + graph.offsets[copy.old_numbers[k + kAhead]]);
+      }
+      for (const Index u : graph[copy.old_numbers[k]]) {
+        if (number[u] < 0) find(u);
+        copy.neighbours.push_back(number[u]);
+      }
+      copy.offsets.push_back(static_cast<Offset>(copy.neighbours.size()));
+    }
+    copy.components.emplace_back(first, index_size(copy.old_numbers));
+  }
+  std::stable_sort(copy.components.begin(), copy.components.end(),
+                   [](const auto& a, const auto& b) { return a.second - a.first > b.second - b.first; });
+  return copy;
+}
+
+Index pseudo_peripheral_vertex(GraphRef graph, Index start, std::vector<Index>& marks,
+                               std::span<const Index> names) {
+  const auto name = [&](Index v) { return names.empty() ? v : names[v]; };
   Index mark = 0;
   BreadthFirst search = breadth_first(graph, start, marks, mark);
   for (;;) {
     const auto last_level = search.order.begin() + search.level_start[search.depth()];
     const Index candidate = *std::min_element(last_level, search.order.end(), [&](Index a, Index b) {
-      return graph.degree(a) != graph.degree(b) ? graph.degree(a) < graph.degree(b) : a < b;
+      return graph.degree(a) != graph.degree(b) ? graph.degree(a) < graph.degree(b) : name(a) < name(b);
     });
     BreadthFirst next = breadth_first(graph, candidate, marks, ++mark);
     if (next.depth() <= search.depth()) return search.order.front();

@@ -3,6 +3,8 @@
 
 #include "graph/csr_graph.hpp"
 
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
@@ -24,10 +26,28 @@ struct BreadthFirst {
 /// reached are set to `mark`, so that searches can share it without clearing. O(component).
 BreadthFirst breadth_first(GraphRef graph, Index start, std::vector<Index>& marks, Index mark);
 
+/// A graph whose vertices are numbered as a breadth-first search from the smallest vertex of each component
+/// finds them, so that further searches find in the cache what they look at. Rows list the same neighbours in
+/// the same order as before: a search passes through both graphs alike.
+struct BreadthFirstCopy {
+  std::vector<Offset> offsets;
+  std::vector<Index> neighbours;
+  std::vector<Index> old_numbers;  ///< of each vertex
+  /// The first and the end of each component's vertices; in the order of `connected_components`.
+  std::vector<std::pair<Index, Index>> components;
+
+  [[nodiscard]] GraphRef graph() const { return {offsets, neighbours}; }
+};
+
+/// Numbers a graph anew by one search, which reads each row once. O(n + edges).
+BreadthFirstCopy breadth_first_copy(GraphRef graph);
+
 /// A vertex far from the others of its component: from `start`, the search goes to a vertex of least degree
 /// in the last level until that adds no level (Gibbs, Poole, Stockmeyer 1976, as simplified by George and Liu
-/// 1979). `marks` needs one entry for each vertex, −1 throughout the component, where it is changed; searches
-/// of other components can share it. O(searches · component), few searches in practice.
-Index pseudo_peripheral_vertex(GraphRef graph, Index start, std::vector<Index>& marks);
+/// 1979); of several that of the smallest name, or number where there are no names. `marks` needs one entry
+/// for each vertex, −1 throughout the component, where it is changed; searches of other components can share
+/// it. O(searches · component), few searches in practice.
+Index pseudo_peripheral_vertex(GraphRef graph, Index start, std::vector<Index>& marks,
+                               std::span<const Index> names = {});
 
 }  // namespace meshorder

@@ -53,9 +53,40 @@ TEST(BreadthFirst, SearchesShareMarks) {
   }
 }
 
+TEST(BreadthFirstCopy, IsTheSameGraphInTheOrderOfASearch) {
+  CsrGraph graph =
+      test::disjoint_union({test::path(5), test::random_connected(200, 60, 1), CsrGraph{{0, 0}, {}}});
+  for (Index v = 0; v < graph.size(); v += 3) {  // rows that do not rise keep their order
+    std::reverse(graph.neighbours.begin() + graph.offsets[v],
+                 graph.neighbours.begin() + graph.offsets[v + 1]);
+  }
+  const BreadthFirstCopy copy = breadth_first_copy(graph);
+  std::vector<std::vector<Index>> components;
+  for (const auto& [first, end] : copy.components) {
+    std::vector<Index> marks(graph.size(), -1);
+    const std::vector<Index> members(copy.old_numbers.begin() + first, copy.old_numbers.begin() + end);
+    EXPECT_EQ(breadth_first(graph, members.front(), marks, 0).order, members);
+    components.push_back(members);
+    std::sort(components.back().begin(), components.back().end());
+  }
+  EXPECT_EQ(components, connected_components(graph));
+  for (Index k = 0; k < graph.size(); ++k) {
+    std::vector<Index> row;
+    for (const Index u : copy.graph()[k]) row.push_back(copy.old_numbers[u]);
+    const auto expected = graph[copy.old_numbers[k]];
+    EXPECT_EQ(row, std::vector<Index>(expected.begin(), expected.end()));
+  }
+}
+
 TEST(PseudoPeripheralVertex, IsAnEndOfAPathAndACornerOfAGrid) {
   std::vector<Index> marks(1000, -1);
   EXPECT_EQ(pseudo_peripheral_vertex(test::path(1000), 400, marks) % 999, 0);
+  for (const Index end : {0, 6}) {  // of two ends the one of the smaller name
+    marks.assign(7, -1);
+    std::vector<Index> names(7, 3);
+    names[end] = 1;
+    EXPECT_EQ(pseudo_peripheral_vertex(test::path(7), 3, marks, names), end);
+  }
   marks.assign(63, -1);
   const Index corner = pseudo_peripheral_vertex(test::grid(9, 7), 31, marks);
   EXPECT_TRUE(corner == 0 || corner == 8 || corner == 54 || corner == 62) << corner;
