@@ -15,7 +15,7 @@
 namespace meshorder::python {
 namespace {
 
-/// The registered Python functions. They must be gone before the interpreter is: `clear_methods` runs at
+/// The registered Python functions. They must be gone before the interpreter is: `end` runs at
 /// exit.
 std::map<std::string, Registration>& registrations() {
   static std::map<std::string, Registration> all;
@@ -69,7 +69,11 @@ void add_methods(nb::module_& module) {
             method_of(function)));
   });
   module.def("unregister", [](const std::string& name) { return registrations().erase(name) > 0; });
-  module.def("clear_methods", [] { registrations().clear(); });
+  module.def("end", [] {
+    wait_for_calls();
+    registrations().clear();
+  });
+  module.def("forget_calls", &forget_calls);
   module.def("load_methods", [](const std::string& path) { load_methods(path); });
 }
 

@@ -5,15 +5,22 @@
 
 #include <nanobind/stl/string.h>
 
+#include <atomic>
+#include <chrono>
 #include <string>
+#include <thread>
 
 namespace meshorder::python {
 namespace {
+
+std::atomic<int> running_calls = 0;
+std::atomic<bool> interpreter_ends = false;
 
 /// Reports to a Python function, or to none, and lets signals through: Ctrl-C ends the call as
 /// KeyboardInterrupt. Only the function's False stops; its None goes on.
 std::function<bool(const Progress&)> reporter(const nb::object& function) {
   return [function](const Progress& progress) {
+    if (interpreter_ends) return false;
     const nb::gil_scoped_acquire lock;
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     if (function.is_none()) return true;
@@ -60,5 +67,20 @@ Options::Options(const nb::dict& given) {
   view("cell_groups", order_.cell_groups, index_view);
   order_.run.progress = reporter(value("progress"));
 }
+
+RunningCall::RunningCall() {
+  if (interpreter_ends) throw Stopped("the interpreter ends");
+  ++running_calls;
+}
+
+RunningCall::~RunningCall() { --running_calls; }
+
+void wait_for_calls() {
+  interpreter_ends = true;
+  const nb::gil_scoped_release release;
+  while (running_calls > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+void forget_calls() { running_calls = 0; }
 
 }  // namespace meshorder::python

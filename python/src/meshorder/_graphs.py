@@ -211,5 +211,5 @@ def quality(graph: Any, order: Order | Permutation | None = None) -> Quality:
     """
     offsets, neighbours, _ = graph_arrays(graph)
     permutation = order.permutation if isinstance(order, Order) else order
-    made = _core.quality(offsets, neighbours, None if permutation is None else permutation._core, {})
+    made = _core.quality(offsets, neighbours, None if permutation is None else permutation._handle, {})
     return Quality(**made)

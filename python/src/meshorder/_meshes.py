@@ -108,39 +108,40 @@ def order_mesh(
 class Mesh:
     """A mesh of a file, with all its data. `read` makes it, and `make_mesh` from arrays."""
 
-    __slots__ = ("_core", "notes")
+    __slots__ = ("_handle", "notes")
 
     def __init__(self, made: _core.Mesh, notes: list[str] | None = None) -> None:
-        self._core = made
+        self._handle = made
         #: what the reader dropped or repaired
         self.notes = notes or []
 
     @property
     def points(self) -> NDArray[np.float64]:
         """Three coordinates for each vertex; a view."""
-        return self._core.points
+        return self._handle.points
 
     @property
     def offsets(self) -> NDArray[np.int64]:
         """Cell c has the vertices ``connectivity[offsets[c]:offsets[c + 1]]``; a view."""
-        return self._core.offsets
+        return self._handle.offsets
 
     @property
     def connectivity(self) -> NDArray[np.int32]:
         """The vertices of the cells, one cell after another; a view."""
-        return self._core.connectivity
+        return self._handle.connectivity
 
     @property
     def shapes(self) -> NDArray[np.uint8]:
         """The place of each cell's shape in `SHAPES`; a view."""
-        return self._core.shapes
+        return self._handle.shapes
 
     @property
     def cells(self) -> list[tuple[str, NDArray[np.int32]]]:
         """Runs of cells of one type, in the order of the file: its shape and a row of vertices for each cell."""
         widths = np.diff(self.offsets)
         kinds = np.stack([self.shapes.astype(np.int64), widths])
-        begins = np.flatnonzero(np.r_[True, (np.diff(kinds, axis=1) != 0).any(axis=0)]) if len(widths) else []
+        changes = (np.diff(kinds, axis=1) != 0).any(axis=0)
+        begins = [0, *(np.flatnonzero(changes) + 1)] if len(widths) else []
         runs = []
         for begin, end in zip(begins, [*begins[1:], len(widths)]):
             rows = self.connectivity[self.offsets[begin] : self.offsets[end]]
@@ -160,33 +161,33 @@ class Mesh:
     def _data(self, of_vertices: bool) -> dict[str, Any]:
         return {
             name: values
-            for name, vertices, values, indices in self._core.data
+            for name, vertices, values, indices in self._handle.data
             if vertices == of_vertices and len(indices) == 0
         }
 
     @property
     def sets(self) -> dict[str, NDArray[np.int32]]:
         """Named lists of vertices or cells."""
-        return {name: members for name, _, members in self._core.sets}
+        return {name: members for name, _, members in self._handle.sets}
 
     @property
     def vertex_ids(self) -> NDArray[np.int64]:
         """The file's numbers of the vertices; empty where these are their places."""
-        return self._core.vertex_ids
+        return self._handle.vertex_ids
 
     @property
     def cell_ids(self) -> NDArray[np.int64]:
         """Likewise of the cells."""
-        return self._core.cell_ids
+        return self._handle.cell_ids
 
     @property
     def format(self) -> str:
         """The format that the mesh was read from."""
-        return self._core.format
+        return self._handle.format
 
     def copy(self) -> Mesh:
         """A mesh of its own with the same contents."""
-        return Mesh(self._core.copy(), list(self.notes))
+        return Mesh(self._handle.copy(), list(self.notes))
 
     def __repr__(self) -> str:
         return f"<Mesh: {len(self.points):,} vertices, {len(self.shapes):,} cells{f', {self.format}' if self.format else ''}>"
@@ -213,13 +214,13 @@ def write(mesh: Mesh, path: str | os.PathLike[str]) -> list[str]:
     Returns:
         What the format cannot hold.
     """
-    notes: list[str] = mesh._core.write(os.fspath(path))
+    notes: list[str] = mesh._handle.write(os.fspath(path))
     return notes
 
 
 def to_bytes(mesh: Mesh, format: str) -> bytes:
     """The bytes of the file that `write` would make."""
-    made: bytes = mesh._core.to_bytes(format, "mesh")
+    made: bytes = mesh._handle.to_bytes(format, "mesh")
     return made
 
 
@@ -251,7 +252,7 @@ def reorder(
     if isinstance(mesh, Mesh):
         moved = mesh if inplace else mesh.copy()
         with prepared(options) as given:
-            made = moved._core.reorder(vertices, elements, ids, group_by or "", format or "", given)
+            made = moved._handle.reorder(vertices, elements, ids, group_by or "", format or "", given)
         return moved, MeshOrder._of(made)
     if type(mesh).__module__.partition(".")[0] == "meshio":
         from . import _meshio

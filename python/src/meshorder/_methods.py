@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import atexit
+import os
 from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar
 
@@ -14,8 +15,10 @@ from ._arrays import integers
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
-# methods in Python must be gone before the interpreter is
-atexit.register(_core.clear_methods)
+# calls of other threads and methods in Python must be gone before the interpreter is
+atexit.register(_core.end)
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_core.forget_calls)
 
 
 class MethodInfo(NamedTuple):

@@ -147,7 +147,7 @@ def advise(mesh: Any, *, measure: bool = False, budget: float = 10, **options: A
         **options: see `Options`.
     """
     with prepared(options) as given:
-        verdict, as_is, candidates, kernels = _mesh(mesh)._core.advise([], not measure, measure, budget, given)
+        verdict, as_is, candidates, kernels = _mesh(mesh)._handle.advise([], not measure, measure, budget, given)
     return Advice(
         verdict,
         Candidate._of(as_is),
@@ -170,5 +170,5 @@ def compare(
         **options: see `Options`.
     """
     with prepared(options) as given:
-        made = _mesh(mesh)._core.compare(_pairs(methods), predict, measure, budget, given)
+        made = _mesh(mesh)._handle.compare(_pairs(methods), predict, measure, budget, given)
     return Comparison([Candidate._of(candidate) for candidate in made])

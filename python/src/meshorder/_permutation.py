@@ -30,8 +30,8 @@ class Permutation:
         InvalidArgument: the map is no bijection of 0 … n−1.
     """
 
-    __slots__ = ("_core",)
-    _core: _core.Permutation
+    __slots__ = ("_handle",)
+    _handle: _core.Permutation
 
     def __init__(self, *, old_to_new: Any = None, new_to_old: Any = None) -> None:
         if (old_to_new is None) == (new_to_old is None):
@@ -40,12 +40,12 @@ class Permutation:
             made = _core.Permutation.from_old_to_new(integers(old_to_new, "old_to_new"))
         else:
             made = _core.Permutation.from_new_to_old(integers(new_to_old, "new_to_old"))
-        object.__setattr__(self, "_core", made)
+        object.__setattr__(self, "_handle", made)
 
     @classmethod
     def _of(cls, made: _core.Permutation) -> Permutation:
         permutation = cls.__new__(cls)
-        object.__setattr__(permutation, "_core", made)
+        object.__setattr__(permutation, "_handle", made)
         return permutation
 
     @classmethod
@@ -56,20 +56,20 @@ class Permutation:
     @property
     def old_to_new(self) -> NDArray[np.int32]:
         """The new place of each old thing; read-only, without a copy."""
-        return self._core.old_to_new
+        return self._handle.old_to_new
 
     @property
     def new_to_old(self) -> NDArray[np.int32]:
         """The old place of what stands at each place; read-only, without a copy."""
-        return self._core.new_to_old
+        return self._handle.new_to_old
 
     def inverse(self) -> Permutation:
         """The permutation that moves everything back."""
-        return Permutation._of(self._core.inverse())
+        return Permutation._of(self._handle.inverse())
 
     def then(self, other: Permutation) -> Permutation:
         """This permutation followed by another."""
-        return Permutation._of(self._core.then(other._core))
+        return Permutation._of(self._handle.then(other._handle))
 
     def repeated(self, components: int, node_major: bool = True) -> Permutation:
         """The permutation of degrees of freedom, some for each thing.
@@ -78,7 +78,7 @@ class Permutation:
             components: of each thing, ≥ 1.
             node_major: component c of thing i has the number ``components * i + c``, else ``c * n + i``.
         """
-        return Permutation._of(self._core.repeated(components, node_major))
+        return Permutation._of(self._handle.repeated(components, node_major))
 
     def move(self, a: Any, axis: int = 0, out: NDArray[Any] | None = None) -> Any:
         """What belongs to the things, moved with them.
@@ -109,7 +109,7 @@ class Permutation:
         elif out.shape != array.shape or out.dtype != array.dtype or not out.flags.c_contiguous:
             raise InvalidArgument("move: out must be contiguous, with the shape and type of the array")
         if array.size:
-            self._core.move_rows(_bytes_of(array), _bytes_of(out))
+            self._handle.move_rows(_bytes_of(array), _bytes_of(out))
         return out
 
     def _move_matrix(self, a: Any) -> Any:
@@ -120,7 +120,7 @@ class Permutation:
         indptr, indices = integers(matrix.indptr, "indptr"), integers(matrix.indices, "indices")
         values = np.ascontiguousarray(matrix.data)
         moved = np.empty_like(indptr), np.empty_like(indices), np.empty_like(values)
-        self._core.move_matrix(indptr, indices, values.view(np.uint8), moved[0], moved[1], moved[2].view(np.uint8))
+        self._handle.move_matrix(indptr, indices, values.view(np.uint8), moved[0], moved[1], moved[2].view(np.uint8))
         result = type(matrix)((moved[2], moved[1], moved[0]), shape=matrix.shape)
         return result.asformat(a.format)
 
@@ -138,7 +138,7 @@ class Permutation:
                 raise InvalidArgument("renumber: out must be contiguous and writeable")
             if out is not numbers:
                 np.copyto(out, numbers)
-        self._core.renumber(out.reshape(-1), 0)
+        self._handle.renumber(out.reshape(-1), 0)
         return out
 
     def as_matrix(self) -> Any:
@@ -155,10 +155,10 @@ class Permutation:
         )
 
     def __len__(self) -> int:
-        return len(self._core)
+        return len(self._handle)
 
     def __eq__(self, other: object) -> bool:
-        return self._core == other._core if isinstance(other, Permutation) else NotImplemented
+        return self._handle == other._handle if isinstance(other, Permutation) else NotImplemented
 
     def __hash__(self) -> int:
         return hash(self.old_to_new.tobytes())
