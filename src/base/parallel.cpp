@@ -2,7 +2,7 @@
 #include "base/parallel.hpp"
 
 #include "base/arena.hpp"
-#include <meshorder/number_view.hpp>
+#include <meshorder/error.hpp>
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>

@@ -137,7 +137,7 @@ using Norms = Sums<2>;
 
 /// r = L x − λ B x in row v, and its part in the norms.
 template <int M>
-void residual_of_row(const WithImage<M>& x, const Eigen::VectorXd& values, double mass, Index v,
+void residual_of_row(const WithImage<M>& x, const std::array<double, M>& values, double mass, Index v,
                      VectorBlock<M>& r, Norms& norms) {
   for (int m = 0; m < M; ++m) r[v][m] = x.images[v][m] - values[m] * mass * x.vectors[v][m];
   norms[0] += r[v][0] * r[v][0];
@@ -147,10 +147,11 @@ void residual_of_row(const WithImage<M>& x, const Eigen::VectorXd& values, doubl
 /// x ← S c, p ← the part of that which is not from x, the same for the images, and r = L x − λ B x. Returns
 /// ‖r‖ / ‖x‖ of the first column.
 template <int M, int C, int N = SearchSpace<M, C>::kSize>
-double update(SearchSpace<M, C>& s, const Ritz& ritz, const Level& level, VectorBlock<M>& r) {
+double update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coefficients, const std::array<double, M>& values,
+              const Level& level, VectorBlock<M>& r) {
   std::array<std::array<double, M>, N> c;
   for (int i = 0; i < N; ++i) {
-    for (int m = 0; m < M; ++m) c[i][m] = ritz.coefficients(i, m);
+    for (int m = 0; m < M; ++m) c[i][m] = coefficients(i, m);
   }
   const auto combine = [&](Index v, auto part) {
     const auto old = row(s, v, part);
@@ -168,7 +169,7 @@ double update(SearchSpace<M, C>& s, const Ritz& ritz, const Level& level, Vector
     for (Index v = begin; v < end; ++v) {
       combine(v, kVectors);
       combine(v, kImages);
-      residual_of_row<M>(s.x, ritz.values, level.mass(v), v, r, part);
+      residual_of_row<M>(s.x, values, level.mass(v), v, r, part);
     }
     return part;
   });
@@ -178,7 +179,7 @@ double update(SearchSpace<M, C>& s, const Ritz& ritz, const Level& level, Vector
 /// Computes L x afresh, since images that follow x by recurrence drift by rounding, and with it the Rayleigh
 /// quotients and r. Returns what `update` does.
 template <int M>
-double refresh(WithImage<M>& x, const Level& level, Eigen::VectorXd& values, VectorBlock<M>& r) {
+double refresh(WithImage<M>& x, const Level& level, std::array<double, M>& values, VectorBlock<M>& r) {
   level.laplacian.apply<M>(x.vectors, x.images);
   using Quotients = Sums<std::size_t{2} * M>;
   auto quotients = sum_over_chunks<Quotients>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
@@ -237,30 +238,31 @@ LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& 
   VectorBlock<M> r(n);
   CycleWorkspace<M> workspace;
   Eigen::MatrixXd gram, energy;
-  Ritz ritz;
+  std::array<double, M> values{};
   const auto search = [&] {
     gram_matrices<M, Companions>(s, here, gram, energy);
-    ritz = rayleigh_ritz(gram, energy, M);
-    return update<M, Companions>(s, ritz, here, r);
+    const Ritz ritz = rayleigh_ritz(gram, energy, M);
+    for (int m = 0; m < M; ++m) values[m] = ritz.values[m];
+    return update<M, Companions>(s, ritz.coefficients, values, here, r);
   };
 
   prepare(here, total_mass, s.x);
   if constexpr (Companions > 0) prepare(here, total_mass, s.companions);
   LobpcgResult result;
   result.residual = search();
-  const auto converged = [&] { return result.residual <= options.tolerance * ritz.values[0]; };
+  const auto converged = [&] { return result.residual <= options.tolerance * values[0]; };
   for (;; ++result.iterations) {
     report("eigenvector");
     const bool last = result.iterations >= options.max_iterations || options.limit.is_over();
     if (last || converged()) {
-      result.residual = refresh<M>(s.x, here, ritz.values, r);
+      result.residual = refresh<M>(s.x, here, values, r);
       if (last || converged()) break;
     }
     hierarchy.cycle<M>(level, r, s.w.vectors, workspace);
     prepare(here, total_mass, s.w);
     result.residual = search();
   }
-  result.eigenvalue = ritz.values[0];
+  result.eigenvalue = values[0];
   result.converged = converged();
   x = std::move(s.x.vectors);
   return result;
