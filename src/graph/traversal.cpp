@@ -30,58 +30,69 @@ std::vector<std::vector<Index>> connected_components(GraphRef graph) {
   return components;
 }
 
+// The searches below write down each neighbour and keep it if it is new, without a branch: whether a vertex
+// has been found before is what a processor cannot predict.
+
 BreadthFirst breadth_first(GraphRef graph, Index start, std::vector<Index>& marks, Index mark) {
   BreadthFirst search;
-  search.order.push_back(start);
+  std::vector<Index>& order = search.order;
+  order.push_back(start);
   marks[start] = mark;
+  Index found = 1;
   Index level_begin = 0;
-  while (level_begin < index_size(search.order)) {
+  while (level_begin < found) {
     search.level_start.push_back(level_begin);
-    const Index level_end = index_size(search.order);
+    const Index level_end = found;
     for (Index k = level_begin; k < level_end; ++k) {
       poll_in_loop(k);
-      for (const Index u : graph[search.order[k]]) {
-        if (marks[u] == mark) continue;
+      prefetch_row(graph, order, k, found);
+      const std::span<const Index> row = graph[order[k]];
+      if (const std::size_t most = std::size_t(found) + row.size(); most > order.size()) {
+        order.resize(std::max(most, 2 * order.size()));
+      }
+      for (const Index u : row) {
+        order[found] = u;
+        found += marks[u] != mark ? 1 : 0;
         marks[u] = mark;
-        search.order.push_back(u);
       }
     }
     level_begin = level_end;
   }
-  search.level_start.push_back(index_size(search.order));
+  search.level_start.push_back(found);
+  order.resize(found);
   return search;
 }
 
 BreadthFirstCopy breadth_first_copy(GraphRef graph) {
-  constexpr Index kAhead = 8;  // rows lie anywhere in memory and are asked for early
   const Index n = graph.size();
   BreadthFirstCopy copy;
   copy.offsets.reserve(std::size_t(n) + 1);
   copy.offsets.push_back(0);
-  copy.neighbours.reserve(graph.neighbours.size());
-  copy.old_numbers.reserve(n);
+  copy.neighbours.resize(graph.neighbours.size());
+  copy.old_numbers.resize(std::size_t(n) + 1);
   std::vector<Index> number(n, -1);
-  const auto find = [&](Index v) {
-    number[v] = index_size(copy.old_numbers);
-    copy.old_numbers.push_back(v);
-  };
+  Index found = 0;
+  Offset written = 0;
   for (Index v = 0; v < n; ++v) {
     if (number[v] >= 0) continue;
-    const Index first = index_size(copy.old_numbers);
-    find(v);
-    for (Index k = first; k < index_size(copy.old_numbers); ++k) {
+    const Index first = found;
+    number[v] = found;
+    copy.old_numbers[found++] = v;
+    for (Index k = first; k < found; ++k) {
       poll_in_loop(k);
-      if (k + kAhead < index_size(copy.old_numbers)) {
-        __builtin_prefetch(graph.neighbours.data() + graph.offsets[copy.old_numbers[k + kAhead]]);
-      }
+      prefetch_row(graph, copy.old_numbers, k, found);
       for (const Index u : graph[copy.old_numbers[k]]) {
-        if (number[u] < 0) find(u);
-        copy.neighbours.push_back(number[u]);
+        const bool is_new = number[u] < 0;
+        copy.old_numbers[found] = u;
+        number[u] = is_new ? found : number[u];
+        copy.neighbours[written++] = number[u];
+        found += is_new ? 1 : 0;
       }
-      copy.offsets.push_back(static_cast<Offset>(copy.neighbours.size()));
+      copy.offsets.push_back(written);
     }
-    copy.components.emplace_back(first, index_size(copy.old_numbers));
+    copy.components.emplace_back(first, found);
   }
+  copy.old_numbers.resize(n);
   std::stable_sort(copy.components.begin(), copy.components.end(),
                    [](const auto& a, const auto& b) { return a.second - a.first > b.second - b.first; });
   return copy;

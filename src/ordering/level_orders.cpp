@@ -26,18 +26,22 @@ void sort_by_degree(GraphRef graph, std::span<Index> vertices) {
   }
 }
 
-/// Orders the components of a graph one after the other by `append(near, start, new_to_old)`, which appends
-/// the vertices of the component of `start`, a vertex at its rim.
-template <class Append>
-Order by_components(GraphRef graph, const Append& append) {
+/// Orders the components of a graph one after the other by `place(near, start, places)`, which fills
+/// `places`, but for the last one, with the vertices of the component of `start`, a vertex at its rim.
+template <class Place>
+Order by_components(GraphRef graph, const Place& place) {
   const BreadthFirstCopy copy = breadth_first_copy(graph);
   const GraphRef near = copy.graph();
-  std::vector<Index> new_to_old;
-  new_to_old.reserve(graph.size());
+  std::vector<Index> new_to_old(std::size_t(graph.size()) + 1);
   std::vector<Index> tried(graph.size(), -1);
+  std::size_t placed = 0;
   for (const auto& [first, end] : copy.components) {
-    append(near, pseudo_peripheral_vertex(near, first, tried, copy.old_numbers), new_to_old);
+    const Index start = pseudo_peripheral_vertex(near, first, tried, copy.old_numbers);
+    const auto size = static_cast<std::size_t>(end - first);
+    place(near, start, std::span(new_to_old).subspan(placed, size + 1));
+    placed += size;
   }
+  new_to_old.resize(placed);
   for (Index& v : new_to_old) v = copy.old_numbers[v];
   return {Permutation::from_new_to_old(std::move(new_to_old)), {}};
 }
@@ -45,30 +49,30 @@ Order by_components(GraphRef graph, const Append& append) {
 }  // namespace
 
 Order bfs_vertices(const VertexInput& input, const OrderOptions&) {
-  std::vector<Index> placed(input.graph.size(), -1);
-  return by_components(input.graph, [&](GraphRef near, Index start, std::vector<Index>& new_to_old) {
-    const std::vector<Index> order = breadth_first(near, start, placed, 0).order;
-    new_to_old.insert(new_to_old.end(), order.begin(), order.end());
+  std::vector<Index> reached(input.graph.size(), -1);
+  return by_components(input.graph, [&](GraphRef near, Index start, std::span<Index> places) {
+    std::ranges::copy(breadth_first(near, start, reached, 0).order, places.begin());
   });
 }
 
 Order rcm_vertices(const VertexInput& input, const OrderOptions&) {
-  std::vector<bool> placed(input.graph.size(), false);
-  return by_components(input.graph, [&](GraphRef near, Index start, std::vector<Index>& new_to_old) {
-    const std::size_t begin = new_to_old.size();
-    new_to_old.push_back(start);
-    placed[start] = true;
-    for (std::size_t k = begin; k < new_to_old.size(); ++k) {
+  std::vector<char> placed(input.graph.size(), 0);
+  return by_components(input.graph, [&](GraphRef near, Index start, std::span<Index> places) {
+    places[0] = start;
+    placed[start] = 1;
+    Index found = 1;
+    for (Index k = 0; k < found; ++k) {
       poll_in_loop(k);
-      const std::size_t found = new_to_old.size();
-      for (const Index u : near[new_to_old[k]]) {
-        if (placed[u]) continue;
-        placed[u] = true;
-        new_to_old.push_back(u);
+      prefetch_row(near, places, k, found);
+      const Index first = found;
+      for (const Index u : near[places[k]]) {  // without a branch, as in breadth_first
+        places[found] = u;
+        found += placed[u] == 0 ? 1 : 0;
+        placed[u] = 1;
       }
-      sort_by_degree(near, std::span(new_to_old).subspan(found));
+      sort_by_degree(near, places.subspan(first, found - first));
     }
-    std::reverse(new_to_old.begin() + static_cast<std::ptrdiff_t>(begin), new_to_old.end());
+    std::ranges::reverse(places.first(found));
   });
 }
 
