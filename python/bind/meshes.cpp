@@ -74,12 +74,13 @@ nb::tuple order_of_mesh(const GivenPoints& points, const GivenCells& cells, std:
   return described(unlocked([&] { return order_mesh(mesh, methods, given_options.order()); }));
 }
 
+nb::str text(std::string_view name) { return nb::str(name.data(), name.size()); }
+
 nb::object milliseconds(const std::optional<KernelMilliseconds>& times) {
   if (!times) return nb::none();
   nb::dict result;
   for (const Kernel kernel : kKernels) {
-    const std::string_view name = to_string(kernel);
-    result[nb::str(name.data(), name.size())] = (*times)[static_cast<std::size_t>(kernel)];
+    result[text(to_string(kernel))] = (*times)[static_cast<std::size_t>(kernel)];
   }
   return result;
 }
@@ -97,14 +98,14 @@ nb::dict described(const Candidate& candidate) {
   return result;
 }
 
-PayoffOptions payoff_options(const std::vector<std::pair<std::string, std::string>>& methods, bool predict,
-                             bool measure, double budget, const OrderOptions& order) {
+using MethodPairs = std::vector<std::pair<std::string, std::string>>;
+
+PayoffOptions payoff_options(const MethodPairs& methods, bool predict, bool measure, double budget,
+                             const OrderOptions& order) {
   PayoffOptions options{.predict = predict, .measure = measure, .budget_seconds = budget, .order = order};
   for (const auto& [vertices, elements] : methods) options.methods.push_back({vertices, elements});
   return options;
 }
-
-using MethodPairs = std::vector<std::pair<std::string, std::string>>;
 
 nb::tuple advise_mesh(const MeshView& mesh, const PayoffOptions& options) {
   const Advice advice = unlocked([&] { return advise(mesh, options); });
@@ -113,9 +114,7 @@ nb::tuple advise_mesh(const MeshView& mesh, const PayoffOptions& options) {
   nb::dict kernels;
   for (const Kernel kernel : kKernels) {
     const KernelAdvice& best = advice.kernels[static_cast<std::size_t>(kernel)];
-    const std::string_view name = to_string(kernel);
-    kernels[nb::str(name.data(), name.size())] =
-        nb::make_tuple(best.candidate, best.factor, best.runs_to_pay);
+    kernels[text(to_string(kernel))] = nb::make_tuple(best.candidate, best.factor, best.runs_to_pay);
   }
   return nb::make_tuple(to_string(advice), described(advice.as_is), candidates, kernels);
 }
@@ -125,6 +124,17 @@ nb::list compare_mesh(const MeshView& mesh, const PayoffOptions& options) {
   for (const Candidate& candidate : unlocked([&] { return compare(mesh, options); }))
     list.append(described(candidate));
   return list;
+}
+
+/// A method of Mesh that asks `question`, advise_mesh or compare_mesh, with Python's arguments as its
+/// options.
+template <class Answer>
+auto answering(Answer (*question)(const MeshView&, const PayoffOptions&)) {
+  return [question](const Mesh& self, const MethodPairs& methods, bool predict, bool measure, double budget,
+                    const nb::dict& options) {
+    const Options given_options(options);
+    return question(view(self), payoff_options(methods, predict, measure, budget, given_options.order()));
+  };
 }
 
 /// An array of a mesh's, viewed as long as the mesh lives.
@@ -205,20 +215,8 @@ void add_mesh_class(nb::module_& module) {
                throw InvalidArgument("ids: expected 'renumber', 'keep' or 'attach', not '" + ids + "'");
              return described(unlocked([&] { return reorder(self, wanted); }));
            })
-      .def("advise",
-           [](const Mesh& self, const MethodPairs& methods, bool predict, bool measure, double budget,
-              const nb::dict& options) {
-             const Options given_options(options);
-             return advise_mesh(view(self),
-                                payoff_options(methods, predict, measure, budget, given_options.order()));
-           })
-      .def("compare",
-           [](const Mesh& self, const MethodPairs& methods, bool predict, bool measure, double budget,
-              const nb::dict& options) {
-             const Options given_options(options);
-             return compare_mesh(view(self),
-                                 payoff_options(methods, predict, measure, budget, given_options.order()));
-           })
+      .def("advise", answering(advise_mesh))
+      .def("compare", answering(compare_mesh))
       .def("write",
            [](const Mesh& self, const std::filesystem::path& path) {
              Notes notes;
@@ -237,6 +235,12 @@ void add_mesh_class(nb::module_& module) {
 }  // namespace
 
 void add_meshes(nb::module_& module) {
+  nb::list shapes;
+  for (int s = 0; s < kShapes; ++s) shapes.append(text(to_string(static_cast<Shape>(s))));
+  module.attr("shapes") = nb::tuple(shapes);
+  nb::list kernels;
+  for (const Kernel kernel : kKernels) kernels.append(text(to_string(kernel)));
+  module.attr("kernels") = nb::tuple(kernels);
   add_mesh_class(module);
   module.def(
       "order_mesh",

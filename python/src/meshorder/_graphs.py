@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -134,30 +135,32 @@ class Quality:
     histogram_log2: list[int]
 
 
-def graph_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any] | None]:
-    """Offsets, neighbours and weights (or None) of what users call a graph."""
+def graph_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Offsets and neighbours of what users call a graph."""
     if hasattr(graph, "tocsr") and hasattr(graph, "nnz"):
         matrix = graph.tocsr()
         if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
             raise InvalidArgument(f"graph: a square matrix is needed, not one of shape {matrix.shape}")
-        return integers(matrix.indptr, "indptr"), integers(matrix.indices, "indices"), None
-    if hasattr(graph, "adj") and hasattr(graph, "number_of_nodes"):
-        return _networkx_arrays(graph)
+        return integers(matrix.indptr, "indptr"), integers(matrix.indices, "indices")
+    if hasattr(graph, "adjacency") and hasattr(graph, "number_of_nodes"):
+        return networkx_arrays(graph)
     if hasattr(graph, "crow_indices"):
-        return integers(graph.crow_indices(), "crow_indices"), integers(graph.col_indices(), "col_indices"), None
+        return integers(graph.crow_indices(), "crow_indices"), integers(graph.col_indices(), "col_indices")
     if isinstance(graph, (tuple, list)) and len(graph) == 2:
-        return integers(graph[0], "indptr"), integers(graph[1], "indices"), None
+        return integers(graph[0], "indptr"), integers(graph[1], "indices")
     raise InvalidArgument(
         f"graph: expected a SciPy matrix, (indptr, indices) or a networkx graph, not {type(graph).__name__}"
     )
 
 
-def _networkx_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any] | None]:
+def networkx_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Offsets and neighbours of a networkx graph, vertices in the order of its nodes."""
     place = {node: number for number, node in enumerate(graph)}
-    offsets = np.zeros(len(place) + 1, dtype=np.int64)
-    np.cumsum([len(neighbours) for neighbours in graph.adj.values()], out=offsets[1:])
-    entries = (place[neighbour] for neighbours in graph.adj.values() for neighbour in neighbours)
-    return offsets, np.fromiter(entries, dtype=np.int32, count=int(offsets[-1])), None
+    rows = [neighbours for _, neighbours in graph.adjacency()]
+    offsets = np.zeros(len(rows) + 1, dtype=np.int64)
+    np.cumsum(np.fromiter(map(len, rows), dtype=np.int64, count=len(rows)), out=offsets[1:])
+    entries = map(place.__getitem__, itertools.chain.from_iterable(rows))
+    return offsets, np.fromiter(entries, dtype=np.int32, count=int(offsets[-1]))
 
 
 def order(
@@ -178,8 +181,8 @@ def order(
         TooLarge: 2³¹ or more vertices.
         Stopped: ``progress`` returned False.
     """
-    offsets, neighbours, own_weights = graph_arrays(graph)
-    given_weights = own_weights if weights is None else reals(weights, "weights")
+    offsets, neighbours = graph_arrays(graph)
+    given_weights = None if weights is None else reals(weights, "weights")
     coordinates = None if points is None else as_points(points)
     with prepared(options) as given:
         return Order._of(_core.order(offsets, neighbours, given_weights, coordinates, method, given))
@@ -194,8 +197,8 @@ def fiedler(graph: Any, *, weights: Any = None, tolerance: float = 1e-8, **optio
         tolerance: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖.
         **options: see `Options`.
     """
-    offsets, neighbours, own_weights = graph_arrays(graph)
-    given_weights = own_weights if weights is None else reals(weights, "weights")
+    offsets, neighbours = graph_arrays(graph)
+    given_weights = None if weights is None else reals(weights, "weights")
     with prepared({**options, "tolerance": tolerance}) as given:
         made = _core.fiedler(offsets, neighbours, given_weights, given)
     made["components"] = [FiedlerComponent(*component) for component in made["components"]]
@@ -209,7 +212,7 @@ def quality(graph: Any, order: Order | Permutation | None = None) -> Quality:
         graph: as of `order`; must be symmetric.
         order: None: the order that the vertices have.
     """
-    offsets, neighbours, _ = graph_arrays(graph)
+    offsets, neighbours = graph_arrays(graph)
     permutation = order.permutation if isinstance(order, Order) else order
     made = _core.quality(offsets, neighbours, None if permutation is None else permutation._handle, {})
     return Quality(**made)

@@ -20,10 +20,7 @@ from ._graphs import Order
 from ._options import prepared
 
 #: names of shapes, by the library's number
-SHAPES = (
-    "vertex", "line", "triangle", "quad", "tetrahedron", "pyramid", "wedge", "hexahedron", "poly_vertex", "polyline",
-    "polygon", "triangle_strip",
-)  # fmt: skip
+SHAPES: tuple[str, ...] = _core.shapes
 _SHAPE_OF = {name: name for name in SHAPES} | {"tetra": "tetrahedron", "hexa": "hexahedron", "prism": "wedge"}
 
 

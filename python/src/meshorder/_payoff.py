@@ -8,11 +8,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from . import _core
 from ._graphs import Quality
 from ._meshes import Mesh, make_mesh, read
 from ._options import prepared
 
-KERNELS = ("spmv", "element", "assembly", "springs")
+KERNELS: tuple[str, ...] = _core.kernels
 
 
 @dataclass(frozen=True)

@@ -3,34 +3,43 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._arrays import reals
-from ._graphs import Fiedler, fiedler
+from ._graphs import Fiedler, fiedler, networkx_arrays
 
 __all__ = ["algebraic_connectivity", "fiedler_vector", "spectral_ordering"]
 
 
-def _weighted(graph: Any, weight: str | None) -> Any:
-    """The graph as a matrix whose pattern is that of the edges with a weight other than 0."""
+def _weights(graph: Any, weight: str | None) -> NDArray[np.float64] | None:
+    """The edges' weights in the order of `networkx_arrays`, without their signs as networkx takes them; or None."""
+    if weight is None and not graph.is_multigraph():
+        return None
+    rows = [row for _, row in graph.adjacency()]
+    if graph.is_multigraph():
+        parallel = itertools.chain.from_iterable(row.values() for row in rows)
+        weights = [sum(attributes.get(weight, 1) for attributes in edges.values()) for edges in parallel]
+    else:
+        weights = [attributes.get(weight, 1) for row in rows for attributes in row.values()]
+    return np.abs(np.array(weights, dtype=np.float64))
+
+
+def _solved(graph: Any, weight: str | None, tol: float, seed: Any) -> Fiedler:
     import networkx
 
     if graph.is_directed():
         raise networkx.NetworkXNotImplemented("not implemented for directed type")
-    matrix = networkx.to_scipy_sparse_array(graph, weight=weight, dtype=np.float64, format="csr")
-    matrix.data = np.abs(matrix.data)  # as networkx takes them
-    matrix.eliminate_zeros()
-    return matrix
-
-
-def _solved(graph: Any, weight: str | None, tol: float, seed: Any) -> Fiedler:
-    matrix = _weighted(graph, weight)
+    offsets, neighbours = networkx_arrays(graph)
+    weights = _weights(graph, weight)
+    if weights is not None and not weights.all():  # an edge of weight 0 is none
+        kept = np.flatnonzero(weights)
+        offsets, neighbours, weights = np.searchsorted(kept, offsets), neighbours[kept], weights[kept]
     start = int(seed) if isinstance(seed, (int, np.integer)) else 0
     return fiedler(
-        matrix, weights=reals(matrix.data, "weights"), tolerance=tol, seed=abs(start), max_iterations=2000
+        (offsets, neighbours), weights=weights, tolerance=tol, seed=abs(start), max_iterations=2000
     )
 
 
