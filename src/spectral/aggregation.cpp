@@ -34,6 +34,7 @@ Counts aggregate_rows(const Laplacian& laplacian, Index begin, Index end, double
 
   // found aggregates where there is a neighbourhood and all of it is free
   for (Index v = begin; v < end; ++v) {
+    poll_in_loop(v);
     if (of[v] != kFree) continue;
     const double least = strong_weight(laplacian, v, strength);
     bool all_free = true;
@@ -55,6 +56,7 @@ Counts aggregate_rows(const Laplacian& laplacian, Index begin, Index end, double
   // the rest joins the founded aggregate that pulls it most
   std::vector<std::pair<Index, Index>> joining;
   for (Index v = begin; v < end; ++v) {
+    poll_in_loop(v);
     if (of[v] != kFree) continue;
     const double least = strong_weight(laplacian, v, strength);
     double strongest = 0;

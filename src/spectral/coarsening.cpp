@@ -130,6 +130,7 @@ Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggreg
     LaplacianRows& rows = parts[chunk];
     RowSum row(aggregation.count());
     for (Index a = aggregation.first_of_chunk[chunk]; a < aggregation.first_of_chunk[chunk + 1]; ++a) {
+      poll_in_loop(a);
       for (Index m = members.starts[a]; m < members.starts[a + 1]; ++m) {
         const Index v = members.members[m];
         for (Offset k = fine.offsets[v]; k < fine.offsets[v + 1]; ++k) {
@@ -155,6 +156,7 @@ SparseRows smoothed_prolongation(const Laplacian& fine, const Aggregation& aggre
   result.offsets.reserve(Offset{fine.size()} + 1);
   RowSum row(aggregation.count());
   for (Index v = 0; v < fine.size(); ++v) {
+    poll_in_loop(v);
     row.add(aggregation.aggregate_of[v], 1 - kSmoothing);
     const double share = kSmoothing / fine.diagonal[v];
     for (Offset k = fine.offsets[v]; k < fine.offsets[v + 1]; ++k) {

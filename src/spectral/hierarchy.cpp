@@ -81,17 +81,17 @@ void relax_row(const Laplacian& laplacian, Index v, RightSide b, VectorBlock<M>&
 
 template <int M, class RightSide>
 void forward_gauss_seidel(const Level& level, RightSide b, VectorBlock<M>& x) {
-  level.chunks.for_each_forwards([&](Index begin, Index end) {
+  level.chunks.for_each_forwards(in_rising_pieces([&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v) relax_row<M>(level.laplacian, v, b, x);
-  });
+  }));
 }
 
 /// Every row in the opposite order, so that the cycle is symmetric.
 template <int M, class RightSide>
 void backward_gauss_seidel(const Level& level, RightSide b, VectorBlock<M>& x) {
-  level.chunks.for_each_backwards([&](Index begin, Index end) {
+  level.chunks.for_each_backwards(in_falling_pieces([&](Index begin, Index end) {
     for (Index v = end; v-- > begin;) relax_row<M>(level.laplacian, v, b, x);
-  });
+  }));
 }
 
 template <int M>
@@ -108,7 +108,7 @@ void restrict_residual(const Level& level, const VectorBlock<M>& b, const Vector
                        VectorBlock<M>& result) {
   std::fill(result.begin(), result.end(), std::array<double, M>{});
   if (!level.aggregate_of.empty()) {
-    level.chunks.for_each([&](Index, Index begin, Index end) {  // aggregates keep to their chunks
+    level.chunks.for_each_piece([&](Index begin, Index end) {  // aggregates keep to their chunks
       for (Index v = begin; v < end; ++v) {
         const auto residual = residual_of_row<M>(level.laplacian, v, b, x);
         for (int m = 0; m < M; ++m) result[level.aggregate_of[v]][m] += residual[m];
@@ -153,7 +153,7 @@ void Hierarchy::add_prolonged(int level, double scale, const VectorBlock<M>& coa
                               VectorBlock<M>& fine) const {
   const Level& here = levels_[level];
   const SparseRows& p = here.prolongation;
-  here.chunks.for_each([&](Index, Index begin, Index end) {
+  here.chunks.for_each_piece([&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
       if (!here.aggregate_of.empty()) {
         for (int m = 0; m < M; ++m) fine[v][m] += scale * coarse[here.aggregate_of[v]][m];
@@ -192,7 +192,7 @@ void Hierarchy::cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x,
     restrict_residual<M>(here, b, x, coarse_b);
     cycle<M>(level + 1, coarse_b, coarse_x, workspace);
     if (level + 1 < coarsest) {
-      coarse.chunks.for_each([&](Index, Index begin, Index end) {
+      coarse.chunks.for_each_piece([&](Index begin, Index end) {
         for (Index v = begin; v < end; ++v) {
           coarse_b[v] = residual_of_row<M>(coarse.laplacian, v, coarse_b, coarse_x);
         }

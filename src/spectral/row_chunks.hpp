@@ -8,6 +8,33 @@
 
 namespace meshorder {
 
+constexpr Index kRowsOfPiece = 4096;
+
+/// Does `work(begin, end)` on pieces of a range of rows, the first one first, and polls between them: a chunk
+/// of a large graph is the work of a second.
+template <class Work>
+auto in_rising_pieces(Work work) {
+  return [work](Index begin, Index end) {
+    for (; end - begin > kRowsOfPiece; begin += kRowsOfPiece) {
+      work(begin, begin + kRowsOfPiece);
+      poll();
+    }
+    work(begin, end);
+  };
+}
+
+/// The last piece first.
+template <class Work>
+auto in_falling_pieces(Work work) {
+  return [work](Index begin, Index end) {
+    for (; end - begin > kRowsOfPiece; end -= kRowsOfPiece) {
+      work(end - kRowsOfPiece, end);
+      poll();
+    }
+    work(begin, end);
+  };
+}
+
 /// The rows of a Laplacian in contiguous chunks for threads, coloured so that no edge joins two chunks of one
 /// colour: a sweep that goes colour by colour gives the same numbers on any number of threads. Of a graph
 /// numbered breadth first, chunks touch only the next ones, and two colours do.
@@ -36,6 +63,12 @@ class RowChunks {
   template <class Work>
   void for_each(Work work) const {
     for_each_chunk(rows_, size(), work);
+  }
+
+  /// Calls `work(begin, end)` for pieces of every chunk, rising within a chunk, on all threads.
+  template <class Work>
+  void for_each_piece(Work work) const {
+    for_each([rise = in_rising_pieces(work)](Index, Index begin, Index end) { rise(begin, end); });
   }
 
   /// Calls `work(begin, end)` for every chunk, those of a colour at the same time, colour after colour.

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <ranges>
 #include <vector>
 
 namespace meshorder {
@@ -42,7 +44,7 @@ TEST(RowChunks, AreOneWhereTooManyTouch) {
 
 TEST(RowChunks, GoOverEveryRowOnceBothWays) {
   const RowChunks chunks = chunks_of(test::grid(500, 100));
-  std::vector<int> forwards(50000, 0), backwards(50000, 0), each(50000, 0);
+  std::vector<int> forwards(50000, 0), backwards(50000, 0), each(50000, 0), pieces(50000, 0);
   chunks.for_each_forwards([&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v) ++forwards[v];
   });
@@ -52,6 +54,19 @@ TEST(RowChunks, GoOverEveryRowOnceBothWays) {
   chunks.for_each([&](Index chunk, Index begin, Index end) {
     for (Index v = begin; v < end; ++v) each[v] += chunks.chunk_of(v) == chunk ? 1 : 9;
   });
+  std::vector<Index> rising, falling;
+  in_rising_pieces([&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) rising.push_back(v);
+  })(7, 30000);
+  in_falling_pieces([&](Index begin, Index end) {
+    for (Index v = end; v-- > begin;) falling.push_back(v);
+  })(7, 30000);
+  chunks.for_each_piece([&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) pieces[v] += end - begin <= kRowsOfPiece ? 1 : 9;
+  });
+  EXPECT_EQ(pieces, std::vector<int>(50000, 1));
+  EXPECT_TRUE(std::ranges::equal(rising, std::views::iota(7, 30000)));
+  EXPECT_TRUE(std::ranges::equal(falling, std::views::iota(7, 30000) | std::views::reverse));
   EXPECT_EQ(forwards, std::vector<int>(50000, 1));
   EXPECT_EQ(backwards, forwards);
   EXPECT_EQ(each, forwards);
