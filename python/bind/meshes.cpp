@@ -139,8 +139,8 @@ auto answering(Answer (*question)(const MeshView&, const PayoffOptions&)) {
 
 /// An array of a mesh's, viewed as long as the mesh lives.
 template <class T>
-nb::object viewed(nb::handle mesh, const std::vector<T>& values) {
-  return nb::cast(Result<T>(values.data(), {values.size()}, mesh));
+Result<T> viewed(nb::handle mesh, const std::vector<T>& values) {
+  return Result<T>(values.data(), {values.size()}, mesh);
 }
 
 nb::object values_of(nb::handle mesh, const DataArray& array) {
@@ -150,7 +150,7 @@ nb::object values_of(nb::handle mesh, const DataArray& array) {
           return nb::cast(values);
         } else {
           const auto width = static_cast<std::size_t>(array.components);
-          if (width == 1) return viewed(mesh, values);
+          if (width == 1) return nb::cast(viewed(mesh, values));
           return nb::cast(nb::ndarray<nb::numpy, const T, nb::ndim<2>>(values.data(),
                                                                        {values.size() / width, width}, mesh));
         }

@@ -69,7 +69,7 @@ void add_permutation(nb::module_& module) {
                      return direction(self, nb::cast<const Permutation&>(self).new_to_old());
                    })
       .def("__len__", &Permutation::size)
-      .def(nb::self == nb::self)
+      .def(nb::self == nb::self, nb::sig("def __eq__(self, other: object, /) -> bool"))
       .def("inverse", [](const Permutation& self) { return self.inverse(); })
       .def("then", &Permutation::then)
       .def("repeated", &Permutation::repeated)

@@ -124,7 +124,8 @@ def test_comparison_and_advice(mesh):
     assert comparison[1].spans.mean_span < comparison[0].spans.mean_span and comparison[0].measured is None
     assert comparison._repr_html_().count("<tr>") == 4 and "rcm" in repr(comparison)
     measured = meshorder.compare(mesh, ["rcm"], measure=True, predict=False, budget=0)
-    assert all(time > 0 for candidate in measured for time in candidate.measured.values())
+    assert all(time > 0 for candidate in measured for time in candidate.milliseconds.values())
+    assert all(candidate.measured and not candidate.predicted for candidate in measured)
     advice = meshorder.advise(mesh)
     assert str(advice) == advice.verdict and set(advice.kernels) == {"spmv", "element", "assembly", "springs"}
 
@@ -133,9 +134,10 @@ def test_bad_files(tmp_path):
     with pytest.raises(InputError, match="no such file"):
         meshorder.read(tmp_path / "missing.msh")
     (tmp_path / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
-    with pytest.raises(ValueError) as caught:
+    with pytest.raises(InputError) as caught:
         meshorder.read(tmp_path / "bad.obj")
-    assert caught.value.line == 2 and caught.value.file.endswith("bad.obj")
+    assert caught.value.line == 2 and str(caught.value.file).endswith("bad.obj")
+    assert isinstance(caught.value, ValueError)
     with pytest.raises(meshorder.Error):
         meshorder.read(b"nothing")
 

@@ -43,6 +43,13 @@ def _solved(graph: Any, weight: str | None, tol: float, seed: Any) -> Fiedler:
     )
 
 
+def _networkxs_own(name: str) -> Any:
+    """networkx's own implementation, whatever backend is in force."""
+    import networkx
+
+    return getattr(networkx, name).orig_func
+
+
 def _connected(graph: Any) -> None:
     import networkx
 
@@ -58,7 +65,7 @@ def fiedler_vector(
     import networkx
 
     if normalized:
-        return np.asarray(networkx.fiedler_vector.orig_func(G, weight, normalized, tol, method, seed))
+        return np.asarray(_networkxs_own("fiedler_vector")(G, weight, normalized, tol, method, seed))
     _connected(G)
     solved = _solved(G, weight, tol, seed)
     if len(solved.components) > 1:
@@ -71,10 +78,8 @@ def algebraic_connectivity(
     seed: Any = None,
 ) -> float:  # fmt: skip
     """As networkx.algebraic_connectivity. ``normalized=True`` is left to networkx; ``method`` is not used."""
-    import networkx
-
     if normalized:
-        return float(networkx.algebraic_connectivity.orig_func(G, weight, normalized, tol, method, seed))
+        return float(_networkxs_own("algebraic_connectivity")(G, weight, normalized, tol, method, seed))
     _connected(G)
     solved = _solved(G, weight, tol, seed)
     return 0.0 if len(solved.components) > 1 else solved.lambda2
@@ -88,7 +93,7 @@ def spectral_ordering(
     import networkx
 
     if normalized:
-        return list(networkx.spectral_ordering.orig_func(G, weight, normalized, tol, method, seed))
+        return list(_networkxs_own("spectral_ordering")(G, weight, normalized, tol, method, seed))
     if len(G) == 0:
         raise networkx.NetworkXError("graph is empty.")
     solved = _solved(G, weight, tol, seed)
