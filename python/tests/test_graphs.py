@@ -40,6 +40,18 @@ def test_every_method_gives_the_same_order_for_every_type(graph, method):
     assert meshorder.order(sp.csr_matrix(graph), method, threads=1).permutation == expected
 
 
+@pytest.mark.parametrize("kind", ["bsr", "coo", "csc", "csr", "dia", "dok", "lil"])
+@pytest.mark.parametrize("of", ["array", "matrix"])
+def test_every_kind_of_sparse_matrix_gives_the_same_order(kind, of):
+    graph = lattice(7, 6)
+    given = getattr(sp, f"{kind}_{of}")(graph)
+    order = meshorder.order(given, "rcm")
+    assert order.permutation == meshorder.order(graph, "rcm").permutation
+    np.testing.assert_array_equal(
+        order.permutation.move(given).toarray(), graph.toarray()[order.new_to_old][:, order.new_to_old]
+    )
+
+
 def test_quality_is_that_of_the_moved_matrix(graph):
     order = meshorder.order(graph, "rcm")
     moved = sp.coo_array(order.permutation.move(graph))
@@ -277,6 +289,26 @@ meshorder.order(arrays, "own")
 """
     ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120)
     assert ended.returncode == 0, ended.stderr
+
+
+def test_another_interpreter_of_the_process_is_refused():
+    program = """
+import meshorder
+try:
+    import _interpreters as interpreters
+except ImportError:
+    import _xxsubinterpreters as interpreters
+other = interpreters.create()
+try:
+    failed = interpreters.run_string(other, "import meshorder")  # returned, or raised before Python 3.13
+except interpreters.RunFailedError as error:
+    failed = error
+interpreters.destroy(other)
+assert "interpreter" in str(failed), failed
+print(meshorder.order(([0, 1, 2], [1, 0]), "rcm").permutation.new_to_old)
+"""
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert ended.returncode == 0 and ended.stdout.startswith("["), ended.stderr
 
 
 def test_methods_of_ones_own(graph):

@@ -11,6 +11,7 @@
 import importlib
 from typing import Any
 
+from . import _interpreter  # noqa: F401  # before all that loads the extension module
 from ._core import build_info
 from ._core import version as __version__
 from ._errors import Error, InputError, InternalError, InvalidArgument, Stopped, TooLarge, Unavailable
