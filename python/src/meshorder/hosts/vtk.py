@@ -181,9 +181,15 @@ def _moved_cell_array(given: Any, vertices: Permutation | None, cells: Permutati
 
 
 def _arrays_of(data: Any) -> dict[str, Any]:
-    """The arrays of numbers by their names."""
-    arrays = (data.GetArray(number) for number in range(data.GetNumberOfArrays()))
-    return {array.GetName(): _array(array) for array in arrays if array is not None and array.GetName()}
+    """The arrays by their names."""
+    arrays = (data.GetAbstractArray(number) for number in range(data.GetNumberOfArrays()))
+    return {array.GetName(): _values(array) for array in arrays if array.GetName()}
+
+
+def _values(array: Any) -> NDArray[Any]:
+    if array.IsA("vtkDataArray"):
+        return _array(array)
+    return np.array([array.GetValue(place) for place in range(array.GetNumberOfValues())])  # texts
 
 
 def _move_attributes(given: Any, moved: Any, permutation: Permutation) -> None:
