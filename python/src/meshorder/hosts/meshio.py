@@ -23,7 +23,7 @@ class MeshioMesh(Host):
     def __init__(self, mesh: Any) -> None:
         self.given = mesh
         self.points = np.asarray(mesh.points)
-        self.cells = mesh.cells
+        self.cells = mesh.cells or {}
         for block in mesh.cells:
             if block.type.startswith("polyhedron"):
                 raise InvalidArgument("mesh: polyhedra of meshio cannot be ordered; PyVista's and VTK's can")

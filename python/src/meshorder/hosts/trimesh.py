@@ -28,7 +28,9 @@ class TrimeshSurface(Host):
         return _with_rows(self.given.face_attributes, len(self.cells[0][1]))
 
     def moved(self, order: MeshOrder, inplace: bool) -> Any:
-        mesh = self.given if inplace else self.given.copy(include_cache=True)
+        # normals of the caller's own are nowhere but here, and do not outlive a change of faces
+        normals = [self.given._cache[name] for name in ("face_normals", "vertex_normals")]
+        mesh = self.given if inplace else self.given.copy()
         by_face, by_vertex = order.cells.new_to_old, order.vertices.new_to_old
         attributes = {**mesh.vertex_attributes, **mesh.face_attributes}
         if any(isinstance(values, (list, tuple)) for values in attributes.values()):
@@ -40,6 +42,10 @@ class TrimeshSurface(Host):
         mesh.update_vertices(
             np.array(by_vertex, dtype=np.int64), inverse=np.array(order.vertices.old_to_new, dtype=np.int64)
         )
+        if normals[0] is not None and len(normals[0]) == len(by_face):
+            mesh.face_normals = normals[0][by_face]
+        if normals[1] is not None and len(normals[1]) == len(by_vertex):
+            mesh.vertex_normals = normals[1][by_vertex]
         return mesh
 
 
