@@ -22,9 +22,11 @@ def reorder(**options: Any) -> MeshOrder:
     """Orders the current model's mesh, all entities together, and gives nodes and elements their new tags.
 
     The tags are the same as before: the vertex that comes first gets the least. Elements stay in their entity, so
-    physical groups and periodic entities hold; ``group_by="physical"`` orders within physical groups. Gmsh lists nodes
-    entity by entity in its files; readers that go by tags see the new order. Views that name nodes or elements by tags
-    are not changed.
+    physical groups and periodic entities hold; ``group_by="physical"`` or "entity" orders within these.
+
+    Who takes nodes by their tags, from this model or a file in MSH 4, sees the new order. MSH files list nodes entity by
+    entity, and MSH 2.2 numbers them anew: for readers that go by the place in the file, `meshorder.reorder` the file.
+    Views that name nodes or elements by tags are not changed.
 
     Args:
         **options: as of `meshorder.reorder`.
