@@ -112,7 +112,9 @@ class Host(abc.ABC):
 
 
 def _numbers(values: Any) -> NDArray[Any] | None:
-    """An array of real numbers of rank 1 or 2; None for other values."""
+    """An array of real numbers of rank 1 or 2; None for other values. What is masked becomes NaN."""
+    if np.ma.is_masked(values):
+        values = np.ma.filled(values.astype(np.float64), np.nan)
     array = np.asarray(values)
     if array.dtype.kind == "b":
         array = array.astype(np.uint8)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .._arrays import integers
 from .._errors import InvalidArgument
 from .._graphs import Order
-from .._meshes import MeshOrder
+from .._meshes import Mesh, MeshOrder
 from .host import Host
 
 
@@ -35,7 +35,7 @@ class MeshioMesh(Host):
 
     def cell_data(self) -> Mapping[str, Any]:
         return {
-            name: np.concatenate([np.asarray(values) for values in blocks])
+            name: np.ma.concatenate(blocks) if any(map(np.ma.is_masked, blocks)) else np.concatenate(blocks)
             for name, blocks in self.given.cell_data.items()
             if len(blocks) > 0
         }
@@ -57,6 +57,15 @@ class MeshioMesh(Host):
             for name, blocks in self.given.cell_sets.items()
         }
 
+    def mesh(self) -> Mesh:
+        made = super().mesh()
+        made.notes += [f"field data '{name}' was left out: a meshorder.Mesh has none" for name in self.given.field_data]
+        if self.given.gmsh_periodic:
+            made.notes.append("Gmsh's periodic points were left out")
+        if self.given.info is not None:
+            made.notes.append("meshio's info was left out")
+        return made
+
     def moved(self, order: MeshOrder, inplace: bool) -> Any:
         mesh = self.given
         by_vertex = order.vertices.permutation
@@ -64,11 +73,11 @@ class MeshioMesh(Host):
         inverses = [np.argsort(place) for place in places]
         new = {
             "points": by_vertex.move(self.points),
-            "point_data": {name: by_vertex.move(np.asarray(values)) for name, values in mesh.point_data.items()},
+            "point_data": {name: by_vertex.move(np.asanyarray(values)) for name, values in mesh.point_data.items()},
             "point_sets": {name: _renumbered(by_vertex.old_to_new, s, name) for name, s in mesh.point_sets.items()},
             "cells": [self._moved_block(block, place, by_vertex) for block, place in zip(mesh.cells, places)],
             "cell_data": {
-                name: [np.asarray(values)[place] for values, place in zip(blocks, places)]
+                name: [np.asanyarray(values)[place] for values, place in zip(blocks, places)]
                 for name, blocks in mesh.cell_data.items()
             },
             "cell_sets": {
