@@ -75,7 +75,8 @@ def test_what_a_format_keeps_is_read_and_what_not_is_told(tmp_path, suffix, kept
     np.testing.assert_array_equal(mesh.sets["some"], [0, 1, 2, 3, 4, 81, 82, 83])
     notes = meshorder.write(mesh, tmp_path / f"mesh{suffix}")
     read = meshorder.read(tmp_path / f"mesh{suffix}")
-    found = {f"point {n}" for n in read.point_data} | {f"cell {n}" for n in read.cell_data} | {f"set {n}" for n in read.sets}
+    kinds = {"point": read.point_data, "cell": read.cell_data, "set": read.sets}
+    found = {f"{kind} {name}" for kind, names in kinds.items() for name in names}
     everything = {"point t", "point u", "cell m", "set left", "set some"}
     assert found & everything == kept
     for name in everything - kept:

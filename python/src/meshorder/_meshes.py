@@ -85,8 +85,8 @@ def order_mesh(
     """New places for the vertices of a mesh and for its cells. Nothing is changed.
 
     Args:
-        points: one row of one to three coordinates for each vertex; or None, with ``vertex_count``; or, without cells, a
-            mesh as of `reorder`.
+        points: one row of one to three coordinates for each vertex; or None, with ``vertex_count``; or, without
+            cells, a mesh as of `reorder`.
         cells: an array with a row for each cell (2, 3, 8 or 10 vertices; 4 are tetrahedra in space and quads in the
             plane), ``{type: array}``, ``[(type, array), …]`` with meshio's names of types, or ``(offsets, connectivity)``
             with VTK's types as a third. Cells are numbered in the order in which they are given.
@@ -260,8 +260,9 @@ def reorder(
 
     Args:
         mesh: a `Mesh`; a mesh of meshio, PyVista, VTK (vtkUnstructuredGrid, vtkPolyData), scikit-fem or trimesh;
-            ``gmsh.model``; or a tuple of arrays: ``(points, cells)`` with cells as of `order_mesh`, and then, where there
-            are any, a dict of arrays of the points and one of the cells (an array for each block where cells are blocks).
+            ``gmsh.model``; or a tuple of arrays: ``(points, cells)`` with cells as of `order_mesh`, and then, where
+            there are any, a dict of arrays of the points and one of the cells (for cells in blocks, of an array for
+            each block).
         vertices: method for the vertices.
         elements: method for the elements.
         group_by: name of an array of whole numbers whose groups stay together, or "sets" for the sets of cells.

@@ -24,8 +24,8 @@ def reorder(**options: Any) -> MeshOrder:
     The tags are the same as before: the vertex that comes first gets the least. Elements stay in their entity, so
     physical groups and periodic entities hold; ``group_by="physical"`` or "entity" orders within these.
 
-    Who takes nodes by their tags, from this model or a file in MSH 4, sees the new order. MSH files list nodes entity by
-    entity, and MSH 2.2 numbers them anew: for readers that go by the place in the file, `meshorder.reorder` the file.
+    Who takes nodes by their tags, from this model or a file in MSH 4, sees the new order. MSH files list nodes entity
+    by entity, and MSH 2.2 numbers them anew: for readers that go by the place in the file, reorder the file.
     Views that name nodes or elements by tags are not changed.
 
     Args:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Meshes of other libraries. A host is recognised by the module of its class; its library is never imported for that."""
+"""Meshes of other libraries, recognised by the modules of their classes, without an import of the library."""
 
 from __future__ import annotations
 

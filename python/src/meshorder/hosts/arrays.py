@@ -14,7 +14,7 @@ from .._arrays import points as as_points
 from .._errors import InvalidArgument
 from .._meshes import MeshOrder
 from .._permutation import Permutation
-from .host import Host
+from .host import Host, moved_rows, parts
 
 
 class ArrayMesh(Host):
@@ -61,8 +61,7 @@ class ArrayMesh(Host):
     def _moved_cells(self, vertices: Permutation, cells: Permutation) -> Any:
         if not self._sizes:
             return self._moved_rows_of_any_size(vertices, cells)
-        places = self._places(cells)
-        new = [vertices.renumber(rows[place]) for rows, place in zip(self._blocks, places)]
+        new = [vertices.renumber(part.move(rows)) for rows, part in zip(self._blocks, parts(cells, self._sizes))]
         if isinstance(self.cells, Mapping):
             return dict(zip(self.cells, new))
         if _is_list_of_blocks(self.cells):
@@ -71,21 +70,16 @@ class ArrayMesh(Host):
 
     def _moved_rows_of_any_size(self, vertices: Permutation, cells: Permutation) -> Any:
         offsets, connectivity = integers(self.cells[0], "offsets"), integers(self.cells[1], "connectivity")
-        new_offsets, entries = moved_rows(offsets, cells)
-        new: list[Any] = [new_offsets, vertices.renumber(connectivity[entries])]
+        new_offsets, entries = moved_rows(offsets, connectivity, cells)
+        new: list[Any] = [new_offsets, vertices.renumber(entries)]
         new += [None if part is None else cells.move(np.asarray(part)) for part in self.cells[2:]]
         return tuple(new)
-
-    def _places(self, cells: Permutation) -> list[NDArray[Any]]:
-        """For each block the old place of each new cell, within the block."""
-        starts = np.cumsum([0, *self._sizes])
-        return [cells.new_to_old[begin:end] - begin for begin, end in zip(starts[:-1], starts[1:])]
 
     def _cell_rows(self, cells: Permutation, values: Any, name: str) -> Any:
         if not self._sizes:
             return _rows(cells, values, name)
         blocks = self._values_of_blocks(values, name)
-        new = [block[place] for block, place in zip(blocks, self._places(cells))]
+        new = [part.move(block) for block, part in zip(blocks, parts(cells, self._sizes))]
         if isinstance(values, Mapping):
             return dict(zip(values, new))
         return new if isinstance(values, list) and _is_list_of_blocks(self.cells) else new[0]
@@ -101,17 +95,8 @@ class ArrayMesh(Host):
             fits, blocks = len(self._sizes) == 1, [values]
         arrays = [np.asarray(block) for block in blocks]
         if not fits or [array.shape[:1] for array in arrays] != [(size,) for size in self._sizes]:
-            raise InvalidArgument(f"cell_data '{name}': expected blocks with the sizes {self._sizes}, as the cells have")
+            raise InvalidArgument(f"cell_data '{name}': expected blocks of {self._sizes} rows, as the cells have")
         return arrays
-
-
-def moved_rows(offsets: NDArray[Any], cells: Permutation) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Offsets of rows of any size in their new order, and the old place of each entry."""
-    sizes = np.diff(offsets)[cells.new_to_old]
-    new_offsets = np.zeros_like(offsets)
-    np.cumsum(sizes, out=new_offsets[1:])
-    shifts = offsets[:-1][cells.new_to_old] - new_offsets[:-1]
-    return new_offsets, np.repeat(shifts, sizes) + np.arange(new_offsets[-1])
 
 
 def _rows(permutation: Permutation, values: Any, name: str) -> Any:

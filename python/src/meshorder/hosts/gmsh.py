@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .._errors import InvalidArgument, Unavailable
 from .._meshes import MeshOrder
-from .host import Host
+from .host import Host, parts
 
 #: Gmsh's names of shapes, as in "Tetrahedron 10"
 _SHAPES = {
@@ -93,15 +93,12 @@ class GmshModel(Host):
         if "oldTags" not in inspect.signature(self._mesh.renumberNodes).parameters:
             raise Unavailable("gmsh: this version cannot give nodes tags of choice; a later one is needed")
         self._mesh.renumberNodes(self._tags, self._tags[order.vertices.old_to_new])
-        begin = 0
         old_tags, new_tags = [], []
-        for block in self._blocks:
-            end = begin + len(block.tags)
-            places = order.cells.new_to_old[begin:end] - begin
-            self._mesh.reorderElements(block.type, block.entity, places)
-            old_tags.append(block.tags[places])
+        sizes = [len(block.tags) for block in self._blocks]
+        for block, part in zip(self._blocks, parts(order.cells.permutation, sizes)):
+            self._mesh.reorderElements(block.type, block.entity, part.new_to_old)
+            old_tags.append(block.tags[part.new_to_old])
             new_tags.append(np.sort(block.tags))
-            begin = end
         if old_tags:
             self._mesh.renumberElements(np.concatenate(old_tags), np.concatenate(new_tags))
         return self.given

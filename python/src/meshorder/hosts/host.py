@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import abc
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,6 +17,7 @@ from .._arrays import points as as_points
 from .._errors import InvalidArgument
 from .._meshes import Mesh, MeshOrder, cell_arrays, order_mesh
 from .._options import prepared
+from .._permutation import Permutation
 
 _VTK_WEDGE = 13
 
@@ -109,6 +110,32 @@ class Host(abc.ABC):
                 made._handle.add_set(str(name), of_vertices, np.ascontiguousarray(found[np.sort(first)]))
         made._handle.check()
         return made
+
+
+def parts(cells: Permutation, sizes: Sequence[int]) -> list[Permutation]:
+    """The permutation of the cells of each block, for cells that stay in their block."""
+    if len(sizes) == 1:
+        return [cells]
+    ends = np.cumsum(sizes, dtype=np.int64)
+    return [
+        Permutation(new_to_old=cells.new_to_old[end - size : end] - np.int32(end - size))
+        for size, end in zip(sizes, ends)
+    ]
+
+
+def moved_rows(
+    offsets: NDArray[Any], entries: NDArray[Any], rows: Permutation
+) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Rows of any size in their new order, as offsets and entries; both are new arrays."""
+    widths = np.diff(offsets)
+    if len(widths) and (widths == widths[0]).all():
+        return offsets.copy(), rows.move(entries.reshape(len(widths), -1)).reshape(-1)
+    sizes = widths[rows.new_to_old]
+    new_offsets = np.zeros_like(offsets)
+    np.cumsum(sizes, out=new_offsets[1:])
+    places = np.repeat(offsets[:-1][rows.new_to_old] - new_offsets[:-1], sizes)
+    places += np.arange(len(places), dtype=places.dtype)
+    return new_offsets, entries[places]
 
 
 def _numbers(values: Any) -> NDArray[Any] | None:

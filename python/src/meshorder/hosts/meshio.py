@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from .._arrays import integers
 from .._errors import InvalidArgument
-from .._graphs import Order
 from .._meshes import Mesh, MeshOrder
-from .host import Host
+from .._permutation import Permutation
+from .host import Host, parts
 
 
 class MeshioMesh(Host):
@@ -34,11 +34,7 @@ class MeshioMesh(Host):
         return data
 
     def cell_data(self) -> Mapping[str, Any]:
-        return {
-            name: np.ma.concatenate(blocks) if any(map(np.ma.is_masked, blocks)) else np.concatenate(blocks)
-            for name, blocks in self.given.cell_data.items()
-            if len(blocks) > 0
-        }
+        return {name: _joined(blocks) for name, blocks in self.given.cell_data.items() if len(blocks) > 0}
 
     def point_sets(self) -> Mapping[str, Any]:
         sets: Mapping[str, Any] = self.given.point_sets
@@ -69,21 +65,20 @@ class MeshioMesh(Host):
     def moved(self, order: MeshOrder, inplace: bool) -> Any:
         mesh = self.given
         by_vertex = order.vertices.permutation
-        places = self._places_within_blocks(order.cells)
-        inverses = [np.argsort(place) for place in places]
+        by_cell = parts(order.cells.permutation, np.diff(self._starts).tolist())
         new = {
             "points": by_vertex.move(self.points),
             "point_data": {name: by_vertex.move(np.asanyarray(values)) for name, values in mesh.point_data.items()},
             "point_sets": {name: _renumbered(by_vertex.old_to_new, s, name) for name, s in mesh.point_sets.items()},
-            "cells": [self._moved_block(block, place, by_vertex) for block, place in zip(mesh.cells, places)],
+            "cells": [_moved_block(block, by_vertex, part) for block, part in zip(mesh.cells, by_cell)],
             "cell_data": {
-                name: [np.asanyarray(values)[place] for values, place in zip(blocks, places)]
+                name: [part.move(np.asanyarray(values)) for values, part in zip(blocks, by_cell)]
                 for name, blocks in mesh.cell_data.items()
             },
             "cell_sets": {
                 name: [
-                    None if members is None else _renumbered(inverse, members, name)
-                    for members, inverse in zip(blocks, inverses)
+                    None if members is None else _renumbered(part.old_to_new, members, name)
+                    for members, part in zip(blocks, by_cell)
                 ]
                 for name, blocks in mesh.cell_sets.items()
             },
@@ -96,23 +91,26 @@ class MeshioMesh(Host):
             moved.field_data = dict(mesh.field_data)
         return moved
 
-    def _moved_block(self, block: Any, place: NDArray[Any], by_vertex: Any) -> Any:
-        moved = copy.copy(block)
-        moved.data = by_vertex.renumber(np.asarray(block.data)[place])
-        return moved
-
-    def _places_within_blocks(self, cells: Order) -> list[NDArray[Any]]:
-        """For each block the old place of each new cell, within the block."""
-        return [cells.new_to_old[begin:end] - begin for begin, end in zip(self._starts[:-1], self._starts[1:])]
-
     def _periodic(self, old_to_new: NDArray[Any]) -> Any:
         """Gmsh's pairs of periodic points: [dimension, entities, transformation, pairs] for each entity."""
         if not self.given.gmsh_periodic:
             return self.given.gmsh_periodic
         return [
-            [*parts, _renumbered(old_to_new, np.asarray(pairs), "gmsh_periodic")]
-            for *parts, pairs in self.given.gmsh_periodic
+            [*entity, _renumbered(old_to_new, np.asarray(pairs), "gmsh_periodic")]
+            for *entity, pairs in self.given.gmsh_periodic
         ]
+
+
+def _moved_block(block: Any, by_vertex: Permutation, by_cell: Permutation) -> Any:
+    moved = copy.copy(block)
+    moved.data = by_vertex.renumber(by_cell.move(np.asarray(block.data)))
+    return moved
+
+
+def _joined(blocks: Any) -> Any:
+    """The values of all blocks, masked where one is."""
+    library: Any = np.ma if any(map(np.ma.is_masked, blocks)) else np
+    return library.concatenate(blocks)
 
 
 def _renumbered(new_places: NDArray[Any], members: Any, name: str) -> NDArray[Any]:
@@ -120,7 +118,8 @@ def _renumbered(new_places: NDArray[Any], members: Any, name: str) -> NDArray[An
     numbers = integers(members, f"set '{name}'", rank=None)
     if numbers.size and (numbers.min() < 0 or numbers.max() >= len(new_places)):
         raise InvalidArgument(f"set '{name}' names what is outside 0 … {len(new_places) - 1}")
-    return new_places[numbers].astype(numbers.dtype)
+    renumbered: NDArray[Any] = new_places[numbers].astype(numbers.dtype)
+    return renumbered
 
 
 def host(mesh: Any) -> Host:

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from .._errors import InvalidArgument, Unavailable
 from .._meshes import MeshOrder
 from .._permutation import Permutation
-from .arrays import moved_rows
-from .host import Host, Request
+from .host import Host, Request, moved_rows, parts
 
 _POLYHEDRON = 42
 #: pentagonal and hexagonal prisms, quadratic polygons, convex point sets and polyhedra: ordered by their points alone
@@ -36,7 +35,6 @@ class _Dataset(Host):
 
     def moved(self, order: MeshOrder, inplace: bool) -> Any:
         from vtkmodules.vtkCommonCore import vtkPoints
-        from vtkmodules.util.numpy_support import numpy_to_vtk
 
         mesh = self.given
         vertices, cells = order.vertices.permutation, order.cells.permutation
@@ -44,7 +42,7 @@ class _Dataset(Host):
         if mesh.GetPoints() is not None:
             points = vtkPoints()
             points.SetDataType(mesh.GetPoints().GetDataType())
-            points.SetData(numpy_to_vtk(vertices.move(self.points)))
+            points.SetData(_support().numpy_to_vtk(vertices.move(self.points)))
             points.GetData().SetName(mesh.GetPoints().GetData().GetName())
             moved.SetPoints(points)
         self._move_cells(moved, vertices, cells)
@@ -75,9 +73,8 @@ class Grid(_Dataset):
         self.cells = offsets, connectivity, self._types if shaped else None
 
     def _move_cells(self, moved: Any, vertices: Permutation, cells: Permutation) -> None:
-        from vtkmodules.util.numpy_support import numpy_to_vtk
 
-        types = numpy_to_vtk(cells.move(self._types), deep=True)
+        types = _support().numpy_to_vtk(cells.move(self._types), deep=True)
         rows = _moved_cell_array(self.given.GetCells(), vertices, cells)
         if not (self._types == _POLYHEDRON).any():
             moved.SetCells(types, rows)
@@ -124,23 +121,25 @@ class Surface(_Dataset):
         return self._counts[2] > 0 and self._counts[3] > 0
 
     def _move_cells(self, moved: Any, vertices: Permutation, cells: Permutation) -> None:
-        ends = np.cumsum(self._counts)
-        for name, count, end in zip(("Verts", "Lines", "Polys", "Strips"), self._counts, ends):
-            if count:
-                part = Permutation(new_to_old=cells.new_to_old[end - count : end] - np.int32(end - count))
+        for name, part in zip(("Verts", "Lines", "Polys", "Strips"), parts(cells, self._counts)):
+            if len(part):
                 rows = _moved_cell_array(getattr(self.given, f"Get{name}")(), vertices, part)
                 getattr(moved, f"Set{name}")(rows)
 
 
+def _support() -> Any:
+    from vtkmodules.util import numpy_support
+
+    return numpy_support
+
+
 def _array(values: Any) -> NDArray[Any]:
     """The numbers of a VTK array; a view where they lie in memory."""
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-
     if not values.HasStandardMemoryLayout():
         plain = values.CreateDataArray(values.GetDataType())
         plain.DeepCopy(values)
         values = plain
-    numbers: NDArray[Any] = np.asarray(vtk_to_numpy(values))
+    numbers: NDArray[Any] = np.asarray(_support().vtk_to_numpy(values))
     return numbers
 
 
@@ -162,19 +161,17 @@ def _rows(cells: Any) -> tuple[NDArray[Any], NDArray[Any]]:
 def _moved_cell_array(given: Any, vertices: Permutation | None, cells: Permutation | None) -> Any:
     """A vtkCellArray with its numbers renewed, its rows moved, or both."""
     from vtkmodules.vtkCommonDataModel import vtkCellArray
-    from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
 
     offsets, connectivity = _rows(given)
     if cells is not None:
-        offsets, entries = moved_rows(offsets, cells)
-        connectivity = connectivity[entries]
+        offsets, connectivity = moved_rows(offsets, connectivity, cells)
+    else:
+        offsets = offsets.copy()  # VTK does not copy what it is given here
     if vertices is not None:
         connectivity = vertices.renumber(connectivity)
+    to_vtk = _support().numpy_to_vtkIdTypeArray
     moved = vtkCellArray()
-    moved.SetData(
-        numpy_to_vtkIdTypeArray(offsets.astype(np.int64), deep=True),
-        numpy_to_vtkIdTypeArray(connectivity.astype(np.int64), deep=True),
-    )
+    moved.SetData(to_vtk(offsets.astype(np.int64, copy=False)), to_vtk(connectivity.astype(np.int64, copy=False)))
     if not given.IsStorage64Bit():
         moved.ConvertTo32BitStorage()
     return moved
@@ -210,11 +207,10 @@ def _id_list(numbers: NDArray[Any]) -> Any:
     """A vtkIdList, filled by way of a cell with these points, since it takes no array."""
     from vtkmodules.vtkCommonCore import vtkIdList
     from vtkmodules.vtkCommonDataModel import vtkCellArray
-    from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
 
     cell = vtkCellArray()
-    ids = numpy_to_vtkIdTypeArray(numbers.astype(np.int64), deep=True)
-    cell.SetData(numpy_to_vtkIdTypeArray(np.array([0, len(numbers)], dtype=np.int64), deep=True), ids)
+    ids = _support().numpy_to_vtkIdTypeArray(numbers.astype(np.int64), deep=True)
+    cell.SetData(_support().numpy_to_vtkIdTypeArray(np.array([0, len(numbers)], dtype=np.int64), deep=True), ids)
     listed = vtkIdList()
     cell.GetCellAtId(0, listed)
     return listed
