@@ -209,6 +209,12 @@ def test_empty_surface_of_trimesh():
         meshorder.reorder(trimesh.PointCloud(np.eye(3)))
     with pytest.raises(InvalidArgument):
         meshorder.reorder(trimesh.Scene(solid()))
+    listed = solid()
+    listed.face_attributes.update({"name": ["a"] * 320, "other": [[1], [2, 3]], "one": 3})
+    with pytest.raises(InvalidArgument, match="'name' must be an array"):
+        meshorder.reorder(listed)
+    del listed.face_attributes["name"]
+    assert meshorder.reorder(listed)[0].face_attributes["other"] == [[1], [2, 3]]
 
 
 # scikit-fem
@@ -265,6 +271,15 @@ def test_scikit_fem_assembles_the_same(name):
         if hasattr(old, "ori"):
             sides = [m.f2t[f.ori, np.asarray(f)] for m, f in ((mesh, old), (moved, new))]
             np.testing.assert_array_equal(cells[sides[1]], sides[0])
+
+
+@pytest.mark.parametrize("name", ["MeshTri", "MeshQuad", "MeshTet", "MeshHex", "MeshWedge1"])
+def test_cells_of_scikit_fem_are_those_that_it_exports(name):
+    _, made = skfem_meshes()
+    from skfem.io.meshio import to_meshio
+
+    exported = meshorder.make_mesh(to_meshio(made[name]))
+    np.testing.assert_array_equal(meshorder.make_mesh(made[name]).connectivity, exported.connectivity)
 
 
 def test_refusals_of_scikit_fem():

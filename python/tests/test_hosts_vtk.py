@@ -14,6 +14,7 @@ pv = pytest.importorskip("pyvista")
 vtk = pytest.importorskip("vtkmodules.vtkCommonDataModel")
 
 from pyvista.examples import cells as zoo  # noqa: E402
+from vtkmodules.util import numpy_support  # noqa: E402
 
 KINDS = (
     "Tetrahedron", "Wedge", "Hexahedron", "Pyramid", "Voxel", "Triangle", "Quadrilateral", "Line", "Vertex", "Polygon",
@@ -83,8 +84,10 @@ def with_data(mesh):
     mesh.GetPointData().GetAbstractArray("u").SetComponentName(1, "sideways")
     mesh.point_data.active_vectors_name = "u"
     mesh.cell_data.active_scalars_name = "material"
-    ids = pv.convert_array(np.arange(mesh.n_points)[::-1].copy(), name="ids")
-    mesh.GetPointData().SetGlobalIds(ids) if ids.IsA("vtkIdTypeArray") else mesh.point_data.__setitem__("ids", ids)
+    for data, count in ((mesh.GetPointData(), mesh.n_points), (mesh.GetCellData(), mesh.n_cells)):
+        ids = numpy_support.numpy_to_vtkIdTypeArray(np.arange(count)[::-1] + 5, deep=True)
+        ids.SetName("number")
+        data.SetGlobalIds(ids)
     mesh.field_data["time"] = [0.5]
     return mesh
 
@@ -123,6 +126,8 @@ def test_dataset_keeps_its_geometry_and_data(make, inplace):
             assert new[name].dtype == old[name].dtype
         assert new.active_scalars_name == old.active_scalars_name
         assert new.active_vectors_name == old.active_vectors_name
+    for old, new in ((before.GetPointData(), moved.GetPointData()), (before.GetCellData(), moved.GetCellData())):
+        assert new.GetGlobalIds().GetName() == old.GetGlobalIds().GetName() == "number"
     assert moved.GetPointData().GetArray("u").GetComponentName(1) == "sideways"
     np.testing.assert_array_equal(moved.field_data["time"], [0.5])
     for point in (0, moved.n_points - 1):

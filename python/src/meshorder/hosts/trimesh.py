@@ -28,13 +28,13 @@ class TrimeshSurface(Host):
         return _with_rows(self.given.face_attributes, len(self.cells[0][1]))
 
     def moved(self, order: MeshOrder, inplace: bool) -> Any:
+        for name, values in (*self.point_data().items(), *self.cell_data().items()):
+            if isinstance(values, (list, tuple)):
+                raise InvalidArgument(f"mesh: attribute '{name}' must be an array, not a list, to be moved")
         # normals of the caller's own are nowhere but here, and do not outlive a change of faces
         normals = [self.given._cache[name] for name in ("face_normals", "vertex_normals")]
         mesh = self.given if inplace else self.given.copy()
         by_face, by_vertex = order.cells.new_to_old, order.vertices.new_to_old
-        attributes = {**mesh.vertex_attributes, **mesh.face_attributes}
-        if any(isinstance(values, (list, tuple)) for values in attributes.values()):
-            raise InvalidArgument("mesh: attributes of a trimesh.Trimesh must be arrays, not lists, to be moved")
         face_materials = getattr(mesh.visual, "face_materials", None)
         if face_materials is not None and len(face_materials) == len(by_face):
             mesh.visual.face_materials = np.asarray(face_materials)[by_face]
@@ -50,7 +50,14 @@ class TrimeshSurface(Host):
 
 
 def _with_rows(attributes: Mapping[str, Any], count: int) -> dict[str, Any]:
-    return {name: values for name, values in attributes.items() if np.ndim(values) > 0 and len(values) == count}
+    return {name: values for name, values in attributes.items() if _length(values) == count}
+
+
+def _length(values: Any) -> int:
+    try:
+        return len(values)
+    except TypeError:  # no rows at all
+        return -1
 
 
 def host(mesh: Any) -> Host:
