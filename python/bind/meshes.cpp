@@ -18,10 +18,13 @@
 #include <nanobind/stl/vector.h>
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
 #include <tuple>
+#include <type_traits>
 #include <variant>
+#include <vector>
 
 namespace meshorder::python {
 namespace {
@@ -158,6 +161,41 @@ nb::object values_of(nb::handle mesh, const DataArray& array) {
       array.values);
 }
 
+/// Copies an array of Python's, of rank 1 or 2, into an array of a mesh. Throws InvalidArgument for other
+/// types than real numbers.
+DataArray array_of(const std::string& name, bool of_vertices, const Array& values) {
+  DataArray array{.name = name,
+                  .association = of_vertices ? Association::vertices : Association::cells,
+                  .components = values.ndim() == 2 ? static_cast<Index>(values.shape(1)) : 1};
+  const auto take = [&]<class... Numbers>(std::variant<std::vector<Numbers>...>*) {
+    const auto try_type = [&]<class Number>(Number) {
+      if constexpr (std::is_arithmetic_v<Number>) {
+        if (values.dtype() != nb::dtype<Number>()) return false;
+        const auto* const first = static_cast<const Number*>(values.data());
+        array.values = std::vector<Number>(first, first + values.size());
+        return true;
+      }
+      return false;
+    };
+    return (try_type(Numbers{}) || ...);
+  };
+  if (!take(static_cast<Values*>(nullptr))) {
+    throw InvalidArgument("array '" + name + "': expected real numbers");
+  }
+  return array;
+}
+
+EntitySet set_of(const std::string& name, bool of_vertices, const Array& members) {
+  EntitySet set{.name = name, .association = of_vertices ? Association::vertices : Association::cells};
+  const IndexView view = index_view(members);
+  set.members.reserve(view.size());
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const bool fits = view[i] <= std::numeric_limits<Index>::max();
+    set.members.push_back(fits ? static_cast<Index>(view[i]) : Index{-1});
+  }
+  return set;
+}
+
 void add_mesh_class(nb::module_& module) {
   using Self = nb::handle_t<Mesh>;
   const auto of = [](Self self) -> const Mesh& { return nb::cast<const Mesh&>(self); };
@@ -198,6 +236,17 @@ void add_mesh_class(nb::module_& module) {
                      }
                      return list;
                    })
+      .def_prop_ro("block_starts", [of](Self self) { return viewed(self, of(self).cell_blocks); })
+      .def_prop_ro("format_contents",
+                   [](const Mesh& self) {
+                     return self.format_metadata ? self.format_metadata->contents()
+                                                 : std::vector<std::string>();
+                   })
+      .def("add_data", [](Mesh& self, const std::string& name, bool of_vertices,
+                          const Array& values) { self.data.push_back(array_of(name, of_vertices, values)); })
+      .def("add_set", [](Mesh& self, const std::string& name, bool of_vertices,
+                         const Array& members) { self.sets.push_back(set_of(name, of_vertices, members)); })
+      .def("check", [](const Mesh& self) { check_mesh(self); })
       .def("copy", [](const Mesh& self) { return Mesh(self); })
       .def("reorder",
            [](Mesh& self, const std::string& vertices, const std::string& elements, const std::string& ids,

@@ -10,6 +10,7 @@
 
 NB_MODULE(_core, module) {
   using namespace meshorder::python;
+  nanobind::set_leak_warnings(false);  // of what lives until the process ends, as a user's global variable
   add_errors(module);
   add_permutation(module);
   add_graphs(module);

@@ -36,6 +36,12 @@ def test_moves_rows_as_indexing_does(new_to_old, dtype, width):
     assert p.move(a, out=out) is out and (out == a[p.new_to_old]).all()
 
 
+def test_moves_masks():
+    p = Permutation(new_to_old=[2, 0, 1])
+    moved = p.move(np.ma.masked_array([1.0, 2.0, 3.0], [True, False, False]))
+    np.testing.assert_array_equal(moved.mask, [False, True, False])
+
+
 @pytest.mark.parametrize("form", ["csr", "csc", "coo", "lil", "dok", "dia"])
 @pytest.mark.parametrize("kind", [sp.random_array, sp.random])
 def test_moves_matrices_of_every_kind(form, kind):

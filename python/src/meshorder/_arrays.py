@@ -16,7 +16,9 @@ from ._errors import InvalidArgument
 
 def _as_array(values: Any, name: str) -> NDArray[Any]:
     if isinstance(values, np.ma.MaskedArray):
-        raise InvalidArgument(f"{name}: a masked array has entries without a value; fill them first")
+        if np.ma.is_masked(values):
+            raise InvalidArgument(f"{name}: a masked array has entries without a value; fill them first")
+        values = values.data
     if getattr(values, "__dlpack_device__", None) is not None and not isinstance(values, np.ndarray):
         if int(values.__dlpack_device__()[0]) != 1:
             raise InvalidArgument(f"{name}: the array is on a GPU; bring it to the CPU first, by .cpu() or .get()")

@@ -170,7 +170,8 @@ def order(
 
     Args:
         graph: a square SciPy matrix (CSR is read in place, others are converted), ``(indptr, indices)``, a networkx
-            graph (vertices in the order of its nodes) or a torch matrix in CSR form. Diagonals are ignored.
+            graph (vertices in the order of its nodes) or a torch matrix in CSR form; or a mesh as of `reorder`, whose
+            vertices are ordered. Diagonals are ignored.
         method: "auto" or one of `methods`.
         points: coordinates, for geometric methods.
         weights: > 0, one for each entry of the graph, equal on both sides of the diagonal.
@@ -181,6 +182,13 @@ def order(
         TooLarge: 2³¹ or more vertices.
         Stopped: ``progress`` returned False.
     """
+    from .hosts import find_host  # which needs this module
+
+    host = find_host(graph)
+    if host is not None:
+        if points is not None or weights is not None:
+            raise InvalidArgument("order: a mesh has points of its own, and no weights")
+        return host.order(method, "original", options).vertices
     offsets, neighbours = graph_arrays(graph)
     given_weights = None if weights is None else reals(weights, "weights")
     coordinates = None if points is None else as_points(points)

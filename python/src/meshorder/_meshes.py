@@ -76,13 +76,14 @@ def cell_arrays(cells: Any, dimension: int) -> Any:
 
 
 def order_mesh(
-    points: Any, cells: Any, *, vertices: str = "auto", elements: str = "auto", vertex_count: int | None = None,
+    points: Any, cells: Any = None, *, vertices: str = "auto", elements: str = "auto", vertex_count: int | None = None,
     **options: Any,
 ) -> MeshOrder:  # fmt: skip
     """New places for the vertices of a mesh and for its cells. Nothing is changed.
 
     Args:
-        points: one row of one to three coordinates for each vertex; or None, with ``vertex_count``.
+        points: one row of one to three coordinates for each vertex; or None, with ``vertex_count``; or, without
+            cells, a mesh as of `reorder`.
         cells: an array with a row for each cell (2, 3, 8 or 10 vertices; 4 are tetrahedra in space and quads in the
             plane), ``{type: array}``, ``[(type, array), …]`` with meshio's names of types, or ``(offsets, connectivity)``
             with VTK's types as a third. Cells are numbered in the order in which they are given.
@@ -94,6 +95,10 @@ def order_mesh(
     Raises:
         InvalidArgument: faulty cells or points, an unknown method.
     """
+    if cells is None:
+        from .hosts import host_of  # which needs this module
+
+        return host_of(points).order(vertices, elements, options)
     coordinates = None if points is None else as_points(points)
     if coordinates is None and vertex_count is None:
         raise InvalidArgument("order_mesh: without points vertex_count must be given")
@@ -195,22 +200,32 @@ def read(source: str | os.PathLike[str] | bytes, format: str | None = None) -> M
 
     Args:
         source: a path or the bytes.
-        format: name of the format; None: by the extension, of bytes by the first of them.
+        format: name of the format; None: by the extension, of bytes by the first of them. Files of formats that are not
+            ours are read by meshio, where it is installed; the mesh's notes begin with that.
 
     Raises:
         InputError: the file is missing or faulty; the message names line or byte.
     """
     if isinstance(source, (bytes, bytearray, memoryview)):
         return Mesh(*_core.read_bytes(bytes(source), format or ""))
-    return Mesh(*_core.read(os.fspath(source), format or ""))
+    from . import _foreign  # which needs this module
+
+    path = os.fspath(source)
+    foreign = _foreign.format_of_meshio(path, format or "")
+    return _foreign.read(path, foreign) if foreign else Mesh(*_core.read(path, format or ""))
 
 
 def write(mesh: Mesh, path: str | os.PathLike[str]) -> list[str]:
-    """Writes a mesh in the format that the extension names.
+    """Writes a mesh in the format that the extension names; by meshio where it is not ours.
 
     Returns:
-        What the format cannot hold.
+        What the format cannot hold; first, that meshio wrote the file, if it did.
     """
+    from . import _foreign  # which needs this module
+
+    foreign = _foreign.format_of_meshio(os.fspath(path))
+    if foreign:
+        return _foreign.write(mesh, os.fspath(path), foreign)
     notes: list[str] = mesh._handle.write(os.fspath(path))
     return notes
 
@@ -221,8 +236,15 @@ def to_bytes(mesh: Mesh, format: str) -> bytes:
     return made
 
 
-def make_mesh(points: Any, cells: Any) -> Mesh:
-    """A mesh of arrays, which are copied; see `order_mesh`."""
+def make_mesh(points: Any, cells: Any = None) -> Mesh:
+    """A mesh of arrays as of `order_mesh`, which are copied.
+
+    Without cells: of a mesh as of `reorder`, with its data and sets; the notes tell what was left out.
+    """
+    if cells is None:
+        from .hosts import host_of  # which needs this module
+
+        return host_of(points).mesh()
     coordinates = as_points(points)
     return Mesh(_core.make_mesh(coordinates, cell_arrays(cells, coordinates.shape[1])))
 
@@ -234,27 +256,25 @@ def reorder(
     """Orders a mesh and moves its vertices and cells, with all data, sets and groups that belong to them.
 
     Args:
-        mesh: a `Mesh` or a meshio.Mesh.
+        mesh: a `Mesh`; a mesh of meshio, PyVista, VTK (vtkUnstructuredGrid, vtkPolyData), scikit-fem or trimesh;
+            ``gmsh.model``; or a tuple of arrays: ``(points, cells)`` with cells as of `order_mesh`, and then, where
+            there are any, a dict of arrays of the points and one of the cells (for cells in blocks, of an array for
+            each block).
         vertices: method for the vertices.
         elements: method for the elements.
-        group_by: of a `Mesh`: name of an array whose groups stay together.
+        group_by: name of an array of whole numbers whose groups stay together, or "sets" for the sets of cells.
         ids: of a `Mesh`: "renumber", "keep" or "attach".
         format: of a `Mesh`: the one that it will be written in; None: the one it was read from.
-        inplace: changes the mesh itself.
+        inplace: changes the mesh itself, and of a tuple its arrays.
         **options: see `Options`.
 
     Returns:
         The mesh in its new order, of the same type, and the order.
-    """
-    if isinstance(mesh, Mesh):
-        moved = mesh if inplace else mesh.copy()
-        with prepared(options) as given:
-            made = moved._handle.reorder(vertices, elements, ids, group_by or "", format or "", given)
-        return moved, MeshOrder._of(made)
-    if type(mesh).__module__.partition(".")[0] == "meshio":
-        from . import _meshio
 
-        if group_by or ids != "renumber" or format:
-            raise InvalidArgument("reorder: a meshio.Mesh has no ids, groups by arrays or format to write in")
-        return _meshio.reorder(mesh, vertices, elements, inplace, options)
-    raise InvalidArgument(f"reorder: expected a Mesh or a meshio.Mesh, not {type(mesh).__name__}")
+    Raises:
+        InvalidArgument: what is no mesh, or none that can be moved; faulty arrays; an unknown method or array.
+    """
+    from .hosts import host_of  # which needs this module
+    from .hosts.host import Request
+
+    return host_of(mesh).reorder(Request(vertices, elements, group_by, ids, format, inplace, options))

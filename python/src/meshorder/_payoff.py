@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 
 from . import _core
 from ._graphs import Quality
-from ._meshes import Mesh, make_mesh, read
+from ._meshes import Mesh, read
 from ._options import prepared
+from .hosts import host_of
 
 KERNELS: tuple[str, ...] = _core.kernels
 
@@ -125,13 +126,9 @@ class Comparison(Sequence[Candidate]):
 
 
 def _mesh(mesh: Any) -> Mesh:
-    if isinstance(mesh, Mesh):
-        return mesh
     if isinstance(mesh, (str, os.PathLike)):
         return read(mesh)
-    if isinstance(mesh, tuple) and len(mesh) == 2:
-        return make_mesh(*mesh)
-    return make_mesh(mesh.points, mesh.cells)
+    return host_of(mesh).mesh()
 
 
 def _pairs(methods: Any) -> list[tuple[str, str]]:
@@ -142,7 +139,7 @@ def advise(mesh: Any, *, measure: bool = False, budget: float = 10, **options: A
     """Tells what reordering a mesh would be worth, before it is done.
 
     Args:
-        mesh: a `Mesh`, a path, a meshio.Mesh or ``(points, cells)``.
+        mesh: a path, or a mesh as of `reorder`.
         measure: runs the kernels here; otherwise they are predicted.
         budget: seconds for that.
         **options: see `Options`.

@@ -102,7 +102,8 @@ class Permutation:
         array = np.asanyarray(a)
         if array.ndim == 0 or array.shape[axis] != len(self):
             raise InvalidArgument(f"move: the shape {array.shape} for a permutation of {len(self)}")
-        if axis not in (0, -array.ndim) or not array.flags.c_contiguous or array.dtype.hasobject:
+        plain = array.flags.c_contiguous and not array.dtype.hasobject and not isinstance(array, np.ma.MaskedArray)
+        if axis not in (0, -array.ndim) or not plain:
             return np.take(array, self.new_to_old, axis=axis, out=out)
         if out is None:
             out = np.empty_like(array)

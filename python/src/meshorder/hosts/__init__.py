@@ -1,0 +1,48 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Meshes of other libraries, recognised by the modules of their classes, without an import of the library."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+from .._errors import InvalidArgument
+from .host import Host
+
+#: module here that knows the meshes of a library
+_MODULES = {
+    "meshorder": "native",
+    "meshio": "meshio",
+    "pyvista": "vtk",
+    "vtkmodules": "vtk",
+    "skfem": "skfem",
+    "trimesh": "trimesh",
+    "gmsh": "gmsh",
+    "builtins": "arrays",
+}
+
+
+def find_host(mesh: Any) -> Host | None:
+    """The host of a mesh; None for what is no mesh of a library that is known.
+
+    Raises:
+        InvalidArgument: an object of a known library that is no mesh, or a mesh that cannot be ordered.
+    """
+    kind = mesh if isinstance(mesh, type) else type(mesh)
+    for base in kind.__mro__[:-1]:
+        module = _MODULES.get(base.__module__.partition(".")[0])
+        if module is not None:
+            host: Host | None = importlib.import_module(f"{__name__}.{module}").host(mesh)
+            return host
+    return None
+
+
+def host_of(mesh: Any) -> Host:
+    """As `find_host`, but refuses what is no mesh."""
+    found = find_host(mesh)
+    if found is None:
+        raise InvalidArgument(
+            "mesh: expected (points, cells) or a mesh of meshorder, meshio, PyVista, VTK, scikit-fem, trimesh or Gmsh, "
+            f"not {type(mesh).__name__}"
+        )
+    return found

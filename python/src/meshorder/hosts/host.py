@@ -1,0 +1,184 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""What the functions on meshes need of a mesh of another library."""
+
+from __future__ import annotations
+
+import abc
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from .._arrays import integers
+from .._arrays import points as as_points
+from .._errors import InvalidArgument
+from .._meshes import Mesh, MeshOrder, cell_arrays, order_mesh
+from .._options import prepared
+from .._permutation import Permutation
+
+_VTK_WEDGE = 13
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `meshorder.reorder` is asked for, apart from the mesh."""
+
+    vertices: str = "auto"
+    elements: str = "auto"
+    group_by: str | None = None
+    ids: str = "renumber"
+    format: str | None = None
+    inplace: bool = False
+    options: dict[str, Any] = field(default_factory=dict)
+
+
+class Host(abc.ABC):
+    """A mesh of another library.
+
+    Attributes:
+        given: the mesh itself.
+        points: a row of one to three coordinates for each vertex.
+        cells: in one of the forms of `meshorder.order_mesh`.
+    """
+
+    given: Any
+    points: Any
+    cells: Any
+
+    @abc.abstractmethod
+    def moved(self, order: MeshOrder, inplace: bool) -> Any:
+        """The mesh in another order, with all that belongs to its vertices and cells; or the mesh itself, changed."""
+
+    def point_data(self) -> Mapping[str, Any]:
+        """Arrays with a row for each vertex."""
+        return {}
+
+    def cell_data(self) -> Mapping[str, Any]:
+        """Arrays with a row for each cell."""
+        return {}
+
+    def point_sets(self) -> Mapping[str, Any]:
+        """Named lists of vertices."""
+        return {}
+
+    def cell_sets(self) -> Mapping[str, Any]:
+        """Named lists of cells."""
+        return {}
+
+    def order(self, vertices: str, elements: str, options: dict[str, Any]) -> MeshOrder:
+        """New places for the vertices and cells."""
+        return order_mesh(self.points, self.cells, vertices=vertices, elements=elements, **options)
+
+    def reorder(self, request: Request) -> tuple[Any, MeshOrder]:
+        """See `meshorder.reorder`."""
+        if request.ids != "renumber" or request.format:
+            raise InvalidArgument("reorder: ids and format are for a meshorder.Mesh only")
+        if request.group_by:
+            order = self.grouped_order(request)
+        else:
+            order = self.order(request.vertices, request.elements, request.options)
+        return self.moved(order, request.inplace), order
+
+    def grouped_order(self, request: Request) -> MeshOrder:
+        """The order that keeps the groups of an array together: that of a `meshorder.Mesh` with the same arrays."""
+        handle = self.mesh()._handle
+        with prepared(request.options) as given:
+            return MeshOrder._of(
+                handle.reorder(request.vertices, request.elements, "renumber", request.group_by or "", "", given)
+            )
+
+    def mesh(self) -> Mesh:
+        """A `meshorder.Mesh` with the same data and sets; its notes tell what it cannot hold."""
+        coordinates = as_points(self.points)
+        cells = wedges_inward(coordinates, cell_arrays(self.cells, coordinates.shape[1]))
+        made = Mesh(_core.make_mesh(coordinates, cells))
+        for of_vertices, arrays in ((True, self.point_data()), (False, self.cell_data())):
+            for name, values in arrays.items():
+                numbers = _numbers(values)
+                if numbers is None:
+                    owner = "point" if of_vertices else "cell"
+                    made.notes.append(f"{owner} data '{name}' was left out: it is not made of real numbers")
+                else:
+                    made._handle.add_data(str(name), of_vertices, numbers)
+        for of_vertices, sets in ((True, self.point_sets()), (False, self.cell_sets())):
+            for name, members in sets.items():
+                found = integers(members, f"set '{name}'")
+                _, first = np.unique(found, return_index=True)
+                made._handle.add_set(str(name), of_vertices, np.ascontiguousarray(found[np.sort(first)]))
+        made._handle.check()
+        return made
+
+
+def parts(cells: Permutation, sizes: Sequence[int]) -> list[Permutation]:
+    """The permutation of the cells of each block, for cells that stay in their block."""
+    if len(sizes) == 1:
+        return [cells]
+    ends = np.cumsum(sizes, dtype=np.int64)
+    return [
+        Permutation(new_to_old=cells.new_to_old[end - size : end] - np.int32(end - size))
+        for size, end in zip(sizes, ends)
+    ]
+
+
+def moved_rows(
+    offsets: NDArray[Any], entries: NDArray[Any], rows: Permutation
+) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Rows of any size in their new order, as offsets and entries; both are new arrays."""
+    widths = np.diff(offsets)
+    if len(widths) and (widths == widths[0]).all():
+        return offsets.copy(), rows.move(entries.reshape(len(widths), -1)).reshape(-1)
+    sizes = widths[rows.new_to_old]
+    new_offsets = np.zeros_like(offsets)
+    np.cumsum(sizes, out=new_offsets[1:])
+    places = np.repeat(offsets[:-1][rows.new_to_old] - new_offsets[:-1], sizes)
+    places += np.arange(len(places), dtype=places.dtype)
+    return new_offsets, entries[places]
+
+
+def _numbers(values: Any) -> NDArray[Any] | None:
+    """An array of real numbers of rank 1 or 2; None for other values. What is masked becomes NaN."""
+    if np.ma.is_masked(values):
+        values = np.ma.filled(values.astype(np.float64), np.nan)
+    array = np.asarray(values)
+    if array.dtype.kind == "b":
+        array = array.astype(np.uint8)
+    if array.dtype.kind not in "iuf" or array.ndim == 0:
+        return None
+    if array.dtype.itemsize not in (1, 2, 4, 8) or array.dtype == np.float16:
+        array = array.astype(np.float64)
+    if array.ndim > 2:
+        array = array.reshape(len(array), -1) if array.size else array.reshape(len(array), 0)
+    if array.ndim == 2 and array.shape[1] == 0:
+        return None
+    return np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("="))
+
+
+def wedges_inward(points: NDArray[Any], cells: Any) -> Any:
+    """Linear wedges with the first triangle facing inward, as a `meshorder.Mesh` has them; VTK's faces outward."""
+    if isinstance(cells, list):
+        return [
+            (shape, _inward(points, rows) if shape == "wedge" and rows.shape[1] == 6 else rows) for shape, rows in cells
+        ]
+    offsets, connectivity, types = cells
+    if types is None or len(types) != len(offsets) - 1:
+        return cells
+    wedges = np.flatnonzero((types == _VTK_WEDGE) & (np.diff(offsets) == 6))
+    if len(wedges) == 0:
+        return cells
+    places = offsets[wedges][:, np.newaxis] + np.arange(6)
+    turned = connectivity.copy()
+    turned[places] = _inward(points, connectivity[places])
+    return offsets, turned, types
+
+
+def _inward(points: NDArray[Any], wedges: NDArray[Any]) -> NDArray[Any]:
+    if points.shape[1] != 3 or len(wedges) == 0 or wedges.min() < 0 or wedges.max() >= len(points):
+        return wedges
+    corners = points[wedges]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    along = corners[:, 3:].mean(axis=1) - corners[:, :3].mean(axis=1)
+    outward = np.einsum("ij,ij->i", normals, along) < 0
+    return np.where(outward[:, np.newaxis], wedges[:, [0, 2, 1, 3, 5, 4]], wedges)
