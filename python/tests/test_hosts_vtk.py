@@ -44,6 +44,8 @@ def menagerie():
 
 
 def polyhedra():
+    if not hasattr(vtk.vtkUnstructuredGrid, "SetPolyhedralCells"):
+        pytest.skip("VTK before 9.4")
     one = [zoo.Polyhedron(), zoo.Tetrahedron(), zoo.PentagonalPrism(), zoo.HexagonalPrism(), zoo.ConvexPointSet()]
     many = [cell.translate((3.0 * i, 0, 2.0 * copy)) for copy in range(4) for i, cell in enumerate(one)]
     return pv.merge(many, merge_points=False)
@@ -245,7 +247,7 @@ def test_width_of_ids_stays(storage):
     cells = vtk.vtkCellArray()
     cells.DeepCopy(grid.GetCells())
     cells.ConvertTo32BitStorage() if storage == 32 else cells.ConvertTo64BitStorage()
-    grid.SetCells(grid.GetCellTypes(), cells)
+    grid.SetCells(numpy_support.numpy_to_vtk(grid.celltypes, deep=True), cells)
     moved, _ = meshorder.reorder(grid)
     assert bool(moved.GetCells().IsStorage64Bit()) == (storage == 64)
 
@@ -257,7 +259,7 @@ def test_fixed_size_storage():
     if not hasattr(cells, "ConvertToFixedSize64BitStorage"):
         pytest.skip("an older VTK")
     assert cells.ConvertToFixedSize64BitStorage()
-    grid.SetCells(grid.GetCellTypes(), cells)
+    grid.SetCells(numpy_support.numpy_to_vtk(grid.celltypes, deep=True), cells)
     moved, order = meshorder.reorder(grid)
     assert_same_geometry(lattice(), moved, order)
 

@@ -34,6 +34,9 @@ class TrimeshSurface(Host):
         # normals of the caller's own are nowhere but here, and do not outlive a change of faces
         normals = [self.given._cache[name] for name in ("face_normals", "vertex_normals")]
         mesh = self.given if inplace else self.given.copy()
+        if not inplace:  # versions before 4.5 copy no attributes
+            mesh.vertex_attributes = {**self.given.vertex_attributes, **mesh.vertex_attributes}
+            mesh.face_attributes = {**self.given.face_attributes, **mesh.face_attributes}
         by_face, by_vertex = order.cells.new_to_old, order.vertices.new_to_old
         face_materials = getattr(mesh.visual, "face_materials", None)
         if face_materials is not None and len(face_materials) == len(by_face):

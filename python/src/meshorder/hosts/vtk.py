@@ -42,7 +42,7 @@ class _Dataset(Host):
         if mesh.GetPoints() is not None:
             points = vtkPoints()
             points.SetDataType(mesh.GetPoints().GetDataType())
-            points.SetData(_support().numpy_to_vtk(vertices.move(self.points)))
+            points.SetData(_support().numpy_to_vtk(vertices.move(self.points), deep=True))
             points.GetData().SetName(mesh.GetPoints().GetData().GetName())
             moved.SetPoints(points)
         self._move_cells(moved, vertices, cells)
@@ -165,16 +165,18 @@ def _moved_cell_array(given: Any, vertices: Permutation | None, cells: Permutati
     offsets, connectivity = _rows(given)
     if cells is not None:
         offsets, connectivity = moved_rows(offsets, connectivity, cells)
-    else:
-        offsets = offsets.copy()  # VTK does not copy what it is given here
     if vertices is not None:
         connectivity = vertices.renumber(connectivity)
-    to_vtk = _support().numpy_to_vtkIdTypeArray
     moved = vtkCellArray()
-    moved.SetData(to_vtk(offsets.astype(np.int64, copy=False)), to_vtk(connectivity.astype(np.int64, copy=False)))
+    moved.SetData(_ids(offsets), _ids(connectivity))
     if not given.IsStorage64Bit():
         moved.ConvertTo32BitStorage()
     return moved
+
+
+def _ids(numbers: NDArray[Any]) -> Any:
+    """A vtkIdTypeArray with memory of its own: a vtkCellArray may keep this memory, but not the array."""
+    return _support().numpy_to_vtkIdTypeArray(np.ascontiguousarray(numbers, dtype=np.int64), deep=True)
 
 
 def _arrays_of(data: Any) -> dict[str, Any]:
@@ -209,8 +211,7 @@ def _id_list(numbers: NDArray[Any]) -> Any:
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     cell = vtkCellArray()
-    ids = _support().numpy_to_vtkIdTypeArray(numbers.astype(np.int64), deep=True)
-    cell.SetData(_support().numpy_to_vtkIdTypeArray(np.array([0, len(numbers)], dtype=np.int64), deep=True), ids)
+    cell.SetData(_ids(np.array([0, len(numbers)])), _ids(numbers))
     listed = vtkIdList()
     cell.GetCellAtId(0, listed)
     return listed
