@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
 from ._errors import Unavailable
 from ._graphs import quality
 from ._meshes import Mesh
 from ._permutation import Permutation
+from ._thumbnails import pattern
 
 _VIEWER = pathlib.Path(__file__).with_name("viewer")
 _PATTERN_SIDE = 192
@@ -109,7 +109,7 @@ def make_page(mesh: Mesh, orders: Mapping[str, Permutation], title: str) -> Page
     """A page of the mesh as it is and in these orders."""
     corners = mesh._handle.surface()
     vertices, places = np.unique(corners, return_inverse=True)
-    graph = mesh._handle.graph()
+    offsets, neighbours = mesh._handle.graph()
     shown = {"as it is": Permutation.identity(len(mesh.points)), **orders}
 
     arrays = _Arrays()
@@ -120,12 +120,15 @@ def make_page(mesh: Mesh, orders: Mapping[str, Permutation], title: str) -> Page
         "triangles": arrays.add(places.reshape(-1, 3)),
         "ranks": {name: arrays.add(order.old_to_new[vertices]) for name, order in shown.items()},
         "sparsity": {
-            name: arrays.add(_core.sparsity_pattern(*graph, order._handle, _PATTERN_SIDE))
+            name: arrays.add(pattern(offsets, neighbours, order._handle, _PATTERN_SIDE))
             for name, order in shown.items()
         },
     }
     manifest = {"orderings": [{"name": name, "title": name} for name in shown], "meshes": [described]}
-    spans = [{"ordering": name, "span": {"mean": quality(graph, order).mean_span}} for name, order in shown.items()]
+    spans = [
+        {"ordering": name, "span": {"mean": quality((offsets, neighbours), order).mean_span}}
+        for name, order in shown.items()
+    ]
     results = {"meshes": [{"name": title, "orders": spans}]}
     blobs = "".join(f'<script type="text/plain" id="{name}">{text}</script>\n' for name, text in arrays.elements.items())
 

@@ -43,7 +43,7 @@ def patterns(of: Order, offsets: Any, neighbours: Any, side: int, axes: Any = No
     axes = _axes(axes, ncols=2, figsize=(8, 4.2))
     identity = _core.Permutation.from_old_to_new(np.arange(len(of.permutation), dtype=np.int32))
     n = len(of.permutation)
-    counts = [_core.sparsity_pattern(offsets, neighbours, one, side) for one in (identity, of.permutation._handle)]
+    counts = [_thumbnails.pattern(offsets, neighbours, one, side) for one in (identity, of.permutation._handle)]
     most = max(int(one.max(initial=0)) for one in counts)
     for one, pattern, title in zip(axes, counts, ("as it is", of.method)):
         one.imshow(_thumbnails.ink(pattern, most), cmap="Blues", vmin=0, vmax=1, extent=(0, n, n, 0), interpolation="nearest")

@@ -12,11 +12,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _core
+
 #: tiles along each side of a thumbnail
 SIDE = 64
 _PAPER = np.array([255.0, 255.0, 255.0])
 _INK = np.array([17.0, 33.0, 69.0])
 _FAINTEST = 0.16  # share of ink of a tile with one entry
+
+
+def pattern(
+    offsets: NDArray[Any], neighbours: NDArray[Any], order: _core.Permutation, side: int
+) -> NDArray[np.uint32]:
+    """The number of entries of a graph's matrix, diagonal included, in side × side tiles; n × n where n is less."""
+    return np.asarray(_core.sparsity_pattern(offsets, neighbours, order, side))
 
 
 def ink(counts: NDArray[Any], most: int) -> NDArray[np.float64]:
