@@ -34,7 +34,8 @@ def _table(heads: Sequence[str], rows: Iterable[str], caption: str = "") -> str:
     head = "".join(f'<th style="text-align:left">{escape(name)}</th>' for name in heads)
     words = f'<caption style="caption-side:top;text-align:left">{escape(caption)}</caption>' if caption else ""
     body = "".join(f"<tr>{row}</tr>" for row in rows)
-    return f"<table>{words}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    table = f"<table>{words}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    return f'<div style="overflow-x:auto">{table}</div>'
 
 
 def _beside(picture: str, words: str) -> str:
@@ -138,7 +139,10 @@ def candidates(of: Sequence[Candidate], kernels: Sequence[str]) -> str:
         cells += _words(one.vertices) + _words(one.elements) + _cell(f"{one.spans.mean_span:,.1f}")
         for kernel in kernels:
             part = 100 * one.milliseconds[kernel] / slowest[kernel]
-            bar = f"min-width:6em;background:linear-gradient({_BAR},{_BAR}) left/{part:.0f}% 1.6em no-repeat"
+            bar = (
+                f"min-width:6em;padding:.3em .5em;background:linear-gradient({_BAR},{_BAR}) left/{part:.0f}% 1.6em "
+                "no-repeat content-box"
+            )
             cells += _cell(f"{one.milliseconds[kernel]:.3g} ms", bar)
         rows.append(cells + _cell(f"{1e3 * one.order_seconds:.3g} ms" if one.order_seconds else "–"))
     how = "measured here" if of and of[0].measured else "predicted, to be compared with each other only"

@@ -105,8 +105,9 @@ def _json_element(name: str, value: Any) -> str:
     return f'<script type="application/json" id="{name}">{text}</script>\n'
 
 
-def make_page(mesh: Mesh, orders: Mapping[str, Permutation], title: str) -> Page:
+def make_page(mesh: Mesh, orders: Mapping[str, Permutation], mesh_name: str) -> Page:
     """A page of the mesh as it is and in these orders."""
+    name = mesh_name or "mesh"
     corners = mesh._handle.surface()
     vertices, places = np.unique(corners, return_inverse=True)
     offsets, neighbours = mesh._handle.graph()
@@ -114,7 +115,7 @@ def make_page(mesh: Mesh, orders: Mapping[str, Permutation], title: str) -> Page
 
     arrays = _Arrays()
     described: dict[str, Any] = {
-        "name": title,
+        "name": name,
         "vertices": len(mesh.points),
         "positions": arrays.add_places(mesh.points[vertices]),
         "triangles": arrays.add(places.reshape(-1, 3)),
@@ -129,12 +130,12 @@ def make_page(mesh: Mesh, orders: Mapping[str, Permutation], title: str) -> Page
         {"ordering": name, "span": {"mean": quality((offsets, neighbours), order).mean_span}}
         for name, order in shown.items()
     ]
-    results = {"meshes": [{"name": title, "orders": spans}]}
+    results = {"meshes": [{"name": name, "orders": spans}]}
     blobs = "".join(f'<script type="text/plain" id="{name}">{text}</script>\n' for name, text in arrays.elements.items())
 
     triangles = len(corners) // 3
     parts = _sources()
-    parts["title"] = html.escape(title)
-    parts["summary"] = f"{len(mesh.points):,} vertices · {len(mesh.shapes):,} cells · {triangles:,} triangles in sight"
+    parts["title"] = f"Vertex orders of {html.escape(mesh_name)}" if mesh_name else "Vertex orders"
+    parts["summary"] = f"{len(mesh.points):,} vertices · {len(mesh.shapes):,} cells · {triangles:,} surface triangles"
     parts["data"] = _json_element("results", results) + _json_element("manifest", manifest) + blobs
     return Page(re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], parts["frame"]), triangles)

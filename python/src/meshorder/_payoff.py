@@ -64,7 +64,7 @@ class KernelAdvice(NamedTuple):
     runs_to_pay: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Advice:
     """What reordering a mesh would be worth; ``str(advice)`` is the verdict in one sentence."""
 
@@ -75,6 +75,9 @@ class Advice:
 
     def __str__(self) -> str:
         return self.verdict
+
+    def __repr__(self) -> str:
+        return f"<Advice: {self.verdict}>"
 
     def _repr_html_(self) -> str:
         return _html.advice(self, KERNELS)

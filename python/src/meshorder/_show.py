@@ -64,8 +64,7 @@ def show(mesh: Any, order: Any = None, *, path: str | os.PathLike[str] | None = 
         path: writes the page there and opens nothing.
 
     Returns:
-        The page: 0.9 MB, and about 10 bytes for each triangle and 5 for each vertex of the surface and order. A notebook
-        that shows it stores it.
+        The page: 0.9 MB, and about 15 bytes for each triangle of the surface. A notebook that shows it stores it.
 
     Raises:
         InputError: the mesh has neither surfaces nor volumes.
@@ -74,18 +73,18 @@ def show(mesh: Any, order: Any = None, *, path: str | os.PathLike[str] | None = 
     """
     from ._page import make_page  # takes time to import
 
-    title = f"Vertex order{f' of {os.path.basename(mesh)}' if isinstance(mesh, (str, os.PathLike)) else ''}"
+    name = os.path.basename(mesh) if isinstance(mesh, (str, os.PathLike)) else ""
     whole = _mesh(mesh)
-    page = make_page(whole, _named(order, whole), title)
+    page = make_page(whole, _named(order, whole), name)
     if path is not None:
         page.save(path)
     elif not _in_notebook():
         import tempfile
         import webbrowser
 
-        file, name = tempfile.mkstemp(prefix="meshorder-", suffix=".html")
-        os.close(file)
-        page.save(name)
-        if not webbrowser.open(pathlib.Path(name).as_uri()):
-            warnings.warn(f"show: found no browser; the page is {name}", stacklevel=2)
+        handle, file = tempfile.mkstemp(prefix="meshorder-", suffix=".html")
+        os.close(handle)
+        page.save(file)
+        if not webbrowser.open(pathlib.Path(file).as_uri()):
+            warnings.warn(f"show: found no browser; the page is {file}", stacklevel=2)
     return page

@@ -67,7 +67,7 @@ def image(counts: NDArray[Any], words: str, most: int | None = None) -> str:
     data = base64.b64encode(png(ink(counts, int(counts.max()) if most is None else most))).decode("ascii")
     return (
         f'<img src="data:image/png;base64,{data}" alt="{html.escape(words)}" width="{SIDE}" height="{SIDE}" '
-        'style="image-rendering:pixelated;border:1px solid #8888;margin:2px">'
+        f'style="min-width:{SIDE}px;image-rendering:pixelated;border:1px solid #8888;margin:2px">'
     )
 
 
