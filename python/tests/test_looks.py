@@ -129,8 +129,8 @@ def test_names_are_escaped(made, graph, comparison):
     evil = dataclasses.replace(comparison[1], vertices=EVIL, elements=EVIL)
     order = dataclasses.replace(meshorder.order(graph, "rcm"), method=EVIL, reason=EVIL, notes=[EVIL])
     for result in (
-        meshorder.Comparison([evil]), meshorder.Advice(EVIL, evil, [evil], {}), order, meshorder.MeshOrder(order, order),
-        dataclasses.replace(meshorder.fiedler(graph), notes=[EVIL]),
+        meshorder.Comparison([evil]), meshorder.Advice(EVIL, evil, [evil], {}), order,
+        meshorder.MeshOrder(order, order), dataclasses.replace(meshorder.fiedler(graph), notes=[EVIL]),
     ):  # fmt: skip
         page = Parsed(result._repr_html_())
         assert EVIL in page.text and "script" not in page.tags
@@ -289,7 +289,8 @@ def test_the_page_has_the_surface_and_the_places_of_its_vertices(mesh, made, sho
 
     patterns = {name: shown.array(one) for name, one in shown.mesh["sparsity"].items()}
     entries = {name: int(pattern.sum()) for name, pattern in patterns.items()}
-    edges = np.unique(np.sort(cells[:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]].reshape(-1, 2), axis=1), axis=0)
+    ends = cells[:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]].reshape(-1, 2)
+    edges = np.unique(np.sort(ends, axis=1), axis=0)
     assert entries == dict.fromkeys(("as it is", "fiedler"), 2 * len(edges) + len(points))
 
 

@@ -99,7 +99,8 @@ def test_both_surfaces_turn_together(chromium, path):
 
 def test_a_sandboxed_frame_shows_it_too(chromium, ring, path, tmp_path):
     page = meshorder.show(ring, ["fiedler"], path=tmp_path / "page.html")
-    (tmp_path / "notebook.html").write_text(f"<!doctype html><meta charset=utf-8>{page._repr_html_()}", encoding="utf-8")
+    notebook = f"<!doctype html><meta charset=utf-8>{page._repr_html_()}"
+    (tmp_path / "notebook.html").write_text(notebook, encoding="utf-8")
     chromium.resize(960, 900)
     chromium.open(tmp_path / "notebook.html")
     chromium.driver.switch_to.frame(0)

@@ -27,7 +27,8 @@ __all__ = [
     "Advice", "Candidate", "Comparison", "Error", "Fiedler", "FiedlerComponent", "InputError", "InternalError",
     "InvalidArgument", "Mesh", "MeshOrder", "MethodInfo", "Options", "Order", "Permutation", "Quality", "Stopped",
     "TooLarge", "Unavailable", "__version__", "advise", "build_info", "compare", "fiedler", "load_methods", "make_mesh",
-    "methods", "order", "order_mesh", "quality", "read", "register", "reorder", "show", "to_bytes", "unregister", "write",
+    "methods", "order", "order_mesh", "quality", "read", "register", "reorder", "show", "to_bytes", "unregister",
+    "write",
 ]  # fmt: skip
 
 

@@ -76,13 +76,19 @@ def quality(of: Quality) -> str:
     """Its numbers, and bars for the histogram."""
     most = max(of.histogram_log2, default=0) or 1
     bars = "".join(
-        f'<span title="spans of {2**k:,} to {2 ** (k + 1) - 1:,}: {edges:,} edges" style="display:inline-block;width:10px;'
-        f'margin-right:1px;vertical-align:bottom;background:{_BAR};height:{max(round(48 * edges / most), 1)}px"></span>'
+        f'<span title="spans of {2**k:,} to {2 ** (k + 1) - 1:,}: {edges:,} edges" style="display:inline-block;'
+        f"width:10px;height:{max(round(48 * edges / most), 1)}px;margin-right:1px;vertical-align:bottom;"
+        f'background:{_BAR}"></span>'
         for k, edges in enumerate(of.histogram_log2)
     )
-    names = ("edges", "mean span", "mean log₂ span", "bandwidth", "profile")
-    numbers = (f"{of.edges:,}", f"{of.mean_span:,.1f}", f"{of.mean_log2_span:.2f}", f"{of.bandwidth:,}", f"{of.profile:,}")
-    table = _table(names, ["".join(map(_cell, numbers))])
+    numbers = {
+        "edges": f"{of.edges:,}",
+        "mean span": f"{of.mean_span:,.1f}",
+        "mean log₂ span": f"{of.mean_log2_span:.2f}",
+        "bandwidth": f"{of.bandwidth:,}",
+        "profile": f"{of.profile:,}",
+    }
+    table = _table(list(numbers), ["".join(map(_cell, numbers.values()))])
     return _lines([table, f"{bars} edges by span: 1, 2–3, 4–7, …" if bars else ""])
 
 

@@ -87,8 +87,8 @@ def _sources() -> dict[str, str]:
     three = _VIEWER / "three.min.js"
     if not three.is_file():
         raise Unavailable(
-            "show: this build of meshorder is without three.js, which draws the mesh; install Debian's libjs-three (or name "
-            "three.min.js of release 111 by CMake's MESHORDER_THREE_JS) and build meshorder again by pip install"
+            "show: this build of meshorder is without three.js, which draws the mesh; install Debian's libjs-three (or "
+            "name three.min.js of release 111 by CMake's MESHORDER_THREE_JS) and build meshorder again by pip install"
         )
     read = {path.name: path.read_text(encoding="utf-8") for path in _VIEWER.iterdir() if path.is_file()}
     scripts = "\n".join(text for name, text in sorted(read.items()) if name.endswith(".js") and name != three.name)
@@ -131,7 +131,9 @@ def make_page(mesh: Mesh, orders: Mapping[str, Permutation], mesh_name: str) -> 
         for name, order in shown.items()
     ]
     results = {"meshes": [{"name": name, "orders": spans}]}
-    blobs = "".join(f'<script type="text/plain" id="{name}">{text}</script>\n' for name, text in arrays.elements.items())
+    blobs = "".join(
+        f'<script type="text/plain" id="{blob}">{text}</script>\n' for blob, text in arrays.elements.items()
+    )
 
     triangles = len(corners) // 3
     parts = _sources()

@@ -46,7 +46,8 @@ def patterns(of: Order, offsets: Any, neighbours: Any, side: int, axes: Any = No
     counts = [_thumbnails.pattern(offsets, neighbours, one, side) for one in (identity, of.permutation._handle)]
     most = max(int(one.max(initial=0)) for one in counts)
     for one, pattern, title in zip(axes, counts, ("as it is", of.method)):
-        one.imshow(_thumbnails.ink(pattern, most), cmap="Blues", vmin=0, vmax=1, extent=(0, n, n, 0), interpolation="nearest")
+        shares = _thumbnails.ink(pattern, most)
+        one.imshow(shares, cmap="Blues", vmin=0, vmax=1, extent=(0, n, n, 0), interpolation="nearest")
         one.set_title(title)
     return axes
 

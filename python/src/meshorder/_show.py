@@ -59,8 +59,8 @@ def show(mesh: Any, order: Any = None, *, path: str | os.PathLike[str] | None = 
 
     Args:
         mesh: as of `advise`, with surfaces or volumes; in the order that it had before.
-        order: a `MeshOrder`, `Order` or `Permutation` of its vertices, the name of a method, several of these in a list,
-            or ``{name: order}``; None: "auto".
+        order: a `MeshOrder`, `Order` or `Permutation` of its vertices, the name of a method, several of these in a
+            list, or ``{name: order}``; None: "auto".
         path: writes the page there and opens nothing.
 
     Returns:

@@ -50,7 +50,8 @@ def png(shares: NDArray[Any]) -> bytes:
     ramp = np.linspace(0, 1, 256)[:, np.newaxis]
     palette = np.rint(_PAPER + ramp * (_INK - _PAPER)).astype(np.uint8)
     header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)  # 8 bits, by palette
-    parts = [(b"IHDR", header), (b"PLTE", palette.tobytes()), (b"IDAT", zlib.compress(rows.tobytes(), 9)), (b"IEND", b"")]
+    pixels = zlib.compress(rows.tobytes(), 9)
+    parts = [(b"IHDR", header), (b"PLTE", palette.tobytes()), (b"IDAT", pixels), (b"IEND", b"")]
     return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(*part) for part in parts)
 
 
@@ -72,7 +73,8 @@ def image(counts: NDArray[Any], words: str, most: int | None = None) -> str:
 
 
 def moves(old_to_new: NDArray[np.int32]) -> NDArray[Any]:
-    """Counts of a permutation's moves in at most 64 × 64 tiles: old places from the left, new ones from the top. O(n)."""
+    """A permutation's moves in at most 64 × 64 tiles: how many from these old places, left to right, to those new
+    ones, top to bottom. O(n)."""
     n = len(old_to_new)
     side = min(SIDE, n)
     if n == 0:
