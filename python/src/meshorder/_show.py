@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import pathlib
 import sys
 import warnings
 from collections.abc import Mapping
@@ -79,6 +78,7 @@ def show(mesh: Any, order: Any = None, *, path: str | os.PathLike[str] | None = 
     if path is not None:
         page.save(path)
     elif not _in_notebook():
+        import pathlib
         import tempfile
         import webbrowser
 
