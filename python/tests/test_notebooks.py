@@ -18,6 +18,7 @@ pytest.importorskip("ipykernel")
 
 FOLDER = pathlib.Path(__file__).parents[2] / "examples" / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
+pytestmark = pytest.mark.skipif(not NOTEBOOKS, reason="needs examples/notebooks")
 NEEDS = {"assembly_orders": "skfem", "meshio_pipeline": "meshio", "scipy_solver": "scipy"}
 
 

@@ -12,7 +12,7 @@ import pytest
 
 pytest.importorskip("selenium")
 sys.path.append(str(pathlib.Path(__file__).parents[2] / "tests" / "command"))
-import browser  # noqa: E402
+browser = pytest.importorskip("browser")
 
 DESKTOP, PHONE = (1280, 900), (390, 844)
 READY = "document.body.dataset.ready"
