@@ -26,8 +26,8 @@ TEST(SparsityPattern, CountsTheEntriesOfEachTile) {
       const auto neighbours = graph[order.new_to_old()[row]];
       const bool entry = row == column || std::find(neighbours.begin(), neighbours.end(),
                                                     order.new_to_old()[column]) != neighbours.end();
-      if (entry)
-        ++expected[static_cast<std::size_t>(7 * (7 * row / graph.size()) + 7 * column / graph.size())];
+      const Index tile = 7 * (7 * row / graph.size()) + 7 * column / graph.size();
+      if (entry) ++expected[tile];
     }
   }
   EXPECT_EQ(pattern.side, 7);
