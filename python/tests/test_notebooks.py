@@ -51,3 +51,21 @@ def test_a_notebook_is_stored_as_one_run_left_it(path):
     assert path.stat().st_size < 500_000
     texts = [[cell.source, [output.get("text", "") for output in cell.get("outputs", [])]] for cell in notebook.cells]
     assert not re.search(r"/(tmp|home|root|work|Users)/", json.dumps(texts))
+
+
+def test_show_appears_in_the_notebook_and_opens_no_browser():
+    code = """
+import webbrowser
+webbrowser.open = None  # would fail
+import numpy as np, meshorder
+try:
+    shown = meshorder.show((np.eye(4, 3), np.arange(4)[np.newaxis]))
+except meshorder.Unavailable:
+    shown = None
+shown"""
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(code)])
+    nbclient.NotebookClient(notebook, timeout=120).execute()
+    outputs = notebook.cells[0].outputs
+    if not outputs:
+        pytest.skip("this build is without three.js")
+    assert outputs[0].data["text/html"].startswith("<iframe") and "4 triangles" in outputs[0].data["text/plain"]
