@@ -30,7 +30,7 @@ class Candidate:
         workload: what "auto" chose for.
         spans: of the vertex graph in this order.
         pattern: of the matrix over the vertices in this order: the number of entries, diagonal included, in each of
-            64 × 64 tiles, rows from the top; n × n where there are fewer vertices.
+            64 × 64 tiles, rows from the top; n × n where there are fewer vertices. 16 KB, counted in O(entries).
         predicted: milliseconds of each kernel by the cost model, to be compared with each other only; or None.
         measured: milliseconds of each kernel here, the best of interleaved rounds; or None.
         order_seconds: cost of the order.
