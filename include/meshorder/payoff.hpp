@@ -49,12 +49,16 @@ struct OrderCosts {
   [[nodiscard]] const KernelMilliseconds& best_known() const { return measured ? *measured : *predicted; }
 };
 
+/// Tiles along each side of `Candidate::pattern`; one for each vertex where there are fewer.
+inline constexpr int kPatternSide = 64;
+
 /// An order of the mesh, and what the kernels take in it.
 struct Candidate {
   MethodChoice vertices = {};
   MethodChoice elements = {};
   Workload workload = Workload::all;  ///< what `auto` chose the methods for
   Quality spans = {};                 ///< of the vertex graph in this order
+  SparsityPattern pattern = {};       ///< likewise, `kPatternSide` tiles along each side
   OrderCosts costs = {};
   double order_seconds = 0;  ///< cost of the order: graph, both methods, moving the mesh; 0 for "original"
 };

@@ -7,6 +7,7 @@
 #include <meshorder/permutation.hpp>
 #include <meshorder/view.hpp>
 
+#include <cstdint>
 #include <vector>
 
 namespace meshorder {
@@ -24,6 +25,14 @@ struct Quality {
   std::vector<Offset> histogram_log2 = {};  ///< entry k: the number of edges with span in [2ᵏ, 2ᵏ⁺¹)
 
   bool operator==(const Quality&) const = default;
+};
+
+/// Where the entries of a matrix lie: how many are in each of side × side tiles, rows from the top.
+struct SparsityPattern {
+  int side = 0;
+  std::vector<std::uint32_t> counts = {};  ///< side · side, row after row
+
+  bool operator==(const SparsityPattern&) const = default;
 };
 
 /// Measures the order that a graph's vertices have.
@@ -53,6 +62,17 @@ MESHORDER_API Quality quality(const GraphView& graph, const Permutation& order, 
 /// @note O(n + edges).
 MESHORDER_API std::vector<Offset> span_histogram(const GraphView& graph, const Permutation& order,
                                                  Index width, const Run& run = {});
+
+/// Counts the entries of the matrix with the pattern of a graph, diagonal included, in square tiles.
+///
+/// @param graph  n vertices
+/// @param order  n places
+/// @param side   tiles along each side, ≥ 1; n where that is less
+/// @param run    threads, progress
+/// @throws InvalidArgument as `quality`, and if side < 1
+/// @note O(n + edges).
+MESHORDER_API SparsityPattern sparsity_pattern(const GraphView& graph, const Permutation& order, int side,
+                                               const Run& run = {});
 
 }  // namespace v0_2
 }  // namespace meshorder

@@ -59,6 +59,12 @@ nb::dict quality_of_graph(const Array& offsets, const Array& neighbours, const P
   }));
 }
 
+nb::object pattern_of_graph(const Array& offsets, const Array& neighbours, const Permutation& order,
+                            int side) {
+  const GraphView graph = graph_view(offsets, neighbours, {});
+  return described(unlocked([&] { return sparsity_pattern(graph, order, side); }));
+}
+
 }  // namespace
 
 void add_graphs(nb::module_& module) {
@@ -66,6 +72,7 @@ void add_graphs(nb::module_& module) {
              nb::arg());
   module.def("fiedler", &fiedler_of_graph, nb::arg(), nb::arg(), nb::arg().none(), nb::arg());
   module.def("quality", &quality_of_graph, nb::arg(), nb::arg(), nb::arg().none(), nb::arg());
+  module.def("sparsity_pattern", &pattern_of_graph);
 }
 
 }  // namespace meshorder::python

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Orders of meshes that are given as arrays, and meshes of files.
+#include "mesh/boundary.hpp"
 #include "module.hpp"
 #include "options.hpp"
 #include "results.hpp"
@@ -95,6 +96,7 @@ nb::dict described(const Candidate& candidate) {
   result["reason"] = candidate.vertices.reason;
   result["workload"] = std::string(to_string(candidate.workload));
   result["spans"] = described(candidate.spans);
+  result["pattern"] = described(candidate.pattern);
   result["predicted"] = milliseconds(candidate.costs.predicted);
   result["measured"] = milliseconds(candidate.costs.measured);
   result["order_seconds"] = candidate.order_seconds;
@@ -138,6 +140,17 @@ auto answering(Answer (*question)(const MeshView&, const PayoffOptions&)) {
     const Options given_options(options);
     return question(view(self), payoff_options(methods, predict, measure, budget, given_options.order()));
   };
+}
+
+/// The surface's corners, three for each triangle.
+Result<Index> surface_of(const Mesh& mesh) {
+  return given(unlocked([&] {
+    std::vector<Index> corners;
+    for (const auto& triangle : boundary_triangles(mesh)) {
+      corners.insert(corners.end(), triangle.begin(), triangle.end());
+    }
+    return corners;
+  }));
 }
 
 /// An array of a mesh's, viewed as long as the mesh lives.
@@ -247,6 +260,13 @@ void add_mesh_class(nb::module_& module) {
       .def("add_set", [](Mesh& self, const std::string& name, bool of_vertices,
                          const Array& members) { self.sets.push_back(set_of(name, of_vertices, members)); })
       .def("check", [](const Mesh& self) { check_mesh(self); })
+      .def("surface", &surface_of)
+      .def("graph",
+           [](const Mesh& self) {
+             const Graph graph = unlocked([&] { return vertex_graph(view(self).cells, self.points.size()); });
+             return nb::make_tuple(given(std::vector(graph.offsets().begin(), graph.offsets().end())),
+                                   given(std::vector(graph.neighbours().begin(), graph.neighbours().end())));
+           })
       .def("copy", [](const Mesh& self) { return Mesh(self); })
       .def("reorder",
            [](Mesh& self, const std::string& vertices, const std::string& elements, const std::string& ids,

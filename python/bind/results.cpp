@@ -41,4 +41,9 @@ nb::dict described(const Quality& quality) {
   return result;
 }
 
+nb::object described(SparsityPattern pattern) {
+  const auto side = static_cast<std::size_t>(pattern.side);
+  return nb::cast(given(std::move(pattern.counts))).attr("reshape")(side, side);
+}
+
 }  // namespace meshorder::python

@@ -13,6 +13,7 @@ namespace meshorder::python {
 /// Results as dicts with the names of their members; arrays are handed over without a copy.
 nb::dict described(Order order);
 nb::dict described(const Quality& quality);
+nb::object described(SparsityPattern pattern);  // side × side numbers
 nb::list described(const std::vector<FiedlerComponent>& components);
 
 }  // namespace meshorder::python

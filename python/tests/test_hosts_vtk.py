@@ -111,7 +111,8 @@ def assert_same_geometry(mesh, moved, order):
 @pytest.mark.parametrize("make", DATASETS)
 def test_dataset_keeps_its_geometry_and_data(make, inplace):
     given, before = with_data(make()), with_data(make())
-    given.find_closest_cell((0, 0, 0)), given.point_cell_ids(0)  # builds what must not outlive the move
+    given.find_closest_cell((0, 0, 0))  # builds what must not outlive the move, as does the next call
+    given.point_cell_ids(0)
     moved, order = meshorder.reorder(given, vertices="hilbert", elements="lexmax", inplace=inplace)
     assert (moved is given) == inplace and type(moved) is type(before)
     if not inplace:

@@ -2,6 +2,7 @@
 #include "base/arena.hpp"
 #include "graph/clean_graph.hpp"
 #include "metrics/edge_span.hpp"
+#include "metrics/sparsity_pattern.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/quality.hpp>
 
@@ -49,6 +50,13 @@ std::vector<Offset> span_histogram(const GraphView& graph, const Permutation& or
                                    const Run& run) {
   return measured(graph, &order, run, [width](GraphRef clean, const Permutation& places) {
     return meshorder::span_histogram(clean, places, width);
+  });
+}
+
+SparsityPattern sparsity_pattern(const GraphView& graph, const Permutation& order, int side, const Run& run) {
+  if (side < 1) throw InvalidArgument("sparsity_pattern: a side of " + std::to_string(side) + " tiles");
+  return measured(graph, &order, run, [side](GraphRef clean, const Permutation& places) {
+    return pattern_of(clean, places, side);
   });
 }
 

@@ -7,6 +7,7 @@
 #include "kernels/simplices.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
+#include "metrics/sparsity_pattern.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/cost_model.hpp"
 #include "payoff/kernel_timing.hpp"
@@ -119,7 +120,9 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
     return i == 0 ? advice.as_is : advice.candidates[i - 1];
   };
   for (std::size_t i = 0; i < orders.size(); ++i) {
-    candidate(i).spans = quality_of(orders[i].graph, Permutation::identity(orders[i].graph.size()));
+    const Permutation as_ordered = Permutation::identity(orders[i].graph.size());
+    candidate(i).spans = quality_of(orders[i].graph, as_ordered);
+    candidate(i).pattern = pattern_of(orders[i].graph, as_ordered, kPatternSide);
   }
   if (options.predict) {
     const std::vector<KernelMilliseconds> predicted = predictions(orders, options);

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/view.hpp"
 
+#include "base/index.hpp"
 #include "lab/contact/search/body_surface.hpp"
-#include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
@@ -166,32 +166,6 @@ TEST(SurfaceView, OfASurfaceIsItsTriangles) {
 
 TEST(SurfaceView, OfLinesIsAnError) {
   EXPECT_THROW((void)surface_view(test::cells_of_type(Shape::line, 2, 3), 10), InputError);
-}
-
-TEST(SparsityPattern, CountsTheEntriesOfEachTile) {
-  const Mesh mesh = make_grid({.size = 4});
-  const CsrGraph graph = vertex_graph(mesh);
-  const Permutation order = test::shuffled(graph.size(), 1);
-  const SparsityPattern pattern = sparsity_pattern(graph, order, 7);
-  std::vector<std::uint32_t> expected(49);
-  for (Index row = 0; row < graph.size(); ++row) {
-    for (Index column = 0; column < graph.size(); ++column) {
-      const auto neighbours = graph[order.new_to_old()[row]];
-      const bool entry = row == column || std::find(neighbours.begin(), neighbours.end(),
-                                                    order.new_to_old()[column]) != neighbours.end();
-      if (entry)
-        ++expected[static_cast<std::size_t>(7 * (7 * row / graph.size()) + 7 * column / graph.size())];
-    }
-  }
-  EXPECT_EQ(pattern.side, 7);
-  EXPECT_EQ(pattern.counts, expected);
-}
-
-TEST(SparsityPattern, OfFewVerticesHasATileForEach) {
-  const CsrGraph path = graph_from_edges(3, std::vector<Edge>{{0, 1}, {1, 2}});
-  const SparsityPattern pattern = sparsity_pattern(path, Permutation::identity(3), 192);
-  EXPECT_EQ(pattern.side, 3);
-  EXPECT_EQ(pattern.counts, (std::vector<std::uint32_t>{1, 1, 0, 1, 1, 1, 0, 1, 1}));
 }
 
 }  // namespace

@@ -87,6 +87,9 @@ TEST(PublicCompare, ListsTheMeshAsItIsAndThenWhatWasAskedFor) {
   EXPECT_EQ(candidates[1].elements.name, "fiedler");
   EXPECT_EQ(candidates[2].costs.predicted, candidates[0].costs.predicted);
   EXPECT_EQ(candidates[2].spans, candidates[0].spans);
+  EXPECT_EQ(candidates[2].pattern, candidates[0].pattern);
+  EXPECT_NE(candidates[1].pattern, candidates[0].pattern);
+  EXPECT_EQ(candidates[1].pattern.side, kPatternSide);
   EXPECT_EQ(candidates[2].order_seconds, 0);
   EXPECT_NE(candidates[3].vertices.name, "auto");
   EXPECT_FALSE(candidates[3].vertices.reason.empty());

@@ -2,11 +2,7 @@
 #
 # viewer/* and three.js become part of the program, which then needs no files to make a page:
 # writes viewer_sources.cpp into the build folder.
-find_file(
-  MESHORDER_THREE_JS three.min.js
-  PATHS /usr/share/javascript/three /usr/share/javascript/three/build
-  DOC "three.js, release 111, of which the page's 3-D views are made"
-  NO_DEFAULT_PATH)
+include(${PROJECT_SOURCE_DIR}/cmake/find_three.cmake)
 if(NOT MESHORDER_THREE_JS)
   message(FATAL_ERROR "three.min.js is missing, which the report page shows meshes with: install Debian's libjs-three, "
                       "or name the file by -DMESHORDER_THREE_JS=…")
@@ -28,5 +24,5 @@ file(GLOB scripts CONFIGURE_DEPENDS ${viewer}/*.js) # by name
 meshorder_read(MESHORDER_VIEWER_PAGE ${viewer}/page.html)
 meshorder_read(MESHORDER_VIEWER_STYLE ${viewer}/style.css)
 meshorder_read(MESHORDER_VIEWER_SCRIPTS ${scripts})
-meshorder_read(MESHORDER_VIEWER_THREE ${CMAKE_CURRENT_LIST_DIR}/three_licence.txt ${MESHORDER_THREE_JS})
+meshorder_read(MESHORDER_VIEWER_THREE ${viewer}/three_licence.txt ${MESHORDER_THREE_JS})
 configure_file(${CMAKE_CURRENT_LIST_DIR}/viewer_sources.cpp.in viewer_sources.cpp @ONLY)

@@ -4,6 +4,7 @@
 #include "lab/report/figures/figures.hpp"
 #include "lab/report/page/view.hpp"
 #include "lab/report/tables/tables.hpp"
+#include <meshorder/quality.hpp>
 
 #include <filesystem>
 #include <string>

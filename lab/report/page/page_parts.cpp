@@ -2,6 +2,7 @@
 #include "lab/report/page/page_parts.hpp"
 
 #include "mesh/graphs.hpp"
+#include "metrics/sparsity_pattern.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -34,7 +35,7 @@ PageMesh page_mesh(const std::string& name, const Mesh& mesh,
   result.points = points_of(result.surface, mesh);
   const CsrGraph graph = vertex_graph(mesh);
   for (const auto& [ordering, order] : orders) {
-    PageMesh::Order shown{ordering, {}, sparsity_pattern(graph, order, detail.sparsity_side)};
+    PageMesh::Order shown{ordering, {}, pattern_of(graph, order, detail.sparsity_side)};
     for (const Index v : result.surface.vertices) shown.ranks.push_back(order.old_to_new()[v]);
     result.orders.push_back(std::move(shown));
   }

@@ -87,18 +87,4 @@ SurfaceView surface_view(const Mesh& mesh, Index most_triangles) {
   return view;
 }
 
-SparsityPattern sparsity_pattern(const CsrGraph& graph, const Permutation& order, int side) {
-  SparsityPattern pattern;
-  pattern.side = std::min(side, graph.size());
-  const auto tile = [&](Index place) { return Offset{place} * pattern.side / graph.size(); };
-  pattern.counts.resize(static_cast<std::size_t>(pattern.side) * pattern.side);
-  for (Index v = 0; v < graph.size(); ++v) {
-    const Index row = order.old_to_new()[v];
-    const Offset first = tile(row) * pattern.side;
-    ++pattern.counts[first + tile(row)];  // of the diagonal
-    for (const Index neighbour : graph[v]) ++pattern.counts[first + tile(order.old_to_new()[neighbour])];
-  }
-  return pattern;
-}
-
 }  // namespace meshorder

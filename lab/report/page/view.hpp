@@ -1,14 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "graph/csr_graph.hpp"
 #include <meshorder/mesh.hpp>
-#include <meshorder/permutation.hpp>
 
 #include <array>
-#include <cstdint>
-#include <span>
-#include <string>
 #include <vector>
 
 namespace meshorder {
@@ -25,15 +20,5 @@ struct SurfaceView {
 /// vertices of the mesh. Keeps the topology unless that would leave more than twice as many triangles. The
 /// same on every run. Throws Error for a mesh without volume cells and surface. O(n log n).
 SurfaceView surface_view(const Mesh& mesh, Index most_triangles);
-
-/// Number of entries in each of side × side tiles of a matrix with the pattern of the vertex graph, diagonal
-/// included; rows from the top.
-struct SparsityPattern {
-  int side = 0;
-  std::vector<std::uint32_t> counts;
-};
-
-/// Returns the pattern in the given order. `side` is reduced to the number of vertices. O(edges).
-SparsityPattern sparsity_pattern(const CsrGraph& graph, const Permutation& order, int side);
 
 }  // namespace meshorder

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
+from . import _core, _html, _plots
 from ._arrays import integers, reals
 from ._arrays import points as as_points
 from ._errors import InvalidArgument
@@ -72,6 +72,26 @@ class Order:
         n = len(self.permutation)
         return f"<Order of {n:,} by {self.method} in {self.seconds:.3g} s{'' if self.complete else ', incomplete'}>"
 
+    def _repr_html_(self) -> str:
+        return _html.order(self)
+
+    def plot(self, graph: Any, *, side: int = 256, axes: Any = None) -> Any:
+        """Draws the matrix's pattern before and after, by matplotlib. O(entries).
+
+        Args:
+            graph: that was ordered, as of `order`; must be symmetric.
+            side: tiles along each side in which entries are counted.
+            axes: two of matplotlib's; None: a new figure's.
+
+        Returns:
+            The two axes.
+
+        Raises:
+            ImportError: matplotlib is missing, which the extra ``plot`` brings.
+        """
+        offsets, neighbours = graph_arrays(graph)
+        return _plots.patterns(self, offsets, neighbours, side, axes)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Fiedler:
@@ -113,6 +133,9 @@ class Fiedler:
             f"{f', {parts:,} components' if parts != 1 else ''}{'' if self.converged else ', not converged'}>"
         )
 
+    def _repr_html_(self) -> str:
+        return _html.fiedler(self)
+
 
 @dataclass(frozen=True)
 class Quality:
@@ -133,6 +156,20 @@ class Quality:
     bandwidth: int
     profile: int
     histogram_log2: list[int]
+
+    def _repr_html_(self) -> str:
+        return _html.quality(self)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws the histogram of spans, by matplotlib.
+
+        Args:
+            axes: matplotlib's; None: a new figure's.
+
+        Raises:
+            ImportError: matplotlib is missing, which the extra ``plot`` brings.
+        """
+        return _plots.quality(self, axes)
 
 
 def graph_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:

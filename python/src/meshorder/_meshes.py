@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
+from . import _core, _html
 from ._arrays import integers
 from ._arrays import points as as_points
 from ._errors import InvalidArgument
@@ -37,6 +37,9 @@ class MeshOrder:
 
     def __repr__(self) -> str:
         return f"<MeshOrder: vertices {self.vertices!r}, cells {self.cells!r}>"
+
+    def _repr_html_(self) -> str:
+        return _html.mesh_order(self)
 
 
 def _shape(type_name: Any) -> str:
@@ -193,6 +196,9 @@ class Mesh:
 
     def __repr__(self) -> str:
         return f"<Mesh: {len(self.points):,} vertices, {len(self.shapes):,} cells{f', {self.format}' if self.format else ''}>"
+
+    def _repr_html_(self) -> str:
+        return _html.mesh(self)
 
 
 def read(source: str | os.PathLike[str] | bytes, format: str | None = None) -> Mesh:

@@ -5,10 +5,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from . import _core
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core, _html, _plots
+from ._extras import load
 from ._graphs import Quality
 from ._meshes import Mesh, read
 from ._options import prepared
@@ -26,6 +30,8 @@ class Candidate:
         reason: why "auto" took the method for the vertices.
         workload: what "auto" chose for.
         spans: of the vertex graph in this order.
+        pattern: of the matrix over the vertices in this order: the number of entries, diagonal included, in each of
+            64 × 64 tiles, rows from the top; n × n where there are fewer vertices. 16 KB, counted in O(entries).
         predicted: milliseconds of each kernel by the cost model, to be compared with each other only; or None.
         measured: milliseconds of each kernel here, the best of interleaved rounds; or None.
         order_seconds: cost of the order.
@@ -39,6 +45,7 @@ class Candidate:
     predicted: dict[str, float] | None
     measured: dict[str, float] | None
     order_seconds: float
+    pattern: NDArray[np.uint32] = field(repr=False, compare=False)
 
     @classmethod
     def _of(cls, made: dict[str, Any]) -> Candidate:
@@ -58,7 +65,7 @@ class KernelAdvice(NamedTuple):
     runs_to_pay: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Advice:
     """What reordering a mesh would be worth; ``str(advice)`` is the verdict in one sentence."""
 
@@ -69,6 +76,12 @@ class Advice:
 
     def __str__(self) -> str:
         return self.verdict
+
+    def __repr__(self) -> str:
+        return f"<Advice: {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        return _html.advice(self, KERNELS)
 
 
 class Comparison(Sequence[Candidate]):
@@ -97,10 +110,12 @@ class Comparison(Sequence[Candidate]):
         ]
 
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame."""
-        import pandas
+        """A pandas.DataFrame with a row for each order.
 
-        return pandas.DataFrame(self.rows())
+        Raises:
+            ImportError: pandas is missing, which the extra of its name brings.
+        """
+        return load("pandas", "pandas").DataFrame(self.rows())
 
     def __repr__(self) -> str:
         rows = [["vertices", "elements", "mean span", *(f"{kernel} ms" for kernel in KERNELS)]]
@@ -111,18 +126,18 @@ class Comparison(Sequence[Candidate]):
         return "\n".join("  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows)
 
     def _repr_html_(self) -> str:
-        slowest = {kernel: max(c.milliseconds[kernel] for c in self) or 1.0 for kernel in KERNELS}
-        head = "".join(f"<th>{name}</th>" for name in ("vertices", "elements", "mean span", *KERNELS))
-        body = ""
-        for candidate in self:
-            cells = f"<td>{candidate.vertices}</td><td>{candidate.elements}</td><td>{candidate.spans.mean_span:,.1f}</td>"
-            for kernel in KERNELS:
-                time = candidate.milliseconds[kernel]
-                part = 100 * time / slowest[kernel]
-                bar = f"background:linear-gradient(90deg,#9cc5e8 {part:.0f}%,transparent {part:.0f}%)"
-                cells += f'<td style="{bar}">{time:.3g} ms</td>'
-            body += f"<tr>{cells}</tr>"
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        return _html.candidates(self._candidates, KERNELS)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws bars of each kernel for each order, by matplotlib: its time relative to that as the mesh is.
+
+        Args:
+            axes: matplotlib's; None: a new figure's.
+
+        Raises:
+            ImportError: matplotlib is missing, which the extra ``plot`` brings.
+        """
+        return _plots.candidates(self._candidates, KERNELS, axes)
 
 
 def _mesh(mesh: Any) -> Mesh:

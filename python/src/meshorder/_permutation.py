@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
+from . import _core, _html
 from ._arrays import integers
 from ._errors import InvalidArgument
 
@@ -180,6 +180,9 @@ class Permutation:
         n = len(self)
         moved = float(np.abs(self.old_to_new - np.arange(n, dtype=np.int64)).mean()) if n else 0.0
         return f"<Permutation of {n:,}: moved by {moved:,.1f} places on average>"
+
+    def _repr_html_(self) -> str:
+        return _html.permutation(self)
 
 
 def _bytes_of(array: NDArray[Any]) -> NDArray[np.uint8]:

@@ -1,0 +1,6 @@
+# three.js, of which the viewer's 3-D views are made: MESHORDER_THREE_JS is the file, of Debian's libjs-three.
+find_file(
+  MESHORDER_THREE_JS three.min.js
+  PATHS /usr/share/javascript/three /usr/share/javascript/three/build
+  DOC "three.js, release 111, of which the page's 3-D views are made"
+  NO_DEFAULT_PATH)

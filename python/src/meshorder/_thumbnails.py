@@ -1,0 +1,83 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Small pictures of matrices, as PNG."""
+
+from __future__ import annotations
+
+import base64
+import html
+import struct
+import zlib
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+
+#: tiles along each side of a thumbnail
+SIDE = 64
+_PAPER = np.array([255.0, 255.0, 255.0])
+_INK = np.array([17.0, 33.0, 69.0])
+_FAINTEST = 0.16  # share of ink of a tile with one entry
+
+
+def pattern(
+    offsets: NDArray[Any], neighbours: NDArray[Any], order: _core.Permutation, side: int
+) -> NDArray[np.uint32]:
+    """The number of entries of a graph's matrix, diagonal included, in side × side tiles; n × n where n is less."""
+    return np.asarray(_core.sparsity_pattern(offsets, neighbours, order, side))
+
+
+def ink(counts: NDArray[Any], most: int) -> NDArray[np.float64]:
+    """Share of ink, 0 … 1, for each count: logarithmic, full at ``most``, and seen from one entry on."""
+    shares = _FAINTEST + (1 - _FAINTEST) * np.log1p(counts) / np.log1p(max(most, 1))
+    return np.where(counts > 0, np.minimum(shares, 1.0), 0.0)
+
+
+def _chunk(kind: bytes, data: bytes) -> bytes:
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+def png(shares: NDArray[Any]) -> bytes:
+    """A PNG with a pixel for each share of ink: dark blue on white, whatever the page around it.
+
+    Args:
+        shares: two-dimensional, 0 … 1.
+    """
+    height, width = shares.shape
+    rows = np.zeros((height, 1 + width), dtype=np.uint8)  # each row begins with its filter, none
+    rows[:, 1:] = np.rint(255 * shares)
+    ramp = np.linspace(0, 1, 256)[:, np.newaxis]
+    palette = np.rint(_PAPER + ramp * (_INK - _PAPER)).astype(np.uint8)
+    header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)  # 8 bits, by palette
+    pixels = zlib.compress(rows.tobytes(), 9)
+    parts = [(b"IHDR", header), (b"PLTE", palette.tobytes()), (b"IDAT", pixels), (b"IEND", b"")]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(*part) for part in parts)
+
+
+def image(counts: NDArray[Any], words: str, most: int | None = None) -> str:
+    """An HTML image of counts, one pixel for each, that needs no other file.
+
+    Args:
+        counts: two-dimensional.
+        words: what the picture shows, for readers without it.
+        most: the count that is darkest; None: the largest.
+    """
+    if counts.size == 0:
+        return ""
+    data = base64.b64encode(png(ink(counts, int(counts.max()) if most is None else most))).decode("ascii")
+    return (
+        f'<img src="data:image/png;base64,{data}" alt="{html.escape(words)}" width="{SIDE}" height="{SIDE}" '
+        f'style="min-width:{SIDE}px;image-rendering:pixelated;border:1px solid #8888;margin:2px">'
+    )
+
+
+def moves(old_to_new: NDArray[np.int32]) -> NDArray[Any]:
+    """A permutation's moves in at most 64 × 64 tiles: how many from these old places, left to right, to those new
+    ones, top to bottom. O(n)."""
+    n = len(old_to_new)
+    side = min(SIDE, n)
+    if n == 0:
+        return np.zeros((0, 0), dtype=np.int64)
+    tiles = old_to_new.astype(np.int64) * side // n * side + np.arange(n) * side // n
+    return np.bincount(tiles, minlength=side * side).reshape(side, side)
