@@ -152,6 +152,18 @@ def test_what_a_mesh_cannot_hold_is_told():
     np.testing.assert_array_equal(mesh.sets["repeated"], [3, 1])
 
 
+def test_meshes_of_other_libraries_are_written(tmp_path):
+    given = made_by_meshio()
+    given.point_data["wave"] = given.points[:, 0] * 1j
+    notes = meshorder.write(given, tmp_path / "mesh.vtu")
+    assert "'wave'" in notes[0]
+    assert set(meshio.read(tmp_path / "mesh.vtu").point_data) >= {"t", "u"}
+    assert meshorder.write((given.points, {"tetra": given.get_cells_type("tetra")}), tmp_path / "bare.mesh") == []
+    assert b"Tetrahedra" in meshorder.to_bytes(given, "medit")
+    with pytest.raises(meshorder.InvalidArgument):
+        meshorder.write(5, tmp_path / "mesh.vtu")
+
+
 @pytest.mark.parametrize("suffix", [".inp", ".bdf", ".xdmf", ".e", ".su2", ".med", ".cgns", ".h5m"])
 def test_broken_files_are_input_errors(tmp_path, suffix, capsys):
     with pytest.raises(InputError, match="No such file"):

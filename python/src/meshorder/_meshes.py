@@ -221,14 +221,17 @@ def read(source: str | os.PathLike[str] | bytes, format: str | None = None) -> M
     return _foreign.read(path, foreign) if foreign else Mesh(*_core.read(path, format or ""))
 
 
-def write(mesh: Mesh, path: str | os.PathLike[str]) -> list[str]:
-    """Writes a mesh in the format that the extension names; by meshio where it is not ours.
+def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:
+    """Writes a mesh as of `reorder` in the format that the extension names; by meshio where it is not ours.
 
     Returns:
-        What the format cannot hold; first, that meshio wrote the file, if it did.
+        What was left out, of a mesh that is no `Mesh` also on the way to one; and that meshio wrote, if it did.
     """
     from . import _foreign  # which needs this module
 
+    if not isinstance(mesh, Mesh):
+        made = make_mesh(mesh)
+        return made.notes + write(made, path)
     foreign = _foreign.format_of_meshio(os.fspath(path))
     if foreign:
         return _foreign.write(mesh, os.fspath(path), foreign)
@@ -236,9 +239,9 @@ def write(mesh: Mesh, path: str | os.PathLike[str]) -> list[str]:
     return notes
 
 
-def to_bytes(mesh: Mesh, format: str) -> bytes:
-    """The bytes of the file that `write` would make."""
-    made: bytes = mesh._handle.to_bytes(format, "mesh")
+def to_bytes(mesh: Any, format: str) -> bytes:
+    """The bytes of the file that `write` would make, in a format of our own."""
+    made: bytes = (mesh if isinstance(mesh, Mesh) else make_mesh(mesh))._handle.to_bytes(format, "mesh")
     return made
 
 
