@@ -45,8 +45,10 @@ endif()
 if("payoff" IN_LIST components)
   find_package(hwy REQUIRED)                 # SIMD chosen at run time
 endif()
-if(MESHORDER_CLI OR MESHORDER_TESTS OR MESHORDER_BENCHMARKS)
+if(MESHORDER_CLI OR build_lab)
   find_package(nlohmann_json REQUIRED)       # results
+endif()
+if(build_lab)
   find_package(meshoptimizer REQUIRED)       # fewer triangles for what is only looked at
   # of CHOLMOD's modules only those under the LGPL are called
   meshorder_find_library(cholmod::cholmod cholmod.h cholmod suitesparse)
