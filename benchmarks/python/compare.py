@@ -4,9 +4,10 @@
     cmake -B build -DMESHORDER_BENCHMARKS=ON && ninja -C build calls
     build/venv/bin/python benchmarks/python/compare.py build/bin/calls [--rounds 15] [--sizes 35 65] [--only PART]
 
-Parts: `calls` from NumPy against the same calls from C++, in time and in how far the process grows; `rcm` against SciPy;
-`fiedler` against networkx; `import`. Meshes are cubes of SIZE³ lattice cells, six tetrahedra each, shuffled: 35 makes 46,656
-vertices, 65 makes 287,496. A ratio is that of the medians; beside it stand the quartiles of the ratios of single rounds.
+Parts: `calls` from NumPy against the same calls from C++, in time and in how far the process grows; `rcm` against
+SciPy; `fiedler` against networkx; `import`. Meshes are cubes of SIZE³ lattice cells, six tetrahedra each, shuffled:
+35 makes 46,656 vertices, 65 makes 287,496. A ratio is that of the medians; beside it stand the quartiles of the ratios
+of single rounds.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 
 import meshorder
 import networkx as nx
@@ -57,7 +59,8 @@ def growth(call: Callable[[], object]) -> float:
 def tell(what: str, ours: list[float], theirs: list[float], unit: str = "s") -> None:
     """Prints how many times theirs the medians of ours are."""
     middle = statistics.median(ours), statistics.median(theirs)
-    quartiles = statistics.quantiles([a / b for a, b in zip(ours, theirs)], n=4) if len(ours) > 1 else [middle[0] / middle[1]] * 3
+    ratios = [a / b for a, b in zip(ours, theirs)]
+    quartiles = statistics.quantiles(ratios, n=4) if len(ratios) > 1 else ratios * 3
     print(
         f"{what:<44} {middle[0]:9.4g} {unit} / {middle[1]:9.4g} {unit} = {middle[0] / middle[1]:.4f}"
         f"  ({quartiles[0]:.3f} … {quartiles[2]:.3f})",
@@ -111,10 +114,10 @@ def compare_calls(program: str, mesh: Mesh, rounds: int) -> None:
                 return float(child.stdout.readline())
 
             for name, call in calls.items():
-                times = in_turns(rounds, lambda c=call: seconds(c), lambda n=name: ask(n, "TIME"))
+                times = in_turns(rounds, partial(seconds, call), partial(ask, name, "TIME"))
                 tell(f"{name}, Python / C++", *times)
-                sizes = in_turns(3, lambda c=call: growth(c) / 2**20, lambda n=name: ask(n, "MEMORY") / 2**20)
-                tell(f"{name}, Python / C++, growth of the process", *sizes, unit="MiB")
+                sizes = in_turns(3, partial(growth, call), partial(ask, name, "MEMORY"))
+                tell(f"{name}, Python / C++, growth of the process", *sizes, unit="B")
 
 
 def bandwidth(matrix: sp.csr_matrix, order: NDArray[np.int32]) -> int:
@@ -124,13 +127,10 @@ def bandwidth(matrix: sp.csr_matrix, order: NDArray[np.int32]) -> int:
 
 def compare_rcm(mesh: Mesh, rounds: int) -> None:
     ours = meshorder.csgraph.reverse_cuthill_mckee
-    times = in_turns(
-        rounds,
-        lambda: seconds(lambda: reverse_cuthill_mckee(mesh.matrix, symmetric_mode=True)),
-        lambda: seconds(lambda: ours(mesh.matrix, symmetric_mode=True)),
-    )
+    calls = partial(reverse_cuthill_mckee, mesh.matrix, symmetric_mode=True), partial(ours, mesh.matrix, symmetric_mode=True)
+    times = in_turns(rounds, partial(seconds, calls[0]), partial(seconds, calls[1]))
     tell("rcm, SciPy / meshorder", *times)
-    found = bandwidth(mesh.matrix, reverse_cuthill_mckee(mesh.matrix, symmetric_mode=True)), bandwidth(mesh.matrix, ours(mesh.matrix, True))
+    found = [bandwidth(mesh.matrix, call()) for call in calls]
     print(f"  bandwidths: SciPy {found[0]}, meshorder {found[1]}")
 
 
@@ -146,8 +146,8 @@ def compare_fiedler(rounds: int) -> None:
             continue
         times = in_turns(
             min(rounds, 3),
-            lambda g=graph: seconds(lambda: nx.fiedler_vector(g, seed=1)),
-            lambda g=graph: seconds(lambda: meshorder.networkx.fiedler_vector(g, seed=1)),
+            partial(seconds, partial(nx.fiedler_vector, graph, seed=1)),
+            partial(seconds, partial(meshorder.networkx.fiedler_vector, graph, seed=1)),
         )
         tell(f"{name}, networkx / meshorder", *times)
 

@@ -18,6 +18,7 @@ import pytest
 from meshorder import _command
 
 COMMAND = pathlib.Path(sys.executable).with_name("meshorder")
+ODD_NAME = "a<b & \"ü\""
 pytestmark = pytest.mark.skipif(not COMMAND.exists(), reason="the wheel is not installed")
 
 
@@ -44,7 +45,7 @@ def deck(mesh, tmp_path):
     made = meshio.Mesh(
         points,
         [("tetra", cells[:1500]), ("triangle", cells[:40, :3]), ("tetra", cells[1500:])],
-        point_data={"t": points @ [1, 10, 100], "a<b & \"ü\"": random.integers(0, 9, len(points))},
+        point_data={"t": points @ [1, 10, 100], ODD_NAME: random.integers(0, 9, len(points))},
         cell_data={"centre": [points[c].mean(axis=1) for c in (cells[:1500], cells[:40, :3], cells[1500:])]},
     )
     of_abaqus = meshio.Mesh(
@@ -174,9 +175,8 @@ def test_own_formats_on_one_side(deck, tmp_path):
         assert sorted(old_corners.tolist()) == sorted(new_corners.tolist())
 
     done = ok("order", "deck.xmf", "-o", "names.vtu", "--vertices", "original", cwd=tmp_path)
-    np.testing.assert_array_equal(
-        meshio.read(tmp_path / "names.vtu").point_data["a<b & \"ü\""], deck.point_data["a<b & \"ü\""]
-    )
+    moved = meshio.read(tmp_path / "names.vtu")
+    np.testing.assert_array_equal(moved.point_data[ODD_NAME], deck.point_data[ODD_NAME])
 
     done = ok("order", "out.vtu", "-o", "back.mdpa", cwd=tmp_path)
     assert "back.mdpa: does not give back the point sets left" in done.stderr
@@ -200,11 +200,13 @@ def test_info_and_compare_name_the_users_file(deck, tmp_path):
 
 def test_cells_are_never_lost(mesh, tmp_path):
     points, cells = mesh
-    meshio.Mesh(points, [("tetra", cells), ("wedge", cells[:3, [0, 1, 2, 3, 0, 1]])]).write(tmp_path / "a.xmf")
+    blocks = [("tetra", cells), ("wedge", cells[:3, [0, 1, 2, 3, 0, 1]])]
+    meshio.Mesh(points, blocks).write(tmp_path / "a.xmf")
     before = sorted(os.listdir(tmp_path))
     for name in ("b.wkt", "b.svg", "b.xml"):
         done = run("order", "a.xmf", "-o", name, cwd=tmp_path)
-        assert done.returncode == 2 and done.stdout == "" and done.stderr.splitlines()[-1].startswith(f"meshorder: {name}: ")
+        assert done.returncode == 2 and done.stdout == ""
+        assert done.stderr.splitlines()[-1].startswith(f"meshorder: {name}: ")
         assert sorted(os.listdir(tmp_path)) == before
     polyhedron = [[np.array(face) for face in ([0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3])]]
     with pytest.raises(meshorder.InputError, match="cells of type polyhedron4"):
@@ -216,8 +218,8 @@ def test_cells_are_never_lost(mesh, tmp_path):
 def test_what_cannot_be_read_or_written_gives_one_line(tmp_path):
     (tmp_path / "bad.inp").write_text("*NODE\n1, what\n")
     (tmp_path / "empty.exo").write_text("")
-    for arguments in (["info", "bad.inp"], ["info", "none.inp"], ["info", "empty.exo"], ["order", "bad.inp", "-o", "no/b.inp"]):
-        done = run(*arguments, cwd=tmp_path)
+    for line in ("info bad.inp", "info none.inp", "info empty.exo", "order bad.inp -o no/b.inp"):
+        done = run(*line.split(), cwd=tmp_path)
         assert done.returncode == 2 and done.stdout == ""
         assert re.fullmatch(r"(meshorder: .*\n)+", done.stderr)
     assert "Traceback" not in done.stderr
@@ -236,7 +238,8 @@ def test_signals_end_it(deck, tmp_path, number):
     temporary = tmp_path / "tmp"
     temporary.mkdir()
     command = [COMMAND, "compare", "deck.inp", "--budget", "60"]
-    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, env={**os.environ, "TMPDIR": str(temporary)}) as child:
+    environment = {**os.environ, "TMPDIR": str(temporary)}
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, env=environment) as child:
         child.stderr.readline()  # that meshio was used
         time.sleep(1)
         child.send_signal(number)

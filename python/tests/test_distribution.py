@@ -51,7 +51,8 @@ def test_sdist_holds_what_the_wheel_is_made_of(sdist):
     tracked = subprocess.run(["git", "ls-files", *listed], cwd=ROOT, capture_output=True, text=True, check=True)
     assert set(tracked.stdout.split()) <= found
     # what is not tracked yet may be in it, build products may not
-    assert not [name for name in found if not name.startswith((*listed, "PKG-INFO")) or re.search(r"\.(so|pyi?c|o)$", name)]
+    assert all(name.startswith((*listed, "PKG-INFO")) for name in found)
+    assert not [name for name in found if re.search(r"\.(so|pyc|pyi|o)$", name)]
 
 
 def test_wheel_is_complete():

@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """The command `meshorder` of the Python package.
 
-It runs the command in C++ that lies in the package. Where a mesh has a format that only meshio knows, it is converted to
-.vtu first, and what is written is converted from it.
+It runs the command in C++ that lies in the package. Where a mesh has a format that only meshio knows, it is converted
+to .vtu first, and what is written is converted from it.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ def main() -> int:
 def _run_as_is(arguments: list[str]) -> int:
     if os.name == "nt":
         return subprocess.call([program(), *arguments])
-    for ignored in (signal.SIGPIPE, signal.SIGXFSZ):  # by Python
-        signal.signal(ignored, signal.SIG_DFL)
+    for ignored in ("SIGPIPE", "SIGXFSZ"):  # by Python
+        signal.signal(getattr(signal, ignored), signal.SIG_DFL)
     os.execv(program(), ["meshorder", *arguments])
 
 
@@ -228,7 +228,11 @@ def _run_in_other_names(arguments: list[str], names: dict[str, str], words: _Wor
         Its exit status, negative if a signal ended it; and what it printed on stdout.
     """
     with subprocess.Popen(
-        [program(), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", errors="surrogateescape"
+        [program(), *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        encoding="utf-8",
+        errors="surrogateescape",
     ) as child:
         assert child.stdout is not None and child.stderr is not None
 
@@ -255,5 +259,6 @@ def _run_in_other_names(arguments: list[str], names: dict[str, str], words: _Wor
             errors.join()
     printed = renamed(printed, lambda name: json.dumps(name, ensure_ascii=False)) if words.json else renamed(printed)
     if words.subcommand == "info":  # names the format that it read
-        printed = printed.replace('"format": "VTU"', '"format": "meshio"').replace(f"{words.mesh.path}, VTU", words.mesh.path)
+        printed = printed.replace('"format": "VTU"', '"format": "meshio"')
+        printed = printed.replace(f"{words.mesh.path}, VTU", words.mesh.path)
     return status, printed

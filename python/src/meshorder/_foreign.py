@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Files that meshio reads and writes and meshorder does not.
 
-Nothing is lost in silence: what a format does not give back, once it is written, is named; where cells would be lost, no
-file is written.
+Nothing is lost in silence: what a format does not give back, once it is written, is named; where cells would be lost,
+no file is written.
 """
 
 from __future__ import annotations
