@@ -175,8 +175,8 @@ def test_own_formats_on_one_side(deck, tmp_path):
         assert sorted(old_corners.tolist()) == sorted(new_corners.tolist())
 
     done = ok("order", "deck.xmf", "-o", "names.vtu", "--vertices", "original", cwd=tmp_path)
-    moved = meshio.read(tmp_path / "names.vtu")
-    np.testing.assert_array_equal(moved.point_data[ODD_NAME], deck.point_data[ODD_NAME])
+    named = meshio.read(tmp_path / "names.vtu")
+    np.testing.assert_array_equal(named.point_data[ODD_NAME], deck.point_data[ODD_NAME])
 
     done = ok("order", "out.vtu", "-o", "back.mdpa", cwd=tmp_path)
     assert "back.mdpa: does not give back the point sets left" in done.stderr
