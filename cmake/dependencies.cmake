@@ -18,8 +18,16 @@ function(meshorder_switch option target list)
   endif()
 endfunction()
 
-find_package(TBB REQUIRED)                   # threads
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # small dense eigenproblems; needed to build only
+# meshorder_require(<library> <Debian package> [option of find_package…])
+macro(meshorder_require library debian)
+  find_package(${library} ${ARGN} QUIET)
+  if(NOT ${library}_FOUND)
+    message(FATAL_ERROR "${library} was not found; Debian's package ${debian} has it")
+  endif()
+endmacro()
+
+meshorder_require(TBB libtbb-dev)                      # threads
+meshorder_require(Eigen3 libeigen3-dev 3.4 NO_MODULE)  # small dense eigenproblems; needed to build only
 if(NOT MESHORDER_METIS STREQUAL "OFF")
   meshorder_find_library(metis::metis metis.h metis)
 endif()
@@ -27,9 +35,9 @@ set(metis "")
 meshorder_switch(METIS metis::metis metis)
 
 if("io" IN_LIST components)
-  find_package(fmt REQUIRED)                 # text
+  meshorder_require(fmt libfmt-dev)                    # text
   if(NOT MESHORDER_ZLIB STREQUAL "OFF")
-    find_package(ZLIB)                       # compressed arrays of .vtu
+    find_package(ZLIB)                                 # compressed arrays of .vtu
   endif()
   if(NOT MESHORDER_LZMA STREQUAL "OFF")
     find_package(LibLZMA)
@@ -43,15 +51,17 @@ if("io" IN_LIST components)
   meshorder_switch(LZ4 lz4::lz4 compressions)
 endif()
 if("payoff" IN_LIST components)
-  find_package(hwy REQUIRED)                 # SIMD chosen at run time
+  meshorder_require(hwy libhwy-dev)                    # SIMD chosen at run time
 endif()
-if(MESHORDER_CLI OR MESHORDER_TESTS OR MESHORDER_BENCHMARKS)
-  find_package(nlohmann_json REQUIRED)       # results
-  find_package(meshoptimizer REQUIRED)       # fewer triangles for what is only looked at
+if(MESHORDER_CLI OR build_lab)
+  meshorder_require(nlohmann_json nlohmann-json3-dev)  # results
+endif()
+if(build_lab)
+  meshorder_require(meshoptimizer libmeshoptimizer-dev)  # fewer triangles for what is only looked at
   # of CHOLMOD's modules only those under the LGPL are called
   meshorder_find_library(cholmod::cholmod cholmod.h cholmod suitesparse)
-  find_package(ZLIB REQUIRED)                # checkpoints, the page's arrays
+  meshorder_require(ZLIB zlib1g-dev)                   # checkpoints, the page's arrays
 endif()
 if(MESHORDER_CLI)
-  find_package(CLI11 REQUIRED)               # the command line
+  meshorder_require(CLI11 libcli11-dev)                # the command line
 endif()

@@ -72,26 +72,25 @@ void run(const ApplyArguments& arguments) {
 
 }  // namespace
 
-void add_apply(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand(
-      "apply", "Reorder a mesh by the maps that `order --maps` wrote, or restore its old order.");
-  subcommand->footer(
+void add_apply(CLI::App& subcommand) {
+  subcommand.description("Reorder a mesh by the maps that `order --maps` wrote, or restore its old order.");
+  subcommand.footer(
       "Examples:\n"
       "  meshorder order a.msh -o ordered.msh --maps a\n"
       "  meshorder apply a a-with-loads.msh -o ordered-with-loads.msh\n"
       "  meshorder apply a ordered.msh -o a-again.msh --inverse");
   const auto arguments = std::make_shared<ApplyArguments>();
-  subcommand->add_option("PREFIX", arguments->prefix, "Prefix of the maps, as given to `order --maps`")
+  subcommand.add_option("PREFIX", arguments->prefix, "Prefix of the maps, as given to `order --maps`")
       ->required();
   subcommand
-      ->add_option("MESH", arguments->input, "Mesh file: in its old order or, with --inverse, reordered")
+      .add_option("MESH", arguments->input, "Mesh file: in its old order or, with --inverse, reordered")
       ->required();
-  subcommand->add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
+  subcommand.add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
   CLI::Option* const inverse =
-      subcommand->add_flag("--inverse", arguments->inverse, "Restore the old order, with the old ids");
-  add_ids_option(*subcommand, arguments->ids)->excludes(inverse);
-  add_common(*subcommand, *arguments);
-  subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+      subcommand.add_flag("--inverse", arguments->inverse, "Restore the old order, with the old ids");
+  add_ids_option(subcommand, arguments->ids)->excludes(inverse);
+  add_common(subcommand, *arguments);
+  subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }
 
 }  // namespace meshorder::command

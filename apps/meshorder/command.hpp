@@ -39,17 +39,18 @@ struct OrderNames {
 /// scrambled for `scrambled` and follow lexmax otherwise.
 OrderNames order_named(const std::string& name);
 
-// Each adds a subcommand to the application; the subcommand runs once all arguments are parsed.
-void add_order(CLI::App& app);
-void add_apply(CLI::App& app);
-void add_info(CLI::App& app);
-void add_compare(CLI::App& app);
-void add_models(CLI::App& app);
-void add_methods(CLI::App& app);
-void add_simulate(CLI::App& app);
-void add_reproduce(CLI::App& app);
-void add_serve_steps(CLI::App& app);
-void add_report(CLI::App& app);
+// Each gives a subcommand its options; it runs once all arguments are parsed. main.cpp has their names.
+void add_order(CLI::App& subcommand);
+void add_apply(CLI::App& subcommand);
+void add_info(CLI::App& subcommand);
+void add_compare(CLI::App& subcommand);
+void add_methods(CLI::App& subcommand);
+// of the laboratory; without it they are refused
+void add_models(CLI::App& subcommand);
+void add_simulate(CLI::App& subcommand);
+void add_reproduce(CLI::App& subcommand);
+void add_serve_steps(CLI::App& subcommand);
+void add_report(CLI::App& subcommand);
 
 /// Adds --json, --quiet and --threads.
 void add_common(CLI::App& subcommand, Common& common);

@@ -139,28 +139,27 @@ void run(const CompareArguments& arguments) {
 
 }  // namespace
 
-void add_compare(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand(
-      "compare",
+void add_compare(CLI::App& subcommand) {
+  subcommand.description(
       "Compare orders of a mesh: their cost, edge spans, predicted cache misses and measured kernels.\n"
       "With --threads N, N > 1, the kernels run on one thread and then on N.");
-  subcommand->footer(
+  subcommand.footer(
       "Example:\n"
       "  meshorder compare dragon.veg --methods hilbert,fiedler,metis-nd");
   const auto arguments = std::make_shared<CompareArguments>();
-  subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
+  subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
   subcommand
-      ->add_option("--methods", arguments->methods,
-                   "Orders to compare, VERTICES or VERTICES/ELEMENTS, separated by commas")
+      .add_option("--methods", arguments->methods,
+                  "Orders to compare, VERTICES or VERTICES/ELEMENTS, separated by commas")
       ->delimiter(',')
       ->default_str(join(default_methods(), std::identity(), ","));
-  subcommand->add_option("--budget", arguments->budget_seconds, "Seconds to spend on running the kernels")
+  subcommand.add_option("--budget", arguments->budget_seconds, "Seconds to spend on running the kernels")
       ->check(positive())
       ->capture_default_str();
-  add_cache_option(*subcommand, arguments->caches);
-  add_ordering_options(*subcommand, arguments->ordering);
-  add_common(*subcommand, *arguments);
-  subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+  add_cache_option(subcommand, arguments->caches);
+  add_ordering_options(subcommand, arguments->ordering);
+  add_common(subcommand, *arguments);
+  subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }
 
 }  // namespace meshorder::command

@@ -202,22 +202,21 @@ void run(const InfoArguments& arguments) {
 
 }  // namespace
 
-void add_info(CLI::App& app) {
-  CLI::App* subcommand =
-      app.add_subcommand("info", "Show what a mesh file holds and whether its order is good.");
-  subcommand->footer(
+void add_info(CLI::App& subcommand) {
+  subcommand.description("Show what a mesh file holds and whether its order is good.");
+  subcommand.footer(
       "Examples:\n"
       "  meshorder info dragon.veg\n"
       "  meshorder info dragon.veg --measure");
   const auto arguments = std::make_shared<InfoArguments>();
-  subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
-  add_cache_option(*subcommand, arguments->caches);
-  subcommand->add_flag(
+  subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
+  add_cache_option(subcommand, arguments->caches);
+  subcommand.add_flag(
       "--measure", arguments->measure,
       "Run the kernels for a few seconds, in the mesh's order and in a better one, instead of\n"
       "predicting the gain");
-  add_common(*subcommand, *arguments);
-  subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+  add_common(subcommand, *arguments);
+  subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }
 
 }  // namespace meshorder::command

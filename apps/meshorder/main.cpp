@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -18,6 +19,25 @@ namespace {
 
 constexpr int kBadInput = 2;
 constexpr int kOwnFailure = 1;
+
+struct Subcommand {
+  const char* name;
+  void (*add)(CLI::App& subcommand);
+};
+
+/// In the order of the help.
+constexpr std::array kSubcommands{
+    Subcommand{"order", meshorder::command::add_order},
+    Subcommand{"apply", meshorder::command::add_apply},
+    Subcommand{"info", meshorder::command::add_info},
+    Subcommand{"compare", meshorder::command::add_compare},
+    Subcommand{"simulate", meshorder::command::add_simulate},
+    Subcommand{"reproduce", meshorder::command::add_reproduce},
+    Subcommand{"report", meshorder::command::add_report},
+    Subcommand{"models", meshorder::command::add_models},
+    Subcommand{"methods", meshorder::command::add_methods},
+    Subcommand{"serve-steps", meshorder::command::add_serve_steps},
+};
 
 int report(const std::string& message, int status) {
   fmt::print(stderr, "meshorder: {}\n", message);
@@ -75,9 +95,12 @@ int main(int argc, char** argv) {
       "  meshorder order  dragon.veg -o ordered.veg   order by the method chosen for the mesh\n"
       "  meshorder info   dragon.veg                  counts and spans; is it in a good order?\n"
       "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
+#ifdef MESHORDER_HAS_LAB
       "  meshorder simulate falling --mesh dragon.veg simulate an elastic body and time it\n"
       "  meshorder reproduce -o results               the paper's study on this machine, as a page\n"
-      "  meshorder report dragon.veg                  all of it as a page for the browser\n",
+      "  meshorder report dragon.veg                  all of it as a page for the browser\n"
+#endif
+      ,
       "meshorder"};
   app.set_version_flag("-V,--version", MESHORDER_VERSION);
   app.require_subcommand(1);
@@ -91,16 +114,7 @@ int main(int argc, char** argv) {
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->trigger_on_parse();
-  meshorder::command::add_order(app);
-  meshorder::command::add_apply(app);
-  meshorder::command::add_info(app);
-  meshorder::command::add_compare(app);
-  meshorder::command::add_simulate(app);
-  meshorder::command::add_reproduce(app);
-  meshorder::command::add_report(app);
-  meshorder::command::add_models(app);
-  meshorder::command::add_methods(app);
-  meshorder::command::add_serve_steps(app);
+  for (const auto& [name, add] : kSubcommands) add(*app.add_subcommand(name));
   try {
     if (argc < 2) {
       fmt::print(stderr, "{}", app.help());

@@ -35,14 +35,14 @@ void run(const Common& common) {
 
 }  // namespace
 
-void add_methods(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand("methods", "List the ordering methods, with a description each.");
-  subcommand->footer(
+void add_methods(CLI::App& subcommand) {
+  subcommand.description("List the ordering methods, with a description each.");
+  subcommand.footer(
       "Example:\n"
       "  meshorder methods");
   const auto common = std::make_shared<Common>();
-  add_common(*subcommand, *common);
-  subcommand->callback([common] { run(*common); });
+  add_common(subcommand, *common);
+  subcommand.callback([common] { run(*common); });
 }
 
 }  // namespace meshorder::command

@@ -87,24 +87,24 @@ void make(const MakeArguments& arguments) {
 
 }  // namespace
 
-void add_models(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand(
-      "models", "Make meshes to try things on: the paper's bodies, and grids, balls and tori of any size.");
-  subcommand->footer(
+void add_models(CLI::App& subcommand) {
+  subcommand.description(
+      "Make meshes to try things on: the paper's bodies, and grids, balls and tori of any size.");
+  subcommand.footer(
       "Examples:\n"
       "  meshorder models\n"
       "  meshorder models make dragon");
   const auto common = std::make_shared<Common>();
-  add_common(*subcommand, *common);
-  subcommand->require_subcommand(0, 1);
-  CLI::App* list_command = subcommand->add_subcommand("list", "List the models and where they are stored");
+  add_common(subcommand, *common);
+  subcommand.require_subcommand(0, 1);
+  CLI::App* list_command = subcommand.add_subcommand("list", "List the models and where they are stored");
   add_common(*list_command, *common);
   list_command->callback([common] { list(*common); });
 
   CLI::App* make_command =
-      subcommand->add_subcommand("make",
-                                 "Make a model and keep it in your cache folder.\n"
-                                 "The scanned bodies are downloaded from Debian's package archive (24 MB).");
+      subcommand.add_subcommand("make",
+                                "Make a model and keep it in your cache folder.\n"
+                                "The scanned bodies are downloaded from Debian's package archive (24 MB).");
   make_command->footer(
       "Example:\n"
       "  meshorder models make grid --size 40");
@@ -120,8 +120,8 @@ void add_models(CLI::App& app) {
   add_common(*make_command, *arguments);
   make_command->callback([arguments] { with_threads(arguments->threads, [&] { make(*arguments); }); });
 
-  subcommand->callback([subcommand, common] {
-    if (subcommand->get_subcommands().empty()) list(*common);
+  subcommand.callback([&subcommand, common] {
+    if (subcommand.get_subcommands().empty()) list(*common);
   });
 }
 

@@ -111,27 +111,26 @@ void run(const OrderArguments& arguments) {
 
 }  // namespace
 
-void add_order(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand(
-      "order",
+void add_order(CLI::App& subcommand) {
+  subcommand.description(
       "Reorder a mesh with all its data, labels and groups. The extension of the output is its format.");
-  subcommand->footer(
+  subcommand.footer(
       "Examples:\n"
       "  meshorder order dragon.veg -o ordered.veg\n"
       "  meshorder order part.msh -o part.vtu --for spmv --maps part");
   const auto arguments = std::make_shared<OrderArguments>();
-  subcommand->add_option("MESH", arguments->input, "Mesh file")->required();
-  subcommand->add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
+  subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
+  subcommand.add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
   subcommand
-      ->add_option("--vertices", arguments->reordering.methods.vertices,
-                   "Method for vertices, see `meshorder methods`")
+      .add_option("--vertices", arguments->reordering.methods.vertices,
+                  "Method for vertices, see `meshorder methods`")
       ->capture_default_str();
   subcommand
-      ->add_option("--elements", arguments->reordering.methods.elements,
-                   "Method for elements, see `meshorder methods`")
+      .add_option("--elements", arguments->reordering.methods.elements,
+                  "Method for elements, see `meshorder methods`")
       ->capture_default_str();
   subcommand
-      ->add_option(
+      .add_option(
           "--group-by", arguments->reordering.group_by,
           "Keep groups together: an array of integers that `meshorder info` lists, or `sets`.\n"
           "`label` is the file's own cell tag (Gmsh's first physical group, Medit's reference);\n"
@@ -141,13 +140,13 @@ void add_order(CLI::App& app) {
           "the vertices. Write cells:NAME or vertices:NAME if both have that array (default: cells).\n"
           "Cells and vertices without a value come last")
       ->type_name("NAME");
-  add_ids_option(*subcommand, arguments->ids);
-  subcommand->add_option(
+  add_ids_option(subcommand, arguments->ids);
+  subcommand.add_option(
       "--maps", arguments->maps,
       "Also write the permutations as NumPy files: PREFIX.vertices.old_to_new.npy and so on");
-  add_ordering_options(*subcommand, arguments->reordering.order);
-  add_common(*subcommand, *arguments);
-  subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+  add_ordering_options(subcommand, arguments->reordering.order);
+  add_common(subcommand, *arguments);
+  subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }
 
 }  // namespace meshorder::command

@@ -194,30 +194,29 @@ void run(const ReportArguments& arguments) {
 
 }  // namespace
 
-void add_report(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand(
-      "report",
+void add_report(CLI::App& subcommand) {
+  subcommand.description(
       "Write a page for the browser: meshes coloured by their order, spans, caches, kernels, tables.\n"
       "The page is one file and needs no network.");
-  subcommand->footer(
+  subcommand.footer(
       "Examples:\n"
       "  meshorder report dragon.veg -o dragon.html   your mesh as it is and in other orders, and what\n"
       "                                               each is worth; takes about half a minute\n"
       "  meshorder report results/                    a study: writes its tables, figures and page again");
   const auto arguments = std::make_shared<ReportArguments>();
-  subcommand->add_option("INPUT", arguments->inputs, "Mesh files, or the folder of one study")
+  subcommand.add_option("INPUT", arguments->inputs, "Mesh files, or the folder of one study")
       ->required()
       ->type_name("MESH… | DIR");
-  subcommand->add_option("-o,--output", arguments->output,
-                         "File for the page on meshes (default: report.html)");
+  subcommand.add_option("-o,--output", arguments->output,
+                        "File for the page on meshes (default: report.html)");
   subcommand
-      ->add_option("--budget", arguments->budget_seconds,
-                   "Seconds to spend on running the kernels, for each mesh")
+      .add_option("--budget", arguments->budget_seconds,
+                  "Seconds to spend on running the kernels, for each mesh")
       ->check(positive())
       ->capture_default_str();
-  add_ordering_options(*subcommand, arguments->ordering);
-  add_common(*subcommand, *arguments);
-  subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+  add_ordering_options(subcommand, arguments->ordering);
+  add_common(subcommand, *arguments);
+  subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }
 
 }  // namespace meshorder::command

@@ -93,11 +93,10 @@ void run(const ReproduceArguments& arguments) {
 
 }  // namespace
 
-void add_reproduce(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand(
-      "reproduce",
+void add_reproduce(CLI::App& subcommand) {
+  subcommand.description(
       "Repeat the paper's study on this machine: six scenarios, five orders, tables and a page.");
-  subcommand->footer(
+  subcommand.footer(
       "Examples:\n"
       "  meshorder reproduce --quick -o results   a few steps of each scenario: some minutes\n"
       "  meshorder reproduce -o results           240 steps, three runs: hours; stop it by Ctrl-C and\n"
@@ -106,35 +105,35 @@ void add_reproduce(CLI::App& app) {
   arguments->threads = 1;
   StudyPlan& plan = arguments->plan;
   subcommand
-      ->add_option("-o,--output", arguments->folder,
-                   "Folder for the results; an unfinished study in it is resumed")
+      .add_option("-o,--output", arguments->folder,
+                  "Folder for the results; an unfinished study in it is resumed")
       ->capture_default_str();
-  CLI::Option* const quick = subcommand->add_flag("--quick", arguments->quick, "One run of a few steps");
-  subcommand->add_flag("--full", arguments->full, "All steps, three runs (default)")->excludes(quick);
-  subcommand->add_option(
+  CLI::Option* const quick = subcommand.add_flag("--quick", arguments->quick, "One run of a few steps");
+  subcommand.add_flag("--full", arguments->full, "All steps, three runs (default)")->excludes(quick);
+  subcommand.add_option(
       "--scenario", plan.scenarios,
       "A scenario's name or file, see `meshorder simulate`; may be repeated (default: all)");
-  subcommand->add_option("--mesh", plan.mesh, "Mesh instead of the scenarios' own: a model's name or a file");
-  subcommand->add_option("--size", plan.size, "Size of the meshes: paper, 300k or 2m vertices")
+  subcommand.add_option("--mesh", plan.mesh, "Mesh instead of the scenarios' own: a model's name or a file");
+  subcommand.add_option("--size", plan.size, "Size of the meshes: paper, 300k or 2m vertices")
       ->capture_default_str();
   subcommand
-      ->add_option("--orders", arguments->orders,
-                   "Orders besides the paper's five: VERTICES/ELEMENTS, separated by commas")
+      .add_option("--orders", arguments->orders,
+                  "Orders besides the paper's five: VERTICES/ELEMENTS, separated by commas")
       ->delimiter(',');
-  subcommand->add_option("--runs", plan.runs, "Runs of each scenario in each order")
+  subcommand.add_option("--runs", plan.runs, "Runs of each scenario in each order")
       ->check(in_range(1, 1000))
       ->excludes(quick)
       ->capture_default_str();
-  subcommand->add_option("--steps", arguments->steps, "Number of steps instead of the scenarios' own")
+  subcommand.add_option("--steps", arguments->steps, "Number of steps instead of the scenarios' own")
       ->check(in_range(1, 1'000'000));
   subcommand
-      ->add_option("--budget", plan.kernel_seconds, "Seconds to spend on running the kernels, for each mesh")
+      .add_option("--budget", plan.kernel_seconds, "Seconds to spend on running the kernels, for each mesh")
       ->check(positive())
       ->capture_default_str();
-  subcommand->add_flag("--no-pin", arguments->no_pin, "Do not bind threads to processors");
-  add_ordering_options(*subcommand, plan.ordering);
-  add_common(*subcommand, *arguments);
-  subcommand->callback([arguments] { run(*arguments); });
+  subcommand.add_flag("--no-pin", arguments->no_pin, "Do not bind threads to processors");
+  add_ordering_options(subcommand, plan.ordering);
+  add_common(subcommand, *arguments);
+  subcommand.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace meshorder::command

@@ -244,19 +244,18 @@ void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
 
 }  // namespace
 
-void add_simulate(CLI::App& app) {
-  CLI::App* subcommand = app.add_subcommand(
-      "simulate",
+void add_simulate(CLI::App& subcommand) {
+  subcommand.description(
       "Simulate an elastic body as a scenario describes, with the mesh in a given order, and time it.");
-  subcommand->footer(
+  subcommand.footer(
       "Example:\n"
       "  meshorder simulate falling --order fiedler --vtk frames");
   const auto arguments = std::make_shared<SimulateArguments>();
-  add_scenario_options(*subcommand, *arguments);
-  add_output_options(*subcommand, *arguments);
-  add_ordering_options(*subcommand, arguments->ordering);
-  add_common(*subcommand, *arguments);
-  subcommand->callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+  add_scenario_options(subcommand, *arguments);
+  add_output_options(subcommand, *arguments);
+  add_ordering_options(subcommand, arguments->ordering);
+  add_common(subcommand, *arguments);
+  subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }
 
 }  // namespace meshorder::command

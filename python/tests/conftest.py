@@ -10,7 +10,7 @@ def lattice(*sizes):
     """The graph of a lattice, its vertices shuffled."""
     graph = sp.csr_array((1, 1))
     for size in sizes:
-        path = sp.diags_array([np.ones(size - 1), np.ones(size - 1)], offsets=[-1, 1])
+        path = sp.diags([np.ones(size - 1), np.ones(size - 1)], offsets=[-1, 1])
         graph = sp.kronsum(graph, path, format="csr")
     shuffled = np.random.default_rng(1).permutation(graph.shape[0])
     graph = sp.csr_array(graph)[shuffled][:, shuffled]

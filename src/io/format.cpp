@@ -78,7 +78,7 @@ const Format& format_of(const std::filesystem::path& path) {
   }
   throw InputError(path.string(),
                    extension.empty() ? "has no extension" : "unknown extension '" + extension + "'",
-                   "known are " + known);
+                   "known are " + known + "; the Python package and its command also take meshio's formats");
 }
 
 const Format& format_named(std::string_view name) {

@@ -1,22 +1,28 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Files of formats that meshorder does not read or write itself: meshio does, where it is installed."""
+"""Files of formats that meshorder does not read or write itself: meshio does, where it is installed.
+
+Nothing is lost in silence: what a format does not give back, once it is written, is named; where cells would be lost,
+no file is written.
+"""
 
 from __future__ import annotations
 
 import contextlib
-import importlib.util
 import io
-from collections.abc import Callable
+import os
+import shutil
+import tempfile
+from collections import Counter
+from collections.abc import Iterator
 from pathlib import PurePath
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import _core
 from ._errors import InputError, InvalidArgument, Unavailable
-from ._meshes import SHAPES, Mesh
-from .hosts.meshio import MeshioMesh
+from ._meshes import Mesh
+from .hosts.meshio import MeshioMesh, to_meshio
 
 
 def format_of_meshio(path: str, format: str = "") -> str | None:
@@ -31,11 +37,15 @@ def format_of_meshio(path: str, format: str = "") -> str | None:
         not format and name.endswith(tuple(end for _, extensions, _ in ours for end in extensions))
     ):
         return None
-    if importlib.util.find_spec("meshio") is None:
+    if not format and not PurePath(name).suffix:
+        return None
+    try:
+        import meshio
+    except ImportError:
         what = f"format '{format}'" if format else f"extension '{PurePath(name).suffix}'"
-        raise InputError(f"{path}: unknown {what}; meshio knows more than meshorder itself: pip install meshio")
-    import meshio
-
+        raise InputError(
+            f"{path}: unknown {what}; meshio knows more than meshorder itself: pip install meshio"
+        ) from None
     found = [kinds for end, kinds in meshio.extension_to_filetypes.items() if name.endswith(end)]
     if format:
         return format if any(format in kinds for kinds in meshio.extension_to_filetypes.values()) else None
@@ -47,6 +57,36 @@ def read(path: str, format: str) -> Mesh:
 
     Raises:
         InputError: meshio cannot read the file, or it holds cells that meshorder does not know.
+        Unavailable: meshio needs another package for the format.
+    """
+    found, notes = read_meshio(path, format)
+    try:
+        mesh = MeshioMesh(found).mesh()
+    except InvalidArgument as error:
+        raise InputError(f"{path}: {error}") from error
+    if len(mesh.shapes) == 0:
+        raise InputError(f"{path}: meshio found no cells")
+    mesh.notes[:0] = notes
+    return mesh
+
+
+def write(mesh: Mesh, path: str, format: str) -> list[str]:
+    """Writes a file by meshio. Returns that, and what is missing from the file.
+
+    Raises:
+        InputError, Unavailable: as `write_meshio`.
+    """
+    made, notes = to_meshio(mesh)
+    written, *missing = write_meshio(made, path, format)
+    return [written, *notes, *missing]
+
+
+def read_meshio(path: str, format: str) -> tuple[Any, list[str]]:
+    """A meshio.Mesh of a file; that meshio read it, and what meshio says of it.
+
+    Raises:
+        InputError: the file is missing, or meshio cannot read it.
+        Unavailable: meshio needs another package for the format.
     """
     import meshio
 
@@ -54,124 +94,139 @@ def read(path: str, format: str) -> Mesh:
         open(path, "rb").close()
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
-    found, warnings = _call(lambda: meshio.read(path, format), f"{path}: meshio cannot read this as {format}")
-    try:
-        mesh = MeshioMesh(found).mesh()
-    except InvalidArgument as error:
-        raise InputError(f"{path}: {error}") from error
-    if len(mesh.shapes) == 0:
-        raise InputError(f"{path}: meshio found no cells")
-    mesh.notes[:0] = [
+    notes = [
         f"read by meshio {meshio.__version__} as {format}: points, cells, data and sets; "
-        "the rest of the file, numbers of nodes and elements among it, was left out",
-        *warnings,
+        "the rest of the file, numbers of nodes and elements among it, was left out"
     ]
-    return mesh
+    with _meshios_words(path, notes, f"read this as {format}"):
+        mesh = meshio.read(path, format)
+    return mesh, notes
 
 
-def write(mesh: Mesh, path: str, format: str) -> list[str]:
-    """Writes a file by meshio, and reads it again to see what it holds.
+def write_meshio(mesh: Any, path: str, format: str) -> list[str]:
+    """Writes a meshio.Mesh, and reads it again to see what the format holds of it.
 
     Returns:
-        That meshio wrote it, and what is missing from the file.
+        That meshio wrote it, what meshio says, and what the file does not hold.
 
     Raises:
-        InputError: meshio cannot write these cells in this format.
+        InputError: meshio cannot write it, or cells would be lost. There is no file then.
+        Unavailable: meshio needs another package for the format.
     """
     import meshio
 
-    given, notes = to_meshio(mesh)
-    _, warnings = _call(lambda: meshio.write(path, given, format), f"{path}: meshio cannot write this as {format}")
-    notes = [f"written by meshio {meshio.__version__} as {format}", *warnings, *notes]
-    try:
-        kept, _ = _call(lambda: meshio.read(path, format), "")
-    except (InputError, Unavailable):
-        return [*notes, "meshio cannot read this file again: what it holds was not verified"]
-    return notes + _missing(given, kept)
-
-
-def to_meshio(mesh: Mesh) -> tuple[Any, list[str]]:
-    """A meshio.Mesh with the same data and sets, its cells grouped by type; and what it cannot hold."""
-    import meshio
-
-    widths = np.diff(mesh.offsets)
-    kinds, first, kind_of = np.unique(
-        np.stack([mesh.shapes.astype(np.int64), widths]), axis=1, return_index=True, return_inverse=True
-    )
-    members = [np.flatnonzero(kind_of.ravel() == kind) for kind in np.argsort(first)]
-    blocks = []
-    for cells in members:
-        width = widths[cells[0]]
-        rows = mesh.connectivity[mesh.offsets[cells][:, np.newaxis] + np.arange(width)]
+    notes = [f"written by meshio {meshio.__version__} as {format}"]
+    with folder_beside(path) as folder:
+        made = os.path.join(folder, os.path.basename(path))
+        with _meshios_words(path, notes, f"write this as {format}"):
+            meshio.write(made, _shallow_copy(mesh), format)
         try:
-            blocks.append(meshio.CellBlock(_type_name(SHAPES[mesh.shapes[cells[0]]], int(width)), rows))
-        except KeyError:
-            name = f"{SHAPES[mesh.shapes[cells[0]]]} of {width} vertices"
-            raise InputError(f"meshio has no cells of the type {name}") from None
-    notes = [] if (np.concatenate(members) == np.arange(len(widths))).all() else ["cells were grouped by type"]
-    points = mesh.points[:, : mesh._handle.dimension]
-    made = meshio.Mesh(np.array(points), blocks)
-    _attach(made, mesh, members, notes)
-    if len(mesh.vertex_ids) or len(mesh.cell_ids):
-        notes.append("the numbers of vertices and cells were left out")
-    notes += [f"{content}: left out" for content in mesh._handle.format_contents]
-    return made, notes
-
-
-def _attach(made: Any, mesh: Mesh, members: list[NDArray[Any]], notes: list[str]) -> None:
-    for name, of_vertices, values, indices in mesh._handle.data:
-        if isinstance(values, list) or len(indices):
-            why = "its values are texts" if isinstance(values, list) else "it covers only some"
-            notes.append(f"{'point' if of_vertices else 'cell'} data '{name}' was left out: {why}")
-        elif of_vertices:
-            made.point_data[name] = np.array(values)
+            with _meshios_words(path, [], "read it again"):
+                again = meshio.read(made, format)
+        except (InputError, Unavailable):
+            notes.append("meshio cannot read this file again: what it holds was not verified")
         else:
-            made.cell_data[name] = [values[cells] for cells in members]
-    places = np.empty(len(mesh.shapes), dtype=np.int64)  # of each cell within its block
-    block_of = np.empty(len(mesh.shapes), dtype=np.int64)
-    for block, cells in enumerate(members):
-        places[cells], block_of[cells] = np.arange(len(cells)), block
-    for name, of_vertices, listed in mesh._handle.sets:
-        if of_vertices:
-            made.point_sets[name] = np.array(listed)
-        else:
-            made.cell_sets[name] = [places[listed[block_of[listed] == block]] for block in range(len(members))]
-
-
-def _type_name(shape: str, width: int) -> str:
-    name = {"tetrahedron": "tetra"}.get(shape, shape)
-    linear = {"vertex": 1, "line": 2, "triangle": 3, "quad": 4, "tetra": 4, "pyramid": 5, "wedge": 6, "hexahedron": 8}
-    return name if name == "polygon" or linear.get(name) == width else f"{name}{width}"
-
-
-def _missing(given: Any, kept: Any) -> list[str]:
-    """What of one meshio.Mesh another lacks."""
-    notes = []
-    for kind in ("point_data", "cell_data", "point_sets", "cell_sets"):
-        lost = [f"'{name}'" for name in getattr(given, kind) if name not in getattr(kept, kind)]
-        if lost:
-            notes.append(f"{kind.replace('_', ' ')} {', '.join(lost)}: not in the file under this name")
-    if len(given.points) != len(kept.points):
-        notes.append(f"{len(given.points)} points were written, {len(kept.points)} are in the file")
-    counts = [sum(len(block.data) for block in mesh.cells) for mesh in (given, kept)]
-    if counts[0] != counts[1]:
-        notes.append(f"{counts[0]} cells were written, {counts[1]} are in the file")
+            notes += _what_is_lost(mesh, again, path)
+        for name in os.listdir(folder):
+            os.replace(os.path.join(folder, name), os.path.join(os.path.dirname(path), name))
     return notes
 
 
-def _call(work: Callable[[], Any], fault: str) -> tuple[Any, list[str]]:
-    """The result of a call to meshio and the warnings that it printed. meshio ends the process on some faults."""
+@contextlib.contextmanager
+def folder_beside(path: str) -> Iterator[str]:
+    """A folder to write in, which is gone at the end; on the disk of the file that is to be written.
+
+    Raises:
+        InputError: nothing can be written there.
+    """
+    target = os.path.dirname(path) or os.curdir
+    try:
+        folder = tempfile.mkdtemp(prefix=".meshorder-", dir=target)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextlib.contextmanager
+def _meshios_words(path: str, notes: list[str], what: str) -> Iterator[None]:
+    """Turns what meshio prints into notes, and its many ways to fail into an InputError."""
     printed = io.StringIO()
+    width = os.environ.get("COLUMNS")
+    os.environ["COLUMNS"] = "1000"  # its lines are not broken then
     try:
         with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
-            result = work()
+            yield
+    except ImportError as error:
+        raise Unavailable(f"{path}: meshio needs the package {error.name} to {what}; install that, too") from None
     except MemoryError:
         raise
-    except ImportError as error:
-        raise Unavailable(f"{fault}: {error}") from error
-    except (Exception, SystemExit) as error:
-        text = " ".join(printed.getvalue().split())
-        said = text if isinstance(error, SystemExit) else f"{error} {text}".strip() or type(error).__name__
-        raise InputError(f"{fault}: {said}") from error
-    warnings = " ".join(printed.getvalue().split()).split("Warning: ")
-    return result, [f"meshio: {warning.strip()}" for warning in warnings if warning.strip()]
+    except (Exception, SystemExit) as error:  # meshio ends the process on some faults
+        words = "" if isinstance(error, SystemExit) else str(error)
+        reason = " ".join((words or printed.getvalue() or type(error).__name__).split())
+        raise InputError(f"{path}: meshio cannot {what}: {reason}") from None
+    finally:
+        if width is None:
+            del os.environ["COLUMNS"]
+        else:
+            os.environ["COLUMNS"] = width
+    for line in printed.getvalue().splitlines():
+        if line.strip():
+            notes.append(f"meshio: {line.strip().removeprefix('Warning: ')}")
+
+
+def _shallow_copy(mesh: Any) -> Any:
+    """A mesh with the same arrays; meshio's writers change the lists and dictionaries of the one that they write."""
+    return type(mesh)(
+        mesh.points,
+        list(mesh.cells),
+        dict(mesh.point_data),
+        {name: list(blocks) for name, blocks in mesh.cell_data.items()},
+        dict(mesh.field_data),
+        dict(mesh.point_sets),
+        {name: list(blocks) for name, blocks in mesh.cell_sets.items()},
+        mesh.gmsh_periodic,
+        mesh.info,
+    )
+
+
+def _counts(mesh: Any) -> Counter[str]:
+    counts: Counter[str] = Counter()
+    for block in mesh.cells:
+        counts[block.type] += len(block.data)
+    return +counts
+
+
+def _what_is_lost(mesh: Any, again: Any, path: str) -> Iterator[str]:
+    missing = _counts(mesh) - _counts(again)
+    extra = _counts(again) - _counts(mesh)
+    if missing.total() > extra.total():
+        listed = ", ".join(f"{count} of type {name}" for name, count in missing.items())
+        raise InputError(f"{path}: the format would lose cells: {listed}; choose another")
+    if missing:
+        yield f"cells of type {', '.join(missing)} become {', '.join(extra)}"
+    if len(again.points) != len(mesh.points):
+        yield f"the file has {len(again.points)} points instead of {len(mesh.points)}"
+    else:
+        width = min(mesh.points.shape[1], again.points.shape[1])
+        error = np.abs(again.points[:, :width] - mesh.points[:, :width]).max(initial=0)
+        if error > 0:
+            yield f"coordinates are rounded, by at most {error:.2g}"
+    for what in ("point_data", "cell_data", "point_sets", "cell_sets", "field_data"):
+        names = [f"'{name}'" for name in getattr(mesh, what) if name not in getattr(again, what)]
+        if names:
+            yield f"the file does not give back the {what.replace('_', ' ')} {', '.join(names)}"
+    for what in ("point_sets", "cell_sets"):
+        for name in getattr(mesh, what).keys() & getattr(again, what).keys():
+            before, after = (_member_count(getattr(one, what)[name]) for one in (mesh, again))
+            if before != after:
+                yield f"the {what.replace('_', ' ')[:-1]} '{name}' has {after} members in the file instead of {before}"
+
+
+def _member_count(members: Any) -> int:
+    """Of a set of points, or of one of cells, which has a list for each block."""
+    if isinstance(members, list):
+        return sum(len(part) for part in members if part is not None)
+    return len(members)

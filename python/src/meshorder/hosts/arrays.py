@@ -27,7 +27,7 @@ class ArrayMesh(Host):
     def __init__(self, mesh: tuple[Any, ...]) -> None:
         self.given = mesh
         self.points = as_points(mesh[0])
-        self.cells = mesh[1]
+        self.cells = _with_types(mesh[1])
         self._data: list[Any] = list(mesh[2:])
         for data, name in zip(self._data, ("point_data", "cell_data")):
             if not isinstance(data, Mapping):
@@ -127,6 +127,13 @@ def _copy_into(part: Any, moved: Any) -> None:
     elif isinstance(part, (list, tuple)):
         for inner, moved_inner in zip(part, moved):
             _copy_into(inner, moved_inner)
+
+
+def _with_types(cells: Any) -> Any:
+    """Blocks of meshio, which have a type and data, as pairs of these; other cells as they are."""
+    if isinstance(cells, list) and cells and all(hasattr(block, "type") and hasattr(block, "data") for block in cells):
+        return [(block.type, block.data) for block in cells]
+    return cells
 
 
 def _is_list_of_blocks(cells: Any) -> bool:

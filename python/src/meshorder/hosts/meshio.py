@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._arrays import integers
-from .._errors import InvalidArgument
-from .._meshes import Mesh, MeshOrder
+from .._errors import InputError, InvalidArgument
+from .._meshes import SHAPES, Mesh, MeshOrder
 from .._permutation import Permutation
 from .host import Host, parts
 
@@ -120,6 +120,60 @@ def _renumbered(new_places: NDArray[Any], members: Any, name: str) -> NDArray[An
         raise InvalidArgument(f"set '{name}' names what is outside 0 … {len(new_places) - 1}")
     renumbered: NDArray[Any] = new_places[numbers].astype(numbers.dtype)
     return renumbered
+
+
+def to_meshio(mesh: Mesh) -> tuple[Any, list[str]]:
+    """A meshio.Mesh with the same data and sets, its cells grouped by type; and what it cannot hold."""
+    import meshio
+
+    widths = np.diff(mesh.offsets)
+    kinds, first, kind_of = np.unique(
+        np.stack([mesh.shapes.astype(np.int64), widths]), axis=1, return_index=True, return_inverse=True
+    )
+    members = [np.flatnonzero(kind_of.ravel() == kind) for kind in np.argsort(first)]
+    blocks = []
+    for cells in members:
+        width = widths[cells[0]]
+        rows = mesh.connectivity[mesh.offsets[cells][:, np.newaxis] + np.arange(width)]
+        try:
+            blocks.append(meshio.CellBlock(_type_name(SHAPES[mesh.shapes[cells[0]]], int(width)), rows))
+        except KeyError:
+            name = f"{SHAPES[mesh.shapes[cells[0]]]} of {width} vertices"
+            raise InputError(f"meshio has no cells of the type {name}") from None
+    notes = [] if (np.concatenate(members) == np.arange(len(widths))).all() else ["cells were grouped by type"]
+    points = mesh.points[:, : mesh._handle.dimension]
+    made = meshio.Mesh(np.array(points), blocks)
+    _attach(made, mesh, members, notes)
+    if len(mesh.vertex_ids) or len(mesh.cell_ids):
+        notes.append("the numbers of vertices and cells were left out")
+    notes += [f"{content}: left out" for content in mesh._handle.format_contents]
+    return made, notes
+
+
+def _attach(made: Any, mesh: Mesh, members: list[NDArray[Any]], notes: list[str]) -> None:
+    for name, of_vertices, values, indices in mesh._handle.data:
+        if isinstance(values, list) or len(indices):
+            why = "its values are texts" if isinstance(values, list) else "it covers only some"
+            notes.append(f"{'point' if of_vertices else 'cell'} data '{name}' was left out: {why}")
+        elif of_vertices:
+            made.point_data[name] = np.array(values)
+        else:
+            made.cell_data[name] = [values[cells] for cells in members]
+    places = np.empty(len(mesh.shapes), dtype=np.int64)  # of each cell within its block
+    block_of = np.empty(len(mesh.shapes), dtype=np.int64)
+    for block, cells in enumerate(members):
+        places[cells], block_of[cells] = np.arange(len(cells)), block
+    for name, of_vertices, listed in mesh._handle.sets:
+        if of_vertices:
+            made.point_sets[name] = np.array(listed)
+        else:
+            made.cell_sets[name] = [places[listed[block_of[listed] == block]] for block in range(len(members))]
+
+
+def _type_name(shape: str, width: int) -> str:
+    name = {"tetrahedron": "tetra"}.get(shape, shape)
+    linear = {"vertex": 1, "line": 2, "triangle": 3, "quad": 4, "tetra": 4, "pyramid": 5, "wedge": 6, "hexahedron": 8}
+    return name if name == "polygon" or linear.get(name) == width else f"{name}{width}"
 
 
 def host(mesh: Any) -> Host:

@@ -1,0 +1,269 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""The command `meshorder` of the Python package.
+
+It runs the command in C++ that lies in the package. Where a mesh has a format that only meshio knows, it is converted
+to .vtu first, and what is written is converted from it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import IO, Any, NoReturn
+
+import numpy as np
+
+from . import _core, _foreign, _packed
+from ._errors import Error, InputError
+from ._packed import Blocks
+
+#: subcommands that take a mesh: its place among the arguments that are no options
+_MESH_PLACE = {"order": 0, "apply": 1, "info": 0, "compare": 0}
+#: options without a value; every other one has one
+_FLAGS = {"--json", "--quiet", "-q", "--inverse", "--measure"}
+_BAD_INPUT = 2
+
+
+def program() -> str:
+    """The path of the command in C++."""
+    folder = pathlib.Path(str(_core.__file__)).parent / "bin"
+    return str(folder / ("meshorder.exe" if os.name == "nt" else "meshorder"))
+
+
+def main() -> int:
+    """Runs the command with the arguments of this process; returns its exit status, or does not return."""
+    arguments = sys.argv[1:]
+    try:
+        words = _Words.of(arguments)
+        if words is None or not any(_foreign.format_of_meshio(path) for path in words.files()):
+            return _run_as_is(arguments)
+        return _run_through_meshio(arguments, words)
+    except Error as error:
+        print(f"meshorder: {error}", file=sys.stderr)
+        return _BAD_INPUT
+    except _Signalled as signalled:
+        _die_by(signalled.number)
+
+
+def _run_as_is(arguments: list[str]) -> int:
+    if os.name == "nt":
+        return subprocess.call([program(), *arguments])
+    for ignored in ("SIGPIPE", "SIGXFSZ"):  # by Python
+        signal.signal(getattr(signal, ignored), signal.SIG_DFL)
+    os.execv(program(), ["meshorder", *arguments])
+
+
+@dataclass
+class _Word:
+    """An argument that names a file, or the end of one that does, as in --output=FILE."""
+
+    path: str
+    place: int
+    before: str = ""
+
+    def put(self, arguments: list[str], path: str) -> None:
+        arguments[self.place] = self.before + path
+
+
+@dataclass
+class _Words:
+    """What the command line says of files."""
+
+    subcommand: str
+    mesh: _Word
+    output: _Word | None = None
+    maps: str | None = None
+    json: bool = False
+    quiet: bool = False
+
+    def files(self) -> Iterator[str]:
+        yield self.mesh.path
+        if self.output is not None:
+            yield self.output.path
+
+    @classmethod
+    def of(cls, arguments: list[str]) -> _Words | None:
+        """None where no mesh is named, or help is asked for."""
+        plain: list[int] = []
+        values: dict[str, _Word] = {}
+        flags: set[str] = set()
+        place = 0
+        while place < len(arguments):
+            word = arguments[place]
+            name, equals, value = word.partition("=")
+            if word == "--":
+                plain += range(place + 1, len(arguments))
+                break
+            if word in ("-h", "--help"):
+                return None
+            if not word.startswith("-") or word == "-":
+                plain.append(place)
+            elif word.startswith("--") and equals:
+                values[name] = _Word(value, place, name + equals)
+            elif word in _FLAGS:
+                flags.add(word)
+            elif word.startswith("-o") and len(word) > 2:
+                values["-o"] = _Word(word[2:], place, "-o")
+            elif place + 1 < len(arguments):
+                place += 1
+                values[word] = _Word(arguments[place], place)
+            place += 1
+        subcommand = arguments[plain[0]] if plain else ""
+        mesh = _MESH_PLACE.get(subcommand, len(arguments)) + 1
+        if mesh >= len(plain):
+            return None
+        maps = values.get("--maps")
+        return cls(
+            subcommand,
+            _Word(arguments[plain[mesh]], plain[mesh]),
+            values.get("-o", values.get("--output")),
+            maps.path if maps else None,
+            "--json" in flags,
+            not flags.isdisjoint({"--quiet", "-q"}),
+        )
+
+
+class _Signalled(BaseException):
+    def __init__(self, number: int) -> None:
+        self.number = number
+
+
+def _raise_signalled(number: int, _: object) -> NoReturn:
+    raise _Signalled(number)
+
+
+def _die_by(number: int) -> NoReturn:
+    signal.signal(number, signal.SIG_DFL)
+    os.kill(os.getpid(), number)
+    sys.exit(128 + number)
+
+
+def _run_through_meshio(arguments: list[str], words: _Words) -> int:
+    for number in (signal.SIGINT, signal.SIGTERM):
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _raise_signalled)
+
+    def say(notes: list[str]) -> None:
+        for note in notes if not words.quiet else []:
+            print(f"meshorder: {note}", file=sys.stderr)
+
+    arguments = list(arguments)
+    format = _foreign.format_of_meshio(words.mesh.path)
+    output_format = _foreign.format_of_meshio(words.output.path) if words.output is not None else None
+    output = words.output if output_format else None
+    dimension = 3
+    field_data: dict[str, Any] = {}
+    names = {}
+    made = ""
+    with contextlib.ExitStack() as stack:
+        folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="meshorder-"))
+        if output is not None:
+            stack.enter_context(_foreign.folder_beside(output.path))  # fails before the work if it cannot be written
+            made = os.path.join(folder, "out.vtu")
+            output.put(arguments, made)
+            names[made] = output.path
+        if format:
+            mesh, notes = _foreign.read_meshio(words.mesh.path, format)
+            say([f"{words.mesh.path}: {note}" for note in notes])
+            scratch = os.path.join(folder, "in.vtu")
+            say(_packed.pack(mesh, scratch, words.mesh.path))
+            dimension, field_data = mesh.points.shape[1], mesh.field_data
+            if field_data and words.output is not None and output is None:
+                say([f"{words.mesh.path}: the field data {', '.join(field_data)} is left out"])
+            del mesh
+            words.mesh.put(arguments, scratch)
+            names[scratch] = words.mesh.path
+        status, printed = _run_in_other_names(arguments, names, words)
+        if status < 0:
+            raise _Signalled(-status)
+        if status == 0 and output is not None and output_format:
+            notes = _write(made, output.path, output_format, words, dimension, field_data)
+            say([f"{output.path}: {note}" for note in notes])
+    sys.stdout.write(printed)
+    sys.stdout.flush()
+    return status
+
+
+def _write(
+    made: str, path: str, format: str, words: _Words, dimension: int, field_data: dict[str, Any]
+) -> list[str]:
+    """Writes what the command made through meshio; returns notes."""
+    ordered = words.subcommand == "order"
+
+    def write(blocks: Blocks) -> list[str]:
+        mesh, order = _packed.unpack(made, blocks)
+        mesh.points, mesh.field_data = mesh.points[:, :dimension], field_data
+        notes = _foreign.write_meshio(mesh, path, format)
+        if ordered and words.maps is not None:
+            _reorder_map_of_cells(words.maps, order)
+        return notes
+
+    try:
+        return write(Blocks.OF_TYPES_IN_RUNS if ordered else Blocks.AS_THEY_COME)
+    except InputError:
+        if not ordered or words.maps is not None:  # maps must lead back
+            raise
+        return [*write(Blocks.OF_TYPES), "cells of one type are put together, as the format needs it"]
+
+
+def _reorder_map_of_cells(prefix: str, order: np.ndarray[tuple[int], np.dtype[np.intp]]) -> None:
+    """Writes again where cells went, once they were sorted by type."""
+    file = f"{prefix}.elements.new_to_old.npy"
+    written = np.load(file)
+    new_to_old = written[order]
+    np.save(file, new_to_old)
+    old_to_new = np.empty_like(written)
+    old_to_new[new_to_old] = np.arange(len(written), dtype=written.dtype)
+    np.save(f"{prefix}.elements.old_to_new.npy", old_to_new)
+
+
+def _run_in_other_names(arguments: list[str], names: dict[str, str], words: _Words) -> tuple[int, str]:
+    """Runs the command; what it says of the files with these names, it says of the user's.
+
+    Returns:
+        Its exit status, negative if a signal ended it; and what it printed on stdout.
+    """
+    with subprocess.Popen(
+        [program(), *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        encoding="utf-8",
+        errors="surrogateescape",
+    ) as child:
+        assert child.stdout is not None and child.stderr is not None
+
+        def renamed(text: str, written: Callable[[str], str] = str) -> str:
+            for scratch, name in names.items():
+                text = text.replace(written(scratch), written(name))
+            return text
+
+        def pass_on(lines: IO[str]) -> None:
+            for line in lines:
+                sys.stderr.write(renamed(line))
+                sys.stderr.flush()
+
+        errors = threading.Thread(target=pass_on, args=(child.stderr,))
+        errors.start()
+        try:
+            printed = child.stdout.read()
+            status = child.wait()
+        except _Signalled as signalled:
+            child.send_signal(signalled.number)
+            raise
+        finally:
+            child.wait()
+            errors.join()
+    printed = renamed(printed, lambda name: json.dumps(name, ensure_ascii=False)) if words.json else renamed(printed)
+    if words.subcommand == "info":  # names the format that it read
+        printed = printed.replace('"format": "VTU"', '"format": "meshio"')
+        printed = printed.replace(f"{words.mesh.path}, VTU", words.mesh.path)
+    return status, printed

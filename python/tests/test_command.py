@@ -1,0 +1,247 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""The package's own command, and what it converts through meshio."""
+
+import itertools
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import meshio
+import meshorder
+import numpy as np
+import pytest
+from meshorder import _command
+
+COMMAND = pathlib.Path(sys.executable).with_name("meshorder")
+ODD_NAME = "a<b & \"ü\""
+pytestmark = pytest.mark.skipif(not COMMAND.exists(), reason="the wheel is not installed")
+
+
+def run(*arguments, cwd, **options):
+    return subprocess.run([COMMAND, *arguments], cwd=cwd, capture_output=True, text=True, **options)
+
+
+def ok(*arguments, cwd, **options):
+    done = run(*arguments, cwd=cwd, **options)
+    assert done.returncode == 0, done.stderr
+    return done
+
+
+def listed_subcommands(program):
+    text = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
+    return re.findall(r"^  ([a-z-]+)  ", text.split("Subcommands:")[1], re.M)
+
+
+@pytest.fixture
+def deck(mesh, tmp_path):
+    """A mesh of hexahedra, tetrahedra and triangles with data and sets, as files of Abaqus and XDMF hold it."""
+    points, cells = mesh
+    random = np.random.default_rng(3)
+    made = meshio.Mesh(
+        points,
+        [("tetra", cells[:1500]), ("triangle", cells[:40, :3]), ("tetra", cells[1500:])],
+        point_data={"t": points @ [1, 10, 100], ODD_NAME: random.integers(0, 9, len(points))},
+        cell_data={"centre": [points[c].mean(axis=1) for c in (cells[:1500], cells[:40, :3], cells[1500:])]},
+    )
+    of_abaqus = meshio.Mesh(
+        points,
+        [("tetra", cells)],
+        point_sets={"left": np.flatnonzero(points[:, 0] == 0)},
+        cell_sets={"some": [np.arange(5, len(cells), 7)], "last": [np.array([8, 2])]},
+    )
+    of_abaqus.write(tmp_path / "deck.inp")
+    meshio.xdmf.write(tmp_path / "deck.xmf", meshio.Mesh(points, made.cells, made.point_data, made.cell_data), "XML")
+    return made
+
+
+def cells_by_corners(mesh, values=None):
+    """The corners of every cell, sorted, with a value of the cell each: the same for the same mesh in any order."""
+    rows = []
+    for k, block in enumerate(mesh.cells):
+        corners = mesh.points[block.data]
+        for c in range(len(block.data)):
+            value = () if values is None else np.atleast_1d(values[k][c]).tolist()
+            rows.append((block.type, *sorted(map(tuple, corners[c].round(9).tolist())), *value))
+    return sorted(rows, key=str)
+
+
+def test_what_the_package_lacks_is_refused_in_one_line(tmp_path):
+    here = listed_subcommands(COMMAND)
+    assert here == ["order", "apply", "info", "compare", "methods"]
+    full = pathlib.Path(__file__).parents[2] / "build" / "bin" / "meshorder"
+    others = {"simulate", "reproduce", "report", "models"}
+    if full.exists():
+        others |= set(listed_subcommands(full)) - set(here)
+    for word, arguments in zip(sorted(others), itertools.cycle(([], ["--help"], ["x", "--steps", "3"]))):
+        done = run(word, *arguments, cwd=tmp_path)
+        assert done.returncode == 2 and done.stdout == ""
+        assert re.fullmatch(rf"meshorder: {word} is in the full build only.*\n", done.stderr)
+    assert "unknown subcommand 'simulat'" in run("simulat", cwd=tmp_path).stderr
+
+
+def test_streams_and_status_are_the_commands_own(mesh, tmp_path):
+    meshorder.write(meshorder.make_mesh(*mesh), tmp_path / "a.msh")
+    for arguments in (["methods"], ["info", "none.vtu"], ["info", "a.msh", "--json"], ["info", "a.xyz"]):
+        done = run(*arguments, cwd=tmp_path)
+        direct = subprocess.run([_command.program(), *arguments], cwd=tmp_path, capture_output=True, text=True)
+        assert (done.returncode, done.stderr) == (direct.returncode, direct.stderr)
+        if "--json" not in arguments:  # there are times in it
+            assert done.stdout == direct.stdout
+    assert ok("--version", cwd=tmp_path).stdout.strip() == meshorder.__version__
+    # a reader that goes away ends it as it ends other programs
+    with subprocess.Popen([COMMAND, "methods"], stdout=subprocess.PIPE) as child:
+        child.stdout.close()
+    assert child.returncode in (-signal.SIGPIPE, 0)
+
+
+def test_flags_are_those_that_help_shows(tmp_path):
+    found = set()
+    for subcommand in _command._MESH_PLACE:
+        text = ok(subcommand, "--help", cwd=tmp_path).stdout
+        for line in re.findall(r"^ +(-\S.*?)(?:  |$)", text, re.M):
+            names, *value = line.removesuffix(" Excludes: --ids").split()
+            if not value and "help" not in names:
+                found |= set(names.split(","))
+    assert found == _command._FLAGS
+
+
+@pytest.mark.parametrize(
+    "line, mesh, output",
+    [
+        ("order a.inp -o b.exo --json", "a.inp", "b.exo"),
+        ("--plugin x.so order -q --vertices rcm a.inp --output=b.exo", "a.inp", "b.exo"),
+        ("apply m.inp a.inp -ob.exo", "a.inp", "b.exo"),
+        ("order --maps c.inp -- a.inp", "a.inp", None),
+        ("info a.inp --measure", "a.inp", None),
+    ],
+)
+def test_files_are_found_among_the_arguments(line, mesh, output):
+    words = _command._Words.of(line.split())
+    assert words.mesh.path == mesh
+    assert (words.output and words.output.path) == output
+
+
+@pytest.mark.parametrize("line", ["", "info", "methods a.inp", "order --help", "apply m", "simulate a.inp"])
+def test_no_files_are_found_where_there_are_none(line):
+    assert _command._Words.of(line.split()) is None
+
+
+def test_order_of_a_file_of_meshios_into_another(deck, tmp_path):
+    done = ok("order", "deck.xmf", "-o", "out.xmf", "--vertices", "rcm", "--maps", "m", "--json", cwd=tmp_path)
+    result = json.loads(done.stdout)
+    assert (result["input"], result["output"]) == ("deck.xmf", "out.xmf")
+    assert "deck.xmf: read by meshio" in done.stderr and "out.xmf: written by meshio" in done.stderr
+    assert "meshorder-" not in done.stdout + done.stderr
+    moved = meshio.read(tmp_path / "out.xmf")
+    places = np.load(tmp_path / "m.vertices.new_to_old.npy")
+    np.testing.assert_array_equal(moved.points, deck.points[places])
+    np.testing.assert_array_equal(moved.point_data["t"], deck.point_data["t"][places])
+    assert cells_by_corners(moved, moved.cell_data["centre"]) == cells_by_corners(deck, deck.cell_data["centre"])
+    # the map of cells is that of the file
+    places = np.load(tmp_path / "m.elements.new_to_old.npy")
+    centres = np.concatenate(deck.cell_data["centre"])[places]
+    np.testing.assert_array_equal(np.concatenate(moved.cell_data["centre"]), centres)
+    assert sorted(path.name for path in tmp_path.iterdir() if path.name.startswith((".", "out"))) == ["out.h5", "out.xmf"]
+
+
+def test_sets_stay_with_their_members(deck, tmp_path):
+    done = ok("order", "deck.inp", "-o", "out.inp", cwd=tmp_path)
+    deck, moved = meshio.read(tmp_path / "deck.inp"), meshio.read(tmp_path / "out.inp")
+    assert sorted(map(tuple, moved.points[moved.point_sets["left"]])) == sorted(
+        map(tuple, deck.points[deck.point_sets["left"]])
+    )
+    of_set = [
+        meshio.Mesh(mesh.points, [(block.type, block.data[members]) for block, members in zip(mesh.cells, sets)])
+        for mesh, sets in ((moved, moved.cell_sets["some"]), (deck, deck.cell_sets["some"]))
+    ]
+    assert cells_by_corners(of_set[0]) == cells_by_corners(of_set[1])
+    assert not (moved.points == deck.points).all()
+    assert "wrote" in done.stdout and "out.inp" in done.stdout
+
+
+def test_own_formats_on_one_side(deck, tmp_path):
+    done = ok("order", "deck.inp", "-o", "out.vtu", cwd=tmp_path)
+    moved, before = meshio.read(tmp_path / "out.vtu"), meshio.read(tmp_path / "deck.inp")
+    assert cells_by_corners(moved) == cells_by_corners(before)
+    np.testing.assert_array_equal(moved.point_data["set:left"] > 0, moved.points[:, 0] == 0)
+    members = meshorder.read(tmp_path / "out.vtu").sets["last"]  # in their order
+    for member, old in zip(members, before.cell_sets["last"][0], strict=True):
+        old_corners, new_corners = (m.points[m.cells[0].data[k]] for m, k in ((before, old), (moved, member)))
+        assert sorted(old_corners.tolist()) == sorted(new_corners.tolist())
+
+    done = ok("order", "deck.xmf", "-o", "names.vtu", "--vertices", "original", cwd=tmp_path)
+    named = meshio.read(tmp_path / "names.vtu")
+    np.testing.assert_array_equal(named.point_data[ODD_NAME], deck.point_data[ODD_NAME])
+
+    done = ok("order", "out.vtu", "-o", "back.mdpa", cwd=tmp_path)
+    assert "back.mdpa: the file does not give back the point sets 'left'" in done.stderr
+    assert cells_by_corners(meshio.read(tmp_path / "back.mdpa")) == cells_by_corners(moved)
+
+
+def test_apply_undoes_order(deck, tmp_path):
+    for name, ordered, back in (("deck.xmf", "o.xmf", "b.xmf"), ("deck.inp", "o.vtu", "b.inp")):
+        ok("order", name, "-o", ordered, "--maps", "m", "--vertices", "scrambled", cwd=tmp_path)
+        ok("apply", "m", ordered, "-o", back, "--inverse", cwd=tmp_path)
+        np.testing.assert_array_equal(meshio.read(tmp_path / back).points, meshio.read(tmp_path / name).points)
+
+
+def test_info_and_compare_name_the_users_file(deck, tmp_path):
+    done = ok("info", "deck.inp", "--json", cwd=tmp_path)
+    assert json.loads(done.stdout)["file"] == "deck.inp" and json.loads(done.stdout)["format"] == "meshio"
+    assert ok("info", "deck.inp", "-q", cwd=tmp_path).stderr == ""
+    done = ok("compare", "deck.inp", "--methods", "rcm", "--budget", "0.1", cwd=tmp_path)
+    assert done.stdout.startswith("deck.inp: ")
+
+
+def test_cells_are_never_lost(mesh, tmp_path):
+    points, cells = mesh
+    blocks = [("tetra", cells), ("wedge", cells[:3, [0, 1, 2, 3, 0, 1]])]
+    meshio.Mesh(points, blocks).write(tmp_path / "a.xmf")
+    before = sorted(os.listdir(tmp_path))
+    for name in ("b.wkt", "b.svg", "b.xml"):
+        done = run("order", "a.xmf", "-o", name, cwd=tmp_path)
+        assert done.returncode == 2 and done.stdout == ""
+        assert done.stderr.splitlines()[-1].startswith(f"meshorder: {name}: ")
+        assert sorted(os.listdir(tmp_path)) == before
+    polyhedron = [[np.array(face) for face in ([0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3])]]
+    with pytest.raises(meshorder.InputError, match="cells of type polyhedron4"):
+        from meshorder import _packed
+
+        _packed.pack(meshio.Mesh(points, [("polyhedron4", polyhedron)]), str(tmp_path / "x.vtu"), "p.vtu")
+
+
+def test_what_cannot_be_read_or_written_gives_one_line(tmp_path):
+    (tmp_path / "bad.inp").write_text("*NODE\n1, what\n")
+    (tmp_path / "empty.exo").write_text("")
+    for line in ("info bad.inp", "info none.inp", "info empty.exo", "order bad.inp -o no/b.inp"):
+        done = run(*line.split(), cwd=tmp_path)
+        assert done.returncode == 2 and done.stdout == ""
+        assert re.fullmatch(r"(meshorder: .*\n)+", done.stderr)
+    assert "Traceback" not in done.stderr
+
+
+def test_without_meshio_one_line_tells_how_to_get_it(tmp_path):
+    (tmp_path / "meshio.py").write_text("raise ImportError\n")
+    done = run("info", "a.inp", cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path)})
+    assert done.returncode == 2 and done.stdout == ""
+    assert re.fullmatch(r"meshorder: a\.inp: .*pip install meshio.*\n", done.stderr)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX's signals")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signals_end_it(deck, tmp_path, number):
+    temporary = tmp_path / "tmp"
+    temporary.mkdir()
+    command = [COMMAND, "compare", "deck.inp", "--budget", "60"]
+    environment = {**os.environ, "TMPDIR": str(temporary)}
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, env=environment) as child:
+        child.stderr.readline()  # that meshio was used
+        time.sleep(1)
+        child.send_signal(number)
+        assert child.wait(10) == -number
+    assert not list(temporary.iterdir())

@@ -1,0 +1,109 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""What is given to others: the source distribution, and the wheel that ./test made."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import zipfile
+
+import meshorder
+import pytest
+from meshorder import _command, _core
+
+ROOT = pathlib.Path(__file__).parents[2]
+MEBIBYTE = 1 << 20
+#: libraries that are on every machine that a wheel is for
+SYSTEMS = {"libstdc++", "libgcc_s", "libm", "libc", "libpthread", "libdl", "librt", "ld-linux-x86-64"}
+#: what THIRD_PARTY.md calls the others
+NAMES = {
+    "libtbb": "oneTBB", "libmetis": "METIS", "libz": "zlib", "liblzma": "XZ Utils", "liblz4": "LZ4", "libfmt": "{fmt}",
+    "libhwy": "Highway",
+}  # fmt: skip
+
+of_sources = pytest.mark.skipif(not (ROOT / ".git").exists(), reason="not a checkout of the sources")
+
+
+def wheel():
+    found = sorted((ROOT / "build" / "wheel").glob("meshorder-*.whl"))
+    if not found:
+        pytest.skip("./test has made no wheel")
+    return found[-1]
+
+
+@pytest.fixture(scope="module")
+def sdist(tmp_path_factory):
+    pytest.importorskip("scikit_build_core")
+    folder = tmp_path_factory.mktemp("sdist")
+    program = f"from scikit_build_core.build import build_sdist; build_sdist({str(folder)!r})"
+    subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=True, capture_output=True)
+    return next(folder.iterdir())
+
+
+@of_sources
+def test_sdist_holds_what_the_wheel_is_made_of(sdist):
+    with tarfile.open(sdist) as archive:
+        found = {name.partition("/")[2] for name in archive.getnames()}
+    listed = ["CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "LICENSE", "README.md", "pyproject.toml"]
+    listed += ["apps/meshorder", "cmake", "include", "python", "src", "viewer"]
+    tracked = subprocess.run(["git", "ls-files", *listed], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert set(tracked.stdout.split()) <= found
+    # what is not tracked yet may be in it, build products may not
+    assert all(name.startswith((*listed, "PKG-INFO")) for name in found)
+    assert not [name for name in found if re.search(r"\.(so|pyc|pyi|o)$", name)]
+
+
+def test_wheel_is_complete():
+    with zipfile.ZipFile(wheel()) as archive:
+        entries = {entry.filename: entry for entry in archive.infolist()}
+    licences = {name.rpartition("/")[2] for name in entries if "/licenses/" in name}
+    assert licences == {"LICENSE", "THIRD_PARTY.md", "Apache-2.0.txt", "LGPL-2.1.txt", "MPL-2.0.txt"}
+    assert {"meshorder/py.typed", "meshorder/_core.pyi"} <= entries.keys()
+    assert entries["meshorder/bin/meshorder"].external_attr >> 16 & 0o111
+    assert not [name for name in entries if not name.startswith(("meshorder/", "meshorder-"))]
+    assert wheel().stat().st_size <= 6 * MEBIBYTE
+
+
+def test_notice_names_every_library():
+    if not shutil.which("readelf"):
+        pytest.skip("there is no readelf")
+    notice = (ROOT / "python" / "licenses" / "THIRD_PARTY.md").read_text()
+    for file in (_core.__file__, _command.program()):
+        text = subprocess.run(["readelf", "-d", file], capture_output=True, text=True, check=True).stdout
+        # those that auditwheel brought along have a part of their hash in their name
+        needed = {re.sub(r"-[0-9a-f]{8}$", "", name) for name in re.findall(r"NEEDED.*\[([^\].]+)", text)}
+        for name in needed - SYSTEMS:
+            assert f"| {NAMES[name]}" in notice
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_the_index_takes_both(sdist):
+    pytest.importorskip("twine")
+    files = [sdist, *(ROOT / "build" / "wheel").glob("meshorder-*.whl")]
+    done = subprocess.run([sys.executable, "-m", "twine", "check", "--strict", *files], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+    # a relative link leads nowhere there
+    page = (ROOT / "python" / "README.md").read_text()
+    assert all(target.startswith("https://") for target in re.findall(r"\]\(([^)]*)\)", page))
+
+
+@of_sources
+def test_all_name_one_version():
+    version = meshorder.__version__
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text()
+    assert f"Version {version}}}" in (ROOT / "README.md").read_text()
+
+
+@of_sources
+def test_oldest_versions_are_those_that_the_package_allows():
+    tomllib = pytest.importorskip("tomllib")
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    needed = [*project["dependencies"], *project["optional-dependencies"]["all"]]
+    allowed = dict(re.findall(r"^([\w-]+)>=([\d.]+)", "\n".join(needed), re.M))
+    pinned = dict(re.findall(r"^([\w-]+)==([\d.]+)", (ROOT / "python/tests/requirements-oldest.txt").read_text(), re.M))
+    for name, version in allowed.items():
+        if name in pinned:
+            assert pinned[name].removesuffix(".0") == version.removesuffix(".0")
+    assert "numpy" in pinned
