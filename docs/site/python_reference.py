@@ -1,0 +1,67 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Makes the pages of the Python reference: everything that `meshorder.__all__` names, by subject, and the public modules."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+from types import ModuleType
+from typing import Any
+
+import meshorder
+
+INTRODUCTION = """Python reference
+================
+
+Everything here is in the package ``meshorder``; its guide is :doc:`/python`.
+
+"""
+
+
+def title_of(module: ModuleType) -> str:
+    """The first words of a module's docstring: "Orders, Fiedler vectors and the quality of orders"."""
+    return (inspect.getdoc(module) or module.__name__).split("\n")[0].rstrip(".")
+
+
+def heading(title: str, underline: str) -> list[str]:
+    return ["", title, underline * len(title), ""]
+
+
+def directive(name: str, value: Any) -> list[str]:
+    kind = "function"
+    if inspect.isclass(value):
+        kind = "exception" if issubclass(value, BaseException) else "class"
+    elif not callable(value):
+        kind = "data"
+    return [f".. auto{kind}:: meshorder.{name}", ""]
+
+
+def package_page() -> str:
+    """The page of the package itself, a section for each of its modules."""
+    by_module: dict[str, list[str]] = {}
+    for name in meshorder.__all__:
+        value = getattr(meshorder, name)
+        module = getattr(value, "__module__", "") or ""
+        by_module.setdefault(module if module.startswith("meshorder.") else "meshorder._core", []).append(name)
+    lines = [INTRODUCTION]
+    for module_name, names in by_module.items():
+        module = importlib.import_module(module_name)
+        lines += heading("The version" if module_name.endswith("._core") else title_of(module), "-")
+        # functions before what they take and return
+        for name in sorted(names, key=lambda name: (inspect.isclass(getattr(meshorder, name)), name)):
+            if not name.startswith("__"):
+                lines += directive(name, getattr(meshorder, name))
+        if hasattr(module, "ProgressFunction"):
+            lines += [".. py:data:: meshorder._options.ProgressFunction", "   :no-index-entry:", "",
+                      "   A function of the stage's name and the part that is done (0 … 1, or −1 where that is unknown), which",
+                      "   may return False to stop; or True for a bar by tqdm.", ""]  # fmt: skip
+    for module in public_modules():
+        lines += heading(f"``{module}``", "-")
+        lines += [f".. automodule:: {module}", "   :members:", ""]
+    return "\n".join(lines)
+
+
+def public_modules() -> list[str]:
+    """The modules that users import by themselves: "meshorder.csgraph"."""
+    return [f"meshorder.{one.name}" for one in pkgutil.iter_modules(meshorder.__path__) if not one.name.startswith("_")]
