@@ -20,6 +20,7 @@ import sys
 
 import command_reference
 import formats_table
+import headers
 import links
 import python_reference
 
@@ -90,18 +91,7 @@ def assemble(sources: pathlib.Path, command: str) -> None:
     (reference / "command.md").write_text(command_reference.command_reference(command))
     (reference / "python.rst").write_text(python_reference.package_page())
     (sources / "formats-table.md").write_text(formats_table.formats_table())
-    headers = sorted((ROOT / "include" / "meshorder").glob("*.hpp"))
-    for header in headers:
-        if header.name not in ("meshorder.hpp", "export.hpp"):
-            title = f"meshorder/{header.name}"
-            page = f"{title}\n{'=' * len(title)}\n\n.. doxygenfile:: {header.name}\n   :sections: {SECTIONS}\n"
-            (reference / "cpp" / f"{header.stem}.rst").write_text(page)
-    title = "C reference"
-    (reference / "c.rst").write_text(f"{title}\n{'=' * len(title)}\n\n.. doxygenfile:: meshorder.h\n")
-
-
-#: what of a header is shown: no includes, no namespaces
-SECTIONS = "briefdescription detaileddescription innerclass enum typedef func var define public* protected*"
+    headers.write_pages(ROOT / "include", reference)
 
 
 def doxygen(folder: pathlib.Path) -> pathlib.Path:
@@ -109,9 +99,7 @@ def doxygen(folder: pathlib.Path) -> pathlib.Path:
     folder.mkdir(parents=True)
     settings = (SITE / "Doxyfile").read_text() + f"\nOUTPUT_DIRECTORY = {folder}\n"
     run("doxygen", "-", input=settings, text=True)
-    for path in (folder / "xml").glob("*.xml"):
-        # which file to include is the page's title, and files have no place to be linked at
-        path.write_text(re.sub(r"^ *<includes .*\n", "", path.read_text(), flags=re.MULTILINE))
+    headers.tidy(folder / "xml")
     return folder / "xml"
 
 
@@ -129,7 +117,7 @@ def main() -> None:
     assemble(work / "docs", command)
     version = subprocess.run([command, "--version"], capture_output=True, text=True, check=True).stdout.split()[-1]
     environment = {**os.environ, "MANUAL_VERSION": version, "MANUAL_DOXYGEN": str(xml)}
-    run(sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", "-d", str(work / "doctrees"),
+    run(sys.executable, "-W", "error:Warning on line", "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", "-d", str(work / "doctrees"),
         str(work / "docs"), str(site), env=environment)  # fmt: skip
     faults = links.faults(site)
     if faults:

@@ -21,7 +21,8 @@ and SIGTERM. Faults are one line on stderr, `meshorder: PLACE: fault; remedy`, a
 
 
 def escaped(text: str) -> str:
-    """Help as Markdown: what stands in backquotes is code already, the rest must not be read as markup."""
+    """Help as Markdown: options and what stands in backquotes are code, the rest must not be read as markup."""
+    text = re.sub(r"(?<![`\w-])(--[a-z][a-z-]*)(?![^`]*`(?:[^`]*`[^`]*`)*[^`]*$)", r"`\1`", text)
     parts = re.split(r"(`[^`]*`)", text)
     return "".join(part if part.startswith("`") else re.sub(r"([\\*_<>\[\]|])", r"\\\1", part) for part in parts)
 

@@ -19,6 +19,17 @@ Everything here is in the package ``meshorder``; its guide is :doc:`/python`.
 """
 
 
+#: the modules that most readers look for come first
+FIRST = ("_graphs", "_permutation", "_options", "_meshes", "_payoff", "_methods")
+LAST = ("_errors", "_core")
+
+
+def place_of(module: str) -> tuple[int, str]:
+    """Where the section of a module stands."""
+    name = module.rpartition(".")[2]
+    return (FIRST.index(name) if name in FIRST else len(FIRST) + LAST.index(name) + 1 if name in LAST else len(FIRST), name)
+
+
 def title_of(module: ModuleType) -> str:
     """The first words of a module's docstring: "Orders, Fiedler vectors and the quality of orders"."""
     return (inspect.getdoc(module) or module.__name__).split("\n")[0].rstrip(".")
@@ -45,7 +56,7 @@ def package_page() -> str:
         module = getattr(value, "__module__", "") or ""
         by_module.setdefault(module if module.startswith("meshorder.") else "meshorder._core", []).append(name)
     lines = [INTRODUCTION]
-    for module_name, names in by_module.items():
+    for module_name, names in sorted(by_module.items(), key=lambda item: place_of(item[0])):
         module = importlib.import_module(module_name)
         lines += heading("The version" if module_name.endswith("._core") else title_of(module), "-")
         # functions before what they take and return
