@@ -58,6 +58,7 @@ html_static_path = ["site/static"]
 html_css_files = ["manual.css"]
 html_copy_source = False
 html_show_sphinx = False
+html_show_search_summary = False  # excerpts are fetched, which browsers refuse for files on disk
 html_theme_options = {"navigation_with_keys": True}
 copybutton_prompt_text = "$ "
 copybutton_only_copy_prompt_lines = False
