@@ -42,6 +42,7 @@ packages_to_test=(
   python3-scipy        "independent answers for the end-to-end tests"
   python3-meshio       "an independent reader of mesh files"
   python3-jsonschema   "checks JSON against its schemas"
+  doxygen              "reads the public headers for the manual"
   abigail-tools        "compares the binary interface for C with the recorded one"
   chromium             "the report page, as its reader sees it"
   chromium-driver      "the report page, as its reader sees it"

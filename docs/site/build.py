@@ -74,7 +74,7 @@ def assemble(sources: pathlib.Path, command: str) -> None:
     docs = ROOT / "docs"
     for path in sorted(docs.rglob("*")):
         place = sources / path.relative_to(docs)
-        if path.is_dir() or path.name == "requirements.txt" or (SITE in path.parents and path.parent.name != "static"):
+        if path.is_dir() or path.name == "requirements.txt" or (SITE in path.parents and path.suffix not in (".css", ".js")):
             continue
         place.parent.mkdir(parents=True, exist_ok=True)
         if path.suffix == ".md":

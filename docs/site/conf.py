@@ -56,6 +56,7 @@ html_theme = "furo"
 html_title = f"meshorder {version}"
 html_static_path = ["site/static"]
 html_css_files = ["manual.css"]
+html_search_scorer = "site/scorer.js"
 html_copy_source = False
 html_show_sphinx = False
 html_show_search_summary = False  # excerpts are fetched, which browsers refuse for files on disk
