@@ -49,7 +49,7 @@ nitpick_ignore_regex = [
     (r"cpp:identifier", r".*"),
     (r"c:identifier", r".*"),
     # types of other packages in annotations, and private ones
-    (r"py:.*", r"(?!meshorder\.[^_]).*"),
+    (r"py:(?!obj).*", r"(?!meshorder\.[^_]).*"),
 ]
 
 html_theme = "furo"

@@ -63,10 +63,6 @@ def package_page() -> str:
         for name in sorted(names, key=lambda name: (inspect.isclass(getattr(meshorder, name)), name)):
             if not name.startswith("__"):
                 lines += directive(name, getattr(meshorder, name))
-        if hasattr(module, "ProgressFunction"):
-            lines += [".. py:data:: meshorder._options.ProgressFunction", "   :no-index-entry:", "",
-                      "   A function of the stage's name and the part that is done (0 … 1, or −1 where that is unknown), which",
-                      "   may return False to stop; or True for a bar by tqdm.", ""]  # fmt: skip
     for module in public_modules():
         lines += heading(f"``{module}``", "-")
         lines += [f".. automodule:: {module}", "   :members:", ""]
