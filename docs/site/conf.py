@@ -2,8 +2,10 @@
 """Sphinx's settings for the manual. docs/site/build.py assembles the sources,
 and sets MANUAL_DOXYGEN and MANUAL_VERSION."""
 
+import dataclasses
 import os
 import pathlib
+from typing import Any
 
 project = "meshorder"
 author = "the meshorder authors"
@@ -25,7 +27,8 @@ default_role = "py:obj"
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
-autodoc_default_options = {"members": True, "show-inheritance": True}
+autodoc_default_options = {"members": True}
+autodoc_type_aliases = {"NDArray": "NDArray"}  # as annotations are written
 napoleon_numpy_docstring = False
 napoleon_use_ivar = True
 python_use_unqualified_type_names = True
@@ -66,4 +69,26 @@ copybutton_only_copy_prompt_lines = False
 pygments_style = "friendly"
 highlight_language = "none"
 
-assert pathlib.Path(breathe_projects["meshorder"]).is_dir()
+
+#: classes that functions make, beside dataclasses and named tuples: how to make one says nothing to users
+MADE_BY_FUNCTIONS = ("meshorder.Mesh", "meshorder.Comparison")
+
+
+def without_constructor(
+    app: Any, what: str, name: str, value: Any, options: Any, signature: str | None, returned: str | None
+) -> tuple[str | None, str | None]:
+    """Drops the signature of results, which nobody makes by hand."""
+    if what == "class" and (dataclasses.is_dataclass(value) or issubclass(value, tuple) or name in MADE_BY_FUNCTIONS):
+        return "", None
+    return signature, returned
+
+
+def without_aliases(app: Any, what: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
+    """Drops what Python itself says of the fields of a named tuple."""
+    if lines and lines[0].startswith("Alias for field number"):
+        lines.clear()
+
+
+def setup(app: Any) -> None:
+    app.connect("autodoc-process-signature", without_constructor)
+    app.connect("autodoc-process-docstring", without_aliases)

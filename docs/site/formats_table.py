@@ -154,11 +154,11 @@ def same_cells(before: meshorder.Mesh, after: meshorder.Mesh) -> str:
 
 
 def as_another(mesh: meshorder.Mesh, values: Any) -> str:
-    """What to say where values are not in their place: "as an array" where some array has them, NO otherwise."""
+    """What to say where values are not in their place: "array" where some array has them, NO otherwise."""
     arrays = [*mesh.point_data.values(), *mesh.cell_data.values()]
     columns = [column for array in arrays if array.dtype.kind in "iuf" for column in (array, *np.atleast_2d(array.T))]
     found = any(np.shape(one) == np.shape(values) and np.array_equal(one, values, equal_nan=True) for one in columns)
-    return "as an array" if found else NO
+    return "array" if found else NO
 
 
 def same_array(name: str, of: str) -> Callable[[meshorder.Mesh, meshorder.Mesh], str]:
@@ -167,7 +167,7 @@ def same_array(name: str, of: str) -> Callable[[meshorder.Mesh, meshorder.Mesh],
         if new is None or not np.array_equal(old, new):
             told = as_another(after, old)
             return "unnamed" if told != NO and name != "label" else told
-        return YES if new.dtype == old.dtype else f"as {new.dtype}"
+        return YES if new.dtype == old.dtype else str(new.dtype)
 
     return compare
 
@@ -179,7 +179,7 @@ def same_partial_array(before: meshorder.Mesh, after: meshorder.Mesh) -> str:
             return YES
     filled = np.full(len(before.points), np.nan)
     filled[rows] = values
-    return "NaN elsewhere" if as_another(after, filled) != NO else NO
+    return "filled" if as_another(after, filled) != NO else NO
 
 
 def same_sets(before: meshorder.Mesh, after: meshorder.Mesh) -> str:

@@ -45,7 +45,8 @@ def directive(name: str, value: Any) -> list[str]:
         kind = "exception" if issubclass(value, BaseException) else "class"
     elif not callable(value):
         kind = "data"
-    return [f".. auto{kind}:: meshorder.{name}", ""]
+    bases = ["   :show-inheritance:"] if kind == "exception" else []
+    return [f".. auto{kind}:: meshorder.{name}", *bases, ""]
 
 
 def package_page() -> str:
