@@ -2,7 +2,9 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Draws the pictures of the pages docs/how/: how-fiedler.png, how-solver.png and how-cost.svg, beside this script.
 
-    docs/pictures/draw_how.py MESH          MESH: tetrahedra for how-cost.svg, as `meshorder models make dragon` makes them
+    docs/pictures/draw_how.py MESH
+
+MESH holds tetrahedra for how-cost.svg: the dragon that `meshorder models make dragon` makes.
 
 Needs the packages meshorder, NumPy, SciPy and matplotlib. Everything drawn is computed here: the orders and vectors by
 meshorder, reuse distances by counting.
@@ -13,19 +15,19 @@ import sys
 
 import matplotlib
 import matplotlib.pyplot as pyplot
+import meshorder
 import numpy
 import scipy.sparse
 import scipy.sparse.linalg
 import scipy.spatial
-
-import meshorder
 
 HERE = pathlib.Path(__file__).parent
 LINE_BYTES = 64
 BLUE, ORANGE, GREEN, GREY = "#3465a4", "#d9822b", "#3a923a", "#888888"
 
 matplotlib.rcParams.update({
-    "font.size": 9, "axes.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False, "svg.hashsalt": "meshorder",
+    "font.size": 9, "axes.titlesize": 9, "axes.spines.top": False, "axes.spines.right": False,
+    "svg.hashsalt": "meshorder",
     "svg.fonttype": "path", "contour.negative_linestyle": "solid", "figure.dpi": 150, "savefig.facecolor": "white",
 })  # fmt: skip
 
@@ -129,7 +131,9 @@ def draw_solver():
         axes[level].tripcolor(*points.T, triangles, facecolors=values[triangles].mean(axis=1), cmap="viridis")
         bare(axes[level], f"{weights.shape[0]} vertices")
         group, count = aggregates(weights.tocsr())
-        step = scipy.sparse.csr_matrix((numpy.ones(len(group)), (numpy.arange(len(group)), group)), shape=(len(group), count))
+        step = scipy.sparse.csr_matrix(
+            (numpy.ones(len(group)), (numpy.arange(len(group)), group)), shape=(len(group), count)
+        )
         weights = scipy.sparse.csr_matrix(step.T @ weights @ step)
         weights.setdiag(0)
         weights.eliminate_zeros()
@@ -139,10 +143,7 @@ def draw_solver():
     sides = (8, 12, 20, 32)
     ours, plain = [], []
     for side in sides:
-        path = scipy.sparse.diags_array([1.0, 1.0], offsets=[-1, 1], shape=(side, side))
-        graph = scipy.sparse.csr_matrix(sum(scipy.sparse.kron(scipy.sparse.kron(*pair), last) for pair, last in (
-            ((path, scipy.sparse.eye(side)), scipy.sparse.eye(side)), ((scipy.sparse.eye(side), path), scipy.sparse.eye(side)),
-            ((scipy.sparse.eye(side), scipy.sparse.eye(side)), path))))  # fmt: skip
+        graph = lattice(side)
         ours.append(meshorder.fiedler(graph, tolerance=1e-3).components[0].iterations)
         plain.append(plain_iterations(graph, 1e-3))
         print(f"{graph.shape[0]} vertices: {ours[-1]} iterations, without the hierarchy {plain[-1]}")
@@ -154,6 +155,16 @@ def draw_solver():
     figure.savefig(HERE / "how-solver.png")
 
 
+def lattice(side):
+    """The graph of a cubic lattice of side³ points."""
+    path, points = (
+        scipy.sparse.diags_array([1.0, 1.0], offsets=[-1, 1], shape=(side, side)),
+        scipy.sparse.eye_array(side),
+    )
+    along = ((path, points, points), (points, path, points), (points, points, path))
+    return scipy.sparse.csr_matrix(sum(scipy.sparse.kron(scipy.sparse.kron(a, b), c) for a, b, c in along))
+
+
 def plain_iterations(graph, tolerance):
     """Iterations of SciPy's LOBPCG for λ₂ without a preconditioner, from a random start."""
     laplacian = scipy.sparse.csr_matrix(scipy.sparse.csgraph.laplacian(graph))
@@ -161,8 +172,8 @@ def plain_iterations(graph, tolerance):
     start = numpy.random.default_rng(0).normal(size=(n, 2))
     ones = numpy.ones((n, 1))
     smallest = 2 - 2 * numpy.cos(numpy.pi / round(n ** (1 / 3)))
-    _, _, history = scipy.sparse.linalg.lobpcg(
-        laplacian, start, Y=ones, largest=False, maxiter=2000, tol=tolerance * smallest, retResidualNormsHistory=True)  # fmt: skip
+    options = dict(largest=False, maxiter=2000, tol=tolerance * smallest, retResidualNormsHistory=True)
+    _, _, history = scipy.sparse.linalg.lobpcg(laplacian, start, Y=ones, **options)
     first = [norms[0] for norms in history]
     return next(k for k, norm in enumerate(first) if norm < tolerance * smallest)
 
@@ -216,8 +227,14 @@ def draw_cost(path):
         misses = [(distances >= size / LINE_BYTES).sum() / len(tetrahedra) for size in sizes]
         axes[1].plot(sizes, misses, color=colour, label=vertices)
         print(vertices, f"{misses[numpy.searchsorted(sizes, 48 * 1024)]:.2f} misses a tetrahedron with 48 KB")
-    axes[0].set(xscale="log", xlabel="reuse distance, cache lines", ylabel="accesses, %", title="how far back the line was last used")
-    axes[1].set(xscale="log", xlabel="size of the cache", ylabel="misses for each tetrahedron", title="misses that follow",
+    axes[0].set(
+        xscale="log",
+        xlabel="reuse distance, cache lines",
+        ylabel="accesses, %",
+        title="how far back the line was last used",
+    )
+    axes[1].set(xscale="log", xlabel="size of the cache", ylabel="misses for each tetrahedron",
+                title="misses that follow",
                 xticks=[2**10, 2**15, 2**20], xticklabels=["1 KB", "32 KB", "1 MB"])  # fmt: skip
     axes[1].minorticks_off()
     for name, size in (("L1", 48 << 10), ("L2", 1 << 20)):

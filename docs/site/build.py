@@ -5,8 +5,8 @@
     docs/site/build.py [FOLDER]          FOLDER/index.html, build/manual/index.html by default
 
 To be run by a Python that has what docs/requirements.txt lists and the package meshorder. MESHORDER names the command,
-build/bin/meshorder by default. Warnings of Sphinx and Doxygen are errors, and so are links to nowhere. The sources as Sphinx
-gets them are left in FOLDER-sources.
+build/bin/meshorder by default. Warnings of Sphinx and Doxygen are errors, and so are links to nowhere. The sources as
+Sphinx gets them are left in FOLDER-sources.
 """
 
 from __future__ import annotations
@@ -74,7 +74,11 @@ def assemble(sources: pathlib.Path, command: str) -> None:
     docs = ROOT / "docs"
     for path in sorted(docs.rglob("*")):
         place = sources / path.relative_to(docs)
-        if path.is_dir() or path.name == "requirements.txt" or (SITE in path.parents and path.suffix not in (".css", ".js")):
+        if (
+            path.is_dir()
+            or path.name == "requirements.txt"
+            or (SITE in path.parents and path.suffix not in (".css", ".js"))
+        ):
             continue
         place.parent.mkdir(parents=True, exist_ok=True)
         if path.suffix == ".md":
@@ -117,8 +121,8 @@ def main() -> None:
     assemble(work / "docs", command)
     version = subprocess.run([command, "--version"], capture_output=True, text=True, check=True).stdout.split()[-1]
     environment = {**os.environ, "MANUAL_VERSION": version, "MANUAL_DOXYGEN": str(xml)}
-    run(sys.executable, "-W", "error:Warning on line", "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", "-d", str(work / "doctrees"),
-        str(work / "docs"), str(site), env=environment)  # fmt: skip
+    sphinx = [sys.executable, "-W", "error:Warning on line", "-m", "sphinx", "-q", "-W", "--keep-going"]
+    run(*sphinx, "-d", str(work / "doctrees"), str(work / "docs"), str(site), env=environment)
     faults = links.faults(site)
     if faults:
         fail("\n".join(["links:", *faults]))

@@ -12,11 +12,12 @@ import command_pages
 
 INTRODUCTION = """# Command reference
 
-Made from the help of meshorder {version}: `meshorder --help` and `meshorder order --help` print the same, `man meshorder-order`
-shows it where the command is installed. Options `--json` print one object with [documented keys](../json.md).
+Made from the help of meshorder {version}. `meshorder --help` and `meshorder order --help` print the same, and
+`man meshorder-order` shows it where the command is installed. `--json` prints one object with
+[documented keys](../json.md).
 
-Exit status: 0 on success, 2 for faulty input or arguments, 1 for a failure of the command itself, 130 and 143 after Ctrl-C
-and SIGTERM. Faults are one line on stderr, `meshorder: PLACE: fault; remedy`, and no output file is left behind.
+Exit status: 0 on success, 2 for faulty input or arguments, 1 for a failure of the command itself, 130 and 143 after
+Ctrl-C and SIGTERM. Faults are one line on stderr, `meshorder: PLACE: fault; remedy`, and no output file is left behind.
 """
 
 
@@ -45,7 +46,12 @@ def section(page: command_pages.Page) -> list[str]:
             lines += [head(entry), f": {escaped(entry.sentence) or '–'}", ""]
     if page.subcommands:
         rows = [(" ".join([*page.words, entry.names[0]]), escaped(entry.sentence)) for entry in page.subcommands]
-        lines += ["| subcommand | |", "| --- | --- |", *(f"| [{name}](#{anchor(name)}) | {text} |" for name, text in rows), ""]
+        lines += [
+            "| subcommand | |",
+            "| --- | --- |",
+            *(f"| [{name}](#{anchor(name)}) | {text} |" for name, text in rows),
+            "",
+        ]
     examples = [line for line in page.examples if line.strip()]
     if examples:
         lines += ["Examples:", "", "```text", *(line.strip() for line in examples), "```", ""]
@@ -58,8 +64,8 @@ def anchor(heading: str) -> str:
 
 def command_reference(command: str) -> str:
     """Returns the page for the command at a path."""
-    version = command_pages.run(command, "--version").strip()
+    version = command_pages.run(command, "--version").strip()  # type: ignore[no-untyped-call]
     lines = [INTRODUCTION.format(version=version)]
-    for page in command_pages.all_pages(command):
+    for page in command_pages.all_pages(command):  # type: ignore[no-untyped-call]
         lines += section(page)
     return "\n".join(lines) + "\n"

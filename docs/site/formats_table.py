@@ -12,9 +12,8 @@ import tempfile
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
 import meshorder
+import numpy as np
 
 VTK_TYPES = {
     "vertex": 1, "line": 3, "triangle": 5, "polygon": 7, "quad": 9, "tetrahedron": 10, "hexahedron": 12, "wedge": 13,
@@ -58,7 +57,8 @@ def vtu(
         width = values.shape[1] if values.ndim == 2 else 1
         text = " ".join(repr(number) for number in values.ravel().tolist())
         return (
-            f'<DataArray type="{VTK_NAMES[values.dtype.name]}" Name="{name}" NumberOfComponents="{width}" format="ascii">'
+            f'<DataArray type="{VTK_NAMES[values.dtype.name]}" Name="{name}" NumberOfComponents="{width}" '
+            f'format="ascii">'
             f"{text}</DataArray>"
         )
 
@@ -68,7 +68,8 @@ def vtu(
     of_points = "".join(array(*item) for item in (point_data or {}).items())
     of_cells = "".join(array(*item) for item in (cell_data or {}).items())
     return (
-        '<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian"><UnstructuredGrid>'
+        '<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">'
+        "<UnstructuredGrid>"
         f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">'
         f"<Points>{array('Points', np.asarray(points, dtype=float))}</Points>"
         f"<Cells>{array('connectivity', connectivity)}{array('offsets', offsets)}{array('types', types)}</Cells>"
@@ -82,7 +83,18 @@ TETRAHEDRA = [("tetrahedron", [0, 1, 3, 4]), ("tetrahedron", [1, 2, 3, 6]), ("te
               ("tetrahedron", [1, 4, 5, 6]), ("tetrahedron", [3, 4, 6, 7])]  # fmt: skip
 TRIANGLES = [("triangle", [0, 1, 2]), ("triangle", [0, 2, 3]), ("triangle", [0, 4, 5]), ("triangle", [0, 5, 1]),
              ("triangle", [4, 6, 5]), ("triangle", [4, 7, 6])]  # fmt: skip
-SECOND_ORDER = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]]
+SECOND_ORDER = [
+    [0, 0, 0],
+    [2, 0, 0],
+    [0, 2, 0],
+    [0, 0, 2],
+    [1, 0, 0],
+    [1, 1, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+    [1, 0, 1],
+    [0, 1, 1],
+]
 CELLS_ON_CUBE = {
     "vertices, as cells": [("vertex", [0])],
     "lines": [("line", [0, 1])],
@@ -94,6 +106,7 @@ CELLS_ON_CUBE = {
     "wedges": [("wedge", [0, 1, 3, 4, 5, 7])],
     "hexahedra": [("hexahedron", [0, 1, 2, 3, 4, 5, 6, 7])],
 }
+
 
 def gmsh(cells: str) -> bytes:
     """Gmsh's file with numbers that have gaps, and an array on two of its vertices."""
@@ -265,7 +278,10 @@ def formats_table() -> str:
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for title, rows in probes().items():
-            lines += [f"| {title} | {' | '.join(f'`{e[0]}`' for _, e in formats)} |", f"| --- {'| :-: ' * len(formats)}|"]
+            lines += [
+                f"| {title} | {' | '.join(f'`{e[0]}`' for _, e in formats)} |",
+                f"| --- {'| :-: ' * len(formats)}|",
+            ]
             for probe in rows:
                 told = [answer(probe, extensions[0], folder)[0] for _, extensions in formats]
                 lines.append(f"| {probe.row} | {' | '.join(told)} |")

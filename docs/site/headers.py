@@ -32,6 +32,11 @@ def tidy(folder: pathlib.Path) -> None:
         tree.write(path, encoding="utf-8", xml_declaration=True)
 
 
+def text_of(element: ElementTree.Element, child: str) -> str:
+    found = element.find(child)
+    return "" if found is None else "".join(found.itertext()).strip()
+
+
 def list_parameters(member: ElementTree.Element) -> None:
     """Turns the parameters of a type of functions into a list, since types have no parameters for Sphinx."""
     for paragraph in member.iter("para"):
@@ -40,19 +45,19 @@ def list_parameters(member: ElementTree.Element) -> None:
             for one in parameters.findall("parameteritem"):
                 item = ElementTree.SubElement(ElementTree.SubElement(items, "listitem"), "para")
                 name = ElementTree.SubElement(item, "computeroutput")
-                name.text = "".join(one.find("parameternamelist").itertext()).strip()
-                name.tail = ": " + "".join(one.find("parameterdescription").itertext()).strip()
+                name.text = text_of(one, "parameternamelist")
+                name.tail = ": " + text_of(one, "parameterdescription")
             paragraph[list(paragraph).index(parameters)] = items
 
 
 def name_exceptions(member: ElementTree.Element) -> None:
     """Turns "@throws as `order_vertices`", of which Doxygen takes "as" for an exception, into a sentence."""
     description = member.find("detaileddescription")
-    for paragraph in list(description.iter("para")):
+    for paragraph in [] if description is None else list(description.iter("para")):
         for exceptions in paragraph.findall("parameterlist[@kind='exception']"):
             for item in exceptions.findall("parameteritem"):
-                if "".join(item.find("parameternamelist").itertext()).strip() == "as":
-                    said = item.find("parameterdescription/para")
+                said = item.find("parameterdescription/para")
+                if description is not None and said is not None and text_of(item, "parameternamelist") == "as":
                     said.text = "Throws as " + (said.text or "")
                     exceptions.remove(item)
                     description.append(said)

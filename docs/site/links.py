@@ -24,7 +24,9 @@ class Page(html.parser.HTMLParser):
                 self.anchors.add(value)
             elif tag == "a" and name == "href" and value:
                 self.links.append(value)
-            elif value and ((tag in ("script", "img", "source", "iframe") and name == "src") or (tag == "link" and name == "href")):
+            elif value and (
+                (tag in ("script", "img", "source", "iframe") and name == "src") or (tag == "link" and name == "href")
+            ):
                 self.loaded.append(value)
 
 
@@ -48,6 +50,8 @@ def faults(site: pathlib.Path) -> list[str]:
             target = (path.parent / urllib.parse.unquote(parts.path)).resolve() if parts.path else path
             if not target.is_file():
                 found.append(f"{here}: {link} leads nowhere")
-            elif parts.fragment and target in pages and urllib.parse.unquote(parts.fragment) not in pages[target].anchors:
+            elif (
+                parts.fragment and target in pages and urllib.parse.unquote(parts.fragment) not in pages[target].anchors
+            ):
                 found.append(f"{here}: {link}: there is no such place on that page")
     return sorted(set(found))

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Makes the pages of the Python reference: everything that `meshorder.__all__` names, by subject, and the public modules."""
+"""Makes the Python reference: everything that `meshorder.__all__` names, by subject, and the public modules."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ LAST = ("_errors", "_core")
 def place_of(module: str) -> tuple[int, str]:
     """Where the section of a module stands."""
     name = module.rpartition(".")[2]
-    return (FIRST.index(name) if name in FIRST else len(FIRST) + LAST.index(name) + 1 if name in LAST else len(FIRST), name)
+    return (
+        FIRST.index(name) if name in FIRST else len(FIRST) + LAST.index(name) + 1 if name in LAST else len(FIRST),
+        name,
+    )
 
 
 def title_of(module: ModuleType) -> str:

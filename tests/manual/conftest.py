@@ -1,5 +1,6 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Where the manual's tests find what they test."""
+
 import pathlib
 import sys
 

@@ -1,5 +1,6 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """The built manual in a browser, opened from disk. MANUAL names its folder; without, build/manual is taken."""
+
 import os
 import pathlib
 
@@ -12,8 +13,19 @@ PICTURES = SITE.with_name(SITE.name + "-pictures")
 PAGES = sorted(str(path.relative_to(SITE)) for path in SITE.rglob("*.html"))
 WIDTHS = {"desktop": (1280, 900), "phone": (390, 844)}
 #: pages whose looks are kept
-SHOWN = ["index.html", "start.html", "which.html", "formats.html", "how/fiedler.html", "how/solver.html", "how/cost.html",
-         "reference/command.html", "reference/python.html", "reference/cpp/order.html", "benchmarks.html"]
+SHOWN = [
+    "index.html",
+    "start.html",
+    "which.html",
+    "formats.html",
+    "how/fiedler.html",
+    "how/solver.html",
+    "how/cost.html",
+    "reference/command.html",
+    "reference/python.html",
+    "reference/cpp/order.html",
+    "benchmarks.html",
+]
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +54,9 @@ def test_every_page_fits_and_asks_no_network(browser, device):
         browser.settle()
         too_wide = browser.run("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
         assert too_wide <= 0, f"{page} is {too_wide} pixels too wide for a {device}"
-        broken = browser.run("return [...document.images].filter((one) => one.complete && !one.naturalWidth).map((one) => one.src)")
+        broken = browser.run(
+            "return [...document.images].filter((one) => one.complete && !one.naturalWidth).map((one) => one.src)"
+        )
         assert broken == [], page
         if page in SHOWN:
             browser.picture(PICTURES / f"{page.removesuffix('.html').replace('/', '-')}-{device}.png")
@@ -57,21 +71,30 @@ def test_search_finds_the_glossary_offline(browser, device):
         const field = document.querySelector(".sidebar-search");
         field.value = "lexmax";
         field.form.submit();""")
-    browser.wait("location.pathname.endsWith('search.html') && "
-                 "[...document.querySelectorAll('.search a')].some((one) => one.textContent === 'Glossary')", seconds=20)
+    browser.wait(
+        "location.pathname.endsWith('search.html') && "
+        "[...document.querySelectorAll('.search a')].some((one) => one.textContent === 'Glossary')",
+        seconds=20,
+    )
     browser.picture(PICTURES / f"search-{device}.png")
     browser.run("[...document.querySelectorAll('.search a')].find((one) => one.textContent === 'Glossary').click()")
-    browser.wait("location.pathname.endsWith('glossary.html') && document.body.textContent.includes('Lexmax.')", seconds=20)
+    browser.wait(
+        "location.pathname.endsWith('glossary.html') && document.body.textContent.includes('Lexmax.')", seconds=20
+    )
     check_quiet(browser)
 
 
-@pytest.mark.parametrize("words, page", [("reverse_cuthill_mckee", "python"), ("group-by", "command"), ("mo_order_mesh", "c"),
-                                         ("order_vertices", "order")])
+@pytest.mark.parametrize(
+    "words, page",
+    [("reverse_cuthill_mckee", "python"), ("group-by", "command"), ("mo_order_mesh", "c"), ("order_vertices", "order")],
+)
 def test_search_finds_names_of_the_interfaces(browser, words, page):
     browser.resize(*WIDTHS["desktop"])
     browser.open(SITE / "search.html")
     browser.driver.get((SITE / "search.html").as_uri() + f"?q={words}")
-    browser.wait(f"[...document.querySelectorAll('.search a')].some((one) => one.pathname.endsWith('/{page}.html'))", seconds=20)
+    browser.wait(
+        f"[...document.querySelectorAll('.search a')].some((one) => one.pathname.endsWith('/{page}.html'))", seconds=20
+    )
     check_quiet(browser)
 
 
@@ -87,7 +110,9 @@ def test_dark_colours_follow_the_system(browser):
     browser.resize(*WIDTHS["desktop"])
     browser.dark(True)
     browser.open(SITE / "reference/cpp/order.html")
-    red, green, blue = browser.run("return getComputedStyle(document.body).backgroundColor.match(/\\d+/g).slice(0, 3).map(Number)")
+    red, green, blue = browser.run(
+        "return getComputedStyle(document.body).backgroundColor.match(/\\d+/g).slice(0, 3).map(Number)"
+    )
     browser.picture(PICTURES / "reference-cpp-order-dark.png")
     browser.dark(False)
     assert max(red, green, blue) < 80

@@ -1,9 +1,10 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """What the manual and the README show is run: Python as it stands, commands where they are quick, C++ by a compiler.
 
-The snippets of a page run one after another in a folder of its own, with small meshes under the names that pages use, and
-share their names. What a page takes for granted stands in a comment of it: `<!-- python`, then code, then `-->`.
+The snippets of a page run one after another in a folder of its own, with small meshes under the names that pages use,
+and share their names. What a page takes for granted stands in a comment of it: `<!-- python`, then code, then `-->`.
 """
+
 import dataclasses
 import os
 import pathlib
@@ -30,6 +31,7 @@ BLOCK = re.compile(r"^```([^\n]*)\n(.*?)^```$|^<!-- (python)\n(.*?)^-->$", re.MU
 @dataclasses.dataclass
 class Snippet:
     """A fenced block of a page, or a comment that prepares those after it."""
+
     page: pathlib.Path
     line: int
     language: str
@@ -69,26 +71,45 @@ def sample_files(tmp_path_factory):
     """The files that pages name: a lattice of tetrahedra, its vertices numbered at random, and its matrix."""
     folder = tmp_path_factory.mktemp("files")
     n = 5
-    place = numpy.random.default_rng(2).permutation(n ** 3)
+    place = numpy.random.default_rng(2).permutation(n**3)
     corners = place.reshape(n, n, n)
-    points = numpy.empty((n ** 3, 3))
+    points = numpy.empty((n**3, 3))
     points[place] = numpy.indices((n, n, n)).reshape(3, -1).T
-    cube = [corners[i:n - 1 + i, j:n - 1 + j, k:n - 1 + k].ravel() for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+    cube = [
+        corners[i : n - 1 + i, j : n - 1 + j, k : n - 1 + k].ravel() for i in (0, 1) for j in (0, 1) for k in (0, 1)
+    ]
     # six tetrahedra around each cube's diagonal from corner 0 to corner 7
     around = (1, 3, 2, 6, 4, 5, 1)
-    cells = numpy.concatenate([numpy.stack([cube[0], cube[a], cube[b], cube[7]], axis=1) for a, b in zip(around, around[1:])])
+    cells = numpy.concatenate(
+        [numpy.stack([cube[0], cube[a], cube[b], cube[7]], axis=1) for a, b in zip(around, around[1:])]
+    )
     mesh = meshorder.make_mesh(points, {"tetra": cells})
-    for name in ("my-mesh.msh", "my-mesh.vtu", "mesh.msh", "mesh.node", "mesh.vtu", "part.msh", "dragon.node", "dragon.msh",
-                 "dragon.veg", "first.vtu", "second.vtu", "mesh.mesh", "my-mesh.mesh"):
+    for name in (
+        "my-mesh.msh",
+        "my-mesh.vtu",
+        "mesh.msh",
+        "mesh.node",
+        "mesh.vtu",
+        "part.msh",
+        "dragon.node",
+        "dragon.msh",
+        "dragon.veg",
+        "first.vtu",
+        "second.vtu",
+        "mesh.mesh",
+        "my-mesh.mesh",
+    ):
         meshorder.write(mesh, folder / name)
     import meshio
+
     meshio.write(folder / "my-mesh.inp", meshio.Mesh(points, [("tetra", cells)]))
     import scipy.io
     import scipy.sparse
+
     pairs = [(a, b) for a in range(4) for b in range(4)]
     rows, columns = (numpy.concatenate([cells[:, pair[side]] for pair in pairs]) for side in (0, 1))
     matrix = scipy.sparse.coo_array((numpy.ones(len(rows)), (rows, columns))).tocsr()
-    scipy.io.mmwrite(folder / "my-matrix.mtx", matrix + 50 * scipy.sparse.eye_array(n ** 3))
+    scipy.io.mmwrite(folder / "my-matrix.mtx", matrix + 50 * scipy.sparse.eye_array(n**3))
     return folder
 
 
@@ -135,7 +156,9 @@ def test_commands_name_subcommands_and_options_that_exist(page, known_options):
             assert told in known_options or words[1].startswith("-"), f"{snippet.place}: no subcommand {words[1]}"
             for option in words[1:]:
                 if option.startswith("-"):
-                    assert option.partition("=")[0] in known, f"{snippet.place}: {shlex.join(told)} has no option {option}"
+                    assert option.partition("=")[0] in known, (
+                        f"{snippet.place}: {shlex.join(told)} has no option {option}"
+                    )
 
 
 @pytest.fixture(scope="session")
@@ -158,8 +181,21 @@ def test_cpp_compiles(page, tmp_path, generated_headers):
         source = tmp_path / f"snippet.{snippet.language}"
         source.write_text(f'#line {snippet.line} "{page.relative_to(ROOT)}"\n{snippet.code}')
         compiler = ["c++", "-std=c++20"] if snippet.language == "cpp" else ["cc", "-std=c99"]
-        done = subprocess.run([*compiler, "-fsyntax-only", "-Wall", "-Wextra", "-Werror", f"-I{ROOT / 'include'}",
-                               f"-I{generated_headers}", str(source)], capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [
+                *compiler,
+                "-fsyntax-only",
+                "-Wall",
+                "-Wextra",
+                "-Werror",
+                f"-I{ROOT / 'include'}",
+                f"-I{generated_headers}",
+                str(source),
+            ],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
         assert done.returncode == 0, done.stderr
 
 
