@@ -37,13 +37,14 @@ def faults(site: pathlib.Path) -> list[str]:
     for path, page in pages.items():
         here = path.relative_to(site)
         for link in page.loaded:
-            if urllib.parse.urlsplit(link).scheme not in ("", "data"):
+            parts = urllib.parse.urlsplit(link)
+            if parts.netloc or parts.scheme not in ("", "data"):
                 found.append(f"{here} loads {link}, which is not part of the site")
-        for link in page.links + page.loaded:
+        for link in page.links + [one for one in page.loaded if not urllib.parse.urlsplit(one).netloc]:
             parts = urllib.parse.urlsplit(link)
             if parts.scheme in ("data", "mailto"):
                 continue
-            if parts.scheme:
+            if parts.scheme or parts.netloc:
                 if parts.scheme not in ("http", "https") or "." not in parts.netloc or " " in link:
                     found.append(f"{here}: {link} is no address")
                 continue
