@@ -63,6 +63,13 @@ def test_every_page_fits_and_asks_no_network(browser, device):
         check_quiet(browser)
 
 
+@pytest.mark.parametrize("width", [600, 768, 1024, 1330, 1366, 1920])
+def test_the_layout_fits_between_phone_and_wall(browser, width):
+    browser.resize(width, 900)
+    browser.open(SITE / "start.html")
+    assert browser.run("return document.documentElement.scrollWidth") == width
+
+
 @pytest.mark.parametrize("device", WIDTHS)
 def test_search_finds_the_glossary_offline(browser, device):
     browser.resize(*WIDTHS[device], phone=device == "phone")
