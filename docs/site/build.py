@@ -26,10 +26,11 @@ import python_reference
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SITE = ROOT / "docs" / "site"
-#: files of the root that are pages of the manual; other files outside docs/ are named, not linked
+#: files of the root that are pages of the manual; other Markdown and folders outside docs/ are named, not linked
 ROOT_PAGES = {"README.md": "start.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
 #: sections of the root's files that have another place here
 ROOT_SECTIONS = {"README.md#formats": "formats.md", "README.md#from-c": "install.md"}
+DOWNLOADS = "files"
 LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)\s]+)\)")
 IMAGE = re.compile(r"(!\[[^\]]*\]\()([^)\s]+)\)")
 
@@ -43,8 +44,11 @@ def run(*command: str, **options: object) -> None:
         fail(f"{pathlib.Path(command[0]).name} failed")
 
 
-def relinked(text: str, folder: pathlib.Path, page_folder: pathlib.Path) -> str:
-    """Markdown of a file in `folder`, with its links as a page of the manual in `page_folder` needs them."""
+def relinked(text: str, folder: pathlib.Path, page_folder: pathlib.Path, downloads: set[pathlib.Path]) -> str:
+    """Markdown of a file in `folder`, with its links as a page of the manual in `page_folder` needs them.
+
+    `downloads` receives the files outside docs/ that it links to, which are to be copied to the folder DOWNLOADS.
+    """
 
     def target(link: str) -> str | None:
         if re.match(r"[a-z]+:|#", link):
@@ -59,7 +63,12 @@ def relinked(text: str, folder: pathlib.Path, page_folder: pathlib.Path) -> str:
             fail(f"{folder.relative_to(ROOT)}: a link to {link}, which does not exist")
         whole = f"{inside}#{anchor}" if anchor else str(inside)
         page = ROOT_SECTIONS.get(whole) or ROOT_PAGES.get(str(inside))
-        return os.path.relpath(ROOT / "docs" / page, page_folder) if page else None
+        if page:
+            return os.path.relpath(ROOT / "docs" / page, page_folder)
+        if place.is_file() and place.suffix != ".md":
+            downloads.add(inside)
+            return os.path.relpath(ROOT / "docs" / DOWNLOADS / inside, page_folder)
+        return None
 
     def link(found: re.Match[str]) -> str:
         to = target(found[2])
@@ -72,6 +81,7 @@ def relinked(text: str, folder: pathlib.Path, page_folder: pathlib.Path) -> str:
 def assemble(sources: pathlib.Path, command: str) -> None:
     """Copies the pages and writes those that are generated."""
     docs = ROOT / "docs"
+    downloads: set[pathlib.Path] = set()
     for path in sorted(docs.rglob("*")):
         place = sources / path.relative_to(docs)
         if (
@@ -82,14 +92,18 @@ def assemble(sources: pathlib.Path, command: str) -> None:
             continue
         place.parent.mkdir(parents=True, exist_ok=True)
         if path.suffix == ".md":
-            place.write_text(relinked(path.read_text(), path.parent, path.parent))
+            place.write_text(relinked(path.read_text(), path.parent, path.parent, downloads))
         else:
             shutil.copyfile(path, place)
     shutil.copyfile(SITE / "conf.py", sources / "conf.py")
     for name, page in ROOT_PAGES.items():
         # pages of docs/ include parts of the README
         place = sources.parent / name if name == "README.md" else sources / page
-        place.write_text(relinked((ROOT / name).read_text(), ROOT, docs))
+        place.write_text(relinked((ROOT / name).read_text(), ROOT, docs, downloads))
+    for path in downloads:
+        place = sources / DOWNLOADS / path
+        place.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(ROOT / path, place)
 
     reference = sources / "reference"
     (reference / "command.md").write_text(command_reference.command_reference(command))

@@ -12,6 +12,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 
 import command_pages
 import meshorder
@@ -20,6 +21,8 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COMMAND = os.environ.get("MESHORDER", str(ROOT / "build" / "bin" / "meshorder"))
+#: the command that comes with the Python package, which the page on Python shows
+PACKAGE_COMMAND = pathlib.Path(sys.executable).with_name("meshorder")
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 #: subcommands that end within a second on a small mesh; of others the options are checked
 QUICK = {"order", "info", "compare", "apply", "methods"}
@@ -102,7 +105,8 @@ def sample_files(tmp_path_factory):
         meshorder.write(mesh, folder / name)
     import meshio
 
-    meshio.write(folder / "my-mesh.inp", meshio.Mesh(points, [("tetra", cells)]))
+    for name in ("my-mesh.inp", "part.inp"):
+        meshio.write(folder / name, meshio.Mesh(points, [("tetra", cells)]))
     import scipy.io
     import scipy.sparse
 
@@ -120,11 +124,12 @@ def folder(tmp_path, monkeypatch, sample_files):
     return tmp_path
 
 
-def run_command(words, place):
+def run_command(words, page, place):
+    command = PACKAGE_COMMAND if page.name == "python.md" and PACKAGE_COMMAND.exists() else COMMAND
     subcommand, *arguments = words[1:]
     if subcommand == "compare":
         arguments += [] if "--budget" in arguments else ["--budget", "0.1"]
-    done = subprocess.run([COMMAND, subcommand, *arguments], capture_output=True, text=True, check=False, timeout=120)
+    done = subprocess.run([command, subcommand, *arguments], capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, f"{place}: {shlex.join(words)}\n{done.stderr}"
 
 
@@ -137,7 +142,7 @@ def test_python_and_commands_run_as_the_page_shows_them(page, folder):
             exec(compile(code, str(page), "exec"), shared)
         for words in commands(snippet):
             if words[1] in QUICK:
-                run_command(words, snippet.place)
+                run_command(words, page, snippet.place)
 
 
 @pytest.fixture(scope="session")
