@@ -51,8 +51,9 @@ nitpick_ignore_regex = [
     # types of the standard library, which have no page here, and names of template parameters
     (r"cpp:identifier", r".*"),
     (r"c:identifier", r".*"),
-    # types of other packages in annotations, and private ones
-    (r"py:(?!obj).*", r"(?!meshorder\.[^_]).*"),
+    # types in annotations, of other packages and private ones; exceptions of Python
+    (r"py:class", r".*"),
+    (r"py:(?!obj|class).*", r"(?!meshorder\.[^_]).*"),
 ]
 
 html_theme = "furo"
