@@ -52,13 +52,20 @@ def directive(name: str, value: Any) -> list[str]:
     return [f".. auto{kind}:: meshorder.{name}", *bases, ""]
 
 
+def module_of(value: Any) -> str:
+    """The module that something public comes from; classes of errors say that it is the package."""
+    if inspect.isclass(value) and issubclass(value, BaseException):
+        return "meshorder._errors"
+    module = getattr(value, "__module__", None) or ""
+    return module if module.startswith("meshorder.") else "meshorder._core"
+
+
 def package_page() -> str:
     """The page of the package itself, a section for each of its modules."""
     by_module: dict[str, list[str]] = {}
     for name in meshorder.__all__:
         value = getattr(meshorder, name)
-        module = getattr(value, "__module__", "") or ""
-        by_module.setdefault(module if module.startswith("meshorder.") else "meshorder._core", []).append(name)
+        by_module.setdefault(module_of(value), []).append(name)
     lines = [INTRODUCTION]
     for module_name, names in sorted(by_module.items(), key=lambda item: place_of(item[0])):
         module = importlib.import_module(module_name)
@@ -74,5 +81,8 @@ def package_page() -> str:
 
 
 def public_modules() -> list[str]:
-    """The modules that users import by themselves: "meshorder.csgraph"."""
-    return [f"meshorder.{one.name}" for one in pkgutil.iter_modules(meshorder.__path__) if not one.name.startswith("_")]
+    """The modules that users import by themselves, those with `__all__`: "meshorder.csgraph"."""
+    modules = [
+        f"meshorder.{one.name}" for one in pkgutil.iter_modules(meshorder.__path__) if not one.name.startswith("_")
+    ]
+    return [module for module in modules if hasattr(importlib.import_module(module), "__all__")]
