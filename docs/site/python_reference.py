@@ -19,23 +19,29 @@ Everything here is in the package ``meshorder``; its guide is :doc:`/python`.
 """
 
 
-#: the modules that most readers look for come first
-FIRST = ("_graphs", "_permutation", "_options", "_meshes", "_payoff", "_methods")
-LAST = ("_errors", "_core")
+#: sections in their order; those of other modules stand before the errors, under the first sentence of the module
+SECTIONS = {
+    "_graphs": "Graphs and matrices",
+    "_permutation": "Permutations",
+    "_options": "Options",
+    "_meshes": "Meshes and files",
+    "_payoff": "What orders are worth",
+    "_methods": "Methods",
+    "_errors": "Errors",
+    "_core": "Version",
+}
 
 
-def place_of(module: str) -> tuple[int, str]:
+def place_of(module: ModuleType) -> float:
     """Where the section of a module stands."""
-    name = module.rpartition(".")[2]
-    return (
-        FIRST.index(name) if name in FIRST else len(FIRST) + LAST.index(name) + 1 if name in LAST else len(FIRST),
-        name,
-    )
+    names = list(SECTIONS)
+    name = module.__name__.rpartition(".")[2]
+    return names.index(name) if name in names else names.index("_errors") - 0.5
 
 
 def title_of(module: ModuleType) -> str:
-    """The first words of a module's docstring: "Orders, Fiedler vectors and the quality of orders"."""
-    return (inspect.getdoc(module) or module.__name__).split("\n")[0].rstrip(".")
+    name = module.__name__.rpartition(".")[2]
+    return SECTIONS.get(name) or (inspect.getdoc(module) or name).split("\n")[0].rstrip(".").replace("`", "")
 
 
 def heading(title: str, underline: str) -> list[str]:
@@ -62,21 +68,20 @@ def module_of(value: Any) -> str:
 
 def package_page() -> str:
     """The page of the package itself, a section for each of its modules."""
-    by_module: dict[str, list[str]] = {}
+    by_module: dict[ModuleType, list[str]] = {}
     for name in meshorder.__all__:
-        value = getattr(meshorder, name)
-        by_module.setdefault(module_of(value), []).append(name)
+        module = importlib.import_module(module_of(getattr(meshorder, name)))
+        by_module.setdefault(module, []).append(name)
     lines = [INTRODUCTION]
-    for module_name, names in sorted(by_module.items(), key=lambda item: place_of(item[0])):
-        module = importlib.import_module(module_name)
-        lines += heading("The version" if module_name.endswith("._core") else title_of(module), "-")
+    for module, names in sorted(by_module.items(), key=lambda item: place_of(item[0])):
+        lines += heading(title_of(module), "-")
         # functions before what they take and return
         for name in sorted(names, key=lambda name: (inspect.isclass(getattr(meshorder, name)), name)):
             if not name.startswith("__"):
                 lines += directive(name, getattr(meshorder, name))
-    for module in public_modules():
-        lines += heading(f"``{module}``", "-")
-        lines += [f".. automodule:: {module}", "   :members:", ""]
+    for path in public_modules():
+        lines += heading(f"``{path}``", "-")
+        lines += [f".. automodule:: {path}", "   :members:", ""]
     return "\n".join(lines)
 
 
