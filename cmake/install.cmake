@@ -125,7 +125,7 @@ if(TARGET meshorder)
             COMPONENT command)
   endif()
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command FILES_MATCHING PATTERN *.md PATTERN *.json
-          PATTERN pictures EXCLUDE PATTERN reproduction EXCLUDE)
+          PATTERN pictures EXCLUDE PATTERN reproduction EXCLUDE PATTERN site EXCLUDE)
   install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)
 endif()
 

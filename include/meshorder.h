@@ -164,8 +164,12 @@ MO_API mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vert
 /**
  * Computes the Fiedler vector of every connected component: norm 1 and sum 0 in each.
  *
- * @param values  n numbers of type MO_DOUBLE or MO_FLOAT
- * @param result  or null; its lambda2 is that of the largest component
+ * @param offsets     n + 1, ascending, the first is `base`
+ * @param neighbours  offsets[n] - base numbers from `base` on; loops and repeats are ignored
+ * @param weights     one positive number for each neighbour, or null
+ * @param options     or null
+ * @param values      n numbers of type MO_DOUBLE or MO_FLOAT
+ * @param result      or null; its lambda2 is that of the largest component
  */
 MO_API mo_status mo_fiedler(const mo_in* offsets, const mo_in* neighbours, const mo_in* weights,
                             const mo_options* options, const mo_out* values, mo_result* result);

@@ -47,6 +47,7 @@ packages_to_test=(
   libxft2              "Gmsh's Python module, which pip installs"
   libxinerama1         "Gmsh's Python module, which pip installs"
   python3-jsonschema   "checks JSON against its schemas"
+  doxygen              "reads the public headers for the manual"
   abigail-tools        "compares the binary interface for C with the recorded one"
   chromium             "the report page, as its reader sees it"
   chromium-driver      "the report page, as its reader sees it"

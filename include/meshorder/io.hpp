@@ -75,7 +75,10 @@ MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::pa
 
 /// Writes a mesh to a stream, for formats of one file; returns and throws likewise.
 ///
+/// @param mesh    not changed
+/// @param stream  receives the bytes of the file
 /// @param format  name of the format
+/// @param notes   receives what the format cannot hold; null: dropped
 /// @throws InvalidArgument also for an unknown format and one of several files
 /// @throws Error of `Code::io` if the stream fails
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, std::ostream& stream, std::string_view format,
@@ -95,8 +98,10 @@ struct MemoryFiles {
 
 /// Writes a mesh to memory; throws as `write_mesh`.
 ///
+/// @param mesh    not changed
 /// @param format  name of the format
 /// @param name    name of the file, from which those of its companions follow
+/// @param notes   receives what the format cannot hold; null: dropped
 [[nodiscard]] MESHORDER_API MemoryFiles write_mesh_to_memory(const Mesh& mesh, std::string_view format,
                                                              std::string_view name, Notes* notes = nullptr);
 

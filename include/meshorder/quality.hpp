@@ -57,6 +57,7 @@ MESHORDER_API Quality quality(const GraphView& graph, const Permutation& order, 
 /// @param graph  n vertices
 /// @param order  n places
 /// @param width  of a bin, ≥ 1
+/// @param run    threads, progress
 /// @return entry k: the number of edges with span in [k · width, (k + 1) · width), up to the largest span
 /// @throws InvalidArgument as `quality`, and if width < 1
 /// @note O(n + edges).

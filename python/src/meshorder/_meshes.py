@@ -137,7 +137,7 @@ class Mesh:
 
     @property
     def shapes(self) -> NDArray[np.uint8]:
-        """The place of each cell's shape in `SHAPES`; a view."""
+        """The number of each cell's shape, in the order of the C++ enumeration ``Shape``; a view."""
         return self._handle.shapes
 
     @property

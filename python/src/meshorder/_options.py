@@ -10,8 +10,7 @@ from typing import Any, TypedDict, Union
 from ._arrays import integers, reals
 from ._errors import InvalidArgument
 
-#: A function of the stage's name and the part that is done (0 … 1, or −1 where that is unknown), which may return
-#: False to stop; or True for a bar by tqdm.
+#: see `Options`
 ProgressFunction = Union[Callable[[str, float], Any], bool, None]
 
 
@@ -31,7 +30,8 @@ class Options(TypedDict, total=False):
         check: "full", "fast" (does not look for asymmetry) or "none" (nothing: faulty arrays crash).
         threads: at most; None: all.
         time_limit: seconds after which the best order so far is returned, with ``complete`` False.
-        progress: see `ProgressFunction`.
+        progress: a function of the stage's name and the part that is done (0 … 1, or −1 where that is unknown), which may
+            return False to stop; or True for a bar by tqdm.
     """
 
     workload: str
