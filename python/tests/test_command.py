@@ -95,6 +95,7 @@ def test_streams_and_status_are_the_commands_own(mesh, tmp_path):
     assert ok("--version", cwd=tmp_path).stdout.strip() == meshorder.__version__
     # a reader that goes away ends it as it ends other programs
     with subprocess.Popen([COMMAND, "methods"], stdout=subprocess.PIPE) as child:
+        assert child.stdout
         child.stdout.close()
     assert child.returncode in (-signal.SIGPIPE, 0)
 
@@ -122,7 +123,7 @@ def test_flags_are_those_that_help_shows(tmp_path):
 )
 def test_files_are_found_among_the_arguments(line, mesh, output):
     words = _command._Words.of(line.split())
-    assert words.mesh.path == mesh
+    assert words and words.mesh.path == mesh
     assert (words.output and words.output.path) == output
 
 
@@ -237,9 +238,10 @@ def test_without_meshio_one_line_tells_how_to_get_it(tmp_path):
 def test_signals_end_it(deck, tmp_path, number):
     temporary = tmp_path / "tmp"
     temporary.mkdir()
-    command = [COMMAND, "compare", "deck.inp", "--budget", "60"]
+    command = [str(COMMAND), "compare", "deck.inp", "--budget", "60"]
     environment = {**os.environ, "TMPDIR": str(temporary)}
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, env=environment) as child:
+        assert child.stderr
         child.stderr.readline()  # that meshio was used
         time.sleep(1)
         child.send_signal(number)

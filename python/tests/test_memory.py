@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import tracemalloc
+from typing import Any
 
 import meshorder
 import numpy as np
@@ -88,7 +89,7 @@ def test_the_process_does_not_grow_by_a_copy(arrays, call):
     ],
 )
 def test_numpy_allocates_nothing_for_clean_arrays(arrays, call):
-    given = {}
+    given: dict[str, Any] = {}
     exec(arrays, given)
     tracemalloc.start()
     call(given)
