@@ -305,8 +305,13 @@ void add_mesh_class(nb::module_& module) {
 
 void add_meshes(nb::module_& module) {
   nb::list shapes;
-  for (int s = 0; s < kShapes; ++s) shapes.append(text(to_string(static_cast<Shape>(s))));
+  nb::list dimensions;
+  for (int s = 0; s < kShapes; ++s) {
+    shapes.append(text(to_string(static_cast<Shape>(s))));
+    dimensions.append(dimension(static_cast<Shape>(s)));
+  }
   module.attr("shapes") = nb::tuple(shapes);
+  module.attr("dimensions") = nb::tuple(dimensions);
   nb::list kernels;
   for (const Kernel kernel : kKernels) kernels.append(text(to_string(kernel)));
   module.attr("kernels") = nb::tuple(kernels);

@@ -209,11 +209,6 @@ def test_cells_are_never_lost(mesh, tmp_path):
         assert done.returncode == 2 and done.stdout == ""
         assert done.stderr.splitlines()[-1].startswith(f"meshorder: {name}: ")
         assert sorted(os.listdir(tmp_path)) == before
-    polyhedron = [[np.array(face) for face in ([0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3])]]
-    with pytest.raises(meshorder.InputError, match="cells of type polyhedron4"):
-        from meshorder import _packed
-
-        _packed.pack(meshio.Mesh(points, [("polyhedron4", polyhedron)]), str(tmp_path / "x.vtu"), "p.vtu")
 
 
 def test_what_cannot_be_read_or_written_gives_one_line(tmp_path):

@@ -18,13 +18,14 @@ import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import IO, Any, NoReturn
+from typing import IO, NoReturn
 
 import numpy as np
+from numpy.typing import NDArray
 
-from . import _core, _foreign, _packed
+from . import _core, _foreign, _meshes
 from ._errors import Error, InputError
-from ._packed import Blocks
+from .hosts.meshio import Blocks, to_meshio
 
 #: subcommands that take a mesh: its place among the arguments that are no options
 _MESH_PLACE = {"order": 0, "apply": 1, "info": 0, "compare": 0}
@@ -161,7 +162,6 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
     output_format = _foreign.format_of_meshio(words.output.path) if words.output is not None else None
     output = words.output if output_format else None
     dimension = 3
-    field_data: dict[str, Any] = {}
     names = {}
     made = ""
     with contextlib.ExitStack() as stack:
@@ -172,13 +172,11 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
             output.put(arguments, made)
             names[made] = output.path
         if format:
-            mesh, notes = _foreign.read_meshio(words.mesh.path, format)
-            say([f"{words.mesh.path}: {note}" for note in notes])
+            mesh = _foreign.read(words.mesh.path, format)
+            dimension = mesh._handle.dimension
             scratch = os.path.join(folder, "in.vtu")
-            say(_packed.pack(mesh, scratch, words.mesh.path))
-            dimension, field_data = mesh.points.shape[1], mesh.field_data
-            if field_data and words.output is not None and output is None:
-                say([f"{words.mesh.path}: the field data {', '.join(field_data)} is left out"])
+            notes = [*mesh.notes, *_meshes.write(mesh, scratch)]
+            say([f"{words.mesh.path}: {note}" for note in notes])
             del mesh
             words.mesh.put(arguments, scratch)
             names[scratch] = words.mesh.path
@@ -186,36 +184,35 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
         if status < 0:
             raise _Signalled(-status)
         if status == 0 and output is not None and output_format:
-            notes = _write(made, output.path, output_format, words, dimension, field_data)
+            notes = _write(made, output.path, output_format, words, dimension)
             say([f"{output.path}: {note}" for note in notes])
     sys.stdout.write(printed)
     sys.stdout.flush()
     return status
 
 
-def _write(
-    made: str, path: str, format: str, words: _Words, dimension: int, field_data: dict[str, Any]
-) -> list[str]:
+def _write(made: str, path: str, format: str, words: _Words, dimension: int) -> list[str]:
     """Writes what the command made through meshio; returns notes."""
     ordered = words.subcommand == "order"
+    moved = _meshes.read(made)
 
     def write(blocks: Blocks) -> list[str]:
-        mesh, order = _packed.unpack(made, blocks)
-        mesh.points, mesh.field_data = mesh.points[:, :dimension], field_data
-        notes = _foreign.write_meshio(mesh, path, format)
+        mesh, order, notes = to_meshio(moved, blocks)
+        mesh.points = mesh.points[:, :dimension]
+        written, *missing = _foreign.write_meshio(mesh, path, format)
         if ordered and words.maps is not None:
             _reorder_map_of_cells(words.maps, order)
-        return notes
+        return [written, *notes, *missing]
 
     try:
         return write(Blocks.OF_TYPES_IN_RUNS if ordered else Blocks.AS_THEY_COME)
     except InputError:
         if not ordered or words.maps is not None:  # maps must lead back
             raise
-        return [*write(Blocks.OF_TYPES), "cells of one type are put together, as the format needs it"]
+        return write(Blocks.OF_TYPES)
 
 
-def _reorder_map_of_cells(prefix: str, order: np.ndarray[tuple[int], np.dtype[np.intp]]) -> None:
+def _reorder_map_of_cells(prefix: str, order: NDArray[np.int64]) -> None:
     """Writes again where cells went, once they were sorted by type."""
     file = f"{prefix}.elements.new_to_old.npy"
     written = np.load(file)

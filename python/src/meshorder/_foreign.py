@@ -76,7 +76,7 @@ def write(mesh: Mesh, path: str, format: str) -> list[str]:
     Raises:
         InputError, Unavailable: as `write_meshio`.
     """
-    made, notes = to_meshio(mesh)
+    made, _, notes = to_meshio(mesh)
     written, *missing = write_meshio(made, path, format)
     return [written, *notes, *missing]
 

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import copy
+import enum
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from .._arrays import integers
 from .._errors import InputError, InvalidArgument
 from .._meshes import SHAPES, Mesh, MeshOrder
@@ -122,32 +124,58 @@ def _renumbered(new_places: NDArray[Any], members: Any, name: str) -> NDArray[An
     return renumbered
 
 
-def to_meshio(mesh: Mesh) -> tuple[Any, list[str]]:
-    """A meshio.Mesh with the same data and sets, its cells grouped by type; and what it cannot hold."""
+class Blocks(enum.Enum):
+    """Which cells of a `Mesh` are put together in a block."""
+
+    #: those of a type that follow each other
+    AS_THEY_COME = enum.auto()
+    #: those of a type among cells of one dimension that follow each other
+    OF_TYPES_IN_RUNS = enum.auto()
+    #: all of a type
+    OF_TYPES = enum.auto()
+
+
+def to_meshio(mesh: Mesh, blocks: Blocks = Blocks.OF_TYPES) -> tuple[Any, NDArray[np.int64], list[str]]:
+    """A meshio.Mesh with the same data and sets; for each of its cells the place that it had; and what it cannot hold."""
     import meshio
 
     widths = np.diff(mesh.offsets)
-    kinds, first, kind_of = np.unique(
-        np.stack([mesh.shapes.astype(np.int64), widths]), axis=1, return_index=True, return_inverse=True
-    )
-    members = [np.flatnonzero(kind_of.ravel() == kind) for kind in np.argsort(first)]
-    blocks = []
+    members = _members(mesh, widths, blocks)
+    made_blocks = []
     for cells in members:
         width = widths[cells[0]]
         rows = mesh.connectivity[mesh.offsets[cells][:, np.newaxis] + np.arange(width)]
         try:
-            blocks.append(meshio.CellBlock(_type_name(SHAPES[mesh.shapes[cells[0]]], int(width)), rows))
+            made_blocks.append(meshio.CellBlock(_type_name(SHAPES[mesh.shapes[cells[0]]], int(width)), rows))
         except KeyError:
             name = f"{SHAPES[mesh.shapes[cells[0]]]} of {width} vertices"
             raise InputError(f"meshio has no cells of the type {name}") from None
-    notes = [] if (np.concatenate(members) == np.arange(len(widths))).all() else ["cells were grouped by type"]
+    old_places = np.concatenate(members) if members else np.zeros(0, dtype=np.int64)
+    notes = [] if (old_places == np.arange(len(widths))).all() else ["cells were grouped by type"]
     points = mesh.points[:, : mesh._handle.dimension]
-    made = meshio.Mesh(np.array(points), blocks)
+    made = meshio.Mesh(np.array(points), made_blocks)
     _attach(made, mesh, members, notes)
     if len(mesh.vertex_ids) or len(mesh.cell_ids):
         notes.append("the numbers of vertices and cells were left out")
     notes += [f"{content}: left out" for content in mesh._handle.format_contents]
-    return made, notes
+    return made, old_places, notes
+
+
+def _members(mesh: Mesh, widths: NDArray[Any], blocks: Blocks) -> list[NDArray[np.int64]]:
+    """The cells of each block, the blocks by their first cells."""
+    if len(widths) == 0:
+        return []
+    kinds = np.stack([mesh.shapes.astype(np.int64), widths])
+    run = np.zeros(len(widths), dtype=np.int64)
+    if blocks is Blocks.AS_THEY_COME:
+        run[1:] = np.cumsum((np.diff(kinds, axis=1) != 0).any(axis=0))
+    elif blocks is Blocks.OF_TYPES_IN_RUNS:
+        run[1:] = np.cumsum(np.diff(np.array(_core.dimensions)[mesh.shapes]) != 0)
+    _, first, block_of = np.unique(np.vstack([run, kinds]), axis=1, return_index=True, return_inverse=True)
+    cells = np.argsort(block_of.ravel(), kind="stable")
+    ends = np.cumsum(np.bincount(block_of.ravel()))
+    parts = np.split(cells, ends[:-1])
+    return [parts[block] for block in np.argsort(first)]
 
 
 def _attach(made: Any, mesh: Mesh, members: list[NDArray[Any]], notes: list[str]) -> None:
