@@ -21,10 +21,12 @@ Everything here is in the package ``meshorder``; its guide is :doc:`/python`.
 
 #: sections in their order; those of other modules stand before the errors, under the first sentence of the module
 SECTIONS = {
+    "_orders": "Orders",
     "_graphs": "Graphs and matrices",
     "_permutation": "Permutations",
     "_options": "Options",
-    "_meshes": "Meshes and files",
+    "_meshes": "Meshes",
+    "_files": "Meshes from arrays and files",
     "_payoff": "What orders are worth",
     "_methods": "Methods",
     "_errors": "Errors",

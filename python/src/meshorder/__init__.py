@@ -15,10 +15,12 @@ from . import _interpreter  # noqa: F401  # before all that loads the extension 
 from ._core import build_info
 from ._core import version as __version__
 from ._errors import Error, InputError, InternalError, InvalidArgument, Stopped, TooLarge, Unavailable
-from ._graphs import Fiedler, FiedlerComponent, Order, Quality, fiedler, order, quality
-from ._meshes import Mesh, MeshOrder, make_mesh, order_mesh, read, reorder, to_bytes, write
+from ._files import make_mesh, read, to_bytes, write
+from ._graphs import Fiedler, FiedlerComponent, Order, Quality, fiedler, quality
+from ._meshes import Mesh, MeshOrder
 from ._methods import MethodInfo, load_methods, methods, register, unregister
 from ._options import Options
+from ._orders import order, order_mesh, reorder
 from ._payoff import Advice, Candidate, Comparison, advise, compare
 from ._permutation import Permutation
 from ._show import show

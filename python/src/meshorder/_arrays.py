@@ -63,7 +63,7 @@ def points(values: Any, name: str = "points") -> NDArray[Any]:
     if array.ndim == 1 and array.size:
         array = array[:, np.newaxis]
     if array.ndim != 2 or not 1 <= array.shape[1] <= 3:
-        if array.size == 0:
+        if array.ndim in (1, 2) and len(array) == 0:
             return np.zeros((0, 3))
         raise InvalidArgument(f"{name}: expected one row of 1 to 3 coordinates for each, not the shape {array.shape}")
     if array.dtype not in (np.float32, np.float64) or not array.dtype.isnative:

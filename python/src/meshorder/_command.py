@@ -23,7 +23,7 @@ from typing import IO, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core, _foreign, _meshes
+from . import _core, _files, _foreign
 from ._errors import Error, InputError
 from .hosts.meshio import Blocks, to_meshio
 
@@ -175,7 +175,7 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
             mesh = _foreign.read(words.mesh.path, format)
             dimension = mesh._handle.dimension
             scratch = os.path.join(folder, "in.vtu")
-            notes = [*mesh.notes, *_meshes.write(mesh, scratch)]
+            notes = [*mesh.notes, *_files.write(mesh, scratch)]
             say([f"{words.mesh.path}: {note}" for note in notes])
             del mesh
             words.mesh.put(arguments, scratch)
@@ -194,7 +194,7 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
 def _write(made: str, path: str, format: str, words: _Words, dimension: int) -> list[str]:
     """Writes what the command made through meshio; returns notes."""
     ordered = words.subcommand == "order"
-    moved = _meshes.read(made)
+    moved = _files.read(made)
 
     def write(blocks: Blocks) -> list[str]:
         mesh, order, notes = to_meshio(moved, blocks)

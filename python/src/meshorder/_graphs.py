@@ -200,32 +200,8 @@ def networkx_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:
     return offsets, np.fromiter(entries, dtype=np.int32, count=int(offsets[-1]))
 
 
-def order(
-    graph: Any, method: str = "auto", *, points: Any = None, weights: Any = None, **options: Any
-) -> Order:
-    """New places for the vertices of a graph, or the rows and columns of a matrix.
-
-    Args:
-        graph: a square SciPy matrix (CSR is read in place, others are converted), ``(indptr, indices)``, a networkx
-            graph (vertices in the order of its nodes) or a torch matrix in CSR form; or a mesh as of `reorder`, whose
-            vertices are ordered. Diagonals are ignored.
-        method: "auto" or one of `methods`.
-        points: coordinates, for geometric methods.
-        weights: > 0, one for each entry of the graph, equal on both sides of the diagonal.
-        **options: see `Options`.
-
-    Raises:
-        InvalidArgument: a faulty graph, an unknown method, sizes that do not match.
-        TooLarge: 2³¹ or more vertices.
-        Stopped: ``progress`` returned False.
-    """
-    from .hosts import find_host  # which needs this module
-
-    host = find_host(graph)
-    if host is not None:
-        if points is not None or weights is not None:
-            raise InvalidArgument("order: a mesh has points of its own, and no weights")
-        return host.order(method, "original", options).vertices
+def order_graph(graph: Any, method: str, points: Any, weights: Any, options: dict[str, Any]) -> Order:
+    """`order`, of what is no mesh."""
     offsets, neighbours = graph_arrays(graph)
     given_weights = None if weights is None else reals(weights, "weights")
     coordinates = None if points is None else as_points(points)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from . import _thumbnails
+from . import _core, _thumbnails
 
 if TYPE_CHECKING:
     from ._graphs import Fiedler, Order, Quality
@@ -116,10 +116,8 @@ def fiedler(of: Fiedler) -> str:
 def mesh(of: Mesh) -> str:
     """What the mesh holds."""
     types, counts = np.unique(np.stack([of.shapes, np.diff(of.offsets)]), axis=1, return_counts=True)
-    from ._meshes import SHAPES
-
     names = [
-        f"{count:,} × {SHAPES[shape]} of {width:,}" for (shape, width), count in zip(types.T.tolist(), counts.tolist())
+        f"{count:,} × {_core.shapes[shape]} of {width:,}" for (shape, width), count in zip(types.T.tolist(), counts.tolist())
     ]
     parts = {
         "vertices": [f"{len(of.points):,}"],

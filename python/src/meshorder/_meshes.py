@@ -1,9 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Meshes: arrays, files, and what is said of an order before it is made."""
+"""Meshes with all that belongs to them, and the orders of arrays of cells."""
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -78,30 +77,10 @@ def cell_arrays(cells: Any, dimension: int) -> Any:
     return [(name, vertices)]
 
 
-def order_mesh(
-    points: Any, cells: Any = None, *, vertices: str = "auto", elements: str = "auto", vertex_count: int | None = None,
-    **options: Any,
-) -> MeshOrder:  # fmt: skip
-    """New places for the vertices of a mesh and for its cells. Nothing is changed.
-
-    Args:
-        points: one row of one to three coordinates for each vertex; or None, with ``vertex_count``; or, without
-            cells, a mesh as of `reorder`.
-        cells: an array with a row for each cell (2, 3, 8 or 10 vertices; 4 are tetrahedra in space and quads in the
-            plane), ``{type: array}``, ``[(type, array), …]`` with meshio's names of types, or ``(offsets, connectivity)``
-            with VTK's types as a third. Cells are numbered in the order in which they are given.
-        vertices: method for the vertices.
-        elements: method for the elements, the cells of the highest dimension.
-        vertex_count: where there are no points.
-        **options: see `Options`.
-
-    Raises:
-        InvalidArgument: faulty cells or points, an unknown method.
-    """
-    if cells is None:
-        from .hosts import host_of  # which needs this module
-
-        return host_of(points).order(vertices, elements, options)
+def order_arrays(
+    points: Any, cells: Any, vertices: str, elements: str, vertex_count: int | None, options: dict[str, Any]
+) -> MeshOrder:
+    """`order_mesh`, of arrays."""
     coordinates = None if points is None else as_points(points)
     if coordinates is None and vertex_count is None:
         raise InvalidArgument("order_mesh: without points vertex_count must be given")
@@ -201,89 +180,7 @@ class Mesh:
         return _html.mesh(self)
 
 
-def read(source: str | os.PathLike[str] | bytes, format: str | None = None) -> Mesh:
-    """Reads a mesh from a file, or from the bytes of one.
-
-    Args:
-        source: a path or the bytes.
-        format: name of the format; None: by the extension, of bytes by the first of them. Files of formats that are not
-            ours are read by meshio, where it is installed; the mesh's notes begin with that.
-
-    Raises:
-        InputError: the file is missing or faulty; the message names line or byte.
-    """
-    if isinstance(source, (bytes, bytearray, memoryview)):
-        return Mesh(*_core.read_bytes(bytes(source), format or ""))
-    from . import _foreign  # which needs this module
-
-    path = os.fspath(source)
-    foreign = _foreign.format_of_meshio(path, format or "")
-    return _foreign.read(path, foreign) if foreign else Mesh(*_core.read(path, format or ""))
-
-
-def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:
-    """Writes a mesh as of `reorder` in the format that the extension names; by meshio where it is not ours.
-
-    Returns:
-        What was left out, of a mesh that is no `Mesh` also on the way to one; and that meshio wrote, if it did.
-    """
-    from . import _foreign  # which needs this module
-
-    if not isinstance(mesh, Mesh):
-        made = make_mesh(mesh)
-        return made.notes + write(made, path)
-    foreign = _foreign.format_of_meshio(os.fspath(path))
-    if foreign:
-        return _foreign.write(mesh, os.fspath(path), foreign)
-    notes: list[str] = mesh._handle.write(os.fspath(path))
-    return notes
-
-
-def to_bytes(mesh: Any, format: str) -> bytes:
-    """The bytes of the file that `write` would make, in a format of our own."""
-    made: bytes = (mesh if isinstance(mesh, Mesh) else make_mesh(mesh))._handle.to_bytes(format, "mesh")
-    return made
-
-
-def make_mesh(points: Any, cells: Any = None) -> Mesh:
-    """A mesh of arrays as of `order_mesh`, which are copied.
-
-    Without cells: of a mesh as of `reorder`, with its data and sets; the notes tell what was left out.
-    """
-    if cells is None:
-        from .hosts import host_of  # which needs this module
-
-        return host_of(points).mesh()
+def mesh_of_arrays(points: Any, cells: Any) -> Mesh:
+    """`make_mesh`, of arrays."""
     coordinates = as_points(points)
     return Mesh(_core.make_mesh(coordinates, cell_arrays(cells, coordinates.shape[1])))
-
-
-def reorder(
-    mesh: Any, *, vertices: str = "auto", elements: str = "auto", group_by: str | None = None, ids: str = "renumber",
-    format: str | None = None, inplace: bool = False, **options: Any,
-) -> tuple[Any, MeshOrder]:  # fmt: skip
-    """Orders a mesh and moves its vertices and cells, with all data, sets and groups that belong to them.
-
-    Args:
-        mesh: a `Mesh`; a mesh of meshio, PyVista, VTK (vtkUnstructuredGrid, vtkPolyData), scikit-fem or trimesh;
-            ``gmsh.model``; or a tuple of arrays: ``(points, cells)`` with cells as of `order_mesh`, and then, where
-            there are any, a dict of arrays of the points and one of the cells (for cells in blocks, of an array for
-            each block).
-        vertices: method for the vertices.
-        elements: method for the elements.
-        group_by: name of an array of whole numbers whose groups stay together, or "sets" for the sets of cells.
-        ids: of a `Mesh`: "renumber", "keep" or "attach".
-        format: of a `Mesh`: the one that it will be written in; None: the one it was read from.
-        inplace: changes the mesh itself, and of a tuple its arrays.
-        **options: see `Options`.
-
-    Returns:
-        The mesh in its new order, of the same type, and the order.
-
-    Raises:
-        InvalidArgument: what is no mesh, or none that can be moved; faulty arrays; an unknown method or array.
-    """
-    from .hosts import host_of  # which needs this module
-    from .hosts.host import Request
-
-    return host_of(mesh).reorder(Request(vertices, elements, group_by, ids, format, inplace, options))

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from . import _core, _html, _plots
 from ._extras import load
+from ._files import read
 from ._graphs import Quality
-from ._meshes import Mesh, read
+from ._meshes import Mesh
 from ._options import prepared
 from .hosts import host_of
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from ._errors import InvalidArgument
 from ._graphs import Order
-from ._meshes import Mesh, MeshOrder, reorder
+from ._meshes import Mesh, MeshOrder
+from ._orders import reorder
 from ._payoff import _mesh
 from ._permutation import Permutation
 

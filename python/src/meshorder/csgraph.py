@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._graphs import order
+from ._graphs import order_graph
 
 __all__ = ["reverse_cuthill_mckee"]
 
@@ -22,5 +22,5 @@ def reverse_cuthill_mckee(graph: Any, symmetric_mode: bool = False) -> NDArray[n
         graph: a square matrix in CSR or CSC form.
         symmetric_mode: True takes for granted that the matrix is symmetric; otherwise A + Aᵀ is ordered.
     """
-    made = order(graph, "rcm", symmetric=symmetric_mode, check="fast")
+    made = order_graph(graph, "rcm", None, None, {"symmetric": symmetric_mode, "check": "fast"})
     return np.array(made.new_to_old)

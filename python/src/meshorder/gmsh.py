@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from . import _meshes, _payoff
+from . import _orders, _payoff
 from ._meshes import MeshOrder
 from ._payoff import Advice, Comparison
 
@@ -35,7 +35,7 @@ def reorder(**options: Any) -> MeshOrder:
         InvalidArgument: Gmsh is not initialized or has no mesh.
         Unavailable: a Gmsh whose ``renumberNodes`` takes no tags.
     """
-    return _meshes.reorder(_model(), inplace=True, **options)[1]
+    return _orders.reorder(_model(), inplace=True, **options)[1]
 
 
 def compare(methods: Any = None, **options: Any) -> Comparison:

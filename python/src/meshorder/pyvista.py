@@ -12,7 +12,7 @@ import numpy as np
 
 import pyvista
 
-from . import _meshes, _payoff
+from . import _orders, _payoff
 from ._payoff import Advice, Comparison
 
 __all__ = ["MeshorderAccessor"]
@@ -39,7 +39,7 @@ class MeshorderAccessor:
             inplace: changes this dataset and returns it.
             **options: as of `meshorder.reorder`.
         """
-        moved, order = _meshes.reorder(self._dataset, vertices=vertices, inplace=inplace, **options)
+        moved, order = _orders.reorder(self._dataset, vertices=vertices, inplace=inplace, **options)
         moved.point_data["original_point"] = np.array(order.vertices.new_to_old, dtype=np.int64)
         moved.cell_data["original_cell"] = np.array(order.cells.new_to_old, dtype=np.int64)
         return moved

@@ -15,7 +15,7 @@ from .. import _core
 from .._arrays import integers
 from .._arrays import points as as_points
 from .._errors import InvalidArgument
-from .._meshes import Mesh, MeshOrder, cell_arrays, order_mesh
+from .._meshes import Mesh, MeshOrder, cell_arrays, order_arrays
 from .._options import prepared
 from .._permutation import Permutation
 
@@ -70,7 +70,7 @@ class Host(abc.ABC):
 
     def order(self, vertices: str, elements: str, options: dict[str, Any]) -> MeshOrder:
         """New places for the vertices and cells."""
-        return order_mesh(self.points, self.cells, vertices=vertices, elements=elements, **options)
+        return order_arrays(self.points, self.cells, vertices, elements, None, options)
 
     def reorder(self, request: Request) -> tuple[Any, MeshOrder]:
         """See `meshorder.reorder`."""

@@ -1,0 +1,61 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Meshes from arrays and files, and into files."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from . import _core, _foreign
+from ._meshes import Mesh, mesh_of_arrays
+from .hosts import host_of
+
+
+def make_mesh(points: Any, cells: Any = None) -> Mesh:
+    """A mesh of arrays as of `order_mesh`, which are copied.
+
+    Without cells: of a mesh as of `reorder`, with its data and sets; the notes tell what was left out.
+    """
+    if cells is None:
+        return host_of(points).mesh()
+    return mesh_of_arrays(points, cells)
+
+
+def read(source: str | os.PathLike[str] | bytes, format: str | None = None) -> Mesh:
+    """Reads a mesh from a file, or from the bytes of one.
+
+    Args:
+        source: a path or the bytes.
+        format: name of the format; None: by the extension, of bytes by the first of them. Files of formats that are not
+            ours are read by meshio, where it is installed; the mesh's notes begin with that.
+
+    Raises:
+        InputError: the file is missing or faulty; the message names line or byte.
+    """
+    if isinstance(source, (bytes, bytearray, memoryview)):
+        return Mesh(*_core.read_bytes(bytes(source), format or ""))
+    path = os.fspath(source)
+    foreign = _foreign.format_of_meshio(path, format or "")
+    return _foreign.read(path, foreign) if foreign else Mesh(*_core.read(path, format or ""))
+
+
+def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:
+    """Writes a mesh as of `reorder` in the format that the extension names; by meshio where it is not ours.
+
+    Returns:
+        What was left out, of a mesh that is no `Mesh` also on the way to one; and that meshio wrote, if it did.
+    """
+    if not isinstance(mesh, Mesh):
+        made = make_mesh(mesh)
+        return made.notes + write(made, path)
+    foreign = _foreign.format_of_meshio(os.fspath(path))
+    if foreign:
+        return _foreign.write(mesh, os.fspath(path), foreign)
+    notes: list[str] = mesh._handle.write(os.fspath(path))
+    return notes
+
+
+def to_bytes(mesh: Any, format: str) -> bytes:
+    """The bytes of the file that `write` would make, in a format of our own."""
+    made: bytes = (mesh if isinstance(mesh, Mesh) else make_mesh(mesh))._handle.to_bytes(format, "mesh")
+    return made
