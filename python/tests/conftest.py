@@ -1,9 +1,16 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Matrices and meshes that several tests use."""
 
+import os
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from hypothesis import settings
+
+# the same examples in every run; HYPOTHESIS_PROFILE=default tries others
+settings.register_profile("reproducible", derandomize=True)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "reproducible"))
 
 
 def lattice(*sizes):
