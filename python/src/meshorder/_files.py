@@ -59,3 +59,8 @@ def to_bytes(mesh: Any, format: str) -> bytes:
     """The bytes of the file that `write` would make, in a format of our own."""
     made: bytes = (mesh if isinstance(mesh, Mesh) else make_mesh(mesh))._handle.to_bytes(format, "mesh")
     return made
+
+
+def mesh_of(mesh: Any) -> Mesh:
+    """The mesh of a path, or of what `reorder` takes."""
+    return read(mesh) if isinstance(mesh, (str, os.PathLike)) else host_of(mesh).mesh()

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -13,11 +12,9 @@ from numpy.typing import NDArray
 
 from . import _core, _html, _plots
 from ._extras import load
-from ._files import read
+from ._files import mesh_of
 from ._graphs import Quality
-from ._meshes import Mesh
 from ._options import prepared
-from .hosts import host_of
 
 KERNELS: tuple[str, ...] = _core.kernels
 
@@ -141,12 +138,6 @@ class Comparison(Sequence[Candidate]):
         return _plots.candidates(self._candidates, KERNELS, axes)
 
 
-def _mesh(mesh: Any) -> Mesh:
-    if isinstance(mesh, (str, os.PathLike)):
-        return read(mesh)
-    return host_of(mesh).mesh()
-
-
 def _pairs(methods: Any) -> list[tuple[str, str]]:
     return [(method, "auto") if isinstance(method, str) else tuple(method) for method in methods or []]
 
@@ -161,7 +152,7 @@ def advise(mesh: Any, *, measure: bool = False, budget: float = 10, **options: A
         **options: see `Options`.
     """
     with prepared(options) as given:
-        verdict, as_is, candidates, kernels = _mesh(mesh)._handle.advise([], not measure, measure, budget, given)
+        verdict, as_is, candidates, kernels = mesh_of(mesh)._handle.advise([], not measure, measure, budget, given)
     return Advice(
         verdict,
         Candidate._of(as_is),
@@ -184,5 +175,5 @@ def compare(
         **options: see `Options`.
     """
     with prepared(options) as given:
-        made = _mesh(mesh)._handle.compare(_pairs(methods), predict, measure, budget, given)
+        made = mesh_of(mesh)._handle.compare(_pairs(methods), predict, measure, budget, given)
     return Comparison([Candidate._of(candidate) for candidate in made])

@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ._errors import InvalidArgument
+from ._files import mesh_of
 from ._graphs import Order
 from ._meshes import Mesh, MeshOrder
 from ._orders import reorder
-from ._payoff import _mesh
 from ._permutation import Permutation
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def show(mesh: Any, order: Any = None, *, path: str | os.PathLike[str] | None = 
     from ._page import make_page  # takes time to import
 
     name = os.path.basename(mesh) if isinstance(mesh, (str, os.PathLike)) else ""
-    whole = _mesh(mesh)
+    whole = mesh_of(mesh)
     page = make_page(whole, _named(order, whole), name)
     if path is not None:
         page.save(path)

@@ -73,7 +73,6 @@ class Grid(_Dataset):
         self.cells = offsets, connectivity, self._types if shaped else None
 
     def _move_cells(self, moved: Any, vertices: Permutation, cells: Permutation) -> None:
-
         types = _support().numpy_to_vtk(cells.move(self._types), deep=True)
         rows = _moved_cell_array(self.given.GetCells(), vertices, cells)
         if not (self._types == _POLYHEDRON).any():
