@@ -112,8 +112,8 @@ class Browser:
         return [entry["message"] for entry in self.driver.get_log("browser") if "GPU stall" not in entry["message"]]
 
     def requests(self):
-        """Addresses that the page asked for since the last time, the page's own data: ones left out."""
+        """Addresses that the page asked for since the last time, without its own data: and what the browser asks itself."""
         messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         asked = [message["params"]["request"]["url"] for message in messages
                  if message["method"] == "Network.requestWillBeSent"]
-        return [url for url in asked if not url.startswith(("data:", "about:"))]
+        return [url for url in asked if not url.startswith(("data:", "about:", "chrome:"))]
