@@ -112,7 +112,7 @@ class Browser:
         return [entry["message"] for entry in self.driver.get_log("browser") if "GPU stall" not in entry["message"]]
 
     def requests(self):
-        """Addresses that the page asked for since the last time, without its own data: and what the browser asks itself."""
+        """Addresses that the page asked for since the last time; neither data: ones nor those of the browser's own pages."""
         messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         asked = [message["params"]["request"]["url"] for message in messages
                  if message["method"] == "Network.requestWillBeSent"]
