@@ -235,7 +235,13 @@ def test_signals_end_it(deck, tmp_path, number):
     temporary.mkdir()
     command = [str(COMMAND), "compare", "deck.inp", "--budget", "60"]
     environment = {**os.environ, "TMPDIR": str(temporary)}
-    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, env=environment) as child:
+
+    def heed():  # processes in the background ignore SIGINT
+        signal.signal(number, signal.SIG_DFL)
+
+    with subprocess.Popen(
+        command, cwd=tmp_path, stderr=subprocess.PIPE, env=environment, preexec_fn=heed
+    ) as child:
         assert child.stderr
         child.stderr.readline()  # that meshio was used
         time.sleep(1)

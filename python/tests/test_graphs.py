@@ -202,6 +202,7 @@ def test_interrupt_ends_a_call_that_would_not_end():
 import os, signal, threading, time, numpy as np, meshorder
 n = 200_000
 path = np.cumsum([0, 1, *[2] * (n - 2), 1]), np.delete(np.stack([np.arange(n) - 1, np.arange(n) + 1], 1).ravel(), [0, -1])
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which processes in the background are without
 began = threading.Event()
 def interrupt():
     began.wait()
