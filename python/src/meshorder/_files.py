@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from . import _core, _foreign
+from . import _core
 from ._meshes import Mesh, mesh_of_arrays
 from .hosts import host_of
 
@@ -34,6 +34,8 @@ def read(source: str | os.PathLike[str] | bytes, format: str | None = None) -> M
     """
     if isinstance(source, (bytes, bytearray, memoryview)):
         return Mesh(*_core.read_bytes(bytes(source), format or ""))
+    from . import _foreign  # takes time to import
+
     path = os.fspath(source)
     foreign = _foreign.format_of_meshio(path, format or "")
     return _foreign.read(path, foreign) if foreign else Mesh(*_core.read(path, format or ""))
@@ -48,6 +50,8 @@ def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:
     if not isinstance(mesh, Mesh):
         made = make_mesh(mesh)
         return made.notes + write(made, path)
+    from . import _foreign  # takes time to import
+
     foreign = _foreign.format_of_meshio(os.fspath(path))
     if foreign:
         return _foreign.write(mesh, os.fspath(path), foreign)

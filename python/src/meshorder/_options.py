@@ -27,7 +27,7 @@ class Options(TypedDict, total=False):
         groups: a whole number for each vertex; groups stay together, ascending.
         cell_groups: likewise for each cell.
         symmetric: of graphs: True refuses an asymmetric pattern, None and False order A + Aᵀ.
-        check: "full", "fast" (does not look for asymmetry) or "none" (nothing: faulty arrays crash).
+        check: "full", "fast" (does not refuse an asymmetric pattern) or "none" (nothing: faulty arrays crash).
         threads: at most; None: all.
         time_limit: seconds after which the best order so far is returned, with ``complete`` False.
         progress: a function of the stage's name and the part that is done (0 … 1, or −1 where that is unknown), which may
