@@ -19,7 +19,7 @@ namespace {
 
 constexpr Index kVertices = 4096;  // in a chunk
 
-double dot(std::span<const double> a, std::span<const double> b) {
+double inner_product(std::span<const double> a, std::span<const double> b) {
   return sum_over_chunks<double>(static_cast<Index>(a.size() / 3), kVertices, [&](Index begin, Index end) {
     double sum = 0.0;
     for (Offset i = Offset{3} * begin; i < Offset{3} * end; ++i) sum += a[i] * b[i];
@@ -27,7 +27,7 @@ double dot(std::span<const double> a, std::span<const double> b) {
   });
 }
 
-double norm(std::span<const double> a) { return std::sqrt(dot(a, a)); }
+double norm(std::span<const double> a) { return std::sqrt(inner_product(a, a)); }
 
 void check_options(const ImplicitOptions& options, Index vertex_count) {
   check_options(static_cast<const MotionOptions&>(options), vertex_count);
@@ -201,17 +201,18 @@ double BackwardEuler::potential(std::span<const double> velocities) {
   std::vector<double> difference(velocities.begin(), velocities.end());
   for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= velocities_[i];
   multiply(system_.mass(), system_.matrix(), difference, scratch_);
-  double sum = 0.5 * dot(difference, scratch_);
+  double sum = 0.5 * inner_product(difference, scratch_);
   if (options_.mass_damping > 0.0) {
     multiply(system_.mass(), system_.matrix(), velocities, scratch_);
-    sum += 0.5 * h * options_.mass_damping * dot(velocities, scratch_);
+    sum += 0.5 * h * options_.mass_damping * inner_product(velocities, scratch_);
   }
   if (damping_.size() > 0) {
     multiply(damping_, velocities, scratch_);
-    sum += 0.5 * dot(velocities, scratch_);
+    sum += 0.5 * inner_product(velocities, scratch_);
   }
   move_to(velocities);
-  return sum - h * dot(loads_, velocities) + elastic_energy(system_.rest(), system_.elasticity(), moved_);
+  return sum - h * inner_product(loads_, velocities) +
+         elastic_energy(system_.rest(), system_.elasticity(), moved_);
 }
 
 SolveReport BackwardEuler::solve_once(Iterate& iterate, StepReport& report) {
@@ -267,7 +268,7 @@ bool BackwardEuler::search_line(Iterate& iterate, StepReport& report) {
   constexpr double kEnough = 1e-4;     // of the decrease that the slope predicts
   constexpr double kRounding = 1e-13;  // of the potential's terms
   constexpr int kHalvings = 30;
-  const double slope = dot(iterate.gradient, iterate.step);
+  const double slope = inner_product(iterate.gradient, iterate.step);
   const double start = potential(iterate.velocities);
   std::vector<double> trial(iterate.velocities.size());
   double length = 1.0;

@@ -20,8 +20,6 @@
 namespace meshorder {
 namespace {
 
-using nlohmann::json;
-
 /// Reads an order; without a file it is the identity.
 Permutation order_of(const std::string& path, Index count, const std::string& what) {
   return path.empty() ? Permutation::identity(count) : read_permutation(path, count, what);
@@ -112,9 +110,7 @@ class Stepping {
 
 }  // namespace
 
-using nlohmann::json;
-
-json to_json(const StepperTask& task) {
+nlohmann::json to_json(const StepperTask& task) {
   return {{"scenario", task.scenario},
           {"mesh", task.mesh},
           {"vertex_order", task.vertex_order},
@@ -122,34 +118,34 @@ json to_json(const StepperTask& task) {
           {"processors", task.processors}};
 }
 
-StepperTask stepper_task(const json& message) {
+StepperTask stepper_task(const nlohmann::json& message) {
   return {message.at("scenario"), message.at("mesh"), message.at("vertex_order"), message.at("cell_order"),
           message.at("processors").get<std::vector<int>>()};
 }
 
-json to_json(const StepperReady& ready) {
+nlohmann::json to_json(const StepperReady& ready) {
   return {{"vertices", ready.vertices},         {"tetrahedra", ready.tetrahedra},
           {"longest_side", ready.longest_side}, {"setup_seconds", ready.setup_seconds},
           {"step_seconds", ready.step_seconds}, {"bytes", ready.bytes},
           {"fingerprint", ready.fingerprint},   {"fixed_addresses", ready.fixed_addresses}};
 }
 
-StepperReady stepper_ready(const json& message) {
+StepperReady stepper_ready(const nlohmann::json& message) {
   return {message.at("vertices"),      message.at("tetrahedra"),     message.at("longest_side"),
           message.at("setup_seconds"), message.at("step_seconds"),   message.at("bytes"),
           message.at("fingerprint"),   message.at("fixed_addresses")};
 }
 
-json to_json(const StepperTurn& turn) {
+nlohmann::json to_json(const StepperTurn& turn) {
   return {
       {"steps", turn.steps}, {"frames", turn.frames}, {"frame_every", turn.frame_every}, {"last", turn.last}};
 }
 
-StepperTurn stepper_turn(const json& message) {
+StepperTurn stepper_turn(const nlohmann::json& message) {
   return {message.at("steps"), message.at("frames"), message.at("frame_every"), message.at("last")};
 }
 
-json to_json(const StepperTimes& times) {
+nlohmann::json to_json(const StepperTimes& times) {
   const StepReport::Seconds& s = times.seconds;
   return {{"step_seconds", times.step_seconds},
           {"seconds",
@@ -165,8 +161,8 @@ json to_json(const StepperTimes& times) {
           {"warnings", times.warnings}};
 }
 
-StepperTimes stepper_times(const json& message) {
-  const json& s = message.at("seconds");
+StepperTimes stepper_times(const nlohmann::json& message) {
+  const nlohmann::json& s = message.at("seconds");
   return {message.at("step_seconds").get<std::vector<double>>(),
           {s.at("total"), s.at("assembly"), s.at("solve"), s.at("local"), s.at("global"), s.at("collision")},
           message.at("cg_iterations"),
@@ -176,11 +172,11 @@ StepperTimes stepper_times(const json& message) {
 }
 
 void serve_steps(std::istream& questions, std::ostream& answers) {
-  const auto answer = [&](const json& message) { answers << message.dump() << std::endl; };
+  const auto answer = [&](const nlohmann::json& message) { answers << message.dump() << std::endl; };
   try {
     std::optional<Stepping> stepping;
     for (std::string line; std::getline(questions, line);) {
-      const json question = json::parse(line);
+      const nlohmann::json question = nlohmann::json::parse(line);
       if (stepping) {
         answer(to_json(stepping->take(stepper_turn(question))));
         continue;
@@ -205,9 +201,9 @@ Stepper::Stepper(const std::filesystem::path& program, int threads, const Steppe
 
 StepperTimes Stepper::take(const StepperTurn& turn) { return stepper_times(ask(to_json(turn))); }
 
-json Stepper::ask(const json& question) {
+nlohmann::json Stepper::ask(const nlohmann::json& question) {
   process_.send(question.dump());
-  json answer = json::parse(process_.receive());
+  nlohmann::json answer = nlohmann::json::parse(process_.receive());
   if (answer.contains("error"))
     throw InputError(name_ + ", in its own process", answer["error"], "this run is lost");
   return answer;

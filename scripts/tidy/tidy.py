@@ -44,6 +44,16 @@ def stamps_folder():
     return folder
 
 
+def entries_of(build):
+    """What compiles each source, also of those that are compiled together: a unity build includes them in one file."""
+    for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
+        together = []
+        if "/Unity/unity_" in entry["file"]:
+            together = re.findall(r'^#include "(.*)"', pathlib.Path(entry["file"]).read_text(encoding="utf-8"), re.MULTILINE)
+        for source in together or [entry["file"]]:
+            yield {**entry, "file": source}
+
+
 def flags(entry):
     """What of a compile command matters to clang-tidy. GCC's precompiled header is none for clang, and no file may
     need it."""
@@ -75,12 +85,14 @@ def headers_by_object(build):
 
 
 def headers_of(entry, by_object):
-    """None where ninja does not know them all."""
+    """None where ninja does not know them all. Of sources that are compiled together each has the headers of all."""
     words = shlex.split(entry["command"])
     objects = [entry.get("output") or words[words.index("-o") + 1]]
     objects += [f"{after}.gch" for word, after in zip(words, words[1:]) if word == "-include" and "cmake_pch" in after]
     known = [by_object.get(os.path.relpath(os.path.join(entry["directory"], name), entry["directory"])) for name in objects]
-    return None if None in known else {path for paths in known for path in paths if "cmake_pch" not in path}
+    if None in known:
+        return None
+    return {path for paths in known for path in paths if "cmake_pch" not in path and not path.endswith((".cpp", ".cxx"))}
 
 
 class Fingerprints:
@@ -143,7 +155,7 @@ def look_at(entry, options, stamp):
 def main():
     build, jobs, words = pathlib.Path(sys.argv[1]).resolve(), int(sys.argv[2]), sys.argv[3:]
     entries = {}
-    for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
+    for entry in entries_of(build):
         path = pathlib.Path(entry["file"])
         if path.is_relative_to(ROOT) and not path.is_relative_to(build):
             name = str(path.relative_to(ROOT))

@@ -14,8 +14,6 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kRows = 4096;  // that a thread sorts together
-
 /// Sorts row v, drops its loops and merges its repeats. Returns how many entries it keeps, from its old
 /// beginning on.
 Offset clean_row(OwnedGraph& rows, Index v, std::vector<std::pair<Index, double>>& buffer) {
@@ -48,6 +46,7 @@ Offset clean_row(OwnedGraph& rows, Index v, std::vector<std::pair<Index, double>
 
 /// Cleans all rows and closes the gaps.
 OwnedGraph cleaned_rows(OwnedGraph rows) {
+  constexpr Index kRows = 4096;  // that a thread sorts together
   std::vector<Offset> offsets(rows.offsets.size(), 0);
   for_each_chunk(rows.size(), kRows, [&](Index /*chunk*/, Index begin, Index end) {
     std::vector<std::pair<Index, double>> buffer;

@@ -15,8 +15,6 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kRows = 8192;  // that a thread examines together
-
 /// The finaliser of SplitMix64 (Steele, Lea, Flood 2014, Fast splittable pseudorandom number generators): a
 /// bijection.
 std::uint64_t mixed(std::uint64_t x) {
@@ -61,6 +59,7 @@ GraphFindings examine_rows(const GraphArrays& graph, Index begin, Index end) {
 
 template <bool Symmetry, bool Weighted>
 GraphFindings examine_all(const GraphArrays& graph) {
+  constexpr Index kRows = 8192;  // that a thread examines together
   return sum_over_chunks<GraphFindings>(graph.size(), kRows, [&](Index begin, Index end) {
     return examine_rows<Symmetry, Weighted>(graph, begin, end);
   });

@@ -14,8 +14,6 @@
 namespace meshorder {
 namespace {
 
-constexpr Offset kEntries = 262144;  // that a thread converts together
-
 /// number ± base as unsigned arithmetic has it: a faulty offset may stand at the end of the range.
 Offset less_base(std::int64_t number, int base) {
   return static_cast<Offset>(static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(base));
@@ -46,6 +44,7 @@ void take_offsets(const GraphView& graph, GraphArrays& arrays) {
 
 /// Takes the neighbours as they are, or narrowed and counted from 0.
 void take_neighbours(const GraphView& graph, GraphArrays& arrays) {
+  constexpr Offset kEntries = 262144;  // that a thread converts together
   const IndexView& neighbours = graph.neighbours;
   if (neighbours.bytes() == 4 && graph.base == 0) {
     arrays.neighbours = {static_cast<const Index*>(neighbours.data()), neighbours.size()};

@@ -30,7 +30,7 @@ Incidence transposed(IncidenceRef incidence) {
 
 namespace {
 
-constexpr Index kChunk = 16384;  // vertices whose rows a thread finds together
+constexpr Index kRowsOfPart = 16384;  // vertices whose rows a thread finds together
 
 /// The size that all elements share, 0 where they differ.
 Offset common_size(IncidenceRef elements) {
@@ -92,14 +92,14 @@ void append_row(Elements<Size> elements, const Incidence& at_vertex, Index v, st
   rows.end = end;
 }
 
-/// All rows, kChunk in each part, and the degrees: `degrees[v + 1]` is that of v.
+/// All rows, kRowsOfPart in each part, and the degrees: `degrees[v + 1]` is that of v.
 template <int Size>
 std::vector<Rows> find_rows(Elements<Size> elements, std::vector<Offset>& degrees) {
   const Incidence at_vertex = transposed(elements.incidence);
   const Index n = elements.incidence.vertex_count;
-  std::vector<Rows> parts(chunk_count(n, kChunk));
+  std::vector<Rows> parts(chunk_count(n, kRowsOfPart));
   tbb::enumerable_thread_specific<std::vector<Index>> marks([n] { return std::vector<Index>(n, -1); });
-  for_each_chunk(n, kChunk, [&](Index chunk, Index begin, Index end) {
+  for_each_chunk(n, kRowsOfPart, [&](Index chunk, Index begin, Index end) {
     Rows& rows = parts[chunk];
     // enough for meshes of triangles and tetrahedra
     rows.neighbours.resize(at_vertex.offsets[end] - at_vertex.offsets[begin]);
@@ -125,8 +125,8 @@ std::vector<Rows> find_rows(IncidenceRef elements, std::vector<Offset>& degrees)
   }
 }
 
-/// The symmetric graph with these rows, kChunk in each of `chunks`, each sorted: reading the rows in turn and
-/// the entries the other way sorts them all in one pass. Chunks are freed once they are read.
+/// The symmetric graph with these rows, kRowsOfPart in each of `chunks`, each sorted: reading the rows in
+/// turn and the entries the other way sorts them all in one pass. Chunks are freed once they are read.
 CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> chunks) {
   CsrGraph graph;
   resize_in_steps(graph.neighbours, offsets.back());
@@ -136,7 +136,7 @@ CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> chunks)
     poll();
     const Rows& rows = chunks[chunk];
     Offset k = 0;
-    for (const Index chunk_end = std::min(graph.size() - v, kChunk) + v; v < chunk_end; ++v) {
+    for (const Index chunk_end = std::min(graph.size() - v, kRowsOfPart) + v; v < chunk_end; ++v) {
       for (const Offset end = k + graph.degree(v); k < end; ++k) {
         graph.neighbours[next[rows.neighbours[k]]++] = v;
       }

@@ -18,8 +18,6 @@
 namespace meshorder {
 namespace {
 
-constexpr Offset kChunk = 65536;  // entries that a thread inverts together
-
 [[noreturn]] void fail_range(Offset entry, const std::string& value, Offset n) {
   throw InvalidArgument("permutation: entry " + std::to_string(entry) + " is " + value + ", outside 0 … " +
                         std::to_string(n - 1));
@@ -51,12 +49,13 @@ void check_count(std::size_t n) {
 
 /// Returns the inverse of `map`, which is checked to be a bijection of 0 … n−1.
 std::vector<Index> inverted(std::span<const Index> map) {
+  constexpr Offset kEntries = 65536;  // that a thread inverts together
   check_count(map.size());
   const auto n = static_cast<Offset>(map.size());
   std::vector<Index> inverse(map.size(), -1);
   std::atomic<bool> bijection = true;
   in_arena({}, [&] {
-    for_each_range(n, kChunk, [&](Offset begin, Offset end) {
+    for_each_range(n, kEntries, [&](Offset begin, Offset end) {
       for (Offset i = begin; i < end; ++i) {
         const Index target = map[i];
         const bool first =

@@ -21,8 +21,6 @@
 namespace meshorder {
 namespace {
 
-constexpr Offset kRows = 4096;  // that a thread moves together
-
 /// An entry of a moved row: its new column and its position in the old matrix. Sorting by both keeps the
 /// order of repeated columns.
 using MovedEntry = std::pair<Index, Offset>;
@@ -54,6 +52,7 @@ std::vector<Offset> moved_offsets(const GraphArrays& matrix, std::span<const Ind
 template <class Take>
 void for_each_moved_row(const GraphArrays& matrix, const Permutation& order, std::span<const Offset> offsets,
                         const Take& take) {
+  constexpr Offset kRows = 4096;  // that a thread moves together
   const std::span<const Index> new_to_old = order.new_to_old();
   const std::span<const Index> old_to_new = order.old_to_new();
   for_each_range(order.size(), kRows, [&](Offset first, Offset last) {

@@ -17,7 +17,6 @@
 namespace meshorder {
 namespace {
 
-constexpr Offset kRows = 16384;      // that a thread moves together
 constexpr Offset kNumbers = 262144;  // that a thread renumbers together
 
 template <std::size_t Bytes>
@@ -57,6 +56,7 @@ void Permutation::check_apart(const void* from, const void* to, std::size_t byte
 
 void Permutation::move_rows(const void* from, Offset from_stride, void* to, Offset to_stride,
                             std::size_t row_bytes, const Run& run) const {
+  constexpr Offset kRows = 16384;  // that a thread moves together
   const Offset n = size();
   if (n == 0 || row_bytes == 0) return;
   if (from == nullptr || to == nullptr)

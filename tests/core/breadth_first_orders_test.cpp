@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"
+#include "support/graph_orders.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 
@@ -10,14 +11,8 @@
 
 namespace meshorder {
 namespace {
-
-CsrGraph scrambled(const CsrGraph& graph, std::uint64_t seed) {
-  return renumbered(graph, test::shuffled(graph.size(), seed).old_to_new());
-}
-
-Permutation order_of(const CsrGraph& graph, std::string_view method) {
-  return order_graph(method, {graph, {}}).permutation;
-}
+using test::order_of;
+using test::scrambled;
 
 TEST(BreadthFirstOrders, PutAScrambledPathBackEndToEnd) {
   for (const Index n : {2, 3, 100, 5000}) {

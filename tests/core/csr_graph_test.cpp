@@ -15,7 +15,7 @@
 namespace meshorder {
 namespace {
 
-Incidence random_elements(Index vertices, Index elements, int size, unsigned seed) {
+Incidence elements_of_size(Index vertices, Index elements, int size, unsigned seed) {
   std::mt19937 random(seed);
   Incidence result;
   result.vertex_count = vertices;
@@ -36,7 +36,7 @@ TEST(CsrGraph, FromEdgesDropsLoopsAndRepeats) {
 }
 
 TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
-  const Incidence elements = random_elements(50, 60, 4, 1);
+  const Incidence elements = elements_of_size(50, 60, 4, 1);
   std::set<std::pair<Index, Index>> pairs;
   for (Index e = 0; e < elements.size(); ++e) {
     for (const Index a : elements[e]) {
@@ -55,7 +55,7 @@ TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
 }
 
 TEST(DualGraphByVertex, JoinsExactlyTheElementsThatShareAVertex) {
-  const Incidence elements = random_elements(80, 40, 3, 2);
+  const Incidence elements = elements_of_size(80, 40, 3, 2);
   const CsrGraph dual = joined_by_vertex(elements);
   test::check_graph(dual);
   for (Index e = 0; e < elements.size(); ++e) {
@@ -70,7 +70,7 @@ TEST(DualGraphByVertex, JoinsExactlyTheElementsThatShareAVertex) {
 }
 
 TEST(Renumbered, KeepsEveryEdge) {
-  const CsrGraph graph = joined_vertices(random_elements(30, 30, 3, 3));
+  const CsrGraph graph = joined_vertices(elements_of_size(30, 30, 3, 3));
   std::vector<Index> reversed(30);
   for (Index v = 0; v < 30; ++v) reversed[v] = 29 - v;
   const CsrGraph renamed = renumbered(graph, reversed);

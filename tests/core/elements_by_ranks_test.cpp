@@ -12,7 +12,7 @@
 namespace meshorder {
 namespace {
 
-Incidence random_elements(Index vertices, Index count, Index most, unsigned seed) {
+Incidence elements_of_any_size(Index vertices, Index count, Index most, unsigned seed) {
   std::mt19937 random(seed);
   Incidence result;
   result.vertex_count = vertices;
@@ -48,7 +48,7 @@ Ranks sorted_elements(const Incidence& elements, const Permutation& vertices,
 void expect_sorted(const char* method, const std::function<bool(const Ranks&, const Ranks&)>& before) {
   // few vertices, so that many elements tie
   for (const Index vertices : {4, 12, 100}) {
-    const Incidence elements = random_elements(vertices, 300, 4, static_cast<unsigned>(vertices));
+    const Incidence elements = elements_of_any_size(vertices, 300, 4, static_cast<unsigned>(vertices));
     const Permutation order = test::shuffled(vertices, 2);
     EXPECT_EQ(order_incidence(method, {elements, order, {}, {}}).permutation.new_to_old(),
               sorted_elements(elements, order, before))
@@ -62,7 +62,7 @@ TEST(ElementsByRanks, LexmaxComparesFallingRanksLikeWords) {
 
 TEST(ElementsByRanks, LexmaxComparesAllRanksOfLargeElements) {
   // of three vertices, so that many of up to nine tie in their largest four or in all
-  const Incidence elements = random_elements(3, 500, 9, 5);
+  const Incidence elements = elements_of_any_size(3, 500, 9, 5);
   const Permutation order = test::shuffled(3, 2);
   EXPECT_EQ(order_incidence("lexmax", {elements, order, {}, {}}).permutation.new_to_old(),
             sorted_elements(elements, order,
@@ -71,7 +71,7 @@ TEST(ElementsByRanks, LexmaxComparesAllRanksOfLargeElements) {
 
 TEST(ElementsByRanks, LexmaxSortsElementsThatSeveralThreadsShare) {
   for (const Index vertices : {50, 150000}) {
-    const Incidence elements = random_elements(vertices, 150000, 4, 6);
+    const Incidence elements = elements_of_any_size(vertices, 150000, 4, 6);
     const Permutation order = test::shuffled(vertices, 2);
     EXPECT_EQ(order_incidence("lexmax", {elements, order, {}, {}}).permutation.new_to_old(),
               sorted_elements(elements, order,

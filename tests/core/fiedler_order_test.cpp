@@ -4,6 +4,7 @@
 #include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"
 #include "spectral/fiedler.hpp"
+#include "support/graph_orders.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 
@@ -13,15 +14,12 @@
 
 namespace meshorder {
 namespace {
+using test::scrambled;
 
 Permutation fiedler_order(const CsrGraph& graph, double tolerance = 0.1) {
   OrderOptions options;
   options.tolerance = tolerance;
   return order_graph("fiedler", {graph, {}}, options).permutation;
-}
-
-CsrGraph scrambled(const CsrGraph& graph, std::uint64_t seed) {
-  return renumbered(graph, test::shuffled(graph.size(), seed).old_to_new());
 }
 
 TEST(FiedlerOrder, PutsAScrambledPathBackEndToEnd) {

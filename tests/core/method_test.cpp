@@ -2,6 +2,7 @@
 #include "ordering/method.hpp"
 
 #include "mesh/graphs.hpp"
+#include "support/refusal.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
@@ -16,6 +17,7 @@
 
 namespace meshorder {
 namespace {
+using test::refusal;
 
 std::vector<Point> random_points(Index n) {
   std::mt19937_64 random(9);
@@ -111,17 +113,6 @@ TEST(VertexMethods, OfGeometryNeedCoordinatesAndOthersDoNot) {
       EXPECT_NO_THROW(order_graph(method.name, {graph, {}})) << method.name;
     }
   }
-}
-
-/// The message of the InvalidArgument that `call` throws.
-template <class Call>
-std::string refusal(Call call) {
-  try {
-    call();
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Methods, OfUnknownNamesAreRefusedWithTheKnownOnes) {

@@ -3,6 +3,7 @@
 #include "mesh/procedural.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"
+#include "support/graph_orders.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 
@@ -12,16 +13,11 @@
 
 namespace meshorder {
 namespace {
+using test::order_of;
 
 CsrGraph scrambled_mesh_graph() {
   const CsrGraph graph = vertex_graph(make_grid({12, 0.15, 0}));
   return renumbered(graph, test::shuffled(graph.size(), 1).old_to_new());
-}
-
-Permutation order_of(const CsrGraph& graph, std::string_view method, std::uint64_t seed = 0) {
-  OrderOptions options;
-  options.seed = seed;
-  return order_graph(method, {graph, {}}, options).permutation;
 }
 
 /// Entries of the Cholesky factor below the diagonal, by elimination on sets.

@@ -4,6 +4,7 @@
 #include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"
 #include "spectral/fiedler.hpp"
+#include "support/graph_orders.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 
@@ -18,10 +19,8 @@
 
 namespace meshorder {
 namespace {
-
-Permutation order_of(const CsrGraph& graph, std::string_view method = "minla") {
-  return order_graph(method, {graph, {}}).permutation;
-}
+using test::order_of;
+using test::scrambled;
 
 /// Σ |rank i − rank j| over edges, straight from its definition; exact.
 double sum_of_spans(const CsrGraph& graph, const std::vector<Index>& old_to_new) {
@@ -34,7 +33,7 @@ double sum_of_spans(const CsrGraph& graph, const std::vector<Index>& old_to_new)
   return static_cast<double>(sum);
 }
 
-double minla(const CsrGraph& graph) { return sum_of_spans(graph, order_of(graph).old_to_new()); }
+double minla(const CsrGraph& graph) { return sum_of_spans(graph, order_of(graph, "minla").old_to_new()); }
 
 /// The least sum of spans over all n! orders.
 double optimum(const CsrGraph& graph) {
@@ -45,10 +44,6 @@ double optimum(const CsrGraph& graph) {
     least = std::min(least, sum_of_spans(graph, order));
   } while (std::next_permutation(order.begin(), order.end()));
   return least;
-}
-
-CsrGraph scrambled(const CsrGraph& graph, std::uint64_t seed) {
-  return renumbered(graph, test::shuffled(graph.size(), seed).old_to_new());
 }
 
 TEST(Minla, FindsTheOptimumOfSmallGraphs) {
@@ -180,7 +175,7 @@ TEST(Minla, IsTheSameForEveryNumberOfThreads) {
   std::vector<Permutation> orders;
   for (const std::size_t threads : {1U, 2U, 7U}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    orders.push_back(order_of(graph));
+    orders.push_back(order_of(graph, "minla"));
   }
   EXPECT_EQ(orders[0], orders[1]);
   EXPECT_EQ(orders[0], orders[2]);
@@ -190,7 +185,7 @@ TEST(Minla, ComesToAnEndOnGraphsThatDoNotCoarsenWell) {
   for (const CsrGraph& graph :
        {test::star(test::large(400000)), test::random_regular(test::large(40000), 10, 1),
         test::preferential_attachment(test::large(60000), 4, 1), test::complete(test::large(1500))}) {
-    EXPECT_EQ(order_of(graph).size(), graph.size());
+    EXPECT_EQ(order_of(graph, "minla").size(), graph.size());
   }
 }
 

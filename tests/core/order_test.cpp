@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "ordering/method.hpp"
 #include "support/graph_views.hpp"
+#include "support/refusal.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
@@ -22,6 +23,7 @@
 
 namespace meshorder {
 namespace {
+using test::refusal;
 
 using testing::ElementsAre;
 using testing::ElementsAreArray;
@@ -57,16 +59,6 @@ std::vector<std::string> names_of(const std::vector<MethodInfo>& methods) {
   names.reserve(methods.size());
   for (const MethodInfo& method : methods) names.push_back(method.name);
   return names;
-}
-
-/// The sentence with which a call refuses its input; empty if it does not.
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(OrderVertices, IsTheSameForAllIntegerTypesAndBases) {

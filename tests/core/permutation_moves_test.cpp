@@ -17,7 +17,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kMany = 100000;  // more than one thread takes at once
+constexpr Index kTuples = 100000;  // more than one thread takes at once
 
 Permutation shuffled(Index n) {
   std::vector<Index> map(static_cast<std::size_t>(n));
@@ -64,8 +64,8 @@ TEST(Permutation, MovesRowsOfAnyType) {
 }
 
 TEST(Permutation, MovesInPlaceWhatACopyWouldMove) {
-  const Permutation order = shuffled(kMany);
-  std::vector<std::array<char, 7>> rows(kMany);
+  const Permutation order = shuffled(kTuples);
+  std::vector<std::array<char, 7>> rows(kTuples);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].fill(static_cast<char>(i % 127));
   std::vector<std::array<char, 7>> copy(rows.size());
   order.move(rows, copy);

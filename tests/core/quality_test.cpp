@@ -131,8 +131,9 @@ TEST(Quality, CountsRepeatsOnceAndLoopsNever) {
 TEST(Quality, IsNothingWithoutEdges) {
   const std::vector<Offset> offsets(6, 0);
   EXPECT_EQ(quality({}), Quality{});
-  EXPECT_EQ(quality({offsets, {}}), Quality{});
-  EXPECT_TRUE(span_histogram({offsets, {}}, Permutation::identity(5), 2).empty());
+  const GraphView graph{offsets, {}};
+  EXPECT_EQ(quality(graph), Quality{});
+  EXPECT_TRUE(span_histogram(graph, Permutation::identity(5), 2).empty());
 }
 
 TEST(Quality, RefusesWhatDoesNotFit) {

@@ -4,6 +4,7 @@
 #include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"
 #include "ordering/smoothed_bisection.hpp"
+#include "support/graph_orders.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 
@@ -16,14 +17,8 @@
 
 namespace meshorder {
 namespace {
-
-CsrGraph scrambled(const CsrGraph& graph, std::uint64_t seed) {
-  return renumbered(graph, test::shuffled(graph.size(), seed).old_to_new());
-}
-
-Permutation order_of(const CsrGraph& graph, std::string_view method) {
-  return order_graph(method, {graph, {}}).permutation;
-}
+using test::order_of;
+using test::scrambled;
 
 TEST(SmoothedBisection, BeginsAtTheEndThatIsPulledForward) {
   // 0 – 1 – … – 39: longer than a leaf

@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-constexpr std::string_view kHouse = R"(# a house
+constexpr std::string_view kHouseWithRoof = R"(# a house
 # with a roof
 mtllib house.mtl more.mtl
 v 0 0 0
@@ -46,7 +46,7 @@ p 6
 
 TEST(Obj, ReadsCellsWithTheirStates) {
   const TemporaryFolder folder;
-  const Mesh mesh = read_mesh(folder.file("a.obj", kHouse));
+  const Mesh mesh = read_mesh(folder.file("a.obj", kHouseWithRoof));
   EXPECT_EQ(mesh.vertex_count(), 6);
   EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::quad, Shape::triangle, Shape::triangle, Shape::polygon,
                                             Shape::line, Shape::polyline, Shape::vertex}));
@@ -70,10 +70,10 @@ TEST(Obj, ReadsCellsWithTheirStates) {
 }
 
 TEST(Obj, OrdersAndPutsBackEverything) {
-  expect_order_and_back_to("a.obj", kHouse);
+  expect_order_and_back_to("a.obj", kHouseWithRoof);
   const TemporaryFolder folder;
   Notes notes;
-  write_mesh(read_mesh(folder.file("a.obj", kHouse)), folder.path() / "b.obj", &notes);
+  write_mesh(read_mesh(folder.file("a.obj", kHouseWithRoof)), folder.path() / "b.obj", &notes);
   EXPECT_TRUE(notes.empty());
 }
 

@@ -243,6 +243,7 @@ TEST(CheckMesh, NamesTheFirstFault) {
   EXPECT_THAT(fault([](Mesh& m) { std::swap(m.cells.offsets[2], m.cells.offsets[3]); }),
               HasSubstr("offsets"));
   EXPECT_THAT(fault([](Mesh& m) { m.cells.vertices[5] = -1; }), HasSubstr("a cell names -1"));
+  EXPECT_THAT(fault([](Mesh& m) { m.cells.vertices[5] = 99; }), HasSubstr("a cell names 99"));
   EXPECT_THAT(fault([](Mesh& m) { m.cell_blocks = {0, 999}; }), HasSubstr("blocks"));
   EXPECT_THAT(fault([](Mesh& m) { m.vertex_ids = {1}; }), HasSubstr("ids"));
   EXPECT_THAT(fault([](Mesh& m) {

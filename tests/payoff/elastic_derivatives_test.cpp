@@ -48,15 +48,13 @@ Eigen::MatrixXd minus_jacobian(const test::Patch& patch, const Elasticity& elast
   return result;
 }
 
-constexpr auto kExact = Tangent::exact;
-
 class ElasticDerivatives : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(OfAll, ElasticDerivatives,
-                         testing::Values(Case{MaterialModel::corotational, kExact},
-                                         Case{MaterialModel::stvk, kExact},
-                                         Case{MaterialModel::stvk, kExact, 2},
-                                         Case{MaterialModel::stvk, kExact, 1},
-                                         Case{MaterialModel::neo_hookean, kExact}),
+                         testing::Values(Case{MaterialModel::corotational, Tangent::exact},
+                                         Case{MaterialModel::stvk, Tangent::exact},
+                                         Case{MaterialModel::stvk, Tangent::exact, 2},
+                                         Case{MaterialModel::stvk, Tangent::exact, 1},
+                                         Case{MaterialModel::neo_hookean, Tangent::exact}),
                          test::case_name);
 
 TEST_P(ElasticDerivatives, OfTheEnergyAreMinusTheForces) {

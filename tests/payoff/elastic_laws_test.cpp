@@ -16,19 +16,20 @@ using test::Case;
 using test::elasticity_of;
 using test::forces_of;
 
-constexpr Tangent kExact = Tangent::exact;
 constexpr Tangent kProjected = Tangent::projected;
 
 class ElasticLaw : public testing::TestWithParam<Case> {};
-INSTANTIATE_TEST_SUITE_P(
-    OfAll, ElasticLaw,
-    testing::Values(Case{MaterialModel::corotational, kExact},
-                    Case{MaterialModel::corotational, Tangent::approximate},
-                    Case{MaterialModel::corotational, kProjected}, Case{MaterialModel::stvk, kExact},
-                    Case{MaterialModel::stvk, kProjected}, Case{MaterialModel::stvk, kExact, 2},
-                    Case{MaterialModel::stvk, kExact, 1}, Case{MaterialModel::neo_hookean, kExact},
-                    Case{MaterialModel::neo_hookean, kProjected}),
-    test::case_name);
+INSTANTIATE_TEST_SUITE_P(OfAll, ElasticLaw,
+                         testing::Values(Case{MaterialModel::corotational, Tangent::exact},
+                                         Case{MaterialModel::corotational, Tangent::approximate},
+                                         Case{MaterialModel::corotational, kProjected},
+                                         Case{MaterialModel::stvk, Tangent::exact},
+                                         Case{MaterialModel::stvk, kProjected},
+                                         Case{MaterialModel::stvk, Tangent::exact, 2},
+                                         Case{MaterialModel::stvk, Tangent::exact, 1},
+                                         Case{MaterialModel::neo_hookean, Tangent::exact},
+                                         Case{MaterialModel::neo_hookean, kProjected}),
+                         test::case_name);
 
 /// Positions of some simplices in a row in ordinary states, collapsed ones among them.
 AlignedVector<double> with_collapsed_elements(const test::Patch& patch) {
@@ -176,12 +177,12 @@ TEST_P(ElasticLaw, TakesParametersOfEachSimplex) {
 
 class ElasticLawOfSolids : public ElasticLaw {};
 INSTANTIATE_TEST_SUITE_P(OfAll, ElasticLawOfSolids,
-                         testing::Values(Case{MaterialModel::corotational, kExact},
+                         testing::Values(Case{MaterialModel::corotational, Tangent::exact},
                                          Case{MaterialModel::corotational, Tangent::approximate},
                                          Case{MaterialModel::corotational, kProjected},
-                                         Case{MaterialModel::stvk, kExact},
+                                         Case{MaterialModel::stvk, Tangent::exact},
                                          Case{MaterialModel::stvk, kProjected},
-                                         Case{MaterialModel::neo_hookean, kExact},
+                                         Case{MaterialModel::neo_hookean, Tangent::exact},
                                          Case{MaterialModel::neo_hookean, kProjected}),
                          test::case_name);
 
@@ -267,7 +268,7 @@ TEST(ElasticEnergy, HasTheSameBitsOnOneThread) {
   const test::Patch patch = test::deformed_patch(3, 20000);
   for (const MaterialModel model :
        {MaterialModel::corotational, MaterialModel::stvk, MaterialModel::neo_hookean}) {
-    const Elasticity elasticity = elasticity_of({model, kExact});
+    const Elasticity elasticity = elasticity_of({model, Tangent::exact});
     const double on_all = elastic_energy(patch.rest, elasticity, patch.positions);
     tbb::task_arena alone(1);
     const double on_one =
@@ -281,7 +282,7 @@ TEST(ElasticLaws, AreForTetrahedraButForStVenantKirchhoff) {
   for (const int dimension : {1, 2}) {
     const test::Patch patch = test::deformed_patch(dimension, 3);
     for (const MaterialModel model : {MaterialModel::corotational, MaterialModel::neo_hookean}) {
-      const Elasticity elasticity = elasticity_of({model, kExact});
+      const Elasticity elasticity = elasticity_of({model, Tangent::exact});
       EXPECT_THROW(forces_of(patch, elasticity, patch.positions), InvalidArgument);
       EXPECT_THROW(elastic_energy(patch.rest, elasticity, patch.positions), InvalidArgument);
     }
@@ -318,9 +319,9 @@ TEST(ElasticLaws, HaveNoForcesOnFlatSimplices) {
   for (const MaterialModel model :
        {MaterialModel::corotational, MaterialModel::stvk, MaterialModel::neo_hookean}) {
     AlignedVector<double> forces(16, 0.0);
-    add_elasticity(rest, elasticity_of({model, kExact}), x, forces, nullptr);
+    add_elasticity(rest, elasticity_of({model, Tangent::exact}), x, forces, nullptr);
     EXPECT_EQ(test::largest(forces), 0.0);
-    EXPECT_EQ(elastic_energy(rest, elasticity_of({model, kExact}), x), 0.0);
+    EXPECT_EQ(elastic_energy(rest, elasticity_of({model, Tangent::exact}), x), 0.0);
   }
 }
 

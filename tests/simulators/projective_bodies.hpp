@@ -49,15 +49,6 @@ inline ProjectiveAtRest renumbered(const ProjectiveAtRest& from, const std::vect
   return result;
 }
 
-/// Some bijection of 0 … n − 1.
-inline std::vector<Index> shuffled(Index n, std::uint64_t seed) {
-  std::vector<Index> place(n);
-  for (Index v = 0; v < n; ++v) place[v] = v;
-  Random random(seed);
-  for (Index i = n; i > 1; --i) std::swap(place[i - 1], place[random.below(i)]);
-  return place;
-}
-
 inline MotionState renumbered(const MotionState& from, const std::vector<Index>& place) {
   MotionState result = from;
   for (std::size_t v = 0; v < place.size(); ++v) {

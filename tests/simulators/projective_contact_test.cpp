@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/solve/contact_rows.hpp"
 #include "projective_bodies.hpp"
+#include "support/sample_meshes.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -206,7 +207,7 @@ TEST(ProjectiveContact, TheEndsOfARingMeetAndDoNotPass) {
 
 TEST(ProjectiveContact, MovesTheSameInEveryOrderAndOnAnyNumberOfThreads) {
   const test::ProjectiveAtRest original = tilted_box(0.4, 0.2, 0.001);
-  const std::vector<Index> place = test::shuffled(index_size(original.points), 3);
+  const std::vector<Index> place = test::shuffled(index_size(original.points), 3).old_to_new();
   const test::ProjectiveAtRest scrambled = test::renumbered(original, place);
   ProjectiveOptions options = with_floor();
   options.contact.with_itself = true;

@@ -48,6 +48,12 @@ std::string content_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+std::string with(std::string text, std::string_view old, std::string_view fresh) {
+  const auto at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return text.replace(at, old.size(), fresh);
+}
+
 fs::path shared_mesh(const std::string& name) {
   const fs::path path = fs::path(MESHORDER_SHARED_MESHES) / name;
   return fs::exists(path) ? path : fs::path();

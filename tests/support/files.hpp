@@ -32,6 +32,9 @@ class TemporaryFolder {
 
 std::string content_of(const std::filesystem::path& path);
 
+/// The text with the first `old` of it, which is EXPECTed, replaced by `fresh`.
+std::string with(std::string text, std::string_view old, std::string_view fresh);
+
 /// The path of a file in the shared folder of real meshes; empty where that is absent (then GTEST_SKIP).
 std::filesystem::path shared_mesh(const std::string& name);
 

@@ -65,6 +65,21 @@ inline std::vector<Index> vertices_in_vtk(const Mesh& mesh, Index cell, int type
   return vertices;
 }
 
+/// EXPECTs the points and cells of `mesh`.
+inline void expect_same_grid(vtkUnstructuredGrid* grid, const Mesh& mesh) {
+  ASSERT_EQ(grid->GetNumberOfPoints(), mesh.vertex_count());
+  ASSERT_EQ(grid->GetNumberOfCells(), mesh.cell_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(grid->GetPoint(v)[i], mesh.points[v][i]);
+  }
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    vtkIdType count = 0;
+    const vtkIdType* vertices = nullptr;
+    grid->GetCellPoints(c, count, vertices);
+    EXPECT_EQ(std::vector<Index>(vertices, vertices + count), vertices_in_vtk(mesh, c, grid->GetCellType(c)));
+  }
+}
+
 /// EXPECTs that VTK sees every face of every cell anticlockwise from outside of the cell.
 inline void expect_faces_outward(vtkUnstructuredGrid* grid) {
   const auto middle = [](vtkCell* cell) {

@@ -94,12 +94,6 @@ LOOKUP_TABLE default
 1 2 3 4 5 6
 )";
 
-std::string with(std::string text, std::string_view old, std::string_view fresh) {
-  const auto at = text.find(old);
-  EXPECT_NE(at, std::string::npos) << old;
-  return text.replace(at, old.size(), fresh);
-}
-
 template <class Reader>
 auto read_with_vtk(const std::filesystem::path& path) {
   const vtkNew<Reader> reader;
@@ -119,20 +113,6 @@ void write_with_vtk(vtkUnstructuredGrid* grid, const std::filesystem::path& path
   writer->SetFileType(binary ? VTK_BINARY : VTK_ASCII);
   writer->SetFileVersion(version);
   ASSERT_EQ(writer->Write(), 1);
-}
-
-void expect_same_grid(vtkUnstructuredGrid* grid, const Mesh& mesh) {
-  ASSERT_EQ(grid->GetNumberOfPoints(), mesh.vertex_count());
-  ASSERT_EQ(grid->GetNumberOfCells(), mesh.cell_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    for (int i = 0; i < 3; ++i) EXPECT_EQ(grid->GetPoint(v)[i], mesh.points[v][i]);
-  }
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    vtkIdType count = 0;
-    const vtkIdType* vertices = nullptr;
-    grid->GetCellPoints(c, count, vertices);
-    EXPECT_EQ(std::vector<Index>(vertices, vertices + count), vertices_in_vtk(mesh, c, grid->GetCellType(c)));
-  }
 }
 
 /// A grid with an array of every kind that VTK's writers know.

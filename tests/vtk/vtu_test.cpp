@@ -32,7 +32,7 @@ namespace meshorder::test {
 namespace {
 
 /// A tetrahedron and a triangle as text, on lines that the tests of broken files name.
-const std::string kSmall = R"(<?xml version="1.0"?>
+const std::string kSmallVtu = R"(<?xml version="1.0"?>
 <VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">
   <UnstructuredGrid>
     <FieldData>
@@ -61,12 +61,6 @@ const std::string kSmall = R"(<?xml version="1.0"?>
   </UnstructuredGrid>
 </VTKFile>
 )";
-
-std::string with(std::string text, std::string_view old, std::string_view fresh) {
-  const auto at = text.find(old);
-  EXPECT_NE(at, std::string::npos) << old;
-  return text.replace(at, old.size(), fresh);
-}
 
 /// The compressors of VTK's own writer: none, LZ4, zlib, LZMA.
 constexpr std::array kCompressorsOfVtk{VtuEncoding::Compressor::none, VtuEncoding::Compressor::lz4,
@@ -134,18 +128,7 @@ std::string encoding_of(const std::filesystem::path& path) {
   return part("<VTKFile", ">") + part("format=\"", "\"") + part("<AppendedData", ">");
 }
 
-void expect_same_grid(vtkUnstructuredGrid* grid, const Mesh& mesh) {
-  ASSERT_EQ(grid->GetNumberOfPoints(), mesh.vertex_count());
-  ASSERT_EQ(grid->GetNumberOfCells(), mesh.cell_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    for (int i = 0; i < 3; ++i) EXPECT_EQ(grid->GetPoint(v)[i], mesh.points[v][i]);
-  }
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    vtkIdType count = 0;
-    const vtkIdType* vertices = nullptr;
-    grid->GetCellPoints(c, count, vertices);
-    EXPECT_EQ(std::vector<Index>(vertices, vertices + count), vertices_in_vtk(mesh, c, grid->GetCellType(c)));
-  }
+void expect_same_arrays(vtkUnstructuredGrid* grid, const Mesh& mesh) {
   for (const DataArray& array : mesh.data) {
     SCOPED_TRACE(array.name);
     vtkDataSetAttributes* data = array.association == Association::vertices
@@ -173,7 +156,7 @@ void expect_same_grid(vtkUnstructuredGrid* grid, const Mesh& mesh) {
 TEST(Vtu, ReadsPointsCellsAndAllArrays) {
   const TemporaryFolder folder;
   Notes notes;
-  const Mesh mesh = read_mesh(folder.file("a.vtu", kSmall), {.notes = &notes});
+  const Mesh mesh = read_mesh(folder.file("a.vtu", kSmallVtu), {.notes = &notes});
   EXPECT_EQ(mesh.vertex_count(), 5);
   EXPECT_EQ(mesh.points[4], (Point{0.1, 0.2, 0.3}));
   EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::tetrahedron, Shape::triangle}));
@@ -192,7 +175,9 @@ TEST(Vtu, ReadsPointsCellsAndAllArrays) {
 }
 
 TEST(Vtu, BrokenFilesGiveOneClearError) {
-  const auto broken = [](std::string_view old, std::string_view fresh) { return with(kSmall, old, fresh); };
+  const auto broken = [](std::string_view old, std::string_view fresh) {
+    return with(kSmallVtu, old, fresh);
+  };
   const std::string raw_head =
       R"(<VTKFile type="UnstructuredGrid" byte_order="LittleEndian" header_type="UInt64">
 <UnstructuredGrid><Piece NumberOfPoints="1" NumberOfCells="1">
@@ -286,14 +271,14 @@ TEST(Vtu, FolderOrEmptyFileIsAnError) {
 }
 
 TEST(Vtu, MixedLineEndsAreRead) {
-  std::string text = kSmall;
+  std::string text = kSmallVtu;
   int i = 0;
   for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 2)) {
     if (++i % 2 == 0) text.insert(at, "\r");
   }
   const TemporaryFolder folder;
   expect_same(read_mesh(folder.file("a.vtu", with(text, "NaN -inf", "3 4"))),
-              read_mesh(folder.file("b.vtu", with(kSmall, "NaN -inf", "3 4"))));
+              read_mesh(folder.file("b.vtu", with(kSmallVtu, "NaN -inf", "3 4"))));
 }
 
 TEST(Vtu, EveryCellTypeIsWrittenAndRead) {
@@ -358,6 +343,7 @@ TEST(Vtu, VtkReadsWhatWeWrite) {
   write_mesh(mesh, folder.path() / "mixed.vtu");
   const auto grid = read_with_vtk(folder.path() / "mixed.vtu");
   expect_same_grid(grid, mesh);
+  expect_same_arrays(grid, mesh);
   EXPECT_EQ(grid->GetCellType(4), VTK_TETRA);
   EXPECT_EQ(grid->GetPointData()->GetArray("stress")->GetNumberOfComponents(), 3);
   EXPECT_EQ(grid->GetPointData()->GetArray("stress")->GetComponent(7, 1), 1.0 / (3 * 7 + 1 + 3.0));
@@ -380,12 +366,13 @@ TEST(Vtu, EveryEncodingOfVtkIsReadAndKept) {
     expect_same(read_mesh(again), mixed_mesh());
     EXPECT_EQ(encoding_of(again), encoding_of(path));
     expect_same_grid(read_with_vtk(again), mesh);
+    expect_same_arrays(read_with_vtk(again), mesh);
   }
 }
 
 TEST(Vtu, RolesFieldsIdsUnitsAndComponentNamesSurvive) {
   const TemporaryFolder folder;
-  const auto small = folder.file("small.vtu", with(kSmall, "NaN -inf", "3 4"));
+  const auto small = folder.file("small.vtu", with(kSmallVtu, "NaN -inf", "3 4"));
   const auto grid = read_with_vtk(small);
   grid->GetPointData()->GetArray("heat")->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), "K");
   const vtkNew<vtkDoubleArray> velocity;
@@ -415,7 +402,7 @@ TEST(Vtu, RolesFieldsIdsUnitsAndComponentNamesSurvive) {
 
 TEST(Vtu, FloatPointsStayFloats) {
   const TemporaryFolder folder;
-  const std::string text = with(with(kSmall, "<DataArray type=\"Float64\" Name=\"Points\"",
+  const std::string text = with(with(kSmallVtu, "<DataArray type=\"Float64\" Name=\"Points\"",
                                      "<DataArray type=\"Float32\" Name=\"Points\""),
                                 "NaN -inf", "3 4");
   Mesh mesh = read_mesh(folder.file("a.vtu", text));
@@ -486,10 +473,10 @@ TEST(Vtu, CellsOfHigherOrderAreWrittenOnlyInTheOrderOfVtk) {
 
 TEST(Vtu, PixelsAndVoxelsBecomeQuadsAndHexahedra) {
   const TemporaryFolder folder;
-  const std::string text =
-      with(with(with(with(kSmall, ">0 1 2 3 1 2 4<", ">0 1 2 3 1 2 4<"), "0 1 2 3 1 2 4", "0 1 2 3 0 1 2 4"),
-                ">4 7<", ">4 8<"),
-           ">10 5<", ">8 9<");
+  const std::string text = with(
+      with(with(with(kSmallVtu, ">0 1 2 3 1 2 4<", ">0 1 2 3 1 2 4<"), "0 1 2 3 1 2 4", "0 1 2 3 0 1 2 4"),
+           ">4 7<", ">4 8<"),
+      ">10 5<", ">8 9<");
   Notes notes;
   const Mesh mesh = read_mesh(folder.file("a.vtu", text), {.notes = &notes});
   EXPECT_EQ(mesh.cells.shapes, (std::vector{Shape::quad, Shape::quad}));
@@ -499,23 +486,23 @@ TEST(Vtu, PixelsAndVoxelsBecomeQuadsAndHexahedra) {
 }
 
 TEST(Vtu, PiecesBecomeOne) {
-  const auto begin = kSmall.find("    <Piece");
-  const auto end = kSmall.find("  </UnstructuredGrid>");
-  const std::string piece = kSmall.substr(begin, end - begin);
+  const auto begin = kSmallVtu.find("    <Piece");
+  const auto end = kSmallVtu.find("  </UnstructuredGrid>");
+  const std::string piece = kSmallVtu.substr(begin, end - begin);
   const std::string empty = "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"/>";
   const TemporaryFolder folder;
   Notes notes;
   const Mesh mesh =
-      read_mesh(folder.file("a.vtu", with(kSmall, piece, piece + empty + piece)), {.notes = &notes});
+      read_mesh(folder.file("a.vtu", with(kSmallVtu, piece, piece + empty + piece)), {.notes = &notes});
   EXPECT_EQ(mesh.vertex_count(), 10);
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 3, 1, 2, 4, 5, 6, 7, 8, 6, 7, 9}));
   EXPECT_EQ(std::get<std::vector<std::int64_t>>(find_array(mesh, "part", Association::cells)->values),
             (std::vector<std::int64_t>{7, -8, 7, -8}));
   EXPECT_EQ(notes, (Notes{"the 2 pieces of the file became one"}));
   expect_broken("b.vtu", {{"an array that one piece lacks",
-                           with(kSmall, piece, piece + with(piece, "Name=\"heat\"", "Name=\"cold\"")),
+                           with(kSmallVtu, piece, piece + with(piece, "Name=\"heat\"", "Name=\"cold\"")),
                            "'heat' is missing in a piece"},
-                          {"another type", with(kSmall, piece, piece + with(piece, "Float32", "Float64")),
+                          {"another type", with(kSmallVtu, piece, piece + with(piece, "Float32", "Float64")),
                            "of another type"}});
 }
 

@@ -160,8 +160,7 @@ class ClosedSurface : public Obstacle {
   }
 
   [[nodiscard]] const Point& pseudonormal(int triangle, TrianglePoint::On on) const {
-    using On = TrianglePoint::On;
-    if (on == On::face) return face_normals_[triangle];
+    if (on == TrianglePoint::On::face) return face_normals_[triangle];
     const int number = static_cast<int>(on);
     return number < 3 ? corner_normals_[triangles_[triangle][number]] : edge_normals_[triangle][number - 3];
   }

@@ -28,4 +28,10 @@ struct Contact {
   [[nodiscard]] bool is_with_itself() const noexcept { return vertices[1] != kAbsent; }
 };
 
+/// By vertex, then obstacle, the body itself last.
+inline bool comes_before(const Contact& a, const Contact& b) {
+  if (a.vertices[0] != b.vertices[0]) return a.vertices[0] < b.vertices[0];
+  return !a.is_with_itself() && (b.is_with_itself() || a.with < b.with);
+}
+
 }  // namespace meshorder

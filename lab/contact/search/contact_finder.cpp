@@ -30,12 +30,6 @@ Contact contact_with(Index vertex, const SurfacePoint& place, double friction, s
   return contact;
 }
 
-/// By vertex, then obstacle, the body itself last.
-bool comes_before(const Contact& a, const Contact& b) {
-  if (a.vertices[0] != b.vertices[0]) return a.vertices[0] < b.vertices[0];
-  return !a.is_with_itself() && (b.is_with_itself() || a.with < b.with);
-}
-
 /// Returns whether no part of an obstacle is within reach of the box around some vertices and where they
 /// were, so that none is near it nor went through it: a distance changes by at most the path length.
 bool out_of_reach(const Obstacle& obstacle, const Box& box, double reach) {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -25,13 +24,6 @@ constexpr double kClearance = 0.1;
 double required_gap(double gap, double tolerance) {
   return std::min(kClearance * tolerance, (gap < 0.0 ? (1.0 - kWayOut) * gap : gap) + tolerance);
 }
-
-/// The order of ContactFinder: by the vertex, then the obstacle, the body itself last.
-std::pair<Index, std::int32_t> key(const Contact& contact) {
-  return {contact.vertices[0], contact.with < 0 ? std::numeric_limits<std::int32_t>::max() : contact.with};
-}
-
-bool comes_before(const Contact& a, const Contact& b) { return key(a) < key(b); }
 
 /// Rotates a contact with the body itself with its triangle. Returns false if the triangle is flat.
 bool follow_triangle(std::span<const double> positions, Contact& contact) {

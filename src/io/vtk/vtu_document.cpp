@@ -12,7 +12,6 @@
 namespace meshorder::vtk {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::size_t kDeepest = 32;
 
 bool is_name_character(char c) {
@@ -123,7 +122,7 @@ std::size_t VtuDocument::parse_tag(std::size_t at, VtuElement& element, bool& cl
     return std::string(all.substr(begin, p - begin));
   };
   const auto skip_blanks = [&] {
-    p = std::min(all.find_first_not_of(kBlanks, p), all.size());
+    p = std::min(all.find_first_not_of(kXmlBlanks, p), all.size());
     if (p == all.size()) throw broken();
   };
 
@@ -192,7 +191,7 @@ void VtuDocument::parse() {
     } else if (rest.starts_with("</")) {
       const std::size_t end = all.find('>', tag);
       const std::string_view name = end == std::string_view::npos ? "" : all.substr(tag + 2, end - tag - 2);
-      if (open.empty() || name.substr(0, name.find_last_not_of(kBlanks) + 1) != open.back().name) {
+      if (open.empty() || name.substr(0, name.find_last_not_of(kXmlBlanks) + 1) != open.back().name) {
         throw error_at(tag, "an end tag has no start",
                        open.empty() ? "<VTKFile …> is needed" : "</" + open.back().name + "> is needed");
       }
@@ -227,7 +226,7 @@ void VtuDocument::begin_appended(const VtuElement& element, std::size_t end) {
   if (encoding != "raw" && encoding != "base64")
     throw error(element, "the encoding is '" + encoding + "'", "raw or base64 is needed");
   appended_base64_ = encoding == "base64";
-  const std::size_t begin = scanner_.all().find_first_not_of(kBlanks, end);
+  const std::size_t begin = scanner_.all().find_first_not_of(kXmlBlanks, end);
   if (begin == std::string_view::npos || scanner_.all()[begin] != '_')
     throw error(element, "<AppendedData> does not begin with _", "its bytes follow an underscore");
   appended_ = scanner_.all().substr(begin + 1);

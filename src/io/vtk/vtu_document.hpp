@@ -15,6 +15,8 @@
 
 namespace meshorder::vtk {
 
+inline constexpr std::string_view kXmlBlanks = " \t\r\n";
+
 /// An element of a .vtu file.
 struct VtuElement {
   std::string name;

@@ -20,8 +20,6 @@
 namespace meshorder::vtk {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
-
 /// The value of a character of base64; 64 for all others.
 constexpr std::array<std::uint8_t, 256> kBase64 = [] {
   std::array<std::uint8_t, 256> values{};
@@ -89,7 +87,7 @@ VtuDocument::Stored VtuDocument::locate(const VtuElement& array) const {
   const VtuEncoding::Mode how = mode(array);
   std::string_view data = array.text;
   if (how == VtuEncoding::Mode::base64) {
-    data.remove_prefix(std::min(data.find_first_not_of(kBlanks), data.size()));
+    data.remove_prefix(std::min(data.find_first_not_of(kXmlBlanks), data.size()));
   } else {
     const std::string& text = required(array, "offset");
     std::uint64_t offset = 0;
@@ -203,7 +201,7 @@ std::vector<Number> VtuDocument::words(const VtuElement& array, std::int64_t cou
   std::vector<Number> result;
   result.reserve(std::min<std::size_t>(static_cast<std::size_t>(count), text.size() / 2 + 1));
   while (true) {
-    std::string_view word = next_word(text, kBlanks);
+    std::string_view word = next_word(text, kXmlBlanks);
     if (word.empty()) break;
     const auto broken = [&] {
       const auto byte = static_cast<std::size_t>(word.data() - scanner_.all().data());
@@ -267,7 +265,8 @@ std::vector<std::string> VtuDocument::strings(const VtuElement& array, std::int6
   if (mode(array) == VtuEncoding::Mode::ascii) {
     // as the numbers of their characters
     std::string_view text = array.text;
-    for (std::string_view word = next_word(text, kBlanks); !word.empty(); word = next_word(text, kBlanks)) {
+    for (std::string_view word = next_word(text, kXmlBlanks); !word.empty();
+         word = next_word(text, kXmlBlanks)) {
       int code = 0;
       const auto [end, failed] = std::from_chars(word.data(), word.data() + word.size(), code);
       if (failed != std::errc{} || end != word.data() + word.size() || code < -128 || code > 255)
