@@ -8,6 +8,7 @@
 #include "mesh/groups.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
+#include "ordering/judgement.hpp"
 #include "progress.hpp"
 #include "wording.hpp"
 
@@ -43,11 +44,21 @@ void print_result(const Console& console, const MeshOrder& order, const std::opt
                 after.mean_log2);
 }
 
-/// Returns {"count", "method", "chosen_by", "because", "seconds"}.
-nlohmann::ordered_json half_json(Index count, const MethodChoice& method, double seconds) {
+/// Notes a method that was asked for by name and makes the order of the vertices no better.
+void note_no_better(GraphRef graph, const ReorderOptions& options, const Permutation& vertices,
+                    Notes& notes) {
+  const std::string& method = options.methods.vertices;
+  if (method == "auto" || method == "original" || method == "scrambled" || !options.group_by.empty()) return;
+  const std::string reason = reason_to_keep(graph, vertices, method, made_for(method));
+  if (!reason.empty()) notes.push_back(reason + "; --vertices original keeps the order");
+}
+
+/// Returns {"count", "method", "chosen_by", "because", "kept", "seconds"}.
+nlohmann::ordered_json half_json(Index count, const Order& order) {
   nlohmann::ordered_json result{{"count", count}};
-  result.update(to_json(method));
-  result["seconds"] = seconds;
+  result.update(to_json(order.method));
+  result["kept"] = order.permutation.is_identity();
+  result["seconds"] = order.seconds;
   return result;
 }
 
@@ -79,6 +90,7 @@ void run(const OrderArguments& arguments) {
   maps.cells = order.cells.permutation;
   const EdgeSpan before = edge_span(graph, Permutation::identity(mesh.vertex_count()));
   const EdgeSpan after = edge_span(graph, maps.vertices);
+  note_no_better(graph, options, maps.vertices, notes);
   note_convergence(order.vertices.fiedler, "the vertices", notes);
   note_convergence(order.cells.fiedler, "the elements", notes);
 
@@ -97,8 +109,8 @@ void run(const OrderArguments& arguments) {
   nlohmann::ordered_json result{
       {"input", arguments.input},
       {"output", arguments.output},
-      {"vertices", half_json(mesh.vertex_count(), order.vertices.method, order.vertices.seconds)},
-      {"elements", half_json(mesh.cell_count(), order.cells.method, order.cells.seconds)},
+      {"vertices", half_json(mesh.vertex_count(), order.vertices)},
+      {"elements", half_json(mesh.cell_count(), order.cells)},
       {"for", to_string(options.order.workload)},
       {"group_by", groups ? to_json(*groups) : nullptr},
       {"edge_span", {{"before", to_json(before)}, {"after", to_json(after)}}},

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/point.hpp"
 #include "ordering/all_methods.hpp"
+#include "ordering/judgement.hpp"
 
 #include <algorithm>
 #include <array>
@@ -76,6 +77,11 @@ MethodChoice choose_element_method(const ElementInput& /*input*/, Workload /*wor
 Order auto_vertices(const VertexInput& input, const OrderOptions& options) {
   MethodChoice choice = choose_vertex_method(input, options.workload);
   Order result = order_graph(choice.name, input, options);
+  if (std::string reason = reason_to_keep(input.graph, result.permutation, choice.name, options.workload);
+      !reason.empty()) {
+    choice = {"original", std::move(reason)};
+    result.permutation = Permutation::identity(input.graph.size());
+  }
   result.method = std::move(choice);
   return result;
 }

@@ -74,7 +74,7 @@ def test_order_keys(command, tmp_path):
     meshes.write_tetgen(tmp_path)
     done = command.run("order", "mesh.node", "-o", "a.vtu", "--json", "--vertices", "fiedler")
     result = json.loads(done.stdout)
-    assert set(result["vertices"]) == {"count", "method", "chosen_by", "because", "seconds"}
+    assert set(result["vertices"]) == {"count", "method", "chosen_by", "because", "kept", "seconds"}
     assert result["vertices"]["count"] == 5 and result["vertices"]["seconds"] >= 0
     assert result["vertices"]["method"] == "fiedler"
     assert result["vertices"]["chosen_by"] == "user" and result["vertices"]["because"] is None

@@ -1,5 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "metrics/edge_span.hpp"
+#include "ordering/judgement.hpp"
 #include "ordering/method.hpp"
+#include "ordering/moved.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
@@ -13,13 +16,17 @@
 namespace meshorder {
 namespace {
 
-/// A grid graph on the points of its lattice.
+/// A grid graph on the points of its lattice, row after row or in a random order.
 struct Lattice {
-  CsrGraph graph = test::grid(12, 9);
+  CsrGraph graph = test::grid(30, 40);
   std::vector<Point> points;
 
-  Lattice() {
-    for (Index v = 0; v < graph.size(); ++v) points.push_back({1.0 * (v % 12), 0.1 * v, 0.0});
+  explicit Lattice(bool scrambled = true) {
+    for (Index v = 0; v < graph.size(); ++v) points.push_back({1.0 * (v % 30), 1.0 * (v / 30), 0.0});
+    if (!scrambled) return;
+    const Permutation places = test::shuffled(graph.size(), 1);
+    graph = renumbered(graph, places.old_to_new());
+    points = moved(places, points);
   }
 };
 
@@ -49,6 +56,39 @@ TEST(Auto, GivesTheOrderOfTheMethodThatItSaysItTook) {
       EXPECT_EQ(order.permutation, order_graph(order.method.name, problem).permutation);
     }
   }
+}
+
+TEST(Auto, KeepsAnOrderThatItWouldNotMakeBetter) {
+  const Lattice in_rows(false);
+  for (const Workload use : kWorkloads) {
+    if (use == Workload::fill) continue;
+    SCOPED_TRACE(to_string(use));
+    const Order order = order_graph("auto", {in_rows.graph, in_rows.points}, options_for(use));
+    EXPECT_EQ(order.method.name, "original");
+    EXPECT_TRUE(order.permutation.is_identity());
+    EXPECT_THAT(order.method.reason, testing::HasSubstr("is no better: the "));
+  }
+  // asked for by name it is made all the same
+  EXPECT_FALSE(order_graph("hilbert", {in_rows.graph, in_rows.points}).permutation.is_identity());
+}
+
+TEST(Auto, JudgesByTheUse) {
+  const CsrGraph graph = test::grid(40, 30);
+  const Permutation as_is = Permutation::identity(graph.size());
+  // in rows of 40 the bandwidth is 40, in columns of 30 it would be 30
+  const Permutation columns = order_graph("rcm", {graph, {}}).permutation;
+  EXPECT_EQ(reason_to_keep(graph, columns, "rcm", Workload::bandwidth), "");
+  EXPECT_EQ(reason_to_keep(graph, as_is, "rcm", Workload::bandwidth),
+            "rcm is no better: the bandwidth is 40 as it is and 40 by rcm");
+  EXPECT_EQ(reason_to_keep(graph, as_is, "hilbert", Workload::all),
+            "hilbert is no better: the mean edge span is 20.4 as it is and 20.4 by hilbert");
+  // the factor of a path has no entry but the path's
+  EXPECT_EQ(reason_to_keep(test::path(50), Permutation::identity(50), "metis-nd", Workload::fill),
+            "metis-nd is no better: the number of entries in the factor is 49 as it is and 49 by metis-nd");
+  if (!is_known("metis-nd")) return;
+  const Permutation dissected = order_graph("metis-nd", {graph, {}}).permutation;
+  EXPECT_EQ(reason_to_keep(graph, dissected, "metis-nd", Workload::fill), "");
+  EXPECT_NE(reason_to_keep(graph, dissected, "metis-nd", Workload::all), "");
 }
 
 TEST(Auto, OrdersElementsByLexmax) {

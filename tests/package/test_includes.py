@@ -13,8 +13,8 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 CORE = {"base": set(), "graph": {"base"}}
 CORE["cells"] = {"base", "graph"}
 CORE["spectral"] = {"base", "graph"}
-CORE["ordering"] = {"base", "graph", "cells", "spectral"}
-CORE["metrics"] = {"base", "graph", "ordering"}
+CORE["metrics"] = {"base", "graph"}
+CORE["ordering"] = {"base", "graph", "cells", "spectral", "metrics"}
 LAYERS = {
     **CORE,
     "c": set(CORE),

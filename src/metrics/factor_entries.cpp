@@ -1,0 +1,117 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "metrics/factor_entries.hpp"
+
+#include <span>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+constexpr Index kNone = -1;
+
+/// The elimination tree: for each place of the order the first place after it whose row of the factor has an
+/// entry there, kNone for roots (Liu 1990, The role of elimination trees in sparse factorization).
+std::vector<Index> elimination_tree(GraphRef graph, const Permutation& order) {
+  std::vector<Index> parent(static_cast<std::size_t>(graph.size()), kNone);
+  std::vector<Index> ancestor(parent);  // as far as the tree is known, with shortened paths
+  for (Index row = 0; row < graph.size(); ++row) {
+    for (const Index neighbour : graph[order.new_to_old()[row]]) {
+      for (Index k = order.old_to_new()[neighbour]; k < row && k != kNone;) {
+        const Index next = ancestor[k];
+        ancestor[k] = row;
+        if (next == kNone) parent[k] = row;
+        k = next;
+      }
+    }
+  }
+  return parent;
+}
+
+/// A tree whose nodes are numbered after all of their descendants, which are numbered one after another.
+struct Postordered {
+  std::vector<Index> number;            ///< of each node of the given tree
+  std::vector<Index> parent;            ///< by number
+  std::vector<Index> first_descendant;  ///< by number: the smallest number below the node, or its own
+  std::vector<Index> depth;             ///< by number; 0 for roots
+};
+
+/// `parent` names for each node a later one, or kNone.
+Postordered postordered(std::span<const Index> parent) {
+  const Index n = index_size(parent);
+  std::vector<Index> size(parent.size(), 1);
+  for (Index k = 0; k < n; ++k) {
+    if (parent[k] != kNone) size[parent[k]] += size[k];
+  }
+  Postordered tree;
+  tree.number.resize(parent.size());
+  tree.parent.resize(parent.size());
+  tree.first_descendant.resize(parent.size());
+  tree.depth.resize(parent.size());
+  std::vector<Index> next(parent.size());  // number for the first descendant of a node's next child
+  Index next_of_roots = 0;
+  for (Index k = n - 1; k >= 0; --k) {
+    Index& first = parent[k] == kNone ? next_of_roots : next[parent[k]];
+    const Index number = first + size[k] - 1;
+    next[k] = first;
+    tree.number[k] = number;
+    tree.first_descendant[number] = first;
+    tree.parent[number] = parent[k] == kNone ? kNone : tree.number[parent[k]];
+    tree.depth[number] = parent[k] == kNone ? 0 : tree.depth[tree.parent[number]] + 1;
+    first += size[k];
+  }
+  return tree;
+}
+
+/// Sets of nodes, each named by one of them.
+class DisjointSets {
+ public:
+  explicit DisjointSets(Index n) : towards_(static_cast<std::size_t>(n)) {
+    for (Index k = 0; k < n; ++k) towards_[k] = k;
+  }
+
+  Index name_of(Index k) {
+    while (towards_[k] != k) {
+      towards_[k] = towards_[towards_[k]];
+      k = towards_[k];
+    }
+    return k;
+  }
+
+  /// Joins the set called `k` to that of `name`.
+  void join(Index k, Index name) { towards_[k] = name; }
+
+ private:
+  std::vector<Index> towards_;
+};
+
+}  // namespace
+
+Offset factor_entries(GraphRef graph, const Permutation& order) {
+  const Postordered tree = postordered(elimination_tree(graph, order));
+  const Index n = graph.size();
+  std::vector<Index> vertex(static_cast<std::size_t>(n));
+  for (Index k = 0; k < n; ++k) vertex[tree.number[k]] = order.new_to_old()[k];
+
+  // The entries of a row are the nodes of a subtree below it: of the paths to the row from the subtree's
+  // leaves, each counted down to where it meets the path before.
+  Offset entries = 0;
+  std::vector<Index> last_neighbour(static_cast<std::size_t>(n), kNone);
+  std::vector<Index> last_leaf(static_cast<std::size_t>(n), kNone);
+  DisjointSets finished(n);
+  for (Index j = 0; j < n; ++j) {
+    for (const Index neighbour : graph[vertex[j]]) {
+      const Index row = tree.number[order.old_to_new()[neighbour]];
+      if (row <= j) continue;
+      if (tree.first_descendant[j] > last_neighbour[row]) {  // j is a leaf of the row's subtree
+        const Index meeting = last_leaf[row] == kNone ? row : finished.name_of(last_leaf[row]);
+        entries += tree.depth[j] - tree.depth[meeting];
+        last_leaf[row] = j;
+      }
+      last_neighbour[row] = j;
+    }
+    if (tree.parent[j] != kNone) finished.join(j, tree.parent[j]);
+  }
+  return entries;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,58 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "ordering/judgement.hpp"
+
+#include "metrics/edge_span.hpp"
+#include "metrics/factor_entries.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace meshorder {
+namespace {
+
+constexpr double kGain = 0.98;       // of the old span, at most, to be worth a new order
+constexpr double kTolerated = 1.05;  // of the old mean span
+
+std::string with_one_digit(double number) {
+  std::array<char, 32> text{};
+  return {text.data(),
+          std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed, 1).ptr};
+}
+
+std::string sentence(const std::string& what, const std::string& old_figure, std::string_view method,
+                     const std::string& new_figure) {
+  return std::string(method) + " is no better: " + what + " is " + old_figure + " as it is and " +
+         new_figure + " by " + std::string(method);
+}
+
+}  // namespace
+
+Workload made_for(std::string_view method) {
+  if (method == "rcm") return Workload::bandwidth;
+  return method == "metis-nd" ? Workload::fill : Workload::all;
+}
+
+std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string_view method,
+                           Workload workload) {
+  const Permutation as_is = Permutation::identity(graph.size());
+  if (workload == Workload::fill) {
+    const Offset before = factor_entries(graph, as_is);
+    const Offset after = factor_entries(graph, order);
+    if (after < before) return {};
+    return sentence("the number of entries in the factor", std::to_string(before), method,
+                    std::to_string(after));
+  }
+  const EdgeSpan before = edge_span(graph, as_is);
+  const EdgeSpan after = edge_span(graph, order);
+  if (workload == Workload::bandwidth) {
+    if (after.max < before.max) return {};
+    return sentence("the bandwidth", std::to_string(before.max), method, std::to_string(after.max));
+  }
+  const bool gains =
+      after.mean <= kGain * before.mean || after.mean_log2 <= before.mean_log2 + std::log2(kGain);
+  if (gains && after.mean <= kTolerated * before.mean) return {};
+  return sentence("the mean edge span", with_one_digit(before.mean), method, with_one_digit(after.mean));
+}
+
+}  // namespace meshorder

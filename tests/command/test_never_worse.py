@@ -1,0 +1,87 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""`auto` keeps an order that it would not make better; a method asked for by name is obeyed, with a warning."""
+import meshio
+import numpy
+import pytest
+import scipy.sparse
+import scipy.sparse.linalg
+
+import meshes
+
+
+def graph_of(path):
+    mesh = meshio.read(path)
+    return meshes.adjacency(len(mesh.points), mesh.cells[0].data)
+
+
+def spans(graph):
+    upper = scipy.sparse.triu(graph, k=1).tocoo()
+    return upper.col - upper.row
+
+
+def factor_entries(graph):
+    """Below the diagonal, by SuperLU without pivoting, in the order of the rows."""
+    matrix = scipy.sparse.diags(numpy.asarray(graph.sum(axis=1)).ravel() + 1.0) - graph
+    factors = scipy.sparse.linalg.splu(matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0,
+                                       options={"SymmetricMode": True})
+    assert (factors.perm_r == numpy.arange(graph.shape[0])).all()
+    return factors.L.nnz - graph.shape[0]
+
+
+@pytest.fixture
+def lattice(command, model):
+    """In its own order and in a random one, as .vtu."""
+    source = model("grid", "--size", "10")
+    command.ok("order", source, "-o", "rows.vtu", "--vertices", "original", "--elements", "original")
+    command.ok("order", source, "-o", "random.vtu", "--vertices", "scrambled", "--elements", "scrambled")
+
+
+@pytest.mark.parametrize("use", ["all", "spmv", "element", "assembly", "springs"])
+def test_a_good_order_is_kept(command, lattice, tmp_path, use):
+    before = spans(graph_of(tmp_path / "rows.vtu")).mean()
+    result = command.json("order", "rows.vtu", "-o", "out.vtu", "--maps", "m", "--for", use)
+    assert (numpy.load(tmp_path / "m.vertices.old_to_new.npy") == numpy.arange(result["vertices"]["count"])).all()
+    assert (result["vertices"]["method"], result["vertices"]["chosen_by"], result["vertices"]["kept"]) == ("original", "auto", True)
+    assert f"hilbert is no better: the mean edge span is {before:.1f} as it is" in result["vertices"]["because"]
+    assert spans(graph_of(tmp_path / "out.vtu")).mean() == before
+
+
+@pytest.mark.parametrize("use", ["all", "bandwidth", "fill"])
+def test_a_poor_order_is_not_kept_and_what_counts_falls(command, lattice, tmp_path, use):
+    what_counts = {"all": lambda graph: spans(graph).mean(), "bandwidth": lambda graph: spans(graph).max(),
+                   "fill": factor_entries}[use]
+    result = command.json("order", "random.vtu", "-o", "out.vtu", "--for", use)
+    assert not result["vertices"]["kept"]
+    assert what_counts(graph_of(tmp_path / "out.vtu")) < 0.6 * what_counts(graph_of(tmp_path / "random.vtu"))
+
+
+def test_bandwidth_never_grows(command, lattice, tmp_path):
+    before = spans(graph_of(tmp_path / "rows.vtu")).max()
+    command.ok("order", "rows.vtu", "-o", "out.vtu", "--for", "bandwidth")
+    after = spans(graph_of(tmp_path / "out.vtu")).max()
+    assert after <= before
+    # in its best order already
+    result = command.json("order", "out.vtu", "-o", "again.vtu", "--for", "bandwidth")
+    assert spans(graph_of(tmp_path / "again.vtu")).max() <= after
+    assert result["vertices"]["kept"]
+
+
+def test_fill_is_judged_by_the_entries_of_the_factor(command, tmp_path):
+    # a strip of triangles: its band is its factor
+    points = [[0.5 * k, k % 2, 0] for k in range(400)]
+    meshio.write(tmp_path / "strip.vtu", meshio.Mesh(points, [("triangle", [[k, k + 1, k + 2] for k in range(398)])]))
+    entries = factor_entries(graph_of(tmp_path / "strip.vtu"))
+    result = command.json("order", "strip.vtu", "-o", "out.vtu", "--for", "fill")
+    assert f"the number of entries in the factor is {entries} as it is" in result["vertices"]["because"]
+    assert result["vertices"]["kept"]
+
+
+def test_a_method_asked_for_by_name_is_obeyed_with_a_warning(command, lattice, tmp_path):
+    done = command.run("order", "rows.vtu", "-o", "out.vtu", "--maps", "m", "--vertices", "hilbert")
+    assert done.returncode == 0
+    assert "hilbert is no better: the mean edge span is " in done.stderr
+    assert "--vertices original keeps the order" in done.stderr
+    moved = numpy.load(tmp_path / "m.vertices.old_to_new.npy")
+    assert (moved != numpy.arange(len(moved))).any()
+    done = command.run("order", "random.vtu", "-o", "out.vtu", "--vertices", "hilbert")
+    assert "no better" not in done.stderr
