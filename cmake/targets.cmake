@@ -6,9 +6,9 @@ target_compile_options(meshorder_warnings INTERFACE -Wall -Wextra -Wpedantic -Wc
 if(MESHORDER_WERROR)
   target_compile_options(meshorder_warnings INTERFACE -Werror)
 endif()
-# GCC 12 and 13 warn of an overlap within std::string that cannot happen (GCC bug 105651)
+# GCC 12 and 13 warn of an overlap (GCC bug 105651) and of sizes within std::string that cannot happen
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14)
-  target_compile_options(meshorder_warnings INTERFACE -Wno-restrict)
+  target_compile_options(meshorder_warnings INTERFACE -Wno-restrict -Wno-stringop-overflow)
 endif()
 target_compile_features(meshorder_warnings INTERFACE cxx_std_20)
 if(MESHORDER_SANITIZE)

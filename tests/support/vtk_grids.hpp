@@ -117,9 +117,9 @@ inline void expect_faces_outward(vtkUnstructuredGrid* grid) {
   }
 }
 
-/// A wedge and a Lagrange wedge on its own points each, both as VTK wants them: the first triangle of the
-/// first faces outward, that of the second inward.
-inline vtkSmartPointer<vtkUnstructuredGrid> grid_of_wedges() {
+/// A wedge and a Lagrange wedge on its own points each: the first triangle of the second faces inward, that
+/// of the first outward, as VTK up to 9.6 wants it, or `inward`, as later versions do.
+inline vtkSmartPointer<vtkUnstructuredGrid> grid_of_wedges(bool inward = false) {
   const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   const vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -131,7 +131,8 @@ inline vtkSmartPointer<vtkUnstructuredGrid> grid_of_wedges() {
     }
   }
   grid->SetPoints(points);
-  const std::array<vtkIdType, 6> wedge{0, 1, 2, 3, 4, 5};
+  std::array<vtkIdType, 6> wedge{0, 1, 2, 3, 4, 5};
+  if (inward) wedge = {0, 2, 1, 3, 5, 4};
   const std::array<vtkIdType, 6> lagrange{6, 8, 7, 9, 11, 10};
   grid->InsertNextCell(VTK_WEDGE, 6, wedge.data());
   grid->InsertNextCell(VTK_LAGRANGE_WEDGE, 6, lagrange.data());

@@ -409,6 +409,26 @@ TEST(VtkLegacy, WedgesOfVtkArriveInGmshTheRightWayRoundAndStayInVtk) {
   }
 }
 
+TEST(VtkLegacy, WedgesOfLaterVersionsOfVtkAreToldByTheirVolumes) {
+  const TemporaryFolder folder;
+  const auto grid = grid_of_wedges(true);
+  write_with_vtk(grid, folder.path() / "a.vtk", true, 51);
+  const Mesh mesh = read_mesh(folder.path() / "a.vtk");
+  expect_wedges_of_gmsh(mesh);
+  write_mesh(mesh, folder.path() / "c.vtk");
+  EXPECT_EQ(points_of_cells(read_with_vtk<vtkUnstructuredGridReader>(folder.path() / "c.vtk")),
+            points_of_cells(grid));
+  // in a mirrored mesh all volumes are negative
+  vtkPoints* const points = grid->GetPoints();
+  for (vtkIdType p = 0; p < points->GetNumberOfPoints(); ++p) {
+    points->SetPoint(p, -points->GetPoint(p)[0], points->GetPoint(p)[1], points->GetPoint(p)[2]);
+  }
+  const std::array<vtkIdType, 4> tetrahedron{0, 2, 1, 3};
+  grid->InsertNextCell(VTK_TETRA, 4, tetrahedron.data());
+  write_with_vtk(grid, folder.path() / "a.vtk", true, 51);
+  EXPECT_EQ(read_mesh(folder.path() / "a.vtk").cells[0][1], 2);
+}
+
 TEST(VtkLegacy, FilesOfVtkAreReadAndVtkReadsOurs) {
   const auto grid = grid_with_everything();
   const TemporaryFolder folder;

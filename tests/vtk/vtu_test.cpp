@@ -337,6 +337,25 @@ TEST(Vtu, WedgesOfVtkArriveInGmshTheRightWayRoundAndStayInVtk) {
   }
 }
 
+TEST(Vtu, WedgesOfLaterVersionsOfVtkAreToldByTheirVolumes) {
+  const TemporaryFolder folder;
+  const auto grid = grid_of_wedges(true);
+  write_with_vtk(grid, folder.path() / "a.vtu", all_encodings().front());
+  const Mesh mesh = read_mesh(folder.path() / "a.vtu");
+  expect_wedges_of_gmsh(mesh);
+  write_mesh(mesh, folder.path() / "c.vtu");
+  EXPECT_EQ(points_of_cells(read_with_vtk(folder.path() / "c.vtu")), points_of_cells(grid));
+  // in a mirrored mesh all volumes are negative
+  vtkPoints* const points = grid->GetPoints();
+  for (vtkIdType p = 0; p < points->GetNumberOfPoints(); ++p) {
+    points->SetPoint(p, -points->GetPoint(p)[0], points->GetPoint(p)[1], points->GetPoint(p)[2]);
+  }
+  const std::array<vtkIdType, 4> tetrahedron{0, 2, 1, 3};
+  grid->InsertNextCell(VTK_TETRA, 4, tetrahedron.data());
+  write_with_vtk(grid, folder.path() / "a.vtu", all_encodings().front());
+  EXPECT_EQ(read_mesh(folder.path() / "a.vtu").cells[0][1], 2);
+}
+
 TEST(Vtu, VtkReadsWhatWeWrite) {
   const TemporaryFolder folder;
   const Mesh mesh = mixed_mesh();

@@ -2,6 +2,7 @@
 //
 // Cell types of VTK's file formats: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html and
 // vtkCellType.h.
+#include "base/point.hpp"
 #include "io/vtk/vtk.hpp"
 
 #include <algorithm>
@@ -25,12 +26,12 @@ struct CellType {
 
 constexpr int kPixel = 8;
 constexpr int kVoxel = 11;
+constexpr int kLinearWedge = 13;
 
-// The first triangle of VTK's linear wedge faces outward; in a Mesh, in Gmsh's files and in Lagrange wedges
-// it faces inward. Shape functions do not mind, but faces, normals and volumes do. Quadratic wedges have the
-// order of a Mesh, as in the files of Gmsh and meshio: VTK 9.1 sees their faces from inside, a mistake by
-// the notes of a later version. By its release notes VTK 9.7 takes linear wedges, too, in the order of a
-// Mesh, but files do not record their order, and those of Gmsh, meshio and VTK up to 9.6 have this one.
+// The first triangle of a linear wedge faces outward in VTK up to 9.6 and in the files of Gmsh and meshio; in
+// a Mesh, in Gmsh's own files, in Lagrange wedges and in VTK 9.7 it faces inward. Shape functions do not
+// mind, but faces, normals and volumes do. Quadratic wedges have the order of a Mesh, as in the files of Gmsh
+// and meshio: VTK 9.1 sees their faces from inside, a mistake by the notes of a later version.
 constexpr std::array<std::pair<int, int>, 2> kWedge{{{1, 2}, {4, 5}}};
 
 // in the order in which a type is chosen for a shape and its vertices
@@ -45,7 +46,7 @@ constexpr std::array kTypes{
     CellType{9, "VTK_QUAD", Shape::quad, 4},
     CellType{10, "VTK_TETRA", Shape::tetrahedron, 4},
     CellType{12, "VTK_HEXAHEDRON", Shape::hexahedron, 8},
-    CellType{13, "VTK_WEDGE", Shape::wedge, 6, kWedge},
+    CellType{kLinearWedge, "VTK_WEDGE", Shape::wedge, 6, kWedge},
     CellType{14, "VTK_PYRAMID", Shape::pyramid, 5},
     CellType{21, "VTK_QUADRATIC_EDGE", Shape::line, 3},
     CellType{22, "VTK_QUADRATIC_TRIANGLE", Shape::triangle, 6},
@@ -139,6 +140,32 @@ class DefaultTypes {
   std::array<std::array<std::pair<bool, const CellType*>, kRemembered>, kShapes> types_{};
 };
 
+/// Three edges out of the first corner that are right-handed in a cell of positive volume.
+struct Handedness {
+  int type;
+  std::array<int, 3> ends;
+};
+constexpr std::array kHandedness{Handedness{10, {1, 2, 3}}, Handedness{12, {1, 3, 4}},
+                                 Handedness{14, {1, 3, 4}}, Handedness{kLinearWedge, {1, 2, 3}}};
+
+/// Whether most linear wedges have, with their first triangle facing inward, volumes of the sign that the
+/// other linear cells have: of a positive one where there are none. Cells with a wrong number of vertices
+/// have no say.
+bool wedges_face_inward(const std::vector<Point>& points, const FileCells& cells) {
+  Offset wedges = 0;
+  Offset others = 0;
+  for (std::size_t c = 0; c < cells.types.size(); ++c) {
+    const auto* const of_type = std::find_if(kHandedness.begin(), kHandedness.end(),
+                                             [&](const Handedness& h) { return h.type == cells.types[c]; });
+    if (of_type == kHandedness.end() || cells.offsets[c + 1] - cells.offsets[c] <= of_type->ends[2]) continue;
+    const Index* const corners = cells.vertices.data() + cells.offsets[c];
+    const auto edge = [&](int k) { return minus(points[corners[of_type->ends[k]]], points[corners[0]]); };
+    const double volume = dot(cross(edge(0), edge(1)), edge(2));
+    (of_type->type == kLinearWedge ? wedges : others) += volume > 0 ? 1 : volume < 0 ? -1 : 0;
+  }
+  return others < 0 ? wedges < 0 : wedges > 0;
+}
+
 InputError unknown_type(int number, Index cell, const ErrorAt& error) {
   std::string what = "cell " + std::to_string(cell) + " (counted from 0) ";
   if (number == 42) {
@@ -153,10 +180,11 @@ InputError unknown_type(int number, Index cell, const ErrorAt& error) {
 
 }  // namespace
 
-void take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes) {
+bool take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes) {
   std::array<const CellType*, 256> known{};
   for (const CellType& type : kTypes) known[static_cast<std::size_t>(type.number)] = &type;
 
+  const bool inward_wedges = wedges_face_inward(mesh.points, cells);
   DefaultTypes defaults;
   Index converted = 0;
   bool plain = true;  // shapes and vertices determine all types
@@ -173,7 +201,9 @@ void take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes)
           (type->vertices > 0 ? "it has " : "it has at least ") + std::to_string(std::abs(type->vertices)));
     }
     mesh.cells.shapes[c] = type->shape;
-    swap_vertices(*type, cells.vertices.data() + cells.offsets[c]);
+    if (!inward_wedges || type->number != kLinearWedge) {
+      swap_vertices(*type, cells.vertices.data() + cells.offsets[c]);
+    }
     if (type->number == kPixel || type->number == kVoxel) {
       ++converted;
     } else {
@@ -186,7 +216,7 @@ void take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes)
     notes.push_back(std::to_string(converted) +
                     " cells of type VTK_PIXEL or VTK_VOXEL became quads and hexahedra");
   }
-  if (plain) return;
+  if (plain) return inward_wedges;
   for (Index c = 0; c < count; ++c) {
     if (cells.types[c] == kPixel) cells.types[c] = 9;
     if (cells.types[c] == kVoxel) cells.types[c] = 12;
@@ -195,6 +225,7 @@ void take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes)
     return a.association == Association::cells && a.name == kCellTypes;
   });
   mesh.data.push_back({std::string(kCellTypes), Association::cells, 1, std::move(cells.types), {}, {}});
+  return inward_wedges;
 }
 
 std::vector<std::uint8_t> cell_types(const Mesh& mesh, const std::string& file, bool higher_orders) {
@@ -266,7 +297,9 @@ const Cells& WriteContext::cells(bool old_hexahedra) {
   if (!swapped && !old_hexahedra) return mesh.cells;
   changed_ = mesh.cells;
   for (Index c = 0; swapped && c < changed_.size(); ++c) {
-    if (const CellType* type = kSwappedTypes[types[c]]) swap_vertices(*type, changed_[c].data());
+    const CellType* const type = kSwappedTypes[types[c]];
+    if (type == nullptr || (metadata.inward_wedges && type->number == kLinearWedge)) continue;
+    swap_vertices(*type, changed_[c].data());
   }
   if (old_hexahedra) swap_hexahedron_edges(mesh, types, changed_);
   return changed_;

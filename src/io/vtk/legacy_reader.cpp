@@ -360,7 +360,7 @@ class Reader {
     const bool old_order = version_ < kLastVersion &&
                            std::any_of(all.types.begin(), all.types.end(), is_higher_order_hexahedron);
     const std::vector<std::uint8_t> types = old_order ? all.types : std::vector<std::uint8_t>{};
-    take_cells(
+    metadata_->inward_wedges = take_cells(
         mesh_, std::move(all),
         [&](const std::string& what, const std::string& remedy) {
           return in_.section_error(types_line_, what, remedy);

@@ -147,6 +147,7 @@ struct Metadata : FormatMetadata {
   std::vector<ArrayRole> roles;
   std::vector<ArrayFacts> facts;
   bool float_points = false;
+  bool inward_wedges = false;  ///< linear wedges in the order of VTK 9.7, see take_cells
   std::optional<VtuEncoding> vtu;
   std::optional<LegacyLayout> legacy;
 
@@ -176,7 +177,11 @@ using ErrorAt = std::function<InputError(const std::string&, const std::string&)
 /// Gives `mesh` these cells, with their vertices in the order of a Mesh. Pixels and voxels become quads and
 /// hexahedra (noted); type numbers that shape and vertices do not determine are kept as the array kCellTypes.
 /// Throws `error` for types without a Shape and for cells with a wrong number of vertices. O(vertex entries).
-void take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes);
+///
+/// The first triangle of a linear wedge faced outward up to VTK 9.6 and faces inward since, and files do not
+/// say which: the volumes of the file's cells at the mesh's points decide. Returns whether it faces inward,
+/// as in a Mesh.
+bool take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes);
 
 /// Returns VTK's type number of every cell. Throws Error that names the first cell that VTK's files cannot
 /// hold; node orders above second order are known for meshes from VTK only (`higher_orders`).

@@ -296,7 +296,7 @@ class Reader {
                            std::any_of(cells_.types.begin(), cells_.types.end(), is_higher_order_hexahedron);
     const std::vector<std::uint8_t> types = old_order ? cells_.types : std::vector<std::uint8_t>{};
     const VtuElement& at = types_ != nullptr ? *types_ : grid;
-    take_cells(
+    metadata_->inward_wedges = take_cells(
         mesh_, std::move(cells_),
         [&](const std::string& what, const std::string& remedy) { return file_.error(at, what, remedy); },
         notes_);
