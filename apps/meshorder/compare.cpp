@@ -87,7 +87,7 @@ KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<Com
 }
 
 void run(const CompareArguments& arguments) {
-  const Console console(arguments);
+  Console console(arguments);
   Comparison comparison;
   comparison.caches = parse_caches(arguments.caches);
   Progress progress(!console.quiet());
@@ -125,7 +125,7 @@ void run(const CompareArguments& arguments) {
   }
 
   progress.finish();
-  console.log_notes(notes);
+  console.warn_of(notes);
   console.print("{}: {} vertices, {}", arguments.input, with_commas(mesh.vertex_count()),
                 cells_in_words(mesh));
   print_comparison(console, comparison);

@@ -81,7 +81,7 @@ def test_what_the_package_lacks_is_refused_in_one_line(tmp_path):
         done = run(word, *arguments, cwd=tmp_path)
         assert done.returncode == 2 and done.stdout == ""
         assert re.fullmatch(rf"meshorder: {word} is in the full build only.*\n", done.stderr)
-    assert "unknown subcommand 'simulat'" in run("simulat", cwd=tmp_path).stderr
+    assert "unknown command 'simulat'" in run("simulat", cwd=tmp_path).stderr
 
 
 def test_streams_and_status_are_the_commands_own(mesh, tmp_path):
