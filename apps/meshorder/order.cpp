@@ -145,7 +145,8 @@ void add_order(CLI::App& subcommand) {
   add_ids_option(subcommand, arguments->ids);
   subcommand.add_option(
       "--maps", arguments->maps,
-      "Also write the permutations as NumPy files: PREFIX.vertices.old_to_new.npy and so on");
+      "Also write the permutations as NumPy files, PREFIX.vertices.old_to_new.npy and so on, and\n"
+      "PREFIX.maps.json, by which `apply` knows the mesh");
   add_ordering_options(subcommand, arguments->reordering.order);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });

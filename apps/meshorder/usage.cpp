@@ -36,10 +36,16 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// Returns "; did you mean 'order'?" if one of the names is spelt almost like `word` or begins with it; else
-/// "".
-std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
+/// Returns whether the words are the same at their beginning, but for at most two letters of `word`.
+bool begin_alike(const std::string& word, const std::string& name) {
   constexpr std::size_t kShortestBeginning = 3;
+  const auto differ = std::mismatch(word.begin(), word.end(), name.begin(), name.end()).first;
+  const auto same = static_cast<std::size_t>(differ - word.begin());
+  return same >= kShortestBeginning && same + 2 >= word.size();
+}
+
+/// Returns "; did you mean 'order'?" if one of the names is spelt or begins almost like `word`; else "".
+std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
   const std::string letters = bare(word);
   std::size_t least = std::min<std::size_t>(2, (letters.size() + 1) / 3) + 1;
   std::string nearest;
@@ -48,7 +54,7 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
     if (distance < least) {
       least = distance;
       nearest = name;
-    } else if (nearest.empty() && letters.size() >= kShortestBeginning && bare(name).starts_with(letters)) {
+    } else if (nearest.empty() && begin_alike(letters, bare(name))) {
       nearest = name;
     }
   }

@@ -43,7 +43,7 @@ nlohmann::ordered_json costs_json(const OrderCosts& costs) {
 void print_verdict(const Console& console, const Advice& advice) {
   const bool predicted = advice.as_is.costs.predicted.has_value();
   const bool measured = advice.as_is.costs.measured.has_value();
-  console.print("\nKernels: time in the mesh's order, and how many times faster they run in another, {}",
+  console.print("\nKernels: time in the mesh's order, and how many times faster they run in another,\n{}",
                 predicted && measured ? "measured here (predicted)"
                 : measured            ? "measured here"
                                       : fmt::format("predicted for a {}", zen5_costs().machine));

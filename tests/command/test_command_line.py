@@ -233,6 +233,6 @@ def test_warnings_that_differ_in_a_name_are_one(command, tmp_path):
     command.ok("order", "mesh.node", "-o", "plain.veg", "--vertices", "original", "--elements", "original")
     (tmp_path / "groups.veg").write_text((tmp_path / "plain.veg").read_text() + sets)
     done = command.ok("order", "groups.veg", "-o", "b.node", "--json")
-    named = [note for note in json.loads(done.stdout)["notes"] if "group 0" in note]
+    named = [note for note in json.loads(done.stdout)["notes"] if "the set '" in note]
     assert len(named) == 1
-    assert re.search(r"the set 'group 0' of cells .*\(likewise 'group 1', 'group 2' and 3 more\)", named[0])
+    assert re.search(r"the set 'label_10' of cells .*\(likewise 'label_20', 'group 0' and 5 more\)", named[0])
