@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstddef>
+#include <istream>
 #include <sstream>
 #include <string>
 
@@ -12,12 +14,20 @@ namespace {
 
 constexpr std::size_t kColumns = 100;
 
+/// Reads a word, or words in backquotes as one; returns whether there was one.
+bool next_word(std::istream& text, std::string& word) {
+  if (!(text >> word)) return false;
+  for (std::string next; std::count(word.begin(), word.end(), '`') % 2 == 1 && text >> next;)
+    word += ' ' + next;
+  return true;
+}
+
 /// Returns the words in lines of at most `width` characters.
 std::string wrapped(const std::string& text, std::size_t width) {
   std::istringstream words(text);
   std::string lines;
   std::size_t length = 0;
-  for (std::string word; words >> word; length += word.size()) {
+  for (std::string word; next_word(words, word); length += word.size()) {
     if (length > 0) {
       const bool fits = length + 1 + word.size() <= width;
       lines += fits ? ' ' : '\n';

@@ -124,7 +124,9 @@ void require_order(const Mesh& mesh, const std::string& mesh_path, const std::st
     throw InputError(mesh_path, "is in the new order already, by " + path,
                      "give --inverse to restore the old order");
   if (!start) return;
-  throw InputError(mesh_path, "is not the mesh that the maps were written for, by " + path,
+  throw InputError(mesh_path,
+                   goal ? "is not the mesh that the maps were written for, by " + path
+                        : "is not in the order that the maps start from, by " + path,
                    "give the maps that were written with this mesh");
 }
 
