@@ -5,12 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <cstdio>
-
 namespace meshorder::command {
 
 void Console::warn(const std::string& sentence) {
-  if (!quiet_) fmt::print(stderr, "meshorder: warning: {}\n", sentence);
+  if (!quiet_) write_stderr("meshorder: warning: " + sentence + "\n");
   notes_.push_back(sentence);
 }
 

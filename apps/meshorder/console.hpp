@@ -4,7 +4,7 @@
 #include "command.hpp"
 #include "io/format.hpp"
 #include "payoff/quantities.hpp"
-#include "standard_output.hpp"
+#include "standard_streams.hpp"
 
 #include <fmt/core.h>
 #include <nlohmann/json_fwd.hpp>

@@ -1,17 +1,15 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
 #include "help_format.hpp"
-#include "standard_output.hpp"
+#include "standard_streams.hpp"
 #include "usage.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/registry.hpp>
 
 #include <CLI/CLI.hpp>
-#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <exception>
 #include <new>
 #include <sstream>
@@ -44,7 +42,7 @@ constexpr std::array kSubcommands{
 };
 
 int report(const std::string& message, int status) {
-  fmt::print(stderr, "meshorder: {}\n", message);
+  meshorder::command::write_stderr("meshorder: " + message + "\n");
   return status;
 }
 
@@ -70,6 +68,7 @@ int run(CLI::App& app, std::vector<std::string> arguments) {
 
 // NOLINTNEXTLINE(bugprone-exception-escape): only printing a message could still throw
 int main(int argc, char** argv) {
+  meshorder::command::occupy_closed_streams();
   CLI::App app{
       "Reorders the vertices and elements of a simulation mesh, with all data in its file, so that\n"
       "physics on it runs faster.\n\n"
@@ -99,7 +98,7 @@ int main(int argc, char** argv) {
   for (const auto& [name, add] : kSubcommands) add(*app.add_subcommand(name));
   try {
     if (argc < 2) {
-      fmt::print(stderr, "{}", app.help());
+      meshorder::command::write_stderr(app.help());
       return kBadInput;
     }
     return run(app, {argv + 1, argv + argc});

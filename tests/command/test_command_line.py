@@ -1,6 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """What the command says, where, and with which status: warnings, --quiet, faults of usage, a full disk behind stdout."""
 import json
+import os
 import re
 import signal
 import subprocess
@@ -34,6 +35,26 @@ def test_a_full_disk_behind_stdout_is_an_error(tmp_path, mesh, line):
     *warnings, fault = done.stderr.splitlines()
     assert "standard output" in fault and not fault.startswith("meshorder: warning")
     assert all(warning.startswith("meshorder: warning: ") for warning in warnings)
+
+
+def closes(stream):
+    """What a shell does for >&- (1) and 2>&- (2)."""
+    return lambda: os.close(stream)
+
+
+def test_closed_streams_are_not_written_into_files(tmp_path, mesh):
+    """Without a stream's number, the next file that is opened would get it, and what is printed."""
+    def order(*arguments, **options):
+        return subprocess.run([conftest.MESHORDER, "order", mesh, *arguments], cwd=tmp_path, check=False, text=True,
+                              capture_output=True, **options)
+
+    assert order("-o", "a.veg").returncode == 0
+    done = order("-o", "b.veg", preexec_fn=closes(1))
+    assert done.returncode == 2 and "standard output" in done.stderr
+    assert order("-o", "c.veg", "-q", preexec_fn=closes(1)).returncode == 0
+    assert order("-o", "d.veg", preexec_fn=closes(2)).returncode == 0  # it has warnings
+    assert order("-o", "none/d.veg", preexec_fn=closes(2)).returncode == 2
+    assert len({(tmp_path / f"{name}.veg").read_bytes() for name in "abcd"}) == 1
 
 
 @pytest.mark.parametrize("restore_signals", [True, False], ids=["SIGPIPE", "EPIPE"])
