@@ -28,7 +28,7 @@ struct ApplyArguments : Common {
 };
 
 void run(const ApplyArguments& arguments) {
-  const Console console(arguments);
+  Console console(arguments);
   const Stopwatch total;
   const Format& format = format_of(arguments.output);
   const Ids ids = parse<Ids>(arguments.ids);
@@ -39,7 +39,7 @@ void run(const ApplyArguments& arguments) {
   progress.stage("reading " + arguments.input, 0, 0.5);
   Notes notes;
   Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
-  const Maps maps = read_maps(arguments.prefix, mesh);
+  const Maps maps = read_maps(arguments.prefix, mesh, arguments.input, arguments.inverse);
   try {
     if (arguments.inverse) {
       undo_reordering(mesh, format, maps.vertices, maps.cells);
@@ -58,7 +58,7 @@ void run(const ApplyArguments& arguments) {
   progress.stage("writing " + arguments.output, 0.5, 1);
   write_mesh(mesh, arguments.output, &notes);
   progress.finish();
-  console.log_notes(notes);
+  console.warn_of(notes);
   console.print("wrote {}: {} vertices and {} cells {}", arguments.output, with_commas(mesh.vertex_count()),
                 with_commas(mesh.cell_count()),
                 arguments.inverse ? "restored to the old order" : "reordered");

@@ -6,40 +6,69 @@
 #include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <new>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 namespace meshorder::command {
 namespace {
 
-/// Refuses numbers for which `accepts` is false; what is not a number is left to the option's own type.
-template <class Accepts>
-CLI::Validator number_check(Accepts accepts, const std::string& message) {
-  return {[accepts, message](const std::string& text) {
-            char* end = nullptr;
-            const double number = std::strtod(text.c_str(), &end);
-            const bool is_number = end != text.c_str() && *end == '\0';
-            return is_number && !accepts(number) ? message + ", not " + text : std::string();
+/// Returns "-1 is not allowed, must be 0 or more".
+std::string refusal(const std::string& text, const std::string& must) {
+  return text + " is not allowed, must be " + must;
+}
+
+bool is_digits(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Accepts whole numbers from `lowest` to `highest`; refuses smaller ones by the words `if_less`, larger ones
+/// by `if_more`.
+CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest, const std::string& if_less,
+                            const std::string& if_more) {
+  return {[=](const std::string& text) {
+            const bool negative = text.starts_with('-');
+            const std::string_view digits = std::string_view(text).substr(negative ? 1 : 0);
+            if (!is_digits(digits)) return "'" + text + "' is not a whole number";
+            std::uint64_t number = 0;
+            const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+            if (negative ? number > 0 || lowest > 0 : error == std::errc() && number < lowest)
+              return refusal(text, if_less);
+            return error != std::errc() || number > highest ? refusal(text, if_more) : std::string();
           },
           ""};
 }
 
 }  // namespace
 
-CLI::Validator not_negative() {
-  return number_check([](double number) { return number >= 0; }, "must be 0 or more");
+CLI::Validator positive() {
+  return {[](const std::string& text) {
+            char* end = nullptr;
+            const double number = std::strtod(text.c_str(), &end);
+            if (end == text.c_str() || *end != '\0') return "'" + text + "' is not a number";
+            const bool allowed = number > 0 && std::isfinite(number);
+            return allowed ? std::string() : refusal(text, "more than 0");
+          },
+          ""};
 }
 
-CLI::Validator positive() {
-  return number_check([](double number) { return number > 0; }, "must be more than 0");
+CLI::Validator whole_from(std::uint64_t lowest, std::uint64_t highest) {
+  return whole_number(lowest, highest, std::to_string(lowest) + " or more",
+                      std::to_string(highest) + " or less");
 }
 
 CLI::Validator in_range(int lowest, int highest) {
-  return number_check([=](double number) { return number >= lowest && number <= highest; },
-                      "must be from " + std::to_string(lowest) + " to " + std::to_string(highest));
+  const std::string range = "from " + std::to_string(lowest) + " to " + std::to_string(highest);
+  return whole_number(static_cast<std::uint64_t>(lowest), static_cast<std::uint64_t>(highest), range, range);
 }
 
 OrderNames order_named(const std::string& name) {
@@ -51,13 +80,13 @@ OrderNames order_named(const std::string& name) {
   return order;
 }
 
-void add_common(CLI::App& subcommand, Common& common) {
-  subcommand.add_flag("--json", common.json, "Print one JSON object on stdout; notes go to stderr");
-  subcommand.add_flag("--quiet,-q", common.quiet, "No warnings and no progress bar");
+void add_common(CLI::App& subcommand, Common& common, const std::string& quiet) {
+  subcommand.add_flag("--json", common.json, "Print one JSON object on stdout, with the warnings in `notes`");
+  subcommand.add_flag("--quiet,-q", common.quiet, quiet);
   subcommand
       .add_option("--threads", common.threads,
                   "Maximum number of threads (0 = all). The output is the same for any number")
-      ->check(not_negative())
+      ->check(whole_from(0))
       ->capture_default_str();
 }
 
@@ -70,7 +99,7 @@ void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
       ->type_name("KERNEL")
       ->default_str(std::string(to_string(options.workload)));
   subcommand.add_option("--seed", options.seed, "Seed of random orders, of METIS and of start vectors")
-      ->check(not_negative())
+      ->check(whole_from(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str();
   subcommand
       .add_option("--tolerance", options.tolerance,

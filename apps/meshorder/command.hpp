@@ -3,7 +3,9 @@
 
 #include "ordering/method.hpp"
 
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -52,8 +54,12 @@ void add_reproduce(CLI::App& subcommand);
 void add_serve_steps(CLI::App& subcommand);
 void add_report(CLI::App& subcommand);
 
+/// What --quiet leaves, in the words of the help; of a subcommand that does nothing but list something.
+inline constexpr const char* kQuiet = "Print nothing but errors, and the object of --json";
+inline constexpr const char* kQuietList = "No warnings; the list is printed all the same";
+
 /// Adds --json, --quiet and --threads.
-void add_common(CLI::App& subcommand, Common& common);
+void add_common(CLI::App& subcommand, Common& common, const std::string& quiet = kQuiet);
 
 /// Adds --for, --seed and --tolerance.
 void add_ordering_options(CLI::App& subcommand, OrderOptions& options);
@@ -64,11 +70,11 @@ CLI::Option* add_ids_option(CLI::App& subcommand, std::string& ids);
 /// Adds --cache, whose value parse_caches reads.
 void add_cache_option(CLI::App& subcommand, std::string& caches);
 
-/// Accepts numbers of at least 0.
-CLI::Validator not_negative();
-/// Accepts numbers above 0.
+/// Accepts finite numbers above 0.
 CLI::Validator positive();
-/// Accepts numbers from `lowest` to `highest`.
+/// Accepts whole numbers from `lowest` to `highest`, which is the largest that the option's type holds.
+CLI::Validator whole_from(std::uint64_t lowest, std::uint64_t highest = std::numeric_limits<int>::max());
+/// Accepts whole numbers from `lowest` to `highest`.
 CLI::Validator in_range(int lowest, int highest);
 
 /// Runs `work` with at most `threads` threads (0: all). The limit stays for the rest of the process.

@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/stopwatch.hpp"
-#include "base/text.hpp"
 #include "command.hpp"
 #include "compare_report.hpp"
 #include "console.hpp"
@@ -20,7 +19,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -87,7 +85,7 @@ KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<Com
 }
 
 void run(const CompareArguments& arguments) {
-  const Console console(arguments);
+  Console console(arguments);
   Comparison comparison;
   comparison.caches = parse_caches(arguments.caches);
   Progress progress(!console.quiet());
@@ -125,7 +123,7 @@ void run(const CompareArguments& arguments) {
   }
 
   progress.finish();
-  console.log_notes(notes);
+  console.warn_of(notes);
   console.print("{}: {} vertices, {}", arguments.input, with_commas(mesh.vertex_count()),
                 cells_in_words(mesh));
   print_comparison(console, comparison);
@@ -149,10 +147,11 @@ void add_compare(CLI::App& subcommand) {
   const auto arguments = std::make_shared<CompareArguments>();
   subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
   subcommand
-      .add_option("--methods", arguments->methods,
-                  "Orders to compare, VERTICES or VERTICES/ELEMENTS, separated by commas")
-      ->delimiter(',')
-      ->default_str(join(default_methods(), std::identity(), ","));
+      .add_option(
+          "--methods", arguments->methods,
+          "Orders to compare, VERTICES or VERTICES/ELEMENTS, separated by commas (default: all methods\n"
+          "for vertices but auto, and fiedler/fiedler)")
+      ->delimiter(',');
   subcommand.add_option("--budget", arguments->budget_seconds, "Seconds to spend on running the kernels")
       ->check(positive())
       ->capture_default_str();

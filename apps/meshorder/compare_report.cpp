@@ -7,6 +7,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
 namespace meshorder::command {
 namespace {
 
@@ -34,40 +40,80 @@ void print_quality(const Console& console, const Comparison& comparison) {
   }
 }
 
-void print_reuse(const Console& console, const Comparison& comparison) {
+std::string row_head(const std::string& vertices, const std::string& elements) {
+  return fmt::format("{:<11} {:<14}", vertices, elements);
+}
+
+/// A table with a row for each order and columns for each kernel.
+struct KernelColumns {
+  std::vector<std::string> rows;                                          ///< their heads
+  std::string heads;                                                      ///< of the columns of a kernel
+  std::function<std::string(std::size_t row, std::size_t kernel)> cells;  ///< as wide as `heads`
+  std::vector<std::string> last;  ///< last column: its head and its cells; may be empty
+};
+
+/// Prints the table, as many kernels side by side as fit 100 columns.
+void print_columns(const Console& console, const KernelColumns& table) {
+  constexpr std::size_t kColumns = 100;
+  const std::size_t left = row_head("", "").size();
+  const std::size_t at_most = std::max<std::size_t>(1, (kColumns - left) / table.heads.size());
+  const std::size_t blocks = (kKernels.size() + at_most - 1) / at_most;
+  const std::size_t side_by_side = (kKernels.size() + blocks - 1) / blocks;
+  for (std::size_t first = 0; first < kKernels.size(); first += side_by_side) {
+    const std::size_t end = std::min(first + side_by_side, kKernels.size());
+    const bool is_last = end == kKernels.size() && !table.last.empty();
+    std::string titles(left, ' ');
+    std::string heads = row_head("vertices", "elements");
+    for (std::size_t k = first; k < end; ++k) {
+      titles += fmt::format("{:>{}}", kKernelTitles[k], table.heads.size());
+      heads += table.heads;
+    }
+    console.print("{}\n{}{}", titles, heads, is_last ? table.last.front() : "");
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+      std::string row = table.rows[i];
+      for (std::size_t k = first; k < end; ++k) row += table.cells(i, k);
+      console.print("{}{}", row, is_last ? table.last[i + 1] : "");
+    }
+  }
+}
+
+std::vector<std::string> row_heads(const Comparison& comparison) {
+  std::vector<std::string> rows;
+  rows.reserve(comparison.orders.size() + 1);
+  for (const ComparedOrder& c : comparison.orders) rows.push_back(row_head(c.vertices, c.elements));
+  return rows;
+}
+
+void print_reuse(Console& console, const Comparison& comparison) {
   if (!comparison.orders.front().reuse) {
-    console.log("not shown, to save time on a large mesh: cache misses; --cache this predicts them");
+    console.warn("not shown, to save time on a large mesh: cache misses; --cache this predicts them");
     return;
   }
   console.print("\nPredicted for each run of a kernel\n{}", kReuseLegend);
-  console.print("{}", reuse_header(comparison.caches, 26));
-  for (const ComparedOrder& c : comparison.orders) {
-    console.print("{:<11} {:<14}{}", c.vertices, c.elements, reuse_cells(*c.reuse, comparison.caches));
-  }
+  const auto cells = [&](std::size_t i, std::size_t k) {
+    return reuse_cells((*comparison.orders[i].reuse)[k], comparison.caches);
+  };
+  print_columns(console, {row_heads(comparison), reuse_header(comparison.caches), cells, {}});
 }
 
 void print_kernels(const Console& console, const Comparison& comparison, const KernelTable& table) {
   console.print(
       "\nKernels on {} thread{}: best milliseconds, speedup over scrambled, time divided by the band's",
       table.threads, table.threads == 1 ? "" : "s");
-  const bool parallel = table.threads > 1;
-  console.print("{:<11} {:<14} {:>20} {:>20} {:>20} {:>20}{}", "vertices", "elements", "SpMV",
-                "element force", "assembly", "springs", parallel ? "     twice" : "");
-  const auto print_row = [&](const std::string& vertices, const std::string& elements,
-                             const OrderTimes& times, const std::string& twice) {
-    std::string row = fmt::format("{:<11} {:<14}", vertices, elements);
-    for (const Kernel kernel : kKernels) {
-      const KernelTimes& t = times[kernel];
-      row +=
-          fmt::format(" {:>7.3g} {:>5.2f}x {:>5.2f}", t.best_ms, t.speedup, of_floor(t, table.floor[kernel]));
-    }
-    console.print("{}{}", row, twice);
+  std::vector<std::string> rows = row_heads(comparison);
+  rows.push_back(row_head(kFloor, kFloor));
+  const auto cells = [&](std::size_t i, std::size_t k) {
+    const KernelTimes& t = (i < table.orders.size() ? table.orders[i] : table.floor)[kKernels[k]];
+    return fmt::format("{:>9.3g} {:>6.2f}x {:>7.2f}", t.best_ms, t.speedup,
+                       of_floor(t, table.floor[kKernels[k]]));
   };
-  for (std::size_t i = 0; i < comparison.orders.size(); ++i) {
-    print_row(comparison.orders[i].vertices, comparison.orders[i].elements, table.orders[i],
-              parallel ? fmt::format(" {:>8.1f}%", 100 * table.redundancy[i]) : "");
+  std::vector<std::string> twice;
+  if (table.threads > 1) {
+    twice.push_back(fmt::format("{:>9}", "twice"));
+    for (const double share : table.redundancy) twice.push_back(fmt::format(" {:>7.1f}%", 100 * share));
+    twice.emplace_back();
   }
-  print_row(kFloor, kFloor, table.floor, "");
+  print_columns(console, {rows, fmt::format("{:>9} {:>7} {:>7}", "ms", "speedup", "/ band"), cells, twice});
 }
 
 nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& floor) {
@@ -93,7 +139,7 @@ void add_kernels(nlohmann::ordered_json& to, const Comparison& comparison, Times
 
 }  // namespace
 
-void print_comparison(const Console& console, const Comparison& comparison) {
+void print_comparison(Console& console, const Comparison& comparison) {
   print_quality(console, comparison);
   print_reuse(console, comparison);
   for (const KernelTable& table : comparison.kernels) print_kernels(console, comparison, table);

@@ -42,7 +42,7 @@ struct Comparison {
 };
 
 /// Prints costs and spans, predicted misses, and a table of kernels for each number of threads.
-void print_comparison(const Console& console, const Comparison& comparison);
+void print_comparison(Console& console, const Comparison& comparison);
 
 /// Returns the keys that docs/json.md lists, but for those of the file.
 nlohmann::ordered_json to_json(const Comparison& comparison);

@@ -1,20 +1,26 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "console.hpp"
 
-#include <nlohmann/json.hpp>
+#include "grouped_notes.hpp"
 
-#include <cstdio>
+#include <nlohmann/json.hpp>
 
 namespace meshorder::command {
 
-void Console::log_line(std::string_view line) { fmt::print(stderr, "meshorder: {}\n", line); }
-
-void Console::log_notes(const Notes& notes) const {
-  for (const std::string& note : notes) log("{}", note);
+void Console::warn(const std::string& sentence) {
+  if (!quiet_) write_stderr("meshorder: warning: " + sentence + "\n");
+  notes_.push_back(sentence);
 }
 
-void Console::print_json(const nlohmann::ordered_json& result) const {
-  if (json_) fmt::print("{}\n", result.dump(2));
+void Console::warn_of(const Notes& notes) {
+  for (const std::string& note : grouped_by_name(notes)) warn(note);
+}
+
+void Console::print_json(nlohmann::ordered_json result) const {
+  if (!json_) return;
+  result["version"] = MESHORDER_VERSION;
+  result["notes"] = notes_;
+  write_stdout(result.dump(2) + "\n");
 }
 
 }  // namespace meshorder::command

@@ -4,16 +4,17 @@
 #include "command.hpp"
 #include "io/format.hpp"
 #include "payoff/quantities.hpp"
+#include "standard_streams.hpp"
 
 #include <fmt/core.h>
 #include <nlohmann/json_fwd.hpp>
 
-#include <string_view>
+#include <string>
 #include <utility>
 
 namespace meshorder::command {
 
-/// Output of a subcommand: results on stdout, as text or as one JSON object; notes on stderr.
+/// Output of a subcommand: results on stdout, as text or as one JSON object; warnings on stderr.
 class Console {
  public:
   explicit Console(const Common& common) : json_(common.json), quiet_(common.quiet) {}
@@ -21,29 +22,31 @@ class Console {
   [[nodiscard]] bool json() const noexcept { return json_; }
   [[nodiscard]] bool quiet() const noexcept { return quiet_; }
 
-  /// Prints a line on stderr, unless quiet.
-  template <class... Args>
-  void log(fmt::format_string<Args...> format, Args&&... args) const {
-    if (!quiet_) log_line(fmt::format(format, std::forward<Args>(args)...));
-  }
+  /// Prints "meshorder: warning: …" on stderr unless quiet, and keeps the sentence for the JSON object.
+  void warn(const std::string& sentence);
 
-  /// Prints the notes of readers and writers on stderr, a line each, unless quiet.
-  void log_notes(const Notes& notes) const;
+  /// Warns of what readers and writers noted; notes that differ in one name only are one warning.
+  void warn_of(const Notes& notes);
 
-  /// Prints a line of the result as text, unless JSON is wanted.
+  /// Prints a line of the result as text, unless JSON is wanted or quiet.
   template <class... Args>
   void print(fmt::format_string<Args...> format, Args&&... args) const {
-    if (!json_) fmt::print("{}\n", fmt::format(format, std::forward<Args>(args)...));
+    if (!quiet_) print_list(format, std::forward<Args>(args)...);
   }
 
-  /// Prints the result as JSON if that is wanted.
-  void print_json(const nlohmann::ordered_json& result) const;
+  /// Prints a line of a list, which is all that the subcommand is for, unless JSON is wanted.
+  template <class... Args>
+  void print_list(fmt::format_string<Args...> format, Args&&... args) const {
+    if (!json_) write_stdout(fmt::format(format, std::forward<Args>(args)...) + "\n");
+  }
+
+  /// Prints the result as JSON, with the keys `version` and `notes`, if that is wanted.
+  void print_json(nlohmann::ordered_json result) const;
 
  private:
-  static void log_line(std::string_view line);
-
   bool json_;
   bool quiet_;
+  Notes notes_;
 };
 
 }  // namespace meshorder::command

@@ -126,7 +126,7 @@ void print_attachments(const Console& console, const Mesh& mesh) {
 
 void run(const InfoArguments& arguments) {
   const Stopwatch since_start;
-  const Console console(arguments);
+  Console console(arguments);
   const Caches caches = parse_caches(arguments.caches);
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.3);
@@ -151,7 +151,7 @@ void run(const InfoArguments& arguments) {
   const std::optional<Advice> advice = advice_on(arguments, mesh, graph, graph_seconds, since_start);
 
   progress.finish();
-  console.log_notes(notes);
+  console.warn_of(notes);
   console.print("{}, {}", arguments.input, format_of(arguments.input).name);
   console.print("{:<12} {} in {} dimensions", "vertices", with_commas(mesh.vertex_count()), mesh.dimension);
   console.print("{:<12} {}", "cells", cells_in_words(mesh));
@@ -172,11 +172,14 @@ void run(const InfoArguments& arguments) {
                       ? fmt::format(", estimated from 1/{} of the lines", 1 << kHalvings)
                       : "",
                   kReuseLegend);
-    console.print("{}\n{}", reuse_header(caches, 0), reuse_cells(*reuse, caches));
+    console.print("{:<14}{}", "", reuse_header(caches));
+    for (std::size_t k = 0; k < kKernels.size(); ++k)
+      console.print("{:<14}{}", kKernelTitles[k], reuse_cells((*reuse)[k], caches));
   } else if (arguments.measure) {
-    console.log("not shown, to save time: cache misses and an order for springs only; see meshorder compare");
+    console.warn(
+        "not shown, to save time: cache misses and an order for springs only; see meshorder compare");
   } else {
-    console.log(
+    console.warn(
         "not shown, to save time on a large mesh: cache misses and the verdict; --cache this predicts them, "
         "--measure runs the kernels");
   }
@@ -215,7 +218,7 @@ void add_info(CLI::App& subcommand) {
       "--measure", arguments->measure,
       "Run the kernels for a few seconds, in the mesh's order and in a better one, instead of\n"
       "predicting the gain");
-  add_common(subcommand, *arguments);
+  add_common(subcommand, *arguments, std::string(kQuiet) + ": status 0 says that the file can be read");
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }
 

@@ -1,18 +1,20 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
+#include "help_format.hpp"
+#include "standard_streams.hpp"
+#include "usage.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/registry.hpp>
 
 #include <CLI/CLI.hpp>
-#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <exception>
 #include <new>
-#include <numeric>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -40,55 +42,33 @@ constexpr std::array kSubcommands{
 };
 
 int report(const std::string& message, int status) {
-  fmt::print(stderr, "meshorder: {}\n", message);
+  meshorder::command::write_stderr("meshorder: " + message + "\n");
   return status;
 }
 
-/// Returns the number of letters to insert, delete or replace that turn one word into the other
-/// (Levenshtein).
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
+/// Runs what the arguments ask for; returns the exit status.
+int run(CLI::App& app, std::vector<std::string> arguments) {
+  arguments = meshorder::command::with_words_as_options(std::move(arguments));
+  std::reverse(arguments.begin(), arguments.end());  // as the parser takes them
+  try {
+    app.parse(std::move(arguments));
+  } catch (const CLI::Success& asked_for_help) {
+    if (const auto fault = meshorder::command::unknown_command(app)) return report(*fault, kBadInput);
+    std::ostringstream text;
+    app.exit(asked_for_help, text);
+    meshorder::command::write_stdout(text.str());
+  } catch (const CLI::ParseError& error) {
+    return report(meshorder::command::usage_fault(app, error), kBadInput);
   }
-  return row.back();
-}
-
-/// Returns "; did you mean order?" if a subcommand is spelt almost like `word`, else where the help is.
-std::string suggestion(const CLI::App& app, const std::string& word) {
-  constexpr std::size_t kMaxDistance = 2;
-  std::string nearest;
-  std::size_t least = kMaxDistance + 1;
-  for (const CLI::App* const subcommand : app.get_subcommands({})) {
-    const std::size_t distance = edit_distance(word, subcommand->get_name());
-    if (subcommand->get_group().empty() || distance >= least) continue;
-    least = distance;
-    nearest = subcommand->get_name();
-  }
-  return nearest.empty() ? "; see meshorder --help" : "; did you mean " + nearest + "?";
-}
-
-/// Returns the subcommand that the arguments name, "meshorder models make", as far as they were understood.
-std::string command_named_by(const CLI::App& app) {
-  std::string words = "meshorder";
-  for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
-    at = at->get_subcommands().front();
-    words += " " + at->get_name();
-  }
-  return words;
+  meshorder::command::flush_stdout();
+  return 0;
 }
 
 }  // namespace
 
 // NOLINTNEXTLINE(bugprone-exception-escape): only printing a message could still throw
 int main(int argc, char** argv) {
+  meshorder::command::occupy_closed_streams();
   CLI::App app{
       "Reorders the vertices and elements of a simulation mesh, with all data in its file, so that\n"
       "physics on it runs faster.\n\n"
@@ -114,22 +94,14 @@ int main(int argc, char** argv) {
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->trigger_on_parse();
+  app.formatter(meshorder::command::help_format());
   for (const auto& [name, add] : kSubcommands) add(*app.add_subcommand(name));
   try {
     if (argc < 2) {
-      fmt::print(stderr, "{}", app.help());
+      meshorder::command::write_stderr(app.help());
       return kBadInput;
     }
-    const std::string first = argv[1];
-    const auto has_first_name = [&](const CLI::App* subcommand) { return subcommand->get_name() == first; };
-    if (!first.starts_with('-') && app.get_subcommands(has_first_name).empty())
-      return report("unknown subcommand '" + first + "'" + suggestion(app, first), kBadInput);
-    app.parse(argc, argv);
-    return 0;
-  } catch (const CLI::Success& help) {
-    return app.exit(help);
-  } catch (const CLI::ParseError& error) {
-    return report(std::string(error.what()) + "; see " + command_named_by(app) + " --help", kBadInput);
+    return run(app, {argv + 1, argv + argc});
   } catch (const meshorder::command::CommandError& error) {
     return report(error.what(), error.status);
   } catch (const meshorder::Error& error) {

@@ -1,11 +1,22 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "maps.hpp"
 
+#include "base/checksum.hpp"
 #include "base/index.hpp"
 #include "io/npy.hpp"
+#include "io/stream/output_file.hpp"
 #include <meshorder/error.hpp>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <exception>
 #include <filesystem>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
 
 namespace meshorder::command {
 namespace {
@@ -16,6 +27,7 @@ std::string old_to_new_path(const std::string& prefix, const std::string& what) 
 std::string new_to_old_path(const std::string& prefix, const std::string& what) {
   return prefix + "." + what + ".new_to_old.npy";
 }
+std::string identity_path(const std::string& prefix) { return prefix + ".maps.json"; }
 std::string ids_path(const std::string& prefix, const std::string& what) {
   return prefix + "." + what + ".ids.npy";
 }
@@ -41,20 +53,113 @@ std::vector<std::int64_t> read_ids(const std::string& path, Index count) {
   return ids;
 }
 
-}  // namespace
-
-std::vector<std::string> write_maps(const Maps& maps, const std::string& prefix) {
-  std::vector<std::string> written;
-  write_map(maps.vertices, maps.vertex_ids, prefix, "vertices", written);
-  write_map(maps.cells, maps.cell_ids, prefix, "elements", written);
-  return written;
-}
-
-Maps read_maps(const std::string& prefix, const Mesh& mesh) {
+Maps read_permutations(const std::string& prefix, const Mesh& mesh) {
   return {read_permutation(old_to_new_path(prefix, "vertices"), mesh.vertex_count(), "vertices"),
           read_permutation(old_to_new_path(prefix, "elements"), mesh.cell_count(), "cells"),
           read_ids(ids_path(prefix, "vertices"), mesh.vertex_count()),
           read_ids(ids_path(prefix, "elements"), mesh.cell_count())};
+}
+
+/// Throws Error if a file of the maps is named instead of their prefix.
+void require_prefix(const std::string& prefix) {
+  for (const char* const what : {".vertices.", ".elements.", ".maps.json"}) {
+    const std::size_t at = prefix.rfind(what);
+    const bool is_file =
+        at != std::string::npos && (prefix.ends_with(".npy") || prefix.ends_with(".maps.json"));
+    if (is_file)
+      throw InputError(prefix, "is one file of the maps", "give their prefix, " + prefix.substr(0, at));
+  }
+}
+
+nlohmann::ordered_json checksums_json(const MeshChecksums& checksums) {
+  return {{"points", fmt::format("{:016x}", checksums.points)},
+          {"cells", fmt::format("{:016x}", checksums.cells)}};
+}
+
+std::uint64_t checksum_from(const nlohmann::json& json) {
+  const std::string digits = json.get<std::string>();
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+  if (error != std::errc() || end != digits.data() + digits.size()) throw std::invalid_argument(digits);
+  return value;
+}
+
+/// The checksums of the mesh before and after; unknown where another program wrote the mesh.
+struct Identity {
+  std::optional<MeshChecksums> before;
+  std::optional<MeshChecksums> after;
+};
+
+std::optional<MeshChecksums> checksums_from(const nlohmann::json& json) {
+  if (json.is_null()) return std::nullopt;
+  return MeshChecksums{checksum_from(json.at("points")), checksum_from(json.at("cells"))};
+}
+
+Identity read_identity(const std::string& path) {
+  std::ifstream file(path);
+  try {
+    const nlohmann::json json = nlohmann::json::parse(file);
+    return {checksums_from(json.at("before")), checksums_from(json.at("after"))};
+  } catch (const std::exception&) {
+    throw InputError(path, "is not what `order --maps` wrote",
+                     "order again, or remove it: maps are applied without it, unchecked");
+  }
+}
+
+/// Throws Error if the mesh is not in the order that the maps start from.
+void require_order(const Mesh& mesh, const std::string& mesh_path, const std::string& path, bool inverse) {
+  const Identity identity = read_identity(path);
+  const std::optional<MeshChecksums>& start = inverse ? identity.after : identity.before;
+  const std::optional<MeshChecksums>& goal = inverse ? identity.before : identity.after;
+  const MeshChecksums found = checksums_of(mesh);
+  const auto has_cells_of = [&](const std::optional<MeshChecksums>& side) {
+    return side && side->cells == found.cells;
+  };
+  // the points may have been moved since, or rounded by a format
+  if (found == start || (has_cells_of(start) && found != goal)) return;
+  if (has_cells_of(goal) && inverse)
+    throw InputError(mesh_path, "is in its old order already, by " + path,
+                     "leave out --inverse to reorder it");
+  if (has_cells_of(goal))
+    throw InputError(mesh_path, "is in the new order already, by " + path,
+                     "give --inverse to restore the old order");
+  if (!start) return;
+  throw InputError(mesh_path,
+                   goal ? "is not the mesh that the maps were written for, by " + path
+                        : "is not in the order that the maps start from, by " + path,
+                   "give the maps that were written with this mesh");
+}
+
+}  // namespace
+
+MeshChecksums checksums_of(const Mesh& mesh) {
+  Checksum points;
+  points.add_all(mesh.points);
+  Checksum cells;
+  cells.add_all(mesh.cells.offsets);
+  cells.add_all(mesh.cells.vertices);
+  return {points.value(), cells.value()};
+}
+
+std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& before, const MeshChecksums& after,
+                                    const std::string& prefix) {
+  std::vector<std::string> written;
+  write_map(maps.vertices, maps.vertex_ids, prefix, "vertices", written);
+  write_map(maps.cells, maps.cell_ids, prefix, "elements", written);
+  const nlohmann::ordered_json identity{
+      {"version", MESHORDER_VERSION}, {"before", checksums_json(before)}, {"after", checksums_json(after)}};
+  OutputFile file(written.emplace_back(identity_path(prefix)));
+  file.write(identity.dump(2) + "\n");
+  file.commit();
+  return written;
+}
+
+Maps read_maps(const std::string& prefix, const Mesh& mesh, const std::string& mesh_path, bool inverse) {
+  require_prefix(prefix);
+  Maps maps = read_permutations(prefix, mesh);
+  const std::string path = identity_path(prefix);
+  if (std::filesystem::exists(path)) require_order(mesh, mesh_path, path, inverse);
+  return maps;
 }
 
 }  // namespace meshorder::command

@@ -13,7 +13,7 @@ namespace meshorder::command {
 /// The reordering of a mesh file, on disk as NumPy arrays: PREFIX.vertices.old_to_new.npy and
 /// PREFIX.vertices.new_to_old.npy, and PREFIX.elements.*.npy for all cells. If the input numbers its vertices
 /// or cells other than from 0 or 1 on, PREFIX.vertices.ids.npy or PREFIX.elements.ids.npy holds these numbers
-/// in the input's order.
+/// in the input's order. PREFIX.maps.json tells which mesh the maps are for.
 struct Maps {
   Permutation vertices;
   Permutation cells;
@@ -21,10 +21,25 @@ struct Maps {
   std::vector<std::int64_t> cell_ids;
 };
 
-/// Writes the maps and returns the paths.
-std::vector<std::string> write_maps(const Maps& maps, const std::string& prefix);
+/// Checksums that tell a mesh, and the order that it is in, from others.
+struct MeshChecksums {
+  std::uint64_t points = 0;  ///< of the coordinates
+  std::uint64_t cells = 0;   ///< of the vertices of all cells
 
-/// Reads the maps of a mesh. Throws Error if a file is missing, is not a permutation or has another length.
-Maps read_maps(const std::string& prefix, const Mesh& mesh);
+  bool operator==(const MeshChecksums&) const = default;
+};
+
+/// Returns the checksums of a mesh in its order, the same on any number of threads. O(points + cells).
+MeshChecksums checksums_of(const Mesh& mesh);
+
+/// Writes the maps, and the checksums of the mesh before and after; returns the paths.
+std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& before, const MeshChecksums& after,
+                                    const std::string& prefix);
+
+/// Reads the maps of a mesh, which is in its old order or, if `inverse`, in the new one. Throws Error if a
+/// file is missing, is not a permutation or has another length; and if PREFIX.maps.json is there and says
+/// that the mesh is in the other order or is another one. A mesh whose points were moved is still the same by
+/// its cells.
+Maps read_maps(const std::string& prefix, const Mesh& mesh, const std::string& mesh_path, bool inverse);
 
 }  // namespace meshorder::command

@@ -21,14 +21,14 @@ nlohmann::ordered_json list_json(const Methods& methods) {
 
 template <class Methods>
 void list_text(const Console& console, const Methods& methods) {
-  for (const auto& method : methods) console.print("  {:<14} {}", method.name, method.description);
+  for (const auto& method : methods) console.print_list("  {:<14} {}", method.name, method.description);
 }
 
 void run(const Common& common) {
   const Console console(common);
-  console.print("Methods for vertices (--vertices):");
+  console.print_list("Methods for vertices (--vertices):");
   list_text(console, vertex_methods());
-  console.print("\nMethods for elements (--elements); cells of lower dimension follow lexmax:");
+  console.print_list("\nMethods for elements (--elements); cells of lower dimension follow lexmax:");
   list_text(console, element_methods());
   console.print_json({{"vertices", list_json(vertex_methods())}, {"elements", list_json(element_methods())}});
 }
@@ -41,7 +41,7 @@ void add_methods(CLI::App& subcommand) {
       "Example:\n"
       "  meshorder methods");
   const auto common = std::make_shared<Common>();
-  add_common(subcommand, *common);
+  add_common(subcommand, *common, kQuietList);
   subcommand.callback([common] { run(*common); });
 }
 

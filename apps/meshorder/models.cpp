@@ -19,7 +19,7 @@ struct MakeArguments : Common {
   MakeOptions options;
 };
 
-nlohmann::ordered_json to_json(const Model& model) {
+nlohmann::ordered_json model_json(const Model& model) {
   const bool made = !model.path.empty();
   return {{"name", model.name},
           {"sentence", model.description},
@@ -30,22 +30,22 @@ nlohmann::ordered_json to_json(const Model& model) {
 
 void print_model(const Console& console, const Model& model) {
   if (model.path.empty()) {
-    console.print("  {:<16} {:>10} {:>12}  {}", model.name, "–", "–", model.description);
+    console.print_list("  {:<16} {:>10} {:>12}  {}", model.name, "–", "–", model.description);
   } else {
-    console.print("  {:<16} {:>10} {:>12}  {}", model.name, with_commas(model.vertices),
-                  with_commas(model.elements), model.path.string());
+    console.print_list("  {:<16} {:>10} {:>12}  {}", model.name, with_commas(model.vertices),
+                       with_commas(model.elements), model.path.string());
   }
 }
 
 void list(const Common& common) {
   const Console console(common);
   auto models = nlohmann::ordered_json::array();
-  console.print("  {:<16} {:>10} {:>12}", "model", "vertices", "elements");
+  console.print_list("  {:<16} {:>10} {:>12}", "model", "vertices", "elements");
   for (const Model& model : list_models()) {
     print_model(console, model);
-    models.push_back(to_json(model));
+    models.push_back(model_json(model));
   }
-  console.print("Models without a path are not made yet: `meshorder models make NAME`");
+  console.print_list("Models without a path are not made yet: `meshorder models make NAME`");
   console.print_json({{"models", models}});
 }
 
@@ -79,8 +79,8 @@ void make(const MakeArguments& arguments) {
   progress.finish();
   auto models = nlohmann::ordered_json::array();
   for (const Model& model : made) {
-    print_model(console, model);
-    models.push_back(to_json(model));
+    if (!console.quiet()) print_model(console, model);
+    models.push_back(model_json(model));
   }
   console.print_json({{"models", models}});
 }
@@ -95,10 +95,10 @@ void add_models(CLI::App& subcommand) {
       "  meshorder models\n"
       "  meshorder models make dragon");
   const auto common = std::make_shared<Common>();
-  add_common(subcommand, *common);
+  add_common(subcommand, *common, kQuietList);
   subcommand.require_subcommand(0, 1);
   CLI::App* list_command = subcommand.add_subcommand("list", "List the models and where they are stored");
-  add_common(*list_command, *common);
+  add_common(*list_command, *common, kQuietList);
   list_command->callback([common] { list(*common); });
 
   CLI::App* make_command =
@@ -114,7 +114,7 @@ void add_models(CLI::App& subcommand) {
       ->required();
   make_command
       ->add_option("--size", arguments->options.size, "Procedural models: number of lattice cubes across")
-      ->check(positive())
+      ->check(whole_from(1))
       ->capture_default_str();
   make_command->add_flag("--force", arguments->options.force, "Build it again");
   add_common(*make_command, *arguments);

@@ -63,7 +63,7 @@ nlohmann::ordered_json half_json(Index count, const Order& order) {
 }
 
 void run(const OrderArguments& arguments) {
-  const Console console(arguments);
+  Console console(arguments);
   ReorderOptions options = arguments.reordering;
   options.ids = parse<Ids>(arguments.ids);
   options.format = format_of(arguments.output).key();
@@ -81,6 +81,8 @@ void run(const OrderArguments& arguments) {
   Maps maps;
   maps.vertex_ids = mesh.vertex_ids;
   maps.cell_ids = mesh.cell_ids;
+  MeshChecksums old_order;
+  if (!arguments.maps.empty()) old_order = checksums_of(mesh);
   std::optional<Grouping> groups;
   if (!options.group_by.empty()) groups = grouping_by(mesh, options.group_by);
   CsrGraph graph;
@@ -98,11 +100,11 @@ void run(const OrderArguments& arguments) {
   const Stopwatch writing;
   write_mesh(mesh, arguments.output, &notes);
   std::vector<std::string> map_files;
-  if (!arguments.maps.empty()) map_files = write_maps(maps, arguments.maps);
+  if (!arguments.maps.empty()) map_files = write_maps(maps, old_order, checksums_of(mesh), arguments.maps);
   const double write_seconds = writing.seconds();
 
   progress.finish();
-  console.log_notes(notes);
+  console.warn_of(notes);
   print_result(console, order, groups, before, after);
   console.print("{:<10} {}", "wrote", arguments.output);
   for (const std::string& file : map_files) console.print("{:<10} {}", "", file);
@@ -155,7 +157,8 @@ void add_order(CLI::App& subcommand) {
   add_ids_option(subcommand, arguments->ids);
   subcommand.add_option(
       "--maps", arguments->maps,
-      "Also write the permutations as NumPy files: PREFIX.vertices.old_to_new.npy and so on");
+      "Also write the permutations as NumPy files, PREFIX.vertices.old_to_new.npy and so on, and\n"
+      "PREFIX.maps.json, by which `apply` knows the mesh");
   add_ordering_options(subcommand, arguments->reordering.order);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });

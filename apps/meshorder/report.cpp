@@ -128,7 +128,7 @@ std::string title_of(const Page& page) {
   return fmt::format("What the order of {} is worth", fmt::join(names, ", "));
 }
 
-void report_on_meshes(const Console& console, const ReportArguments& arguments) {
+void report_on_meshes(Console& console, const ReportArguments& arguments) {
   const std::string output = arguments.output.empty() ? "report.html" : arguments.output;
   (void)OutputFile(output);  // fail before the work if it cannot be written
   Progress progress(!console.quiet());
@@ -151,15 +151,15 @@ void report_on_meshes(const Console& console, const ReportArguments& arguments) 
   write_page(page, output);
 
   progress.finish();
-  console.log_notes(notes);
+  console.warn_of(notes);
   for (const MeshRecord& mesh : page.results.meshes)
     console.print("{}: {} vertices, {} simplices\nVerdict: {}", mesh.file, with_commas(mesh.vertices),
                   with_commas(mesh.tetrahedra), mesh.verdict.empty() ? "none" : mesh.verdict);
   console.print("wrote {}", output);
-  console.print_json({{"page", output}, {"results", to_json(page.results)}, {"notes", notes}});
+  console.print_json({{"page", output}, {"results", to_json(page.results)}});
 }
 
-void report_on_study(const Console& console, const ReportArguments& arguments) {
+void report_on_study(Console& console, const ReportArguments& arguments) {
   if (!arguments.output.empty())
     throw InvalidArgument(
         "-o is for a report on meshes; a study's report is written into the study's folder");
@@ -172,17 +172,17 @@ void report_on_study(const Console& console, const ReportArguments& arguments) {
     progress.stage(std::string(what), fraction, std::min(1.0, fraction + 0.1));
   });
   progress.finish();
-  console.log_notes(report.notes);
+  console.warn_of(report.notes);
   auto files = nlohmann::ordered_json::array();
   for (const fs::path& file : report.files) {
     files.push_back(file.string());
     console.print("wrote {}", file.string());
   }
-  console.print_json({{"page", folder.page().string()}, {"files", files}, {"notes", report.notes}});
+  console.print_json({{"page", folder.page().string()}, {"files", files}});
 }
 
 void run(const ReportArguments& arguments) {
-  const Console console(arguments);
+  Console console(arguments);
   const auto is_folder = [](const std::string& input) { return fs::is_directory(input); };
   const auto folder = std::find_if(arguments.inputs.begin(), arguments.inputs.end(), is_folder);
   if (folder == arguments.inputs.end()) return report_on_meshes(console, arguments);

@@ -57,30 +57,29 @@ StudyPlan plan_of(const ReproduceArguments& arguments) {
 }
 
 /// Writes the report of a study, finished or not, and prints its findings.
-void report(const Console& console, const StudyFolder& folder, Progress& progress) {
+void report(Console& console, const StudyFolder& folder, Progress& progress) {
   progress.stage("the report", 0.99, 1);
   const WrittenReport written = write_report(folder);
   progress.finish();
-  console.log_notes(written.notes);
+  console.warn_of(written.notes);
   for (const std::string& finding : written.findings) console.print("{}\n", finding);
   for (const std::filesystem::path& file : written.files) {
     if (file.extension() != ".svg") console.print("wrote {}", file.string());
   }
   console.print_json({{"folder", folder.root().string()},
                       {"page", folder.page().string()},
-                      {"notes", written.notes},
                       {"results", to_json(written.results)}});
 }
 
 void run(const ReproduceArguments& arguments) {
-  const Console console(arguments);
+  Console console(arguments);
   const StudyPlan plan = plan_of(arguments);
   const StudyFolder folder(arguments.folder);
   Progress progress(!console.quiet());
   const Interruption interruption;
   StudyObserver observer;
   observer.stage = [&](const std::string& what, double from, double to) { progress.stage(what, from, to); };
-  observer.note = [&](const std::string& message) { console.log("{}", message); };
+  observer.note = [&](const std::string& message) { console.warn(message); };
   observer.stop = [] { return Interruption::signal() != 0; };
   const bool finished = run_study(plan, folder, std::filesystem::read_symlink("/proc/self/exe"), observer);
   if (finished || std::filesystem::exists(folder.results())) report(console, folder, progress);

@@ -38,28 +38,17 @@ nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches) {
   return result;
 }
 
-std::string reuse_header(const Caches& caches, int left) {
-  std::string levels = fmt::format("{:>{}}", "log2", kLogWidth);
+std::string reuse_header(const Caches& caches) {
+  std::string header = fmt::format("{:>{}}", "log2", kLogWidth);
   std::istringstream sizes(to_string(caches));
-  for (std::string size; std::getline(sizes, size, ',');) levels += fmt::format("{:>{}}", size, kMissesWidth);
-  levels += fmt::format("{:>{}}", "jumps", kMissesWidth);
-  std::string first(left, ' ');
-  std::string second(left, ' ');
-  for (const std::string_view kernel : kKernelTitles) {
-    first += fmt::format("{:>{}}", kernel, levels.size());
-    second += levels;
-  }
-  return first + "\n" + second;
+  for (std::string size; std::getline(sizes, size, ',');) header += fmt::format("{:>{}}", size, kMissesWidth);
+  return header + fmt::format("{:>{}}", "jumps", kMissesWidth);
 }
 
-std::string reuse_cells(const KernelReuse& reuse, const Caches& caches) {
-  std::string row;
-  for (const Reuse& of_kernel : reuse) {
-    row += fmt::format("{:>{}.2f}", of_kernel.all.mean_log2(), kLogWidth);
-    for (const Offset count : misses(of_kernel.all, caches)) row += count_cell(count);
-    row += count_cell(misses(of_kernel.jumps, caches).back());
-  }
-  return row;
+std::string reuse_cells(const Reuse& of_kernel, const Caches& caches) {
+  std::string cells = fmt::format("{:>{}.2f}", of_kernel.all.mean_log2(), kLogWidth);
+  for (const Offset count : misses(of_kernel.all, caches)) cells += count_cell(count);
+  return cells + count_cell(misses(of_kernel.jumps, caches).back());
 }
 
 }  // namespace meshorder::command

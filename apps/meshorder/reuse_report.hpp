@@ -23,15 +23,13 @@ nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches);
 
 /// Explains the columns of reuse_header.
 inline constexpr std::string_view kReuseLegend =
-    "log2: mean log2 of the reuse distances; a cache's size: its misses; jumps: misses of the last level "
-    "that\n"
-    "no hardware prefetcher foresees";
+    "log2: mean log2 of the reuse distances; a cache's size: its misses; jumps: misses of the last\n"
+    "level that no hardware prefetcher foresees";
 
-/// Returns two lines that head the columns of reuse_cells: the kernels, and below each its log2, its misses
-/// in every level and its jumps. `left` is the width of the columns before them.
-std::string reuse_header(const Caches& caches, int left);
+/// Returns the heads of the columns of reuse_cells: "log2", the caches, "jumps".
+std::string reuse_header(const Caches& caches);
 
-/// Returns a row of the table: "14.6  1.09M   954k   681k  20.1k" for each kernel.
-std::string reuse_cells(const KernelReuse& reuse, const Caches& caches);
+/// Returns the cells of a kernel: "14.6  1.09M   954k   681k  20.1k".
+std::string reuse_cells(const Reuse& of_kernel, const Caches& caches);
 
 }  // namespace meshorder::command

@@ -50,7 +50,7 @@ void list_scenarios(const Console& console) {
   auto scenarios = nlohmann::ordered_json::array();
   for (const BuiltInScenario& built_in : built_in_scenarios()) {
     const Scenario scenario = find_scenario(std::string(built_in.name));
-    console.print("  {:<14} {}", scenario.name, scenario.title);
+    console.print_list("  {:<14} {}", scenario.name, scenario.title);
     scenarios.push_back({{"name", scenario.name}, {"title", scenario.title}, {"mesh", scenario.mesh}});
   }
   console.print_json({{"scenarios", scenarios}});
@@ -157,7 +157,7 @@ class Run {
 };
 
 void run(const SimulateArguments& arguments) {
-  const Console console(arguments);
+  Console console(arguments);
   if (arguments.list) return list_scenarios(console);
   if (arguments.scenario.empty())
     throw InvalidArgument("give the name or the file of a scenario; --list shows the names");
@@ -178,7 +178,7 @@ void run(const SimulateArguments& arguments) {
   notes.insert(notes.end(), simulation.notes.begin(), simulation.notes.end());
   if (steps.frames() != nullptr)
     notes.insert(notes.end(), steps.frames()->notes().begin(), steps.frames()->notes().end());
-  console.log_notes(notes);
+  console.warn_of(notes);
   print_header(console, simulation, path);
   if (steps.resumed_from() > 0)
     console.print("{:<10} after step {}, from {}", "resumed", steps.resumed_from(), arguments.resume);
@@ -225,7 +225,7 @@ void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
   CLI::Option* const frames = subcommand.add_option(
       "--vtk", arguments.frames, "Write the motion into this folder, for ParaView: open SCENARIO.pvd");
   subcommand.add_option("--every", arguments.every, "Steps from one frame to the next")
-      ->check(positive())
+      ->check(whole_from(1))
       ->needs(frames)
       ->capture_default_str();
   CLI::Option* const checkpoint =
@@ -233,7 +233,7 @@ void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
                             "Write checkpoints to this file; Ctrl-C saves one before exiting");
   subcommand
       .add_option("--checkpoint-every", arguments.checkpoint_every, "Steps from one checkpoint to the next")
-      ->check(positive())
+      ->check(whole_from(1))
       ->needs(checkpoint)
       ->capture_default_str();
   subcommand.add_option(

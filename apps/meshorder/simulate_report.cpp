@@ -246,10 +246,10 @@ void print_header(const Console& console, const Simulation& simulation, const st
                 thread_count(), thread_count() == 1 ? "" : "s");
   if (!scenario.is_implicit() && touches(scenario.projective()))
     console.print("{:<10} {}", "contact", contact_in_words(scenario.projective()));
-  std::fflush(stdout);
+  flush_stdout();
 }
 
-void print_summary(const Console& console, const Simulation& simulation, const MotionRecord& record) {
+void print_summary(Console& console, const Simulation& simulation, const MotionRecord& record) {
   if (!record.steps.empty()) {
     print_steps(console, simulation.scenario, record);
     print_shape(console, simulation, record);
@@ -264,8 +264,9 @@ void print_summary(const Console& console, const Simulation& simulation, const M
   console.print("{:<10} {:.4g} → {:.4g} kg m²/s about the origin", "angular", length(first.angular_momentum),
                 length(last.angular_momentum));
   for (const WarningRecord& warning : record.warnings) {
-    console.log("{}{}, step {}: {}", warning.count > 1 ? with_commas(warning.count) + " times" : "once",
-                warning.count > 1 ? ", first" : "", warning.first_step, warning.first);
+    console.warn(fmt::format("{}{}, step {}: {}",
+                             warning.count > 1 ? with_commas(warning.count) + " times" : "once",
+                             warning.count > 1 ? ", first" : "", warning.first_step, warning.first));
   }
 }
 

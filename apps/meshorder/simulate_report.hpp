@@ -15,7 +15,7 @@ namespace meshorder::command {
 void print_header(const Console& console, const Simulation& simulation, const std::string& mesh);
 
 /// Prints times, iterations and the change of energy and momentum.
-void print_summary(const Console& console, const Simulation& simulation, const MotionRecord& record);
+void print_summary(Console& console, const Simulation& simulation, const MotionRecord& record);
 
 /// Returns the keys that docs/json.md lists, but for those of the run: the mesh's file, frames, checkpoints.
 nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord& record);

@@ -25,7 +25,7 @@ std::string factor_cell(const std::optional<KernelMilliseconds>& as_is,
   return fmt::format("{:.2f}×", (*as_is)[kernel] / (*ordered)[kernel]);
 }
 
-nlohmann::ordered_json to_json(const std::optional<KernelMilliseconds>& milliseconds) {
+nlohmann::ordered_json milliseconds_json(const std::optional<KernelMilliseconds>& milliseconds) {
   if (!milliseconds) return nullptr;
   nlohmann::ordered_json result;
   for (std::size_t k = 0; k < kKernels.size(); ++k)
@@ -33,9 +33,9 @@ nlohmann::ordered_json to_json(const std::optional<KernelMilliseconds>& millisec
   return result;
 }
 
-nlohmann::ordered_json to_json(const OrderCosts& costs) {
-  return {{"predicted_milliseconds", to_json(costs.predicted)},
-          {"measured_milliseconds", to_json(costs.measured)}};
+nlohmann::ordered_json costs_json(const OrderCosts& costs) {
+  return {{"predicted_milliseconds", milliseconds_json(costs.predicted)},
+          {"measured_milliseconds", milliseconds_json(costs.measured)}};
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ nlohmann::ordered_json to_json(const OrderCosts& costs) {
 void print_verdict(const Console& console, const Advice& advice) {
   const bool predicted = advice.as_is.costs.predicted.has_value();
   const bool measured = advice.as_is.costs.measured.has_value();
-  console.print("\nKernels: time in the mesh's order, and how many times faster they run in another, {}",
+  console.print("\nKernels: time in the mesh's order, and how many times faster they run in another,\n{}",
                 predicted && measured ? "measured here (predicted)"
                 : measured            ? "measured here"
                                       : fmt::format("predicted for a {}", zen5_costs().machine));
@@ -97,13 +97,13 @@ nlohmann::ordered_json to_json(const Advice& advice) {
                                  {"elements", candidate.elements.name},
                                  {"seconds", candidate.order_seconds},
                                  {"time_steps_to_pay", steps > 0 ? nlohmann::ordered_json(steps) : nullptr}};
-    order.update(to_json(candidate.costs));
+    order.update(costs_json(candidate.costs));
     orders.push_back(order);
   }
   return {{"sentence", to_string(advice)},
           {"by", advice.as_is.costs.measured ? "measurement" : "prediction"},
           {"kernels", kernels},
-          {"as_it_is", to_json(advice.as_is.costs)},
+          {"as_it_is", costs_json(advice.as_is.costs)},
           {"orders", orders},
           {"time_step", time_step}};
 }

@@ -18,6 +18,8 @@ Made from the help of meshorder {version}. `meshorder --help` and `meshorder ord
 
 Exit status: 0 on success, 2 for faulty input or arguments, 1 for a failure of the command itself, 130 and 143 after
 Ctrl-C and SIGTERM. Faults are one line on stderr, `meshorder: PLACE: fault; remedy`, and no output file is left behind.
+Warnings are lines on stderr that begin with `meshorder: warning: `. `--quiet` prints nothing but faults and the object of
+`--json`; subcommands that only list something (`methods`, `models list`, `simulate --list`) still do.
 """
 
 

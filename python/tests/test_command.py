@@ -81,7 +81,7 @@ def test_what_the_package_lacks_is_refused_in_one_line(tmp_path):
         done = run(word, *arguments, cwd=tmp_path)
         assert done.returncode == 2 and done.stdout == ""
         assert re.fullmatch(rf"meshorder: {word} is in the full build only.*\n", done.stderr)
-    assert "unknown subcommand 'simulat'" in run("simulat", cwd=tmp_path).stderr
+    assert "unknown command 'simulat'" in run("simulat", cwd=tmp_path).stderr
 
 
 def test_streams_and_status_are_the_commands_own(mesh, tmp_path):
@@ -138,6 +138,10 @@ def test_order_of_a_file_of_meshios_into_another(deck, tmp_path):
     assert (result["input"], result["output"]) == ("deck.xmf", "out.xmf")
     assert "deck.xmf: read by meshio" in done.stderr and "out.xmf: written by meshio" in done.stderr
     assert "meshorder-" not in done.stdout + done.stderr
+    assert [f"meshorder: warning: {note}" for note in result["notes"]] == done.stderr.splitlines()
+    # of the mesh that meshio wrote there are no checksums
+    identity = json.loads((tmp_path / "m.maps.json").read_text())
+    assert identity["before"] and identity["after"] is None
     moved = meshio.read(tmp_path / "out.xmf")
     places = np.load(tmp_path / "m.vertices.new_to_old.npy")
     np.testing.assert_array_equal(moved.points, deck.points[places])
@@ -187,6 +191,8 @@ def test_own_formats_on_one_side(deck, tmp_path):
 def test_apply_undoes_order(deck, tmp_path):
     for name, ordered, back in (("deck.xmf", "o.xmf", "b.xmf"), ("deck.inp", "o.vtu", "b.inp")):
         ok("order", name, "-o", ordered, "--maps", "m", "--vertices", "scrambled", cwd=tmp_path)
+        assert "order" in run("apply", "m", ordered, "-o", back, cwd=tmp_path).stderr.splitlines()[-1]
+        assert "already" in run("apply", "m", name, "-o", back, "--inverse", cwd=tmp_path).stderr
         ok("apply", "m", ordered, "-o", back, "--inverse", cwd=tmp_path)
         np.testing.assert_array_equal(meshio.read(tmp_path / back).points, meshio.read(tmp_path / name).points)
 
@@ -197,6 +203,15 @@ def test_info_and_compare_name_the_users_file(deck, tmp_path):
     assert ok("info", "deck.inp", "-q", cwd=tmp_path).stderr == ""
     done = ok("compare", "deck.inp", "--methods", "rcm", "--budget", "0.1", cwd=tmp_path)
     assert done.stdout.startswith("deck.inp: ")
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux's")
+def test_a_full_disk_behind_stdout_is_an_error(deck, tmp_path):
+    with open("/dev/full", "w") as full:
+        for line in ("info deck.inp", "methods"):
+            done = subprocess.run([COMMAND, *line.split()], cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True)
+            assert done.returncode == 2
+            assert done.stderr.splitlines()[-1].startswith("meshorder: standard output: ")
 
 
 def test_cells_are_never_lost(mesh, tmp_path):

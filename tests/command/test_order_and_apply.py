@@ -1,7 +1,9 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """What is ordered is the same mesh, everything attached included, and can be put back."""
 import itertools
+import json
 import os
+import re
 import shutil
 import subprocess
 
@@ -112,6 +114,88 @@ def test_apply_treats_ids_as_order_did(command, tmp_path):
     command.fails("apply", "m", "a.msh", "-o", "c.node", "--ids", "keep")
 
 
+def write_boxes(folder):
+    """A mesh of tetrahedra that other formats hold, too, in a scrambled order; and its points moved."""
+    axis = numpy.arange(4.0)
+    points = numpy.array([[x, y, z] for x in axis for y in axis for z in axis])
+    corner = [16 * x + 4 * y + z for x in range(3) for y in range(3) for z in range(3)]
+    cells = numpy.array([[c, c + 16, c + 20, c + 21] for c in corner])
+    meshio.write(folder / "a.vtu", meshio.Mesh(points, [("tetra", cells)]))
+    meshio.write(folder / "moved.vtu", meshio.Mesh(points + 0.1 * points[:, ::-1] ** 2, [("tetra", cells)]))
+    other = numpy.array([[c, c + 16, c + 20, c + 21] for c in corner[::-1]])
+    meshio.write(folder / "other.vtu", meshio.Mesh(points, [("tetra", other)]))
+
+
+@pytest.mark.parametrize("extension", ["vtu", "vtk", "msh", "node", "mesh", "veg", "ply"])
+def test_maps_know_whether_they_were_applied(command, tmp_path, extension):
+    write_boxes(tmp_path)
+    made = command.json("order", "a.vtu", "-o", f"b.{extension}", "--vertices", "rcm", "--maps", "m")["maps"]
+    assert made[-1] == "m.maps.json"
+    line = command.fails("apply", "m", f"b.{extension}", "-o", "c.vtu")
+    assert "is in the new order already" in line and "--inverse" in line
+    line = command.fails("apply", "m", "a.vtu", "-o", "c.vtu", "--inverse")
+    assert "is in its old order already" in line and "leave out --inverse" in line
+    for inverse in ([], ["--inverse"]):
+        assert "is not the mesh that the maps were written for" in \
+            command.fails("apply", "m", "other.vtu", "-o", "c.vtu", *inverse)
+    assert not (tmp_path / "c.vtu").exists()
+    command.ok("apply", "m", f"b.{extension}", "-o", "back.vtu", "--inverse")
+    assert cells_in_order(tmp_path / "back.vtu") == cells_in_order(tmp_path / "a.vtu")
+    command.ok("apply", "m", "a.vtu", "-o", "c.vtu")
+    command.ok("apply", "m", "moved.vtu", "-o", "d.vtu")  # the same mesh, deformed
+    assert cells_in_order(tmp_path / "c.vtu") == cells_in_order(tmp_path / "d.vtu")
+    command.fails("apply", "m", "d.vtu", "-o", "e.vtu")
+    command.ok("apply", "m", "d.vtu", "-o", "e.vtu", "--inverse")
+
+
+def test_maps_hold_checksums_of_the_mesh_before_and_after(command, tmp_path):
+    write_boxes(tmp_path)
+    command.ok("order", "a.vtu", "-o", "b.vtu", "--vertices", "rcm", "--maps", "m")
+    command.ok("order", "a.vtu", "-o", "same.vtu", "--vertices", "original", "--elements", "original", "--maps", "same")
+    command.ok("order", "moved.vtu", "-o", "moved-b.vtu", "--vertices", "rcm", "--maps", "moved")
+    identity, same, moved = (json.loads((tmp_path / f"{name}.maps.json").read_text()) for name in ("m", "same", "moved"))
+    assert identity["version"] == command.ok("--version").stdout.strip()
+    for side in ("before", "after"):
+        assert all(re.fullmatch("[0-9a-f]{16}", identity[side][of]) for of in ("points", "cells"))
+        assert moved[side]["cells"] == identity[side]["cells"] and moved[side]["points"] != identity[side]["points"]
+    assert identity["before"] == same["before"] == same["after"]
+    assert all(identity["before"][of] != identity["after"][of] for of in ("points", "cells"))
+    for inverse in ([], ["--inverse"]):  # maps that move nothing may be applied any number of times
+        command.ok("apply", "same", "same.vtu", "-o", "c.vtu", *inverse)
+
+
+@pytest.mark.parametrize("content", ["", "{", "[]", "{}", '{"before": {"points": "x", "cells": "0"}, "after": null}',
+                                     '{"before": {"points": 1, "cells": 2}, "after": null}', "\xff" * 9, "[" * 100000])
+def test_a_broken_identity_of_maps_is_refused(command, tmp_path, content):
+    write_boxes(tmp_path)
+    command.ok("order", "a.vtu", "-o", "b.vtu", "--maps", "m")
+    (tmp_path / "m.maps.json").write_text(content, encoding="latin-1")
+    assert command.fails("apply", "m", "a.vtu", "-o", "c.vtu").startswith("meshorder: m.maps.json: ")
+    (tmp_path / "m.maps.json").unlink()  # as maps of earlier versions
+    command.ok("apply", "m", "a.vtu", "-o", "c.vtu")
+    command.ok("apply", "m", "b.vtu", "-o", "c.vtu")
+
+
+def test_an_unknown_side_of_maps_is_not_checked(command, tmp_path):
+    write_boxes(tmp_path)
+    command.ok("order", "a.vtu", "-o", "b.vtu", "--vertices", "rcm", "--maps", "m")
+    identity = json.loads((tmp_path / "m.maps.json").read_text())
+    (tmp_path / "m.maps.json").write_text(json.dumps({**identity, "after": None}))
+    command.ok("apply", "m", "a.vtu", "-o", "c.vtu")
+    command.ok("apply", "m", "other.vtu", "-o", "c.vtu", "--inverse")
+    assert "already" in command.fails("apply", "m", "a.vtu", "-o", "c.vtu", "--inverse")
+    assert "already" in command.fails("apply", "m", "moved.vtu", "-o", "c.vtu", "--inverse")
+    assert "not in the order that the maps start from" in command.fails("apply", "m", "b.vtu", "-o", "c.vtu")
+
+
+@pytest.mark.parametrize("name", ["m.vertices.old_to_new.npy", "m.elements.new_to_old.npy", "m.maps.json"])
+def test_a_file_of_the_maps_is_not_their_prefix(command, tmp_path, name):
+    write_boxes(tmp_path)
+    command.ok("order", "a.vtu", "-o", "b.vtu", "--maps", "m")
+    assert command.fails("apply", name, "a.vtu", "-o", "c.vtu") == \
+        f"meshorder: {name}: is one file of the maps; give their prefix, m"
+
+
 def test_maps_tell_which_was_which(command, tmp_path):
     meshes.write_tetgen(tmp_path)
     command.ok("order", "mesh.node", "-o", "new.node", "--vertices", "scrambled", "--elements", "scrambled", "--seed",
@@ -178,7 +262,7 @@ def test_threads_do_not_change_a_byte(command, tmp_path, vertices, group_by):
     for threads in (1, 2, 3):
         command.ok("order", "ball.vtu", "-o", f"{threads}.vtu", "--maps", str(threads), "--threads", threads, *options)
         written.append([path.read_bytes() for path in sorted(tmp_path.glob(f"{threads}.*"))])
-    assert len(written[0]) == 5
+    assert len(written[0]) == 6
     assert written[0] == written[1] == written[2]
 
 

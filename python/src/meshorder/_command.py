@@ -153,9 +153,12 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _raise_signalled)
 
-    def say(notes: list[str]) -> None:
+    warnings: list[str] = []
+
+    def warn(notes: list[str]) -> None:
+        warnings.extend(notes)
         for note in notes if not words.quiet else []:
-            print(f"meshorder: {note}", file=sys.stderr)
+            print(f"meshorder: warning: {note}", file=sys.stderr)
 
     arguments = list(arguments)
     format = _foreign.format_of_meshio(words.mesh.path)
@@ -176,7 +179,7 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
             dimension = mesh._handle.dimension
             scratch = os.path.join(folder, "in.vtu")
             notes = [*mesh.notes, *_files.write(mesh, scratch)]
-            say([f"{words.mesh.path}: {note}" for note in notes])
+            warn([f"{words.mesh.path}: {note}" for note in notes])
             del mesh
             words.mesh.put(arguments, scratch)
             names[scratch] = words.mesh.path
@@ -185,10 +188,24 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
             raise _Signalled(-status)
         if status == 0 and output is not None and output_format:
             notes = _write(made, output.path, output_format, words, dimension)
-            say([f"{output.path}: {note}" for note in notes])
-    sys.stdout.write(printed)
-    sys.stdout.flush()
+            warn([f"{output.path}: {note}" for note in notes])
+    if words.json and status == 0:
+        result = json.loads(printed)
+        result["notes"] = warnings + result["notes"]
+        printed = json.dumps(result, indent=2, ensure_ascii=False) + "\n"
+    _print(printed)
     return status
+
+
+def _print(text: str) -> None:
+    """Writes text to stdout; where the reader of a pipe has gone away, drops it."""
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes the rest when it ends
+        if not isinstance(error, BrokenPipeError):
+            raise Error("standard output: cannot be written to the end; is the disk full?") from error
 
 
 def _write(made: str, path: str, format: str, words: _Words, dimension: int) -> list[str]:
@@ -202,6 +219,7 @@ def _write(made: str, path: str, format: str, words: _Words, dimension: int) -> 
         written, *missing = _foreign.write_meshio(mesh, path, format)
         if ordered and words.maps is not None:
             _reorder_map_of_cells(words.maps, order)
+            _forget_mesh_after(words.maps)
         return [written, *notes, *missing]
 
     try:
@@ -221,6 +239,14 @@ def _reorder_map_of_cells(prefix: str, order: NDArray[np.int64]) -> None:
     old_to_new = np.empty_like(written)
     old_to_new[new_to_old] = np.arange(len(written), dtype=written.dtype)
     np.save(f"{prefix}.elements.old_to_new.npy", old_to_new)
+
+
+def _forget_mesh_after(prefix: str) -> None:
+    """Removes the checksums of the reordered mesh, whose cells and digits are those that meshio wrote."""
+    file = pathlib.Path(f"{prefix}.maps.json")
+    identity = json.loads(file.read_text(encoding="utf-8"))
+    identity["after"] = None
+    file.write_text(json.dumps(identity, indent=2) + "\n", encoding="utf-8")
 
 
 def _run_in_other_names(arguments: list[str], names: dict[str, str], words: _Words) -> tuple[int, str]:

@@ -1,0 +1,61 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "help_format.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <istream>
+#include <sstream>
+#include <string>
+
+namespace meshorder::command {
+namespace {
+
+constexpr std::size_t kColumns = 100;
+
+/// Reads a word, or words in backquotes as one; returns whether there was one.
+bool next_word(std::istream& text, std::string& word) {
+  if (!(text >> word)) return false;
+  for (std::string next; std::count(word.begin(), word.end(), '`') % 2 == 1 && text >> next;)
+    word += ' ' + next;
+  return true;
+}
+
+/// Returns the words in lines of at most `width` characters.
+std::string wrapped(const std::string& text, std::size_t width) {
+  std::istringstream words(text);
+  std::string lines;
+  std::size_t length = 0;
+  for (std::string word; next_word(words, word); length += word.size()) {
+    if (length > 0) {
+      const bool fits = length + 1 + word.size() <= width;
+      lines += fits ? ' ' : '\n';
+      length = fits ? length + 1 : 0;
+    }
+    lines += word;
+  }
+  return lines;
+}
+
+class HelpFormat : public CLI::Formatter {
+ public:
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return wrapped(CLI::Formatter::make_option_desc(option), width());
+  }
+  std::string make_subcommand(const CLI::App* subcommand) const override {
+    std::stringstream entry;
+    CLI::detail::format_help(entry, subcommand->get_name(), wrapped(subcommand->get_description(), width()),
+                             get_column_width());
+    return entry.str();
+  }
+
+ private:
+  [[nodiscard]] std::size_t width() const { return kColumns - get_column_width(); }
+};
+
+}  // namespace
+
+std::shared_ptr<CLI::FormatterBase> help_format() { return std::make_shared<HelpFormat>(); }
+
+}  // namespace meshorder::command

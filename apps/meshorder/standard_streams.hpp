@@ -1,0 +1,22 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string_view>
+
+namespace meshorder::command {
+
+/// Gives standard streams that are closed a descriptor that refuses writing, so that no file that is opened
+/// later takes their place. To be called first.
+void occupy_closed_streams();
+
+/// Writes text to stdout. Throws CommandError if it cannot be written; where the reader of a pipe has gone
+/// away, the text is dropped instead.
+void write_stdout(std::string_view text);
+
+/// Writes what is buffered; throws likewise.
+void flush_stdout();
+
+/// Writes text to stderr; where that fails, there is nobody to tell.
+void write_stderr(std::string_view text) noexcept;
+
+}  // namespace meshorder::command

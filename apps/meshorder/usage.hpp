@@ -1,0 +1,26 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
+class App;
+class ParseError;
+}  // namespace CLI
+
+namespace meshorder::command {
+
+/// Returns the arguments with `help WORDS…` and `version` as the options that mean the same.
+std::vector<std::string> with_words_as_options(std::vector<std::string> arguments);
+
+/// Returns "unknown command 'ordr'; did you mean 'order'?" if the parsed arguments name a command that there
+/// is not.
+std::optional<std::string> unknown_command(const CLI::App& app);
+
+/// Returns what is wrong with the parsed arguments and which help to see: first commands and options that
+/// there are not, with the nearest one that there is, else the parser's own error.
+std::string usage_fault(const CLI::App& app, const CLI::ParseError& error);
+
+}  // namespace meshorder::command
