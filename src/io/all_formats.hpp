@@ -16,5 +16,6 @@ Format off_format();
 Format obj_format();
 Format ply_format();
 Format stl_format();
+Format su2_format();  ///< .su2
 
 }  // namespace meshorder
