@@ -16,7 +16,7 @@ namespace {
 const std::array kFormats{
     tetgen_format(), vega_format(),          gmsh_format(),        medit_format(), vtu_format(),
     vtk_format(),    off_format(),           obj_format(),         ply_format(),   stl_format(),
-    su2_format(),
+    su2_format(),    matrix_market_format(), metis_graph_format(),
 };
 
 std::string lower_case(std::string text) {
@@ -53,6 +53,7 @@ std::string_view format_that_begins(std::string_view bytes) {
     std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
     bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
     if (line.starts_with("# vtk DataFile")) return "VTK";
+    if (line.starts_with("%%MatrixMarket")) return "MatrixMarket";
     const std::string_view word = next_word(line);
     if (word.empty() || word.front() == '#' || word.front() == '%') continue;
     if (word.starts_with("$")) return "Gmsh";
