@@ -199,6 +199,13 @@ TEST(MetisGraph, LeavesOutWhatAGraphHasNot) {
             "%%MatrixMarket matrix coordinate integer symmetric\n4 4 2\n2 1 30\n3 2 40\n");
 }
 
+TEST(MetisGraph, NeedsAnEdge) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(test::write_error(test::cells_of_type(Shape::vertex, 1, 2), folder.path() / "a.graph"),
+              HasSubstr("no line between two vertices"));
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
 TEST(MetisGraph, RefusesBrokenFiles) {
   const std::string file(kGraph);
   test::expect_broken(

@@ -265,6 +265,9 @@ void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
   if (sizes != nullptr && sizes->components > 1) sizes = nullptr;
   const DataArray* const vertex_weights = weights(mesh, kWeight, Association::vertices, 0);
   const Adjacency graph(mesh);
+  if (graph.edges == 0) {
+    throw InputError(path.string(), "the mesh has no line between two vertices", "a graph needs an edge");
+  }
   const auto* const own = dynamic_cast<const GraphMetadata*>(mesh.format_metadata.get());
 
   OutputFile out(path);

@@ -30,7 +30,7 @@ struct Marker {
 
 /// The markers of a mesh, and what has no place in them.
 struct Markers {
-  explicit Markers(const Mesh& mesh_) : mesh(mesh_), dimension(mesh_.cells.highest_dimension()) {
+  explicit Markers(const Mesh& of) : mesh(of), dimension(of.cells.highest_dimension()) {
     marked.assign(mesh.cells.shapes.size(), false);
     for (const EntitySet& set : mesh.sets) add_set(set);
     add_others();
