@@ -16,5 +16,8 @@ Format off_format();
 Format obj_format();
 Format ply_format();
 Format stl_format();
+Format su2_format();            ///< .su2
+Format matrix_market_format();  ///< .mtx
+Format metis_graph_format();    ///< .graph
 
 }  // namespace meshorder

@@ -14,8 +14,9 @@ namespace meshorder {
 namespace {
 
 const std::array kFormats{
-    tetgen_format(), vega_format(), gmsh_format(), medit_format(), vtu_format(),
-    vtk_format(),    off_format(),  obj_format(),  ply_format(),   stl_format(),
+    tetgen_format(), vega_format(),          gmsh_format(),        medit_format(), vtu_format(),
+    vtk_format(),    off_format(),           obj_format(),         ply_format(),   stl_format(),
+    su2_format(),    matrix_market_format(), metis_graph_format(),
 };
 
 std::string lower_case(std::string text) {
@@ -35,6 +36,16 @@ bool has_size_of_stl(std::string_view bytes) {
   return bytes.size() == kHeader + 4 + 50 * triangles;
 }
 
+/// Returns whether a line that begins with this word, before `rest`, begins SU2's files.
+bool is_su2_keyword(std::string_view word, std::string_view rest) {
+  constexpr std::array<std::string_view, 5> kKeywords{"NDIME", "NZONE", "IZONE", "NELEM", "NPOIN"};
+  const std::size_t equals = word.find('=');
+  if (equals == std::string_view::npos && !trimmed(rest).starts_with('=')) return false;
+  return std::any_of(kKeywords.begin(), kKeywords.end(), [&](std::string_view keyword) {
+    return same_but_for_case(keyword, word.substr(0, equals));
+  });
+}
+
 /// Returns the name of the format whose files begin like this, or an empty text. Comments and empty lines
 /// before the first word are passed over.
 std::string_view format_that_begins(std::string_view bytes) {
@@ -42,8 +53,9 @@ std::string_view format_that_begins(std::string_view bytes) {
     std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
     bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
     if (line.starts_with("# vtk DataFile")) return "VTK";
+    if (line.starts_with("%%MatrixMarket")) return "MatrixMarket";
     const std::string_view word = next_word(line);
-    if (word.empty() || word.front() == '#') continue;
+    if (word.empty() || word.front() == '#' || word.front() == '%') continue;
     if (word.starts_with("$")) return "Gmsh";
     if (word.starts_with("MeshVersion")) return "Medit";
     if (word.starts_with("<")) return "VTU";
@@ -51,6 +63,7 @@ std::string_view format_that_begins(std::string_view bytes) {
     if (word.ends_with("OFF")) return "OFF";
     if (word == "ply") return "PLY";
     if (same_but_for_case(word, "solid")) return "STL";
+    if (is_su2_keyword(word, line)) return "SU2";
     constexpr std::array<std::string_view, 9> kObjWords{"v", "vn", "vt",     "f",     "o",
                                                         "g", "s",  "mtllib", "usemtl"};
     return std::find(kObjWords.begin(), kObjWords.end(), word) != kObjWords.end() ? "OBJ" : "";

@@ -23,6 +23,9 @@ struct Format {
   bool groups_cells_by_type;                 ///< whether files keep the cells of a type together
   Mesh (*read)(const FilePath&, Notes&);
   void (*write)(const Mesh&, const FilePath&, Notes&);
+  /// Returns the places that the cells of a mesh of another format have in a file, where types do not decide
+  /// them; `blocks` receives the first cell of each part that stays together. Null: cells keep their order.
+  Permutation (*places)(const Mesh&, std::vector<Index>& blocks) = nullptr;
 
   /// Returns the name in lower case, as the public functions take it.
   [[nodiscard]] std::string key() const;
@@ -44,7 +47,8 @@ const Format& format_named(std::string_view name);
 const Format* format_of_bytes(std::string_view bytes);
 
 /// Prepares a mesh for reordering and writing in a format that is not its own: drops its blocks, which bind
-/// cells in their own format only, and groups the cells by type, each type a block, if the format does.
+/// cells in their own format only, and groups the cells as the format does: by type, each type a block, or by
+/// its own places.
 /// Returns the applied permutation of cells. Reordering afterwards describes the cells as they are in the
 /// file.
 Permutation arrange_cells(Mesh& mesh, const Format& to);

@@ -84,8 +84,9 @@ Permutation write_checked(const Mesh& mesh, const FilePath& path, const Format& 
   Notes ignored;
   Notes& noted = notes != nullptr ? *notes : ignored;
   check_mesh(mesh);
-  if (format.groups_cells_by_type && mesh.format != format.key()) {
-    Permutation places = places_by_type(mesh.cells);
+  if ((format.groups_cells_by_type || format.places != nullptr) && mesh.format != format.key()) {
+    std::vector<Index> blocks;
+    Permutation places = format.places != nullptr ? format.places(mesh, blocks) : places_by_type(mesh.cells);
     if (!places.is_identity()) {
       Mesh arranged = mesh;
       arrange_cells(arranged, format);

@@ -41,6 +41,12 @@ void write_down_ids(Mesh& mesh, bool of_vertices, bool of_cells) {
 
 Permutation arrange_cells(Mesh& mesh, const Format& to) {
   if (mesh.format == to.key()) return Permutation::identity(mesh.cell_count());
+  if (to.places != nullptr) {
+    std::vector<Index> blocks;
+    Permutation places = to.places(mesh, blocks);
+    restore_cells(mesh, places.inverse(), std::move(blocks));
+    return places;
+  }
   mesh.cell_blocks.clear();
   return to.groups_cells_by_type ? group_cells_by_type(mesh) : Permutation::identity(mesh.cell_count());
 }

@@ -81,11 +81,12 @@ bool Scanner::at_end() {
 
 std::string_view Scanner::peek_word() {
   if (at_end()) return {};
+  const auto in_word = [&](char c) {
+    const bool is_separator = static_cast<unsigned char>(c) <= ' ' && (is_blank(c) || is_line_end(c));
+    return !is_separator && (comment_ == '\0' || c != comment_);
+  };
   std::size_t end = position_;
-  while (end < text_.size() && !is_blank(text_[end]) && !is_line_end(text_[end]) &&
-         (comment_ == '\0' || text_[end] != comment_)) {
-    ++end;
-  }
+  while (end < text_.size() && in_word(text_[end])) ++end;
   return std::string_view(text_).substr(position_, end - position_);
 }
 
@@ -98,7 +99,26 @@ std::string_view Scanner::word(std::string_view what) {
   return result;
 }
 
-double Scanner::real(std::string_view what) { return parse_real(*this, word(what), what); }
+template <class T>
+bool Scanner::take_number(T& value) {
+  if (at_end()) return false;
+  const char* const end = text_.data() + text_.size();
+  const auto [after, code] = std::from_chars(text_.data() + position_, end, value);
+  const bool whole =
+      after == end || is_blank(*after) || is_line_end(*after) || (comment_ != '\0' && *after == comment_);
+  if (code != std::errc{} || !whole) return false;
+  position_ = static_cast<std::size_t>(after - text_.data());
+  return true;
+}
+
+template bool Scanner::take_number<std::int32_t>(std::int32_t&);
+template bool Scanner::take_number<std::int64_t>(std::int64_t&);
+template bool Scanner::take_number<std::uint64_t>(std::uint64_t&);
+
+double Scanner::real(std::string_view what) {
+  double value = 0;
+  return take_number(value) ? value : parse_real(*this, word(what), what);
+}
 
 double Scanner::finite(std::string_view what) {
   const double value = real(what);
@@ -180,14 +200,17 @@ template std::uint64_t parse_integer<std::uint64_t>(const Scanner&, std::string_
 double parse_real(const Scanner& at, std::string_view text, std::string_view what) {
   std::string_view digits = text;
   if (digits.size() > 1 && digits.front() == '+') digits.remove_prefix(1);
-  std::string with_e;
-  if (const auto d = digits.find_first_of("dD"); d != std::string_view::npos && d > 0) {
-    with_e = digits;
-    with_e[d] = 'e';
-    digits = with_e;
-  }
   double value = 0;
-  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  std::string with_e;
+  if (code == std::errc{} && end != digits.data() + digits.size() && (*end == 'd' || *end == 'D')) {
+    with_e = digits;
+    with_e[static_cast<std::size_t>(end - digits.data())] = 'e';
+    digits = with_e;
+    const auto again = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    end = again.ptr;
+    code = again.ec;
+  }
   const bool whole = end == digits.data() + digits.size();
   if (code == std::errc::result_out_of_range && whole) {
     // underflow is 0, overflow an error

@@ -1,0 +1,77 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/matrix/matrix.hpp"
+
+#include "io/unsupported.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <type_traits>
+
+namespace meshorder::matrix {
+
+bool is_entry(Shape shape, int vertices) {
+  return (shape == Shape::line && vertices == 2) || (shape == Shape::vertex && vertices == 1);
+}
+
+const DataArray* dense_array(const Mesh& mesh, std::string_view name, Association association) {
+  const DataArray* const array = find_array(mesh, name, association);
+  const bool usable = array != nullptr && array->is_dense() &&
+                      !std::holds_alternative<std::vector<std::string>>(array->values);
+  return usable ? array : nullptr;
+}
+
+bool is_whole(const DataArray& array) {
+  return std::visit(
+      [](const auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        return std::is_integral_v<Value> && !std::is_same_v<Value, std::uint64_t>;
+      },
+      array.values);
+}
+
+double real_value(const DataArray& array, Offset at) {
+  return std::visit(
+      [&](const auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        if constexpr (std::is_arithmetic_v<Value>) {
+          return static_cast<double>(values[at]);
+        } else {
+          return 0.0;
+        }
+      },
+      array.values);
+}
+
+std::int64_t whole_value(const DataArray& array, Offset at) {
+  return std::visit(
+      [&](const auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        if constexpr (std::is_integral_v<Value>) {
+          return static_cast<std::int64_t>(values[at]);
+        } else {
+          return std::int64_t{0};
+        }
+      },
+      array.values);
+}
+
+void note_all_unsupported(const Mesh& mesh, std::string_view format,
+                          std::span<const DataArray* const> written, Notes& notes) {
+  const bool placed = std::any_of(mesh.points.begin(), mesh.points.end(),
+                                  [&](const Point& point) { return point != mesh.points.front(); });
+  if (placed) {
+    notes.push_back(
+        fmt::format("the coordinates of vertices are not written: {} has no place for them", format));
+  }
+  for (const DataArray& array : mesh.data) {
+    if (std::find(written.begin(), written.end(), &array) == written.end()) {
+      note_array_unsupported(array, format, notes);
+    }
+  }
+  for (const EntitySet& set : mesh.sets) note_set_unsupported(set, format, notes);
+  note_ids_unsupported(mesh, format, notes);
+}
+
+}  // namespace meshorder::matrix

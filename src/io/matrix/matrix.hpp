@@ -1,0 +1,36 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// What the formats of matrices and graphs share. A square matrix is a mesh whose vertices are its rows, all
+// at the origin, and whose cells are its entries in the order of the file: a line from row to column, a
+// vertex on the diagonal. Values are the array "value" on cells. An edge of a graph is a line.
+
+#include "io/format.hpp"
+
+#include <string_view>
+
+namespace meshorder::matrix {
+
+inline constexpr std::string_view kValue = "value";    ///< array on cells: the entries of a matrix
+inline constexpr std::string_view kWeight = "weight";  ///< array on cells or vertices: weights of a graph
+inline constexpr std::string_view kSize = "size";      ///< array on vertices: sizes in METIS's graphs
+
+/// Returns whether a cell is an entry: a line or a vertex.
+bool is_entry(Shape shape, int vertices);
+
+/// Returns the array of that name if it has a row for every vertex or cell; null otherwise.
+const DataArray* dense_array(const Mesh& mesh, std::string_view name, Association association);
+
+/// Returns whether an array holds whole numbers of at most 64 bits with a sign.
+bool is_whole(const DataArray& array);
+
+/// Returns that value of an array of numbers.
+double real_value(const DataArray& array, Offset at);
+std::int64_t whole_value(const DataArray& array, Offset at);
+
+/// Notes what a matrix or graph has no place for: coordinates, sets, ids, blocks and arrays other than
+/// `written`.
+void note_all_unsupported(const Mesh& mesh, std::string_view format,
+                          std::span<const DataArray* const> written, Notes& notes);
+
+}  // namespace meshorder::matrix

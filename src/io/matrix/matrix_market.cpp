@@ -1,0 +1,275 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Square sparse matrices as Matrix Market's coordinate files. Format: R. Boisvert, R. Pozo and K. Remington,
+// "The Matrix Market exchange formats: initial design", NISTIR 5935 (1996).
+#include "base/text.hpp"
+#include "io/all_formats.hpp"
+#include "io/matrix/matrix.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/stream/scanner.hpp"
+#include "io/stream/text_ends.hpp"
+#include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+
+namespace meshorder {
+namespace matrix {
+
+enum class Field : std::uint8_t { pattern, real, integer, complex };
+enum class Symmetry : std::uint8_t { general, symmetric, skew_symmetric, hermitian };
+
+}  // namespace matrix
+
+template <>
+struct EnumNames<matrix::Field> {
+  static constexpr std::string_view kind = "field";
+  static constexpr std::array names{
+      std::pair{matrix::Field::pattern, "pattern"}, std::pair{matrix::Field::real, "real"},
+      std::pair{matrix::Field::integer, "integer"}, std::pair{matrix::Field::complex, "complex"}};
+};
+
+template <>
+struct EnumNames<matrix::Symmetry> {
+  static constexpr std::string_view kind = "symmetry";
+  static constexpr std::array names{std::pair{matrix::Symmetry::general, "general"},
+                                    std::pair{matrix::Symmetry::symmetric, "symmetric"},
+                                    std::pair{matrix::Symmetry::skew_symmetric, "skew-symmetric"},
+                                    std::pair{matrix::Symmetry::hermitian, "hermitian"}};
+};
+
+namespace matrix {
+namespace {
+
+constexpr std::string_view kName = "MatrixMarket";
+constexpr std::string_view kBanner = "%%MatrixMarket";
+
+/// Data of a file beyond the matrix.
+struct MatrixMetadata final : FormatMetadata {
+  Symmetry symmetry = Symmetry::general;
+  std::string comments;  ///< the lines after the first
+
+  [[nodiscard]] std::vector<std::string> contents() const override {
+    std::vector<std::string> result;
+    if (symmetry != Symmetry::general) {
+      result.push_back(
+          fmt::format("that the matrix is {}, of which the file has one half", to_string(symmetry)));
+    }
+    if (!comments.empty()) result.emplace_back("the matrix's comments");
+    return result;
+  }
+};
+
+// ---- reading
+
+/// Returns the value of that name, in any case; fails at the scanner's line.
+template <NamedEnum Enum>
+Enum parse_word(const Scanner& at, std::string_view word) {
+  for (const auto& [value, name] : EnumNames<Enum>::names) {
+    if (same_but_for_case(word, name)) return value;
+  }
+  at.fail(fmt::format("the {} of the matrix is '{}'", EnumNames<Enum>::kind, shown(word)),
+          "known are " + names_of<Enum>());
+}
+
+class MatrixReader {
+ public:
+  MatrixReader(const FilePath& path, Notes& notes) : in_(path, '%'), notes_(notes) {}
+
+  Mesh read() {
+    read_banner();
+    read_sizes();
+    read_entries();
+    if (!in_.at_end()) in_.fail("more entries than the count says", "the count is wrong");
+    note_missing_line_end(in_, '%', notes_);
+    if (metadata_->symmetry == Symmetry::general && !is_pattern_symmetric()) {
+      notes_.push_back("the pattern of the matrix A is not symmetric: that of A + A' is ordered");
+    }
+    if (field_ != Field::pattern) {
+      const Index components = field_ == Field::complex ? 2 : 1;
+      mesh_.data.push_back(
+          {std::string(kValue),
+           Association::cells,
+           components,
+           field_ == Field::integer ? Values(std::move(integers_)) : Values(std::move(reals_)),
+           {},
+           {}});
+    }
+    mesh_.format_metadata = metadata_;
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_banner() {
+    std::string_view line = in_.peek_line();
+    if (!same_but_for_case(next_word(line), kBanner)) {
+      in_.fail("is no Matrix Market file", "its first line must begin with %%MatrixMarket");
+    }
+    if (const std::string_view object = next_word(line); !same_but_for_case(object, "matrix")) {
+      in_.fail(fmt::format("holds a '{}'", shown(object)), "only a matrix can be ordered");
+    }
+    if (const std::string_view layout = next_word(line); !same_but_for_case(layout, "coordinate")) {
+      in_.fail(fmt::format("the matrix is stored as '{}'", shown(layout)),
+               "only sparse matrices, stored as 'coordinate', can be ordered");
+    }
+    field_ = parse_word<Field>(in_, next_word(line));
+    metadata_->symmetry = parse_word<Symmetry>(in_, next_word(line));
+    if (const std::string_view more = next_word(line); !more.empty()) {
+      in_.fail(fmt::format("the first line goes on with '{}'", shown(more)), "it should end there");
+    }
+    (void)in_.raw_line();
+    while (in_.bytes_left() > 0) {
+      const std::string_view next = trimmed(in_.peek_line());
+      if (!next.empty() && next.front() != '%') break;
+      metadata_->comments.append(in_.raw_line()) += '\n';
+    }
+  }
+
+  void read_sizes() {
+    const auto rows = in_.integer<std::int64_t>("the number of rows");
+    const auto columns = in_.integer<std::int64_t>("the number of columns");
+    if (rows != columns) {
+      in_.fail(fmt::format("the matrix has {} rows and {} columns", rows, columns),
+               "only a square matrix can be ordered");
+    }
+    entries_ = in_.count("the number of entries", 4);
+    if (!in_.at_line_end()) in_.fail("the line of sizes has too many numbers", "three are needed");
+    // a large matrix has an entry in most rows
+    constexpr std::int64_t kFewRows = 1 << 20;
+    if (rows < 0 || rows > kFewRows) (void)in_.checked_count(rows, "the number of rows", 1);
+    mesh_.points.resize(rows, {0, 0, 0});
+  }
+
+  Index place(std::string_view what) {
+    const auto number = in_.integer<std::int64_t>(what);
+    if (number < 1 || number > mesh_.vertex_count()) {
+      in_.fail(fmt::format("{} is {}", what, number),
+               fmt::format("1 to {} are possible", mesh_.vertex_count()));
+    }
+    return static_cast<Index>(number - 1);
+  }
+
+  void read_entries() {
+    mesh_.cells.reserve(entries_, Offset{entries_} * 2);
+    if (field_ == Field::integer) integers_.reserve(entries_);
+    if (field_ == Field::real) reals_.reserve(entries_);
+    for (Index i = 0; i < entries_; ++i) {
+      const std::array entry{place("a row"), place("a column")};
+      if (entry[0] == entry[1]) {
+        mesh_.cells.push_back(Shape::vertex, {entry.data(), 1});
+      } else {
+        mesh_.cells.push_back(Shape::line, entry);
+      }
+      if (field_ == Field::integer) integers_.push_back(in_.integer<std::int64_t>("a value"));
+      if (field_ == Field::real || field_ == Field::complex) reals_.push_back(in_.real("a value"));
+      if (field_ == Field::complex) reals_.push_back(in_.real("an imaginary part"));
+      if (!in_.at_line_end()) in_.fail("the line of an entry has too many numbers", "check the first line");
+    }
+  }
+
+  [[nodiscard]] bool is_pattern_symmetric() const {
+    std::vector<std::pair<Index, Index>> entries;
+    entries.reserve(mesh_.cells.shapes.size());
+    for (Index c = 0; c < mesh_.cell_count(); ++c) {
+      const auto entry = mesh_.cells[c];
+      if (entry.size() == 2) entries.emplace_back(entry[0], entry[1]);
+    }
+    std::sort(entries.begin(), entries.end());
+    return std::all_of(entries.begin(), entries.end(), [&](const std::pair<Index, Index>& entry) {
+      return std::binary_search(entries.begin(), entries.end(), std::pair{entry.second, entry.first});
+    });
+  }
+
+  Scanner in_;
+  Notes& notes_;
+  Mesh mesh_;
+  std::shared_ptr<MatrixMetadata> metadata_ = std::make_shared<MatrixMetadata>();
+  Field field_ = Field::pattern;
+  Index entries_ = 0;
+  std::vector<std::int64_t> integers_;
+  std::vector<double> reals_;
+};
+
+Mesh read_matrix(const FilePath& path, Notes& notes) { return MatrixReader(path, notes).read(); }
+
+// ---- writing
+
+/// Returns whether no two lines join the same vertices.
+bool joins_once(const Mesh& mesh) {
+  std::vector<std::pair<Index, Index>> ends;
+  ends.reserve(mesh.cells.shapes.size());
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    ends.emplace_back(std::minmax(mesh.cells[c].front(), mesh.cells[c].back()));
+  }
+  std::sort(ends.begin(), ends.end());
+  return std::adjacent_find(ends.begin(), ends.end()) == ends.end();
+}
+
+Field field_of(const DataArray* values) {
+  if (values == nullptr) return Field::pattern;
+  if (values->components == 2) return Field::complex;
+  return is_whole(*values) ? Field::integer : Field::real;
+}
+
+void write_value(OutputFile& out, const DataArray& values, Field field, Index entry, Symmetry turned) {
+  const double sign = turned == Symmetry::skew_symmetric ? -1 : 1;
+  if (field == Field::integer) {
+    const std::int64_t value = whole_value(values, entry);
+    out.integer(" ", turned == Symmetry::skew_symmetric ? -value : value);
+  } else if (field == Field::real) {
+    out.print(" {}", sign * real_value(values, entry));
+  } else {
+    const double imaginary =
+        (turned == Symmetry::hermitian ? -1 : sign) * real_value(values, 2 * Offset{entry} + 1);
+    out.print(" {} {}", sign * real_value(values, 2 * Offset{entry}), imaginary);
+  }
+}
+
+void write_matrix(const Mesh& mesh, const FilePath& path, Notes& notes) {
+  require_supported_cells(mesh, path, "Matrix Market", is_entry,
+                          "a matrix is a mesh of lines and vertices; write .vtu or .msh instead");
+  const auto* const own = dynamic_cast<const MatrixMetadata*>(mesh.format_metadata.get());
+  const DataArray* values = dense_array(mesh, kValue, Association::cells);
+  if (values == nullptr && own == nullptr) values = dense_array(mesh, kWeight, Association::cells);
+  if (values != nullptr && values->components > 2) values = nullptr;
+  Symmetry symmetry = own != nullptr ? own->symmetry : Symmetry::general;
+  if (own == nullptr && (values == nullptr || values->name == kWeight) && joins_once(mesh)) {
+    symmetry = Symmetry::symmetric;
+  } else if (own == nullptr) {
+    notes.emplace_back("each line is one entry of the matrix, which is written as 'general'");
+  }
+  const Field field = field_of(values);
+
+  OutputFile out(path);
+  out.print("{} matrix coordinate {} {}\n", kBanner, to_string(field), to_string(symmetry));
+  if (own != nullptr) out.write(own->comments);
+  out.print("{} {} {}\n", mesh.vertex_count(), mesh.vertex_count(), mesh.cell_count());
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    Index row = mesh.cells[c].front();
+    Index column = mesh.cells[c].back();
+    // one half is stored: that below the diagonal
+    const bool turn = symmetry != Symmetry::general && row < column;
+    if (turn) std::swap(row, column);
+    out.integer("", Offset{row} + 1);
+    out.integer(" ", Offset{column} + 1);
+    if (values != nullptr) write_value(out, *values, field, c, turn ? symmetry : Symmetry::general);
+    out.write("\n");
+  }
+  out.commit();
+  note_all_unsupported(mesh, "Matrix Market", std::array{values}, notes);
+  if (own == nullptr) note_metadata_unsupported(mesh, "Matrix Market", notes);
+}
+
+}  // namespace
+}  // namespace matrix
+
+Format matrix_market_format() {
+  return {matrix::kName, {".mtx"}, false, matrix::read_matrix, matrix::write_matrix};
+}
+
+}  // namespace meshorder

@@ -1,0 +1,389 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
+#include "io/labels.hpp"
+#include "io/stream/scanner.hpp"
+#include "io/stream/text_ends.hpp"
+#include "io/su2/su2.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <system_error>
+#include <unordered_set>
+#include <utility>
+
+namespace meshorder::su2 {
+namespace {
+
+using Part = Metadata::Part;
+
+constexpr char kComment = '%';
+
+std::string upper(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return result;
+}
+
+/// Returns whether a keyword's value names no point or element.
+bool is_plain(std::string_view keyword) {
+  constexpr std::array<std::string_view, 6> kPlain{"NZONE", "IZONE", "NPERIODIC", "NCHUNK", "AOA", "AOS"};
+  return std::find(kPlain.begin(), kPlain.end(), keyword) != kPlain.end() ||
+         keyword.starts_with("PERIODIC_") || keyword.starts_with("FFD_");
+}
+
+class Su2Reader {
+ public:
+  Su2Reader(const FilePath& path, Notes& notes) : in_(path, kComment), notes_(notes) {}
+
+  Mesh read() {
+    while (in_.bytes_left() > 0) read_line();
+    keep_lines();
+    check_complete();
+    note_missing_line_end(in_, kComment, notes_);
+    note_numbers();
+    turn_wedges();
+    if (mesh_.cell_blocks.size() < 2) mesh_.cell_blocks.clear();
+    if (!labels_.empty()) {
+      labels_.resize(mesh_.cells.shapes.size(), 0);
+      mesh_.data.push_back(
+          {std::string(kLabel), Association::cells, 1, label_values(std::move(labels_)), {}, {}});
+    }
+    mesh_.format_metadata = metadata_;
+    return std::move(mesh_);
+  }
+
+ private:
+  // ---- lines
+
+  /// Sets keyword and value from the next line, and does not take it. Returns false for a comment.
+  bool find_keyword() {
+    const std::string_view line = in_.peek_line();
+    const std::string_view content = trimmed(line.substr(0, line.find(kComment)));
+    if (content.empty()) return false;
+    const std::size_t equals = content.find('=');
+    if (equals == std::string_view::npos) {
+      in_.fail(fmt::format("expected a keyword with '=', found '{}'", shown(content)),
+               keyword_.empty()
+                   ? "the file may not be a mesh of SU2"
+                   : fmt::format("the number after {}= may be too small, or {}= is not understood", keyword_,
+                                 keyword_));
+    }
+    keyword_ = upper(trimmed(content.substr(0, equals)));
+    value_ = trimmed(content.substr(equals + 1));
+    return true;
+  }
+
+  void read_line() {
+    if (!find_keyword()) {
+      keep_line();
+    } else if (keyword_ == "NDIME") {
+      read_dimension();
+    } else if (keyword_ == "NELEM") {
+      begin_section(Part::elements);
+      const Index count = take_count(4);
+      (void)in_.raw_line();
+      mesh_.cell_blocks.push_back(0);
+      read_elements(count, mesh_.dimension, metadata_->numbers_elements);
+      elements_ = mesh_.cell_count();
+    } else if (keyword_ == "NPOIN") {
+      begin_section(Part::points);
+      read_points();
+    } else if (keyword_ == "NMARK") {
+      begin_section(Part::marker_count);
+      markers_said_ = take_count(0);
+      (void)in_.raw_line();
+    } else if (keyword_ == "MARKER_TAG") {
+      read_marker();
+    } else {
+      keep_keyword();
+    }
+  }
+
+  void keep_line() { lines_.append(in_.raw_line()) += '\n'; }
+
+  /// Makes a section of the lines that were kept since the last one.
+  void keep_lines() {
+    if (!lines_.empty()) metadata_->sections.push_back({Part::verbatim, std::exchange(lines_, {})});
+  }
+
+  void begin_section(Part part) {
+    if (!sections_seen_.insert(part).second) in_.fail("a second " + keyword_ + "=", "it may appear once");
+    if (part != Part::dimension && !sections_seen_.contains(Part::dimension)) {
+      in_.fail(keyword_ + "= comes before NDIME=", "NDIME= 2 or NDIME= 3 must come first");
+    }
+    keep_lines();
+    metadata_->sections.push_back({part});
+  }
+
+  /// Takes the number of items, of at least `min_bytes` each, from the front of a keyword's value.
+  Index take_count(std::int64_t min_bytes) {
+    std::string_view rest = value_;
+    const Index count = in_.checked_count(
+        parse_integer<std::int64_t>(in_, next_word(rest), "the number after " + keyword_ + "="),
+        keyword_ + "=", min_bytes);
+    value_ = trimmed(rest);
+    return count;
+  }
+
+  void keep_keyword() {
+    if (keyword_ == "NZONE" && parse_integer<std::int64_t>(in_, value_, "NZONE=") != 1) {
+      in_.fail(fmt::format("the file has {} zones", shown(value_)), "give one file for each zone");
+    }
+    if (keyword_ == "FFD_SURFACE_POINTS" &&
+        parse_integer<std::int64_t>(in_, value_, "FFD_SURFACE_POINTS=") != 0) {
+      in_.fail("FFD_SURFACE_POINTS= names points, which a new order renumbers",
+               "put 0 there and leave its lines out: SU2_DEF with DV_KIND= FFD_SETTING finds them again");
+    }
+    if (keyword_ == "MARKER_ELEMS" || keyword_ == "SEND_RECV") {
+      in_.fail(keyword_ + "= has no MARKER_TAG= before it", "the file may be damaged");
+    }
+    if (!is_plain(keyword_)) notes_.push_back(keyword_ + "= is not known, and its line is kept as it is");
+    metadata_->keywords.push_back("SU2's " + keyword_ + "=");
+    keep_line();
+    // coordinates of a box, and lines of its control points
+    while (keyword_.starts_with("FFD_") && in_.bytes_left() > 0 &&
+           in_.peek_line().find('=') == std::string_view::npos) {
+      keep_line();
+    }
+  }
+
+  void read_dimension() {
+    begin_section(Part::dimension);
+    mesh_.dimension = parse_integer<std::int32_t>(in_, value_, "NDIME=");
+    if (mesh_.dimension != 2 && mesh_.dimension != 3) {
+      in_.fail(fmt::format("NDIME= {}", mesh_.dimension), "2 or 3 are possible");
+    }
+    (void)in_.raw_line();
+  }
+
+  // ---- elements and points
+
+  /// Takes the first word of an item's line; fails where a keyword comes instead.
+  std::string_view first_word() {
+    const std::string_view word = in_.word("a line of " + keyword_ + "=");
+    const bool letter = std::isalpha(static_cast<unsigned char>(word.front())) != 0;
+    if (letter && in_.peek_line().find('=') != std::string_view::npos) fail_count();
+    if (letter && word.find('=') != std::string_view::npos) fail_count();
+    return word;
+  }
+
+  [[noreturn]] void fail_count() const {
+    in_.fail(keyword_ + "= promises more lines than there are", "the count is wrong or lines are missing");
+  }
+
+  /// Refuses the end of a line before `what`.
+  void expect_more(std::string_view what) {
+    if (in_.at_line_end()) in_.fail("the line ends before " + std::string(what), "it may be cut short");
+  }
+
+  /// Takes the number at the end of the line, if there is one.
+  void take_number(std::int64_t place, bool& numbered) {
+    if (in_.at_line_end()) return;
+    if (in_.integer<std::int64_t>("the number at the end of the line") != place) has_other_numbers_ = true;
+    numbered = true;
+    if (!in_.at_line_end()) in_.fail("the line has too many numbers", "one number may follow");
+  }
+
+  /// Takes the line end after the last of `count` items.
+  void end_items(Index count) {
+    if (count > 0) (void)in_.raw_line();
+  }
+
+  static const ElementKind* kind_of_type(std::int32_t type) {
+    const auto found = std::find_if(kElementKinds.begin(), kElementKinds.end(),
+                                    [&](const ElementKind& kind) { return kind.type == type; });
+    return found == kElementKinds.end() ? nullptr : &*found;
+  }
+
+  void read_elements(Index count, int wanted_dimension, bool& numbered) {
+    Cells& cells = mesh_.cells;
+    cells.reserve(Offset{cells.size()} + count,
+                  cells.offsets.back() + Offset{count} * (wanted_dimension + 1));
+    std::array<Index, 8> cell{};
+    for (Index c = 0; c < count; ++c) {
+      const auto type = parse_integer<std::int32_t>(in_, first_word(), "the type of an element");
+      const ElementKind* const kind = kind_of_type(type);
+      if (kind == nullptr || dimension(kind->shape) != wanted_dimension) {
+        in_.fail(fmt::format("an element of type {} in {}= of a mesh with NDIME= {}", type, keyword_,
+                             mesh_.dimension),
+                 wanted_dimension == 3   ? "10, 12, 13 and 14 are possible"
+                 : wanted_dimension == 2 ? "5 and 9 are possible"
+                                         : "3 is possible");
+      }
+      const auto nodes = static_cast<std::size_t>(kind->nodes);
+      for (std::size_t k = 0; k < nodes; ++k) cell[k] = node();
+      cells.push_back(kind->shape, {cell.data(), nodes});
+      take_number(c, numbered);
+    }
+    end_items(count);
+  }
+
+  Index node() {
+    expect_more("a node of the element");
+    const auto number = in_.integer<std::int64_t>("a node of the element");
+    const Index last = has_points_ ? mesh_.vertex_count() - 1 : kMaxIndex;
+    if (number < 0 || number > last) {
+      in_.fail(fmt::format("a node of the element is {}", number),
+               has_points_ ? fmt::format("0 to {} are possible", last) : "points are counted from 0");
+    }
+    if (number > largest_node_) {
+      largest_node_ = number;
+      line_of_largest_ = in_.line();
+    }
+    return static_cast<Index>(number);
+  }
+
+  void read_points() {
+    const Index count = take_count(2 * mesh_.dimension);
+    if (!value_.empty()) {
+      metadata_->counts_physical_points = true;
+      if (parse_integer<std::int64_t>(in_, value_, "the second number after NPOIN=") != count) {
+        in_.fail(fmt::format("only {} of the {} points are the file's own", shown(value_), count),
+                 "this is one part of a mesh, or has halo points: give the whole mesh");
+      }
+    }
+    (void)in_.raw_line();
+    has_points_ = true;
+    mesh_.points.resize(count, {0, 0, 0});
+    for (Index v = 0; v < count; ++v) {
+      Point& point = mesh_.points[v];
+      for (std::size_t k = 0; k < static_cast<std::size_t>(mesh_.dimension); ++k) {
+        if (k > 0) expect_more("a coordinate");
+        point[k] = k == 0 ? parse_real(in_, first_word(), "a coordinate") : in_.real("a coordinate");
+        if (!std::isfinite(point[k])) in_.fail("a coordinate is not finite", "a finite number is needed");
+      }
+      take_number(v, metadata_->numbers_points);
+    }
+    end_items(count);
+    if (largest_node_ >= count) {
+      throw InputError(Location{in_.file(), line_of_largest_, -1},
+                       fmt::format("a node of the element is {}", largest_node_),
+                       fmt::format("0 to {} are possible", count - 1));
+    }
+  }
+
+  // ---- markers
+
+  void read_marker() {
+    const std::string name = value_;
+    if (name.empty()) in_.fail("MARKER_TAG= has no name", "give it one");
+    if (name == "SEND_RECEIVE") {
+      in_.fail("the marker SEND_RECEIVE belongs to one part of a mesh", "give the whole mesh");
+    }
+    if (!names_seen_.insert(name).second) in_.fail("a second marker " + shown(name), "names must differ");
+    if (elements_ == 0) in_.fail("MARKER_TAG= comes before NELEM=", "the elements must come first");
+    if (!sections_seen_.contains(Part::marker_count)) begin_section(Part::marker_count);
+    keep_lines();
+    metadata_->sections.push_back({Part::marker, name});
+    (void)in_.raw_line();
+    while (in_.bytes_left() > 0 && !find_keyword()) keep_line();
+    if (in_.bytes_left() == 0 || keyword_ != "MARKER_ELEMS") {
+      in_.fail("the marker " + shown(name) + " has no MARKER_ELEMS=", "it must follow MARKER_TAG=");
+    }
+    const Index count = take_count(4);
+    (void)in_.raw_line();
+    const Index first = mesh_.cell_count();
+    read_elements(count, mesh_.dimension - 1, metadata_->numbers_marker_elements);
+    if (count > 0) mesh_.cell_blocks.push_back(first);
+    if (const std::int64_t label = label_of_name(name); label != 0) {
+      labels_.resize(first, 0);
+      labels_.resize(mesh_.cell_count(), label);
+      return;
+    }
+    EntitySet set{name, Association::cells, {}};
+    set.members.reserve(count);
+    for (Index c = first; c < mesh_.cell_count(); ++c) set.members.push_back(c);
+    mesh_.sets.push_back(std::move(set));
+  }
+
+  // ---- the end
+
+  void check_complete() {
+    constexpr std::array kNeeded{std::pair{Part::dimension, "NDIME="}, std::pair{Part::elements, "NELEM="},
+                                 std::pair{Part::points, "NPOIN="}};
+    for (const auto& [part, keyword] : kNeeded) {
+      if (sections_seen_.contains(part)) continue;
+      throw InputError(in_.file(), "has no " + std::string(keyword),
+                       "it may be cut short, or be no mesh of SU2");
+    }
+    if (markers_said_ >= 0 && markers_said_ != index_size(names_seen_)) {
+      throw InputError(in_.file(),
+                       fmt::format("NMARK= {}, but {} markers follow", markers_said_, names_seen_.size()),
+                       "the number is wrong or the file is cut short");
+    }
+    if (sections_seen_.contains(Part::marker_count)) return;
+    metadata_->sections.push_back({Part::marker_count});
+    notes_.push_back(in_.file() + " has no NMARK=: if it was cut short, its markers are missing");
+  }
+
+  void note_numbers() {
+    if (!has_other_numbers_) return;
+    notes_.push_back(in_.file() +
+                     ": numbers at the ends of lines are not 0, 1, 2 …; as in SU2, places count");
+  }
+
+  /// Puts the nodes of wedges in the mesh's order, unless most are in it.
+  void turn_wedges() {
+    Cells& cells = mesh_.cells;
+    std::int64_t inward = 0;
+    for (Index c = 0; c < elements_; ++c) {
+      if (cells.shapes[c] != Shape::wedge) continue;
+      const auto cell = cells[c];
+      const auto edge = [&](std::size_t k) {
+        const Point& from = mesh_.points[cell[0]];
+        const Point& to = mesh_.points[cell[k]];
+        return Point{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+      };
+      const Point a = edge(1);
+      const Point b = edge(2);
+      const Point up = edge(3);
+      const double towards = (a[1] * b[2] - a[2] * b[1]) * up[0] + (a[2] * b[0] - a[0] * b[2]) * up[1] +
+                             (a[0] * b[1] - a[1] * b[0]) * up[2];
+      inward += towards > 0 ? 1 : -1;
+    }
+    metadata_->wedges_face_inward = inward > 0;
+    if (inward > 0) return;
+    for (Index c = 0; c < elements_; ++c) {
+      if (cells.shapes[c] != Shape::wedge) continue;
+      const auto cell = cells[c];
+      std::swap(cell[1], cell[2]);
+      std::swap(cell[4], cell[5]);
+    }
+  }
+
+  Scanner in_;
+  Notes& notes_;
+  Mesh mesh_;
+  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  std::string keyword_;  // of the last line with one, in capitals
+  std::string value_;
+  std::string lines_;  // to be kept
+  std::unordered_set<Part> sections_seen_;
+  std::unordered_set<std::string> names_seen_;
+  std::vector<std::int64_t> labels_;  // of the cells so far; empty without one
+  Index elements_ = 0;                // of the highest dimension
+  Index markers_said_ = -1;
+  std::int64_t largest_node_ = -1;
+  std::int64_t line_of_largest_ = 0;
+  bool has_points_ = false;
+  bool has_other_numbers_ = false;
+};
+
+}  // namespace
+
+std::int64_t label_of_name(std::string_view name) {
+  std::int64_t label = 0;
+  const auto [end, code] = std::from_chars(name.data(), name.data() + name.size(), label);
+  return code == std::errc{} && end == name.data() + name.size() && std::to_string(label) == name ? label : 0;
+}
+
+Mesh read(const FilePath& path, Notes& notes) { return Su2Reader(path, notes).read(); }
+
+}  // namespace meshorder::su2

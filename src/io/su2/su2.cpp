@@ -1,0 +1,341 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/su2/su2.hpp"
+
+#include "io/all_formats.hpp"
+#include "io/labels.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace meshorder::su2 {
+namespace {
+
+using Part = Metadata::Part;
+
+constexpr std::string_view kUnmarked = "unmarked";
+
+/// A part of the boundary.
+struct Marker {
+  std::string name;
+  std::vector<Index> cells;  ///< ascending
+};
+
+/// The markers of a mesh, and what has no place in them.
+struct Markers {
+  explicit Markers(const Mesh& of) : mesh(of), dimension(of.cells.highest_dimension()) {
+    marked.assign(mesh.cells.shapes.size(), false);
+    for (const EntitySet& set : mesh.sets) add_set(set);
+    add_others();
+    for (Marker& marker : markers) std::sort(marker.cells.begin(), marker.cells.end());
+  }
+
+  [[nodiscard]] bool is_volume(Index c) const {
+    return meshorder::dimension(mesh.cells.shapes[c]) == dimension;
+  }
+
+  const Mesh& mesh;
+  int dimension;  ///< of the elements; that of markers is one less
+  std::vector<Marker> markers;
+  std::map<std::string, std::size_t, std::less<>> places;  ///< of markers, by name
+  std::vector<bool> marked;
+  Notes notes;
+  bool has_lost_labels = false;
+
+ private:
+  Marker& marker(const std::string& name) {
+    const auto [found, is_new] = places.try_emplace(name, markers.size());
+    if (is_new) markers.push_back({name, {}});
+    return markers[found->second];
+  }
+
+  [[nodiscard]] bool is_boundary(Index c) const {
+    return meshorder::dimension(mesh.cells.shapes[c]) == dimension - 1;
+  }
+
+  [[nodiscard]] bool has_place(const EntitySet& set) const {
+    if (set.association != Association::cells) return false;
+    return set.members.empty() || std::any_of(set.members.begin(), set.members.end(),
+                                              [&](Index member) { return is_boundary(member); });
+  }
+
+  void add_set(const EntitySet& set) {
+    if (!has_place(set)) return note_set_unsupported(set, "SU2", notes);
+    Marker& into = marker(name_of(set));
+    std::int64_t others = 0;
+    std::int64_t repeated = 0;
+    for (const Index c : set.members) {
+      if (!is_boundary(c)) {
+        ++others;
+      } else if (marked[c]) {
+        ++repeated;
+      } else {
+        marked[c] = true;
+        into.cells.push_back(c);
+      }
+    }
+    if (others > 0) {
+      notes.push_back(
+          fmt::format("the marker '{}' is written without {} cells of the set that are not on a "
+                      "boundary: SU2 has no place for them",
+                      into.name, others));
+    }
+    if (repeated > 0) {
+      notes.push_back(
+          fmt::format("the marker '{}' is written without {} cells that another marker has: in SU2 "
+                      "a boundary element has one",
+                      into.name, repeated));
+    }
+  }
+
+  /// Returns a set's name without what would end it in a file.
+  std::string name_of(const EntitySet& set) {
+    std::string name = set.name;
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == '%' || c == '\n' || c == '\r' || c == '='; }, '_');
+    name.erase(0, name.find_first_not_of(" \t"));
+    name.erase(name.find_last_not_of(" \t") + 1);
+    if (name.empty()) name = kUnmarked;
+    if (name != set.name) notes.push_back(fmt::format("the set '{}' is the marker '{}'", set.name, name));
+    if (name.find_first_of(" \t") != std::string::npos) {
+      notes.push_back(fmt::format("the marker '{}' has a blank, which SU2 leaves out of the name", name));
+    }
+    return name;
+  }
+
+  /// Gives boundary cells that no set has to the marker of their label.
+  void add_others() {
+    const Labels labels = labels_of(mesh, Association::cells);
+    std::int64_t unmarked = 0;
+    for (Index c = 0; c < mesh.cell_count(); ++c) {
+      const std::int64_t label = labels.any() ? labels.values[c] : 0;
+      if (label != 0 && (marked[c] || !is_boundary(c))) has_lost_labels = true;
+      if (marked[c] || !is_boundary(c)) continue;
+      if (label == 0) ++unmarked;
+      marked[c] = true;
+      marker(label == 0 ? std::string(kUnmarked) : std::to_string(label)).cells.push_back(c);
+    }
+    if (unmarked > 0 && mesh.format != "su2") {
+      notes.push_back(
+          fmt::format("{} boundary elements that are in no set and have no label are the marker '{}'",
+                      unmarked, kUnmarked));
+    }
+  }
+};
+
+/// Returns the number of coordinates that a file gives to a point. Throws InputError for a surface in space.
+int dimension_of_file(const Mesh& mesh, const FilePath& path, int of_cells, Notes& notes) {
+  if (of_cells == 3 || mesh.dimension == 2) return of_cells;
+  const double height = mesh.points.empty() ? 0 : mesh.points.front()[2];
+  const bool flat = std::all_of(mesh.points.begin(), mesh.points.end(),
+                                [&](const Point& point) { return point[2] == height; });
+  if (!flat) {
+    throw InputError(path.string(), "SU2 cannot hold a surface in space",
+                     "its meshes are of volumes, or in the plane of x and y; write .vtu or .msh instead");
+  }
+  if (height != 0)
+    notes.push_back(fmt::format("the third coordinate, {}, of all points is not written", height));
+  return 2;
+}
+
+const ElementKind* kind_of(Shape shape, int nodes) {
+  const auto found = std::find_if(kElementKinds.begin(), kElementKinds.end(), [&](const ElementKind& kind) {
+    return kind.shape == shape && kind.nodes == nodes;
+  });
+  return found == kElementKinds.end() ? nullptr : &*found;
+}
+
+bool holds(Shape shape, int vertices) { return kind_of(shape, vertices) != nullptr; }
+
+void require_dimensions(const Mesh& mesh, const FilePath& path, int highest) {
+  constexpr std::string_view kRemedy = "write .msh, .vtu or .vtk instead";
+  if (highest < 2) {
+    throw InputError(path.string(), "SU2 cannot hold a mesh without surface or volume cells",
+                     std::string(kRemedy));
+  }
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (dimension(mesh.cells.shapes[c]) >= highest - 1) continue;
+    throw InputError(path.string(),
+                     fmt::format("SU2 cannot hold a cell of type {} in a mesh of volumes",
+                                 type_name(mesh.cells.shapes[c], mesh.cells.vertex_count(c))),
+                     std::string(kRemedy));
+  }
+}
+
+class Su2Writer {
+ public:
+  Su2Writer(const Mesh& mesh, const Markers& markers, int dimension, OutputFile& out)
+      : mesh_(mesh),
+        markers_(markers),
+        own_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
+        dimension_(dimension),
+        out_(out),
+        written_(markers.markers.size(), false) {}
+
+  void write() {
+    static const std::vector<Metadata::Section> plain{
+        {Part::dimension}, {Part::elements}, {Part::points}, {Part::marker_count}};
+    for (const Metadata::Section& section : own_ != nullptr ? own_->sections : plain) write(section);
+    for (std::size_t i = 0; i < markers_.markers.size(); ++i) {
+      if (!written_[i]) write(markers_.markers[i]);
+    }
+  }
+
+ private:
+  void write(const Metadata::Section& section) {
+    switch (section.part) {
+      case Part::dimension:
+        return out_.print("NDIME= {}\n", dimension_);
+      case Part::elements:
+        return write_elements();
+      case Part::points:
+        return write_points();
+      case Part::marker_count:
+        return out_.print("NMARK= {}\n", markers_.markers.size() + empty_labels());
+      case Part::marker:
+        return write_marker(section.text);
+      case Part::verbatim:
+        return out_.write(section.text);
+    }
+  }
+
+  void write_elements() {
+    std::vector<Index> cells;
+    cells.reserve(mesh_.cells.shapes.size());
+    for (Index c = 0; c < mesh_.cell_count(); ++c) {
+      if (markers_.is_volume(c)) cells.push_back(c);
+    }
+    out_.print("NELEM= {}\n", cells.size());
+    write(cells, own_ != nullptr && own_->numbers_elements);
+  }
+
+  void write(const std::vector<Index>& cells, bool numbered) {
+    const bool turn = own_ == nullptr || !own_->wedges_face_inward;
+    std::int64_t number = 0;
+    for (const Index c : cells) {
+      const auto cell = mesh_.cells[c];
+      const Shape shape = mesh_.cells.shapes[c];
+      out_.integer("", kind_of(shape, static_cast<int>(cell.size()))->type);
+      for (std::size_t k = 0; k < cell.size(); ++k) {
+        out_.integer(" ", cell[turn && shape == Shape::wedge ? kWedge[k] : k]);
+      }
+      if (numbered) out_.integer(" ", number++);
+      out_.write("\n");
+    }
+  }
+
+  void write_points() {
+    const bool twice = own_ != nullptr && own_->counts_physical_points;
+    out_.print("NPOIN= {}", mesh_.vertex_count());
+    if (twice) out_.integer(" ", mesh_.vertex_count());
+    out_.write("\n");
+    const bool numbered = own_ != nullptr && own_->numbers_points;
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      const Point& point = mesh_.points[v];
+      if (dimension_ == 3) {
+        out_.print("{} {} {}", point[0], point[1], point[2]);
+      } else {
+        out_.print("{} {}", point[0], point[1]);
+      }
+      if (numbered) out_.integer(" ", v);
+      out_.write("\n");
+    }
+  }
+
+  // ---- markers
+
+  [[nodiscard]] std::optional<std::size_t> place_of(std::string_view name) const {
+    const auto found = markers_.places.find(name);
+    return found == markers_.places.end() ? std::nullopt : std::optional(found->second);
+  }
+
+  /// Returns the number of markers of the file whose name is a label, and which have no cells.
+  [[nodiscard]] std::size_t empty_labels() const {
+    if (own_ == nullptr) return 0;
+    return static_cast<std::size_t>(
+        std::count_if(own_->sections.begin(), own_->sections.end(), [&](const Metadata::Section& section) {
+          return section.part == Part::marker && label_of_name(section.text) != 0 && !place_of(section.text);
+        }));
+  }
+
+  /// Writes a marker of the file that the mesh came from.
+  void write_marker(const std::string& name) {
+    if (const auto place = place_of(name)) {
+      write(markers_.markers[*place]);
+      written_[*place] = true;
+    } else if (label_of_name(name) != 0) {
+      write(Marker{name, {}});
+    }
+  }
+
+  void write(const Marker& marker) {
+    out_.print("MARKER_TAG= {}\nMARKER_ELEMS= {}\n", marker.name, marker.cells.size());
+    write(marker.cells, own_ != nullptr && own_->numbers_marker_elements);
+  }
+
+  const Mesh& mesh_;
+  const Markers& markers_;
+  const Metadata* own_;  // nullptr if the mesh comes from another format
+  int dimension_;
+  OutputFile& out_;
+  std::vector<bool> written_;  // of markers
+};
+
+}  // namespace
+
+void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
+  require_supported_cells(mesh, path, "SU2", holds, "write .msh, .vtu or .vtk instead");
+  const Markers markers(mesh);
+  require_dimensions(mesh, path, markers.dimension);
+  const int dimension = dimension_of_file(mesh, path, markers.dimension, notes);
+  OutputFile out(path);
+  Su2Writer(mesh, markers, dimension, out).write();
+  out.commit();
+
+  notes.insert(notes.end(), markers.notes.begin(), markers.notes.end());
+  for (const DataArray& array : mesh.data) {
+    const bool is_marked = &array == label_array(mesh, Association::cells) && !markers.has_lost_labels;
+    if (!is_marked) note_array_unsupported(array, "SU2", notes);
+  }
+  note_ids_unsupported(mesh, "SU2", notes);
+  if (dynamic_cast<const Metadata*>(mesh.format_metadata.get()) == nullptr) {
+    note_metadata_unsupported(mesh, "SU2", notes);
+  }
+}
+
+Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
+  const Markers markers(mesh);
+  std::vector<Index> new_to_old;
+  new_to_old.reserve(mesh.cells.shapes.size());
+  blocks.clear();
+  const auto add = [&](auto&& is_next) {
+    const Index first = index_size(new_to_old);
+    for (Index c = 0; c < mesh.cell_count(); ++c) {
+      if (is_next(c)) new_to_old.push_back(c);
+    }
+    if (index_size(new_to_old) > first) blocks.push_back(first);
+  };
+  add([&](Index c) { return markers.is_volume(c); });
+  for (const Marker& marker : markers.markers) {
+    if (!marker.cells.empty()) blocks.push_back(index_size(new_to_old));
+    new_to_old.insert(new_to_old.end(), marker.cells.begin(), marker.cells.end());
+  }
+  // what the writer will refuse
+  add([&](Index c) { return !markers.is_volume(c) && !markers.marked[c]; });
+  return Permutation::from_new_to_old(std::move(new_to_old));
+}
+
+}  // namespace meshorder::su2
+
+namespace meshorder {
+
+Format su2_format() { return {"SU2", {".su2"}, false, su2::read, su2::write, su2::places}; }
+
+}  // namespace meshorder

@@ -1,0 +1,67 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Declarations shared by the reader and the writer of SU2's meshes.
+//
+// Format: the SU2 project's documentation, "Mesh File", https://su2code.github.io/docs_v7/Mesh-File/. Types
+// and nodes of elements are VTK's. The first triangle of a wedge faces outward: so do the faces that SU2
+// lists for a prism (Common/src/geometry/primal_grid/CPrism.cpp, SU2 7.0.8), and VTK's of old did. Gmsh
+// writes its own order, where it faces inward; SU2 turns what has a negative volume round when it reads a
+// mesh.
+
+#include "io/format.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshorder::su2 {
+
+/// A type of elements.
+struct ElementKind {
+  int type;
+  Shape shape;
+  int nodes;
+};
+
+inline constexpr std::array kElementKinds{
+    ElementKind{3, Shape::line, 2},        ElementKind{5, Shape::triangle, 3},
+    ElementKind{9, Shape::quad, 4},        ElementKind{10, Shape::tetrahedron, 4},
+    ElementKind{12, Shape::hexahedron, 8}, ElementKind{13, Shape::wedge, 6},
+    ElementKind{14, Shape::pyramid, 5},
+};
+
+/// Positions in the file of a wedge's nodes.
+inline constexpr std::array<int, 6> kWedge{0, 2, 1, 3, 5, 4};
+
+/// Data of SU2's files beyond the mesh.
+struct Metadata final : FormatMetadata {
+  enum class Part : std::uint8_t { dimension, elements, points, marker_count, marker, verbatim };
+  struct Section {
+    Part part;
+    std::string text = {};  ///< the name of a marker; the lines of what is kept as it is
+  };
+  std::vector<Section> sections;        ///< in the order of the file
+  std::vector<std::string> keywords;    ///< of the lines that are kept as they are
+  bool counts_physical_points = false;  ///< NPOIN= gives a second number
+  bool numbers_elements = false;        ///< their lines end with their number, from 0; likewise the next two
+  bool numbers_points = false;
+  bool numbers_marker_elements = false;
+  bool wedges_face_inward = false;  ///< by their first triangle, as in Gmsh's files
+
+  [[nodiscard]] std::vector<std::string> contents() const override { return keywords; }
+};
+
+/// Returns the label that a marker's name is, 0 if it is none: "12" and "-3", but not "012".
+std::int64_t label_of_name(std::string_view name);
+
+Mesh read(const FilePath& path, Notes& notes);
+void write(const Mesh& mesh, const FilePath& path, Notes& notes);
+
+/// Returns the places of the cells in a file: those of the highest dimension, then marker by marker.
+/// `blocks` receives the first cell of each part.
+Permutation places(const Mesh& mesh, std::vector<Index>& blocks);
+
+}  // namespace meshorder::su2
