@@ -8,8 +8,6 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kRows = 4096;  // in a chunk
-
 double mass_of(Offset simplex, const RestShapes& rest, std::span<const double> densities) {
   return (densities.size() == 1 ? densities.front() : densities[simplex]) * rest.volume(simplex);
 }
@@ -49,6 +47,7 @@ MassMatrix mass_matrix(Mass kind, const RestShapes& rest, std::span<const double
 
 void multiply(const MassMatrix& mass, const BlockCsr& pattern, std::span<const double> x,
               std::span<double> y) {
+  constexpr Index kRows = 4096;  // in a chunk
   for_each_chunk(pattern.size(), kRows, [&](Index, Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
       double* const q = y.data() + Offset{3} * v;

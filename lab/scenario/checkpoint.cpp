@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view kMagic = "meshorder state\n";
 constexpr std::uint32_t kOrderMark = 0x01020304;
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kCheckpointVersion = 2;
 constexpr std::size_t kLengthAt = kMagic.size() + 2 * sizeof(std::uint32_t);
 constexpr std::size_t kHeader = kLengthAt + sizeof(std::uint64_t);
 
@@ -166,8 +166,9 @@ void read_header(Scanner& file) {
     file.fail_at_byte("comes from a machine with the other byte order",
                       "continue on the kind of machine that wrote it");
   const auto version = file.binary<std::uint32_t>("the version");
-  if (version != kVersion)
-    file.fail_at_byte(fmt::format("has version {}", version), fmt::format("this program reads {}", kVersion));
+  if (version != kCheckpointVersion)
+    file.fail_at_byte(fmt::format("has version {}", version),
+                      fmt::format("this program reads {}", kCheckpointVersion));
   const auto length = file.binary<std::uint64_t>("the length");
   const std::string_view all = file.all();
   if (all.size() < length) {
@@ -194,7 +195,7 @@ void write_checkpoint(const Checkpoint& checkpoint, const std::filesystem::path&
   Packer out;
   out.bytes(kMagic);
   out.number(kOrderMark);
-  out.number(kVersion);
+  out.number(kCheckpointVersion);
   out.number(std::uint64_t{0});  // the length, filled in by finish
   out.number(checkpoint.fingerprint.mesh);
   out.number(checkpoint.fingerprint.order);

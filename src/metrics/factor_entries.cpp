@@ -7,19 +7,19 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kNone = -1;
+constexpr Index kNoPlace = -1;
 
 /// The elimination tree: for each place of the order the first place after it whose row of the factor has an
-/// entry there, kNone for roots (Liu 1990, The role of elimination trees in sparse factorization).
+/// entry there, kNoPlace for roots (Liu 1990, The role of elimination trees in sparse factorization).
 std::vector<Index> elimination_tree(GraphRef graph, const Permutation& order) {
-  std::vector<Index> parent(static_cast<std::size_t>(graph.size()), kNone);
+  std::vector<Index> parent(static_cast<std::size_t>(graph.size()), kNoPlace);
   std::vector<Index> ancestor(parent);  // as far as the tree is known, with shortened paths
   for (Index row = 0; row < graph.size(); ++row) {
     for (const Index neighbour : graph[order.new_to_old()[row]]) {
-      for (Index k = order.old_to_new()[neighbour]; k < row && k != kNone;) {
+      for (Index k = order.old_to_new()[neighbour]; k < row && k != kNoPlace;) {
         const Index next = ancestor[k];
         ancestor[k] = row;
-        if (next == kNone) parent[k] = row;
+        if (next == kNoPlace) parent[k] = row;
         k = next;
       }
     }
@@ -35,12 +35,12 @@ struct Postordered {
   std::vector<Index> depth;             ///< by number; 0 for roots
 };
 
-/// `parent` names for each node a later one, or kNone.
+/// `parent` names for each node a later one, or kNoPlace.
 Postordered postordered(std::span<const Index> parent) {
   const Index n = index_size(parent);
   std::vector<Index> size(parent.size(), 1);
   for (Index k = 0; k < n; ++k) {
-    if (parent[k] != kNone) size[parent[k]] += size[k];
+    if (parent[k] != kNoPlace) size[parent[k]] += size[k];
   }
   Postordered tree;
   tree.number.resize(parent.size());
@@ -50,13 +50,13 @@ Postordered postordered(std::span<const Index> parent) {
   std::vector<Index> next(parent.size());  // number for the first descendant of a node's next child
   Index next_of_roots = 0;
   for (Index k = n - 1; k >= 0; --k) {
-    Index& first = parent[k] == kNone ? next_of_roots : next[parent[k]];
+    Index& first = parent[k] == kNoPlace ? next_of_roots : next[parent[k]];
     const Index number = first + size[k] - 1;
     next[k] = first;
     tree.number[k] = number;
     tree.first_descendant[number] = first;
-    tree.parent[number] = parent[k] == kNone ? kNone : tree.number[parent[k]];
-    tree.depth[number] = parent[k] == kNone ? 0 : tree.depth[tree.parent[number]] + 1;
+    tree.parent[number] = parent[k] == kNoPlace ? kNoPlace : tree.number[parent[k]];
+    tree.depth[number] = parent[k] == kNoPlace ? 0 : tree.depth[tree.parent[number]] + 1;
     first += size[k];
   }
   return tree;
@@ -95,21 +95,21 @@ Offset factor_entries(GraphRef graph, const Permutation& order) {
   // The entries of a row are the nodes of a subtree below it: of the paths to the row from the subtree's
   // leaves, each counted down to where it meets the path before.
   Offset entries = 0;
-  std::vector<Index> last_neighbour(static_cast<std::size_t>(n), kNone);
-  std::vector<Index> last_leaf(static_cast<std::size_t>(n), kNone);
+  std::vector<Index> last_neighbour(static_cast<std::size_t>(n), kNoPlace);
+  std::vector<Index> last_leaf(static_cast<std::size_t>(n), kNoPlace);
   DisjointSets finished(n);
   for (Index j = 0; j < n; ++j) {
     for (const Index neighbour : graph[vertex[j]]) {
       const Index row = tree.number[order.old_to_new()[neighbour]];
       if (row <= j) continue;
       if (tree.first_descendant[j] > last_neighbour[row]) {  // j is a leaf of the row's subtree
-        const Index meeting = last_leaf[row] == kNone ? row : finished.name_of(last_leaf[row]);
+        const Index meeting = last_leaf[row] == kNoPlace ? row : finished.name_of(last_leaf[row]);
         entries += tree.depth[j] - tree.depth[meeting];
         last_leaf[row] = j;
       }
       last_neighbour[row] = j;
     }
-    if (tree.parent[j] != kNone) finished.join(j, tree.parent[j]);
+    if (tree.parent[j] != kNoPlace) finished.join(j, tree.parent[j]);
   }
   return entries;
 }

@@ -14,13 +14,13 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kTogether = 65536;  // elements or vertices that a thread takes together
+constexpr Index kElementsTogether = 65536;  // elements or vertices that a thread takes together
 
 /// The ranks of every element's vertices, falling within each element.
 std::vector<Index> falling_ranks(const ElementInput& input) {
   const IncidenceRef elements = input.elements;
   std::vector<Index> ranks(elements.vertices.size());
-  for_each_chunk(elements.size(), kTogether, [&](Index /*chunk*/, Index begin, Index end) {
+  for_each_chunk(elements.size(), kElementsTogether, [&](Index /*chunk*/, Index begin, Index end) {
     for (Index e = begin; e < end; ++e) {
       const auto own = ranks.begin() + elements.offsets[e];
       std::transform(elements[e].begin(), elements[e].end(), own,
@@ -55,14 +55,14 @@ Order lexmax_elements(const ElementInput& input, const OrderOptions&) {
 
   // a bucket for each largest rank, filled in any order
   std::vector<Index> bucket(Offset{elements.vertex_count} + 1, 0);
-  for_each_chunk(elements.size(), kTogether, [&](Index /*chunk*/, Index begin, Index end) {
+  for_each_chunk(elements.size(), kElementsTogether, [&](Index /*chunk*/, Index begin, Index end) {
     for (Index e = begin; e < end; ++e)
       std::atomic_ref(bucket[largest(e) + 1]).fetch_add(1, std::memory_order_relaxed);
   });
   std::partial_sum(bucket.begin(), bucket.end(), bucket.begin());
   std::vector<Index> next(bucket.begin(), bucket.end() - 1);
   std::vector<Entry> entries(elements.size());
-  for_each_chunk(elements.size(), kTogether, [&](Index /*chunk*/, Index begin, Index end) {
+  for_each_chunk(elements.size(), kElementsTogether, [&](Index /*chunk*/, Index begin, Index end) {
     for (Index e = begin; e < end; ++e) {
       const Index place = std::atomic_ref(next[largest(e)]).fetch_add(1, std::memory_order_relaxed);
       entries[place] = entry_of(elements, ranks, e);
@@ -82,7 +82,7 @@ Order lexmax_elements(const ElementInput& input, const OrderOptions&) {
     return order < 0 || (order == 0 && a.element < b.element);
   };
   std::vector<Index> new_to_old(elements.size());
-  for_each_chunk(elements.vertex_count, kTogether, [&](Index /*chunk*/, Index begin, Index end) {
+  for_each_chunk(elements.vertex_count, kElementsTogether, [&](Index /*chunk*/, Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
       std::sort(entries.begin() + bucket[v], entries.begin() + bucket[v + 1], before);
     for (Index place = bucket[begin]; place < bucket[end]; ++place)

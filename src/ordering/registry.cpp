@@ -28,7 +28,7 @@ struct EnumNames<Workload> {
 namespace {
 
 template <class Method>
-struct Entry {
+struct Registered {
   std::uint64_t id;
   MethodInfo info;
   Method method;
@@ -38,8 +38,8 @@ struct Entry {
 struct Registry {
   std::shared_mutex mutex;
   std::uint64_t next_id = 1;
-  std::vector<Entry<VertexMethod>> vertex_methods;
-  std::vector<Entry<ElementMethod>> element_methods;
+  std::vector<Registered<VertexMethod>> vertex_methods;
+  std::vector<Registered<ElementMethod>> element_methods;
 };
 
 /// Never destroyed: registrations of other static objects may outlive any order of destruction.
@@ -57,7 +57,7 @@ bool is_permitted(std::string_view name) {
 
 template <class Method>
 std::uint64_t add(MethodInfo info, Method method, const std::vector<MethodInfo>& built_in,
-                  std::vector<Entry<Method>> Registry::*list) {
+                  std::vector<Registered<Method>> Registry::*list) {
   if (!method) throw InvalidArgument("method '" + info.name + "': the function is empty");
   if (!is_permitted(info.name)) {
     throw InvalidArgument("method '" + info.name +
@@ -68,7 +68,7 @@ std::uint64_t add(MethodInfo info, Method method, const std::vector<MethodInfo>&
   const auto has_name = [&](const MethodInfo& other) { return other.name == info.name; };
   if (std::any_of(built_in.begin(), built_in.end(), has_name) ||
       std::any_of((all.*list).begin(), (all.*list).end(),
-                  [&](const Entry<Method>& entry) { return has_name(entry.info); })) {
+                  [&](const Registered<Method>& entry) { return has_name(entry.info); })) {
     throw InvalidArgument("method '" + info.name + "': the name is taken");
   }
   if (info.source == MethodInfo{}.source) info.source = "registered";
@@ -78,18 +78,19 @@ std::uint64_t add(MethodInfo info, Method method, const std::vector<MethodInfo>&
 }
 
 template <class Method>
-std::vector<MethodInfo> all_infos(std::vector<MethodInfo> infos, std::vector<Entry<Method>> Registry::*list) {
+std::vector<MethodInfo> all_infos(std::vector<MethodInfo> infos,
+                                  std::vector<Registered<Method>> Registry::*list) {
   Registry& all = registry();
   const std::shared_lock lock(all.mutex);
-  for (const Entry<Method>& entry : all.*list) infos.push_back(entry.info);
+  for (const Registered<Method>& entry : all.*list) infos.push_back(entry.info);
   return infos;
 }
 
 template <class Method>
-Method method_of_name(std::string_view name, std::vector<Entry<Method>> Registry::*list) {
+Method method_of_name(std::string_view name, std::vector<Registered<Method>> Registry::*list) {
   Registry& all = registry();
   const std::shared_lock lock(all.mutex);
-  for (const Entry<Method>& entry : all.*list) {
+  for (const Registered<Method>& entry : all.*list) {
     if (entry.info.name == name) return entry.method;
   }
   return {};
@@ -97,7 +98,7 @@ Method method_of_name(std::string_view name, std::vector<Entry<Method>> Registry
 
 /// Takes the entry of that number, if there is one, out of the list and its function into `method`.
 template <class Method>
-void take_out(std::vector<Entry<Method>>& list, std::uint64_t id, Method& method) {
+void take_out(std::vector<Registered<Method>>& list, std::uint64_t id, Method& method) {
   const auto found =
       std::find_if(list.begin(), list.end(), [&](const auto& entry) { return entry.id == id; });
   if (found == list.end()) return;

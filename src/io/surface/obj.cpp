@@ -19,7 +19,6 @@
 namespace meshorder {
 namespace {
 using obj::kStates;
-using obj::Metadata;
 
 bool obj_holds(Shape shape, int vertices) {
   if (shape == Shape::polygon) return vertices >= 3;
@@ -38,12 +37,12 @@ std::vector<std::int32_t> cell_integers(const DataArray& array) {
 }
 
 /// Writes one mesh: lists first, then cells in their order, with each state where it changes.
-class Writer {
+class ObjWriter {
  public:
-  Writer(const Mesh& mesh, const FilePath& path, Notes& notes)
+  ObjWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
       : mesh_(mesh),
         notes_(notes),
-        native_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
+        native_(dynamic_cast<const obj::Metadata*>(mesh.format_metadata.get())),
         out_(path) {}
 
   void write() {
@@ -294,7 +293,7 @@ class Writer {
 
   const Mesh& mesh_;
   Notes& notes_;
-  const Metadata* native_;
+  const obj::Metadata* native_;
   OutputFile out_;
   std::set<const DataArray*> written_;
   GatheredVector colors_;
@@ -314,7 +313,7 @@ class Writer {
 
 void write_obj(const Mesh& mesh, const FilePath& path, Notes& notes) {
   require_supported_cells(mesh, path, "OBJ", obj_holds, "write .vtu or .msh");
-  Writer(mesh, path, notes).write();
+  ObjWriter(mesh, path, notes).write();
 }
 
 }  // namespace

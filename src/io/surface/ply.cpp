@@ -24,7 +24,6 @@ namespace meshorder {
 namespace {
 using ply::Element;
 using ply::Encoding;
-using ply::Metadata;
 using ply::Property;
 using ply::Role;
 using ply::Type;
@@ -101,7 +100,7 @@ Role usual_role(Shape shape) {
 }
 
 /// Returns whether the elements of the file fit the cells of the mesh, block by block.
-bool elements_fit(const Metadata& metadata, const Mesh& mesh) {
+bool elements_fit(const ply::Metadata& metadata, const Mesh& mesh) {
   Index cell = 0;
   for (const Element& element : metadata.elements) {
     if (element.role == Role::vertices && element.count != mesh.vertex_count()) return false;
@@ -117,7 +116,7 @@ bool elements_fit(const Metadata& metadata, const Mesh& mesh) {
   return cell == mesh.cell_count();
 }
 
-std::vector<Table> tables_of_file(const Metadata& metadata) {
+std::vector<Table> tables_of_file(const ply::Metadata& metadata) {
   std::vector<Table> tables;
   Index cell = 0;
   for (const Element& element : metadata.elements) {
@@ -328,7 +327,7 @@ void write_property(OutputFile& out, const Property& property) {
   out.print("{} {}\n", property.type.word, property.name);
 }
 
-void write_header(OutputFile& out, Encoding encoding, const Metadata* metadata,
+void write_header(OutputFile& out, Encoding encoding, const ply::Metadata* metadata,
                   const std::vector<Table>& tables) {
   constexpr std::array<std::string_view, 3> kNames{"ascii", "binary_little_endian", "binary_big_endian"};
   out.print("ply\nformat {} 1.0\n", kNames[static_cast<std::size_t>(encoding)]);
@@ -472,7 +471,7 @@ void note_losses(const Mesh& mesh, const std::vector<const DataArray*>& written,
 
 void write_ply(const Mesh& mesh, const FilePath& path, Notes& notes) {
   require_supported_cells(mesh, path, "PLY", ply_holds, "write .vtu or .msh");
-  const auto* metadata = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  const auto* metadata = dynamic_cast<const ply::Metadata*>(mesh.format_metadata.get());
   const bool as_file = metadata && elements_fit(*metadata, mesh);
   std::vector<Table> tables = as_file ? tables_of_file(*metadata) : usual_tables(mesh);
   std::vector<const DataArray*> written;

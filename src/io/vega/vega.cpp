@@ -19,7 +19,6 @@
 namespace meshorder {
 namespace {
 using vega::Kind;
-using vega::Metadata;
 using vega::Section;
 
 bool vega_holds(Shape shape, int vertices) {
@@ -27,12 +26,12 @@ bool vega_holds(Shape shape, int vertices) {
 }
 
 /// Writes one mesh; the sections of a Vega file in their order, those of other meshes in the usual one.
-class Writer {
+class VegaWriter {
  public:
-  Writer(const Mesh& mesh, const FilePath& path, Notes& notes)
+  VegaWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
       : mesh_(mesh),
         notes_(notes),
-        native_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
+        native_(dynamic_cast<const vega::Metadata*>(mesh.format_metadata.get())),
         out_(path) {}
 
   void write() {
@@ -243,7 +242,7 @@ class Writer {
 
   const Mesh& mesh_;
   Notes& notes_;
-  const Metadata* native_;
+  const vega::Metadata* native_;
   OutputFile out_;
   std::vector<Section> sections_;
   std::vector<EntitySet> label_sets_;
@@ -256,7 +255,7 @@ void write_vega(const Mesh& mesh, const FilePath& path, Notes& notes) {
     if (mesh.cells.shapes[c] == mesh.cells.shapes[0]) continue;
     throw InputError(path.string(), "a Vega file cannot hold both tetrahedra and hexahedra", remedy);
   }
-  Writer(mesh, path, notes).write();
+  VegaWriter(mesh, path, notes).write();
 }
 
 }  // namespace

@@ -70,9 +70,9 @@ bool fits_polydata(const Cells& cells, const std::vector<std::uint8_t>& types) {
   return true;
 }
 
-class Writer {
+class LegacyWriter {
  public:
-  Writer(const Mesh& mesh, const FilePath& path, Notes& notes)
+  LegacyWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
       : from_(mesh, path, notes), layout_(from_.metadata.legacy.value_or(LegacyLayout{})), out_(path) {}
 
   void write() {
@@ -396,7 +396,9 @@ class Writer {
   bool offsets_ = false;  // cells by their offsets, as from version 5 on
 };
 
-void write_legacy(const Mesh& mesh, const FilePath& path, Notes& notes) { Writer(mesh, path, notes).write(); }
+void write_legacy(const Mesh& mesh, const FilePath& path, Notes& notes) {
+  LegacyWriter(mesh, path, notes).write();
+}
 
 }  // namespace
 }  // namespace meshorder::vtk

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Reader of VTK's legacy files, versions 1.0 to 5.1, UNSTRUCTURED_GRID and POLYDATA, text and binary:
+// LegacyReader of VTK's legacy files, versions 1.0 to 5.1, UNSTRUCTURED_GRID and POLYDATA, text and binary:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
 //
 // VTK's own reader is not used: it reads past the end of damaged cell lists, trusts the sizes in a header
@@ -22,9 +22,9 @@ namespace {
 constexpr int kFirstVersionWithOffsets = 50;  // ten times the version
 constexpr int kLastVersion = 51;
 
-class Reader {
+class LegacyReader {
  public:
-  explicit Reader(const FilePath& path) : in_(path) {}
+  explicit LegacyReader(const FilePath& path) : in_(path) {}
 
   Mesh read(Notes& notes) {
     read_header();
@@ -421,6 +421,6 @@ class Reader {
 
 }  // namespace
 
-Mesh read_legacy(const FilePath& path, Notes& notes) { return Reader(path).read(notes); }
+Mesh read_legacy(const FilePath& path, Notes& notes) { return LegacyReader(path).read(notes); }
 
 }  // namespace meshorder::vtk

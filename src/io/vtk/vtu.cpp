@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Writer of VTK's XML files of unstructured grids:
+// VtuWriter of VTK's XML files of unstructured grids:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 //
 // VTK's own writer (9.1) is not used: it writes names with & or < as they are, which is not XML, crashes on
@@ -53,9 +53,9 @@ struct Section {
   std::vector<Array> arrays;
 };
 
-class Writer {
+class VtuWriter {
  public:
-  Writer(const Mesh& mesh, const FilePath& path, Notes& notes)
+  VtuWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
       : from_(mesh, path, notes), encoding_(from_.metadata.vtu.value_or(VtuEncoding{})), out_(path) {
     if (VtuCompressor::available(encoding_.compressor)) return;
     if (encoding_.mode != Mode::ascii)
@@ -411,7 +411,7 @@ class Writer {
 
 }  // namespace
 
-void write_vtu(const Mesh& mesh, const FilePath& path, Notes& notes) { Writer(mesh, path, notes).write(); }
+void write_vtu(const Mesh& mesh, const FilePath& path, Notes& notes) { VtuWriter(mesh, path, notes).write(); }
 
 }  // namespace meshorder::vtk
 

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Reader of VTK's XML files of unstructured grids:
+// VtuReader of VTK's XML files of unstructured grids:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 //
 // VTK's own reader is not used: it trusts the sizes in a header when it allocates, reads past the end of
@@ -29,9 +29,9 @@ void append(Values& values, Values more) {
       values);
 }
 
-class Reader {
+class VtuReader {
  public:
-  Reader(const FilePath& path, Notes& notes) : file_(path), notes_(notes) {}
+  VtuReader(const FilePath& path, Notes& notes) : file_(path), notes_(notes) {}
 
   Mesh read() {
     const VtuElement* grid = file_.root().child("UnstructuredGrid");
@@ -323,6 +323,6 @@ class Reader {
 
 }  // namespace
 
-Mesh read_vtu(const FilePath& path, Notes& notes) { return Reader(path, notes).read(); }
+Mesh read_vtu(const FilePath& path, Notes& notes) { return VtuReader(path, notes).read(); }
 
 }  // namespace meshorder::vtk
