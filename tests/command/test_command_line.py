@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What the command says, where, and with which status: warnings, --quiet, faults of usage, a full disk behind stdout."""
+"""What the command says, where, and with which status: warnings, --quiet, faults of usage, a full disk."""
 import json
 import os
 import re
