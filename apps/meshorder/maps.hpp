@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 #include <meshorder/permutation.hpp>
 
@@ -13,16 +14,23 @@ namespace meshorder::command {
 /// The reordering of a mesh file, on disk as NumPy arrays: PREFIX.vertices.old_to_new.npy and
 /// PREFIX.vertices.new_to_old.npy, and PREFIX.elements.*.npy for all cells. If the input numbers its vertices
 /// or cells other than from 0 or 1 on, PREFIX.vertices.ids.npy or PREFIX.elements.ids.npy holds these numbers
-/// in the input's order.
+/// in the input's order. If cells of the input were left out, the maps of cells number those that were kept,
+/// and PREFIX.elements.kept.npy holds their positions among all cells of the input.
 struct Maps {
   Permutation vertices;
   Permutation cells;
   std::vector<std::int64_t> vertex_ids;
   std::vector<std::int64_t> cell_ids;
+  std::vector<Index> kept;  ///< empty: all cells
 };
 
 /// Writes the maps and returns the paths.
 std::vector<std::string> write_maps(const Maps& maps, const std::string& prefix);
+
+/// Leaves those cells out of a mesh that were left out before it was ordered, with the notes of `keep_cells`.
+/// A mesh that has just the cells that were kept stays as it is. Throws Error for positions that do not fit
+/// it.
+void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes);
 
 /// Reads the maps of a mesh. Throws Error if a file is missing, is not a permutation or has another length.
 Maps read_maps(const std::string& prefix, const Mesh& mesh);

@@ -3,6 +3,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
+#include "io/kept_cells.hpp"
 #include "io/stream/output_file.hpp"
 #include "maps.hpp"
 #include "mesh/groups.hpp"
@@ -10,6 +11,7 @@
 #include "metrics/edge_span.hpp"
 #include "progress.hpp"
 #include "wording.hpp"
+#include <meshorder/io.hpp>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -17,6 +19,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace meshorder::command {
 namespace {
@@ -27,6 +31,7 @@ struct OrderArguments : Common {
   std::string maps;
   ReorderOptions reordering;
   std::string ids = "renumber";
+  Keeping keeping;
 };
 
 void print_result(const Console& console, const MeshOrder& order, const std::optional<Grouping>& groups,
@@ -64,10 +69,16 @@ void run(const OrderArguments& arguments) {
   Notes notes;
   Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
   const double read_seconds = reading.seconds();
+  Maps maps;
+  const Index cells_read = mesh.cell_count();
+  std::vector<Index> kept = keep_cells(mesh, {.format = arguments.keeping.strict ? "" : options.format,
+                                              .dimension = arguments.keeping.dimension,
+                                              .notes = &notes});
+  if (mesh.cell_count() < cells_read) maps.kept = std::move(kept);
+  require_held_cells(mesh, arguments.output, format_of(arguments.output));  // fail before the work
 
   progress.stage("ordering", 0.4, 0.7);
   const Stopwatch ordering;
-  Maps maps;
   maps.vertex_ids = mesh.vertex_ids;
   maps.cell_ids = mesh.cell_ids;
   std::optional<Grouping> groups;
@@ -84,7 +95,7 @@ void run(const OrderArguments& arguments) {
 
   progress.stage("writing " + arguments.output, 0.7, 1);
   const Stopwatch writing;
-  write_mesh(mesh, arguments.output, &notes);
+  write_mesh(mesh, arguments.output, {.strict = arguments.keeping.strict, .notes = &notes});
   std::vector<std::string> map_files;
   if (!arguments.maps.empty()) map_files = write_maps(maps, arguments.maps);
   const double write_seconds = writing.seconds();
@@ -141,6 +152,7 @@ void add_order(CLI::App& subcommand) {
           "Cells and vertices without a value come last")
       ->type_name("NAME");
   add_ids_option(subcommand, arguments->ids);
+  add_keeping_options(subcommand, arguments->keeping);
   subcommand.add_option(
       "--maps", arguments->maps,
       "Also write the permutations as NumPy files: PREFIX.vertices.old_to_new.npy and so on");

@@ -21,7 +21,7 @@ namespace {
 using obj::kStates;
 using obj::Metadata;
 
-bool obj_holds(Shape shape, int vertices) {
+bool obj_holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
   if (shape == Shape::polygon) return vertices >= 3;
   if (shape == Shape::polyline) return vertices >= 2;
   return shape == Shape::poly_vertex || (dimension(shape) <= 2 && vertices == corners(shape, 0));
@@ -312,13 +312,10 @@ class Writer {
   bool in_group_ = false;
 };
 
-void write_obj(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  require_supported_cells(mesh, path, "OBJ", obj_holds, "write .vtu or .msh");
-  Writer(mesh, path, notes).write();
-}
+void write_obj(const Mesh& mesh, const FilePath& path, Notes& notes) { Writer(mesh, path, notes).write(); }
 
 }  // namespace
 
-Format obj_format() { return {"OBJ", {".obj"}, false, obj::read, write_obj}; }
+Format obj_format() { return {"OBJ", {".obj"}, false, obj::read, write_obj, obj_holds}; }
 
 }  // namespace meshorder
