@@ -19,7 +19,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace meshorder::command {
@@ -70,12 +69,17 @@ void run(const OrderArguments& arguments) {
   Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
   const double read_seconds = reading.seconds();
   Maps maps;
+  const Format& format = format_of(arguments.output);
   const Index cells_read = mesh.cell_count();
-  std::vector<Index> kept = keep_cells(mesh, {.format = arguments.keeping.strict ? "" : options.format,
-                                              .dimension = arguments.keeping.dimension,
-                                              .notes = &notes});
-  if (mesh.cell_count() < cells_read) maps.kept = std::move(kept);
-  require_held_cells(mesh, arguments.output, format_of(arguments.output));  // fail before the work
+  const std::vector<Index> wanted =
+      keep_cells(mesh, {.dimension = arguments.keeping.dimension, .notes = &notes});
+  const std::vector<Index> held = arguments.keeping.strict ? all_cells(mesh) : cells_for(mesh, format, notes);
+  require_held_cells(mesh, held, arguments.output, format);  // fail before the work
+  keep_cells_at(mesh, held, notes);
+  if (mesh.cell_count() < cells_read) {
+    maps.kept.reserve(held.size());
+    for (const Index c : held) maps.kept.push_back(wanted[c]);
+  }
 
   progress.stage("ordering", 0.4, 0.7);
   const Stopwatch ordering;

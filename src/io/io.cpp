@@ -108,8 +108,8 @@ Permutation write_checked(const Mesh& mesh, const FilePath& path, const Format& 
   check_mesh(mesh);
   Notes left_out;
   const std::vector<Index> kept = options.strict ? all_cells(mesh) : cells_for(mesh, format, left_out);
+  require_held_cells(mesh, kept, path, format);
   const auto write = [&](const Mesh& written) {
-    require_held_cells(written, path, format);
     if (options.strict) refuse_losses(written, path, format);
     notes.insert(notes.end(), left_out.begin(), left_out.end());
     format.write(written, path, notes);

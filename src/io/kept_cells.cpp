@@ -203,8 +203,17 @@ std::string advice_on_formats(const Mesh& mesh) {
   return fmt::format("write {}{}{}", join(names), names.empty() ? "" : " or ", last);
 }
 
-void require_held_cells(const Mesh& mesh, const FilePath& path, const Format& format) {
-  const std::string fault = fault_of_cells(mesh, format);
+void require_held_cells(const Mesh& mesh, const std::vector<Index>& kept, const FilePath& path,
+                        const Format& format) {
+  std::string fault;
+  if (index_size(kept) == mesh.cell_count()) {
+    fault = fault_of_cells(mesh, format);
+  } else {
+    Mesh part = mesh;
+    Notes ignored;
+    keep_cells_at(part, kept, ignored);
+    fault = fault_of_cells(part, format);
+  }
   if (!fault.empty()) throw InputError(path.string(), fault, advice_on_formats(mesh));
 }
 

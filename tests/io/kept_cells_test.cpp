@@ -174,7 +174,7 @@ TEST(WriteMesh, AdvisesOnlyFormatsThatTakeTheMesh) {
       const TemporaryFolder folder;
       std::string refusal;
       try {
-        write_mesh(mesh, folder.path() / ("a" + std::string(format.extensions.front())));
+        write_mesh(mesh, (folder.path() / "a").concat(format.extensions.front()));
       } catch (const InputError& error) {
         refusal = error.what();
       }
@@ -192,7 +192,7 @@ TEST(WriteMesh, AdvisesOnlyFormatsThatTakeTheMesh) {
         if (word == "or") continue;
         if (word.back() == ',') word.pop_back();
         ++pieces;
-        const auto path = folder.path() / ("b" + word);
+        const auto path = (folder.path() / "b").concat(word);
         Notes notes;
         EXPECT_NO_THROW(write_mesh(mesh, path, &notes)) << word;
         EXPECT_EQ(read_mesh(path).cell_count(), mesh.cell_count()) << word;
