@@ -11,6 +11,9 @@
 #include <cstdlib>
 #include <new>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace meshorder::command {
 namespace {
