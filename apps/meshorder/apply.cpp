@@ -9,6 +9,7 @@
 #include "mesh/reorder.hpp"
 #include "progress.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/io.hpp>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -25,6 +26,7 @@ struct ApplyArguments : Common {
   std::string output;
   std::string ids = "renumber";
   bool inverse = false;
+  Keeping keeping;
 };
 
 void run(const ApplyArguments& arguments) {
@@ -39,6 +41,7 @@ void run(const ApplyArguments& arguments) {
   progress.stage("reading " + arguments.input, 0, 0.5);
   Notes notes;
   Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
+  leave_out_unmapped_cells(arguments.prefix, mesh, notes);
   const Maps maps = read_maps(arguments.prefix, mesh, arguments.input, arguments.inverse);
   try {
     if (arguments.inverse) {
@@ -55,8 +58,12 @@ void run(const ApplyArguments& arguments) {
     if (!maps.cell_ids.empty()) mesh.cell_ids = maps.cell_ids;
   }
 
+  if (arguments.keeping.dimension >= 0) {
+    (void)keep_cells(mesh, {.dimension = arguments.keeping.dimension, .notes = &notes});
+  }
+
   progress.stage("writing " + arguments.output, 0.5, 1);
-  write_mesh(mesh, arguments.output, &notes);
+  write_mesh(mesh, arguments.output, {.strict = arguments.keeping.strict, .notes = &notes});
   progress.finish();
   console.warn_of(notes);
   console.print("wrote {}: {} vertices and {} cells {}", arguments.output, with_commas(mesh.vertex_count()),
@@ -89,6 +96,7 @@ void add_apply(CLI::App& subcommand) {
   CLI::Option* const inverse =
       subcommand.add_flag("--inverse", arguments->inverse, "Restore the old order, with the old ids");
   add_ids_option(subcommand, arguments->ids)->excludes(inverse);
+  add_keeping_options(subcommand, arguments->keeping);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

@@ -18,6 +18,8 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace meshorder::command {
 namespace {
@@ -88,6 +90,26 @@ void add_common(CLI::App& subcommand, Common& common, const std::string& quiet) 
                   "Maximum number of threads (0 = all). The output is the same for any number")
       ->check(whole_from(0))
       ->capture_default_str();
+}
+
+void add_keeping_options(CLI::App& subcommand, Keeping& keeping) {
+  constexpr std::array<std::pair<std::string_view, int>, 4> kDimensions{
+      {{"volume", 3}, {"surface", 2}, {"curve", 1}, {"point", 0}}};
+  subcommand
+      .add_option_function<std::string>(
+          "--only",
+          [&keeping, kDimensions](const std::string& name) {
+            for (const auto& [known, dimension] : kDimensions) {
+              if (name == known) keeping.dimension = dimension;
+            }
+          },
+          "Keep only these cells, with all vertices: volume, surface, curve or point")
+      ->check(CLI::IsMember(std::vector<std::string>{"volume", "surface", "curve", "point"}))
+      ->type_name("CELLS");
+  subcommand.add_flag(
+      "--strict", keeping.strict,
+      "Fail rather than leave out cells, arrays, sets or ids that the output format has no place\n"
+      "for; without it they are named on stderr");
 }
 
 void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {

@@ -67,6 +67,15 @@ void add_ordering_options(CLI::App& subcommand, OrderOptions& options);
 /// Adds --ids, whose value parse<Ids> reads.
 CLI::Option* add_ids_option(CLI::App& subcommand, std::string& ids);
 
+/// What becomes of cells, arrays and sets that the output may lose.
+struct Keeping {
+  int dimension = -1;   ///< of the cells to keep, −1 for all
+  bool strict = false;  ///< refuse any loss
+};
+
+/// Adds --only and --strict.
+void add_keeping_options(CLI::App& subcommand, Keeping& keeping);
+
 /// Adds --cache, whose value parse_caches reads.
 void add_cache_option(CLI::App& subcommand, std::string& caches);
 

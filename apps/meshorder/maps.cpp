@@ -3,6 +3,7 @@
 
 #include "base/checksum.hpp"
 #include "base/index.hpp"
+#include "io/kept_cells.hpp"
 #include "io/npy.hpp"
 #include "io/stream/output_file.hpp"
 #include <meshorder/error.hpp>
@@ -10,10 +11,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -31,6 +34,7 @@ std::string identity_path(const std::string& prefix) { return prefix + ".maps.js
 std::string ids_path(const std::string& prefix, const std::string& what) {
   return prefix + "." + what + ".ids.npy";
 }
+std::string kept_path(const std::string& prefix) { return prefix + ".elements.kept.npy"; }
 
 void write_map(const Permutation& map, const std::vector<std::int64_t>& ids, const std::string& prefix,
                const std::string& what, std::vector<std::string>& written) {
@@ -57,7 +61,8 @@ Maps read_permutations(const std::string& prefix, const Mesh& mesh) {
   return {read_permutation(old_to_new_path(prefix, "vertices"), mesh.vertex_count(), "vertices"),
           read_permutation(old_to_new_path(prefix, "elements"), mesh.cell_count(), "cells"),
           read_ids(ids_path(prefix, "vertices"), mesh.vertex_count()),
-          read_ids(ids_path(prefix, "elements"), mesh.cell_count())};
+          read_ids(ids_path(prefix, "elements"), mesh.cell_count()),
+          {}};
 }
 
 /// Throws Error if a file of the maps is named instead of their prefix.
@@ -146,12 +151,33 @@ std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& befor
   std::vector<std::string> written;
   write_map(maps.vertices, maps.vertex_ids, prefix, "vertices", written);
   write_map(maps.cells, maps.cell_ids, prefix, "elements", written);
+  if (!maps.kept.empty()) {
+    write_npy(maps.kept, written.emplace_back(kept_path(prefix)));
+  } else {
+    std::filesystem::remove(kept_path(prefix));
+  }
   const nlohmann::ordered_json identity{
       {"version", MESHORDER_VERSION}, {"before", checksums_json(before)}, {"after", checksums_json(after)}};
   OutputFile file(written.emplace_back(identity_path(prefix)));
   file.write(identity.dump(2) + "\n");
   file.commit();
   return written;
+}
+
+void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes) {
+  const std::string path = kept_path(prefix);
+  if (!std::filesystem::exists(path)) return;
+  const std::vector<std::int64_t> positions = read_npy(path);
+  if (index_size(positions) == mesh.cell_count()) return;
+  const bool ascending =
+      std::adjacent_find(positions.begin(), positions.end(), std::greater_equal<>()) == positions.end();
+  if (positions.empty() || !ascending || positions.front() < 0 || positions.back() >= mesh.cell_count()) {
+    throw InputError(path, "does not list cells of this mesh, which has " + std::to_string(mesh.cell_count()),
+                     "give the maps that were written with this mesh");
+  }
+  notes.push_back(std::to_string(mesh.cell_count() - index_size(positions)) +
+                  " cells are left out, as before the mesh was ordered");
+  keep_cells_at(mesh, {positions.begin(), positions.end()}, notes);
 }
 
 Maps read_maps(const std::string& prefix, const Mesh& mesh, const std::string& mesh_path, bool inverse) {

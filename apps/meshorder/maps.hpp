@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 #include <meshorder/permutation.hpp>
 
@@ -13,12 +14,15 @@ namespace meshorder::command {
 /// The reordering of a mesh file, on disk as NumPy arrays: PREFIX.vertices.old_to_new.npy and
 /// PREFIX.vertices.new_to_old.npy, and PREFIX.elements.*.npy for all cells. If the input numbers its vertices
 /// or cells other than from 0 or 1 on, PREFIX.vertices.ids.npy or PREFIX.elements.ids.npy holds these numbers
-/// in the input's order. PREFIX.maps.json tells which mesh the maps are for.
+/// in the input's order. If cells of the input were left out, the maps of cells number those that were kept,
+/// and PREFIX.elements.kept.npy holds their positions among all cells of the input. PREFIX.maps.json tells
+/// which mesh the maps are for, without the cells that were left out.
 struct Maps {
   Permutation vertices;
   Permutation cells;
   std::vector<std::int64_t> vertex_ids;
   std::vector<std::int64_t> cell_ids;
+  std::vector<Index> kept;  ///< empty: all cells
 };
 
 /// Checksums that tell a mesh, and the order that it is in, from others.
@@ -35,6 +39,11 @@ MeshChecksums checksums_of(const Mesh& mesh);
 /// Writes the maps, and the checksums of the mesh before and after; returns the paths.
 std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& before, const MeshChecksums& after,
                                     const std::string& prefix);
+
+/// Leaves those cells out of a mesh that were left out before it was ordered, with the notes of `keep_cells`.
+/// A mesh that has just the cells that were kept stays as it is. Throws Error for positions that do not fit
+/// it.
+void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes);
 
 /// Reads the maps of a mesh, which is in its old order or, if `inverse`, in the new one. Throws Error if a
 /// file is missing, is not a permutation or has another length; and if PREFIX.maps.json is there and says

@@ -3,6 +3,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
+#include "io/kept_cells.hpp"
 #include "io/stream/output_file.hpp"
 #include "maps.hpp"
 #include "mesh/groups.hpp"
@@ -11,6 +12,7 @@
 #include "ordering/judgement.hpp"
 #include "progress.hpp"
 #include "wording.hpp"
+#include <meshorder/io.hpp>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -18,6 +20,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace meshorder::command {
 namespace {
@@ -28,6 +31,7 @@ struct OrderArguments : Common {
   std::string maps;
   ReorderOptions reordering;
   std::string ids = "renumber";
+  Keeping keeping;
 };
 
 void print_result(const Console& console, const MeshOrder& order, const std::optional<Grouping>& groups,
@@ -75,10 +79,21 @@ void run(const OrderArguments& arguments) {
   Notes notes;
   Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
   const double read_seconds = reading.seconds();
+  Maps maps;
+  const Format& format = format_of(arguments.output);
+  const Index cells_read = mesh.cell_count();
+  const std::vector<Index> wanted =
+      keep_cells(mesh, {.dimension = arguments.keeping.dimension, .notes = &notes});
+  const std::vector<Index> held = arguments.keeping.strict ? all_cells(mesh) : cells_for(mesh, format, notes);
+  require_held_cells(mesh, held, arguments.output, format);  // fail before the work
+  keep_cells_at(mesh, held, notes);
+  if (mesh.cell_count() < cells_read) {
+    maps.kept.reserve(held.size());
+    for (const Index c : held) maps.kept.push_back(wanted[c]);
+  }
 
   progress.stage("ordering", 0.4, 0.7);
   const Stopwatch ordering;
-  Maps maps;
   maps.vertex_ids = mesh.vertex_ids;
   maps.cell_ids = mesh.cell_ids;
   MeshChecksums old_order;
@@ -98,7 +113,7 @@ void run(const OrderArguments& arguments) {
 
   progress.stage("writing " + arguments.output, 0.7, 1);
   const Stopwatch writing;
-  write_mesh(mesh, arguments.output, &notes);
+  write_mesh(mesh, arguments.output, {.strict = arguments.keeping.strict, .notes = &notes});
   std::vector<std::string> map_files;
   if (!arguments.maps.empty()) map_files = write_maps(maps, old_order, checksums_of(mesh), arguments.maps);
   const double write_seconds = writing.seconds();
@@ -155,6 +170,7 @@ void add_order(CLI::App& subcommand) {
           "Cells and vertices without a value come last")
       ->type_name("NAME");
   add_ids_option(subcommand, arguments->ids);
+  add_keeping_options(subcommand, arguments->keeping);
   subcommand.add_option(
       "--maps", arguments->maps,
       "Also write the permutations as NumPy files, PREFIX.vertices.old_to_new.npy and so on, and\n"

@@ -95,6 +95,7 @@ SECOND_ORDER = [
     [1, 0, 1],
     [0, 1, 1],
 ]
+FLAT = [[x, y, 0] for x, y, _ in CUBE]
 CELLS_ON_CUBE = {
     "vertices, as cells": [("vertex", [0])],
     "lines": [("line", [0, 1])],
@@ -216,11 +217,7 @@ def on_both(make: Callable[[int, int], tuple[dict[str, Any], dict[str, Any]]]) -
 
 def probes() -> dict[str, list[Probe]]:
     """All rows of the table, by section."""
-    # formats of plane meshes take the second
-    cells = [
-        Probe(row, [vtu(cell, CUBE), vtu(cell, [[x, y, 0] for x, y, _ in CUBE])], "vtu", same_cells)
-        for row, cell in CELLS_ON_CUBE.items()
-    ]
+    cells = [Probe(row, [vtu(cell, CUBE), vtu(cell, FLAT)], "vtu", same_cells) for row, cell in CELLS_ON_CUBE.items()]
     cells.append(Probe(
         "second-order cells", [vtu([("tetrahedron10", list(range(10)))], SECOND_ORDER),
                                vtu([("triangle6", list(range(6)))], SECOND_ORDER)], "vtu", same_cells))  # fmt: skip

@@ -61,17 +61,58 @@ struct ReadOptions {
 /// Reads a mesh from the rest of a stream, which is read to its end; throws likewise.
 [[nodiscard]] MESHORDER_API Mesh read_mesh(std::istream& stream, const ReadOptions& options = {});
 
+/// Options of `keep_cells`.
+struct KeepOptions {
+  std::string format =
+      {};                  ///< name of the format that the mesh will be written in; empty: none in particular
+  int dimension = -1;      ///< keep the cells of this dimension only, 0 to 3; −1: of all dimensions
+  Notes* notes = nullptr;  ///< receives what was left out, one line for each type of cells; null: dropped
+};
+
+/// Leaves cells out of a mesh: those of other dimensions than the wanted one, then those that the format has
+/// no place for, unless one of them has the highest dimension of the mesh (`write_mesh` refuses such a mesh).
+/// Called before `reorder`, it makes the order and its permutations describe the file that `write_mesh`
+/// makes.
+///
+/// Vertices stay, all of them. Arrays, sets, ids and blocks follow the cells. Sets and arrays on some cells
+/// go with the last of their cells, which `notes` tells.
+///
+/// @param mesh     changed in place
+/// @param options  see `KeepOptions`
+/// @return the old positions of the cells that are kept, ascending
+/// @throws InvalidArgument for a mesh that `check_mesh` refuses, an unknown format, a dimension out of range
+///         and one of which the mesh has no cells
+/// @note O(size of the mesh).
+MESHORDER_API std::vector<Index> keep_cells(Mesh& mesh, const KeepOptions& options);
+
+/// Options of `write_mesh`.
+struct WriteOptions {
+  bool strict = false;     ///< throw instead of leaving anything out: cells, arrays, sets, ids, names
+  Notes* notes = nullptr;  ///< receives what the format cannot hold; null: dropped
+};
+
 /// Writes a mesh to a file in the format that the extension names.
+///
+/// Cells that the format has no place for are left out, as by `keep_cells`.
 ///
 /// @param mesh   not changed
 /// @param path   replaced when all is written; nothing is left behind after an exception
 /// @param notes  receives what the format cannot hold; null: dropped
-/// @return the places that the cells have in the file; the identity after `reorder` for that format
+/// @return the places that the cells have in the file; the identity after `reorder` for that format. Cells
+/// that
+///         are left out come last, behind those of the file
 /// @throws InvalidArgument for a mesh that `check_mesh` refuses
-/// @throws InputError for an unknown extension, for cells that the format cannot hold, and if the file
-///         cannot be written
+/// @throws InputError for an unknown extension, for cells of the highest dimension that the format cannot
+/// hold,
+///         with the formats that can, and if the file cannot be written
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path,
                                      Notes* notes = nullptr);
+
+/// The same with options; throws InputError also for the first loss where `options.strict` allows none.
+///
+/// @note A strict call writes the mesh twice, first to memory.
+MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path,
+                                     const WriteOptions& options);
 
 /// Writes a mesh to a stream, for formats of one file; returns and throws likewise.
 ///

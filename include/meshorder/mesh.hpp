@@ -186,7 +186,8 @@ struct ReorderOptions {
   /// and "vertices:NAME" tell arrays of one name apart; "sets" groups by the sets of cells. Empty: no groups.
   std::string group_by = {};
   /// Name of the format that the mesh will be written in: one that keeps cells of a type together gets them
-  /// so before they are ordered. Empty: `Mesh::format`.
+  /// so before they are ordered. Cells that it has no place for stay: see `keep_cells`. Empty:
+  /// `Mesh::format`.
   std::string format = {};
   OrderOptions order = {};  ///< `groups` and `cell_groups` must be empty where `group_by` is not
 };

@@ -23,6 +23,12 @@ struct Format {
   bool groups_cells_by_type;                 ///< whether files keep the cells of a type together
   Mesh (*read)(const FilePath&, Notes&);
   void (*write)(const Mesh&, const FilePath&, Notes&);
+  /// Returns whether other programs that read the format find cells of this type in a file of this mesh. For
+  /// a mesh that came from the format it is enough that the reader finds them. `write` gets no other cells.
+  bool (*holds)(const Mesh& mesh, Shape shape, int vertices);
+  /// Returns why cells that it `holds` by their types do not fit one file together, as a clause that begins
+  /// with the format's name; an empty text if they do. Null if all do. `write` gets no mesh with a conflict.
+  std::string (*conflict)(const Mesh& mesh) = nullptr;
   /// Returns the places that the cells of a mesh of another format have in a file, where types do not decide
   /// them; `blocks` receives the first cell of each part that stays together. Null: cells keep their order.
   Permutation (*places)(const Mesh&, std::vector<Index>& blocks) = nullptr;

@@ -3,6 +3,7 @@
 // The public functions that read and write meshes, on disk and in memory.
 #include "base/arena.hpp"
 #include "io/format.hpp"
+#include "io/kept_cells.hpp"
 #include "mesh/degenerate.hpp"
 #include "mesh/reorder.hpp"
 #include <meshorder/error.hpp>
@@ -80,22 +81,56 @@ Mesh read_from_memory(std::string bytes, const ReadOptions& options) {
   return read_checked({name, store}, *format, options);
 }
 
-Permutation write_checked(const Mesh& mesh, const FilePath& path, const Format& format, Notes* notes) {
-  Notes ignored;
-  Notes& noted = notes != nullptr ? *notes : ignored;
-  check_mesh(mesh);
-  if ((format.groups_cells_by_type || format.places != nullptr) && mesh.format != format.key()) {
-    std::vector<Index> blocks;
-    Permutation places = format.places != nullptr ? format.places(mesh, blocks) : places_by_type(mesh.cells);
-    if (!places.is_identity()) {
-      Mesh arranged = mesh;
-      arrange_cells(arranged, format);
-      format.write(arranged, path, noted);
-      return places;
-    }
+/// Returns the places of all cells: of those that were kept as `of_kept` says, then of the others.
+Permutation places_of(const std::vector<Index>& kept, const Permutation& of_kept, Index count) {
+  std::vector<Index> old_to_new(static_cast<std::size_t>(count), -1);
+  for (Index k = 0; k < index_size(kept); ++k) old_to_new[kept[k]] = of_kept.old_to_new()[k];
+  Index next = index_size(kept);
+  for (Index& place : old_to_new) {
+    if (place < 0) place = next++;
   }
-  format.write(mesh, path, noted);
-  return Permutation::identity(mesh.cell_count());
+  return Permutation::from_old_to_new(std::move(old_to_new));
+}
+
+/// Whether the cells of a mesh are where a file of the format has them.
+bool has_places_of(const Format& format, const Mesh& mesh) {
+  if (mesh.format == format.key()) return true;
+  std::vector<Index> blocks;
+  if (format.places != nullptr) return format.places(mesh, blocks).is_identity();
+  return !format.groups_cells_by_type || places_by_type(mesh.cells).is_identity();
+}
+
+/// Writes the mesh to memory and throws InputError for the first thing that gets lost.
+void refuse_losses(const Mesh& mesh, const FilePath& path, const Format& format) {
+  Notes lost;
+  MemoryStore store;
+  format.write(mesh, {path.path(), store}, lost);
+  if (!lost.empty())
+    throw InputError(path.string(), lost.front(), "nothing is written, as no loss is allowed");
+}
+
+Permutation write_checked(const Mesh& mesh, const FilePath& path, const Format& format,
+                          const WriteOptions& options) {
+  Notes ignored;
+  Notes& notes = options.notes != nullptr ? *options.notes : ignored;
+  check_mesh(mesh);
+  Notes left_out;
+  const std::vector<Index> kept = options.strict ? all_cells(mesh) : cells_for(mesh, format, left_out);
+  require_held_cells(mesh, kept, path, format);
+  const auto write = [&](const Mesh& written) {
+    if (options.strict) refuse_losses(written, path, format);
+    notes.insert(notes.end(), left_out.begin(), left_out.end());
+    format.write(written, path, notes);
+  };
+  if (index_size(kept) == mesh.cell_count() && has_places_of(format, mesh)) {
+    write(mesh);
+    return Permutation::identity(mesh.cell_count());
+  }
+  Mesh arranged = mesh;
+  keep_cells_at(arranged, kept, left_out);
+  const Permutation of_kept = arrange_cells(arranged, format);
+  write(arranged);
+  return places_of(kept, of_kept, mesh.cell_count());
 }
 
 }  // namespace
@@ -117,7 +152,11 @@ Mesh read_mesh(std::istream& stream, const ReadOptions& options) {
 }
 
 Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path, Notes* notes) {
-  return write_checked(mesh, path, format_of(path), notes);
+  return write_mesh(mesh, path, WriteOptions{.notes = notes});
+}
+
+Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options) {
+  return write_checked(mesh, path, format_of(path), options);
 }
 
 Permutation write_mesh(const Mesh& mesh, std::ostream& stream, std::string_view format, Notes* notes) {
@@ -135,7 +174,7 @@ Permutation write_mesh(const Mesh& mesh, std::ostream& stream, std::string_view 
 MemoryFiles write_mesh_to_memory(const Mesh& mesh, std::string_view format, std::string_view name,
                                  Notes* notes) {
   MemoryStore store;
-  Permutation cells = write_checked(mesh, {std::string(name), store}, format_named(format), notes);
+  Permutation cells = write_checked(mesh, {std::string(name), store}, format_named(format), {.notes = notes});
   return {std::move(store).files(), std::move(cells)};
 }
 

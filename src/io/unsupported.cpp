@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/unsupported.hpp"
 
-#include <meshorder/error.hpp>
-
 #include <fmt/format.h>
+
+#include <string>
 
 namespace meshorder {
 
@@ -30,18 +30,6 @@ void note_metadata_unsupported(const Mesh& mesh, std::string_view format, Notes&
   if (!mesh.format_metadata) return;
   for (const std::string& what : mesh.format_metadata->contents()) {
     notes.push_back(fmt::format("not written ({} has no place for it): {}", format, what));
-  }
-}
-
-void require_supported_cells(const Mesh& mesh, const FilePath& path, std::string_view format,
-                             bool (*holds)(Shape shape, int vertices), const std::string& remedy) {
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const int vertices = mesh.cells.vertex_count(c);
-    if (holds(mesh.cells.shapes[c], vertices)) continue;
-    throw InputError(
-        path.string(),
-        fmt::format("{} cannot hold a cell of type {}", format, type_name(mesh.cells.shapes[c], vertices)),
-        remedy);
   }
 }
 

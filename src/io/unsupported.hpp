@@ -2,10 +2,7 @@
 #pragma once
 
 #include "io/format.hpp"
-#include "io/stream/file_path.hpp"
 
-#include <filesystem>
-#include <string>
 #include <string_view>
 
 namespace meshorder {
@@ -23,9 +20,5 @@ void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& note
 
 /// Notes the contents of the metadata that another format left, if any.
 void note_metadata_unsupported(const Mesh& mesh, std::string_view format, Notes& notes);
-
-/// Throws Error, which names the cell type, if `holds(shape, vertices)` is false for a cell.
-void require_supported_cells(const Mesh& mesh, const FilePath& path, std::string_view format,
-                             bool (*holds)(Shape shape, int vertices), const std::string& remedy);
 
 }  // namespace meshorder

@@ -343,7 +343,7 @@ TEST(Medit, RefusesCellsThatItCannotHold) {
       write_mesh(test::cells_of_type(shape, nodes, 1), folder.path() / "m.mesh");
       ADD_FAILURE() << type_name(shape, nodes);
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), AllOf(HasSubstr(type_name(shape, nodes)), HasSubstr("instead")));
+      EXPECT_THAT(error.what(), AllOf(HasSubstr(type_name(shape, nodes)), HasSubstr("; write .")));
     }
   }
   EXPECT_THAT(folder.names(), IsEmpty());

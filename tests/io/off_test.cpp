@@ -143,6 +143,7 @@ TEST(Off, WritesAndReadsItsTypes) {
     Mesh mesh = cells_of_type(shape, width, 5);
     mesh.data.clear();
     mesh.sets.clear();
+    mesh.format = "off";
     expect_write_and_read(mesh, "a.off");
   }
 }
@@ -171,12 +172,24 @@ TEST(Off, NotesWhatItCannotHold) {
             Values(std::vector<std::int32_t>{1, 4, 7, 2, 5, 8, 3, 6, 9}));
 }
 
+TEST(Off, LeavesOutLinesThatOtherReadersDoNotTake) {
+  const TemporaryFolder folder;
+  Mesh mesh = cells_of_type(Shape::triangle, 3, 1);
+  mesh.data.clear();
+  mesh.sets.clear();
+  mesh.cells.push_back(Shape::line, std::vector<Index>{0, 1});
+  Notes notes;
+  write_mesh(mesh, folder.path() / "a.off", &notes);
+  EXPECT_EQ(notes, (Notes{"1 line is left out: OFF has no place for it"}));
+  EXPECT_NE(content_of(folder.path() / "a.off").find("3 1 0\n"), std::string::npos);
+}
+
 TEST(Off, RefusesVolumesAndCurvedCells) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.off";
-  EXPECT_NE(
-      write_error(tetrahedral_bar(1), path).find("OFF cannot hold a cell of type tetrahedron; write .vtu"),
-      std::string::npos);
+  EXPECT_NE(write_error(tetrahedral_bar(1), path)
+                .find("OFF cannot hold a cell of type tetrahedron; write .node, .veg"),
+            std::string::npos);
   EXPECT_NE(write_error(cells_of_type(Shape::triangle, 6, 1), path).find("of type triangle6"),
             std::string::npos);
   EXPECT_NE(write_error(cells_of_type(Shape::triangle_strip, 5, 1), path).find("of type triangle_strip"),

@@ -262,6 +262,7 @@ TEST(Ply, WritesAndReadsItsTypes) {
                                                                        {Shape::tetrahedron, 4}}) {
     Mesh mesh = cells_of_type(shape, width, 5);
     mesh.sets.clear();
+    mesh.format = "ply";
     expect_write_and_read(mesh, "a.ply");
   }
 }
@@ -270,6 +271,7 @@ TEST(Ply, WritesOtherMeshesExactlySo) {
   const TemporaryFolder folder;
   Mesh mesh;
   mesh.points = {{0.1, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.format = "ply";  // other meshes' lines are left out
   mesh.cells.push_back(Shape::line, std::vector<Index>{0, 1});
   mesh.cells.push_back(Shape::triangle, std::vector<Index>{0, 1, 2});
   mesh.data.push_back(
@@ -299,6 +301,21 @@ TEST(Ply, WritesOtherMeshesExactlySo) {
             Values(std::vector<std::int32_t>{8, -7}));
   EXPECT_EQ(*find_array(back, "pair", Association::cells),
             (DataArray{"pair", Association::cells, 2, std::vector<double>{0.5, 1}, {0}, {}}));
+}
+
+TEST(Ply, LeavesOutWhatOtherReadersDoNotFind) {
+  const TemporaryFolder folder;
+  Mesh mesh = cells_of_type(Shape::triangle, 3, 2);
+  mesh.data.clear();
+  mesh.sets.clear();
+  mesh.cells.push_back(Shape::line, std::vector<Index>{0, 1});
+  Notes notes;
+  write_mesh(mesh, folder.path() / "a.ply", &notes);
+  EXPECT_EQ(notes, (Notes{"1 line is left out: PLY has no place for it"}));
+  EXPECT_EQ(content_of(folder.path() / "a.ply").find("edge"), std::string::npos);
+  EXPECT_NE(write_error(tetrahedral_bar(1), folder.path() / "b.ply")
+                .find("PLY cannot hold a cell of type tetrahedron"),
+            std::string::npos);
 }
 
 TEST(Ply, RefusesOtherCells) {

@@ -24,7 +24,7 @@ using testing::Contains;
 using testing::HasSubstr;
 
 /// Tetrahedra and triangles in turn, with ids that are not sorted.
-Mesh interleaved() {
+Mesh boundary_in_turn() {
   Mesh mesh = test::tetrahedral_bar(8);
   mesh.data.clear();
   mesh.sets.clear();
@@ -47,13 +47,13 @@ std::vector<std::int64_t> original(const Mesh& mesh, Association association) {
 std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
 
 TEST(Ids, AreSortedAlongTheNewOrder) {
-  Mesh mesh = interleaved();
+  Mesh mesh = boundary_in_turn();
   (void)reorder(mesh, {.methods = {"scrambled", "scrambled"}});
   EXPECT_TRUE(std::is_sorted(mesh.vertex_ids.begin(), mesh.vertex_ids.end()));
 }
 
 TEST(Ids, StayWithTheirVerticesAndCells) {
-  const Mesh before = interleaved();
+  const Mesh before = boundary_in_turn();
   Mesh mesh = before;
   const MeshOrder order = reorder(mesh, {.methods = {"scrambled", "scrambled"}, .ids = Ids::keep});
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
@@ -65,7 +65,7 @@ TEST(Ids, StayWithTheirVerticesAndCells) {
 }
 
 TEST(Ids, AreAttachedAsArraysOfTheOldOnes) {
-  const Mesh before = interleaved();
+  const Mesh before = boundary_in_turn();
   Mesh mesh = before;
   const MeshOrder order = reorder(mesh, {.methods = {"scrambled", "scrambled"}, .ids = Ids::attach});
   EXPECT_TRUE(std::is_sorted(mesh.vertex_ids.begin(), mesh.vertex_ids.end()));
@@ -92,7 +92,7 @@ TEST(Ids, AreOldPositionsWhereTheMeshHasNone) {
 }
 
 TEST(Ids, AreLeftAloneByAnOrderThatMovesNothing) {
-  const Mesh before = interleaved();
+  const Mesh before = boundary_in_turn();
   Mesh mesh = before;
   (void)reorder(mesh, {.methods = {"original", "original"}});
   EXPECT_EQ(mesh.vertex_ids, before.vertex_ids);
@@ -102,7 +102,7 @@ TEST(Ids, AreLeftAloneByAnOrderThatMovesNothing) {
 TEST(Reorder, ForAFormatDescribesItsFile) {
   for (const std::string format : {"medit", "tetgen", "vtu", "gmsh"}) {
     SCOPED_TRACE(format);
-    const Mesh before = interleaved();
+    const Mesh before = boundary_in_turn();
     Mesh mesh = before;
     const MeshOrder order = reorder(mesh, {.methods = {"rcm", "lexmax"}, .format = format});
     const MemoryFiles written = write_mesh_to_memory(mesh, format, "a.node");
@@ -126,7 +126,7 @@ TEST(Reorder, ForAFormatDescribesItsFile) {
 }
 
 TEST(Reorder, LeavesTheMeshWhenItFails) {
-  const Mesh before = interleaved();
+  const Mesh before = boundary_in_turn();
   Mesh mesh = before;
   const ReorderOptions unknown_method{.methods = {"rcm", "nothing"}, .format = "medit"};
   const ReorderOptions unknown_format{.format = "nothing"};
@@ -140,7 +140,7 @@ TEST(Reorder, LeavesTheMeshWhenItFails) {
 }
 
 TEST(WriteMesh, SaysWhereTheCellsAreInTheFile) {
-  const Mesh mesh = interleaved();
+  const Mesh mesh = boundary_in_turn();
   std::stringstream stream;
   const Permutation places = write_mesh(mesh, stream, "medit");
   EXPECT_FALSE(places.is_identity());

@@ -270,7 +270,7 @@ TEST(Vega, NotesWhatItCannotHold) {
 TEST(Vega, RefusesOtherCellsAndMixtures) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.veg";
-  EXPECT_NE(write_error(mixed_mesh(), path).find("Vega cannot hold a cell of type vertex"),
+  EXPECT_NE(write_error(mixed_mesh(), path).find("Vega cannot hold a cell of type pyramid"),
             std::string::npos);
   EXPECT_NE(write_error(cells_of_type(Shape::tetrahedron, 10, 1), path).find("of type tetrahedron10"),
             std::string::npos);

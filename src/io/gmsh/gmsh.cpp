@@ -279,11 +279,10 @@ Mesh read(const FilePath& path, Notes& notes) {
 
 // ---- writing
 
-/// Returns the type of every cell; throws Error for a cell that Gmsh does not have.
-std::vector<const ElementType*> types_of_cells(const Mesh& mesh, const FilePath& path) {
-  require_supported_cells(
-      mesh, path, "Gmsh", [](Shape shape, int nodes) { return find_type(shape, nodes) != nullptr; },
-      "write another format, or split such cells into triangles and quads");
+bool holds(const Mesh& /*mesh*/, Shape shape, int nodes) { return find_type(shape, nodes) != nullptr; }
+
+/// Returns the type of every cell.
+std::vector<const ElementType*> types_of_cells(const Mesh& mesh) {
   const std::vector<std::int32_t> numbers = integers_of(mesh, kCellType, Association::cells);
   std::vector<const ElementType*> types;
   types.reserve(mesh.cells.shapes.size());
@@ -436,7 +435,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   const bool keeps_layout = own && still_fits(mesh, *own);
   Metadata layout = keeps_layout ? *own : Metadata{};
-  WriteContext output{mesh, layout, types_of_cells(mesh, path), {}, {}, {}, {}, {}, {}};
+  WriteContext output{mesh, layout, types_of_cells(mesh), {}, {}, {}, {}, {}, {}};
   output.placed.push_back(find_array(mesh, kCellType, Association::cells));
   if (keeps_layout) {
     take_layout(layout, output);
@@ -562,6 +561,6 @@ std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, A
 
 }  // namespace gmsh
 
-Format gmsh_format() { return {"Gmsh", {".msh"}, false, gmsh::read, gmsh::write}; }
+Format gmsh_format() { return {"Gmsh", {".msh"}, false, gmsh::read, gmsh::write, gmsh::holds}; }
 
 }  // namespace meshorder

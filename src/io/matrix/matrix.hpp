@@ -16,7 +16,7 @@ inline constexpr std::string_view kWeight = "weight";  ///< array on cells or ve
 inline constexpr std::string_view kSize = "size";      ///< array on vertices: sizes in METIS's graphs
 
 /// Returns whether a cell is an entry: a line or a vertex.
-bool is_entry(Shape shape, int vertices);
+bool is_entry(const Mesh& mesh, Shape shape, int vertices);
 
 /// Returns the array of that name if it has a row for every vertex or cell; null otherwise.
 const DataArray* dense_array(const Mesh& mesh, std::string_view name, Association association);

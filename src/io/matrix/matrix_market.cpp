@@ -231,8 +231,6 @@ void write_value(OutputFile& out, const DataArray& values, Field field, Index en
 }
 
 void write_matrix(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  require_supported_cells(mesh, path, "Matrix Market", is_entry,
-                          "a matrix is a mesh of lines and vertices; write .vtu or .msh instead");
   const auto* const own = dynamic_cast<const MatrixMetadata*>(mesh.format_metadata.get());
   const DataArray* values = dense_array(mesh, kValue, Association::cells);
   if (values == nullptr && own == nullptr) values = dense_array(mesh, kWeight, Association::cells);
@@ -269,7 +267,7 @@ void write_matrix(const Mesh& mesh, const FilePath& path, Notes& notes) {
 }  // namespace matrix
 
 Format matrix_market_format() {
-  return {matrix::kName, {".mtx"}, false, matrix::read_matrix, matrix::write_matrix};
+  return {matrix::kName, {".mtx"}, false, matrix::read_matrix, matrix::write_matrix, matrix::is_entry};
 }
 
 }  // namespace meshorder

@@ -257,8 +257,6 @@ const DataArray* weights(const Mesh& mesh, std::string_view name, Association as
 }
 
 void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  require_supported_cells(mesh, path, "METIS's graph", is_entry,
-                          "a graph is a mesh of lines; write .vtu or .msh instead");
   const DataArray* edge_weights = weights(mesh, kWeight, Association::cells, 1);
   const DataArray* sizes = weights(mesh, kSize, Association::vertices, 0);
   if (edge_weights != nullptr && edge_weights->components > 1) edge_weights = nullptr;
@@ -313,6 +311,8 @@ void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
 }  // namespace
 }  // namespace matrix
 
-Format metis_graph_format() { return {"METIS", {".graph"}, false, matrix::read_graph, matrix::write_graph}; }
+Format metis_graph_format() {
+  return {"METIS", {".graph"}, false, matrix::read_graph, matrix::write_graph, matrix::is_entry};
+}
 
 }  // namespace meshorder

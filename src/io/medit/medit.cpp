@@ -192,12 +192,13 @@ void write_all_cells(OutputFile& out, const WriteContext& from) {
   }
 }
 
-bool holds(Shape shape, int vertices) { return kind_of(shape, vertices) < kCellKinds.size(); }
+bool holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
+  return kind_of(shape, vertices) < kCellKinds.size();
+}
 
 }  // namespace
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  require_supported_cells(mesh, path, "Medit", holds, "write .msh, .vtu or .vtk instead");
   const WriteContext from{mesh, dynamic_cast<const Metadata*>(mesh.format_metadata.get()), layout_of(mesh),
                           labels_of(mesh, Association::vertices), labels_of(mesh, Association::cells)};
   OutputFile out(path);
@@ -225,6 +226,6 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 
 namespace meshorder {
 
-Format medit_format() { return {"Medit", {".mesh"}, true, medit::read, medit::write}; }
+Format medit_format() { return {"Medit", {".mesh"}, true, medit::read, medit::write, medit::holds}; }
 
 }  // namespace meshorder

@@ -130,16 +130,15 @@ struct Markers {
   }
 };
 
-/// Returns the number of coordinates that a file gives to a point. Throws InputError for a surface in space.
-int dimension_of_file(const Mesh& mesh, const FilePath& path, int of_cells, Notes& notes) {
+bool is_flat(const Mesh& mesh) {
+  return std::all_of(mesh.points.begin(), mesh.points.end(),
+                     [&](const Point& point) { return point[2] == mesh.points.front()[2]; });
+}
+
+/// Returns the number of coordinates that a file gives to a point.
+int dimension_of_file(const Mesh& mesh, int of_cells, Notes& notes) {
   if (of_cells == 3 || mesh.dimension == 2) return of_cells;
   const double height = mesh.points.empty() ? 0 : mesh.points.front()[2];
-  const bool flat = std::all_of(mesh.points.begin(), mesh.points.end(),
-                                [&](const Point& point) { return point[2] == height; });
-  if (!flat) {
-    throw InputError(path.string(), "SU2 cannot hold a surface in space",
-                     "its meshes are of volumes, or in the plane of x and y; write .vtu or .msh instead");
-  }
   if (height != 0)
     notes.push_back(fmt::format("the third coordinate, {}, of all points is not written", height));
   return 2;
@@ -152,21 +151,21 @@ const ElementKind* kind_of(Shape shape, int nodes) {
   return found == kElementKinds.end() ? nullptr : &*found;
 }
 
-bool holds(Shape shape, int vertices) { return kind_of(shape, vertices) != nullptr; }
+int highest_dimension(const Mesh& mesh) {
+  int highest = 0;
+  for (const Shape shape : mesh.cells.shapes) highest = std::max(highest, dimension(shape));
+  return highest;
+}
 
-void require_dimensions(const Mesh& mesh, const FilePath& path, int highest) {
-  constexpr std::string_view kRemedy = "write .msh, .vtu or .vtk instead";
-  if (highest < 2) {
-    throw InputError(path.string(), "SU2 cannot hold a mesh without surface or volume cells",
-                     std::string(kRemedy));
-  }
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    if (dimension(mesh.cells.shapes[c]) >= highest - 1) continue;
-    throw InputError(path.string(),
-                     fmt::format("SU2 cannot hold a cell of type {} in a mesh of volumes",
-                                 type_name(mesh.cells.shapes[c], mesh.cells.vertex_count(c))),
-                     std::string(kRemedy));
-  }
+/// Elements of the highest dimension, 2 or 3, and those of their boundary.
+bool holds(const Mesh& mesh, Shape shape, int vertices) {
+  const int highest = highest_dimension(mesh);
+  return kind_of(shape, vertices) != nullptr && highest >= 2 && dimension(shape) >= highest - 1;
+}
+
+std::string conflict(const Mesh& mesh) {
+  const bool in_space = highest_dimension(mesh) == 2 && mesh.dimension == 3 && !is_flat(mesh);
+  return in_space ? "SU2 cannot hold a surface in space" : "";
 }
 
 class Su2Writer {
@@ -291,10 +290,8 @@ class Su2Writer {
 }  // namespace
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  require_supported_cells(mesh, path, "SU2", holds, "write .msh, .vtu or .vtk instead");
   const Markers markers(mesh);
-  require_dimensions(mesh, path, markers.dimension);
-  const int dimension = dimension_of_file(mesh, path, markers.dimension, notes);
+  const int dimension = dimension_of_file(mesh, markers.dimension, notes);
   OutputFile out(path);
   Su2Writer(mesh, markers, dimension, out).write();
   out.commit();
@@ -327,7 +324,7 @@ Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
     if (!marker.cells.empty()) blocks.push_back(index_size(new_to_old));
     new_to_old.insert(new_to_old.end(), marker.cells.begin(), marker.cells.end());
   }
-  // what the writer will refuse
+  // what is left out
   add([&](Index c) { return !markers.is_volume(c) && !markers.marked[c]; });
   return Permutation::from_new_to_old(std::move(new_to_old));
 }
@@ -336,6 +333,8 @@ Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
 
 namespace meshorder {
 
-Format su2_format() { return {"SU2", {".su2"}, false, su2::read, su2::write, su2::places}; }
+Format su2_format() {
+  return {"SU2", {".su2"}, false, su2::read, su2::write, su2::holds, su2::conflict, su2::places};
+}
 
 }  // namespace meshorder

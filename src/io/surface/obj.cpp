@@ -20,7 +20,7 @@ namespace meshorder {
 namespace {
 using obj::kStates;
 
-bool obj_holds(Shape shape, int vertices) {
+bool obj_holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
   if (shape == Shape::polygon) return vertices >= 3;
   if (shape == Shape::polyline) return vertices >= 2;
   return shape == Shape::poly_vertex || (dimension(shape) <= 2 && vertices == corners(shape, 0));
@@ -311,13 +311,10 @@ class ObjWriter {
   bool in_group_ = false;
 };
 
-void write_obj(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  require_supported_cells(mesh, path, "OBJ", obj_holds, "write .vtu or .msh");
-  ObjWriter(mesh, path, notes).write();
-}
+void write_obj(const Mesh& mesh, const FilePath& path, Notes& notes) { ObjWriter(mesh, path, notes).write(); }
 
 }  // namespace
 
-Format obj_format() { return {"OBJ", {".obj"}, false, obj::read, write_obj}; }
+Format obj_format() { return {"OBJ", {".obj"}, false, obj::read, write_obj, obj_holds}; }
 
 }  // namespace meshorder

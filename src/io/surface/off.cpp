@@ -250,9 +250,11 @@ Mesh read_off(const FilePath& path, Notes&) {
 
 // ---- writing
 
-bool off_holds(Shape shape, int vertices) {
-  return shape == Shape::polygon || (dimension(shape) <= 2 && shape != Shape::poly_vertex &&
-                                     shape != Shape::polyline && vertices == corners(shape, 0));
+/// Other readers take no faces of one or two vertices; files that have them keep them.
+bool off_holds(const Mesh& mesh, Shape shape, int vertices) {
+  if (shape == Shape::polygon) return true;
+  const int least = mesh.format == "off" ? 0 : 2;
+  return dimension(shape) >= least && dimension(shape) <= 2 && vertices == corners(shape, 0);
 }
 
 /// The arrays of a mesh that the file holds.
@@ -341,7 +343,6 @@ void write_face_color(OutputFile& out, const Content& content, Index face) {
 }
 
 void write_off(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  require_supported_cells(mesh, path, "OFF", off_holds, "write .vtu or .msh");
   const Content content = content_of(mesh);
   const auto* metadata = dynamic_cast<const OffMetadata*>(mesh.format_metadata.get());
   OutputFile out(path);
@@ -369,6 +370,6 @@ void write_off(const Mesh& mesh, const FilePath& path, Notes& notes) {
 
 }  // namespace
 
-Format off_format() { return {"OFF", {".off"}, false, read_off, write_off}; }
+Format off_format() { return {"OFF", {".off"}, false, read_off, write_off, off_holds}; }
 
 }  // namespace meshorder

@@ -455,9 +455,12 @@ void write_item(NumberWriter& to, const Mesh& mesh, const Table& table, Index it
   to.end_line();
 }
 
-bool ply_holds(Shape shape, int vertices) {
-  return shape == Shape::polygon ||
-         (vertices == corners(shape, 0) && (dimension(shape) <= 2 || shape == Shape::tetrahedron));
+/// Other readers take vertices and faces only; files that have edges and tetrahedra keep them.
+bool ply_holds(const Mesh& mesh, Shape shape, int vertices) {
+  if (shape == Shape::polygon) return true;
+  if (vertices != corners(shape, 0)) return false;
+  return dimension(shape) == 2 ||
+         (mesh.format == "ply" && (dimension(shape) < 2 || shape == Shape::tetrahedron));
 }
 
 void note_losses(const Mesh& mesh, const std::vector<const DataArray*>& written, Notes& notes) {
@@ -470,7 +473,6 @@ void note_losses(const Mesh& mesh, const std::vector<const DataArray*>& written,
 }
 
 void write_ply(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  require_supported_cells(mesh, path, "PLY", ply_holds, "write .vtu or .msh");
   const auto* metadata = dynamic_cast<const ply::Metadata*>(mesh.format_metadata.get());
   const bool as_file = metadata && elements_fit(*metadata, mesh);
   std::vector<Table> tables = as_file ? tables_of_file(*metadata) : usual_tables(mesh);
@@ -495,6 +497,6 @@ void write_ply(const Mesh& mesh, const FilePath& path, Notes& notes) {
 
 }  // namespace
 
-Format ply_format() { return {"PLY", {".ply"}, false, ply::read, write_ply}; }
+Format ply_format() { return {"PLY", {".ply"}, false, ply::read, write_ply, ply_holds}; }
 
 }  // namespace meshorder

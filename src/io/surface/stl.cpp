@@ -262,7 +262,9 @@ Mesh read_stl(const FilePath& path, Notes& notes) {
 
 // ---- writing
 
-bool stl_holds(Shape shape, int vertices) { return shape == Shape::triangle && vertices == 3; }
+bool stl_holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
+  return shape == Shape::triangle && vertices == 3;
+}
 
 const DataArray* binary_attribute(const Mesh& mesh, const StlMetadata* metadata) {
   if (!metadata || !metadata->binary) return nullptr;
@@ -358,7 +360,6 @@ void write_ascii(const Mesh& mesh, const StlMetadata* metadata, const std::vecto
 }
 
 void write_stl(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  require_supported_cells(mesh, path, "STL", stl_holds, "STL has triangles only; write .off, .vtu or .msh");
   // meshes of other formats are written as text, which keeps every bit
   const auto* metadata = dynamic_cast<const StlMetadata*>(mesh.format_metadata.get());
   const DataArray* attribute = binary_attribute(mesh, metadata);
@@ -376,6 +377,6 @@ void write_stl(const Mesh& mesh, const FilePath& path, Notes& notes) {
 
 }  // namespace
 
-Format stl_format() { return {"STL", {".stl"}, false, read_stl, write_stl}; }
+Format stl_format() { return {"STL", {".stl"}, false, read_stl, write_stl, stl_holds}; }
 
 }  // namespace meshorder

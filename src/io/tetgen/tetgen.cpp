@@ -58,17 +58,49 @@ struct Layout {
   int dimension = 3;
 };
 
-bool holds(Shape shape, int vertices) {
+bool holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
   return (shape == Shape::tetrahedron && (vertices == 4 || vertices == 10)) ||
          (shape == Shape::triangle && (vertices == 3 || vertices == 6)) ||
          (shape == Shape::line && (vertices == 2 || vertices == 3));
 }
 
-Layout layout_of(const Mesh& mesh, const Metadata& metadata, const FilePath& path) {
-  const auto& shapes = mesh.cells.shapes;
-  const bool solid = std::find(shapes.begin(), shapes.end(), Shape::tetrahedron) != shapes.end();
+bool has_shape(const Mesh& mesh, Shape shape) {
+  return std::find(mesh.cells.shapes.begin(), mesh.cells.shapes.end(), shape) != mesh.cells.shapes.end();
+}
+
+bool is_plane(const Mesh& mesh) {
+  return std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& p) { return p[2] == 0; });
+}
+
+/// Returns why the cells cannot be one mesh of TetGen or Triangle, which other programs read by its .ele
+/// file; an empty text if they can.
+std::string conflict(const Mesh& mesh) {
+  const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  std::array<int, kShapes> nodes{};
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const Shape shape = mesh.cells.shapes[c];
+    const int count = mesh.cells.vertex_count(c);
+    int& first = nodes[static_cast<std::size_t>(shape)];
+    if (first == 0) first = count;
+    if (first == count) continue;
+    return fmt::format("TetGen cannot hold both {} and {}: a file holds one kind", type_name(shape, first),
+                       type_name(shape, count));
+  }
+  const auto nodes_of = [&](Shape shape) { return nodes[static_cast<std::size_t>(shape)]; };
+  const bool second_order = nodes_of(Shape::tetrahedron) == 10 || nodes_of(Shape::triangle) == 6 ||
+                            (own && (own->nodes_in_ele == 10 || own->nodes_in_ele == 6));
+  if (nodes_of(Shape::line) == 3 && !second_order) {
+    return "TetGen holds lines of 3 points only beside cells of second order";
+  }
+  if (own || nodes_of(Shape::tetrahedron) > 0) return {};
+  if (nodes_of(Shape::triangle) == 0) return "TetGen holds lines only beside tetrahedra or triangles";
+  return is_plane(mesh) ? "" : "TetGen holds triangles alone only in the plane z = 0";
+}
+
+Layout layout_of(const Mesh& mesh, const Metadata& metadata, bool own) {
+  const bool solid = has_shape(mesh, Shape::tetrahedron);
   Layout layout;
-  layout.dimension = solid ? 3 : mesh.dimension;
+  layout.dimension = solid ? 3 : own ? mesh.dimension : 2;
   layout.nodes[kEle] = metadata.nodes_in_ele;
   // triangles are the cells of a plane mesh and the boundary of a solid one
   const bool in_ele =
@@ -78,19 +110,7 @@ Layout layout_of(const Mesh& mesh, const Metadata& metadata, const FilePath& pat
     const File file = shape == Shape::line ? kEdge : shape == Shape::triangle && !in_ele ? kFace : kEle;
     const int nodes = mesh.cells.vertex_count(c);
     if (layout.cells[file].empty()) layout.nodes[file] = nodes;
-    if (layout.nodes[file] != nodes) {
-      throw InputError(
-          path.string(),
-          fmt::format("the mesh has both {} and {}, and a {} file holds one kind", type_name(shape, nodes),
-                      type_name(shape, layout.nodes[file]), kExtensions[file]),
-          "write .msh, .vtu or .mesh instead");
-    }
     layout.cells[file].push_back(c);
-  }
-  const bool second_order = layout.nodes[kEle] == 10 || layout.nodes[kEle] == 6 || layout.nodes[kFace] == 6;
-  if (layout.nodes[kEdge] == 3 && !second_order) {
-    throw InputError(path.string(), "lines of 3 points need cells of second order beside them",
-                     "write .msh, .vtu or .mesh instead");
   }
   return layout;
 }
@@ -276,14 +296,13 @@ void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes&
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const Metadata standard;
   const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
-  require_supported_cells(mesh, path, "TetGen", holds, "write .msh, .vtu or .mesh instead");
   WriteContext from{mesh,
                     own ? *own : standard,
                     {},
                     own != nullptr,
                     labels_of(mesh, Association::vertices),
                     labels_of(mesh, Association::cells)};
-  from.layout = layout_of(mesh, from.metadata, path);
+  from.layout = layout_of(mesh, from.metadata, own != nullptr);
   refuse_leftovers(from.layout, from.metadata, path);
 
   std::vector<OutputFile> files;
@@ -317,7 +336,9 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 namespace meshorder {
 
 Format tetgen_format() {
-  return {"TetGen", {".node", ".ele", ".face", ".edge"}, true, tetgen::read, tetgen::write};
+  return {
+      "TetGen",        {".node", ".ele", ".face", ".edge"}, true, tetgen::read, tetgen::write, tetgen::holds,
+      tetgen::conflict};
 }
 
 }  // namespace meshorder

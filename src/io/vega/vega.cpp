@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <type_traits>
 
@@ -21,7 +22,7 @@ namespace {
 using vega::Kind;
 using vega::Section;
 
-bool vega_holds(Shape shape, int vertices) {
+bool vega_holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
   return (shape == Shape::tetrahedron && vertices == 4) || (shape == Shape::hexahedron && vertices == 8);
 }
 
@@ -248,18 +249,17 @@ class VegaWriter {
   std::vector<EntitySet> label_sets_;
 };
 
-void write_vega(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  const std::string remedy = "write .vtu or .msh";
-  require_supported_cells(mesh, path, "Vega", vega_holds, remedy);
-  for (Index c = 1; c < mesh.cell_count(); ++c) {
-    if (mesh.cells.shapes[c] == mesh.cells.shapes[0]) continue;
-    throw InputError(path.string(), "a Vega file cannot hold both tetrahedra and hexahedra", remedy);
-  }
-  VegaWriter(mesh, path, notes).write();
+std::string vega_conflict(const Mesh& mesh) {
+  const std::vector<Shape>& shapes = mesh.cells.shapes;
+  const bool one_shape =
+      std::adjacent_find(shapes.begin(), shapes.end(), std::not_equal_to<>()) == shapes.end();
+  return one_shape ? "" : "Vega cannot hold both tetrahedra and hexahedra in one file";
 }
+
+void write_vega(const Mesh& mesh, const FilePath& path, Notes& notes) { VegaWriter(mesh, path, notes).write(); }
 
 }  // namespace
 
-Format vega_format() { return {"Vega", {".veg"}, false, vega::read, write_vega}; }
+Format vega_format() { return {"Vega", {".veg"}, false, vega::read, write_vega, vega_holds, vega_conflict}; }
 
 }  // namespace meshorder

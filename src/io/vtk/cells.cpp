@@ -124,6 +124,19 @@ const CellType* default_type(Shape shape, int vertices) {
   return found == kTypes.end() ? nullptr : &*found;
 }
 
+/// Returns the type of that number if it fits a cell of this shape, else null.
+const CellType* own_type(int number, Shape shape, int vertices) {
+  const CellType* const type = type_of(number);
+  return type != nullptr && type->shape == shape && fits(*type, vertices) ? type : nullptr;
+}
+
+/// Returns the numbers of VTK's types that the reader kept, null if there are none.
+const std::vector<std::uint8_t>* kept_types(const Mesh& mesh) {
+  const DataArray* const kept = find_array(mesh, kCellTypes, Association::cells);
+  if (kept == nullptr || !kept->is_dense() || kept->components != 1) return nullptr;
+  return std::get_if<std::vector<std::uint8_t>>(&kept->values);
+}
+
 /// Caches default types, as a mesh has few.
 class DefaultTypes {
  public:
@@ -228,33 +241,30 @@ bool take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes)
   return inward_wedges;
 }
 
-std::vector<std::uint8_t> cell_types(const Mesh& mesh, const std::string& file, bool higher_orders) {
-  const DataArray* kept = find_array(mesh, kCellTypes, Association::cells);
-  const auto* numbers = kept != nullptr ? std::get_if<std::vector<std::uint8_t>>(&kept->values) : nullptr;
-  if (numbers != nullptr && (!kept->is_dense() || kept->components != 1)) numbers = nullptr;
+bool holds(const Mesh& mesh, Shape shape, int vertices) {
+  const CellType* const type = default_type(shape, vertices);
+  if (type == nullptr) return false;
+  const bool lagrange = type->number >= kFirstLagrange && type->number <= kLastLagrange;
+  if (!lagrange || is_from_vtk(mesh)) return true;
+  // cells of this type whose numbers of VTK's types are known
+  const std::vector<std::uint8_t>* const numbers = kept_types(mesh);
+  if (numbers == nullptr) return false;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (mesh.cells.shapes[c] != shape || mesh.cells.vertex_count(c) != vertices) continue;
+    if (own_type((*numbers)[c], shape, vertices) == nullptr) return false;
+  }
+  return true;
+}
 
+std::vector<std::uint8_t> cell_types(const Mesh& mesh) {
+  const std::vector<std::uint8_t>* const numbers = kept_types(mesh);
   DefaultTypes defaults;
   std::vector<std::uint8_t> types(mesh.cells.shapes.size());
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const Shape shape = mesh.cells.shapes[c];
     const int vertices = mesh.cells.vertex_count(c);
-    const CellType* type = defaults(shape, vertices);
-    if (numbers != nullptr) {
-      const CellType* own = type_of((*numbers)[c]);
-      if (own != nullptr && own->shape == shape && fits(*own, vertices)) {
-        types[c] = static_cast<std::uint8_t>(own->number);
-        continue;
-      }
-    }
-    const bool lagrange = type != nullptr && type->number >= kFirstLagrange && type->number <= kLastLagrange;
-    if (type == nullptr || (lagrange && !higher_orders)) {
-      throw InputError(file,
-                       "cell " + std::to_string(c) + " (counted from 0) is a " + type_name(shape, vertices) +
-                           ", which VTK's formats " +
-                           (type == nullptr ? "do not have" : "number in another order"),
-                       "write the format that the mesh came from, .msh for example");
-    }
-    types[c] = static_cast<std::uint8_t>(type->number);
+    const CellType* own = numbers != nullptr ? own_type((*numbers)[c], shape, vertices) : nullptr;
+    types[c] = static_cast<std::uint8_t>((own != nullptr ? own : defaults(shape, vertices))->number);
   }
   return types;
 }

@@ -73,7 +73,7 @@ bool fits_polydata(const Cells& cells, const std::vector<std::uint8_t>& types) {
 class LegacyWriter {
  public:
   LegacyWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
-      : from_(mesh, path, notes), layout_(from_.metadata.legacy.value_or(LegacyLayout{})), out_(path) {}
+      : from_(mesh, notes), layout_(from_.metadata.legacy.value_or(LegacyLayout{})), out_(path) {}
 
   void write() {
     choose_layout();
@@ -404,5 +404,5 @@ void write_legacy(const Mesh& mesh, const FilePath& path, Notes& notes) {
 }  // namespace meshorder::vtk
 
 meshorder::Format meshorder::vtk_format() {
-  return {"VTK", {".vtk"}, false, vtk::read_legacy, vtk::write_legacy};
+  return {"VTK", {".vtk"}, false, vtk::read_legacy, vtk::write_legacy, vtk::holds};
 }

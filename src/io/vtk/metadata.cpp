@@ -104,10 +104,6 @@ bool filled_with_nan(const DataArray& array) {
          std::holds_alternative<std::vector<float>>(array.values);
 }
 
-bool is_from_vtk(const Mesh& mesh) {
-  return dynamic_cast<const Metadata*>(mesh.format_metadata.get()) != nullptr;
-}
-
 /// Returns the metadata of a mesh that came from VTK, or empty ones; notes those of another format.
 const Metadata& metadata_of(const Mesh& mesh, Notes& notes) {
   static const Metadata none;
@@ -158,11 +154,12 @@ void add_array(Mesh& mesh, DataArray array) {
   mesh.data.push_back(std::move(array));
 }
 
-WriteContext::WriteContext(const Mesh& written, const FilePath& path, Notes& warnings)
-    : mesh(written),
-      notes(warnings),
-      metadata(metadata_of(mesh, notes)),
-      types(cell_types(mesh, path.string(), is_from_vtk(mesh))) {
+bool is_from_vtk(const Mesh& mesh) {
+  return dynamic_cast<const Metadata*>(mesh.format_metadata.get()) != nullptr;
+}
+
+WriteContext::WriteContext(const Mesh& written, Notes& warnings)
+    : mesh(written), notes(warnings), metadata(metadata_of(mesh, notes)), types(cell_types(mesh)) {
   collect_arrays();
 }
 

@@ -183,9 +183,15 @@ using ErrorAt = std::function<InputError(const std::string&, const std::string&)
 /// as in a Mesh.
 bool take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes);
 
-/// Returns VTK's type number of every cell. Throws Error that names the first cell that VTK's files cannot
-/// hold; node orders above second order are known for meshes from VTK only (`higher_orders`).
-std::vector<std::uint8_t> cell_types(const Mesh& mesh, const std::string& file, bool higher_orders);
+/// Returns whether the mesh was read from one of VTK's formats.
+bool is_from_vtk(const Mesh& mesh);
+
+/// Returns whether VTK has a type for these cells. Node orders above second order are known for meshes from
+/// VTK only.
+bool holds(const Mesh& mesh, Shape shape, int vertices);
+
+/// Returns VTK's type number of every cell; VTK `holds` them.
+std::vector<std::uint8_t> cell_types(const Mesh& mesh);
 
 /// Returns true for higher-order hexahedra, whose nodes VTK numbered differently before VTK 9 (files before
 /// XML version 2.1 and legacy version 5.1).
@@ -212,7 +218,7 @@ Mesh read_vtu(const FilePath& path, Notes& notes);
 /// arrays "vertex_id" and "cell_id"; all of it noted. O(size of the arrays that are made).
 struct WriteContext {
   /// Throws Error for cells that VTK's formats do not have.
-  WriteContext(const Mesh& written, const FilePath& path, Notes& warnings);
+  WriteContext(const Mesh& written, Notes& warnings);
 
   /// Returns the cells in VTK's order of vertices; of VTK before version 9 if `old_hexahedra`. The result
   /// belongs to the mesh or to this object.

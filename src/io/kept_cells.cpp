@@ -1,0 +1,253 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/kept_cells.hpp"
+
+#include "base/text.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/io.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <numeric>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// The cells of one type in a mesh.
+struct TypeCount {
+  Shape shape;
+  int vertices;
+  Index count;
+
+  [[nodiscard]] bool is_type_of(const Mesh& mesh, Index cell) const {
+    return mesh.cells.shapes[cell] == shape && mesh.cells.vertex_count(cell) == vertices;
+  }
+};
+
+/// Returns the types of the cells, in the order in which they first appear.
+std::vector<TypeCount> counted_types(const Mesh& mesh) {
+  std::vector<TypeCount> types;
+  std::size_t last = 0;  // neighbours are mostly of one type
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (types.empty() || !types[last].is_type_of(mesh, c)) {
+      const auto found = std::find_if(types.begin(), types.end(),
+                                      [&](const TypeCount& type) { return type.is_type_of(mesh, c); });
+      last = static_cast<std::size_t>(found - types.begin());
+      if (found == types.end()) types.push_back({mesh.cells.shapes[c], mesh.cells.vertex_count(c), 0});
+    }
+    ++types[last].count;
+  }
+  return types;
+}
+
+int highest_dimension_of(const std::vector<TypeCount>& types) {
+  int highest = -1;
+  for (const TypeCount& type : types) highest = std::max(highest, dimension(type.shape));
+  return highest;
+}
+
+/// Returns those of the types that a file of the format goes without; none if it cannot hold one of the
+/// highest dimension.
+std::vector<TypeCount> types_left_out(const Mesh& mesh, const std::vector<TypeCount>& types,
+                                      const Format& format) {
+  const int highest = highest_dimension_of(types);
+  std::vector<TypeCount> result;
+  for (const TypeCount& type : types) {
+    if (format.holds(mesh, type.shape, type.vertices)) continue;
+    if (dimension(type.shape) == highest) return {};
+    result.push_back(type);
+  }
+  return result;
+}
+
+/// Returns the positions of the cells of all types but these.
+std::vector<Index> cells_but(const Mesh& mesh, const std::vector<TypeCount>& left_out) {
+  std::vector<Index> kept;
+  kept.reserve(mesh.cells.shapes.size());
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (std::none_of(left_out.begin(), left_out.end(),
+                     [&](const TypeCount& type) { return type.is_type_of(mesh, c); })) {
+      kept.push_back(c);
+    }
+  }
+  return kept;
+}
+
+/// Returns "1 line", "212 triangles", "7 triangles of 6 vertices".
+std::string in_words(const TypeCount& type) {
+  constexpr std::array<std::string_view, kShapes> kPlurals{
+      "vertices", "lines",     "triangles",    "quads",     "tetrahedra", "pyramids",
+      "wedges",   "hexahedra", "point clouds", "polylines", "polygons",   "triangle strips"};
+  const std::string_view plural = kPlurals[static_cast<std::size_t>(type.shape)];
+  std::string name(type.count == 1 ? to_string(type.shape) : plural);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  const bool linear = type.vertices == corners(type.shape, type.vertices);
+  return fmt::format("{} {}{}", type.count, name,
+                     linear ? "" : fmt::format(" of {} vertices", type.vertices));
+}
+
+/// Keeps the rows of an array on cells; `place` is the new position of each old one, −1 for none.
+void keep_rows(DataArray& array, const std::vector<Index>& kept, const std::vector<Index>& place) {
+  std::vector<Index> rows;
+  if (array.is_dense()) {
+    rows = kept;
+  } else {
+    std::vector<Index> indices;
+    for (Index r = 0; r < index_size(array.indices); ++r) {
+      if (place[array.indices[r]] < 0) continue;
+      rows.push_back(r);
+      indices.push_back(place[array.indices[r]]);
+    }
+    array.indices = std::move(indices);
+  }
+  std::visit(
+      [&](auto& values) {
+        std::decay_t<decltype(values)> chosen;
+        chosen.reserve(rows.size() * static_cast<std::size_t>(array.components));
+        for (const Index r : rows) {
+          const auto first = values.begin() + static_cast<std::ptrdiff_t>(r) * array.components;
+          chosen.insert(chosen.end(), first, first + array.components);
+        }
+        values = std::move(chosen);
+      },
+      array.values);
+}
+
+void keep_blocks(std::vector<Index>& blocks, const std::vector<Index>& kept) {
+  std::vector<Index> result;
+  for (const Index begin : blocks) {
+    const auto first = static_cast<Index>(std::lower_bound(kept.begin(), kept.end(), begin) - kept.begin());
+    if (first < index_size(kept) && (result.empty() || result.back() != first)) result.push_back(first);
+  }
+  blocks = std::move(result);
+}
+
+}  // namespace
+
+std::vector<Index> all_cells(const Mesh& mesh) {
+  std::vector<Index> cells(mesh.cells.shapes.size());
+  std::iota(cells.begin(), cells.end(), Index{0});
+  return cells;
+}
+
+std::vector<Index> cells_for(const Mesh& mesh, const Format& format, Notes& notes) {
+  const std::vector<TypeCount> left_out = types_left_out(mesh, counted_types(mesh), format);
+  for (const TypeCount& type : left_out) {
+    notes.push_back(
+        type.count == 1
+            ? fmt::format("{} is left out: {} has no place for it", in_words(type), format.name)
+            : fmt::format("{} are left out: {} has no place for them", in_words(type), format.name));
+  }
+  return left_out.empty() ? all_cells(mesh) : cells_but(mesh, left_out);
+}
+
+void keep_cells_at(Mesh& mesh, const std::vector<Index>& kept, Notes& notes) {
+  if (index_size(kept) == mesh.cell_count()) return;
+  std::vector<Index> place(mesh.cells.shapes.size(), -1);
+  for (Index k = 0; k < index_size(kept); ++k) place[kept[k]] = k;
+
+  Cells cells;
+  for (const Index c : kept) cells.push_back(mesh.cells.shapes[c], mesh.cells[c]);
+  mesh.cells = std::move(cells);
+  keep_blocks(mesh.cell_blocks, kept);
+  if (!mesh.cell_ids.empty()) {
+    std::vector<std::int64_t> ids;
+    ids.reserve(kept.size());
+    for (const Index c : kept) ids.push_back(mesh.cell_ids[c]);
+    mesh.cell_ids = std::move(ids);
+  }
+
+  std::erase_if(mesh.data, [&](DataArray& array) {
+    if (array.association == Association::vertices) return false;
+    const bool dense = array.is_dense();
+    keep_rows(array, kept, place);
+    const bool gone = !dense && array.indices.empty();
+    if (gone) notes.push_back(fmt::format("the array '{}' is left out with all its cells", array.name));
+    return gone;
+  });
+  std::erase_if(mesh.sets, [&](EntitySet& set) {
+    if (set.association == Association::vertices || set.members.empty()) return false;
+    std::erase_if(set.members, [&](Index member) { return place[member] < 0; });
+    for (Index& member : set.members) member = place[member];
+    if (set.members.empty()) {
+      notes.push_back(fmt::format("the set '{}' is left out with all its cells", set.name));
+    }
+    return set.members.empty();
+  });
+}
+
+std::string fault_of_cells(const Mesh& mesh, const Format& format) {
+  std::vector<TypeCount> types = counted_types(mesh);
+  std::erase_if(types, [&](const TypeCount& type) { return format.holds(mesh, type.shape, type.vertices); });
+  const int highest = highest_dimension_of(types);  // the others might have been left out
+  for (const TypeCount& type : types) {
+    if (dimension(type.shape) < highest) continue;
+    return fmt::format("{} cannot hold a cell of type {}", format.name, type_name(type.shape, type.vertices));
+  }
+  return format.conflict == nullptr ? "" : format.conflict(mesh);
+}
+
+std::string advice_on_formats(const Mesh& mesh) {
+  std::vector<std::string_view> names;
+  for (const Format& format : all_formats()) {
+    if (fault_of_cells(mesh, format).empty()) names.push_back(format.extensions.front());
+  }
+  if (names.empty()) return "no format that meshorder writes holds all of its cells";
+  const std::string_view last = names.back();
+  names.pop_back();
+  return fmt::format("write {}{}{}", join(names), names.empty() ? "" : " or ", last);
+}
+
+void require_held_cells(const Mesh& mesh, const std::vector<Index>& kept, const FilePath& path,
+                        const Format& format) {
+  std::string fault;
+  if (index_size(kept) == mesh.cell_count()) {
+    fault = fault_of_cells(mesh, format);
+  } else {
+    Mesh part = mesh;
+    Notes ignored;
+    keep_cells_at(part, kept, ignored);
+    fault = fault_of_cells(part, format);
+  }
+  if (!fault.empty()) throw InputError(path.string(), fault, advice_on_formats(mesh));
+}
+
+inline namespace v0_2 {
+
+std::vector<Index> keep_cells(Mesh& mesh, const KeepOptions& options) {
+  constexpr std::array<std::string_view, 4> kNames{"points", "curves", "surfaces", "volumes"};
+  if (options.dimension < -1 || options.dimension > 3) {
+    throw InvalidArgument(fmt::format("keep_cells: the dimension is {}; 0 to 3, or −1 for all, is possible",
+                                      options.dimension));
+  }
+  check_mesh(mesh);
+  const Format* const format = options.format.empty() ? nullptr : &format_named(options.format);
+  std::vector<Index> kept = all_cells(mesh);
+  Notes notes;
+  if (options.dimension >= 0) {
+    std::erase_if(kept, [&](Index c) { return dimension(mesh.cells.shapes[c]) != options.dimension; });
+    if (kept.empty()) {
+      throw InvalidArgument(
+          fmt::format("the mesh has no {}", kNames[static_cast<std::size_t>(options.dimension)]));
+    }
+    keep_cells_at(mesh, kept, notes);
+  }
+  if (format != nullptr) {
+    const std::vector<Index> held = cells_for(mesh, *format, notes);
+    keep_cells_at(mesh, held, notes);
+    std::vector<Index> positions;
+    positions.reserve(held.size());
+    for (const Index c : held) positions.push_back(kept[c]);
+    kept = std::move(positions);
+  }
+  if (options.notes != nullptr) options.notes->insert(options.notes->end(), notes.begin(), notes.end());
+  return kept;
+}
+
+}  // namespace v0_2
+}  // namespace meshorder
