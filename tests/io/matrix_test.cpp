@@ -193,7 +193,7 @@ TEST(MetisGraph, LeavesOutWhatAGraphHasNot) {
   EXPECT_EQ(text_of(read_as("a.mtx", kReal), "a.graph", &notes), "4 2\n2\n1 4\n\n2\n");
   EXPECT_THAT(notes,
               testing::IsSupersetOf(
-                  {HasSubstr("3 entries on the diagonal"), HasSubstr("1 lines that join vertices once more"),
+                  {HasSubstr("3 vertices are left out"), HasSubstr("1 lines that join vertices once more"),
                    HasSubstr("array 'value' on cells is not written"), HasSubstr("the matrix's comments")}));
   EXPECT_EQ(text_of(read_as("a.graph", kGraph), "a.mtx"),
             "%%MatrixMarket matrix coordinate integer symmetric\n4 4 2\n2 1 30\n3 2 40\n");
@@ -202,7 +202,10 @@ TEST(MetisGraph, LeavesOutWhatAGraphHasNot) {
 TEST(MetisGraph, NeedsAnEdge) {
   const TemporaryFolder folder;
   EXPECT_THAT(test::write_error(test::cells_of_type(Shape::vertex, 1, 2), folder.path() / "a.graph"),
-              HasSubstr("no line between two vertices"));
+              HasSubstr("METIS cannot hold a cell of type vertex"));
+  Mesh loop = test::cells_of_type(Shape::line, 2, 1);
+  loop.cells.vertices = {0, 0};
+  EXPECT_THAT(test::write_error(loop, folder.path() / "a.graph"), HasSubstr("no line between two vertices"));
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 

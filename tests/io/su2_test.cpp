@@ -15,6 +15,7 @@ namespace {
 
 using test::TemporaryFolder;
 using test::with;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -260,12 +261,20 @@ TEST(Su2, RefusesCellsThatItCannotHold) {
   EXPECT_THAT(test::write_error(test::cells_of_type(Shape::tetrahedron, 10, 1), path),
               HasSubstr("SU2 cannot hold a cell of type tetrahedron10"));
   EXPECT_THAT(test::write_error(test::cells_of_type(Shape::line, 2, 1), path),
-              HasSubstr("SU2 cannot hold a mesh without surface or volume cells"));
-  Mesh mesh = foreign();
-  mesh.cells.push_back(Shape::line, std::array<Index, 2>{0, 1});
-  mesh.data.clear();
-  EXPECT_THAT(test::write_error(mesh, path), HasSubstr("SU2 cannot hold a cell of type line"));
+              HasSubstr("SU2 cannot hold a cell of type line"));
   EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(Su2, LeavesOutWhatIsNoElementAndNoBoundary) {
+  const TemporaryFolder folder;
+  Mesh mesh = foreign();
+  mesh.data.clear();
+  const Index before = mesh.cell_count();
+  mesh.cells.push_back(Shape::line, std::array<Index, 2>{0, 1});
+  Notes notes;
+  write_mesh(mesh, folder.path() / "m.su2", &notes);
+  EXPECT_THAT(notes, Contains(HasSubstr("1 line is left out: SU2 has no place for it")));
+  EXPECT_EQ(read_mesh(folder.path() / "m.su2").cell_count(), before);
 }
 
 TEST(Su2, RefusesBrokenFiles) {

@@ -256,6 +256,10 @@ const DataArray* weights(const Mesh& mesh, std::string_view name, Association as
   return array;
 }
 
+bool is_edge(const Mesh& /*mesh*/, Shape shape, int vertices) {
+  return shape == Shape::line && vertices == 2;
+}
+
 void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const DataArray* edge_weights = weights(mesh, kWeight, Association::cells, 1);
   const DataArray* sizes = weights(mesh, kSize, Association::vertices, 0);
@@ -298,7 +302,7 @@ void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
 
   if (graph.loops > 0) {
     notes.push_back(
-        fmt::format("{} entries on the diagonal are not written: a graph has no loops", graph.loops));
+        fmt::format("{} lines from a vertex to itself are not written: a graph has no loops", graph.loops));
   }
   if (graph.repeated > 0) {
     notes.push_back(fmt::format(
@@ -312,7 +316,7 @@ void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
 }  // namespace matrix
 
 Format metis_graph_format() {
-  return {"METIS", {".graph"}, false, matrix::read_graph, matrix::write_graph, matrix::is_entry};
+  return {"METIS", {".graph"}, false, matrix::read_graph, matrix::write_graph, matrix::is_edge};
 }
 
 }  // namespace meshorder

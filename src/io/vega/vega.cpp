@@ -256,7 +256,9 @@ std::string vega_conflict(const Mesh& mesh) {
   return one_shape ? "" : "Vega cannot hold both tetrahedra and hexahedra in one file";
 }
 
-void write_vega(const Mesh& mesh, const FilePath& path, Notes& notes) { VegaWriter(mesh, path, notes).write(); }
+void write_vega(const Mesh& mesh, const FilePath& path, Notes& notes) {
+  VegaWriter(mesh, path, notes).write();
+}
 
 }  // namespace
 

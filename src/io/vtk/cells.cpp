@@ -161,12 +161,25 @@ struct Handedness {
 constexpr std::array kHandedness{Handedness{10, {1, 2, 3}}, Handedness{12, {1, 3, 4}},
                                  Handedness{14, {1, 3, 4}}, Handedness{kLinearWedge, {1, 2, 3}}};
 
-/// Whether most linear wedges have, with their first triangle facing inward, volumes of the sign that the
-/// other linear cells have: of a positive one where there are none. Cells with a wrong number of vertices
-/// have no say.
+/// Cells by the sign of their volumes.
+struct Volumes {
+  Offset positive = 0;
+  Offset negative = 0;
+
+  /// 1 or −1 where at least 19 of 20 have that sign, else 0.
+  [[nodiscard]] int sign() const {
+    constexpr Offset kOneIn = 20;
+    if (kOneIn * negative < positive) return 1;
+    return kOneIn * positive < negative ? -1 : 0;
+  }
+};
+
+/// Whether the linear wedges have, with their first triangle facing inward, volumes of the sign that the
+/// other linear cells have: of a positive one where there are none. Meshes in which signs are mixed tell
+/// nothing, and cells with a wrong number of vertices have no say.
 bool wedges_face_inward(const std::vector<Point>& points, const FileCells& cells) {
-  Offset wedges = 0;
-  Offset others = 0;
+  Volumes wedges;
+  Volumes others;
   for (std::size_t c = 0; c < cells.types.size(); ++c) {
     const auto* const of_type = std::find_if(kHandedness.begin(), kHandedness.end(),
                                              [&](const Handedness& h) { return h.type == cells.types[c]; });
@@ -174,9 +187,12 @@ bool wedges_face_inward(const std::vector<Point>& points, const FileCells& cells
     const Index* const corners = cells.vertices.data() + cells.offsets[c];
     const auto edge = [&](int k) { return minus(points[corners[of_type->ends[k]]], points[corners[0]]); };
     const double volume = dot(cross(edge(0), edge(1)), edge(2));
-    (of_type->type == kLinearWedge ? wedges : others) += volume > 0 ? 1 : volume < 0 ? -1 : 0;
+    Volumes& volumes = of_type->type == kLinearWedge ? wedges : others;
+    volumes.positive += volume > 0 ? 1 : 0;
+    volumes.negative += volume < 0 ? 1 : 0;
   }
-  return others < 0 ? wedges < 0 : wedges > 0;
+  const bool others_tell = others.positive + others.negative > 0;
+  return wedges.sign() != 0 && wedges.sign() == (others_tell ? others.sign() : 1);
 }
 
 InputError unknown_type(int number, Index cell, const ErrorAt& error) {
