@@ -209,7 +209,7 @@ def test_info_and_compare_name_the_users_file(deck, tmp_path):
 def test_a_full_disk_behind_stdout_is_an_error(deck, tmp_path):
     with open("/dev/full", "w") as full:
         for line in ("info deck.inp", "methods"):
-            words = [COMMAND, *line.split()]
+            words = [str(COMMAND), *line.split()]
             done = subprocess.run(words, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True)
             assert done.returncode == 2
             assert done.stderr.splitlines()[-1].startswith("meshorder: standard output: ")
