@@ -118,7 +118,7 @@ def key(entry, headers, fingerprint, general):
     folders = [ROOT, *(p for p in pathlib.Path(entry["file"]).parents if p.is_relative_to(ROOT))]
     checks = {str(folder / ".clang-tidy") for folder in folders if (folder / ".clang-tidy").exists()}
     seen = [general, os.path.relpath(entry["file"], ROOT), shlex.join(flags(entry)).replace(str(ROOT), ".")]
-    seen += [fingerprint(path) for path in sorted(checks | headers | {entry["file"]})]
+    seen += sorted(fingerprint(path) for path in checks | headers | {entry["file"]})  # whatever the checkout's path
     return hashlib.sha256("\n".join(seen).encode()).hexdigest()
 
 
