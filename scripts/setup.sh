@@ -22,6 +22,8 @@ packages_to_run=(
   zlib1g-dev           "compressed .vtu files"
   liblz4-dev           "compressed .vtu files"
   liblzma-dev          "compressed .vtu files"
+  libnetcdf-dev        "Exodus II files"
+  libhdf5-dev          "XDMF's arrays"
   libcgal-dev          "makes the models' surfaces"
   libgmp-dev           "exact numbers for CGAL"
   libmpfr-dev          "exact numbers for CGAL"

@@ -51,7 +51,7 @@ struct ReadOptions {
 /// @throws InputError for a file that is missing, faulty or without cells, with place and remedy; for more
 ///         than 2,147,483,647 vertices or cells; for an unknown extension, with the known ones
 /// @throws InvalidArgument for an unknown format, with the known ones
-/// @throws Unavailable for a compression that this build lacks
+/// @throws Unavailable for a format or a compression of which this build lacks the library
 [[nodiscard]] MESHORDER_API Mesh read_mesh(const std::filesystem::path& path,
                                            const ReadOptions& options = {});
 

@@ -37,6 +37,12 @@ std::string build_info() {
 #ifdef MESHORDER_HAS_LZ4
   info += " lz4";
 #endif
+#ifdef MESHORDER_HAS_NETCDF
+  info += " netcdf";
+#endif
+#ifdef MESHORDER_HAS_HDF5
+  info += " hdf5";
+#endif
   return info;
 }
 

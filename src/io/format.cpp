@@ -5,6 +5,8 @@
 #include "io/all_formats.hpp"
 #include <meshorder/error.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -18,6 +20,28 @@ const std::array kFormats{
     vtk_format(),    off_format(),           obj_format(),         ply_format(),   stl_format(),
     su2_format(),    matrix_market_format(), metis_graph_format(),
 };
+
+/// A format of which this build lacks the library.
+struct LackingFormat {
+  std::string_view name;
+  std::vector<std::string_view> extensions;  ///< with dot, lower case
+  std::string_view library;
+  std::string_view option;  ///< of CMake, that builds it in
+};
+
+const std::vector<LackingFormat> kLackingFormats{
+#ifndef MESHORDER_HAS_NETCDF
+    {"Exodus", {".exo", ".e", ".ex2", ".g"}, "netCDF", "MESHORDER_NETCDF"},
+#endif
+#ifndef MESHORDER_HAS_HDF5
+    {"XDMF", {".xdmf", ".xmf"}, "HDF5", "MESHORDER_HDF5"},
+#endif
+};
+
+[[noreturn]] void throw_lacking(const LackingFormat& format, const std::string& where) {
+  throw Unavailable(fmt::format("{}: {} needs {}, which this build of meshorder lacks; build it with {}=ON",
+                                where, format.name, format.library, format.option));
+}
 
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -89,6 +113,12 @@ const Format& format_of(const std::filesystem::path& path) {
       known += (known.empty() ? "" : " ") + std::string(candidate);
     }
   }
+  for (const LackingFormat& format : kLackingFormats) {
+    const auto& extensions = format.extensions;
+    if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) {
+      throw_lacking(format, path.string());
+    }
+  }
   throw InputError(path.string(),
                    extension.empty() ? "has no extension" : "unknown extension '" + extension + "'",
                    "known are " + known + "; the Python package and its command also take meshio's formats");
@@ -98,6 +128,9 @@ const Format& format_named(std::string_view name) {
   const auto found = std::find_if(kFormats.begin(), kFormats.end(),
                                   [&](const Format& format) { return same_but_for_case(format.name, name); });
   if (found != kFormats.end()) return *found;
+  for (const LackingFormat& format : kLackingFormats) {
+    if (same_but_for_case(format.name, name)) throw_lacking(format, "the format '" + std::string(name) + "'");
+  }
   throw InvalidArgument("unknown format '" + std::string(name) + "'; known are " +
                         join(kFormats, [](const Format& format) { return format.key(); }));
 }

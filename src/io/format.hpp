@@ -41,11 +41,12 @@ struct Format {
 std::span<const Format> all_formats();
 
 /// Returns the format that belongs to the extension of `path`, in any case. Throws InputError, which lists
-/// the known extensions, if there is none.
+/// the known extensions, if there is none, and Unavailable for a format of which this build lacks the
+/// library.
 const Format& format_of(const std::filesystem::path& path);
 
 /// Returns the format of that name, in any case. Throws InvalidArgument, which lists the known ones, if there
-/// is none.
+/// is none, and Unavailable likewise.
 const Format& format_named(std::string_view name);
 
 /// Returns the format that the bytes of a file look like, null if they look like none. TetGen's files cannot
