@@ -63,8 +63,8 @@ struct ReadOptions {
 
 /// Options of `keep_cells`.
 struct KeepOptions {
-  std::string format =
-      {};                  ///< name of the format that the mesh will be written in; empty: none in particular
+  /// Name of the format that the mesh will be written in; empty: none in particular.
+  std::string format = {};
   int dimension = -1;      ///< keep the cells of this dimension only, 0 to 3; −1: of all dimensions
   Notes* notes = nullptr;  ///< receives what was left out, one line for each type of cells; null: dropped
 };
@@ -98,13 +98,11 @@ struct WriteOptions {
 /// @param mesh   not changed
 /// @param path   replaced when all is written; nothing is left behind after an exception
 /// @param notes  receives what the format cannot hold; null: dropped
-/// @return the places that the cells have in the file; the identity after `reorder` for that format. Cells
-/// that
-///         are left out come last, behind those of the file
+/// @return the places that the cells have in the file, behind them those of cells that are left out; the
+///         identity after `reorder` for that format
 /// @throws InvalidArgument for a mesh that `check_mesh` refuses
 /// @throws InputError for an unknown extension, for cells of the highest dimension that the format cannot
-/// hold,
-///         with the formats that can, and if the file cannot be written
+///         hold, with the formats that can, and if the file cannot be written
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path,
                                      Notes* notes = nullptr);
 

@@ -17,16 +17,15 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kStepVertices = 4096;  // in a chunk
+constexpr Index kVerticesPerChunk = 4096;
 
 double inner_product(std::span<const double> a, std::span<const double> b) {
-  return sum_over_chunks<double>(static_cast<Index>(a.size() / 3), kStepVertices,
-                                 [&](Index begin, Index end) {
-                                   double sum = 0.0;
-                                   for (Offset i = Offset{3} * begin; i < Offset{3} * end; ++i)
-                                     sum += a[i] * b[i];
-                                   return sum;
-                                 });
+  const auto vertices = static_cast<Index>(a.size() / 3);
+  return sum_over_chunks<double>(vertices, kVerticesPerChunk, [&](Index begin, Index end) {
+    double sum = 0.0;
+    for (Offset i = Offset{3} * begin; i < Offset{3} * end; ++i) sum += a[i] * b[i];
+    return sum;
+  });
 }
 
 double norm(std::span<const double> a) { return std::sqrt(inner_product(a, a)); }
@@ -144,7 +143,7 @@ StepReport BackwardEuler::step() {
 
 /// moved = xₙ + h v
 void BackwardEuler::move_to(std::span<const double> velocities) {
-  for_each_chunk(system_.vertex_count(), kStepVertices, [&](Index, Index begin, Index end) {
+  for_each_chunk(system_.vertex_count(), kVerticesPerChunk, [&](Index, Index begin, Index end) {
     for (Offset v = begin; v < end; ++v) {
       for (int c = 0; c < 3; ++c) {
         moved_[kPaddedStride * v + c] =
@@ -187,7 +186,7 @@ void BackwardEuler::compute_gradient(Iterate& iterate) {
     for (std::size_t i = 0; i < g.size(); ++i) g[i] += scratch_[i];
   }
   const std::span<const double> forces = system_.forces();
-  for_each_chunk(system_.vertex_count(), kStepVertices, [&](Index, Index begin, Index end) {
+  for_each_chunk(system_.vertex_count(), kVerticesPerChunk, [&](Index, Index begin, Index end) {
     for (Offset vertex = begin; vertex < end; ++vertex) {
       for (int c = 0; c < 3; ++c) {
         g[3 * vertex + c] -= h * (loads_[3 * vertex + c] + forces[kPaddedStride * vertex + c]);

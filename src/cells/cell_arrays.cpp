@@ -15,7 +15,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Offset kTogether = 262144;  // that a thread converts together
+constexpr Offset kEntriesPerRange = 262144;  // that a thread converts together
 
 /// Types whose corners VTK numbers along the axes: two pairs of them change places to become quads and
 /// hexahedra.
@@ -101,7 +101,7 @@ std::span<const Index> narrowed(const IndexView& numbers, int base, std::vector<
   }
   own.resize(numbers.size());
   with_type(numbers, [&](auto entries) {
-    for_each_range(static_cast<Offset>(entries.size()), kTogether, [&](Offset begin, Offset end) {
+    for_each_range(static_cast<Offset>(entries.size()), kEntriesPerRange, [&](Offset begin, Offset end) {
       for (Offset k = begin; k < end; ++k) {
         const std::uint64_t value = static_cast<std::uint64_t>(entries[k]) - static_cast<std::uint64_t>(base);
         own[k] = value <= static_cast<std::uint64_t>(kMaxIndex) ? static_cast<Index>(value) : Index{-1};
@@ -121,7 +121,7 @@ void check_base(int base) {
 void check_vertices(const CellArrays& cells, int base) {
   std::atomic<bool> sound = true;
   const auto n = static_cast<std::uint32_t>(cells.vertex_count);
-  for_each_range(static_cast<Offset>(cells.vertices.size()), kTogether, [&](Offset begin, Offset end) {
+  for_each_range(static_cast<Offset>(cells.vertices.size()), kEntriesPerRange, [&](Offset begin, Offset end) {
     bool in_range = true;
     for (Offset k = begin; k < end; ++k)
       in_range = in_range && static_cast<std::uint32_t>(cells.vertices[k]) < n;

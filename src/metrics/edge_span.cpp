@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "metrics/edge_span.hpp"
 
+#include "base/parallel.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -12,14 +13,20 @@
 namespace meshorder {
 namespace {
 
-/// Calls `visit(span)` for every edge once.
+/// Calls `visit(span)` for every edge from a vertex begin … end−1 to one of a smaller number.
 template <class Visit>
-void for_each_span(GraphRef graph, const Permutation& order, Visit visit) {
-  for (Index v = 0; v < graph.size(); ++v) {
+void for_each_span(GraphRef graph, const Permutation& order, Index begin, Index end, Visit visit) {
+  for (Index v = begin; v < end; ++v) {
     for (const Index u : graph[v]) {
       if (u < v) visit(std::abs(order.old_to_new()[u] - order.old_to_new()[v]));
     }
   }
+}
+
+/// Calls `visit(span)` for every edge once.
+template <class Visit>
+void for_each_span(GraphRef graph, const Permutation& order, Visit visit) {
+  for_each_span(graph, order, 0, graph.size(), visit);
 }
 
 /// How many edges fall into each bin, to the last one that has any.
@@ -55,6 +62,21 @@ EdgeSpan edge_span(GraphRef graph, const Permutation& order) {
   result.mean = sum / edges;
   result.mean_log2 = log_sum / edges;
   return result;
+}
+
+SpanSize& SpanSize::operator+=(const SpanSize& other) {
+  sum += other.sum;
+  max = std::max(max, other.max);
+  return *this;
+}
+
+SpanSize span_size(GraphRef graph, const Permutation& order) {
+  constexpr Index kChunk = 4096;
+  return sum_over_chunks<SpanSize>(graph.size(), kChunk, [&](Index begin, Index end) {
+    SpanSize size;
+    for_each_span(graph, order, begin, end, [&](Index span) { size += {span, span}; });
+    return size;
+  });
 }
 
 Offset profile(GraphRef graph, const Permutation& order) {

@@ -22,6 +22,17 @@ struct EdgeSpan {
 /// Spans of the graph's vertices in the given order. O(n + edges).
 EdgeSpan edge_span(GraphRef graph, const Permutation& order);
 
+/// The part of an EdgeSpan that takes no logarithms.
+struct SpanSize {
+  Offset sum = 0;
+  Index max = 0;
+
+  SpanSize& operator+=(const SpanSize& other);
+};
+
+/// Adds up the spans of all edges, on all threads; polls. O(n + edges).
+SpanSize span_size(GraphRef graph, const Permutation& order);
+
 /// Σ over vertices of the distance to the first neighbour before them in the order: the size of the envelope
 /// of a matrix with this pattern (diagonal not counted). O(n + edges).
 Offset profile(GraphRef graph, const Permutation& order);

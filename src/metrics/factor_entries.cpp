@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "metrics/factor_entries.hpp"
 
+#include "base/run_scope.hpp"
+
 #include <span>
 #include <vector>
 
@@ -15,6 +17,7 @@ std::vector<Index> elimination_tree(GraphRef graph, const Permutation& order) {
   std::vector<Index> parent(static_cast<std::size_t>(graph.size()), kNoPlace);
   std::vector<Index> ancestor(parent);  // as far as the tree is known, with shortened paths
   for (Index row = 0; row < graph.size(); ++row) {
+    poll_in_loop(row);
     for (const Index neighbour : graph[order.new_to_old()[row]]) {
       for (Index k = order.old_to_new()[neighbour]; k < row && k != kNoPlace;) {
         const Index next = ancestor[k];
@@ -99,6 +102,7 @@ Offset factor_entries(GraphRef graph, const Permutation& order) {
   std::vector<Index> last_leaf(static_cast<std::size_t>(n), kNoPlace);
   DisjointSets finished(n);
   for (Index j = 0; j < n; ++j) {
+    poll_in_loop(j);
     for (const Index neighbour : graph[vertex[j]]) {
       const Index row = tree.number[order.old_to_new()[neighbour]];
       if (row <= j) continue;

@@ -4,6 +4,7 @@
 #include "metrics/edge_span.hpp"
 #include "metrics/factor_entries.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -26,6 +27,10 @@ std::string sentence(const std::string& what, const std::string& old_figure, std
          new_figure + " by " + std::string(method);
 }
 
+bool geometric_mean_gains(GraphRef graph, const Permutation& as_is, const Permutation& order) {
+  return edge_span(graph, order).mean_log2 <= edge_span(graph, as_is).mean_log2 + std::log2(kGain);
+}
+
 }  // namespace
 
 Workload made_for(std::string_view method) {
@@ -43,16 +48,18 @@ std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string
     return sentence("the number of entries in the factor", std::to_string(before), method,
                     std::to_string(after));
   }
-  const EdgeSpan before = edge_span(graph, as_is);
-  const EdgeSpan after = edge_span(graph, order);
+  const SpanSize before = span_size(graph, as_is);
+  const SpanSize after = span_size(graph, order);
   if (workload == Workload::bandwidth) {
     if (after.max < before.max) return {};
     return sentence("the bandwidth", std::to_string(before.max), method, std::to_string(after.max));
   }
-  const bool gains =
-      after.mean <= kGain * before.mean || after.mean_log2 <= before.mean_log2 + std::log2(kGain);
-  if (gains && after.mean <= kTolerated * before.mean) return {};
-  return sentence("the mean edge span", with_one_digit(before.mean), method, with_one_digit(after.mean));
+  const auto edges = static_cast<double>(std::max<Offset>(1, graph.edge_count()));
+  const double old_mean = static_cast<double>(before.sum) / edges;
+  const double new_mean = static_cast<double>(after.sum) / edges;
+  if (new_mean <= kGain * old_mean) return {};
+  if (new_mean <= kTolerated * old_mean && geometric_mean_gains(graph, as_is, order)) return {};
+  return sentence("the mean edge span", with_one_digit(old_mean), method, with_one_digit(new_mean));
 }
 
 }  // namespace meshorder

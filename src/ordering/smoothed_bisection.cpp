@@ -8,7 +8,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kSmallest = 16;  // smaller pieces are sorted and left
+constexpr Index kSmallestPiece = 16;  // smaller pieces are sorted and left
 constexpr int kSmoothingSteps = 12;
 
 /// A connected part of a piece; its vertices stand at [begin, end) of the sorted ones.
@@ -45,7 +45,7 @@ class Bisection {
   void order(Index begin, Index end) {
     if (end - begin < 2) return;
     sort(begin, end);
-    if (end - begin <= kSmallest) return;
+    if (end - begin <= kSmallestPiece) return;
     const Index middle = begin + (end - begin) / 2;
     for (Index k = begin; k < end; ++k) in_first_half_[sequence_[k]] = k < middle ? 1 : 0;
     for (Index k = begin; k < end; ++k) drop_neighbours_in_other_half(sequence_[k]);

@@ -40,7 +40,17 @@ TEST(EdgeSpan, IsThatOfAllPairs) {
     EXPECT_DOUBLE_EQ(found.mean, std::accumulate(spans.begin(), spans.end(), 0.0) / edges);
     EXPECT_EQ(found.max, *std::max_element(spans.begin(), spans.end()));
     EXPECT_NEAR(found.mean_log2, logs / edges, 1e-12);
+    const SpanSize size = span_size(graph, order);
+    EXPECT_EQ(size.sum, std::accumulate(spans.begin(), spans.end(), Offset{0}));
+    EXPECT_EQ(size.max, found.max);
   }
+}
+
+TEST(EdgeSpan, SizeAddsUpAllChunks) {
+  const Index n = 10000;
+  const SpanSize size = span_size(test::path(n), Permutation::identity(n));
+  EXPECT_EQ(size.sum, n - 1);
+  EXPECT_EQ(size.max, 1);
 }
 
 TEST(EdgeSpan, OfAPathIsOneInOrder) {

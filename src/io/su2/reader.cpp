@@ -4,6 +4,7 @@
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/su2/su2.hpp"
+#include "io/wedges.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -329,27 +330,13 @@ class Su2Reader {
                      ": numbers at the ends of lines are not 0, 1, 2 …; as in SU2, places count");
   }
 
-  /// Puts the nodes of wedges in the mesh's order, unless most are in it.
+  /// Puts the nodes of wedges in the mesh's order, unless they are in it.
   void turn_wedges() {
     Cells& cells = mesh_.cells;
-    std::int64_t inward = 0;
-    for (Index c = 0; c < elements_; ++c) {
-      if (cells.shapes[c] != Shape::wedge) continue;
-      const auto cell = cells[c];
-      const auto edge = [&](std::size_t k) {
-        const Point& from = mesh_.points[cell[0]];
-        const Point& to = mesh_.points[cell[k]];
-        return Point{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-      };
-      const Point a = edge(1);
-      const Point b = edge(2);
-      const Point up = edge(3);
-      const double towards = (a[1] * b[2] - a[2] * b[1]) * up[0] + (a[2] * b[0] - a[0] * b[2]) * up[1] +
-                             (a[0] * b[1] - a[1] * b[0]) * up[2];
-      inward += towards > 0 ? 1 : -1;
-    }
-    metadata_->wedges_face_inward = inward > 0;
-    if (inward > 0) return;
+    WedgeVote vote(mesh_.points);
+    for (Index c = 0; c < elements_; ++c) vote.add(cells.shapes[c], cells[c]);
+    metadata_->wedges_face_inward = vote.wedges_face_inward();
+    if (metadata_->wedges_face_inward) return;
     for (Index c = 0; c < elements_; ++c) {
       if (cells.shapes[c] != Shape::wedge) continue;
       const auto cell = cells[c];

@@ -151,20 +151,14 @@ const ElementKind* kind_of(Shape shape, int nodes) {
   return found == kElementKinds.end() ? nullptr : &*found;
 }
 
-int highest_dimension(const Mesh& mesh) {
-  int highest = 0;
-  for (const Shape shape : mesh.cells.shapes) highest = std::max(highest, dimension(shape));
-  return highest;
-}
-
 /// Elements of the highest dimension, 2 or 3, and those of their boundary.
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
-  const int highest = highest_dimension(mesh);
+  const int highest = mesh.cells.highest_dimension();
   return kind_of(shape, vertices) != nullptr && highest >= 2 && dimension(shape) >= highest - 1;
 }
 
 std::string conflict(const Mesh& mesh) {
-  const bool in_space = highest_dimension(mesh) == 2 && mesh.dimension == 3 && !is_flat(mesh);
+  const bool in_space = mesh.cells.highest_dimension() == 2 && mesh.dimension == 3 && !is_flat(mesh);
   return in_space ? "SU2 cannot hold a surface in space" : "";
 }
 

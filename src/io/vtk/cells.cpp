@@ -2,8 +2,8 @@
 //
 // Cell types of VTK's file formats: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html and
 // vtkCellType.h.
-#include "base/point.hpp"
 #include "io/vtk/vtk.hpp"
+#include "io/wedges.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,8 +25,10 @@ struct CellType {
 };
 
 constexpr int kPixel = 8;
+constexpr int kTetrahedron = 10;
 constexpr int kVoxel = 11;
 constexpr int kLinearWedge = 13;
+constexpr int kPyramid = 14;
 
 // The first triangle of a linear wedge faces outward in VTK up to 9.6 and in the files of Gmsh and meshio; in
 // a Mesh, in Gmsh's own files, in Lagrange wedges and in VTK 9.7 it faces inward. Shape functions do not
@@ -44,10 +46,10 @@ constexpr std::array kTypes{
     CellType{6, "VTK_TRIANGLE_STRIP", Shape::triangle_strip, -3},
     CellType{7, "VTK_POLYGON", Shape::polygon, -1},
     CellType{9, "VTK_QUAD", Shape::quad, 4},
-    CellType{10, "VTK_TETRA", Shape::tetrahedron, 4},
+    CellType{kTetrahedron, "VTK_TETRA", Shape::tetrahedron, 4},
     CellType{12, "VTK_HEXAHEDRON", Shape::hexahedron, 8},
     CellType{kLinearWedge, "VTK_WEDGE", Shape::wedge, 6, kWedge},
-    CellType{14, "VTK_PYRAMID", Shape::pyramid, 5},
+    CellType{kPyramid, "VTK_PYRAMID", Shape::pyramid, 5},
     CellType{21, "VTK_QUADRATIC_EDGE", Shape::line, 3},
     CellType{22, "VTK_QUADRATIC_TRIANGLE", Shape::triangle, 6},
     CellType{23, "VTK_QUADRATIC_QUAD", Shape::quad, 8},
@@ -153,46 +155,15 @@ class DefaultTypes {
   std::array<std::array<std::pair<bool, const CellType*>, kRemembered>, kShapes> types_{};
 };
 
-/// Three edges out of the first corner that are right-handed in a cell of positive volume.
-struct Handedness {
-  int type;
-  std::array<int, 3> ends;
-};
-constexpr std::array kHandedness{Handedness{10, {1, 2, 3}}, Handedness{12, {1, 3, 4}},
-                                 Handedness{14, {1, 3, 4}}, Handedness{kLinearWedge, {1, 2, 3}}};
-
-/// Cells by the sign of their volumes.
-struct Volumes {
-  Offset positive = 0;
-  Offset negative = 0;
-
-  /// 1 or −1 where at least 19 of 20 have that sign, else 0.
-  [[nodiscard]] int sign() const {
-    constexpr Offset kOneIn = 20;
-    if (kOneIn * negative < positive) return 1;
-    return kOneIn * positive < negative ? -1 : 0;
-  }
-};
-
-/// Whether the linear wedges have, with their first triangle facing inward, volumes of the sign that the
-/// other linear cells have: of a positive one where there are none. Meshes in which signs are mixed tell
-/// nothing, and cells with a wrong number of vertices have no say.
+/// Whether the linear wedges are numbered as by VTK 9.7. Cells with a wrong number of vertices have no say.
 bool wedges_face_inward(const std::vector<Point>& points, const FileCells& cells) {
-  Volumes wedges;
-  Volumes others;
+  WedgeVote vote(points);
   for (std::size_t c = 0; c < cells.types.size(); ++c) {
-    const auto* const of_type = std::find_if(kHandedness.begin(), kHandedness.end(),
-                                             [&](const Handedness& h) { return h.type == cells.types[c]; });
-    if (of_type == kHandedness.end() || cells.offsets[c + 1] - cells.offsets[c] <= of_type->ends[2]) continue;
-    const Index* const corners = cells.vertices.data() + cells.offsets[c];
-    const auto edge = [&](int k) { return minus(points[corners[of_type->ends[k]]], points[corners[0]]); };
-    const double volume = dot(cross(edge(0), edge(1)), edge(2));
-    Volumes& volumes = of_type->type == kLinearWedge ? wedges : others;
-    volumes.positive += volume > 0 ? 1 : 0;
-    volumes.negative += volume < 0 ? 1 : 0;
+    if (cells.types[c] < kTetrahedron || cells.types[c] > kPyramid || cells.types[c] == kVoxel) continue;
+    const auto corners = static_cast<std::size_t>(cells.offsets[c + 1] - cells.offsets[c]);
+    vote.add(type_of(cells.types[c])->shape, {cells.vertices.data() + cells.offsets[c], corners});
   }
-  const bool others_tell = others.positive + others.negative > 0;
-  return wedges.sign() != 0 && wedges.sign() == (others_tell ? others.sign() : 1);
+  return vote.wedges_face_inward();
 }
 
 InputError unknown_type(int number, Index cell, const ErrorAt& error) {

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// LegacyReader of VTK's legacy files, versions 1.0 to 5.1, UNSTRUCTURED_GRID and POLYDATA, text and binary:
+// Reader of VTK's legacy files, versions 1.0 to 5.1, UNSTRUCTURED_GRID and POLYDATA, text and binary:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
 //
 // VTK's own reader is not used: it reads past the end of damaged cell lists, trusts the sizes in a header

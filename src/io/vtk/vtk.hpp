@@ -217,7 +217,7 @@ Mesh read_vtu(const FilePath& path, Notes& notes);
 /// VTK's formats hold full arrays only: partial arrays are filled up, sets become arrays "set:NAME" and ids
 /// arrays "vertex_id" and "cell_id"; all of it noted. O(size of the arrays that are made).
 struct WriteContext {
-  /// Throws Error for cells that VTK's formats do not have.
+  /// Of a mesh whose cells VTK's formats hold.
   WriteContext(const Mesh& written, Notes& warnings);
 
   /// Returns the cells in VTK's order of vertices; of VTK before version 9 if `old_hexahedra`. The result

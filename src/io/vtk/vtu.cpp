@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// VtuWriter of VTK's XML files of unstructured grids:
+// Writer of VTK's XML files of unstructured grids:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 //
 // VTK's own writer (9.1) is not used: it writes names with & or < as they are, which is not XML, crashes on

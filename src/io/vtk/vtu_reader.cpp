@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// VtuReader of VTK's XML files of unstructured grids:
+// Reader of VTK's XML files of unstructured grids:
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 //
 // VTK's own reader is not used: it trusts the sizes in a header when it allocates, reads past the end of

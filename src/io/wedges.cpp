@@ -1,0 +1,46 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/wedges.hpp"
+
+#include "base/point.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace meshorder {
+namespace {
+
+/// Three edges out of the first corner that are right-handed in a cell of positive volume.
+struct Handedness {
+  Shape shape;
+  std::size_t corners;
+  std::array<std::size_t, 3> ends;
+};
+constexpr std::array kHandedness{
+    Handedness{Shape::tetrahedron, 4, {1, 2, 3}}, Handedness{Shape::hexahedron, 8, {1, 3, 4}},
+    Handedness{Shape::pyramid, 5, {1, 3, 4}}, Handedness{Shape::wedge, 6, {1, 2, 3}}};
+
+}  // namespace
+
+int WedgeVote::Volumes::sign() const {
+  constexpr Offset kOneIn = 20;
+  if (kOneIn * negative < positive) return 1;
+  return kOneIn * positive < negative ? -1 : 0;
+}
+
+void WedgeVote::add(Shape shape, std::span<const Index> cell) {
+  const auto* const known = std::find_if(kHandedness.begin(), kHandedness.end(),
+                                         [&](const Handedness& of) { return of.shape == shape; });
+  if (known == kHandedness.end() || known->corners != cell.size()) return;
+  const auto edge = [&](int k) { return minus(points_[cell[known->ends[k]]], points_[cell[0]]); };
+  const double volume = dot(cross(edge(0), edge(1)), edge(2));
+  Volumes& volumes = shape == Shape::wedge ? wedges_ : others_;
+  volumes.positive += volume > 0 ? 1 : 0;
+  volumes.negative += volume < 0 ? 1 : 0;
+}
+
+bool WedgeVote::wedges_face_inward() const {
+  const bool others_tell = others_.positive + others_.negative > 0;
+  return wedges_.sign() != 0 && wedges_.sign() == (others_tell ? others_.sign() : 1);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,44 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/mesh.hpp>
+
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// Tells from volumes how a file numbers its linear wedges.
+///
+/// The first triangle of a wedge faces outward in the files of some programs and inward in those of others,
+/// and the files do not say which. Shape functions do not mind; faces, normals and volumes do.
+class WedgeVote {
+ public:
+  /// Of cells with these vertices, which must outlive this object.
+  explicit WedgeVote(const std::vector<Point>& points) : points_(points) {}
+
+  /// Counts a cell in the order of the file. Only linear tetrahedra, hexahedra, pyramids and wedges have a
+  /// say. O(1).
+  void add(Shape shape, std::span<const Index> cell);
+
+  /// Returns whether at least 19 of 20 wedges have, if their first triangle faces inward, volumes of the sign
+  /// of the other cells: of a positive one where there are none. Meshes in which signs are mixed tell
+  /// nothing: false.
+  [[nodiscard]] bool wedges_face_inward() const;
+
+ private:
+  /// Cells by the sign of their volumes.
+  struct Volumes {
+    Offset positive = 0;
+    Offset negative = 0;
+
+    /// 1 or −1 where at least 19 of 20 have that sign, else 0.
+    [[nodiscard]] int sign() const;
+  };
+
+  const std::vector<Point>& points_;
+  Volumes wedges_;
+  Volumes others_;
+};
+
+}  // namespace meshorder
