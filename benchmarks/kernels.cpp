@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
     }
     return bench;
   };
-  const auto times = mo::time_orders(mo::index_size(orders), prepare);
+  const auto times = mo::time_orders(mo::index_size(orders), prepare).orders;
 
   fmt::print("{} vertices, {} tetrahedra; one thread reads {:.1f} GB/s\n", grid.vertex_count(),
              grid.cell_count(), mo::read_bandwidth());

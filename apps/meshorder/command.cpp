@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <new>
 #include <string>
 #include <string_view>
@@ -93,18 +94,13 @@ void add_common(CLI::App& subcommand, Common& common, const std::string& quiet) 
 }
 
 void add_keeping_options(CLI::App& subcommand, Keeping& keeping) {
-  constexpr std::array<std::pair<std::string_view, int>, 4> kDimensions{
-      {{"volume", 3}, {"surface", 2}, {"curve", 1}, {"point", 0}}};
+  static const std::map<std::string, int> kDimensions{
+      {"volume", 3}, {"surface", 2}, {"curve", 1}, {"point", 0}};
   subcommand
       .add_option_function<std::string>(
-          "--only",
-          [&keeping, kDimensions](const std::string& name) {
-            for (const auto& [known, dimension] : kDimensions) {
-              if (name == known) keeping.dimension = dimension;
-            }
-          },
+          "--only", [&keeping](const std::string& name) { keeping.dimension = kDimensions.at(name); },
           "Keep only these cells, with all vertices: volume, surface, curve or point")
-      ->check(CLI::IsMember(std::vector<std::string>{"volume", "surface", "curve", "point"}))
+      ->check(CLI::IsMember(kDimensions))
       ->type_name("CELLS");
   subcommand.add_flag(
       "--strict", keeping.strict,

@@ -78,7 +78,9 @@ KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<Com
     table.redundancy.push_back(bench.redundancy());
     return bench;
   };
-  table.orders = time_orders(index_size(orders) + 1, prepare, options);
+  Timings timings = time_orders(index_size(orders) + 1, prepare, options);
+  table.orders = std::move(timings.orders);
+  table.steadiness = timings.steadiness;
   table.floor = table.orders.back();
   table.orders.pop_back();
   return table;
@@ -123,6 +125,11 @@ void run(const CompareArguments& arguments) {
   }
 
   progress.finish();
+  for (const KernelTable& table : comparison.kernels) {
+    if (std::string doubt = reason_to_doubt(table.steadiness); !doubt.empty()) {
+      notes.push_back(fmt::format("on {} thread{}: {}", table.threads, table.threads == 1 ? "" : "s", doubt));
+    }
+  }
   console.warn_of(notes);
   console.print("{}: {} vertices, {}", arguments.input, with_commas(mesh.vertex_count()),
                 cells_in_words(mesh));

@@ -173,10 +173,18 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
   }
   nlohmann::ordered_json floor{{"vertices", kFloor}, {"edge_span", to_json(comparison.floor_span)}};
   add_kernels(floor, comparison, [&](const KernelTable& table) -> const OrderTimes& { return table.floor; });
+  auto steadiness = nlohmann::ordered_json::array();
+  for (const KernelTable& table : comparison.kernels) {
+    steadiness.push_back({{"threads", table.threads},
+                          {"waiting", table.steadiness.waiting},
+                          {"pace", table.steadiness.pace},
+                          {"repeat", table.steadiness.repeat}});
+  }
   return {{"threads", comparison.kernels.back().threads},
           {"caches", comparison.caches.level_bytes},
           {"methods", methods},
-          {"floor", floor}};
+          {"floor", floor},
+          {"steadiness", steadiness}};
 }
 
 }  // namespace meshorder::command

@@ -30,6 +30,7 @@ struct KernelTable {
   int threads = 1;
   std::vector<OrderTimes> orders;  ///< the reference first
   OrderTimes floor;                ///< on the ideal band
+  Steadiness steadiness;
   std::vector<double> redundancy;  ///< in each order, see KernelBench::redundancy
 };
 

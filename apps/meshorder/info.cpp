@@ -42,8 +42,7 @@ constexpr double kMeasureWithin = 3.8;
 constexpr Offset kMaxOfTwoOrders = 500'000;
 
 /// Returns what reordering is worth; nothing for a mesh without elements, nor for a large one unless --cache
-/// or
-/// --measure is given.
+/// or --measure is given.
 std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph,
                                 double graph_seconds, const Stopwatch& since_start) {
   const Offset simplices = mesh.cells.highest_dimension() < 1 ? 0 : cut_into_simplices(mesh).size();
@@ -151,6 +150,7 @@ void run(const InfoArguments& arguments) {
   const std::optional<Advice> advice = advice_on(arguments, mesh, graph, graph_seconds, since_start);
 
   progress.finish();
+  if (advice && !advice->doubt.empty()) notes.push_back(advice->doubt);
   console.warn_of(notes);
   console.print("{}, {}", arguments.input, format_of(arguments.input).name);
   console.print("{:<12} {} in {} dimensions", "vertices", with_commas(mesh.vertex_count()), mesh.dimension);

@@ -70,7 +70,8 @@ void run(const OrderArguments& arguments) {
   Console console(arguments);
   ReorderOptions options = arguments.reordering;
   options.ids = parse<Ids>(arguments.ids);
-  options.format = format_of(arguments.output).key();
+  const Format& format = format_of(arguments.output);
+  options.format = format.key();
   (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
 
   Progress progress(!console.quiet());
@@ -80,7 +81,6 @@ void run(const OrderArguments& arguments) {
   Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
   const double read_seconds = reading.seconds();
   Maps maps;
-  const Format& format = format_of(arguments.output);
   const Index cells_read = mesh.cell_count();
   const std::vector<Index> wanted =
       keep_cells(mesh, {.dimension = arguments.keeping.dimension, .notes = &notes});

@@ -124,11 +124,14 @@ void time(const std::string& name, double budget, const std::string& folder,
     mo::apply_reordering(ordered, vertices, kept(file_of(folder, orders[i], "cells")));
     return mo::KernelBench(ordered, mo::renumbered(graph, vertices.old_to_new()));
   };
-  const std::vector<mo::OrderTimes> times = mo::time_orders(
+  const mo::Timings timings = mo::time_orders(
       mo::index_size(orders), prepare, {.budget_seconds = budget, .min_rounds = 3, .sample_seconds = 0.01});
+  if (const std::string doubt = mo::reason_to_doubt(timings.steadiness); !doubt.empty()) {
+    fmt::print(stderr, "{}\n", doubt);
+  }
   for (std::size_t i = 0; i < orders.size(); ++i) {
     for (const mo::Kernel kernel : mo::kKernels) {
-      const mo::KernelTimes& t = times[i][kernel];
+      const mo::KernelTimes& t = timings.orders[i][kernel];
       fmt::print("{},{},{:.6f},{:.6f},{}\n", orders[i], mo::to_string(kernel), t.best_ms, t.median_ms,
                  t.samples);
     }

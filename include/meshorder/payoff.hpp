@@ -75,6 +75,9 @@ struct Advice {
   Candidate as_is = {};                    ///< the order that the mesh has
   std::vector<Candidate> candidates = {};  ///< the first is what `reorder` does without options
   std::array<KernelAdvice, kKernels.size()> kernels = {};
+  /// Why measured times are not to be trusted, a sentence: the machine was busy or throttled. Empty where
+  /// they are, and where nothing was measured.
+  std::string doubt = {};
 };
 
 /// Returns the verdict in one English sentence: which kernel loses most as the mesh is, which order mends it
@@ -102,10 +105,9 @@ struct PayoffOptions {
 /// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for types that are not known,
 ///         and where neither prediction nor measurement is asked for
 /// @note Orders and, to predict, about a second for a million tetrahedra and candidate; to measure, the
-/// budget.
-///       Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex of a tetrahedral mesh,
-///       and while it is measured 2.5 KB a vertex more. Stages of progress: those of `order_mesh`, "predict"
-///       and "measure".
+///       budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex of a
+///       tetrahedral mesh, and while it is measured 2.5 KB a vertex more. Stages of progress: those of
+///       `order_mesh`, "predict" and "measure".
 [[nodiscard]] MESHORDER_API Advice advise(const MeshView& mesh, const PayoffOptions& options = {});
 
 /// Compares orders of a mesh: the one that it has, then `options.methods`. Parameters, exceptions and cost as

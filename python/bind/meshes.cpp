@@ -121,7 +121,7 @@ nb::tuple advise_mesh(const MeshView& mesh, const PayoffOptions& options) {
     const KernelAdvice& best = advice.kernels[static_cast<std::size_t>(kernel)];
     kernels[text(to_string(kernel))] = nb::make_tuple(best.candidate, best.factor, best.runs_to_pay);
   }
-  return nb::make_tuple(to_string(advice), described(advice.as_is), candidates, kernels);
+  return nb::make_tuple(to_string(advice), described(advice.as_is), candidates, kernels, advice.doubt);
 }
 
 nb::list compare_mesh(const MeshView& mesh, const PayoffOptions& options) {

@@ -32,8 +32,8 @@ std::string fault_of_cells(const Mesh& mesh, const Format& format);
 std::string advice_on_formats(const Mesh& mesh);
 
 /// Throws InputError with `fault_of_cells` of the cells at the positions `kept`, and with the formats that
-/// hold all cells of the mesh, if a file of the format cannot hold these cells. O(cells), and a copy of the
-/// mesh unless `kept` has all of them.
+/// hold all cells of the mesh, if a file of the format cannot hold these cells. O(cells); for a format with a
+/// `conflict` a copy of the mesh, unless `kept` has all of them.
 void require_held_cells(const Mesh& mesh, const std::vector<Index>& kept, const FilePath& path,
                         const Format& format);
 

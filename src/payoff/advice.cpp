@@ -45,9 +45,9 @@ std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
   return result;
 }
 
-/// In rounds that end by `seconds` on the stopwatch.
+/// In rounds that end by `seconds` on the stopwatch. `doubt` receives why they are not to be trusted.
 std::vector<KernelMilliseconds> measurements(const std::vector<Ordered>& orders, const Stopwatch& stopwatch,
-                                             double seconds) {
+                                             double seconds, std::string& doubt) {
   report("measure");
   std::vector<std::optional<KernelBench>> benches(orders.size());
   for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
@@ -56,13 +56,14 @@ std::vector<KernelMilliseconds> measurements(const std::vector<Ordered>& orders,
   std::vector<KernelBench*> pointers;
   pointers.reserve(benches.size());
   for (std::optional<KernelBench>& bench : benches) pointers.push_back(&bench.value());
-  const std::vector<OrderTimes> times =
+  const Timings timings =
       time_interleaved(pointers, {.budget_seconds = std::max(0.0, seconds - stopwatch.seconds()),
                                   .min_rounds = 2,
                                   .sample_seconds = 0.01});
+  doubt = reason_to_doubt(timings.steadiness);
   std::vector<KernelMilliseconds> result(orders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
-    for (std::size_t k = 0; k < kKernels.size(); ++k) result[i][k] = times[i][kKernels[k]].best_ms;
+    for (std::size_t k = 0; k < kKernels.size(); ++k) result[i][k] = timings.orders[i][kKernels[k]].best_ms;
   }
   return result;
 }
@@ -130,7 +131,7 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   }
   if (options.measure_within) {
     const std::vector<KernelMilliseconds> measured =
-        measurements(orders, since_call, *options.measure_within);
+        measurements(orders, since_call, *options.measure_within, advice.doubt);
     for (std::size_t i = 0; i < orders.size(); ++i) candidate(i).costs.measured = measured[i];
   }
   advice.kernels = kernel_advice(advice);

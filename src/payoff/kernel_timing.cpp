@@ -17,10 +17,10 @@ using Samples = std::array<std::vector<double>, kKernels.size()>;
 
 std::vector<double>& of(Samples& samples, Kernel kernel) { return samples[static_cast<std::size_t>(kernel)]; }
 
-double seconds_per_run(KernelBench& bench, Kernel kernel, int repeats) {
+double seconds_of_runs(KernelBench& bench, Kernel kernel, int repeats) {
   const Stopwatch stopwatch;
   for (int i = 0; i < repeats; ++i) bench.run(kernel);
-  return stopwatch.seconds() / repeats;
+  return stopwatch.seconds();
 }
 
 /// How a sample of a kernel is taken.
@@ -29,18 +29,27 @@ struct Plan {
   bool warm = false;  ///< after a run that does not count
 };
 
+/// Returns the seconds of a run.
+double sample(KernelBench& bench, Kernel kernel, const Plan& plan, SteadinessWatch& watch) {
+  if (plan.warm) bench.run(kernel);
+  const ThreadStopwatch thread;
+  const double seconds = seconds_of_runs(bench, kernel, plan.repeats);
+  watch.add_sample(seconds, thread.seconds());
+  return seconds / plan.repeats;
+}
+
 Plan plan_samples(KernelBench& bench, Kernel kernel, double sample_seconds) {
   constexpr double kMostRepeats = 1e5;
   // a kernel that runs longer than this many samples streams far more than caches keep
   constexpr double kLong = 5.0;
   bench.run(kernel);
-  const double once = std::max(seconds_per_run(bench, kernel, 1), 1e-9);
+  const double once = std::max(seconds_of_runs(bench, kernel, 1), 1e-9);
   return {.repeats = static_cast<int>(std::clamp(std::ceil(sample_seconds / once), 1.0, kMostRepeats)),
           .warm = once < kLong * sample_seconds};
 }
 
 std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options,
-                                        double budget_seconds) {
+                                        double budget_seconds, SteadinessWatch& watch) {
   const std::size_t orders = benches.size();
   std::vector<std::array<Plan, kKernels.size()>> plans(orders);
   for (std::size_t i = 0; i < orders; ++i) {
@@ -55,14 +64,16 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
     const double seconds = stopwatch.seconds();
     if (round >= options.min_rounds && seconds + seconds / round > budget_seconds) break;
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
+      watch.tick();
       for (std::size_t i = 0; i < orders; ++i) {
         const std::size_t order = (i + static_cast<std::size_t>(round)) % orders;
-        const Plan& plan = plans[order][k];
         poll();
-        if (plan.warm) benches[order]->run(kKernels[k]);
-        samples[order][k].push_back(seconds_per_run(*benches[order], kKernels[k], plan.repeats));
+        samples[order][k].push_back(sample(*benches[order], kKernels[k], plans[order][k], watch));
       }
     }
+  }
+  for (const Samples& of_order : samples) {
+    for (const std::vector<double>& of_kernel : of_order) watch.add_repeat(repeat_difference(of_kernel));
   }
   return samples;
 }
@@ -93,13 +104,15 @@ std::vector<OrderTimes> summaries(std::vector<Samples> samples) {
 
 }  // namespace
 
-std::vector<OrderTimes> time_interleaved(std::span<KernelBench* const> benches,
-                                         const TimingOptions& options) {
-  return summaries(sample_interleaved(benches, options, options.budget_seconds));
+Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options) {
+  SteadinessWatch watch;
+  std::vector<OrderTimes> orders =
+      summaries(sample_interleaved(benches, options, options.budget_seconds, watch));
+  return {std::move(orders), watch.result()};
 }
 
-std::vector<OrderTimes> time_orders(Index orders, const std::function<KernelBench(Index)>& prepare,
-                                    const TimingOptions& options) {
+Timings time_orders(Index orders, const std::function<KernelBench(Index)>& prepare,
+                    const TimingOptions& options) {
   if (orders <= 0) return {};
   KernelBench reference = prepare(0);
   const std::size_t memory = options.memory_bytes > 0 ? options.memory_bytes : memory_of_this_machine() / 2;
@@ -109,13 +122,15 @@ std::vector<OrderTimes> time_orders(Index orders, const std::function<KernelBenc
   const Index groups = std::max<Index>(1, (orders - 1 + group - 1) / group);
 
   std::vector<OrderTimes> result(1);
+  SteadinessWatch watch;
   Samples of_reference;
   for (Index first = 1; first == 1 || first < orders; first += group) {
     std::vector<KernelBench> others;
     for (Index i = first; i < std::min(orders, first + group); ++i) others.push_back(prepare(i));
     std::vector<KernelBench*> benches{&reference};
     for (KernelBench& bench : others) benches.push_back(&bench);
-    std::vector<Samples> samples = sample_interleaved(benches, options, options.budget_seconds / groups);
+    std::vector<Samples> samples =
+        sample_interleaved(benches, options, options.budget_seconds / groups, watch);
     for (const Kernel kernel : kKernels) {
       std::vector<double>& all = of(of_reference, kernel);
       all.insert(all.end(), of(samples.front(), kernel).begin(), of(samples.front(), kernel).end());
@@ -126,7 +141,7 @@ std::vector<OrderTimes> time_orders(Index orders, const std::function<KernelBenc
   std::vector<Samples> pooled;
   pooled.push_back(std::move(of_reference));
   result.front() = summaries(std::move(pooled)).front();
-  return result;
+  return {std::move(result), watch.result()};
 }
 
 }  // namespace meshorder

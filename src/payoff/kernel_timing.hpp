@@ -2,6 +2,7 @@
 #pragma once
 
 #include "payoff/kernel_bench.hpp"
+#include "payoff/steadiness.hpp"
 
 #include <functional>
 #include <span>
@@ -40,18 +41,23 @@ struct OrderTimes {
   [[nodiscard]] KernelTimes& operator[](Kernel kernel) { return times[static_cast<std::size_t>(kernel)]; }
 };
 
+/// The times of several orders, and what they are worth.
+struct Timings {
+  std::vector<OrderTimes> orders;
+  Steadiness steadiness;
+};
+
 /// Times every kernel of the prepared orders in interleaved rounds, so that changes of the machine's speed
 /// affect all orders alike: a round takes a sample of every kernel in every order, kernel by kernel, and the
 /// next round begins with the next order. The first run of a sample finds another order's data in the caches
 /// and does not count, unless the kernel takes 0.1 s or more. The first bench is the reference of the
 /// speedups.
-std::vector<OrderTimes> time_interleaved(std::span<KernelBench* const> benches,
-                                         const TimingOptions& options = {});
+Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options = {});
 
 /// The same for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is
 /// the reference. If all of them do not fit into the memory allowed, they are timed in groups, each with the
 /// reference, and share the budget; at least two benches must fit.
-std::vector<OrderTimes> time_orders(Index orders, const std::function<KernelBench(Index)>& prepare,
-                                    const TimingOptions& options = {});
+Timings time_orders(Index orders, const std::function<KernelBench(Index)>& prepare,
+                    const TimingOptions& options = {});
 
 }  // namespace meshorder

@@ -174,10 +174,7 @@ TEST(Off, NotesWhatItCannotHold) {
 
 TEST(Off, LeavesOutLinesThatOtherReadersDoNotTake) {
   const TemporaryFolder folder;
-  Mesh mesh = cells_of_type(Shape::triangle, 3, 1);
-  mesh.data.clear();
-  mesh.sets.clear();
-  mesh.cells.push_back(Shape::line, std::vector<Index>{0, 1});
+  const Mesh mesh = test::triangles_and_line(1);
   Notes notes;
   write_mesh(mesh, folder.path() / "a.off", &notes);
   EXPECT_EQ(notes, (Notes{"1 line is left out: OFF has no place for it"}));

@@ -305,10 +305,7 @@ TEST(Ply, WritesOtherMeshesExactlySo) {
 
 TEST(Ply, LeavesOutWhatOtherReadersDoNotFind) {
   const TemporaryFolder folder;
-  Mesh mesh = cells_of_type(Shape::triangle, 3, 2);
-  mesh.data.clear();
-  mesh.sets.clear();
-  mesh.cells.push_back(Shape::line, std::vector<Index>{0, 1});
+  const Mesh mesh = test::triangles_and_line(2);
   Notes notes;
   write_mesh(mesh, folder.path() / "a.ply", &notes);
   EXPECT_EQ(notes, (Notes{"1 line is left out: PLY has no place for it"}));

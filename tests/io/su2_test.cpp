@@ -56,7 +56,7 @@ constexpr std::string_view kVolumes =
     "Nelem =4\n"
     "12 0 1 2 3 4 5 6 7\n"
     "14 4 5 6 7 8\n"
-    "10 1 9 5 2   % a comment\n"
+    "10 1 9 2 5   % a comment\n"
     "13 1 9 2 10 12 11\n"
     "NPOIN=13 13\n"
     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n.5 .5 2\n"

@@ -16,19 +16,17 @@ using test::Case;
 using test::elasticity_of;
 using test::forces_of;
 
-constexpr Tangent kProjected = Tangent::projected;
-
 class ElasticLaw : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(OfAll, ElasticLaw,
                          testing::Values(Case{MaterialModel::corotational, Tangent::exact},
                                          Case{MaterialModel::corotational, Tangent::approximate},
-                                         Case{MaterialModel::corotational, kProjected},
+                                         Case{MaterialModel::corotational, Tangent::projected},
                                          Case{MaterialModel::stvk, Tangent::exact},
-                                         Case{MaterialModel::stvk, kProjected},
+                                         Case{MaterialModel::stvk, Tangent::projected},
                                          Case{MaterialModel::stvk, Tangent::exact, 2},
                                          Case{MaterialModel::stvk, Tangent::exact, 1},
                                          Case{MaterialModel::neo_hookean, Tangent::exact},
-                                         Case{MaterialModel::neo_hookean, kProjected}),
+                                         Case{MaterialModel::neo_hookean, Tangent::projected}),
                          test::case_name);
 
 /// Positions of some simplices in a row in ordinary states, collapsed ones among them.
@@ -179,11 +177,11 @@ class ElasticLawOfSolids : public ElasticLaw {};
 INSTANTIATE_TEST_SUITE_P(OfAll, ElasticLawOfSolids,
                          testing::Values(Case{MaterialModel::corotational, Tangent::exact},
                                          Case{MaterialModel::corotational, Tangent::approximate},
-                                         Case{MaterialModel::corotational, kProjected},
+                                         Case{MaterialModel::corotational, Tangent::projected},
                                          Case{MaterialModel::stvk, Tangent::exact},
-                                         Case{MaterialModel::stvk, kProjected},
+                                         Case{MaterialModel::stvk, Tangent::projected},
                                          Case{MaterialModel::neo_hookean, Tangent::exact},
-                                         Case{MaterialModel::neo_hookean, kProjected}),
+                                         Case{MaterialModel::neo_hookean, Tangent::projected}),
                          test::case_name);
 
 /// The stiffness of linear elasticity, from its definition: K = Σ V Bᵀ C B column by column.
@@ -286,8 +284,9 @@ TEST(ElasticLaws, AreForTetrahedraButForStVenantKirchhoff) {
       EXPECT_THROW(forces_of(patch, elasticity, patch.positions), InvalidArgument);
       EXPECT_THROW(elastic_energy(patch.rest, elasticity, patch.positions), InvalidArgument);
     }
-    EXPECT_THROW(test::stiffness_of(patch, elasticity_of({MaterialModel::stvk, kProjected}), patch.positions),
-                 InvalidArgument);
+    EXPECT_THROW(
+        test::stiffness_of(patch, elasticity_of({MaterialModel::stvk, Tangent::projected}), patch.positions),
+        InvalidArgument);
   }
 }
 

@@ -132,7 +132,7 @@ TEST(TimeInterleaved, TimesEveryKernelInEveryOrder) {
   KernelBench a(test::tetrahedral_bar(5));
   KernelBench b(test::tetrahedral_bar(50));
   const std::vector<KernelBench*> benches{&a, &b};
-  const std::vector<OrderTimes> times = time_interleaved(benches, quick());
+  const std::vector<OrderTimes> times = time_interleaved(benches, quick()).orders;
   ASSERT_EQ(times.size(), 2U);
   for (const Kernel kernel : kKernels) {
     SCOPED_TRACE(to_string(kernel));
@@ -153,8 +153,8 @@ TEST(TimeInterleaved, StopsAtTheMostRounds) {
   TimingOptions options = quick();
   options.budget_seconds = 60.0;
   const std::vector<KernelBench*> benches{&bench};
-  EXPECT_EQ(time_interleaved(benches, options)[0][Kernel::spmv].samples, 9);
-  EXPECT_TRUE(time_interleaved({}, options).empty());
+  EXPECT_EQ(time_interleaved(benches, options).orders[0][Kernel::spmv].samples, 9);
+  EXPECT_TRUE(time_interleaved({}, options).orders.empty());
 }
 
 TEST(TimeOrders, PreparesEachOrderOnceAndAsManyAtATimeAsFit) {
@@ -166,12 +166,13 @@ TEST(TimeOrders, PreparesEachOrderOnceAndAsManyAtATimeAsFit) {
     options.memory_bytes = fitting * bytes;
     std::vector<Index> prepared;
     const auto times = time_orders(
-        6,
-        [&](Index order) {
-          prepared.push_back(order);
-          return KernelBench(mesh);
-        },
-        options);
+                           6,
+                           [&](Index order) {
+                             prepared.push_back(order);
+                             return KernelBench(mesh);
+                           },
+                           options)
+                           .orders;
     EXPECT_EQ(prepared, (std::vector<Index>{0, 1, 2, 3, 4, 5}));
     ASSERT_EQ(times.size(), 6U);
     for (const OrderTimes& order : times) EXPECT_GT(order[Kernel::element].best_ms, 0.0);
@@ -184,8 +185,8 @@ TEST(TimeOrders, PreparesEachOrderOnceAndAsManyAtATimeAsFit) {
 
 TEST(TimeOrders, NeedsNoOtherOrderThanTheReference) {
   const auto prepare = [](Index) { return KernelBench(test::tetrahedral_bar(3)); };
-  EXPECT_TRUE(time_orders(0, prepare, quick()).empty());
-  const auto times = time_orders(1, prepare, quick());
+  EXPECT_TRUE(time_orders(0, prepare, quick()).orders.empty());
+  const auto times = time_orders(1, prepare, quick()).orders;
   ASSERT_EQ(times.size(), 1U);
   EXPECT_EQ(times[0][Kernel::spmv].samples, 4);
   EXPECT_EQ(times[0][Kernel::spmv].speedup, 1.0);

@@ -50,6 +50,14 @@ Mesh cells_of_type(Shape shape, int vertices_per_cell, Index copies) {
   return mesh;
 }
 
+Mesh triangles_and_line(Index triangles) {
+  Mesh mesh = cells_of_type(Shape::triangle, 3, triangles);
+  mesh.data.clear();
+  mesh.sets.clear();
+  mesh.cells.push_back(Shape::line, std::vector<Index>{0, 1});
+  return mesh;
+}
+
 Mesh tetrahedral_bar(Index n) {
   Mesh mesh;
   for (Index i = 0; i <= n; ++i) {

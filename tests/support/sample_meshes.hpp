@@ -14,6 +14,9 @@ namespace meshorder::test {
 /// "part"). Coordinates are irregular, so that any mix-up shows.
 Mesh cells_of_type(Shape shape, int vertices_per_cell, Index copies);
 
+/// That many separate triangles and an edge of the first, nothing attached.
+Mesh triangles_and_line(Index triangles);
+
 /// A row of `n` unit cubes cut into six tetrahedra each, sharing vertices; attachments as above.
 Mesh tetrahedral_bar(Index n);
 

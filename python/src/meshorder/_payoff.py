@@ -65,12 +65,22 @@ class KernelAdvice(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Advice:
-    """What reordering a mesh would be worth; ``str(advice)`` is the verdict in one sentence."""
+    """What reordering a mesh would be worth; ``str(advice)`` is the verdict in one sentence.
+
+    Attributes:
+        verdict: the sentence.
+        as_is: the order that the mesh has.
+        candidates: other orders; the first is what `order_mesh` does without arguments.
+        kernels: the best candidate for each kernel.
+        doubt: why measured times are not to be trusted (the machine was busy or throttled); empty where they are, and
+            where nothing was measured.
+    """
 
     verdict: str
     as_is: Candidate
     candidates: list[Candidate]
     kernels: dict[str, KernelAdvice]
+    doubt: str = ""
 
     def __str__(self) -> str:
         return self.verdict
@@ -152,12 +162,14 @@ def advise(mesh: Any, *, measure: bool = False, budget: float = 10, **options: A
         **options: see `Options`.
     """
     with prepared(options) as given:
-        verdict, as_is, candidates, kernels = mesh_of(mesh)._handle.advise([], not measure, measure, budget, given)
+        made = mesh_of(mesh)._handle.advise([], not measure, measure, budget, given)
+    verdict, as_is, candidates, kernels, doubt = made
     return Advice(
         verdict,
         Candidate._of(as_is),
         [Candidate._of(candidate) for candidate in candidates],
         {kernel: KernelAdvice(*best) for kernel, best in kernels.items()},
+        doubt,
     )
 
 

@@ -1,0 +1,95 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/steadiness.hpp"
+
+#include "base/stopwatch.hpp"
+#include "base/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <ctime>
+
+namespace meshorder {
+namespace {
+
+constexpr double kMostWaiting = 0.05;
+constexpr double kMostPace = 0.1;
+constexpr double kMostRepeat = 0.05;
+
+/// 0 for no values.
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// A chain of operations of which each waits for the one before: its time is the processor's clock alone.
+std::uint64_t fixed_arithmetic() {
+  constexpr int kSteps = 200'000;
+  std::uint64_t value = 1;
+  for (int step = 0; step < kSteps; ++step) value = value * 6364136223846793005U + 1442695040888963407U;
+  return value;
+}
+
+}  // namespace
+
+std::string reason_to_doubt(const Steadiness& steadiness) {
+  std::vector<std::string> signs;
+  if (steadiness.waiting > kMostWaiting) {
+    signs.push_back(
+        fmt::format("other programs had the processor for {:.0f} % of the time", 100 * steadiness.waiting));
+  }
+  if (steadiness.pace > kMostPace) {
+    signs.push_back(fmt::format("its speed changes: the same arithmetic took {:.0f} % longer than at best",
+                                100 * steadiness.pace));
+  }
+  if (steadiness.repeat > kMostRepeat) {
+    signs.push_back(
+        fmt::format("two timings of the same kernel and order differ by {:.0f} %", 100 * steadiness.repeat));
+  }
+  if (signs.empty()) return {};
+  return "these times are not to be trusted: the machine is busy or throttled (" + join(signs) +
+         "); measure again when it is idle";
+}
+
+double repeat_difference(const std::vector<double>& samples) {
+  if (samples.size() < 2) return 0;
+  double even = samples[0];
+  double odd = samples[1];
+  for (std::size_t i = 2; i < samples.size(); ++i) {
+    double& best = i % 2 == 0 ? even : odd;
+    best = std::min(best, samples[i]);
+  }
+  return std::max(even, odd) / std::min(even, odd) - 1;
+}
+
+void SteadinessWatch::tick() {
+  const Stopwatch stopwatch;
+  [[maybe_unused]] volatile const std::uint64_t result = fixed_arithmetic();
+  ticks_.push_back(stopwatch.seconds());
+}
+
+void SteadinessWatch::add_sample(double seconds, double thread_seconds) {
+  seconds_ += seconds;
+  thread_seconds_ += thread_seconds;
+}
+
+Steadiness SteadinessWatch::result() const {
+  Steadiness result;
+  if (seconds_ > 0) result.waiting = std::max(0.0, 1 - thread_seconds_ / seconds_);
+  if (!ticks_.empty()) result.pace = median(ticks_) / *std::min_element(ticks_.begin(), ticks_.end()) - 1;
+  result.repeat = median(repeats_);
+  return result;
+}
+
+double ThreadStopwatch::now() {
+  std::timespec time{};
+  (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,58 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/steadiness.hpp"
+
+#include "base/stopwatch.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+namespace meshorder {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(Steadiness, DifferencesOfRepeatsAreThoseOfTheBestOfEvenAndOddSamples) {
+  EXPECT_EQ(repeat_difference({}), 0);
+  EXPECT_EQ(repeat_difference({5}), 0);
+  EXPECT_DOUBLE_EQ(repeat_difference({2, 3}), 0.5);
+  EXPECT_DOUBLE_EQ(repeat_difference({9, 4, 2, 9, 7, 8}), 1);
+}
+
+TEST(Steadiness, IsDoubtedForEachSign) {
+  EXPECT_THAT(reason_to_doubt({}), IsEmpty());
+  EXPECT_THAT(reason_to_doubt({.waiting = 0.04, .pace = 0.09, .repeat = 0.04}), IsEmpty());
+  EXPECT_THAT(reason_to_doubt({.waiting = 0.5}), HasSubstr("for 50 % of the time"));
+  EXPECT_THAT(reason_to_doubt({.pace = 0.3}), HasSubstr("took 30 % longer"));
+  EXPECT_THAT(reason_to_doubt({.repeat = 0.07}), HasSubstr("differ by 7 %"));
+}
+
+TEST(SteadinessWatch, TakesMediansAndShares) {
+  SteadinessWatch watch;
+  watch.add_sample(1, 1);
+  watch.add_sample(3, 2);
+  for (const double difference : {0.5, 0.01, 0.02}) watch.add_repeat(difference);
+  EXPECT_DOUBLE_EQ(watch.result().waiting, 0.25);
+  EXPECT_DOUBLE_EQ(watch.result().repeat, 0.02);
+  EXPECT_EQ(watch.result().pace, 0);
+  watch.tick();
+  EXPECT_EQ(watch.result().pace, 0);  // of a single piece
+  watch.tick();
+  EXPECT_GE(watch.result().pace, 0);
+}
+
+TEST(ThreadStopwatch, StandsStillWhileTheThreadSleeps) {
+  const Stopwatch stopwatch;
+  const ThreadStopwatch thread;
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_LT(thread.seconds(), 0.5 * stopwatch.seconds());
+  while (thread.seconds() < 0.002) {
+  }
+  EXPECT_GE(stopwatch.seconds(), 0.03);
+}
+
+}  // namespace
+}  // namespace meshorder
