@@ -73,7 +73,7 @@ void run(const ApplyArguments& arguments) {
                       {"output", arguments.output},
                       {"inverse", arguments.inverse},
                       {"vertices", mesh.vertex_count()},
-                      {"elements", mesh.cell_count()},
+                      {"cells", mesh.cell_count()},
                       {"seconds", total.seconds()}});
 }
 

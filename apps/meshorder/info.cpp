@@ -76,6 +76,12 @@ std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const Mesh& 
   return reuse_of_kernels(graph, simplices, is_estimated(arguments, mesh) ? kHalvings : 0);
 }
 
+/// Whether the points of a mesh differ: those of a matrix or a graph are all at the origin.
+bool has_places(const Mesh& mesh) {
+  return std::any_of(mesh.points.begin(), mesh.points.end(),
+                     [&](const Point& point) { return point != mesh.points.front(); });
+}
+
 /// Prints a bar for each power of two, in proportion to its number of edges.
 void print_histogram(const Console& console, const std::vector<Offset>& bins) {
   constexpr double kWidth = 50;
@@ -153,7 +159,8 @@ void run(const InfoArguments& arguments) {
   if (advice && !advice->doubt.empty()) notes.push_back(advice->doubt);
   console.warn_of(notes);
   console.print("{}, {}", arguments.input, format_of(arguments.input).name);
-  console.print("{:<12} {} in {} dimensions", "vertices", with_commas(mesh.vertex_count()), mesh.dimension);
+  console.print("{:<12} {} {}", "vertices", with_commas(mesh.vertex_count()),
+                has_places(mesh) ? fmt::format("in {} dimensions", mesh.dimension) : "without coordinates");
   console.print("{:<12} {}", "cells", cells_in_words(mesh));
   print_attachments(console, mesh);
   console.print("{:<12} {} edges, {} {}{}", "graph", with_commas(graph.edge_count()), with_commas(connected),

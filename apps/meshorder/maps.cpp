@@ -34,7 +34,10 @@ std::string identity_path(const std::string& prefix) { return prefix + ".maps.js
 std::string ids_path(const std::string& prefix, const std::string& what) {
   return prefix + "." + what + ".ids.npy";
 }
-std::string kept_path(const std::string& prefix) { return prefix + ".elements.kept.npy"; }
+std::string kept_path(const std::string& prefix) { return prefix + ".cells.kept.npy"; }
+
+/// What the names of the maps of cells said before they said "cells".
+constexpr const char* kOldNameOfCells = "elements";
 
 void write_map(const Permutation& map, const std::vector<std::int64_t>& ids, const std::string& prefix,
                const std::string& what, std::vector<std::string>& written) {
@@ -58,16 +61,28 @@ std::vector<std::int64_t> read_ids(const std::string& path, Index count) {
 }
 
 Maps read_permutations(const std::string& prefix, const Mesh& mesh) {
+  const bool is_old = !std::filesystem::exists(old_to_new_path(prefix, "cells")) &&
+                      std::filesystem::exists(old_to_new_path(prefix, kOldNameOfCells));
+  const std::string cells = is_old ? kOldNameOfCells : "cells";
   return {read_permutation(old_to_new_path(prefix, "vertices"), mesh.vertex_count(), "vertices"),
-          read_permutation(old_to_new_path(prefix, "elements"), mesh.cell_count(), "cells"),
+          read_permutation(old_to_new_path(prefix, cells), mesh.cell_count(), "cells"),
           read_ids(ids_path(prefix, "vertices"), mesh.vertex_count()),
-          read_ids(ids_path(prefix, "elements"), mesh.cell_count()),
+          read_ids(ids_path(prefix, cells), mesh.cell_count()),
           {}};
+}
+
+/// Removes maps of cells that an earlier version wrote with this prefix, so that nobody takes them for these.
+void remove_old_maps(const std::string& prefix) {
+  for (const std::string& path :
+       {old_to_new_path(prefix, kOldNameOfCells), new_to_old_path(prefix, kOldNameOfCells),
+        ids_path(prefix, kOldNameOfCells)}) {
+    std::filesystem::remove(path);
+  }
 }
 
 /// Throws Error if a file of the maps is named instead of their prefix.
 void require_prefix(const std::string& prefix) {
-  for (const char* const what : {".vertices.", ".elements.", ".maps.json"}) {
+  for (const char* const what : {".vertices.", ".cells.", ".elements.", ".maps.json"}) {
     const std::size_t at = prefix.rfind(what);
     const bool is_file =
         at != std::string::npos && (prefix.ends_with(".npy") || prefix.ends_with(".maps.json"));
@@ -150,7 +165,8 @@ std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& befor
                                     const std::string& prefix) {
   std::vector<std::string> written;
   write_map(maps.vertices, maps.vertex_ids, prefix, "vertices", written);
-  write_map(maps.cells, maps.cell_ids, prefix, "elements", written);
+  write_map(maps.cells, maps.cell_ids, prefix, "cells", written);
+  remove_old_maps(prefix);
   if (!maps.kept.empty()) {
     write_npy(maps.kept, written.emplace_back(kept_path(prefix)));
   } else {

@@ -12,10 +12,10 @@
 namespace meshorder::command {
 
 /// The reordering of a mesh file, on disk as NumPy arrays: PREFIX.vertices.old_to_new.npy and
-/// PREFIX.vertices.new_to_old.npy, and PREFIX.elements.*.npy for all cells. If the input numbers its vertices
-/// or cells other than from 0 or 1 on, PREFIX.vertices.ids.npy or PREFIX.elements.ids.npy holds these numbers
+/// PREFIX.vertices.new_to_old.npy, and PREFIX.cells.*.npy for all cells. If the input numbers its vertices
+/// or cells other than from 0 or 1 on, PREFIX.vertices.ids.npy or PREFIX.cells.ids.npy holds these numbers
 /// in the input's order. If cells of the input were left out, the maps of cells number those that were kept,
-/// and PREFIX.elements.kept.npy holds their positions among all cells of the input. PREFIX.maps.json tells
+/// and PREFIX.cells.kept.npy holds their positions among all cells of the input. PREFIX.maps.json tells
 /// which mesh the maps are for, without the cells that were left out.
 struct Maps {
   Permutation vertices;

@@ -127,7 +127,7 @@ void run(const OrderArguments& arguments) {
       {"input", arguments.input},
       {"output", arguments.output},
       {"vertices", half_json(mesh.vertex_count(), order.vertices)},
-      {"elements", half_json(mesh.cell_count(), order.cells)},
+      {"cells", half_json(mesh.cell_count(), order.cells)},
       {"for", to_string(options.order.workload)},
       {"group_by", groups ? to_json(*groups) : nullptr},
       {"edge_span", {{"before", to_json(before)}, {"after", to_json(after)}}},

@@ -148,7 +148,7 @@ def test_order_of_a_file_of_meshios_into_another(deck, tmp_path):
     np.testing.assert_array_equal(moved.point_data["t"], deck.point_data["t"][places])
     assert cells_by_corners(moved, moved.cell_data["centre"]) == cells_by_corners(deck, deck.cell_data["centre"])
     # the map of cells is that of the file
-    places = np.load(tmp_path / "m.elements.new_to_old.npy")
+    places = np.load(tmp_path / "m.cells.new_to_old.npy")
     centres = np.concatenate(deck.cell_data["centre"])[places]
     np.testing.assert_array_equal(np.concatenate(moved.cell_data["centre"]), centres)
     assert sorted(path.name for path in tmp_path.iterdir() if path.name.startswith((".", "out"))) == ["out.h5", "out.xmf"]

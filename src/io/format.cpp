@@ -3,6 +3,7 @@
 
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
+#include "io/other_formats.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -118,6 +119,9 @@ const Format& format_of(const std::filesystem::path& path) {
     if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) {
       throw_lacking(format, path.string());
     }
+  }
+  if (const OtherFormat* const other = other_format(extension)) {
+    throw InputError(path.string(), std::string(other->what), std::string(other->advice));
   }
   throw InputError(path.string(),
                    extension.empty() ? "has no extension" : "unknown extension '" + extension + "'",

@@ -65,7 +65,7 @@ def test_order_keys(command, tmp_path):
     assert result["vertices"]["count"] == 5 and result["vertices"]["seconds"] >= 0
     assert result["vertices"]["method"] == "fiedler"
     assert result["vertices"]["chosen_by"] == "user" and result["vertices"]["because"] is None
-    assert result["elements"]["method"] == "lexmax"
+    assert result["cells"]["method"] == "lexmax"
     assert result["for"] == "all" and result["group_by"] is None
     assert set(result["edge_span"]) == {"before", "after"}
     assert set(result["fiedler"]["components"][0]) == {"size", "lambda2", "residual", "iterations", "converged"}
@@ -80,7 +80,7 @@ def test_auto_says_what_it_took_and_why(command):
         result = command.json("order", made, "-o", "a.node", "--for", use)
         taken[use] = result["vertices"]["method"]
         assert result["for"] == use
-        for half in ("vertices", "elements"):
+        for half in ("vertices", "cells"):
             assert result[half]["chosen_by"] == "auto" and result[half]["because"]
         assert taken[use] in names - {"auto"}
         named = command.json("order", made, "-o", "b.node", "--vertices", taken[use], "--elements", "lexmax")

@@ -51,10 +51,10 @@ def test_a_gmsh_mesh_with_faces_and_points_becomes_vega_and_its_maps_fit(command
         "12 triangles are left out: Vega has no place for them",
         "the set 'anchor' is left out with all its cells (likewise 'edge', 'skin')"]
     points, tets = vega(tmp_path / "b.veg")
-    kept = numpy.load(tmp_path / "m.elements.kept.npy")
+    kept = numpy.load(tmp_path / "m.cells.kept.npy")
     assert kept.tolist() == [i for i, (dimension, _) in enumerate(cells) if dimension == 3]
     vertices = numpy.load(tmp_path / "m.vertices.old_to_new.npy")
-    elements = numpy.load(tmp_path / "m.elements.old_to_new.npy")
+    elements = numpy.load(tmp_path / "m.cells.old_to_new.npy")
     assert len(points) == len(CORNERS) and len(tets) == len(kept) == len(elements)
     assert numpy.array_equal(points[vertices], CORNERS)
     for old, new in zip(kept, elements):
@@ -67,7 +67,7 @@ def test_a_gmsh_mesh_with_faces_and_points_becomes_vega_and_its_maps_fit(command
     assert vega(tmp_path / "back.veg")[1].tolist() == [list(v) for d, v in cells if d == 3]
     # maps of all cells leave no list of kept ones behind
     command.ok("order", "a.msh", "-o", "b.msh", "--maps", "m")
-    assert not (tmp_path / "m.elements.kept.npy").exists()
+    assert not (tmp_path / "m.cells.kept.npy").exists()
 
 
 @pytest.mark.parametrize("extension", [".node", ".mesh"])

@@ -188,7 +188,19 @@ def test_an_unknown_side_of_maps_is_not_checked(command, tmp_path):
     assert "not in the order that the maps start from" in command.fails("apply", "m", "b.vtu", "-o", "c.vtu")
 
 
-@pytest.mark.parametrize("name", ["m.vertices.old_to_new.npy", "m.elements.new_to_old.npy", "m.maps.json"])
+def test_maps_of_cells_with_their_old_name_are_applied(command, tmp_path):
+    write_boxes(tmp_path)
+    command.ok("order", "a.vtu", "-o", "b.vtu", "--vertices", "rcm", "--elements", "scrambled", "--maps", "m")
+    for name in ("old_to_new", "new_to_old"):
+        (tmp_path / f"m.cells.{name}.npy").rename(tmp_path / f"m.elements.{name}.npy")
+    command.ok("apply", "m", "a.vtu", "-o", "c.vtu")
+    assert (tmp_path / "c.vtu").read_bytes() == (tmp_path / "b.vtu").read_bytes()
+    # new maps with the prefix leave no old ones behind
+    command.ok("order", "a.vtu", "-o", "b.vtu", "--maps", "m")
+    assert not list(tmp_path.glob("m.elements.*"))
+
+
+@pytest.mark.parametrize("name", ["m.vertices.old_to_new.npy", "m.cells.new_to_old.npy", "m.maps.json"])
 def test_a_file_of_the_maps_is_not_their_prefix(command, tmp_path, name):
     write_boxes(tmp_path)
     command.ok("order", "a.vtu", "-o", "b.vtu", "--maps", "m")
@@ -203,7 +215,7 @@ def test_maps_tell_which_was_which(command, tmp_path):
     points, cells = meshes.read_tetgen(tmp_path / "mesh.node")
     new_points, new_cells = meshes.read_tetgen(tmp_path / "new.node")
     vertex_new, vertex_old = load(tmp_path, "m", "vertices")
-    cell_new, cell_old = load(tmp_path, "m", "elements")
+    cell_new, cell_old = load(tmp_path, "m", "cells")
     assert (new_points[vertex_new] == points).all() and (new_points == points[vertex_old]).all()
     assert (new_cells[cell_new] == vertex_new[cells]).all() and (new_cells == vertex_new[cells[cell_old]]).all()
     assert not (vertex_new == numpy.arange(5)).all()
@@ -214,7 +226,7 @@ def test_attached_data_moves_along_into_another_format(command, tmp_path):
     command.ok("order", "mesh.node", "-o", "new.vtu", "--vertices", "scrambled", "--elements", "scrambled", "--maps", "m")
     mesh = meshio.read(tmp_path / "new.vtu")
     vertex_new, _ = load(tmp_path, "m", "vertices")
-    cell_new, _ = load(tmp_path, "m", "elements")
+    cell_new, _ = load(tmp_path, "m", "cells")
     assert mesh.point_data["label"].ravel()[vertex_new].tolist() == [7, 8, 7, 8, 9]
     assert mesh.cell_data["label"][0].ravel()[cell_new].tolist() == [10, 20]
 
@@ -297,7 +309,7 @@ def test_a_set_of_elements_in_included_files_follows(command, shared, tmp_path):
     (tmp_path / "shellElementList.txt").write_text(", ".join(str(i) for i in range(1, 101)) + "\n")
     (tmp_path / "nonShellElementList.txt").write_text(", ".join(str(i) for i in range(101, 1186)) + "\n")
     command.ok("order", "turtle.veg", "-o", "ordered.veg", "--maps", "m")
-    cell_new, _ = load(tmp_path, "m", "elements")
+    cell_new, _ = load(tmp_path, "m", "cells")
     text = "\n".join(line.split("#")[0] for line in (tmp_path / "ordered.veg").read_text().splitlines())
     block = text[text.index("*SET backshell") + len("*SET backshell"):]
     members = {int(word) for word in block[:block.index("*")].replace(",", " ").split()}

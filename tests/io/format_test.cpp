@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
 
+#include "io/other_formats.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
@@ -87,6 +88,26 @@ TEST(ReadMesh, ReportsDegenerateCellsAndKeepsThem) {
   EXPECT_EQ(read_mesh(folder.path() / "a.vtu", {.notes = &notes}).cells, mesh.cells);
   ASSERT_FALSE(notes.empty());
   EXPECT_NE(notes.back().find("1 cell names a vertex twice"), std::string::npos) << notes.back();
+}
+
+TEST(FormatOf, SaysWhatToDoWithFilesOfOtherPrograms) {
+  const auto message = [](const std::string& path) {
+    try {
+      (void)format_of(path);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message("a.VTP"),
+            "a.VTP: holds VTK's PolyData; save it as .ply or .vtu, in ParaView by Save Data");
+  EXPECT_EQ(message("a.vts"),
+            "a.vts: is structured; its order is its grid's, and there is nothing to reorder");
+  EXPECT_NE(message("a.unv").find("gmsh IN -save -format msh41 -o OUT.msh"), std::string::npos);
+  // no extension has both advice and a reader
+  for (const Format& format : all_formats()) {
+    for (const std::string_view extension : format.extensions) EXPECT_EQ(other_format(extension), nullptr);
+  }
 }
 
 }  // namespace

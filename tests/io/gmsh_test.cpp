@@ -423,6 +423,28 @@ TEST(Gmsh, RefusesCellsThatItLacks) {
 
 // ---- from other formats
 
+TEST(Gmsh, LabelsOfNamedGroupsAreTheirNumbersAgain) {
+  Mesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const std::array<std::array<Index, 3>, 4> faces{{{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}}};
+  for (const auto& face : faces) mesh.cells.push_back(Shape::triangle, face);
+  mesh.cells.push_back(Shape::tetrahedron, std::array<Index, 4>{0, 1, 2, 3});
+  mesh.data.push_back(
+      {std::string(kLabel), Association::cells, 1, std::vector<std::int32_t>{8, 9, 0, 4, 7}, {}, {}});
+  mesh.sets = {{"wall", Association::cells, {0}},
+               {"walls", Association::cells, {0, 1}},
+               {"body", Association::cells, {4}},
+               {"rest", Association::cells, {2, 3}}};
+  const std::string file = written(mesh);
+  // "rest" has a cell without label: no number of its own
+  EXPECT_THAT(file,
+              HasSubstr("$PhysicalNames\n4\n2 8 \"wall\"\n2 9 \"walls\"\n3 7 \"body\"\n2 10 \"rest\"\n"));
+  const Mesh again = read_text(file);
+  for (const EntitySet& set : mesh.sets) EXPECT_EQ(set_of(again, set.name).members, set.members);
+  EXPECT_EQ(find_array(again, kLabel, Association::cells)->values,
+            Values(std::vector<std::int32_t>{8, 9, 10, 4, 7}));
+}
+
 /// The same mesh, as far as Gmsh can hold what others have: data are double, sets of vertices are left out.
 void expect_converted(const Mesh& actual, const Mesh& expected) {
   EXPECT_EQ(actual.points, expected.points);

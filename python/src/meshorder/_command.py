@@ -232,13 +232,13 @@ def _write(made: str, path: str, format: str, words: _Words, dimension: int) -> 
 
 def _reorder_map_of_cells(prefix: str, order: NDArray[np.int64]) -> None:
     """Writes again where cells went, once they were sorted by type."""
-    file = f"{prefix}.elements.new_to_old.npy"
+    file = f"{prefix}.cells.new_to_old.npy"
     written = np.load(file)
     new_to_old = written[order]
     np.save(file, new_to_old)
     old_to_new = np.empty_like(written)
     old_to_new[new_to_old] = np.arange(len(written), dtype=written.dtype)
-    np.save(f"{prefix}.elements.old_to_new.npy", old_to_new)
+    np.save(f"{prefix}.cells.old_to_new.npy", old_to_new)
 
 
 def _forget_mesh_after(prefix: str) -> None:

@@ -75,6 +75,10 @@ struct Group {
   std::vector<std::int32_t> physicals;
   std::int32_t tag = 0;
   Box box;
+
+  [[nodiscard]] bool has(std::int32_t physical) const {
+    return std::find(physicals.begin(), physicals.end(), physical) != physicals.end();
+  }
 };
 
 struct Groups {
@@ -127,7 +131,7 @@ void split_by_set(Groups& groups, const EntitySet& set, std::int32_t physical) {
     const auto [found, is_new] = inside.try_emplace(group, index_size(groups.groups));
     if (is_new) {
       Group part = groups.groups[group];
-      part.physicals.push_back(physical);
+      if (!part.has(physical)) part.physicals.push_back(physical);
       groups.groups.push_back(std::move(part));
       parts.insert(found->second);
     }
@@ -212,16 +216,73 @@ std::string names_text(const std::vector<PhysicalName>& names) {
   return text;
 }
 
-/// Turns the sets of cells into named physical groups.
-std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups, std::int64_t next, Notes& notes) {
+/// How many cells have each dimension and label.
+using LabelCounts = std::map<std::pair<std::int32_t, std::int32_t>, Index>;
+
+/// Finds labels that are the numbers of sets: a reader of Gmsh's files gives a cell the number of its first
+/// group as label, and makes a set of each named group. So a group that comes first for all of its cells is a
+/// set of all cells with its label; others have in addition cells with the labels of such groups.
+class NumbersOfSets {
+ public:
+  NumbersOfSets(const Mesh& mesh, const std::vector<std::int32_t>& labels)
+      : number_(mesh.sets.size(), 0), inside_(mesh.sets.size()) {
+    if (labels.empty()) return;
+    const auto key = [&](Index c) { return std::pair{dimension(mesh.cells.shapes[c]), labels[c]}; };
+    for (Index c = 0; c < mesh.cell_count(); ++c) ++all_[key(c)];
+    for (std::size_t s = 0; s < mesh.sets.size(); ++s) {
+      if (mesh.sets[s].association == Association::vertices) continue;
+      for (const Index c : mesh.sets[s].members) ++inside_[s][key(c)];
+    }
+    for (const bool only : {true, false}) {
+      for (std::size_t s = 0; s < mesh.sets.size(); ++s) claim(s, only);
+    }
+  }
+
+  /// Returns the label that is the number of a set, 0 if none is.
+  [[nodiscard]] std::int32_t operator[](std::size_t set) const { return number_[set]; }
+
+ private:
+  /// Gives the set the number that it has if `only` cells with that label are in it, or others, too.
+  void claim(std::size_t s, bool only) {
+    if (number_[s] != 0) return;
+    for (const auto& [key, count] : inside_[s]) {
+      if (key.second == 0 || !may_have(s, key.second, only)) continue;
+      number_[s] = key.second;
+      for (const auto& [member, ignored] : inside_[s]) taken_.insert({member.first, key.second});
+      return;
+    }
+  }
+
+  [[nodiscard]] bool may_have(std::size_t s, std::int32_t label, bool only) const {
+    return std::all_of(inside_[s].begin(), inside_[s].end(), [&](const auto& entry) {
+      const auto& [key, count] = entry;
+      if (key.second == label) return count == all_.at(key) && !taken_.contains(key);
+      const std::pair same_dimension{key.first, label};
+      return !only && taken_.contains(key) && !taken_.contains(same_dimension) &&
+             inside_[s].contains(same_dimension) == all_.contains(same_dimension);
+    });
+  }
+
+  std::vector<std::int32_t> number_;
+  LabelCounts all_;
+  std::vector<LabelCounts> inside_;  ///< of each set
+  std::set<std::pair<std::int32_t, std::int32_t>> taken_;
+};
+
+/// Turns the sets of cells into named physical groups, with the labels as numbers where they are theirs.
+std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups,
+                                         const std::vector<std::int32_t>& labels, Notes& notes) {
+  const NumbersOfSets numbers(mesh, labels);
+  std::int64_t next = labels.empty() ? 1 : std::int64_t{*std::max_element(labels.begin(), labels.end())} + 1;
   std::vector<PhysicalName> names;
-  for (const EntitySet& set : mesh.sets) {
+  for (std::size_t s = 0; s < mesh.sets.size(); ++s) {
+    const EntitySet& set = mesh.sets[s];
     if (set.association == Association::vertices || set.members.empty() ||
         next > std::numeric_limits<std::int32_t>::max()) {
       note_set_unsupported(set, "Gmsh", notes);
       continue;
     }
-    const auto physical = static_cast<std::int32_t>(next++);
+    const auto physical = numbers[s] != 0 ? numbers[s] : static_cast<std::int32_t>(next++);
     split_by_set(groups, set, physical);
     std::set<std::int32_t> dimensions;
     for (const Index c : set.members) dimensions.insert(dimension(mesh.cells.shapes[c]));
@@ -292,8 +353,7 @@ void classify(Metadata& layout, WriteContext& output, Notes& notes) {
 
   // groups of cells become entities
   Groups groups = groups_by_label(mesh, labels, kept);
-  const std::int64_t highest = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end());
-  layout.names = groups_by_sets(mesh, groups, highest + 1, notes);
+  layout.names = groups_by_sets(mesh, groups, labels, notes);
   assign_tags(mesh, groups);
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const Group& group = groups.groups[groups.of_cell[c]];

@@ -169,8 +169,10 @@ bool wedges_face_inward(const std::vector<Point>& points, const FileCells& cells
 InputError unknown_type(int number, Index cell, const ErrorAt& error) {
   std::string what = "cell " + std::to_string(cell) + " (counted from 0) ";
   if (number == 42) {
-    what += "is a polyhedron (VTK_POLYHEDRON)";
-  } else if (number == 0) {
+    return error(what + "is a polyhedron (VTK_POLYHEDRON)",
+                 "cut polyhedra into tetrahedra first, in ParaView by Tetrahedralize and Save Data");
+  }
+  if (number == 0) {
     what += "is empty (VTK_EMPTY_CELL)";
   } else {
     what += "has the type " + std::to_string(number);

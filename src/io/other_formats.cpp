@@ -1,0 +1,60 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/other_formats.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace meshorder {
+namespace {
+
+constexpr std::string_view kStructured = "is structured";
+constexpr std::string_view kGridOrder = "its order is its grid's, and there is nothing to reorder";
+constexpr std::string_view kByMeshio =
+    "the command of the Python package reads it by meshio (pip install meshio)";
+constexpr std::string_view kByGmsh =
+    "convert it with gmsh IN -save -format msh41 -o OUT.msh; the command of the Python package reads it by "
+    "meshio";
+constexpr std::string_view kOneGrid = "save it as one .vtu, in ParaView by Append Datasets and Save Data";
+
+constexpr std::array kOtherFormats{
+    OtherFormat{".vtp", "holds VTK's PolyData", "save it as .ply or .vtu, in ParaView by Save Data"},
+    OtherFormat{".pvtu", "lists the pieces of a mesh", kOneGrid},
+    OtherFormat{".vtm", "lists several datasets", kOneGrid},
+    OtherFormat{".vtmb", "lists several datasets", kOneGrid},
+    OtherFormat{".pvd", "lists the steps of a time series", "give one of its .vtu files"},
+    OtherFormat{".vtkhdf", "is a VTKHDF file", "save it as .vtu, in ParaView by Save Data"},
+    OtherFormat{".vti", kStructured, kGridOrder},
+    OtherFormat{".vts", kStructured, kGridOrder},
+    OtherFormat{".vtr", kStructured, kGridOrder},
+    OtherFormat{".cgns", "is a CGNS file", kByGmsh},
+    OtherFormat{".med", "is a MED file", kByGmsh},
+    OtherFormat{".unv", "is an I-deas universal file",
+                "convert it with gmsh IN -save -format msh41 -o OUT.msh"},
+    OtherFormat{".bdf", "is Nastran's bulk data", kByGmsh},
+    OtherFormat{".nas", "is Nastran's bulk data", kByGmsh},
+    OtherFormat{".fem", "is Nastran's bulk data", kByMeshio},
+    OtherFormat{".mdpa", "is a mesh of Kratos", kByMeshio},
+    OtherFormat{".h5m", "is a mesh of MOAB", kByMeshio},
+    OtherFormat{".avs", "is an AVS-UCD file", kByMeshio},
+    OtherFormat{".ugrid", "is an AFLR3 file", kByMeshio},
+    OtherFormat{".f3grid", "is a mesh of FLAC3D", kByMeshio},
+    OtherFormat{".tec", "is a Tecplot file", kByMeshio},
+    OtherFormat{".step", "is geometry without a mesh",
+                "mesh it first, for example with gmsh IN -3 -o OUT.msh"},
+    OtherFormat{".stp", "is geometry without a mesh",
+                "mesh it first, for example with gmsh IN -3 -o OUT.msh"},
+    OtherFormat{".geo", "is geometry without a mesh",
+                "mesh it first, for example with gmsh IN -3 -o OUT.msh"},
+    OtherFormat{".xml", "may be a mesh of the FEniCS of old", kByMeshio},
+};
+
+}  // namespace
+
+const OtherFormat* other_format(std::string_view extension) {
+  const auto* const found =
+      std::find_if(kOtherFormats.begin(), kOtherFormats.end(),
+                   [&](const OtherFormat& format) { return format.extension == extension; });
+  return found == kOtherFormats.end() ? nullptr : found;
+}
+
+}  // namespace meshorder
