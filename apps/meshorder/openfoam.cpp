@@ -33,6 +33,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct OpenFoamArguments : Common {
+  OpenFoamArguments() {
+    // Cuthill-McKee's orders need fewest iterations of DIC and compute fastest (docs/hosts.md)
+    ordering.workload = Workload::bandwidth;
+  }
+
   std::string input;
   std::string cells = "auto";
   OrderOptions ordering;

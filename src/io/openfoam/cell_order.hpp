@@ -17,9 +17,10 @@ inline constexpr std::string_view kCellOrder = "cellOrder";
 /// Writes the list of old cells in their new order. The caller commits the file.
 void write_cell_order(const Permutation& cells, OutputFile& file);
 
-/// The entries of renumberMeshDict that take the order from `kCellOrder`.
-inline constexpr std::array<std::string_view, 2> kDictionaryEntries{
-    "method manual;", "manualCoeffs { dataFile \"cellOrder\"; }"};
+/// The entries of renumberMeshDict that take the order from `kCellOrder`. OpenFOAM 1912 refuses a dictionary
+/// without the first.
+inline constexpr std::array<std::string_view, 3> kDictionaryEntries{
+    "writeMaps false;", "method manual;", "manualCoeffs { dataFile \"cellOrder\"; }"};
 
 /// Writes a renumberMeshDict of these entries. The caller commits the file.
 void write_dictionary(OutputFile& file);

@@ -24,6 +24,8 @@ constexpr std::string_view kMarks = "(){};";
 
 bool is_space(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 bool is_mark(char c) { return kMarks.find(c) != std::string_view::npos; }
+/// Returns whether a number or word ends before this character, which may begin a comment.
+bool is_end(char c) { return is_space(c) || is_mark(c) || c == '/'; }
 
 /// Returns the file of that path if it exists, else its compressed form.
 FilePath existing(const FilePath& path) {
@@ -139,45 +141,44 @@ void FoamFile::read_arch(std::string_view arch) {
 
 // ---- numbers
 
-std::int64_t FoamFile::integer(std::string_view what) {
+void FoamFile::fail_number(std::string_view what, std::string_view needed) {
+  skip_blanks();
+  if (position_ >= text_.size()) fail(fmt::format("the file ends before {}", what), "it may be cut short");
+  const std::string_view rest = std::string_view(text_).substr(position_);
+  fail(fmt::format("{} is '{}'", what, shown(rest.substr(0, rest.find_first_of(" \n\t\r")))),
+       fmt::format("{} is needed", needed));
+}
+
+template <class T>
+std::errc FoamFile::take_number(T& value) {
   skip_blanks();
   const char* const begin = text_.data() + position_;
   const char* const end = text_.data() + text_.size();
-  std::int64_t value = 0;
   const auto [after, code] = std::from_chars(begin, end, value);
-  const bool whole = after == end || is_space(*after) || is_mark(*after);
-  if (code == std::errc{} && whole) {
-    position_ += static_cast<std::size_t>(after - begin);
-    return value;
-  }
-  if (begin == end) fail(fmt::format("the file ends before {}", what), "it may be cut short");
-  const std::string_view found = std::string_view(text_).substr(position_);
-  fail(fmt::format("{} is '{}'", what, shown(found.substr(0, found.find_first_of(" \n\t\r")))),
-       "a whole number is needed");
+  if (after != end && !is_end(*after)) return std::errc::invalid_argument;
+  if (code == std::errc{}) position_ += static_cast<std::size_t>(after - begin);
+  return code;
+}
+
+std::int64_t FoamFile::integer(std::string_view what) {
+  std::int64_t value = 0;
+  const std::errc code = take_number(value);
+  if (code == std::errc::result_out_of_range) fail_number(what, "a smaller number");
+  if (code != std::errc{}) fail_number(what, "a whole number");
+  return value;
 }
 
 double FoamFile::finite(std::string_view what) {
-  skip_blanks();
-  const char* const begin = text_.data() + position_;
-  const char* const end = text_.data() + text_.size();
+  const std::size_t begin = position_;
   double value = 0;
-  const auto [after, code] = std::from_chars(begin, end, value);
-  const bool whole = after == end || is_space(*after) || is_mark(*after);
-  if (code == std::errc{} && whole && std::isfinite(value)) {
-    position_ += static_cast<std::size_t>(after - begin);
-    return value;
+  const std::errc code = take_number(value);
+  if (code == std::errc::result_out_of_range) {  // of numbers near 0 as well
+    const std::string_view digits = token();
+    if (digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos) return 0;
   }
-  if (code == std::errc::result_out_of_range && whole) {  // underflow; overflow is found by its size
-    const std::string_view digits(begin, static_cast<std::size_t>(after - begin));
-    if (digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos) {
-      position_ += digits.size();
-      return 0;
-    }
-  }
-  if (begin == end) fail(fmt::format("the file ends before {}", what), "it may be cut short");
-  const std::string_view found = std::string_view(text_).substr(position_);
-  fail(fmt::format("{} is '{}'", what, shown(found.substr(0, found.find_first_of(" \n\t\r")))),
-       "a finite number is needed");
+  if (code == std::errc{} && std::isfinite(value)) return value;
+  position_ = begin;
+  fail_number(what, "a finite number");
 }
 
 template <class T>
@@ -223,8 +224,10 @@ std::int64_t FoamFile::size(std::string_view what, std::int64_t bytes_each) {
   const std::int64_t size = integer(of);
   if (size < 0) fail(fmt::format("{} is {}", of, size), "it cannot be negative");
   if (size > kMaxIndex) fail(fmt::format("{} is {}", of, size), "at most 2147483647 are possible");
+  const std::size_t after = position_;
   // the last entry of a text file may lack what separates it from the next
   if (!at('{') && size > 0 && size > (bytes_left() + 1) / bytes_each) {
+    position_ = after;
     fail(fmt::format("{} is {}, but only {} bytes follow", of, size, bytes_left()),
          "the file is cut short, or the number is wrong");
   }

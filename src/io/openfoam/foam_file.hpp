@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace meshorder::openfoam {
@@ -65,6 +66,11 @@ class FoamFile {
     return static_cast<std::int64_t>(text_.size() - position_);
   }
 
+  /// Takes the next word if it is a number that T holds.
+  template <class T>
+  std::errc take_number(T& value);
+  /// Throws an InputError on the next word, which is no such number.
+  [[noreturn]] void fail_number(std::string_view what, std::string_view needed);
   std::int64_t integer(std::string_view what);
   double finite(std::string_view what);
   template <class T>
