@@ -154,46 +154,66 @@ def openfoam(program, case, *arguments, before=()):
     return done.stdout
 
 
-def write_cavity(case, cells="5 4 3", grading="2 3 1", region=""):
-    """A box of fluid whose lid moves, and a field with the number of each cell; its mesh is made by blockMesh."""
-    names = {
-        "system/controlDict": "application icoFoam; startFrom startTime; startTime 0; stopAt endTime; endTime 0.04;"
-                              "deltaT 0.01; writeControl timeStep; writeInterval 4; writeFormat ascii;"
-                              "writePrecision 15; timeFormat general;",
-        "system/fvSchemes": "ddtSchemes { default Euler; } gradSchemes { default Gauss linear; }"
-                            "divSchemes { default none; div(phi,U) Gauss linear; }"
-                            "laplacianSchemes { default Gauss linear orthogonal; }"
-                            "interpolationSchemes { default linear; } snGradSchemes { default orthogonal; }",
-        "system/fvSolution": "solvers { p { solver PCG; preconditioner DIC; tolerance 1e-11; relTol 0; }"
-                             "pFinal { $p; } U { solver smoothSolver; smoother symGaussSeidel; tolerance 1e-11;"
-                             "relTol 0; } } PISO { nCorrectors 2; pRefPoint (0.01 0.01 0.01); pRefValue 0; }",
-        "constant/transportProperties": "nu 0.01;",
-        "system/blockMeshDict":
-            "vertices ((0 0 0) (1 0 0) (1 1 0) (0 1 0) (0 0 1) (1 0 1) (1 1 1) (0 1 1));"
-            f"blocks (hex (0 1 2 3 4 5 6 7) ({cells}) simpleGrading ({grading})); edges ();"
-            "boundary (lid { type wall; faces ((3 7 6 2)); } walls { type wall; faces "
-            "((0 4 7 3) (2 6 5 1) (1 5 4 0) (0 3 2 1) (4 5 6 7)); }); mergePatchPairs ();",
+def write_settings(case, region="", **entries):
+    """Writes the dictionaries of a flow that a moving lid drives; `entries` replaces some, all as text."""
+    known = {
+        "controlDict": "application icoFoam; startFrom startTime; startTime 0; stopAt endTime; endTime 0.04; "
+                       "deltaT 0.01; writeControl timeStep; writeInterval 4; writeFormat ascii; writePrecision 15; "
+                       "timeFormat general;",
+        "fvSchemes": "ddtSchemes { default Euler; } gradSchemes { default Gauss linear; } "
+                     "divSchemes { default none; div(phi,U) Gauss linear; } "
+                     "laplacianSchemes { default Gauss linear orthogonal; } "
+                     "interpolationSchemes { default linear; } snGradSchemes { default orthogonal; }",
+        "fvSolution": "solvers { p { solver PCG; preconditioner DIC; tolerance 1e-11; relTol 0; } pFinal { $p; } "
+                      "U { solver smoothSolver; smoother symGaussSeidel; tolerance 1e-11; relTol 0; } } "
+                      "PISO { nCorrectors 2; pRefPoint (0.01 0.01 0.01); pRefValue 0; }",
+        **entries,
     }
+    files = {f"system/{name}": text for name, text in known.items()}
     if region:
-        for name in ("fvSchemes", "fvSolution"):
-            names[f"system/{region}/{name}"] = names[f"system/{name}"]
-        names[f"system/{region}/blockMeshDict"] = names.pop("system/blockMeshDict")
-    for name, text in names.items():
+        files |= {f"system/{region}/{name}": text for name, text in known.items()}
+    files["constant/transportProperties"] = "nu 0.01;"
+    for name, text in files.items():
         path = case / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(header("dictionary", path.name) + text + "\n")
+
+
+def block_mesh(case, cells, grading="1 1 1", region=""):
+    """Makes the mesh of a box by blockMesh, with the patches lid and walls."""
+    path = case / "system" / region / "blockMeshDict"
+    path.write_text(
+        header("dictionary", "blockMeshDict") +
+        "vertices ((0 0 0) (1 0 0) (1 1 0) (0 1 0) (0 0 1) (1 0 1) (1 1 1) (0 1 1));\n"
+        f"blocks (hex (0 1 2 3 4 5 6 7) ({cells}) simpleGrading ({grading})); edges ();\n"
+        "boundary (lid { type wall; faces ((3 7 6 2)); } walls { type wall; faces "
+        "((0 4 7 3) (2 6 5 1) (1 5 4 0) (0 3 2 1) (4 5 6 7)); }); mergePatchPairs ();\n")
     openfoam("blockMesh", case, *(["-region", region] if region else []))
+
+
+def write_fields(case, region=""):
+    """Writes a fluid at rest below its lid."""
+    fields = {"p": ("volScalarField", "[0 2 -2 0 0 0 0]", "uniform 0", "type zeroGradient;", "type zeroGradient;"),
+              "U": ("volVectorField", "[0 1 -1 0 0 0 0]", "uniform (0 0 0)", "type fixedValue; value uniform (1 0 0);",
+                    "type noSlip;")}
+    for name, field in fields.items():
+        write_field(case / "0" / region / name, *field)
+
+
+def write_field(path, class_name, dimensions, values, lid, walls):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(header(class_name, path.name) + f"dimensions {dimensions};\ninternalField {values};\n"
+                    f"boundaryField\n{{\nlid {{ {lid} }}\nwalls {{ {walls} }}\n\"proc.*\" {{ type processor; }}\n}}\n")
+
+
+def write_cavity(case, cells="5 4 3", grading="2 3 1", region=""):
+    """A box of fluid whose lid moves, and a field with the number of each cell; its mesh is made by blockMesh."""
+    write_settings(case, region)
+    block_mesh(case, cells, grading, region)
+    write_fields(case, region)
     count = numpy.prod([int(n) for n in cells.split()])
-    uniform = {"p": ("volScalarField", "[0 2 -2 0 0 0 0]", "uniform 0", "type zeroGradient;", "type zeroGradient;"),
-               "U": ("volVectorField", "[0 1 -1 0 0 0 0]", "uniform (0 0 0)", "type fixedValue; value uniform (1 0 0);",
-                     "type noSlip;"),
-               "number": ("volScalarField", "[0 0 0 0 0 0 0]", "nonuniform List<scalar> " + text_list(range(count)),
-                          "type zeroGradient;", "type zeroGradient;")}
-    for name, (class_name, dimensions, values, lid, walls) in uniform.items():
-        path = case / "0" / region / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(header(class_name, name) + f"dimensions {dimensions};\ninternalField {values};\n"
-                        f"boundaryField\n{{\nlid {{ {lid} }}\nwalls {{ {walls} }}\n\"proc.*\" {{ type processor; }}\n}}\n")
+    write_field(case / "0" / region / "number", "volScalarField", "[0 0 0 0 0 0 0]",
+                "nonuniform List<scalar> " + text_list(range(count)), "type zeroGradient;", "type zeroGradient;")
     return case
 
 
