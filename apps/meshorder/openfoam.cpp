@@ -98,18 +98,27 @@ class Case {
     return command + " -overwrite -dict system/renumberMeshDict";
   }
 
-  /// Returns a sentence on meshes of other times, empty if there are none or the time is given.
-  [[nodiscard]] std::string other_times() const {
-    if (!time_.empty()) return {};
-    const fs::path folder = folder_ / meshes_.front();
-    std::vector<std::string> times = folders_in(folder);
-    std::erase_if(times, [&](const std::string& name) {
-      const bool is_time = name.find_first_not_of("0123456789.e-") == std::string::npos;
-      return !is_time || !has_owners(folder / name / region_ / "polyMesh");
+  /// Returns what to beware of in a case with several times.
+  [[nodiscard]] Notes warnings() const {
+    Notes notes;
+    std::vector<std::string> times = folders_in(folder_ / meshes_.front());
+    std::erase_if(times, [](const std::string& name) {
+      return name.find_first_not_of("0123456789.e-+") != std::string::npos || name.front() == '.';
     });
-    if (times.empty()) return {};
-    return "the mesh of `constant` is ordered; there are others for the times " + join(times) +
-           ", which --time orders";
+    if (times.size() > 1) {
+      notes.push_back(fmt::format(
+          "the case has folders of {} times; renumberMesh moves the fields of one, at which the case starts: "
+          "remove the others first, they would stay in the old order",
+          times.size()));
+    }
+    std::erase_if(times, [&](const std::string& name) {
+      return !has_owners(folder_ / meshes_.front() / name / region_ / "polyMesh");
+    });
+    if (time_.empty() && !times.empty()) {
+      notes.push_back("the mesh of `constant` is ordered; there are others for the times " + join(times) +
+                      ", which --time orders");
+    }
+    return notes;
   }
 
  private:
@@ -311,8 +320,7 @@ void run(const OpenFoamArguments& arguments) {
   if (!arguments.dry_run) outputs.emplace(meshes, arguments.force);
 
   Progress progress(!console.quiet());
-  Notes notes;
-  if (const std::string times = meshes.other_times(); !times.empty()) notes.push_back(times);
+  Notes notes = meshes.warnings();
   std::vector<OrderedMesh> done;
   for (const std::string& name : meshes.meshes()) {
     const auto count = static_cast<double>(meshes.meshes().size());

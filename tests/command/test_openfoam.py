@@ -169,11 +169,14 @@ def test_regions(command, case):
 
 def test_times(command, case):
     shutil.copytree(case / "constant" / "polyMesh", case / "0.5" / "polyMesh")
-    (case / "0.25").mkdir()
+    (case / "postProcessing").mkdir()
     done = command.ok("openfoam", "case")
     assert "there are others for the times 0.5, which --time orders" in done.stderr
+    assert "fields" not in done.stderr
     result = command.json("openfoam", "case", "--time", "0.5")
     assert result["notes"] == [] and result["files"] == ["case/0.5/cellOrder"] and " -time 0.5 " in result["next"]
+    (case / "0.25").mkdir()
+    assert "folders of 2 times" in command.ok("openfoam", "case", "--time", "0.5").stderr
     command.fails("openfoam", "case", "--time", "0.25")
 
 
@@ -313,6 +316,18 @@ def test_times_of_openfoam(command, tmp_path):
     renumbered(command, case, "--time", "0.5")
     new_to_old = foam_cases.read_labels(case / "0.5" / "cellOrder")
     assert (foam_cases.read_field(case / "0.5" / "number") == new_to_old).all()
+
+
+@needs_openfoam
+def test_renumber_mesh_moves_the_fields_of_one_time_only(command, tmp_path):
+    """Which is why the command warns of others."""
+    case = foam_cases.write_cavity(tmp_path / "cavity")
+    shutil.copytree(case / "0", case / "1")
+    assert "they would stay in the old order" in command.ok("openfoam", "cavity").stderr
+    renumbered(command, case)
+    new_to_old = foam_cases.read_labels(case / "constant" / "cellOrder")
+    assert (foam_cases.read_field(case / "0" / "number") == new_to_old).all()
+    assert (foam_cases.read_field(case / "1" / "number") == numpy.arange(60)).all()
 
 
 @needs_openfoam
