@@ -242,37 +242,38 @@ OrderedMesh ordered(const Case& meshes, const std::string& name, const OpenFoamA
 /// What is to be written: the maps, and the dictionary unless there is one.
 class Outputs {
  public:
-  /// Opens the files, so that it fails before the work if they cannot be written.
+  /// Fails, before the work, if the files cannot be written.
   Outputs(const Case& meshes, bool force) {
-    for (const std::string& mesh : meshes.meshes()) files_.emplace_back(meshes.cell_order(mesh));
+    for (const std::string& mesh : meshes.meshes()) maps_.push_back(meshes.cell_order(mesh));
     const fs::path dictionary = meshes.dictionary();
     const bool is_there = fs::exists(dictionary) && !force;
-    if (!is_there) dictionary_.emplace(dictionary);
+    if (!is_there) dictionary_ = dictionary;
     keeps_other_ = is_there && !openfoam::takes_cell_order(dictionary);
+    for (const fs::path& map : maps_) (void)OutputFile(map);
+    if (dictionary_) (void)OutputFile(*dictionary_);
   }
 
   /// Returns whether a dictionary that asks for something else stays.
   [[nodiscard]] bool keeps_other_dictionary() const noexcept { return keeps_other_; }
 
   /// Writes all files, or none; returns their paths.
-  std::vector<std::string> write(const std::vector<OrderedMesh>& meshes) {
+  [[nodiscard]] std::vector<std::string> write(const std::vector<OrderedMesh>& meshes) const {
+    std::vector<OutputFile> files;
     for (std::size_t m = 0; m < meshes.size(); ++m) {
-      openfoam::write_cell_order(meshes[m].order.permutation, files_[m]);
+      openfoam::write_cell_order(meshes[m].order.permutation, files.emplace_back(maps_[m]));
+      files.back().close();  // there may be more processors than files that may be open
     }
-    if (dictionary_) {
-      openfoam::write_dictionary(*dictionary_);
-      files_.push_back(*std::move(dictionary_));
-    }
-    OutputFile::commit_all(files_);
+    if (dictionary_) openfoam::write_dictionary(files.emplace_back(*dictionary_));
+    OutputFile::commit_all(files);
     std::vector<std::string> paths;
-    paths.reserve(files_.size());
-    for (const OutputFile& file : files_) paths.push_back(file.target().string());
+    paths.reserve(files.size());
+    for (const OutputFile& file : files) paths.push_back(file.target().string());
     return paths;
   }
 
  private:
-  std::vector<OutputFile> files_;
-  std::optional<OutputFile> dictionary_;
+  std::vector<fs::path> maps_;
+  std::optional<fs::path> dictionary_;
   bool keeps_other_ = false;
 };
 
@@ -281,10 +282,18 @@ bool all_stay(const std::vector<OrderedMesh>& meshes) {
                      [](const OrderedMesh& mesh) { return mesh.order.permutation.is_identity(); });
 }
 
+/// Prints a line on the mesh of a processor.
+void print_part(const Console& console, const OrderedMesh& mesh) {
+  console.print("{:<12} {} cells, {}: band {} → {}, profile {} → {}", mesh.name, with_commas(mesh.cells),
+                method_in_words(mesh.order.method), with_commas(mesh.before.max), with_commas(mesh.after.max),
+                with_commas(mesh.profile_before), with_commas(mesh.profile_after));
+}
+
+/// Prints a table on the mesh of the whole case.
 void print_mesh(const Console& console, const OrderedMesh& mesh) {
   const MethodChoice& method = mesh.order.method;
-  console.print("{:<10} {} with {} internal faces", mesh.name.empty() ? "cells" : mesh.name,
-                with_commas(mesh.cells), with_commas(mesh.internal_faces));
+  console.print("{:<10} {} with {} internal faces", "cells", with_commas(mesh.cells),
+                with_commas(mesh.internal_faces));
   console.print("{:<10} {:<14} {}", "order", method_in_words(method), duration(mesh.order.seconds));
   if (!method.reason.empty()) console.print("{:<10} {}", "", method.reason);
   const auto row = [&](const char* name, const std::string& before, const std::string& after) {
@@ -338,7 +347,8 @@ void run(const OpenFoamArguments& arguments) {
   progress.finish();
 
   console.warn_of(notes);
-  for (const OrderedMesh& mesh : done) print_mesh(console, mesh);
+  for (const OrderedMesh& mesh : done)
+    mesh.name.empty() ? print_mesh(console, mesh) : print_part(console, mesh);
   for (const std::string& file : written) {
     console.print("{:<10} {}", &file == written.data() ? "wrote" : "", file);
   }
@@ -363,9 +373,8 @@ void run(const OpenFoamArguments& arguments) {
 
 void add_openfoam(CLI::App& subcommand) {
   subcommand.description(
-      "Order the cells of an OpenFOAM case: writes the order, as constant/cellOrder, and "
-      "system/renumberMeshDict\n"
-      "for OpenFOAM's renumberMesh, which moves the cells with all fields, zones and sets.");
+      "Order the cells of an OpenFOAM case. Writes the order, as constant/cellOrder, and\n"
+      "system/renumberMeshDict for renumberMesh, which moves the cells with all fields, zones and sets.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder openfoam cavity\n"

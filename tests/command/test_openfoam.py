@@ -2,6 +2,7 @@
 """`meshorder openfoam`, judged by SciPy and, where it is installed, by OpenFOAM itself."""
 import gzip
 import json
+import resource
 import shlex
 import shutil
 import struct
@@ -191,7 +192,7 @@ def test_decomposed_cases(command, case):
         assert len(foam_cases.read_labels(case / processor / "constant" / "cellOrder")) == n
     assert not (case / "constant" / "cellOrder").exists()
     text = command.ok("openfoam", "case", "--parallel").stdout
-    assert "processor0 120 with" in text and "processor1 6 with" in text
+    assert "processor0   120 cells, rcm (auto): band " in text and "processor1   6 cells, " in text
     shutil.rmtree(mesh)
     assert command.fails("openfoam", "case").endswith("the case is decomposed: give --parallel")
     (case / "processor1" / "constant" / "polyMesh" / "owner").unlink()
@@ -222,6 +223,17 @@ def test_faults_leave_nothing_behind(command, case):
     assert command.fails("openfoam", "none").endswith("none: no such folder; give an OpenFOAM case")
     (case / "constant" / "polyMesh" / "owner").unlink()
     assert command.fails("openfoam", "case").endswith("make the mesh first, for instance by blockMesh")
+
+
+def test_more_processors_than_open_files(command, case):
+    mesh = case / "processor0" / "constant" / "polyMesh"
+    foam_cases.write_poly_mesh(mesh, foam_cases.shuffled(foam_cases.block(3, 2, 1), 1))
+    for processor in range(1, 40):
+        shutil.copytree(mesh, case / f"processor{processor}" / "constant" / "polyMesh")
+    done = command.run("openfoam", "case", "--parallel",
+                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (25, 25)))
+    assert done.returncode == 0, done.stderr
+    assert len(list(case.glob("processor*/constant/cellOrder"))) == 40
 
 
 def test_an_empty_processor_mesh_has_an_empty_map(command, case):

@@ -295,6 +295,9 @@ TEST(OpenFoam, KnowsADictionaryThatTakesItsOrder) {
     return takes_cell_order(folder.file("dictionary", file_of("dictionary", entries)));
   };
   EXPECT_TRUE(takes("writeMaps true; // mine\nmanualCoeffs\n{\n dataFile cellOrder;\n}\nmethod manual;"));
+  EXPECT_TRUE(
+      takes("method manual; manualCoeffs { dataFile \"cellOrder\"; } blockCoeffs { method scotch; }"));
+  EXPECT_FALSE(takes("manualCoeffs { dataFile \"cellOrder\"; } blockCoeffs { method manual; }"));
   EXPECT_FALSE(takes("method CuthillMcKee; manualCoeffs { dataFile \"cellOrder\"; }"));
   EXPECT_FALSE(takes("method manual; manualCoeffs { dataFile \"cellMap\"; }"));
   EXPECT_FALSE(takes("// method manual; manualCoeffs { dataFile \"cellOrder\"; }"));

@@ -48,9 +48,12 @@ bool takes_cell_order(const fs::path& dictionary) {
   FoamFile file(dictionary);
   bool is_manual = false;
   bool names_order = false;
-  for (std::string key = "{"; !key.empty();) {
+  int depth = 0;  // of braces: other methods have entries of the same name
+  for (std::string key = ";"; !key.empty();) {
     const std::string value(file.token());
-    if (key == "method") is_manual = value == "manual";
+    if (key == "{") ++depth;
+    if (key == "}") --depth;
+    if (key == "method" && depth == 0) is_manual = value == "manual";
     if (key == "dataFile") names_order = value == kCellOrder;
     key = value;
   }
