@@ -161,7 +161,7 @@ def choices(command):
     names = [model["name"] for model in json.loads(run(command, "models", "list", "--json"))["models"]]
     vertices = [method["name"] for method in methods["vertices"]]
     elements = [method["name"] for method in methods["elements"]]
-    return {"--vertices": vertices, "--elements": elements, "--order": vertices, "--orders": vertices,
+    return {"--vertices": vertices, "--cells": vertices, "--elements": elements, "--order": vertices, "--orders": vertices,
             "--methods": vertices, "SCENARIO": [scenario["name"] for scenario in scenarios],
             "NAME": [name for name in names if not re.search(r"-\d+$", name)] + ["all"]}
 

@@ -33,6 +33,7 @@ constexpr std::array kSubcommands{
     Subcommand{"apply", meshorder::command::add_apply},
     Subcommand{"info", meshorder::command::add_info},
     Subcommand{"compare", meshorder::command::add_compare},
+    Subcommand{"openfoam", meshorder::command::add_openfoam},
     Subcommand{"simulate", meshorder::command::add_simulate},
     Subcommand{"reproduce", meshorder::command::add_reproduce},
     Subcommand{"report", meshorder::command::add_report},
@@ -75,6 +76,7 @@ int main(int argc, char** argv) {
       "  meshorder order  dragon.veg -o ordered.veg   order by the method chosen for the mesh\n"
       "  meshorder info   dragon.veg                  counts and spans; is it in a good order?\n"
       "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
+      "  meshorder openfoam cavity                    order the cells of an OpenFOAM case\n"
 #ifdef MESHORDER_HAS_LAB
       "  meshorder simulate falling --mesh dragon.veg simulate an elastic body and time it\n"
       "  meshorder reproduce -o results               the paper's study on this machine, as a page\n"

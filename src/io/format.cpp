@@ -3,6 +3,7 @@
 
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
+#include "io/openfoam/cell_order.hpp"
 #include "io/other_formats.hpp"
 #include <meshorder/error.hpp>
 
@@ -103,7 +104,11 @@ std::string Format::key() const { return lower_case(std::string(name)); }
 std::span<const Format> all_formats() { return kFormats; }
 
 const Format& format_of(const std::filesystem::path& path) {
-  const std::string extension = lower_case(path.extension().string());
+  const std::string extension = lower_case(without_gz(path).extension().string());
+  if (openfoam::is_case(openfoam::case_folder(path))) {
+    throw InputError(path.string(), "is an OpenFOAM case",
+                     "order its cells by meshorder openfoam " + openfoam::case_folder(path).string());
+  }
   if (std::error_code code; extension.empty() && std::filesystem::is_directory(path, code)) {
     throw InputError(path.string(), "is a folder", "give a mesh file");
   }

@@ -40,9 +40,9 @@ struct Format {
 /// Returns all formats, in the order of the help text.
 std::span<const Format> all_formats();
 
-/// Returns the format that belongs to the extension of `path`, in any case. Throws InputError, which lists
-/// the known extensions, if there is none, and Unavailable for a format of which this build lacks the
-/// library.
+/// Returns the format that belongs to the extension of `path`, in any case, before a ".gz". Throws
+/// InputError, which lists the known extensions, if there is none, and Unavailable for a format of which this
+/// build lacks the library.
 const Format& format_of(const std::filesystem::path& path);
 
 /// Returns the format of that name, in any case. Throws InvalidArgument, which lists the known ones, if there

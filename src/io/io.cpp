@@ -4,6 +4,7 @@
 #include "base/arena.hpp"
 #include "io/format.hpp"
 #include "io/kept_cells.hpp"
+#include "io/stream/gzip.hpp"
 #include "mesh/degenerate.hpp"
 #include "mesh/reorder.hpp"
 #include <meshorder/error.hpp>
@@ -73,6 +74,7 @@ Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions&
 
 Mesh read_from_memory(std::string bytes, const ReadOptions& options) {
   const std::string name = options.name.empty() ? "<memory>" : options.name;
+  bytes = uncompressed(std::move(bytes), name);
   const Format* format = options.format.empty() ? format_of_bytes(bytes) : &format_named(options.format);
   if (format == nullptr) {
     throw InputError(name, "does not look like a mesh of a known format", "name its format");

@@ -11,8 +11,8 @@ import meshes
 
 
 def test_help_teaches(command):
-    for words in ([], ["order"], ["apply"], ["info"], ["compare"], ["simulate"], ["reproduce"], ["report"], ["models"],
-                  ["models", "make"], ["methods"]):
+    for words in ([], ["order"], ["apply"], ["info"], ["compare"], ["openfoam"], ["simulate"], ["reproduce"], ["report"],
+                  ["models"], ["models", "make"], ["methods"]):
         text = command.ok(*words, "--help").stdout
         assert "Usage" in text and len(text.splitlines()) > 5
         assert " ".join(["  meshorder", *words]) in text, "no example"

@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// A program of its own: it is linked with a vtu_compressor.cpp that has none of the libraries.
+// A program of its own: it is linked with a vtu_compressor.cpp and a gzip.cpp that have none of the
+// libraries.
 #include "io/format.hpp"
+#include "io/stream/gzip.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include "support/files.hpp"
@@ -34,6 +36,17 @@ std::string triangle(const std::string& compressor, const std::string& format, c
 <DataArray type="UInt8" Name="types" format="ascii">5</DataArray></Cells>
 </Piece></UnstructuredGrid></VTKFile>
 )";
+}
+
+TEST(WithoutCompression, AGzipFileIsRefusedByNameOfLibraryAndOption) {
+  EXPECT_EQ(uncompressed("plain", "a"), "plain");
+  try {
+    (void)uncompressed("\x1f\x8b\x08", "owner.gz");
+    ADD_FAILURE() << "not refused";
+  } catch (const Unavailable& error) {
+    EXPECT_THAT(error.what(), HasSubstr("owner.gz: is compressed"));
+    EXPECT_THAT(error.what(), HasSubstr("zlib (MESHORDER_ZLIB=ON)"));
+  }
 }
 
 TEST(WithoutCompression, ACompressedArrayIsRefusedByNameOfLibraryAndOption) {

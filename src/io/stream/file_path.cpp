@@ -2,11 +2,13 @@
 #include "io/stream/file_path.hpp"
 
 #include "base/text.hpp"
+#include "io/stream/gzip.hpp"
 #include <meshorder/error.hpp>
 
 #include <fstream>
 #include <iterator>
 #include <system_error>
+#include <utility>
 
 namespace meshorder {
 namespace fs = std::filesystem;
@@ -32,7 +34,14 @@ std::string read_from_disk(const fs::path& path) {
   return bytes;
 }
 
+bool is_gz(const fs::path& path) { return same_but_for_case(path.extension().string(), ".gz"); }
+
 }  // namespace
+
+fs::path without_gz(fs::path path) {
+  if (is_gz(path)) path.replace_extension();
+  return path;
+}
 
 bool FilePath::exists() const {
   if (store_ != nullptr) return store_->has(path_);
@@ -60,6 +69,7 @@ bool FilePath::is_same(const FilePath& other) const {
 
 std::string FilePath::read() const {
   std::string bytes = store_ != nullptr ? store_->read(path_) : read_from_disk(path_);
+  bytes = uncompressed(std::move(bytes), string());
   if (bytes.empty()) throw InputError(string(), "is empty", "give a mesh file");
   return bytes;
 }
@@ -73,9 +83,11 @@ FilePath FilePath::at(fs::path path) const {
 FilePath FilePath::beside(const fs::path& name) const { return at(path_.parent_path() / name); }
 
 FilePath FilePath::companion(std::string_view extension) const {
-  if (same_but_for_case(path_.extension().string(), extension)) return *this;
-  fs::path path = path_;
-  return at(path.replace_extension(extension));
+  fs::path path = without_gz(path_);
+  if (same_but_for_case(path.extension().string(), extension)) return *this;
+  path.replace_extension(extension);
+  if (is_gz(path_)) path += path_.extension();
+  return at(std::move(path));
 }
 
 }  // namespace meshorder

@@ -8,6 +8,9 @@
 
 namespace meshorder {
 
+/// Returns the path without the ".gz" (in any case) at its end, if it has one.
+std::filesystem::path without_gz(std::filesystem::path path);
+
 /// Files kept elsewhere than on disk.
 class FileStore {
  public:
@@ -50,13 +53,15 @@ class FilePath {
   [[nodiscard]] bool is_empty() const;
   /// Returns whether two paths lead to one file.
   [[nodiscard]] bool is_same(const FilePath& other) const;
-  /// Returns the bytes of the file. Throws InputError for a folder, an unreadable or an empty file.
+  /// Returns the bytes of the file; of a gzip file what is in it. Throws InputError for a folder, an
+  /// unreadable or an empty file and a damaged gzip file, Unavailable for a gzip file in a build without
+  /// zlib.
   [[nodiscard]] std::string read() const;
 
   /// Returns the file of that name in the same folder.
   [[nodiscard]] FilePath beside(const std::filesystem::path& name) const;
   /// Returns the companion with that extension, "mesh.ele" for "mesh.node"; this file if it has the extension
-  /// (in any case).
+  /// (in any case). "mesh.ele.gz" for "mesh.node.gz".
   [[nodiscard]] FilePath companion(std::string_view extension) const;
 
  private:

@@ -31,6 +31,10 @@ OutputFile::OutputFile(FilePath target) : target_(std::move(target)), stream_(st
   if (fs::is_directory(path, code)) {
     throw InputError(path.string(), "is a folder", "give a file name for the output");
   }
+  if (const fs::path plain = without_gz(path); plain != path) {
+    throw InputError(path.string(), "would not be compressed",
+                     "write " + plain.filename().string() + ", then gzip it");
+  }
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, code)) {
     throw InputError(path.string(), "its folder does not exist", "make " + folder.string() + " first");

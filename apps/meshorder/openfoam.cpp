@@ -1,0 +1,404 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/stopwatch.hpp"
+#include "base/text.hpp"
+#include "command.hpp"
+#include "console.hpp"
+#include "io/openfoam/cell_order.hpp"
+#include "io/openfoam/poly_mesh.hpp"
+#include "io/stream/output_file.hpp"
+#include "metrics/edge_span.hpp"
+#include "ordering/judgement.hpp"
+#include "progress.hpp"
+#include "wording.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/order.hpp>
+#include <meshorder/registry.hpp>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace meshorder::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct OpenFoamArguments : Common {
+  OpenFoamArguments() {
+    // Cuthill-McKee's orders need fewest iterations of DIC and compute fastest (docs/hosts.md)
+    ordering.workload = Workload::bandwidth;
+  }
+
+  std::string input;
+  std::string cells = "auto";
+  OrderOptions ordering;
+  std::string region;
+  std::string time;
+  bool parallel = false;
+  bool force = false;
+  bool dry_run = false;
+};
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+/// Returns the names of all folders in a folder, sorted.
+std::vector<std::string> folders_in(const fs::path& path) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, ignored)) {
+    if (is_folder(entry.path())) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// A case, and which of its meshes is meant.
+class Case {
+ public:
+  explicit Case(const OpenFoamArguments& arguments)
+      : folder_(openfoam::case_folder(arguments.input)),
+        region_(arguments.region),
+        time_(arguments.time),
+        parallel_(arguments.parallel) {
+    if (!is_folder(folder_)) throw InputError(folder_.string(), "no such folder", "give an OpenFOAM case");
+    find_meshes();
+  }
+
+  /// Returns the names of the meshes, "processor3" or empty for that of the whole case.
+  [[nodiscard]] const std::vector<std::string>& meshes() const noexcept { return meshes_; }
+  /// Returns the folder that a mesh's files lie in.
+  [[nodiscard]] fs::path poly_mesh(const std::string& mesh) const { return instance(mesh) / "polyMesh"; }
+  /// Returns the file that renumberMesh takes a mesh's order from.
+  [[nodiscard]] fs::path cell_order(const std::string& mesh) const {
+    return instance(mesh) / openfoam::kCellOrder;
+  }
+  [[nodiscard]] fs::path dictionary() const { return folder_ / "system" / region_ / "renumberMeshDict"; }
+  [[nodiscard]] std::string path() const { return folder_.string(); }
+
+  /// Returns the command that moves the cells.
+  [[nodiscard]] std::string next() const {
+    std::string command = "renumberMesh";
+    if (parallel_) command = fmt::format("mpirun -np {} renumberMesh -parallel", meshes_.size());
+    command += " -case " + in_shell(folder_.string());
+    if (!region_.empty()) command += " -region " + in_shell(region_);
+    if (!time_.empty()) command += " -time " + in_shell(time_);
+    // renumberMesh looks for it in the case, and there in the region's folder
+    return command + " -overwrite -dict system/renumberMeshDict";
+  }
+
+  /// Returns what to beware of in a case with several times.
+  [[nodiscard]] Notes warnings() const {
+    Notes notes;
+    std::vector<std::string> times = folders_in(folder_ / meshes_.front());
+    std::erase_if(times, [](const std::string& name) {
+      return name.find_first_not_of("0123456789.e-+") != std::string::npos || name.front() == '.';
+    });
+    if (times.size() > 1) {
+      notes.push_back(fmt::format(
+          "the case has folders of {} times; renumberMesh moves the fields of one, at which the case starts: "
+          "remove the others first, they would stay in the old order",
+          times.size()));
+    }
+    std::erase_if(times, [&](const std::string& name) {
+      return !has_owners(folder_ / meshes_.front() / name / region_ / "polyMesh");
+    });
+    if (time_.empty() && !times.empty()) {
+      notes.push_back("the mesh of `constant` is ordered; there are others for the times " + join(times) +
+                      ", which --time orders");
+    }
+    return notes;
+  }
+
+ private:
+  [[nodiscard]] fs::path instance(const std::string& mesh) const {
+    return (folder_ / mesh / (time_.empty() ? "constant" : time_) / region_).lexically_normal();
+  }
+
+  static bool has_owners(const fs::path& poly_mesh) {
+    return fs::exists(poly_mesh / "owner") || fs::exists(poly_mesh / "owner.gz");
+  }
+
+  /// Returns a word that a shell reads as this text.
+  static std::string in_shell(const std::string& text) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./,:=@%";
+    if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+  }
+
+  void find_meshes() {
+    if (parallel_) {
+      for (std::size_t p = 0; is_folder(folder_ / fmt::format("processor{}", p)); ++p) {
+        meshes_.push_back(fmt::format("processor{}", p));
+      }
+      if (meshes_.empty()) refuse_parallel();
+    } else {
+      meshes_.emplace_back();
+    }
+    const auto missing = std::find_if(meshes_.begin(), meshes_.end(),
+                                      [&](const std::string& mesh) { return !has_owners(poly_mesh(mesh)); });
+    if (missing != meshes_.end()) refuse_missing(poly_mesh(*missing));
+  }
+
+  [[noreturn]] void refuse_parallel() const {
+    for (const std::string& name : folders_in(folder_)) {
+      if (!name.starts_with("processors")) continue;
+      throw InputError((folder_ / name).string(), "holds the meshes of all processors in common files",
+                       "write them apart, by decomposePar -fileHandler uncollated");
+    }
+    throw InputError(folder_.string(), "has no folder processor0", "run decomposePar first");
+  }
+
+  [[noreturn]] void refuse_missing(const fs::path& poly_mesh) const {
+    std::string remedy = "make the mesh first, for instance by blockMesh";
+    std::vector<std::string> regions = folders_in(poly_mesh.parent_path());
+    std::erase_if(regions, [&](const std::string& region) {
+      return !has_owners(poly_mesh.parent_path() / region / "polyMesh");
+    });
+    if (!region_.empty() || !time_.empty()) {
+      remedy = "check --region and --time";
+    } else if (!regions.empty()) {
+      remedy = "give --region, which may be " + join(regions);
+    } else if (!parallel_ && is_folder(folder_ / "processor0")) {
+      remedy = "the case is decomposed: give --parallel";
+    }
+    throw InputError(poly_mesh.string(), "there is no mesh", remedy);
+  }
+
+  fs::path folder_;
+  std::string region_;
+  std::string time_;
+  bool parallel_;
+  std::vector<std::string> meshes_;
+};
+
+/// What was done to a mesh.
+struct OrderedMesh {
+  std::string name;
+  Index cells = 0;
+  Index internal_faces = 0;
+  Order order;
+  EdgeSpan before;
+  EdgeSpan after;
+  Offset profile_before = 0;
+  Offset profile_after = 0;
+};
+
+/// Returns whether a method looks at the centres of cells.
+bool needs_centres(const std::string& method, Workload workload) {
+  if (method == "auto") return workload != Workload::bandwidth && workload != Workload::fill;
+  const std::vector<MethodInfo> methods = vertex_methods();
+  const auto found = std::find_if(methods.begin(), methods.end(),
+                                  [&](const MethodInfo& known) { return known.name == method; });
+  return found != methods.end() && found->needs_points;
+}
+
+/// Returns a sentence if a method that was asked for by name makes the order no better.
+std::string no_better(GraphRef graph, const Permutation& order, const std::string& method) {
+  if (method == "auto" || method == "original" || method == "scrambled") return {};
+  const std::string reason = reason_to_keep(graph, order, method, made_for(method));
+  return reason.empty() ? reason : reason + "; --cells original keeps the order";
+}
+
+OrderedMesh ordered(const Case& meshes, const std::string& name, const OpenFoamArguments& arguments,
+                    Notes& notes) {
+  const openfoam::PolyMesh mesh = openfoam::read_poly_mesh(
+      meshes.poly_mesh(name), needs_centres(arguments.cells, arguments.ordering.workload));
+  OrderedMesh result;
+  result.name = name;
+  result.cells = mesh.graph.size();
+  result.internal_faces = mesh.internal_faces;
+  const Permutation as_is = Permutation::identity(result.cells);
+  PointsView centres;
+  if (!mesh.centres.empty()) centres = {mesh.centres.front().data(), mesh.centres.size()};
+  result.order = order_vertices({.offsets = mesh.graph.offsets, .neighbours = mesh.graph.neighbours},
+                                arguments.cells, arguments.ordering, centres);
+  result.before = edge_span(mesh.graph, as_is);
+  result.after = edge_span(mesh.graph, result.order.permutation);
+  result.profile_before = profile(mesh.graph, as_is);
+  result.profile_after = profile(mesh.graph, result.order.permutation);
+  if (const std::string note = no_better(mesh.graph, result.order.permutation, arguments.cells);
+      !note.empty()) {
+    notes.push_back(name.empty() ? note : name + ": " + note);
+  }
+  note_convergence(result.order.fiedler, "the cells", notes);
+  return result;
+}
+
+/// What is to be written: the maps, and the dictionary unless there is one.
+class Outputs {
+ public:
+  /// Fails, before the work, if the files cannot be written.
+  Outputs(const Case& meshes, bool force) {
+    for (const std::string& mesh : meshes.meshes()) maps_.push_back(meshes.cell_order(mesh));
+    const fs::path dictionary = meshes.dictionary();
+    const bool is_there = fs::exists(dictionary) && !force;
+    if (!is_there) dictionary_ = dictionary;
+    keeps_other_ = is_there && !openfoam::takes_cell_order(dictionary);
+    for (const fs::path& map : maps_) (void)OutputFile(map);
+    if (dictionary_) (void)OutputFile(*dictionary_);
+  }
+
+  /// Returns whether a dictionary that asks for something else stays.
+  [[nodiscard]] bool keeps_other_dictionary() const noexcept { return keeps_other_; }
+
+  /// Writes all files, or none; returns their paths.
+  [[nodiscard]] std::vector<std::string> write(const std::vector<OrderedMesh>& meshes) const {
+    std::vector<OutputFile> files;
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+      openfoam::write_cell_order(meshes[m].order.permutation, files.emplace_back(maps_[m]));
+      files.back().close();  // there may be more processors than files that may be open
+    }
+    if (dictionary_) openfoam::write_dictionary(files.emplace_back(*dictionary_));
+    OutputFile::commit_all(files);
+    std::vector<std::string> paths;
+    paths.reserve(files.size());
+    for (const OutputFile& file : files) paths.push_back(file.target().string());
+    return paths;
+  }
+
+ private:
+  std::vector<fs::path> maps_;
+  std::optional<fs::path> dictionary_;
+  bool keeps_other_ = false;
+};
+
+bool all_stay(const std::vector<OrderedMesh>& meshes) {
+  return std::all_of(meshes.begin(), meshes.end(),
+                     [](const OrderedMesh& mesh) { return mesh.order.permutation.is_identity(); });
+}
+
+/// Prints a line on the mesh of a processor.
+void print_part(const Console& console, const OrderedMesh& mesh) {
+  console.print("{:<12} {} cells, {}: band {} → {}, profile {} → {}", mesh.name, with_commas(mesh.cells),
+                method_in_words(mesh.order.method), with_commas(mesh.before.max), with_commas(mesh.after.max),
+                with_commas(mesh.profile_before), with_commas(mesh.profile_after));
+}
+
+/// Prints a table on the mesh of the whole case.
+void print_mesh(const Console& console, const OrderedMesh& mesh) {
+  const MethodChoice& method = mesh.order.method;
+  console.print("{:<10} {} with {} internal faces", "cells", with_commas(mesh.cells),
+                with_commas(mesh.internal_faces));
+  console.print("{:<10} {:<14} {}", "order", method_in_words(method), duration(mesh.order.seconds));
+  if (!method.reason.empty()) console.print("{:<10} {}", "", method.reason);
+  const auto row = [&](const char* name, const std::string& before, const std::string& after) {
+    console.print("{:<10} {:<14} {:>20} {:>20}", "", name, before, after);
+  };
+  row("", "before", "after");
+  row("band", with_commas(mesh.before.max), with_commas(mesh.after.max));
+  row("profile", with_commas(mesh.profile_before), with_commas(mesh.profile_after));
+  row("mean span", fmt::format("{:.1f}", mesh.before.mean), fmt::format("{:.1f}", mesh.after.mean));
+  row("mean log2 span", fmt::format("{:.2f}", mesh.before.mean_log2),
+      fmt::format("{:.2f}", mesh.after.mean_log2));
+}
+
+nlohmann::ordered_json mesh_json(const Case& meshes, const OrderedMesh& mesh, bool is_written) {
+  nlohmann::ordered_json result{{"folder", meshes.poly_mesh(mesh.name).string()},
+                                {"cells", mesh.cells},
+                                {"internal_faces", mesh.internal_faces}};
+  result.update(to_json(mesh.order.method));
+  result["kept"] = mesh.order.permutation.is_identity();
+  result["edge_span"] = {{"before", to_json(mesh.before)}, {"after", to_json(mesh.after)}};
+  result["profile"] = {{"before", mesh.profile_before}, {"after", mesh.profile_after}};
+  result["fiedler"] = to_json(mesh.order.fiedler);
+  result["seconds"] = mesh.order.seconds;
+  result["map"] = is_written ? nlohmann::ordered_json(meshes.cell_order(mesh.name).string()) : nullptr;
+  return result;
+}
+
+void run(const OpenFoamArguments& arguments) {
+  Console console(arguments);
+  const Stopwatch stopwatch;
+  const Case meshes(arguments);
+  std::optional<Outputs> outputs;
+  if (!arguments.dry_run) outputs.emplace(meshes, arguments.force);
+
+  Progress progress(!console.quiet());
+  Notes notes = meshes.warnings();
+  std::vector<OrderedMesh> done;
+  for (const std::string& name : meshes.meshes()) {
+    const auto count = static_cast<double>(meshes.meshes().size());
+    const auto begun = static_cast<double>(done.size());
+    progress.stage("ordering " + meshes.poly_mesh(name).string(), begun / count, (begun + 1) / count);
+    done.push_back(ordered(meshes, name, arguments, notes));
+  }
+  std::vector<std::string> written;
+  if (outputs) written = outputs->write(done);
+  if (outputs && outputs->keeps_other_dictionary()) {
+    notes.push_back(meshes.dictionary().string() + " asks for another order and is left as it is; put `" +
+                    join(openfoam::kDictionaryEntries, std::string_view(" ")) +
+                    "` into it, or give --force, which replaces it");
+  }
+  progress.finish();
+
+  console.warn_of(notes);
+  for (const OrderedMesh& mesh : done)
+    mesh.name.empty() ? print_mesh(console, mesh) : print_part(console, mesh);
+  for (const std::string& file : written) {
+    console.print("{:<10} {}", &file == written.data() ? "wrote" : "", file);
+  }
+  const bool to_be_moved = outputs && !all_stay(done);
+  if (to_be_moved) {
+    console.print("{:<10} {}", "next", meshes.next());
+    console.print("{:<10} run it once: a second run would move the cells again", "");
+  } else if (outputs) {
+    console.print("{:<10} nothing: all cells stay where they are", "next");
+  }
+  auto list = nlohmann::ordered_json::array();
+  for (const OrderedMesh& mesh : done) list.push_back(mesh_json(meshes, mesh, outputs.has_value()));
+  console.print_json({{"case", meshes.path()},
+                      {"for", to_string(arguments.ordering.workload)},
+                      {"meshes", list},
+                      {"files", written},
+                      {"next", to_be_moved ? nlohmann::ordered_json(meshes.next()) : nullptr},
+                      {"seconds", stopwatch.seconds()}});
+}
+
+}  // namespace
+
+void add_openfoam(CLI::App& subcommand) {
+  subcommand.description(
+      "Order the cells of an OpenFOAM case. Writes the order, as constant/cellOrder, and\n"
+      "system/renumberMeshDict for renumberMesh, which moves the cells with all fields, zones and sets.");
+  subcommand.footer(
+      "Examples:\n"
+      "  meshorder openfoam cavity\n"
+      "  meshorder openfoam cavity --cells rcm --dry-run\n"
+      "  meshorder openfoam motorBike --parallel");
+  const auto arguments = std::make_shared<OpenFoamArguments>();
+  subcommand.add_option("CASE", arguments->input, "Folder of the case, or its .foam file")->required();
+  subcommand
+      .add_option("--cells", arguments->cells,
+                  "Method for cells, one of those for vertices that `meshorder methods` lists")
+      ->capture_default_str();
+  subcommand.add_option("--region", arguments->region, "Order the mesh of this region")->type_name("NAME");
+  subcommand
+      .add_option("--time", arguments->time,
+                  "Order the mesh of this time, as it stands in the folder's name, instead of `constant`")
+      ->type_name("TIME");
+  subcommand.add_flag("--parallel", arguments->parallel,
+                      "Order the meshes of a decomposed case, in processor0, processor1, …");
+  subcommand.add_flag("--force", arguments->force,
+                      "Replace a renumberMeshDict that asks for another order; without it such a file stays");
+  subcommand.add_flag("--dry-run", arguments->dry_run, "Write nothing");
+  add_ordering_options(subcommand, arguments->ordering);
+  add_common(subcommand, *arguments);
+  subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+}
+
+}  // namespace meshorder::command

@@ -1,0 +1,41 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/stream/output_file.hpp"
+#include <meshorder/permutation.hpp>
+
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+namespace meshorder::openfoam {
+
+/// The file from which renumberMesh takes an order by its method `manual`: it lies where the folder
+/// `polyMesh` does.
+inline constexpr std::string_view kCellOrder = "cellOrder";
+
+/// Writes the list of old cells in their new order. The caller commits the file.
+void write_cell_order(const Permutation& cells, OutputFile& file);
+
+/// The entries of renumberMeshDict that take the order from `kCellOrder`. OpenFOAM 1912 refuses a dictionary
+/// without the first.
+inline constexpr std::array<std::string_view, 3> kDictionaryEntries{
+    "writeMaps false;", "method manual;", "manualCoeffs { dataFile \"cellOrder\"; }"};
+
+/// Writes a renumberMeshDict of these entries. The caller commits the file.
+void write_dictionary(OutputFile& file);
+
+/// Returns whether a renumberMeshDict takes the order from `kCellOrder`.
+///
+/// @throws InputError for a file that is no dictionary of OpenFOAM
+bool takes_cell_order(const std::filesystem::path& dictionary);
+
+/// Returns the folder of a case: of `CASE/NAME.foam`, by which ParaView opens it, `CASE`; other paths as they
+/// are.
+std::filesystem::path case_folder(const std::filesystem::path& path);
+
+/// Returns whether a folder is an OpenFOAM case with a mesh: it has a folder `polyMesh` in `constant`, in a
+/// region there, or in that of `processor0`.
+bool is_case(const std::filesystem::path& folder);
+
+}  // namespace meshorder::openfoam

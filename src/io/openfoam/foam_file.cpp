@@ -1,0 +1,283 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/openfoam/foam_file.hpp"
+
+#include "io/stream/scanner.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+namespace meshorder::openfoam {
+namespace {
+
+/// The most entries of a list that gives one value for all: they cost no bytes in the file, and a mesh whose
+/// faces all belong to one cell is small.
+constexpr std::int64_t kMostAlike = 1 << 20;
+
+constexpr std::string_view kMarks = "(){};";
+
+bool is_space(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+bool is_mark(char c) { return kMarks.find(c) != std::string_view::npos; }
+/// Returns whether a number or word ends before this character, which may begin a comment.
+bool is_end(char c) { return is_space(c) || is_mark(c) || c == '/'; }
+
+/// Returns the file of that path if it exists, else its compressed form.
+FilePath existing(const FilePath& path) {
+  const FilePath compressed = path.beside(path.path().filename().string() + ".gz");
+  return path.exists() || !compressed.exists() ? path : compressed;
+}
+
+}  // namespace
+
+FoamFile::FoamFile(const FilePath& path) {
+  const FilePath found = existing(path);
+  file_ = found.string();
+  text_ = found.read();
+  read_header();
+}
+
+void FoamFile::fail(const std::string& what, const std::string& remedy) const {
+  if (binary_) throw InputError(Location{file_, 0, static_cast<std::int64_t>(position_)}, what, remedy);
+  const auto here = text_.begin() + static_cast<std::ptrdiff_t>(position_);
+  throw InputError(Location{file_, 1 + std::count(text_.begin(), here, '\n'), -1}, what, remedy);
+}
+
+// ---- words
+
+void FoamFile::skip_blanks() {
+  for (;;) {
+    while (position_ < text_.size() && is_space(text_[position_])) ++position_;
+    const std::string_view rest = std::string_view(text_).substr(position_);
+    std::string_view end;
+    if (rest.starts_with("//")) {
+      end = "\n";
+    } else if (rest.starts_with("/*")) {
+      end = "*/";
+    } else {
+      return;
+    }
+    const std::size_t found = text_.find(end, position_ + 2);
+    position_ = found == std::string::npos ? text_.size() : found + end.size();
+  }
+}
+
+bool FoamFile::at(char mark) {
+  skip_blanks();
+  return position_ < text_.size() && text_[position_] == mark;
+}
+
+bool FoamFile::take(char mark) {
+  if (!at(mark)) return false;
+  ++position_;
+  return true;
+}
+
+void FoamFile::expect(char mark, std::string_view what) {
+  if (take(mark)) return;
+  if (position_ >= text_.size()) fail(fmt::format("the file ends within {}", what), "it may be cut short");
+  fail(fmt::format("expected '{}' of {}, found '{}'", mark, what, shown(token())),
+       binary_ ? "the size, or `arch` in the header, may be wrong" : "the size may be wrong");
+}
+
+std::string_view FoamFile::token() {
+  skip_blanks();
+  const std::string_view rest = std::string_view(text_).substr(position_);
+  if (rest.empty()) return rest;
+  if (rest.front() == '"') {
+    const std::size_t end = std::min(rest.find('"', 1), rest.size());
+    position_ += std::min(end + 1, rest.size());
+    return rest.substr(1, end - 1);
+  }
+  std::size_t size = 1;
+  if (!is_mark(rest.front())) {
+    while (size < rest.size() && !is_space(rest[size]) && !is_mark(rest[size])) ++size;
+  }
+  position_ += size;
+  return rest.substr(0, size);
+}
+
+// ---- the header
+
+void FoamFile::read_header() {
+  if (token() != "FoamFile" || !take('{')) {
+    position_ = 0;
+    fail("is no file of OpenFOAM", "these begin with the header FoamFile { … }");
+  }
+  int depth = 1;  // of braces
+  while (depth > 0) {
+    const std::string_view key = token();
+    if (key.empty()) fail("the file ends within its header", "it may be cut short");
+    if (key == "{") ++depth;
+    if (key == "}") --depth;
+    if (depth != 1 || is_mark(key.front()) || at('{')) continue;
+    const std::string_view value = token();
+    if (key == "class") class_ = value;
+    if (key == "arch") read_arch(value);
+    if (key == "format") {
+      if (value != "ascii" && value != "binary") {
+        fail(fmt::format("the format is '{}'", shown(value)), "ascii and binary are known");
+      }
+      binary_ = value == "binary";
+    }
+  }
+  if (class_ == "decomposedBlockData") {
+    fail("holds the meshes of several processors",
+         "write them apart, by decomposePar -fileHandler uncollated");
+  }
+}
+
+void FoamFile::read_arch(std::string_view arch) {
+  const auto has = [&](std::string_view part) { return arch.find(part) != std::string_view::npos; };
+  order_ = has("MSB") ? std::endian::big : std::endian::little;
+  label_bytes_ = has("label=64") ? 8 : 4;
+  scalar_bytes_ = has("scalar=32") ? 4 : 8;
+}
+
+// ---- numbers
+
+void FoamFile::fail_number(std::string_view what, std::string_view needed) {
+  skip_blanks();
+  if (position_ >= text_.size()) fail(fmt::format("the file ends before {}", what), "it may be cut short");
+  const std::string_view rest = std::string_view(text_).substr(position_);
+  fail(fmt::format("{} is '{}'", what, shown(rest.substr(0, rest.find_first_of(" \n\t\r")))),
+       fmt::format("{} is needed", needed));
+}
+
+template <class T>
+std::errc FoamFile::take_number(T& value) {
+  skip_blanks();
+  const char* const begin = text_.data() + position_;
+  const char* const end = text_.data() + text_.size();
+  const auto [after, code] = std::from_chars(begin, end, value);
+  if (after != end && !is_end(*after)) return std::errc::invalid_argument;
+  if (code == std::errc{}) position_ += static_cast<std::size_t>(after - begin);
+  return code;
+}
+
+std::int64_t FoamFile::integer(std::string_view what) {
+  std::int64_t value = 0;
+  const std::errc code = take_number(value);
+  if (code == std::errc::result_out_of_range) fail_number(what, "a smaller number");
+  if (code != std::errc{}) fail_number(what, "a whole number");
+  return value;
+}
+
+double FoamFile::finite(std::string_view what) {
+  const std::size_t begin = position_;
+  double value = 0;
+  const std::errc code = take_number(value);
+  if (code == std::errc::result_out_of_range) {  // of numbers near 0 as well
+    const std::string_view digits = token();
+    if (digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos) return 0;
+  }
+  if (code == std::errc{} && std::isfinite(value)) return value;
+  position_ = begin;
+  fail_number(what, "a finite number");
+}
+
+template <class T>
+T FoamFile::binary(std::string_view what) {
+  if (bytes_left() < static_cast<std::int64_t>(sizeof(T))) {
+    fail(fmt::format("the file ends before {}", what), "it may be cut short");
+  }
+  std::array<char, sizeof(T)> raw{};
+  std::copy_n(text_.begin() + static_cast<std::ptrdiff_t>(position_), sizeof(T), raw.begin());
+  if (order_ != std::endian::native) std::reverse(raw.begin(), raw.end());
+  position_ += sizeof(T);
+  return std::bit_cast<T>(raw);
+}
+
+std::int64_t FoamFile::label(std::string_view what) {
+  if (!binary_) return integer(what);
+  return label_bytes_ == 8 ? binary<std::int64_t>(what) : std::int64_t{binary<std::int32_t>(what)};
+}
+
+double FoamFile::scalar(std::string_view what) {
+  if (!binary_) return finite(what);
+  const double value = scalar_bytes_ == 4 ? double{binary<float>(what)} : binary<double>(what);
+  if (!std::isfinite(value)) {
+    position_ -= static_cast<std::size_t>(scalar_bytes_);
+    fail(fmt::format("{} is not finite", what), "a finite number is needed");
+  }
+  return value;
+}
+
+Index FoamFile::checked(std::int64_t label, std::string_view what, std::int64_t least, std::int64_t end) {
+  if (label < least || label >= end) {
+    if (binary_) position_ -= static_cast<std::size_t>(label_bytes_);
+    fail(fmt::format("{} is {}", what, label),
+         end > least ? fmt::format("{} to {} are possible", least, end - 1) : "none are possible");
+  }
+  return static_cast<Index>(label);
+}
+
+// ---- lists
+
+std::int64_t FoamFile::size(std::string_view what, std::int64_t bytes_each) {
+  const std::string of = fmt::format("the number of {}", what);
+  const std::int64_t size = integer(of);
+  if (size < 0) fail(fmt::format("{} is {}", of, size), "it cannot be negative");
+  if (size > kMaxIndex) fail(fmt::format("{} is {}", of, size), "at most 2147483647 are possible");
+  const std::size_t after = position_;
+  // the last entry of a text file may lack what separates it from the next
+  if (!at('{') && size > 0 && size > (bytes_left() + 1) / bytes_each) {
+    position_ = after;
+    fail(fmt::format("{} is {}, but only {} bytes follow", of, size, bytes_left()),
+         "the file is cut short, or the number is wrong");
+  }
+  return size;
+}
+
+void FoamFile::read_labels(std::vector<Index>& labels, std::string_view what, std::int64_t least,
+                           std::optional<std::int64_t> end) {
+  labels.clear();
+  const std::string list = fmt::format("the list of {}s", what);
+  const std::string of = fmt::format("the {}", what);
+  const std::int64_t count = size(fmt::format("{}s", what), binary_ ? label_bytes_ : 2);
+  const std::int64_t limit = end.value_or(count);
+  if (!binary_ && take('{')) {
+    if (count > kMostAlike) fail(fmt::format("{} {}s are the same", count, what), "the number is wrong");
+    labels.assign(static_cast<std::size_t>(count), checked(integer(of), of, least, limit));
+    expect('}', list);
+    return;
+  }
+  if (count == 0 && !at('(')) return;  // a binary file ends an empty list with its size
+  expect('(', list);
+  labels.reserve(static_cast<std::size_t>(count));
+  for (std::int64_t k = 0; k < count; ++k) labels.push_back(checked(label(of), of, least, limit));
+  expect(')', list);
+}
+
+Point FoamFile::point() {
+  Point result{};
+  if (!binary_) expect('(', "a point");
+  for (double& coordinate : result) coordinate = scalar("a coordinate");
+  if (!binary_) expect(')', "a point");
+  return result;
+}
+
+std::vector<Point> FoamFile::read_points() {
+  std::vector<Point> points;
+  const std::int64_t count = size("points", binary_ ? 3 * std::int64_t{scalar_bytes_} : 8);
+  if (count == 0 && !at('(')) return points;
+  expect('(', "the list of points");
+  points.reserve(static_cast<std::size_t>(count));
+  for (std::int64_t k = 0; k < count; ++k) points.push_back(point());
+  expect(')', "the list of points");
+  return points;
+}
+
+std::int64_t FoamFile::begin_lists(std::string_view what) {
+  const std::int64_t count = size(what, 2);
+  expect('(', fmt::format("the list of {}", what));
+  return count;
+}
+
+void FoamFile::end_lists(std::string_view what) { expect(')', fmt::format("the list of {}", what)); }
+
+}  // namespace meshorder::openfoam

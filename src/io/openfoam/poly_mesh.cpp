@@ -1,0 +1,198 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Format: OpenFOAM User Guide, "Mesh description". Cell c owns the faces f with owner[f] = c; an internal
+// face f has on its other side the cell neighbour[f], and internal faces come first.
+#include "io/openfoam/poly_mesh.hpp"
+
+#include "base/point.hpp"
+#include "io/openfoam/foam_file.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace meshorder::openfoam {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The cells on both sides of the faces.
+struct Sides {
+  std::vector<Index> owner;      ///< of every face
+  std::vector<Index> neighbour;  ///< of internal faces, which come first
+  Index cells = 0;
+};
+
+/// Throws unless each cell has a face.
+void require_faces(const Sides& sides, const fs::path& folder) {
+  std::vector<bool> has_face(static_cast<std::size_t>(sides.cells), false);
+  for (const auto* cells : {&sides.owner, &sides.neighbour}) {
+    for (const Index c : *cells) has_face[static_cast<std::size_t>(c)] = true;
+  }
+  const auto without = std::find(has_face.begin(), has_face.end(), false);
+  if (without == has_face.end()) return;
+  throw InputError((folder / "owner").string(),
+                   fmt::format("cell {} of {} has no face", without - has_face.begin(), sides.cells),
+                   "cells are numbered from 0 without a gap");
+}
+
+Sides read_sides(const fs::path& folder) {
+  Sides sides;
+  FoamFile owner(folder / "owner");
+  // every cell has a face, so that there are no more cells than faces
+  owner.read_labels(sides.owner, "owner", 0, std::nullopt);
+  const auto faces = static_cast<std::int64_t>(sides.owner.size());
+  FoamFile neighbour(folder / "neighbour");
+  neighbour.read_labels(sides.neighbour, "neighbour", -1, faces);
+  // old versions list all faces and give those at the boundary a −1
+  while (!sides.neighbour.empty() && sides.neighbour.back() < 0) sides.neighbour.pop_back();
+  if (sides.neighbour.size() > sides.owner.size()) {
+    throw InputError(neighbour.file(),
+                     fmt::format("lists {} faces, {} only {}", sides.neighbour.size(), owner.file(), faces),
+                     "the files belong to different meshes");
+  }
+  Index last = -1;
+  for (std::size_t f = 0; f < sides.owner.size(); ++f) {
+    const Index a = sides.owner[f];
+    last = std::max(last, a);
+    if (f >= sides.neighbour.size()) continue;
+    const Index b = sides.neighbour[f];
+    if (b < 0 || b == a) {
+      throw InputError(
+          neighbour.file(),
+          fmt::format("face {} has {}", f, b < 0 ? "no neighbour" : fmt::format("cell {} on both sides", a)),
+          "internal faces come first and are between two cells");
+    }
+    last = std::max(last, b);
+  }
+  sides.cells = last + 1;
+  require_faces(sides, folder);
+  return sides;
+}
+
+CsrGraph graph_of(const Sides& sides) {
+  std::vector<Edge> edges;
+  edges.reserve(sides.neighbour.size());
+  for (std::size_t f = 0; f < sides.neighbour.size(); ++f) {
+    edges.push_back({sides.owner[f], sides.neighbour[f]});
+  }
+  return graph_from_edges(sides.cells, edges);
+}
+
+/// The sum of centres of faces for each cell, face after face.
+class CentreSums {
+ public:
+  explicit CentreSums(const Sides& sides)
+      : sides_(sides),
+        sums_(static_cast<std::size_t>(sides.cells), Point{}),
+        counts_(static_cast<std::size_t>(sides.cells), 0) {}
+
+  [[nodiscard]] bool is_complete() const { return face_ == sides_.owner.size(); }
+  [[nodiscard]] std::size_t faces() const { return face_; }
+
+  /// Adds the next face.
+  void add(const Point& centre) {
+    add_to(sides_.owner[face_], centre);
+    if (face_ < sides_.neighbour.size()) add_to(sides_.neighbour[face_], centre);
+    ++face_;
+  }
+
+  std::vector<Point> means() && {
+    for (std::size_t c = 0; c < sums_.size(); ++c) sums_[c] = scaled(1.0 / counts_[c], sums_[c]);
+    return std::move(sums_);
+  }
+
+ private:
+  void add_to(Index cell, const Point& centre) {
+    const auto at = static_cast<std::size_t>(cell);
+    sums_[at] = plus_scaled(sums_[at], 1, centre);
+    ++counts_[at];
+  }
+
+  const Sides& sides_;
+  std::vector<Point> sums_;
+  std::vector<Index> counts_;  // of faces
+  std::size_t face_ = 0;
+};
+
+class CentreReader {
+ public:
+  CentreReader(const fs::path& folder, const Sides& sides)
+      : points_(FoamFile(folder / "points").read_points()), faces_(folder / "faces"), sums_(sides) {}
+
+  std::vector<Point> read() {
+    if (faces_.class_name() == "faceCompactList") {
+      read_compact();
+    } else {
+      read_nested();
+    }
+    if (!sums_.is_complete()) faces_.fail("there are fewer faces than owners", kOtherMesh);
+    return std::move(sums_).means();
+  }
+
+ private:
+  static constexpr const char* kOtherMesh = "the files belong to different meshes";
+
+  /// "6(4(1 7 37 31) 3(6 36 37) …)"
+  void read_nested() {
+    const std::int64_t count = faces_.begin_lists("faces");
+    std::vector<Index> face;
+    for (std::int64_t f = 0; f < count; ++f) {
+      read_point_numbers(face);
+      add(face);
+    }
+    faces_.end_lists("faces");
+  }
+
+  /// The first places of the faces, one more for the end, and all their points.
+  void read_compact() {
+    std::vector<Index> begins;
+    faces_.read_labels(begins, "face's begin", 0, kMaxIndex);
+    std::vector<Index> points;
+    read_point_numbers(points);
+    for (std::size_t f = 0; f + 1 < begins.size(); ++f) {
+      const auto begin = static_cast<std::size_t>(begins[f]);
+      const auto end = static_cast<std::size_t>(begins[f + 1]);
+      if (begin > end || end > points.size()) {
+        faces_.fail(fmt::format("face {} has the points {} to {} of {}", f, begin, end, points.size()),
+                    "the places must rise");
+      }
+      add(std::span(points).subspan(begin, end - begin));
+    }
+  }
+
+  void read_point_numbers(std::vector<Index>& points) {
+    faces_.read_labels(points, "point", 0, static_cast<std::int64_t>(points_.size()));
+  }
+
+  void add(std::span<const Index> face) {
+    if (sums_.is_complete()) faces_.fail("there are more faces than owners", kOtherMesh);
+    if (face.empty()) faces_.fail(fmt::format("face {} has no points", sums_.faces()), "three are needed");
+    Point sum{};
+    for (const Index p : face) sum = plus_scaled(sum, 1, points_[static_cast<std::size_t>(p)]);
+    sums_.add(scaled(1.0 / static_cast<double>(face.size()), sum));
+  }
+
+  std::vector<Point> points_;
+  FoamFile faces_;
+  CentreSums sums_;
+};
+
+}  // namespace
+
+PolyMesh read_poly_mesh(const fs::path& folder, bool with_centres) {
+  const Sides sides = read_sides(folder);
+  PolyMesh mesh;
+  mesh.internal_faces = index_size(sides.neighbour);
+  if (with_centres) mesh.centres = CentreReader(folder, sides).read();
+  mesh.graph = graph_of(sides);
+  return mesh;
+}
+
+}  // namespace meshorder::openfoam

@@ -1,0 +1,27 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "graph/csr_graph.hpp"
+#include <meshorder/mesh.hpp>
+
+#include <filesystem>
+#include <vector>
+
+namespace meshorder::openfoam {
+
+/// What an order of cells needs of a mesh.
+struct PolyMesh {
+  CsrGraph graph;              ///< joins cells that share an internal face
+  Index internal_faces = 0;    ///< at least the number of edges: two cells may share several
+  std::vector<Point> centres;  ///< of each cell the mean of its faces' centres; empty unless asked for
+};
+
+/// Reads a folder `polyMesh`: its files `owner` and `neighbour`, text or binary, each also as `.gz`, and, for
+/// the centres, `points` and `faces`.
+///
+/// @throws InputError for a file that is missing or faulty, with its line or byte, and for a cell without
+///         faces; a mesh without any cell is returned as it is
+/// @note O(faces · log faces of a cell); about 30 bytes a face besides the files' own size.
+PolyMesh read_poly_mesh(const std::filesystem::path& folder, bool with_centres);
+
+}  // namespace meshorder::openfoam

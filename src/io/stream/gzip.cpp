@@ -1,0 +1,97 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/stream/gzip.hpp"
+
+#include <meshorder/error.hpp>
+
+#ifdef MESHORDER_HAS_ZLIB
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+#endif
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+bool is_gzip(const std::string& bytes) { return bytes.starts_with("\x1f\x8b"); }
+
+#ifdef MESHORDER_HAS_ZLIB
+
+constexpr std::size_t kGzipChunk = std::size_t{1} << 20;
+
+/// A running decompression. Several members, as `cat a.gz b.gz` makes them, follow each other.
+class Inflation {
+ public:
+  Inflation(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {
+    constexpr int kWindowOfGzip = 15 + 16;
+    if (inflateInit2(&stream_, kWindowOfGzip) != Z_OK) throw InternalError("zlib cannot start");
+  }
+  ~Inflation() { inflateEnd(&stream_); }
+  Inflation(const Inflation&) = delete;
+  Inflation(Inflation&&) = delete;
+  Inflation& operator=(const Inflation&) = delete;
+  Inflation& operator=(Inflation&&) = delete;
+
+  std::string run() {
+    std::string result;
+    std::vector<char> chunk(kGzipChunk);
+    for (;;) {
+      feed();
+      stream_.next_out = reinterpret_cast<Bytef*>(chunk.data());
+      stream_.avail_out = static_cast<uInt>(chunk.size());
+      const int status = inflate(&stream_, Z_NO_FLUSH);
+      result.append(chunk.data(), chunk.size() - stream_.avail_out);
+      if (status == Z_STREAM_END) {
+        if (bytes_left() == 0) return result;
+        if (inflateReset(&stream_) != Z_OK) fail("is damaged");
+      } else if (status == Z_BUF_ERROR || (status == Z_OK && bytes_left() == 0 && stream_.avail_out > 0)) {
+        fail("ends within its compressed data");
+      } else if (status != Z_OK) {
+        fail("is damaged");
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t bytes_left() const { return bytes_.size() - fed_ + stream_.avail_in; }
+
+  /// Gives the library as many of the bytes as it can count.
+  void feed() {
+    if (stream_.avail_in > 0) return;
+    const std::size_t size =
+        std::min<std::size_t>(bytes_.size() - fed_, std::numeric_limits<std::int32_t>::max());
+    // zlib does not write to its input
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes_.data() + fed_));
+    stream_.avail_in = static_cast<uInt>(size);
+    fed_ += size;
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    const auto byte = static_cast<std::int64_t>(fed_ - stream_.avail_in);
+    throw InputError(Location{file_, 0, byte}, "the gzip file " + what, "compress it again");
+  }
+
+  const std::string& bytes_;
+  const std::string& file_;
+  std::size_t fed_ = 0;
+  z_stream stream_ = {};
+};
+
+#endif
+
+}  // namespace
+
+std::string uncompressed(std::string bytes, const std::string& file) {
+  if (!is_gzip(bytes)) return bytes;
+#ifdef MESHORDER_HAS_ZLIB
+  return Inflation(bytes, file).run();
+#else
+  throw Unavailable(file + ": is compressed, which needs a build with zlib (MESHORDER_ZLIB=ON); run gunzip");
+#endif
+}
+
+}  // namespace meshorder

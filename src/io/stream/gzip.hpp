@@ -1,0 +1,16 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace meshorder {
+
+/// Returns the bytes as they are, or what is in them if they are a gzip file.
+///
+/// @param bytes  all bytes of a file
+/// @param file   its path, for errors
+/// @throws InputError for a damaged or truncated gzip file
+/// @throws Unavailable for a gzip file in a build without zlib
+std::string uncompressed(std::string bytes, const std::string& file);
+
+}  // namespace meshorder
