@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -52,6 +53,8 @@ class FilePath {
   [[nodiscard]] bool is_same(const FilePath& other) const;
   /// Returns the bytes of the file. Throws InputError for a folder, an unreadable or an empty file.
   [[nodiscard]] std::string read() const;
+  /// Returns its first bytes, at most `most` (of a pipe all); throws likewise.
+  [[nodiscard]] std::string read_first(std::size_t most) const;
 
   /// Returns the file of that name in the same folder.
   [[nodiscard]] FilePath beside(const std::filesystem::path& name) const;
