@@ -33,11 +33,11 @@ Mesh labelled() {
   mesh.vertex_ids = {10, 20, 30, 40, 50, 60};
   mesh.cell_ids = {7, 8, 9};
   mesh.data = {{"label", Association::cells, 1, std::vector<std::int32_t>{4, 2, 9}, {}, {}},
-               {"side set wall", Association::cells, 1, std::vector<std::int32_t>{5, 32}, {0, 2}, {}},
+               {"side set wall", Association::cells, 1, std::vector<std::int32_t>{12, 12}, {0, 2}, {}},
                {"side set wall factors",
                 Association::cells,
-                6,
-                std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 0, 0, 0, 0},
+                4,
+                std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8},
                 {0, 2},
                 {}},
                {"heat", Association::vertices, 1, std::vector<double>{0, 1, 2, 3, 4, 5}, {}, {}},
@@ -67,7 +67,7 @@ TEST(Exodus, HoldsBlocksSetsSidesAttributesMapsAndNumbers) {
   Notes notes;
   const Mesh mesh = labelled();
   const Mesh back = there_and_back(mesh, &notes);
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("3 cells"))) << "the factors do not fit the sides";
+  EXPECT_THAT(notes, IsEmpty());
   EXPECT_EQ(back.points, mesh.points);
   EXPECT_EQ(back.cells, mesh.cells);
   EXPECT_THAT(back.cell_blocks, ElementsAre(0, 1, 2));
@@ -118,7 +118,8 @@ TEST(Exodus, LabelsThatCannotBeIdsAreAProperty) {
   test::expect_same(there_and_back(back), back);
   mesh.data.clear();
   mesh.sets.clear();
-  EXPECT_EQ(find_array(there_and_back(mesh), kLabel, Association::cells), nullptr);
+  const Mesh plain = there_and_back(mesh);
+  EXPECT_EQ(find_array(plain, kLabel, Association::cells), nullptr);
 }
 
 TEST(Exodus, SetsMakeBlocksWhereThereAreNoLabels) {

@@ -481,11 +481,28 @@ void write_nodal_attributes(Writing& writing, const Columns& columns) {
   });
 }
 
+/// Returns a table of names with rows of another length.
+PlainVariable with_name_length(PlainVariable table, std::size_t length) {
+  const std::size_t old = table.dimensions.back().length;
+  if (table.type != kChar || old == 0 || length < old) return table;
+  std::string rows;
+  for (std::size_t at = 0; at < table.bytes.size(); at += old) {
+    rows += table.bytes.substr(at, old);
+    rows.append(length - old, '\0');
+  }
+  table.bytes = std::move(rows);
+  table.dimensions.back().length = length;
+  return table;
+}
+
 /// Writes what is kept as it is, with zeros for steps that it did not have.
 void write_plain(Writing& writing) {
   NcOutput& file = writing.file;
-  for (const PlainVariable& variable : writing.metadata.plain) {
-    if (file.has_variable(variable.name)) continue;
+  for (const PlainVariable& of_file : writing.metadata.plain) {
+    if (file.has_variable(of_file.name)) continue;
+    const bool has_names = !of_file.dimensions.empty() && of_file.dimensions.back().name == "len_name";
+    const PlainVariable variable =
+        has_names ? with_name_length(of_file, writing.metadata.name_length) : of_file;
     std::vector<std::string> dimensions;
     std::vector<std::size_t> counts;
     bool fits = true;
@@ -513,26 +530,21 @@ void write_plain(Writing& writing) {
   }
 }
 
-/// Returns the longest name of a mesh, and of what belongs to it.
-std::size_t longest_name(const Mesh& mesh) {
-  std::size_t longest = 32;
-  for (const DataArray& array : mesh.data) {
-    std::size_t of_component = 2;
-    for (const std::string& name : array.component_names)
-      of_component = std::max(of_component, name.size() + 1);
-    longest = std::max(longest, array.name.size() + of_component + 8);
+/// Returns the length of the names that are written, up to 255, with their zero bytes; at least that of the
+/// file that the mesh came from. Notes names that are cut.
+std::size_t length_of_names(const Writing& writing, const std::vector<std::string>& names) {
+  std::size_t longest = writing.metadata.name_length;
+  for (const std::string& name : names) {
+    longest = std::max(longest, std::min(name.size(), kLongestName) + 1);
+    if (name.size() > kLongestName) {
+      writing.notes.push_back(fmt::format("the name '{}' is cut to {} characters", name, kLongestName));
+    }
   }
-  for (const EntitySet& set : mesh.sets) longest = std::max(longest, set.name.size());
-  return std::min(longest, kLongestName);
+  return longest;
 }
 
-void note_cut_names(const Mesh& mesh, Notes& notes) {
-  const auto note = [&](const std::string& name) {
-    if (name.size() > kLongestName)
-      notes.push_back(fmt::format("the name '{}' is cut to 255 characters", name));
-  };
-  for (const DataArray& array : mesh.data) note(array.name);
-  for (const EntitySet& set : mesh.sets) note(set.name);
+void add_names(const Columns& columns, std::vector<std::string>& names) {
+  for (const auto& [name, array] : columns) names.push_back(name);
 }
 
 void write_attributes_of_file(Writing& writing) {
@@ -588,7 +600,6 @@ std::vector<std::string> Metadata::contents() const {
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const Metadata* const own = own_metadata(mesh);
   Metadata metadata = own != nullptr ? *own : new_metadata(mesh);
-  metadata.name_length = std::max(metadata.name_length, longest_name(mesh) + 1);
   NcOutput file(path, metadata.storage);
   Writing writing(mesh, metadata, file, notes);
 
@@ -607,6 +618,21 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const bool needs_step = std::any_of(nodal.begin(), nodal.end(), has_values) ||
                           std::any_of(elemental.begin(), elemental.end(), has_values);
   writing.steps = std::max<std::size_t>(metadata.steps, needs_step ? 1 : 0);
+
+  std::vector<std::string> names;
+  for (const BlockPlan& block : writing.blocks) names.push_back(block.name);
+  for (const Columns& columns : attributes) add_names(columns, names);
+  add_names(nodal_attributes, names);
+  for (const auto& of_kind : sets) {
+    for (const SetPlan& set : of_kind) names.push_back(set.name);
+  }
+  for (const auto* maps : {&node_maps, &element_maps}) {
+    for (const MapPlan& map : *maps) names.push_back(map.name);
+  }
+  for (const auto* series : {&nodal, &elemental}) {
+    for (const SeriesPlan& one : *series) names.push_back(one.name);
+  }
+  metadata.name_length = length_of_names(writing, names);
 
   // their declarations
   const int dimension = coordinates_of(mesh, metadata.coordinates);
@@ -630,7 +656,6 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   write_nodal(writing, nodal);
   write_elemental(writing, elemental);
   write_plain(writing);
-  note_cut_names(mesh, notes);
   if (own == nullptr) note_metadata_unsupported(mesh, "Exodus", notes);
   file.finish();
 }
