@@ -547,11 +547,15 @@ void add_names(const Columns& columns, std::vector<std::string>& names) {
   for (const auto& [name, array] : columns) names.push_back(name);
 }
 
-void write_attributes_of_file(Writing& writing) {
+/// Writes the attributes of the file, of which one tells how long the longest name is.
+void write_attributes_of_file(Writing& writing, const std::vector<std::string>& names) {
+  std::size_t longest = 0;
+  for (const std::string& name : names) longest = std::max(longest, std::min(name.size(), kLongestName));
   for (Attribute attribute : writing.metadata.attributes) {
     if (attribute.name == "maximum_name_length" && attribute.type == kInt && attribute.count == 1) {
-      attribute =
-          integer_attribute(attribute.name, static_cast<std::int32_t>(writing.metadata.name_length) - 1);
+      std::int32_t length = 0;
+      std::memcpy(&length, attribute.bytes.data(), sizeof(length));
+      attribute = integer_attribute(attribute.name, std::max(length, static_cast<std::int32_t>(longest)));
     }
     writing.file.attribute(attribute);
   }
@@ -636,7 +640,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 
   // their declarations
   const int dimension = coordinates_of(mesh, metadata.coordinates);
-  write_attributes_of_file(writing);
+  write_attributes_of_file(writing, names);
   file.dimension({"time_step", writing.steps, metadata.steps_unlimited || writing.steps == 0});
   file.dimension({"len_name", metadata.name_length});
   file.dimension({"num_dim", static_cast<std::size_t>(dimension)});

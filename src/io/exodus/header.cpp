@@ -17,6 +17,7 @@ namespace {
 struct Ended {};
 
 constexpr std::uint64_t kStreaming = 0xFFFFFFFFU;
+constexpr std::uint64_t kNameBytes = 256;  // netCDF's library copies longer ones beyond the place for them
 
 class HeaderReader {
  public:
@@ -64,6 +65,9 @@ class HeaderReader {
 
   std::string text() {
     const std::uint64_t length = count();
+    if (length > kNameBytes) {
+      fail(fmt::format("a name has {} bytes", length), "netCDF's names have up to 256");
+    }
     const std::size_t begin = at_;
     skip(length);
     if (at_ > bytes_.size()) throw Ended{};
