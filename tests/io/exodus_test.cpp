@@ -166,18 +166,17 @@ TEST(Exodus, ACutFileIsNoticed) {
   test::expect_truncation_is_noticed("a.exo", bytes);
 }
 
-TEST(Exodus, EveryChangedByteOfTheHeaderIsReadOrRefused) {
+TEST(Exodus, ChangedBytesOfTheHeaderAreReadOrRefused) {
   const std::string bytes = write_mesh_to_memory(labelled(), "exodus", "a.exo").files.front().bytes;
   const TemporaryFolder folder;
-  for (std::size_t at = 3; at < std::min<std::size_t>(bytes.size(), 6000); at += 3) {
-    for (const char value : {'\0', '\x7f', '\xff'}) {
-      std::string changed = bytes;
-      changed[at] = value;
-      try {
-        (void)read_mesh(folder.file("a.exo", changed));
-      } catch (const Error& error) {
-        EXPECT_THAT(error.what(), HasSubstr("a.exo")) << at;
-      }
+  constexpr std::array kChanged{'\0', '\x7f', '\xff'};
+  for (std::size_t at = 3; at < std::min<std::size_t>(bytes.size(), 6000); at += 5) {
+    std::string changed = bytes;
+    changed[at] = kChanged[at % kChanged.size()];
+    try {
+      (void)read_mesh(folder.file("a.exo", changed));
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("a.exo")) << at;
     }
   }
 }

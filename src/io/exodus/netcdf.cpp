@@ -368,7 +368,8 @@ NcOutput::NcOutput(const FilePath& path, const Storage& storage)
     : lock_(library_mutex()), path_(path), out_(path), storage_(storage) {
   const int mode = NC_CLOBBER | creation_mode(storage.kind);
   if (path.store() != nullptr) {
-    check(nc_create_mem(path.string().c_str(), mode, kBuffer, &id_), "");
+    // an initial size would be the least that the file gets
+    check(nc_create_mem(path.string().c_str(), mode, 0, &id_), "");
   } else {
     out_.close();
     std::size_t buffer = kBuffer;
