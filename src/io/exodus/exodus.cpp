@@ -221,39 +221,43 @@ std::vector<const EntitySet*> name_blocks(Writing& writing) {
 void write_points(Writing& writing, int dimension) {
   const Mesh& mesh = writing.mesh;
   NcOutput& file = writing.file;
-  const std::size_t count = mesh.points.size();
-  if (count == 0) return;
+  if (mesh.points.empty()) return;
   const bool are_floats = writing.metadata.coordinate_type == kFloat &&
                           std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& point) {
                             return std::all_of(point.begin(), point.end(),
                                                [](double x) { return double{static_cast<float>(x)} == x; });
                           });
   const NcType type = are_floats ? kFloat : kDouble;
-  const auto coordinate = [&mesh, count](std::size_t k) {
-    std::vector<double> values(count);
-    for (std::size_t v = 0; v < count; ++v) values[v] = mesh.points[v][k];
-    return values;
+  const auto put_axis = [&mesh](const NcSink& sink, std::size_t k, bool packed) {
+    in_parts(mesh.vertex_count(), [&](Index first, Index rows) {
+      std::vector<double> values(static_cast<std::size_t>(rows));
+      for (Index v = 0; v < rows; ++v) values[v] = mesh.points[first + v][k];
+      const auto start = static_cast<std::size_t>(first);
+      sink.part(packed ? std::vector{k, start} : std::vector{start},
+                packed ? std::vector{std::size_t{1}, values.size()} : std::vector{values.size()}, values);
+    });
   };
   const auto axes = static_cast<std::size_t>(dimension);
   if (writing.metadata.packs_coordinates) {
     const NcSink sink = writing.declare("coord", type, {"num_dim", "num_nodes"});
     file.later([=] {
-      for (std::size_t k = 0; k < axes; ++k) sink.part({k, 0}, {1, count}, coordinate(k));
+      for (std::size_t k = 0; k < axes; ++k) put_axis(sink, k, true);
     });
     return;
   }
   for (std::size_t k = 0; k < axes; ++k) {
     const NcSink sink = writing.declare(std::string("coord") + "xyz" [k], type, { "num_nodes" });
-    file.later([=] { sink.reals(coordinate(k)); });
+    file.later([=] { put_axis(sink, k, false); });
   }
 }
 
-/// Returns the numbers of the nodes of a block's elements, from 1, in the order of the file.
-std::vector<std::int32_t> connectivity(const Mesh& mesh, const Block& block) {
+/// Returns the numbers of the nodes of `count` elements of a block, from 1, in the order of the file.
+std::vector<std::int32_t> connectivity(const Mesh& mesh, const Block& block, Index first, Index count) {
   const auto nodes = static_cast<std::size_t>(block.nodes);
-  std::vector<std::int32_t> result(static_cast<std::size_t>(block.count) * nodes);
+  std::vector<std::int32_t> result(static_cast<std::size_t>(count) * nodes);
   const std::span<const int> order = file_order(block.shape, block.nodes);
-  const Index* from = mesh.cells.vertices.data() + mesh.cells.offsets[static_cast<std::size_t>(block.first)];
+  const Index* from =
+      mesh.cells.vertices.data() + mesh.cells.offsets[static_cast<std::size_t>(block.first + first)];
   if (order.empty()) {
     std::transform(from, from + result.size(), result.begin(), [](Index v) { return v + 1; });
     return result;
@@ -346,7 +350,13 @@ void write_elements(Writing& writing, const std::string& number, const BlockPlan
   const bool wide = block.record != nullptr && block.record->connect_type == kInt64;
   const NcSink sink = writing.declare("connect" + number, wide ? kInt64 : kInt, {elements, nodes},
                                       {text_attribute("elem_type", type)});
-  file.later([sink, &mesh, cells = block.cells] { sink.integers(connectivity(mesh, cells)); });
+  file.later([sink, &mesh, cells = block.cells] {
+    in_parts(cells.count, [&](Index first, Index count) {
+      sink.part({static_cast<std::size_t>(first), 0},
+                {static_cast<std::size_t>(count), static_cast<std::size_t>(cells.nodes)},
+                connectivity(mesh, cells, first, count));
+    });
+  });
 }
 
 void write_blocks(Writing& writing, const std::vector<Columns>& attributes) {

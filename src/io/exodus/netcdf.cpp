@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::string_view kDamaged = "the file may be damaged";
 constexpr std::uint64_t kMostExpansion = 1032;  // of deflate
-constexpr std::size_t kBuffer = std::size_t{1} << 22;
+constexpr std::size_t kBuffer = std::size_t{1} << 18;
 
 std::mutex& library_mutex() {
   static std::mutex mutex;
@@ -176,6 +176,14 @@ std::size_t NcInput::length(const std::string& name) const {
   return found == dimensions_.end() ? 0 : found->length;
 }
 
+std::size_t NcInput::count(const std::string& dimension) const {
+  const std::size_t found = length(dimension);
+  if (found > size_) {
+    fail(fmt::format("{} is {}, but the file has {} bytes", dimension, found, size_), std::string(kDamaged));
+  }
+  return found;
+}
+
 std::vector<std::size_t> NcInput::shape(const Variable& variable) const {
   std::vector<std::size_t> result;
   result.reserve(variable.dimensions.size());
@@ -259,11 +267,19 @@ std::vector<std::int64_t> NcInput::integers(const Variable& variable) const {
 }
 
 std::vector<double> NcInput::reals(const Variable& variable) const {
+  const std::vector<std::size_t> lengths = shape(variable);
+  return reals(variable, std::vector<std::size_t>(lengths.size(), 0), lengths);
+}
+
+std::vector<double> NcInput::reals(const Variable& variable, const std::vector<std::size_t>& starts,
+                                   const std::vector<std::size_t>& counts) const {
   if (size_of(variable.type) == 0 || variable.type == kChar) {
     fail(variable.name + " has no numbers", std::string(kDamaged));
   }
-  std::vector<double> values(size(variable));
-  check(nc_get_var_double(id_, variable.id, values.data()), variable.name);
+  (void)size(variable);  // throws if it claims too much
+  std::vector<double> values(product(counts));
+  if (values.empty()) return values;
+  check(nc_get_vara_double(id_, variable.id, starts.data(), counts.data(), values.data()), variable.name);
   return values;
 }
 
@@ -453,6 +469,12 @@ void NcOutput::finish() {
 
 void NcSink::integers(const std::vector<std::int32_t>& values) const {
   if (!values.empty()) file_->check(nc_put_var_int(file_->id_, variable_, values.data()), name_);
+}
+
+void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+                  const std::vector<std::int32_t>& values) const {
+  if (values.empty()) return;
+  file_->check(nc_put_vara_int(file_->id_, variable_, starts.data(), counts.data(), values.data()), name_);
 }
 
 void NcSink::integers(const std::vector<std::int64_t>& values) const {

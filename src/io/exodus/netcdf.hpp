@@ -90,6 +90,9 @@ class NcInput {
   [[nodiscard]] const Variable* find(const std::string& name) const;
   /// Returns the length of a dimension, 0 if there is none.
   [[nodiscard]] std::size_t length(const std::string& name) const;
+  /// Returns the length of a dimension that counts parts of the file. Throws InputError if it is larger than
+  /// the file.
+  [[nodiscard]] std::size_t count(const std::string& dimension) const;
   /// Returns the lengths along a variable's dimensions.
   [[nodiscard]] std::vector<std::size_t> shape(const Variable& variable) const;
   /// Returns the number of values. Throws InputError if the file is too small to hold them.
@@ -106,6 +109,9 @@ class NcInput {
   void read(const Variable& variable, std::int32_t* values) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const Variable& variable) const;
   [[nodiscard]] std::vector<double> reals(const Variable& variable) const;
+  /// Returns a part of them: `counts` from `starts` along each dimension.
+  [[nodiscard]] std::vector<double> reals(const Variable& variable, const std::vector<std::size_t>& starts,
+                                          const std::vector<std::size_t>& counts) const;
   /// Returns the bytes of all values in the byte order of this machine.
   [[nodiscard]] std::string bytes(const Variable& variable) const;
   /// Returns the rows of a table of characters, each up to its zero byte and without blanks at its end.
@@ -152,6 +158,8 @@ class NcSink {
             const std::vector<float>& values) const;
   void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
             const std::vector<std::int64_t>& values) const;
+  void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+            const std::vector<std::int32_t>& values) const;
   /// Writes the part of `counts` values from 0 on, in the variable's own type.
   void bytes(const std::vector<std::size_t>& counts, const std::string& values) const;
 

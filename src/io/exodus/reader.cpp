@@ -118,16 +118,15 @@ void read_points(Reading& reading) {
   metadata.coordinates = static_cast<int>(dimension);
   mesh.dimension = dimension == 3 ? 3 : 2;
   const auto count = static_cast<std::size_t>(nodes);
-  const auto spread = [&](const std::vector<double>& from, std::size_t begin, std::size_t k) {
-    for (std::size_t v = 0; v < count; ++v) mesh.points[v][k] = from[begin + v];
+  const auto read_axis = [&](const Variable& variable, const std::vector<double>& values, std::size_t k) {
+    mesh.points.resize(count);
+    for (std::size_t v = 0; v < count; ++v) mesh.points[v][k] = values[v];
+    metadata.coordinate_type = variable.type;
   };
   if (const Variable* const all = reading.take("coord")) {
     reading.require_shape(*all, {dimension, count});
-    const std::vector<double> values = file.reals(*all);
-    mesh.points.resize(count);
-    for (std::size_t k = 0; k < dimension; ++k) spread(values, k * count, k);
     metadata.packs_coordinates = true;
-    metadata.coordinate_type = all->type;
+    for (std::size_t k = 0; k < dimension; ++k) read_axis(*all, file.reals(*all, {k, 0}, {1, count}), k);
     return;
   }
   constexpr std::array kNames{"coordx", "coordy", "coordz"};
@@ -135,11 +134,20 @@ void read_points(Reading& reading) {
     const Variable* const one = reading.take(kNames[k]);
     if (one == nullptr) file.fail(fmt::format("{} is not there", kNames[k]), "the points need coordinates");
     reading.require_shape(*one, {count});
-    const std::vector<double> values = file.reals(*one);
-    mesh.points.resize(count);
-    spread(values, 0, k);
-    metadata.coordinate_type = one->type;
+    read_axis(*one, file.reals(*one), k);
   }
+}
+
+/// Reserves memory for the elements of all blocks.
+void reserve_cells(Reading& reading, std::size_t blocks, Index elements) {
+  std::size_t entries = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const Variable* const connect = reading.file.find(fmt::format("connect{}", b + 1));
+    if (connect != nullptr) entries += reading.file.size(*connect);
+  }
+  // no more elements than numbers of nodes
+  reading.mesh.cells.reserve(std::min<Offset>(elements, static_cast<Offset>(entries)),
+                             static_cast<Offset>(entries));
 }
 
 /// Reads the elements of a block into the mesh.
@@ -236,13 +244,16 @@ void label_cells(Reading& reading) {
       names.erase(property);
     }
   }
+  if (std::all_of(metadata.blocks.begin(), metadata.blocks.end(),
+                  [](const BlockRecord& block) { return block.nodes == 0 || block.label == 0; })) {
+    return;
+  }
   std::vector<std::int64_t> labels;
   labels.reserve(reading.mesh.cells.shapes.size());
   for (std::size_t b = 0; b < metadata.blocks.size(); ++b) {
     labels.insert(labels.end(), static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]),
                   metadata.blocks[b].label);
   }
-  if (std::all_of(labels.begin(), labels.end(), [](std::int64_t label) { return label == 0; })) return;
   reading.add_array({.name = std::string(kLabel),
                      .association = Association::cells,
                      .values = label_values(std::move(labels))});
@@ -263,7 +274,7 @@ void read_blocks(Reading& reading) {
   const NcInput& file = reading.file;
   Metadata& metadata = *reading.metadata;
   Mesh& mesh = reading.mesh;
-  const std::size_t count = file.length("num_el_blk");
+  const std::size_t count = file.count("num_el_blk");
   const Index elements = checked_length(file, "num_elem");
   const std::vector<std::int64_t> ids = read_ids(reading, "eb_prop1", count);
   metadata.names_blocks = file.find("eb_names") != nullptr;
@@ -275,6 +286,7 @@ void read_blocks(Reading& reading) {
   });
   std::map<std::string, DataArray> attributes;
   reading.block_ends.assign(1, 0);
+  reserve_cells(reading, count, elements);
   for (std::size_t b = 0; b < count; ++b) {
     BlockRecord& block = metadata.blocks[b];
     block.id = block.label = ids[b];
@@ -329,7 +341,7 @@ void read_nodal_attributes(Reading& reading) {
   const NcInput& file = reading.file;
   const Variable* const variable = reading.take("nattrb");
   if (variable == nullptr) return;
-  const auto count = file.length("num_att_in_nblk");
+  const auto count = file.count("num_att_in_nblk");
   const auto nodes = reading.mesh.points.size();
   reading.require_shape(*variable, {nodes, count});
   const std::vector<std::string> names = reading.take_names("nattrib_name", count);
@@ -376,7 +388,7 @@ void read_maps(Reading& reading) {
   }
   const auto read_all = [&](const std::string& of, const char* prefix, Association association,
                             std::size_t count, std::vector<MapRecord>& maps) {
-    const std::size_t number = reading.file.length("num_" + of + "_maps");
+    const std::size_t number = reading.file.count("num_" + of + "_maps");
     const std::vector<std::int64_t> ids = read_ids(reading, std::string(prefix) + "_prop1", number);
     const std::vector<std::string> names = reading.take_names(std::string(prefix) + "ap_names", number);
     for (std::size_t m = 0; m < number; ++m) {

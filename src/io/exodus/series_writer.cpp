@@ -25,32 +25,32 @@ std::vector<Number> column(const DataArray& array, Index component, const std::v
                            Index first, Index count) {
   Number nothing{};
   if constexpr (std::is_floating_point_v<Number>) nothing = std::numeric_limits<Number>::quiet_NaN();
-  std::vector<Number> result;
-  result.reserve(static_cast<std::size_t>(count));
+  std::vector<Number> result(static_cast<std::size_t>(count), nothing);
   std::visit(
       [&](const auto& values) {
-        for (Index place = first; place < first + count; ++place) {
-          const Offset row = table.empty() ? place : table[place];
-          result.push_back(
-              row < 0
-                  ? nothing
-                  : number_as<Number>(values[static_cast<std::size_t>(row * array.components + component)]));
+        for (Index k = 0; k < count; ++k) {
+          const Offset row = table.empty() ? first + k : table[first + k];
+          if (row < 0) continue;
+          result[k] = number_as<Number>(values[static_cast<std::size_t>(row * array.components + component)]);
         }
       },
       array.values);
   return result;
 }
 
-/// Writes values of one step; nothing but NaN or 0 where there is no array.
-void put(const NcSink& sink, NcType type, const std::vector<std::size_t>& starts,
-         const std::vector<std::size_t>& counts, const DataArray* array, Index component,
-         const std::vector<Index>& table, Index first, Index count) {
+/// Writes values of one step for `count` vertices or cells from `first` on, along the last dimension of the
+/// variable; nothing but NaN or 0 where there is no array.
+void put(const NcSink& sink, NcType type, std::vector<std::size_t> starts, const DataArray* array,
+         Index component, const std::vector<Index>& table, Index first, Index count) {
+  std::vector<std::size_t> counts(starts.size(), 1);
   const auto put_as = [&]<class Number>(Number nothing) {
-    if (array == nullptr) {
-      sink.part(starts, counts, std::vector<Number>(static_cast<std::size_t>(count), nothing));
-    } else {
-      sink.part(starts, counts, column<Number>(*array, component, table, first, count));
-    }
+    in_parts(count, [&](Index begin, Index rows) {
+      starts.back() = static_cast<std::size_t>(begin);
+      counts.back() = static_cast<std::size_t>(rows);
+      sink.part(starts, counts,
+                array == nullptr ? std::vector<Number>(static_cast<std::size_t>(rows), nothing)
+                                 : column<Number>(*array, component, table, first + begin, rows));
+    });
   };
   if (type == kFloat) return put_as(std::numeric_limits<float>::quiet_NaN());
   if (is_whole(type)) return put_as(std::int64_t{0});
@@ -236,8 +236,7 @@ void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series) {
   file.dimension({"num_nod_var", series.size()});
   writing.write_names("name_nod_var", "num_nod_var", names_of_series(series));
   const bool packed = writing.metadata.packs_nodal;
-  const auto nodes = static_cast<std::size_t>(mesh.vertex_count());
-  if (nodes == 0) return;
+  if (mesh.points.empty()) return;
   const NcSink together =
       packed ? writing.declare("vals_nod_var", kDouble, {"time_step", "num_nod_var", "num_nodes"})
              : NcSink(file, "", -1);
@@ -248,7 +247,7 @@ void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series) {
     const NcSink sink =
         packed ? together
                : writing.declare(fmt::format("vals_nod_var{}", v + 1), one.type, {"time_step", "num_nodes"});
-    file.later([sink, &one, &mesh, v, packed, nodes] {
+    file.later([sink, &one, &mesh, v, packed] {
       const DataArray* last = nullptr;
       std::vector<Index> table;
       for (std::size_t step = 0; step < one.arrays.size(); ++step) {
@@ -256,7 +255,6 @@ void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series) {
         if (array != nullptr && array != last) table = row_table(*array, mesh.vertex_count());
         last = array;
         put(sink, one.type, packed ? std::vector{step, v, std::size_t{0}} : std::vector{step, std::size_t{0}},
-            packed ? std::vector{std::size_t{1}, std::size_t{1}, nodes} : std::vector{std::size_t{1}, nodes},
             array, one.component, table, 0, mesh.vertex_count());
       }
     });
@@ -289,8 +287,7 @@ void write_elemental(Writing& writing, const std::vector<SeriesPlan>& series) {
         last = array;
         for (const auto& [b, sink] : sinks) {
           const Block& cells = writing.blocks[b].cells;
-          put(sink, one.type, {step, 0}, {1, static_cast<std::size_t>(cells.count)}, array, one.component,
-              rows, cells.first, cells.count);
+          put(sink, one.type, {step, 0}, array, one.component, rows, cells.first, cells.count);
         }
       }
     });

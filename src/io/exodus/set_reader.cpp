@@ -58,7 +58,7 @@ class SetReader {
   void read() {
     const NcInput& file = reading_.file;
     const std::string prefix(kind_.prefix);
-    const std::size_t count = file.length(std::string(kind_.count));
+    const std::size_t count = file.count(std::string(kind_.count));
     if (count == 0) return;
     family_.sets.resize(count);
     const std::vector<std::int64_t> ids = read_ids(reading_, prefix + "_prop1", count);
@@ -81,7 +81,7 @@ class SetReader {
  private:
   void read_names_of_variables() {
     const std::string of(kind_.variable);
-    const std::size_t count = reading_.file.length("num_" + of + "_var");
+    const std::size_t count = reading_.file.count("num_" + of + "_var");
     family_.variables = reading_.take_names("name_" + of + "_var", count);
     (void)reading_.take(of + "_var_tab");
   }
@@ -360,7 +360,7 @@ void read_nodal(Reading& reading) {
   const NcInput& file = reading.file;
   Metadata& metadata = *reading.metadata;
   const std::size_t nodes = reading.mesh.points.size();
-  const std::size_t count = file.length("num_nod_var");
+  const std::size_t count = file.count("num_nod_var");
   const std::vector<std::string> names = reading.take_names("name_nod_var", count);
   const Variable* const together = reading.take("vals_nod_var");
   metadata.packs_nodal = together != nullptr;
@@ -424,10 +424,10 @@ void append(Values& to, Values&& values) {
 void read_elemental(Reading& reading) {
   const NcInput& file = reading.file;
   Metadata& metadata = *reading.metadata;
-  const std::size_t count = file.length("num_elem_var");
+  const std::size_t count = file.count("num_elem_var");
   const std::vector<std::string> names = reading.take_names("name_elem_var", count);
   const std::size_t blocks = metadata.blocks.size();
-  std::vector<std::int64_t> table(count * blocks, 0);
+  std::vector<std::int64_t> table;
   if (const Variable* const given = reading.take("elem_var_tab")) {
     reading.require_shape(*given, {blocks, count});
     table = file.integers(*given);
@@ -437,7 +437,7 @@ void read_elemental(Reading& reading) {
     std::vector<const Variable*> of_block(blocks, nullptr);
     std::vector<Index> rows;
     for (std::size_t b = 0; b < blocks; ++b) {
-      series.present.push_back(table[b * count + v] != 0);
+      series.present.push_back(!table.empty() && table[b * count + v] != 0);
       of_block[b] = reading.take(fmt::format("vals_elem_var{}eb{}", v + 1, b + 1));
       if (of_block[b] == nullptr) continue;
       const Index first = reading.block_ends[b];

@@ -3,6 +3,7 @@
 
 #include "io/exodus/exodus.hpp"
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <string_view>
@@ -65,6 +66,17 @@ To number_as(const From& value) {
     return static_cast<To>(value);
   } else {
     return To{};
+  }
+}
+
+inline constexpr Index kRowsAtOnce = 1 << 16;
+
+/// Calls `put(first, count)` for one part of `count` rows after another, so that what is written has a small
+/// copy.
+template <class Put>
+void in_parts(Index count, const Put& put) {
+  for (Index first = 0; first < count; first += std::min(kRowsAtOnce, count - first)) {
+    put(first, std::min(kRowsAtOnce, count - first));
   }
 }
 
