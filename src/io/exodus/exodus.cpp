@@ -257,7 +257,8 @@ std::vector<std::int32_t> connectivity(const Mesh& mesh, const Block& block, Ind
   std::vector<std::int32_t> result(static_cast<std::size_t>(count) * nodes);
   const std::span<const int> order = file_order(block.shape, block.nodes);
   const Index* from =
-      mesh.cells.vertices.data() + mesh.cells.offsets[static_cast<std::size_t>(block.first + first)];
+      mesh.cells.vertices.data() +
+      mesh.cells.offsets[static_cast<std::size_t>(block.first) + static_cast<std::size_t>(first)];
   if (order.empty()) {
     std::transform(from, from + result.size(), result.begin(), [](Index v) { return v + 1; });
     return result;

@@ -475,18 +475,30 @@ void keep_others(Reading& reading) {
     reading.notes.push_back(fmt::format("the attribute {} is left out", name));
 }
 
+/// Counts the steps; none where no variable has values at them.
+void read_steps(Reading& reading) {
+  const auto& dimensions = reading.file.dimensions();
+  const auto found = std::find_if(dimensions.begin(), dimensions.end(),
+                                  [](const Dimension& dimension) { return dimension.name == "time_step"; });
+  if (found == dimensions.end()) return;
+  const auto place = static_cast<int>(found - dimensions.begin());
+  const auto& variables = reading.file.variables();
+  const bool used = std::any_of(variables.begin(), variables.end(), [&](const Variable& variable) {
+    return !variable.dimensions.empty() && variable.dimensions.front() == place;
+  });
+  reading.metadata->steps = used ? found->length : 0;
+  reading.metadata->steps_unlimited = found->unlimited;
+}
+
 }  // namespace
 
 Mesh read(const FilePath& path, Notes& notes) {
   Reading reading(path, notes);
   Metadata& metadata = *reading.metadata;
   metadata.storage = reading.file.storage();
-  metadata.name_length =
-      std::max({std::size_t{33}, reading.file.length("len_name"), reading.file.length("len_string")});
-  metadata.steps = reading.file.length("time_step");
-  for (const Dimension& dimension : reading.file.dimensions()) {
-    if (dimension.name == "time_step") metadata.steps_unlimited = dimension.unlimited;
-  }
+  const std::size_t given = std::max(reading.file.length("len_name"), reading.file.length("len_string"));
+  metadata.name_length = std::clamp<std::size_t>(given, 33, 1024);
+  read_steps(reading);
   if (reading.file.find("connect1") == nullptr && reading.file.length("num_elem") == 0) {
     reading.file.fail("has no blocks of elements", "it may be a file of netCDF that is not one of Exodus");
   }
