@@ -46,6 +46,29 @@ Values chosen_rows(const Values& values, const std::vector<Index>& keep) {
       values);
 }
 
+/// Returns one row for each cell: the values of its sides, ascending, each filled up to `width`.
+template <class Number>
+std::vector<Number> packed(const Sides& sides, const std::vector<Number>& values,
+                           const std::vector<int>& counts, int width) {
+  const auto row_width = static_cast<std::size_t>(sides.most_sides) * static_cast<std::size_t>(width);
+  Number nothing{};
+  if constexpr (std::is_floating_point_v<Number>) nothing = std::numeric_limits<Number>::quiet_NaN();
+  std::vector<Number> result(sides.cells.size() * row_width, nothing);
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < sides.row_of_entry.size(); ++i) {
+    const auto length = static_cast<std::size_t>(counts[i]);
+    if (sides.row_of_entry[i] >= 0) {
+      const std::size_t into =
+          static_cast<std::size_t>(sides.row_of_entry[i]) * row_width +
+          static_cast<std::size_t>(sides.rank_of_entry[i]) * static_cast<std::size_t>(width);
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(from), length,
+                  result.begin() + static_cast<std::ptrdiff_t>(into));
+    }
+    from += length;
+  }
+  return result;
+}
+
 /// Reads the sets of one kind and their variables.
 class SetReader {
  public:
@@ -87,7 +110,8 @@ class SetReader {
   }
 
   /// Returns the members of a set, from 0.
-  std::vector<std::int32_t> read_members(const Variable& variable, std::size_t limit, const char* what) {
+  std::vector<std::int32_t> read_members(const Variable& variable, std::size_t limit,
+                                         const char* what) const {
     const std::vector<std::size_t> shape = reading_.file.shape(variable);
     if (shape.size() != 1) reading_.file.fail(variable.name + " is no list", "the file may be damaged");
     std::vector<std::int32_t> members(reading_.file.size(variable));
@@ -250,29 +274,6 @@ class SetReader {
           },
           values);
     });
-  }
-
-  /// Returns one row for each cell: the values of its sides, ascending, each filled up to `width`.
-  template <class Number>
-  static std::vector<Number> packed(const Sides& sides, const std::vector<Number>& values,
-                                    const std::vector<int>& counts, int width) {
-    const auto row_width = static_cast<std::size_t>(sides.most_sides) * static_cast<std::size_t>(width);
-    Number nothing{};
-    if constexpr (std::is_floating_point_v<Number>) nothing = std::numeric_limits<Number>::quiet_NaN();
-    std::vector<Number> result(sides.cells.size() * row_width, nothing);
-    std::size_t from = 0;
-    for (std::size_t i = 0; i < sides.row_of_entry.size(); ++i) {
-      const auto length = static_cast<std::size_t>(counts[i]);
-      if (sides.row_of_entry[i] >= 0) {
-        const std::size_t into =
-            static_cast<std::size_t>(sides.row_of_entry[i]) * row_width +
-            static_cast<std::size_t>(sides.rank_of_entry[i]) * static_cast<std::size_t>(width);
-        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(from), length,
-                    result.begin() + static_cast<std::ptrdiff_t>(into));
-      }
-      from += length;
-    }
-    return result;
   }
 
   /// Adds the factors of the nodes of each side: as many as the side's type has nodes, or the same number for
