@@ -43,6 +43,7 @@ packages_to_test=(
   python3-numpy        "independent answers for the end-to-end tests"
   python3-scipy        "independent answers for the end-to-end tests"
   python3-meshio       "an independent reader of mesh files"
+  python3-netcdf4      "makes and reads Exodus II files independently"
   libglu1-mesa         "Gmsh's Python module, which pip installs"
   libgl1               "Gmsh's Python module, which pip installs"
   libxcursor1          "Gmsh's Python module, which pip installs"

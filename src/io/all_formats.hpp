@@ -19,5 +19,6 @@ Format stl_format();
 Format su2_format();            ///< .su2
 Format matrix_market_format();  ///< .mtx
 Format metis_graph_format();    ///< .graph
+Format exodus_format();         ///< Exodus II, in builds with netCDF
 
 }  // namespace meshorder

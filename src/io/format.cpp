@@ -21,6 +21,9 @@ const std::array kFormats{
     tetgen_format(), vega_format(),          gmsh_format(),        medit_format(), vtu_format(),
     vtk_format(),    off_format(),           obj_format(),         ply_format(),   stl_format(),
     su2_format(),    matrix_market_format(), metis_graph_format(),
+#ifdef MESHORDER_HAS_NETCDF
+    exodus_format(),
+#endif
 };
 
 /// A format of which this build lacks the library.
@@ -72,9 +75,17 @@ bool is_su2_keyword(std::string_view word, std::string_view rest) {
   });
 }
 
+/// Returns whether the bytes are a file of netCDF-3, or one of HDF5 with a name that Exodus gives.
+bool is_exodus(std::string_view bytes) {
+  if (bytes.starts_with("CDF\x01") || bytes.starts_with("CDF\x02") || bytes.starts_with("CDF\x05"))
+    return true;
+  return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("num_el_blk") != std::string_view::npos;
+}
+
 /// Returns the name of the format whose files begin like this, or an empty text. Comments and empty lines
 /// before the first word are passed over.
 std::string_view format_that_begins(std::string_view bytes) {
+  if (is_exodus(bytes)) return "Exodus";
   while (!bytes.empty()) {
     std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
     bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));

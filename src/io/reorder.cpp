@@ -21,7 +21,7 @@ std::int64_t first_number(const Mesh& mesh) {
   const FormatMetadata* const metadata = mesh.format_metadata.get();
   if (const auto* of_tetgen = dynamic_cast<const tetgen::Metadata*>(metadata)) return of_tetgen->base;
   if (const auto* of_vega = dynamic_cast<const vega::Metadata*>(metadata)) return of_vega->vertex_base;
-  return mesh.format == "gmsh" || mesh.format == "medit" ? 1 : 0;
+  return mesh.format == "gmsh" || mesh.format == "medit" || mesh.format == "exodus" ? 1 : 0;
 }
 
 /// Writes the numbers down that a file gives by position, so that they can move with what they belong to.

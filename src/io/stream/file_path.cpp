@@ -5,8 +5,11 @@
 #include "io/stream/gzip.hpp"
 #include <meshorder/error.hpp>
 
+#include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -14,7 +17,8 @@ namespace meshorder {
 namespace fs = std::filesystem;
 namespace {
 
-std::string read_from_disk(const fs::path& path) {
+/// Returns the bytes of a file, at most `most` of them.
+std::string read_from_disk(const fs::path& path, std::uintmax_t most) {
   const std::string name = path.string();
   std::error_code code;
   const auto status = fs::status(path, code);
@@ -25,8 +29,8 @@ std::string read_from_disk(const fs::path& path) {
   std::string bytes;
   const auto size = fs::file_size(path, code);
   if (!code) {
-    bytes.resize(size);
-    stream.read(bytes.data(), static_cast<std::streamsize>(size));
+    bytes.resize(std::min(size, most));
+    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     bytes.resize(static_cast<std::size_t>(stream.gcount()));
   } else {  // a pipe
     bytes.assign(std::istreambuf_iterator<char>(stream), {});
@@ -68,8 +72,14 @@ bool FilePath::is_same(const FilePath& other) const {
 }
 
 std::string FilePath::read() const {
-  std::string bytes = store_ != nullptr ? store_->read(path_) : read_from_disk(path_);
-  bytes = uncompressed(std::move(bytes), string());
+  std::string bytes = uncompressed(read_first(std::numeric_limits<std::size_t>::max()), string());
+  if (bytes.empty()) throw InputError(string(), "is empty", "give a mesh file");
+  return bytes;
+}
+
+std::string FilePath::read_first(std::size_t most) const {
+  std::string bytes = store_ != nullptr ? store_->read(path_) : read_from_disk(path_, most);
+  if (bytes.size() > most) bytes.resize(most);
   if (bytes.empty()) throw InputError(string(), "is empty", "give a mesh file");
   return bytes;
 }

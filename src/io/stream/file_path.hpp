@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -57,6 +58,9 @@ class FilePath {
   /// unreadable or an empty file and a damaged gzip file, Unavailable for a gzip file in a build without
   /// zlib.
   [[nodiscard]] std::string read() const;
+  /// Returns its first bytes, at most `most` (of a pipe all), also of a gzip file as they are. Throws
+  /// InputError for a folder, an unreadable or an empty file.
+  [[nodiscard]] std::string read_first(std::size_t most) const;
 
   /// Returns the file of that name in the same folder.
   [[nodiscard]] FilePath beside(const std::filesystem::path& name) const;

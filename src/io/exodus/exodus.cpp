@@ -1,0 +1,700 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/exodus/exodus.hpp"
+
+#include "base/index.hpp"
+#include "io/all_formats.hpp"
+#include "io/exodus/writing.hpp"
+#include "io/labels.hpp"
+#include "io/unsupported.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+// Writes a file: points, blocks of elements and their numbers, and all that is kept as it is.
+
+namespace meshorder::exodus {
+
+const DataArray* Writing::take(std::string_view name, Association association) {
+  const DataArray* const array = name.empty() ? nullptr : find_array(mesh, name, association);
+  if (array == nullptr || std::holds_alternative<std::vector<std::string>>(array->values)) return nullptr;
+  placed.insert(array);
+  return array;
+}
+
+NcSink Writing::declare(const std::string& variable, NcType type, const std::vector<std::string>& dimensions,
+                        std::vector<Attribute> attributes) {
+  const auto kept = metadata.variable_attributes.find(variable);
+  if (kept != metadata.variable_attributes.end()) {
+    attributes.insert(attributes.end(), kept->second.begin(), kept->second.end());
+  }
+  return file.variable(variable, type, dimensions, attributes);
+}
+
+void Writing::write_names(const std::string& variable, const std::string& count,
+                          const std::vector<std::string>& names) {
+  const NcSink sink = declare(variable, kChar, {count, "len_name"});
+  const std::size_t length = metadata.name_length;
+  std::string table(names.size() * length, '\0');
+  for (std::size_t i = 0; i < names.size(); ++i) names[i].copy(table.data() + i * length, length - 1);
+  file.later([sink, table, rows = names.size(), length] { sink.bytes({rows, length}, table); });
+}
+
+void Writing::write_integers(const std::string& variable, const std::string& dimension,
+                             std::vector<std::int64_t> values, const std::vector<Attribute>& attributes,
+                             NcType type) {
+  const bool fit = std::all_of(values.begin(), values.end(),
+                               [](std::int64_t value) { return std::in_range<std::int32_t>(value); });
+  const NcSink sink = declare(variable, fit && type != kInt64 ? kInt : kInt64, {dimension}, attributes);
+  file.later([sink, values = std::move(values)] { sink.integers(values); });
+}
+
+bool are_whole(const Values& values) {
+  return std::visit(
+      [](const auto& all) {
+        using Number = typename std::decay_t<decltype(all)>::value_type;
+        if constexpr (std::is_floating_point_v<Number>) {
+          return std::all_of(all.begin(), all.end(), [](Number value) {
+            return value == std::trunc(value) && std::abs(value) <= Number{4503599627370496.0};  // 2^52
+          });
+        }
+        return std::is_integral_v<Number>;
+      },
+      values);
+}
+
+std::vector<std::int64_t> whole_values(const Values& values) {
+  return std::visit(
+      [](const auto& all) {
+        std::vector<std::int64_t> result;
+        result.reserve(all.size());
+        for (const auto& value : all) result.push_back(number_as<std::int64_t>(value));
+        return result;
+      },
+      values);
+}
+
+namespace {
+
+constexpr std::size_t kLongestName = 255;
+
+const Metadata* own_metadata(const Mesh& mesh) {
+  return dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+}
+
+Attribute real_attribute(std::string name, float value) {
+  Attribute attribute{std::move(name), kFloat, 1, std::string(sizeof(value), '\0')};
+  std::memcpy(attribute.bytes.data(), &value, sizeof(value));
+  return attribute;
+}
+
+Attribute integer_attribute(std::string name, std::int32_t value) {
+  Attribute attribute{std::move(name), kInt, 1, std::string(sizeof(value), '\0')};
+  std::memcpy(attribute.bytes.data(), &value, sizeof(value));
+  return attribute;
+}
+
+/// Whether a file needs CDF-5: for numbers of 64 bits, or for a variable of 4 GiB.
+bool is_large(const Mesh& mesh) {
+  constexpr std::size_t kMostBytes = 0xFFFFFFF0U;
+  const auto fit = [](const std::vector<std::int64_t>& ids) {
+    return std::all_of(ids.begin(), ids.end(),
+                       [](std::int64_t id) { return std::in_range<std::int32_t>(id); });
+  };
+  return mesh.cells.vertices.size() > kMostBytes / sizeof(std::int32_t) ||
+         mesh.points.size() > kMostBytes / sizeof(double) || !fit(mesh.vertex_ids) || !fit(mesh.cell_ids);
+}
+
+/// Returns what a file of a mesh of another format has.
+Metadata new_metadata(const Mesh& mesh) {
+  constexpr float kVersion = 7.14F;
+  Metadata result;
+  result.storage = plain_storage(is_large(mesh));
+  result.coordinates = mesh.dimension;
+  result.attributes = {real_attribute("api_version", kVersion),          real_attribute("version", kVersion),
+                       integer_attribute("floating_point_word_size", 8), integer_attribute("file_size", 1),
+                       integer_attribute("maximum_name_length", 32),     integer_attribute("int64_status", 0),
+                       text_attribute("title", "written by meshorder")};
+  constexpr std::size_t kLength = 33;
+  std::string names(static_cast<std::size_t>(mesh.dimension) * kLength, '\0');
+  for (std::size_t k = 0; k < static_cast<std::size_t>(mesh.dimension); ++k) names[k * kLength] = "xyz"[k];
+  result.plain.push_back({"coor_names",
+                          kChar,
+                          {{"num_dim", static_cast<std::size_t>(mesh.dimension)}, {"len_string", kLength}},
+                          {},
+                          std::move(names)});
+  return result;
+}
+
+/// Divides the cells, which are in their places, into blocks.
+void plan_blocks(Writing& writing, bool is_own) {
+  const Division division = divide(writing.mesh);
+  using Key = std::tuple<std::int64_t, Shape, int>;
+  std::map<Key, const BlockRecord*> records;
+  std::set<std::int64_t> ids;
+  for (const BlockRecord& record : writing.metadata.blocks) {
+    if (record.nodes > 0) records.emplace(Key{record.label, record.shape, record.nodes}, &record);
+    ids.insert(record.id);
+  }
+  std::vector<BlockPlan> found;
+  for (Index c = 0; c < writing.mesh.cell_count(); ++c) {
+    const Index key = division.key_of_cell[c];
+    if (c == 0 || key != division.key_of_cell[c - 1]) {
+      BlockPlan plan{division.keys[key]};
+      plan.cells.first = c;
+      plan.cells.count = 0;
+      const auto record = records.find(Key{plan.cells.label, plan.cells.shape, plan.cells.nodes});
+      if (record != records.end()) {
+        plan.record = record->second;
+        plan.id = plan.record->id;
+        records.erase(record);
+      } else {
+        const bool is_free =
+            division.by_labels && plan.cells.label > 0 && ids.insert(plan.cells.label).second;
+        plan.id = is_free ? plan.cells.label : -1;
+      }
+      found.push_back(std::move(plan));
+    }
+    ++found.back().cells.count;
+  }
+  for (BlockPlan& plan : found) {
+    if (plan.id >= 0 || plan.record != nullptr) continue;
+    plan.id = ids.empty() ? 1 : std::max<std::int64_t>(1, *ids.rbegin() + 1);
+    ids.insert(plan.id);
+    if (division.by_sets) plan.cells.label = plan.id;  // no labels are lost
+  }
+  // blocks of the file without elements keep their places before the next one that has some
+  std::size_t next = 0;
+  for (const BlockRecord& record : writing.metadata.blocks) {
+    const bool is_there = std::any_of(found.begin(), found.end(),
+                                      [&](const BlockPlan& plan) { return plan.record == &record; });
+    if (is_there) {
+      while (next < found.size() && found[next].record != &record) writing.blocks.push_back(found[next++]);
+      if (next < found.size()) writing.blocks.push_back(found[next++]);
+    } else {
+      const Index first = next < found.size() ? found[next].cells.first : writing.mesh.cell_count();
+      BlockPlan empty{Block{.first = first, .label = record.id}, &record, record.id, record.name};
+      writing.blocks.push_back(std::move(empty));
+    }
+  }
+  while (next < found.size()) writing.blocks.push_back(found[next++]);
+  if (division.by_labels || (is_own && find_array(writing.mesh, kLabel, Association::cells) == nullptr)) {
+    writing.placed.insert(label_array(writing.mesh, Association::cells));
+  }
+}
+
+/// Gives blocks the names of the sets that have all of their cells and no others, and returns the other sets
+/// of cells.
+std::vector<const EntitySet*> name_blocks(Writing& writing) {
+  const auto& own_sets = writing.metadata.sets[kElementSets].sets;
+  std::vector<const EntitySet*> others;
+  for (const EntitySet& set : writing.mesh.sets) {
+    if (set.association != Association::cells) continue;
+    const bool is_element_set = std::any_of(own_sets.begin(), own_sets.end(), [&](const SetRecord& record) {
+      return record.in_mesh == set.name;
+    });
+    const auto block = std::find_if(writing.blocks.begin(), writing.blocks.end(), [&](const BlockPlan& plan) {
+      return !set.members.empty() && set.members.front() >= plan.cells.first &&
+             set.members.front() < plan.cells.first + plan.cells.count;
+    });
+    const bool names_block = !is_element_set && block != writing.blocks.end() && block->name.empty() &&
+                             index_size(set.members) == block->cells.count &&
+                             std::all_of(set.members.begin(), set.members.end(), [&](Index c) {
+                               return c >= block->cells.first && c < block->cells.first + block->cells.count;
+                             });
+    if (names_block) {
+      const bool is_old = block->record != nullptr && block->record->in_mesh == set.name;
+      block->name = is_old ? block->record->name : set.name;
+    } else {
+      others.push_back(&set);
+    }
+  }
+  return others;
+}
+
+void write_points(Writing& writing, int dimension) {
+  const Mesh& mesh = writing.mesh;
+  NcOutput& file = writing.file;
+  if (mesh.points.empty()) return;
+  const bool are_floats = writing.metadata.coordinate_type == kFloat &&
+                          std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& point) {
+                            return std::all_of(point.begin(), point.end(),
+                                               [](double x) { return double{static_cast<float>(x)} == x; });
+                          });
+  const NcType type = are_floats ? kFloat : kDouble;
+  const auto put_axis = [&mesh](const NcSink& sink, std::size_t k, bool packed) {
+    in_parts(mesh.vertex_count(), [&](Index first, Index rows) {
+      std::vector<double> values(static_cast<std::size_t>(rows));
+      for (Index v = 0; v < rows; ++v) values[v] = mesh.points[first + v][k];
+      const auto start = static_cast<std::size_t>(first);
+      sink.part(packed ? std::vector{k, start} : std::vector{start},
+                packed ? std::vector{std::size_t{1}, values.size()} : std::vector{values.size()}, values);
+    });
+  };
+  const auto axes = static_cast<std::size_t>(dimension);
+  if (writing.metadata.packs_coordinates) {
+    const NcSink sink = writing.declare("coord", type, {"num_dim", "num_nodes"});
+    file.later([=] {
+      for (std::size_t k = 0; k < axes; ++k) put_axis(sink, k, true);
+    });
+    return;
+  }
+  for (std::size_t k = 0; k < axes; ++k) {
+    const NcSink sink = writing.declare(std::string("coord") + "xyz" [k], type, { "num_nodes" });
+    file.later([=] { put_axis(sink, k, false); });
+  }
+}
+
+/// Returns the numbers of the nodes of `count` elements of a block, from 1, in the order of the file.
+std::vector<std::int32_t> connectivity(const Mesh& mesh, const Block& block, Index first, Index count) {
+  const auto nodes = static_cast<std::size_t>(block.nodes);
+  std::vector<std::int32_t> result(static_cast<std::size_t>(count) * nodes);
+  const std::span<const int> order = file_order(block.shape, block.nodes);
+  const Index* from =
+      mesh.cells.vertices.data() +
+      mesh.cells.offsets[static_cast<std::size_t>(block.first) + static_cast<std::size_t>(first)];
+  if (order.empty()) {
+    std::transform(from, from + result.size(), result.begin(), [](Index v) { return v + 1; });
+    return result;
+  }
+  for (std::size_t row = 0; row < result.size(); row += nodes, from += nodes) {
+    for (std::size_t k = 0; k < nodes; ++k) result[row + static_cast<std::size_t>(order[k])] = from[k] + 1;
+  }
+  return result;
+}
+
+/// Attributes of the elements of a block.
+using Columns = std::vector<std::pair<std::string, const DataArray*>>;
+
+/// Returns the attributes of a block: those that it had in its file, then those of arrays that are named so
+/// and have a value for it.
+Columns attributes_of(Writing& writing, const BlockPlan& block) {
+  Columns columns;
+  if (block.record != nullptr) {
+    for (const auto& [name, array] : block.record->attributes) {
+      if (const DataArray* const found = writing.take(array, Association::cells))
+        columns.emplace_back(name, found);
+    }
+    return columns;
+  }
+  for (const DataArray& array : writing.mesh.data) {
+    const bool named = array.association == Association::cells && array.name.starts_with(kAttribute) &&
+                       array.components == 1 &&
+                       !std::holds_alternative<std::vector<std::string>>(array.values);
+    if (!named) continue;
+    writing.placed.insert(&array);
+    const std::vector<Index> table = row_table(array, writing.mesh.cell_count());
+    bool has_values = false;
+    std::visit(
+        [&](const auto& values) {
+          for (Index c = block.cells.first; c < block.cells.first + block.cells.count && !has_values; ++c) {
+            const Index row = table.empty() ? c : table[c];
+            has_values = row >= 0 && !std::isnan(number_as<double>(values[row]));
+          }
+        },
+        array.values);
+    if (has_values) columns.emplace_back(array.name.substr(kAttribute.size()), &array);
+  }
+  return columns;
+}
+
+void write_attributes(Writing& writing, const std::string& number, const BlockPlan& block,
+                      const Columns& columns) {
+  if (columns.empty()) return;
+  NcOutput& file = writing.file;
+  const std::string count = "num_att_in_blk" + number;
+  file.dimension({count, columns.size()});
+  const NcType type = block.record != nullptr && block.record->attribute_type == kFloat ? kFloat : kDouble;
+  const NcSink sink = writing.declare("attrib" + number, type, {"num_el_in_blk" + number, count});
+  file.later([sink, columns, &writing, cells = block.cells] {
+    const std::size_t width = columns.size();
+    const auto rows = static_cast<std::size_t>(cells.count);
+    std::vector<double> table(rows * width, 0);
+    for (std::size_t k = 0; k < width; ++k) {
+      const DataArray& array = *columns[k].second;
+      const std::vector<Index> places = row_table(array, writing.mesh.cell_count());
+      std::visit(
+          [&](const auto& values) {
+            for (std::size_t e = 0; e < rows; ++e) {
+              const Index c = cells.first + static_cast<Index>(e);
+              const Index row = places.empty() ? c : places[c];
+              if (row >= 0) table[e * width + k] = number_as<double>(values[row]);
+            }
+          },
+          array.values);
+    }
+    sink.part({0, 0}, {rows, width}, table);
+  });
+  std::vector<std::string> names;
+  names.reserve(columns.size());
+  for (const auto& [name, array] : columns) names.push_back(name);
+  if (block.record == nullptr || block.record->names_attributes) {
+    writing.write_names("attrib_name" + number, count, names);
+  }
+}
+
+void write_elements(Writing& writing, const std::string& number, const BlockPlan& block) {
+  const Mesh& mesh = writing.mesh;
+  NcOutput& file = writing.file;
+  const std::string elements = "num_el_in_blk" + number;
+  const std::string nodes = "num_nod_per_el" + number;
+  file.dimension({elements, static_cast<std::size_t>(block.cells.count)});
+  file.dimension({nodes, static_cast<std::size_t>(block.cells.nodes)});
+  std::string type(type_of(block.cells.shape, block.cells.nodes));
+  if (block.record != nullptr && block.record->nodes > 0) type = block.record->type;
+  const bool wide = block.record != nullptr && block.record->connect_type == kInt64;
+  const NcSink sink = writing.declare("connect" + number, wide ? kInt64 : kInt, {elements, nodes},
+                                      {text_attribute("elem_type", type)});
+  file.later([sink, &mesh, cells = block.cells] {
+    in_parts(cells.count, [&](Index first, Index count) {
+      sink.part({static_cast<std::size_t>(first), 0},
+                {static_cast<std::size_t>(count), static_cast<std::size_t>(cells.nodes)},
+                connectivity(mesh, cells, first, count));
+    });
+  });
+}
+
+void write_blocks(Writing& writing, const std::vector<Columns>& attributes) {
+  const std::string count = "num_el_blk";
+  std::vector<std::int64_t> ids;
+  std::vector<std::int64_t> status;
+  std::vector<std::int64_t> labels;
+  std::vector<std::string> names;
+  bool ids_are_labels = true;
+  for (const BlockPlan& block : writing.blocks) {
+    ids.push_back(block.id);
+    status.push_back(block.cells.count > 0 ? 1 : 0);
+    labels.push_back(block.cells.label);
+    names.push_back(block.name);
+    ids_are_labels = ids_are_labels && (block.cells.count == 0 || block.cells.label == block.id);
+  }
+  writing.write_integers("eb_status", count, status);
+  writing.write_integers("eb_prop1", count, ids, {text_attribute("name", "ID")});
+  int next = 2;
+  for (std::size_t p = 0; p < writing.metadata.block_properties.size(); ++p) {
+    std::vector<std::int64_t> values;
+    for (const BlockPlan& block : writing.blocks) {
+      values.push_back(block.record != nullptr ? block.record->properties[p] : 0);
+    }
+    writing.write_integers(fmt::format("eb_prop{}", next++), count, values,
+                           {text_attribute("name", writing.metadata.block_properties[p])});
+  }
+  if (!ids_are_labels) {
+    writing.write_integers(fmt::format("eb_prop{}", next), count, labels,
+                           {text_attribute("name", std::string(kLabelProperty))});
+  }
+  const bool named =
+      std::any_of(names.begin(), names.end(), [](const std::string& name) { return !name.empty(); });
+  if (named || writing.metadata.names_blocks) writing.write_names("eb_names", count, names);
+  for (std::size_t b = 0; b < writing.blocks.size(); ++b) {
+    if (writing.blocks[b].cells.count == 0) continue;
+    write_elements(writing, std::to_string(b + 1), writing.blocks[b]);
+    write_attributes(writing, std::to_string(b + 1), writing.blocks[b], attributes[b]);
+  }
+}
+
+void write_numbers(Writing& writing, const char* variable, const char* dimension,
+                   const std::vector<std::int64_t>& ids, std::size_t count, bool is_wanted) {
+  if (count == 0 || (ids.empty() && !is_wanted)) return;
+  std::vector<std::int64_t> numbers = ids;
+  for (std::size_t i = 0; numbers.size() < count; ++i) numbers.push_back(static_cast<std::int64_t>(i) + 1);
+  writing.write_integers(variable, dimension, std::move(numbers));
+}
+
+/// A numbering with a name, as it is written.
+struct MapPlan {
+  std::int64_t id;
+  std::string name;
+  NcType type;
+  const DataArray* array;
+};
+
+/// Returns the maps of the file that the mesh came from, and arrays that are named so or hold old numbers.
+std::vector<MapPlan> plan_maps(Writing& writing, Association association) {
+  const bool on_vertices = association == Association::vertices;
+  std::vector<MapPlan> plans;
+  std::int64_t last = 0;
+  for (const MapRecord& record : on_vertices ? writing.metadata.node_maps : writing.metadata.element_maps) {
+    const DataArray* const array = writing.take(record.array, association);
+    if (array == nullptr) continue;
+    plans.push_back({record.id, record.name, record.type, array});
+    last = std::max(last, record.id);
+  }
+  for (const DataArray& array : writing.mesh.data) {
+    const bool is_map = array.association == association && array.is_dense() && array.components == 1 &&
+                        (array.name.starts_with(kMap) || array.name == kOriginal) && are_whole(array.values);
+    if (!is_map || !writing.placed.insert(&array).second) continue;
+    const std::size_t prefix = array.name == kOriginal ? 0 : kMap.size();
+    plans.push_back({++last, array.name.substr(prefix), kInt, &array});
+  }
+  return plans;
+}
+
+void write_maps(Writing& writing, const std::string& of, const std::string& prefix,
+                const std::string& dimension, const std::vector<MapPlan>& maps) {
+  if (maps.empty()) return;
+  const std::string count = "num_" + of + "_maps";
+  writing.file.dimension({count, maps.size()});
+  std::vector<std::int64_t> ids;
+  std::vector<std::string> names;
+  for (std::size_t m = 0; m < maps.size(); ++m) {
+    ids.push_back(maps[m].id);
+    names.push_back(maps[m].name);
+    writing.write_integers(fmt::format("{}_map{}", of, m + 1), dimension, whole_values(maps[m].array->values),
+                           {}, maps[m].type);
+  }
+  writing.write_integers(prefix + "_prop1", count, ids, {text_attribute("name", "ID")});
+  writing.write_names(prefix + "ap_names", count, names);
+}
+
+Columns plan_nodal_attributes(Writing& writing) {
+  Columns columns;
+  for (const auto& [name, array] : writing.metadata.nodal_attributes) {
+    if (const DataArray* const found = writing.take(array, Association::vertices))
+      columns.emplace_back(name, found);
+  }
+  for (const DataArray& array : writing.mesh.data) {
+    const bool is_attribute = array.association == Association::vertices && array.is_dense() &&
+                              array.components == 1 && array.name.starts_with(kAttribute) &&
+                              !std::holds_alternative<std::vector<std::string>>(array.values);
+    if (!is_attribute || !writing.placed.insert(&array).second) continue;
+    columns.emplace_back(array.name.substr(kAttribute.size()), &array);
+  }
+  return columns;
+}
+
+void write_nodal_attributes(Writing& writing, const Columns& columns) {
+  if (columns.empty()) return;
+  NcOutput& file = writing.file;
+  file.dimension({"num_att_in_nblk", columns.size()});
+  const NcSink sink = writing.declare("nattrb", kDouble, {"num_nodes", "num_att_in_nblk"});
+  std::vector<std::string> names;
+  names.reserve(columns.size());
+  for (const auto& [name, array] : columns) names.push_back(name);
+  writing.write_names("nattrib_name", "num_att_in_nblk", names);
+  file.later([sink, columns, nodes = writing.mesh.points.size()] {
+    std::vector<double> table(nodes * columns.size());
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      std::visit(
+          [&](const auto& values) {
+            for (std::size_t v = 0; v < nodes; ++v)
+              table[v * columns.size() + k] = number_as<double>(values[v]);
+          },
+          columns[k].second->values);
+    }
+    sink.part({0, 0}, {nodes, columns.size()}, table);
+  });
+}
+
+/// Returns a table of names with rows of another length.
+PlainVariable with_name_length(PlainVariable table, std::size_t length) {
+  const std::size_t old = table.dimensions.back().length;
+  if (table.type != kChar || old == 0 || length < old) return table;
+  std::string rows;
+  for (std::size_t at = 0; at < table.bytes.size(); at += old) {
+    rows += table.bytes.substr(at, old);
+    rows.append(length - old, '\0');
+  }
+  table.bytes = std::move(rows);
+  table.dimensions.back().length = length;
+  return table;
+}
+
+/// Writes what is kept as it is, with zeros for steps that it did not have.
+void write_plain(Writing& writing) {
+  NcOutput& file = writing.file;
+  for (const PlainVariable& of_file : writing.metadata.plain) {
+    if (file.has_variable(of_file.name)) continue;
+    const bool has_names = !of_file.dimensions.empty() && of_file.dimensions.back().name == "len_name";
+    const PlainVariable variable =
+        has_names ? with_name_length(of_file, writing.metadata.name_length) : of_file;
+    std::vector<std::string> dimensions;
+    std::vector<std::size_t> counts;
+    bool fits = true;
+    std::size_t bytes = size_of(variable.type);
+    for (const Dimension& dimension : variable.dimensions) {
+      fits = fits && file.dimension(dimension);
+      dimensions.push_back(dimension.name);
+      counts.push_back(dimension.name == "time_step" ? writing.steps : dimension.length);
+      bytes *= counts.back();
+    }
+    if (!fits) {
+      writing.notes.push_back(
+          fmt::format("the variable {} is left out: its dimensions have other lengths now", variable.name));
+      continue;
+    }
+    const NcSink sink = file.variable(variable.name, variable.type, dimensions, variable.attributes);
+    std::string values = variable.bytes;
+    values.resize(bytes, '\0');
+    file.later([sink, counts, values = std::move(values)] { sink.bytes(counts, values); });
+  }
+  for (const Dimension& dimension : writing.metadata.dimensions) (void)file.dimension(dimension);
+  if (writing.steps > 0 && !file.has_variable("time_whole")) {
+    const NcSink sink = file.variable("time_whole", kDouble, {"time_step"});
+    file.later([sink, steps = writing.steps] { sink.part({0}, {steps}, std::vector<double>(steps, 0)); });
+  }
+}
+
+/// Returns the length of the names that are written, up to 255, with their zero bytes; at least that of the
+/// file that the mesh came from. Notes names that are cut.
+std::size_t length_of_names(const Writing& writing, const std::vector<std::string>& names) {
+  std::size_t longest = writing.metadata.name_length;
+  for (const std::string& name : names) {
+    longest = std::max(longest, std::min(name.size(), kLongestName) + 1);
+    if (name.size() > kLongestName) {
+      writing.notes.push_back(fmt::format("the name '{}' is cut to {} characters", name, kLongestName));
+    }
+  }
+  return longest;
+}
+
+void add_names(const Columns& columns, std::vector<std::string>& names) {
+  for (const auto& [name, array] : columns) names.push_back(name);
+}
+
+/// Writes the attributes of the file, of which one tells how long the longest name is.
+void write_attributes_of_file(Writing& writing, const std::vector<std::string>& names) {
+  std::size_t longest = 0;
+  for (const std::string& name : names) longest = std::max(longest, std::min(name.size(), kLongestName));
+  for (Attribute attribute : writing.metadata.attributes) {
+    if (attribute.name == "maximum_name_length" && attribute.type == kInt && attribute.count == 1) {
+      std::int32_t length = 0;
+      std::memcpy(&length, attribute.bytes.data(), sizeof(length));
+      attribute = integer_attribute(attribute.name, std::max(length, static_cast<std::int32_t>(longest)));
+    }
+    writing.file.attribute(attribute);
+  }
+}
+
+/// Returns the number of coordinates that the points need, at least those of the file.
+int coordinates_of(const Mesh& mesh, int of_file) {
+  int needed = of_file;
+  for (const Point& point : mesh.points) {
+    if (point[2] != 0) return 3;
+    if (point[1] != 0) needed = std::max(needed, 2);
+  }
+  return needed;
+}
+
+}  // namespace
+
+std::vector<std::string> Metadata::contents() const {
+  std::vector<std::string> result;
+  const auto count = [&](std::size_t number, std::string_view one, std::string_view many) {
+    if (number > 0) result.push_back(fmt::format("{} {}", number, number == 1 ? one : many));
+  };
+  for (const PlainVariable& variable : plain) {
+    const std::size_t rows = variable.dimensions.empty() ? 1 : variable.dimensions.front().length;
+    if (variable.name == "qa_records") {
+      count(rows, "QA record", "QA records");
+    } else if (variable.name == "info_records") {
+      count(rows, "info record", "info records");
+    } else if (variable.name == "time_whole") {
+      if (rows > 1) result.push_back(fmt::format("the times of {} steps", rows));
+    } else if (variable.name == "name_glo_var") {
+      count(rows, "global variable", "global variables");
+    } else if (variable.name != "coor_names" && variable.name != "vals_glo_var") {
+      result.push_back("the variable " + variable.name);
+    }
+  }
+  count(block_properties.size(), "property of blocks", "properties of blocks");
+  for (std::size_t kind = 0; kind < sets.size(); ++kind) {
+    if (sets[kind].properties.empty()) continue;
+    result.push_back(fmt::format("{} properties of {}s", sets[kind].properties.size(),
+                                 kSetKinds[kind].word.substr(0, kSetKinds[kind].word.size() - 1)));
+  }
+  return result;
+}
+
+void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
+  const Metadata* const own = own_metadata(mesh);
+  Metadata metadata = own != nullptr ? *own : new_metadata(mesh);
+  NcOutput file(path, metadata.storage);
+  Writing writing(mesh, metadata, file, notes);
+
+  // what each part of the mesh becomes
+  plan_blocks(writing, own != nullptr);
+  const std::vector<const EntitySet*> element_sets = name_blocks(writing);
+  std::vector<Columns> attributes;
+  for (const BlockPlan& block : writing.blocks) attributes.push_back(attributes_of(writing, block));
+  const std::vector<MapPlan> node_maps = plan_maps(writing, Association::vertices);
+  const std::vector<MapPlan> element_maps = plan_maps(writing, Association::cells);
+  const Columns nodal_attributes = plan_nodal_attributes(writing);
+  const auto sets = plan_sets(writing, element_sets);
+  const std::vector<SeriesPlan> nodal = plan_series(writing, Association::vertices);
+  const std::vector<SeriesPlan> elemental = plan_series(writing, Association::cells);
+  const auto has_values = [](const SeriesPlan& series) { return !series.arrays.empty(); };
+  const bool needs_step = std::any_of(nodal.begin(), nodal.end(), has_values) ||
+                          std::any_of(elemental.begin(), elemental.end(), has_values);
+  writing.steps = std::max<std::size_t>(metadata.steps, needs_step ? 1 : 0);
+
+  std::vector<std::string> names;
+  for (const BlockPlan& block : writing.blocks) names.push_back(block.name);
+  for (const Columns& columns : attributes) add_names(columns, names);
+  add_names(nodal_attributes, names);
+  for (const auto& of_kind : sets) {
+    for (const SetPlan& set : of_kind) names.push_back(set.name);
+  }
+  for (const auto* maps : {&node_maps, &element_maps}) {
+    for (const MapPlan& map : *maps) names.push_back(map.name);
+  }
+  for (const auto* series : {&nodal, &elemental}) {
+    for (const SeriesPlan& one : *series) names.push_back(one.name);
+  }
+  metadata.name_length = length_of_names(writing, names);
+
+  // their declarations
+  const int dimension = coordinates_of(mesh, metadata.coordinates);
+  write_attributes_of_file(writing, names);
+  file.dimension({"time_step", writing.steps, metadata.steps_unlimited || writing.steps == 0});
+  file.dimension({"len_name", metadata.name_length});
+  file.dimension({"num_dim", static_cast<std::size_t>(dimension)});
+  file.dimension({"num_nodes", mesh.points.size()});
+  file.dimension({"num_elem", mesh.cells.shapes.size()});
+  file.dimension({"num_el_blk", writing.blocks.size()});
+  write_points(writing, dimension);
+  write_blocks(writing, attributes);
+  write_numbers(writing, "node_num_map", "num_nodes", mesh.vertex_ids, mesh.points.size(),
+                metadata.has_node_numbers);
+  write_numbers(writing, "elem_num_map", "num_elem", mesh.cell_ids, mesh.cells.shapes.size(),
+                metadata.has_element_numbers);
+  write_maps(writing, "node", "nm", "num_nodes", node_maps);
+  write_maps(writing, "elem", "em", "num_elem", element_maps);
+  write_nodal_attributes(writing, nodal_attributes);
+  write_sets(writing, sets);
+  write_nodal(writing, nodal);
+  write_elemental(writing, elemental);
+  write_plain(writing);
+  if (own == nullptr) note_metadata_unsupported(mesh, "Exodus", notes);
+  file.finish();
+}
+
+namespace {
+
+bool holds(const Mesh& mesh, Shape shape, int vertices) {
+  if (!type_of(shape, vertices).empty()) return true;
+  const Metadata* const own = own_metadata(mesh);
+  return own != nullptr && std::any_of(own->blocks.begin(), own->blocks.end(), [&](const BlockRecord& block) {
+           return block.shape == shape && block.nodes == vertices;
+         });
+}
+
+}  // namespace
+
+}  // namespace meshorder::exodus
+
+namespace meshorder {
+
+Format exodus_format() {
+  return {
+      "Exodus",      {".exo", ".e", ".ex2", ".g"}, false, exodus::read, exodus::write, exodus::holds, nullptr,
+      exodus::places};
+}
+
+}  // namespace meshorder

@@ -1,0 +1,517 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/exodus/netcdf.hpp"
+
+#include <fmt/format.h>
+#include <netcdf.h>
+#include <netcdf_mem.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <system_error>
+#include <utility>
+
+namespace meshorder::exodus {
+
+const NcType kChar = NC_CHAR;
+const NcType kInt = NC_INT;
+const NcType kInt64 = NC_INT64;
+const NcType kFloat = NC_FLOAT;
+const NcType kDouble = NC_DOUBLE;
+
+namespace {
+
+constexpr std::string_view kDamaged = "the file may be damaged";
+constexpr std::uint64_t kMostExpansion = 1032;  // of deflate
+constexpr std::size_t kBuffer = std::size_t{1} << 18;
+
+std::mutex& library_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+std::size_t product(const std::vector<std::size_t>& lengths) {
+  return std::accumulate(lengths.begin(), lengths.end(), std::size_t{1}, std::multiplies<>());
+}
+
+int read_part(int file, int variable, const std::size_t* starts, const std::size_t* counts, double* into) {
+  return nc_get_vara_double(file, variable, starts, counts, into);
+}
+int read_part(int file, int variable, const std::size_t* starts, const std::size_t* counts, float* into) {
+  return nc_get_vara_float(file, variable, starts, counts, into);
+}
+template <class Number>
+int read_part(int file, int variable, const std::size_t* starts, const std::size_t* counts, Number* into) {
+  return nc_get_vara(file, variable, starts, counts, into);
+}
+
+}  // namespace
+
+bool is_whole(NcType type) {
+  constexpr std::array kWhole{NC_BYTE, NC_SHORT, NC_INT, NC_UBYTE, NC_USHORT, NC_UINT, NC_INT64, NC_UINT64};
+  return std::find(kWhole.begin(), kWhole.end(), type) != kWhole.end();
+}
+
+std::size_t size_of(NcType type) {
+  switch (type) {
+    case NC_BYTE:
+    case NC_UBYTE:
+    case NC_CHAR:
+      return 1;
+    case NC_SHORT:
+    case NC_USHORT:
+      return 2;
+    case NC_INT:
+    case NC_UINT:
+    case NC_FLOAT:
+      return 4;
+    case NC_INT64:
+    case NC_UINT64:
+    case NC_DOUBLE:
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+Attribute text_attribute(std::string name, std::string text) {
+  const std::size_t count = text.size();
+  return {std::move(name), kChar, count, std::move(text)};
+}
+
+Storage plain_storage(bool large) { return {large ? NC_FORMAT_CDF5 : NC_FORMAT_64BIT_OFFSET}; }
+
+// ---- reading
+
+NcInput::NcInput(const FilePath& path) : lock_(library_mutex()), name_(path.string()) {
+  constexpr std::size_t kStart = 8;
+  std::error_code code;
+  const bool on_disk = path.store() == nullptr && std::filesystem::is_regular_file(path.path(), code) &&
+                       without_gz(path.path()) == path.path();
+  if (!on_disk) memory_ = path.read();
+  const std::string start = on_disk ? path.read_first(kStart) : memory_.substr(0, kStart);
+  size_ = on_disk ? std::filesystem::file_size(path.path(), code) : memory_.size();
+  if (start.starts_with("CDF")) {
+    check_classic_header(
+        name_, [&](std::size_t bytes) { return on_disk ? path.read_first(bytes) : memory_.substr(0, bytes); },
+        size_);
+  } else if (!start.starts_with("\x89HDF\r\n\x1a\n")) {
+    throw InputError(Location{name_, 0, 0}, "is not a file of netCDF",
+                     "an Exodus file begins with CDF or HDF");
+  }
+  if (on_disk) {
+    std::size_t buffer = kBuffer;
+    check(nc__open(name_.c_str(), NC_NOWRITE, &buffer, &id_), "");
+  } else {
+    check(nc_open_mem(name_.c_str(), NC_NOWRITE, memory_.size(), memory_.data(), &id_), "");
+  }
+  try {
+    inquire();
+  } catch (...) {
+    nc_close(id_);
+    throw;
+  }
+}
+
+NcInput::~NcInput() { nc_close(id_); }
+
+void NcInput::fail(const std::string& what, const std::string& remedy) const {
+  throw InputError(name_, what, remedy);
+}
+
+void NcInput::check(int status, const std::string& what) const {
+  if (status == NC_NOERR) return;
+  fail(fmt::format("{}netCDF says: {}", what.empty() ? "" : what + ": ", nc_strerror(status)),
+       std::string(kDamaged));
+}
+
+void NcInput::inquire() {
+  int dimension_count = 0;
+  int variable_count = 0;
+  int groups = 0;
+  check(nc_inq(id_, &dimension_count, &variable_count, nullptr, nullptr), "");
+  check(nc_inq_grps(id_, &groups, nullptr), "");
+  if (groups > 0)
+    fail(fmt::format("has {} groups", groups), "a mesh is in the file itself; take a group out");
+  int unlimited_count = 0;
+  std::vector<int> unlimited(static_cast<std::size_t>(dimension_count));
+  check(nc_inq_unlimdims(id_, &unlimited_count, nullptr), "");
+  unlimited.resize(static_cast<std::size_t>(unlimited_count));
+  check(nc_inq_unlimdims(id_, &unlimited_count, unlimited.data()), "");
+
+  std::array<char, NC_MAX_NAME + 1> name{};
+  std::vector<int> ids(static_cast<std::size_t>(dimension_count));
+  check(nc_inq_dimids(id_, &dimension_count, ids.data(), 0), "");
+  std::map<int, int> place_of;
+  for (const int id : ids) {
+    std::size_t length = 0;
+    check(nc_inq_dim(id_, id, name.data(), &length), "");
+    place_of.emplace(id, static_cast<int>(dimensions_.size()));
+    dimensions_.push_back(
+        {name.data(), length, std::find(unlimited.begin(), unlimited.end(), id) != unlimited.end()});
+  }
+  for (int id = 0; id < variable_count; ++id) {
+    Variable variable{.id = id, .name = {}, .type = 0, .dimensions = {}};
+    int rank = 0;
+    check(nc_inq_varndims(id_, id, &rank), "");
+    variable.dimensions.resize(static_cast<std::size_t>(rank));
+    check(nc_inq_var(id_, id, name.data(), &variable.type, nullptr, variable.dimensions.data(), nullptr), "");
+    variable.name = name.data();
+    for (int& dimension : variable.dimensions) dimension = place_of.at(dimension);
+    by_name_.emplace(variable.name, variables_.size());
+    variables_.push_back(std::move(variable));
+  }
+}
+
+const Variable* NcInput::find(const std::string& name) const {
+  const auto found = by_name_.find(name);
+  return found == by_name_.end() ? nullptr : &variables_[found->second];
+}
+
+std::size_t NcInput::length(const std::string& name) const {
+  const auto found = std::find_if(dimensions_.begin(), dimensions_.end(),
+                                  [&](const Dimension& dimension) { return dimension.name == name; });
+  return found == dimensions_.end() ? 0 : found->length;
+}
+
+std::size_t NcInput::count(const std::string& dimension) const {
+  const std::size_t found = length(dimension);
+  if (found > size_) {
+    fail(fmt::format("{} is {}, but the file has {} bytes", dimension, found, size_), std::string(kDamaged));
+  }
+  return found;
+}
+
+std::vector<std::size_t> NcInput::shape(const Variable& variable) const {
+  std::vector<std::size_t> result;
+  result.reserve(variable.dimensions.size());
+  for (const int place : variable.dimensions)
+    result.push_back(dimensions_[static_cast<std::size_t>(place)].length);
+  return result;
+}
+
+std::size_t NcInput::size(const Variable& variable) const {
+  std::uint64_t bytes = std::max<std::size_t>(1, size_of(variable.type));
+  const std::vector<std::size_t> lengths = shape(variable);
+  if (std::find(lengths.begin(), lengths.end(), std::size_t{0}) != lengths.end()) return 0;
+  const std::uint64_t most = size_ > std::numeric_limits<std::uint64_t>::max() / kMostExpansion
+                                 ? std::numeric_limits<std::uint64_t>::max()
+                                 : size_ * kMostExpansion;
+  for (const std::size_t length : lengths) {
+    if (length > most / bytes) {
+      fail(fmt::format("{} claims more values than a file of {} bytes can hold", variable.name, size_),
+           std::string(kDamaged));
+    }
+    bytes *= length;
+  }
+  return product(lengths);
+}
+
+std::vector<Attribute> NcInput::attributes(const Variable* variable, std::vector<std::string>& lost) const {
+  const int of = variable == nullptr ? NC_GLOBAL : variable->id;
+  int count = 0;
+  check(variable == nullptr ? nc_inq_natts(id_, &count) : nc_inq_varnatts(id_, of, &count), "");
+  std::vector<Attribute> result;
+  std::array<char, NC_MAX_NAME + 1> name{};
+  for (int i = 0; i < count; ++i) {
+    check(nc_inq_attname(id_, of, i, name.data()), "an attribute");
+    Attribute attribute{name.data(), 0, 0, {}};
+    check(nc_inq_att(id_, of, name.data(), &attribute.type, &attribute.count), attribute.name);
+    if (attribute.type == NC_STRING && attribute.count == 1) {
+      char* text = nullptr;
+      check(nc_get_att_string(id_, of, name.data(), &text), attribute.name);
+      result.push_back(text_attribute(attribute.name, text == nullptr ? "" : text));
+      nc_free_string(1, &text);
+      continue;
+    }
+    const std::size_t width = size_of(attribute.type);
+    if (width == 0) {
+      lost.push_back((variable == nullptr ? "" : variable->name + ":") + attribute.name);
+      continue;
+    }
+    if (attribute.count > size_ / width)
+      fail("the attribute " + attribute.name + " is larger than the file", std::string(kDamaged));
+    attribute.bytes.resize(attribute.count * width);
+    check(nc_get_att(id_, of, name.data(), attribute.bytes.data()), attribute.name);
+    result.push_back(std::move(attribute));
+  }
+  return result;
+}
+
+std::string NcInput::text(const Variable& variable, const std::string& attribute) const {
+  std::vector<std::string> ignored;
+  for (const Attribute& candidate : attributes(&variable, ignored)) {
+    if (candidate.name == attribute && candidate.type == kChar) {
+      return candidate.bytes.substr(0, candidate.bytes.find('\0'));
+    }
+  }
+  return {};
+}
+
+void NcInput::read(const Variable& variable, std::int32_t* values) const {
+  if (!is_whole(variable.type)) fail(variable.name + " has no whole numbers", "numbers of nodes are whole");
+  const int status = nc_get_var_int(id_, variable.id, values);
+  if (status == NC_ERANGE)
+    fail(variable.name + " has a number beyond 32 bits", "2,147,483,647 is the largest");
+  check(status, variable.name);
+}
+
+std::vector<std::int64_t> NcInput::integers(const Variable& variable) const {
+  if (!is_whole(variable.type)) fail(variable.name + " has no whole numbers", std::string(kDamaged));
+  static_assert(sizeof(long long) == sizeof(std::int64_t));
+  std::vector<long long> values(size(variable));
+  check(nc_get_var_longlong(id_, variable.id, values.data()), variable.name);
+  return {values.begin(), values.end()};
+}
+
+std::vector<double> NcInput::reals(const Variable& variable) const {
+  const std::vector<std::size_t> lengths = shape(variable);
+  return reals(variable, std::vector<std::size_t>(lengths.size(), 0), lengths);
+}
+
+std::vector<double> NcInput::reals(const Variable& variable, const std::vector<std::size_t>& starts,
+                                   const std::vector<std::size_t>& counts) const {
+  if (size_of(variable.type) == 0 || variable.type == kChar) {
+    fail(variable.name + " has no numbers", std::string(kDamaged));
+  }
+  (void)size(variable);  // throws if it claims too much
+  std::vector<double> values(product(counts));
+  if (values.empty()) return values;
+  check(nc_get_vara_double(id_, variable.id, starts.data(), counts.data(), values.data()), variable.name);
+  return values;
+}
+
+std::string NcInput::bytes(const Variable& variable) const {
+  std::string result(size(variable) * size_of(variable.type), '\0');
+  if (!result.empty()) check(nc_get_var(id_, variable.id, result.data()), variable.name);
+  return result;
+}
+
+std::vector<std::string> NcInput::texts(const Variable& variable) const {
+  const std::vector<std::size_t> lengths = shape(variable);
+  if (variable.type != kChar || lengths.size() != 2) {
+    fail(variable.name + " is no table of characters", std::string(kDamaged));
+  }
+  const std::string all = bytes(variable);
+  std::vector<std::string> result;
+  for (std::size_t row = 0; row < lengths[0] && !all.empty(); ++row) {
+    std::string text = all.substr(row * lengths[1], lengths[1]);
+    text.resize(std::min(text.find('\0'), text.size()));
+    text.erase(text.find_last_not_of(' ') + 1);
+    result.push_back(std::move(text));
+  }
+  result.resize(lengths[0]);
+  return result;
+}
+
+Values NcInput::values(const Variable& variable, const std::vector<std::size_t>& starts,
+                       const std::vector<std::size_t>& counts) const {
+  (void)size(variable);  // throws if it claims too much
+  const auto read_as = [&]<class Number>(Number /*of*/) -> Values {
+    std::vector<Number> result(product(counts));
+    if (!result.empty()) {
+      check(read_part(id_, variable.id, starts.data(), counts.data(), result.data()), variable.name);
+    }
+    return result;
+  };
+  switch (variable.type) {
+    case NC_FLOAT:
+      return read_as(float{});
+    case NC_DOUBLE:
+      return read_as(double{});
+    case NC_BYTE:
+      return read_as(std::int8_t{});
+    case NC_UBYTE:
+      return read_as(std::uint8_t{});
+    case NC_SHORT:
+      return read_as(std::int16_t{});
+    case NC_USHORT:
+      return read_as(std::uint16_t{});
+    case NC_INT:
+      return read_as(std::int32_t{});
+    case NC_UINT:
+      return read_as(std::uint32_t{});
+    case NC_INT64:
+      return read_as(std::int64_t{});
+    case NC_UINT64:
+      return read_as(std::uint64_t{});
+    default:
+      fail(variable.name + " has no numbers", std::string(kDamaged));
+  }
+}
+
+Storage NcInput::storage() const {
+  Storage result{0};
+  check(nc_inq_format(id_, &result.kind), "");
+  if (result.kind != NC_FORMAT_NETCDF4 && result.kind != NC_FORMAT_NETCDF4_CLASSIC) return result;
+  for (const Variable& variable : variables_) {
+    int shuffle = 0;
+    int deflate = 0;
+    int level = 0;
+    if (variable.dimensions.empty()) continue;
+    if (nc_inq_var_deflate(id_, variable.id, &shuffle, &deflate, &level) != NC_NOERR || deflate == 0)
+      continue;
+    result.deflate = std::max(result.deflate, level);
+    result.shuffle = result.shuffle || shuffle != 0;
+  }
+  return result;
+}
+
+// ---- writing
+
+namespace {
+
+int creation_mode(int kind) {
+  switch (kind) {
+    case NC_FORMAT_64BIT_OFFSET:
+      return NC_64BIT_OFFSET;
+    case NC_FORMAT_CDF5:
+      return NC_64BIT_DATA;
+    case NC_FORMAT_NETCDF4:
+      return NC_NETCDF4;
+    case NC_FORMAT_NETCDF4_CLASSIC:
+      return NC_NETCDF4 | NC_CLASSIC_MODEL;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+NcOutput::NcOutput(const FilePath& path, const Storage& storage)
+    : lock_(library_mutex()), path_(path), out_(path), storage_(storage) {
+  const int mode = NC_CLOBBER | creation_mode(storage.kind);
+  if (path.store() != nullptr) {
+    // an initial size would be the least that the file gets
+    check(nc_create_mem(path.string().c_str(), mode, 0, &id_), "");
+  } else {
+    out_.close();
+    std::size_t buffer = kBuffer;
+    check(nc__create(out_.temporary().c_str(), mode, 0, &buffer, &id_), "");
+  }
+  int old = 0;
+  nc_set_fill(id_, NC_NOFILL, &old);
+}
+
+NcOutput::~NcOutput() {
+  if (id_ >= 0) nc_abort(id_);
+}
+
+void NcOutput::check(int status, const std::string& what) const {
+  if (status == NC_NOERR) return;
+  const bool is_full = status == ENOSPC || status == NC_EHDFERR;
+  throw InputError(
+      path_.string(),
+      fmt::format("{}cannot be written: {}", what.empty() ? "" : what + " ", nc_strerror(status)),
+      is_full ? "is the disk full?" : "another format, such as .vtu, may hold the mesh");
+}
+
+bool NcOutput::holds_wide_integers() const noexcept {
+  return storage_.kind == NC_FORMAT_CDF5 || storage_.kind == NC_FORMAT_NETCDF4;
+}
+
+void NcOutput::put_attribute(int variable, const Attribute& attribute, const std::string& of) const {
+  if (attribute.name == "_NCProperties") return;  // netCDF's own
+  if (attribute.type == kChar) {
+    check(nc_put_att_text(id_, variable, attribute.name.c_str(), attribute.count, attribute.bytes.data()),
+          of);
+  } else {
+    check(nc_put_att(id_, variable, attribute.name.c_str(), attribute.type, attribute.count,
+                     attribute.bytes.data()),
+          of);
+  }
+}
+
+void NcOutput::attribute(const Attribute& attribute) { put_attribute(NC_GLOBAL, attribute, attribute.name); }
+
+bool NcOutput::dimension(const Dimension& dimension) {
+  const auto known = dimensions_.find(dimension.name);
+  if (known != dimensions_.end()) return known->second.second == (dimension.unlimited ? 0 : dimension.length);
+  int id = 0;
+  const std::size_t length = dimension.unlimited ? NC_UNLIMITED : dimension.length;
+  check(nc_def_dim(id_, dimension.name.c_str(), length, &id), dimension.name);
+  dimensions_.emplace(dimension.name, std::pair{id, dimension.unlimited ? 0 : dimension.length});
+  return true;
+}
+
+NcSink NcOutput::variable(const std::string& name, NcType type, const std::vector<std::string>& dimensions,
+                          const std::vector<Attribute>& attributes) {
+  std::vector<int> ids;
+  ids.reserve(dimensions.size());
+  for (const std::string& dimension : dimensions) ids.push_back(dimensions_.at(dimension).first);
+  int id = 0;
+  check(nc_def_var(id_, name.c_str(), type, static_cast<int>(ids.size()), ids.data(), &id), name);
+  if (storage_.deflate > 0 && !ids.empty() && type != kChar) {
+    check(nc_def_var_deflate(id_, id, storage_.shuffle ? 1 : 0, 1, storage_.deflate), name);
+  }
+  for (const Attribute& attribute : attributes) put_attribute(id, attribute, name);
+  declared_.insert(name);
+  return {*this, name, id};
+}
+
+void NcOutput::finish() {
+  check(nc_enddef(id_), "");
+  for (const auto& put : puts_) put();
+  if (path_.store() == nullptr) {
+    const int status = nc_close(std::exchange(id_, -1));
+    check(status, "");
+  } else {
+    NC_memio bytes{};
+    const int status = nc_close_memio(std::exchange(id_, -1), &bytes);
+    const std::unique_ptr<void, decltype(&std::free)> memory(bytes.memory, &std::free);
+    check(status, "");
+    out_.write({static_cast<const char*>(bytes.memory), bytes.size});
+  }
+  out_.commit();
+}
+
+void NcSink::integers(const std::vector<std::int32_t>& values) const {
+  if (!values.empty()) file_->check(nc_put_var_int(file_->id_, variable_, values.data()), name_);
+}
+
+void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+                  const std::vector<std::int32_t>& values) const {
+  if (values.empty()) return;
+  file_->check(nc_put_vara_int(file_->id_, variable_, starts.data(), counts.data(), values.data()), name_);
+}
+
+void NcSink::integers(const std::vector<std::int64_t>& values) const {
+  if (values.empty()) return;
+  const std::vector<long long> numbers(values.begin(), values.end());
+  file_->check(nc_put_var_longlong(file_->id_, variable_, numbers.data()), name_);
+}
+
+void NcSink::reals(const std::vector<double>& values) const {
+  if (!values.empty()) file_->check(nc_put_var_double(file_->id_, variable_, values.data()), name_);
+}
+
+void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+                  const std::vector<double>& values) const {
+  if (values.empty()) return;
+  file_->check(nc_put_vara_double(file_->id_, variable_, starts.data(), counts.data(), values.data()), name_);
+}
+
+void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+                  const std::vector<float>& values) const {
+  if (values.empty()) return;
+  file_->check(nc_put_vara_float(file_->id_, variable_, starts.data(), counts.data(), values.data()), name_);
+}
+
+void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+                  const std::vector<std::int64_t>& values) const {
+  if (values.empty()) return;
+  const std::vector<long long> numbers(values.begin(), values.end());
+  file_->check(nc_put_vara_longlong(file_->id_, variable_, starts.data(), counts.data(), numbers.data()),
+               name_);
+}
+
+void NcSink::bytes(const std::vector<std::size_t>& counts, const std::string& values) const {
+  if (values.empty()) return;
+  const std::vector<std::size_t> starts(counts.size(), 0);
+  file_->check(nc_put_vara(file_->id_, variable_, starts.data(), counts.data(), values.data()), name_);
+}
+
+}  // namespace meshorder::exodus

@@ -1,0 +1,213 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/stream/file_path.hpp"
+#include "io/stream/output_file.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/mesh.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// Files of netCDF, read and written through its C library, of which one call at a time is allowed: an object
+/// of these classes holds a lock of the whole process.
+namespace meshorder::exodus {
+
+/// The number types of netCDF, with its own numbers (netcdf.h).
+using NcType = int;
+extern const NcType kChar;
+extern const NcType kInt;
+extern const NcType kInt64;
+extern const NcType kFloat;
+extern const NcType kDouble;
+
+/// Returns whether values of the type are whole numbers.
+bool is_whole(NcType type);
+/// Returns the bytes of a value, 0 for strings and types that a file defines.
+std::size_t size_of(NcType type);
+
+/// A named value of a file or a variable.
+struct Attribute {
+  std::string name;
+  NcType type;
+  std::size_t count;
+  std::string bytes;  ///< count values in the byte order of this machine
+};
+
+/// Returns an attribute that is a text.
+Attribute text_attribute(std::string name, std::string text);
+
+struct Dimension {
+  std::string name;
+  std::size_t length;
+  bool unlimited = false;
+};
+
+/// A variable of a file that is read.
+struct Variable {
+  int id;
+  std::string name;
+  NcType type;
+  std::vector<int> dimensions;  ///< places in NcInput::dimensions
+};
+
+/// How values are stored.
+struct Storage {
+  int kind;              ///< of the file: as nc_inq_format says
+  int deflate = 0;       ///< level of compression, 0 to 9
+  bool shuffle = false;  ///< bytes are sorted before compression
+};
+
+/// Returns the storage of new files: netCDF-3 with 64-bit offsets, or CDF-5 for what does not fit that.
+Storage plain_storage(bool large);
+
+/// Throws InputError unless the first bytes of a file, all that `at` gives, are a header of netCDF-3 whose
+/// variables end within the file's size. O(size of the header).
+void check_classic_header(const std::string& file, const std::function<std::string(std::size_t)>& first_bytes,
+                          std::uint64_t size);
+
+/// A file that is read.
+class NcInput {
+ public:
+  /// Throws InputError if it is not there or not one of netCDF's.
+  explicit NcInput(const FilePath& path);
+  ~NcInput();
+  NcInput(const NcInput&) = delete;
+  NcInput& operator=(const NcInput&) = delete;
+  NcInput(NcInput&&) = delete;
+  NcInput& operator=(NcInput&&) = delete;
+
+  [[nodiscard]] const std::vector<Dimension>& dimensions() const noexcept { return dimensions_; }
+  [[nodiscard]] const std::vector<Variable>& variables() const noexcept { return variables_; }
+  /// Returns the variable of that name, or null.
+  [[nodiscard]] const Variable* find(const std::string& name) const;
+  /// Returns the length of a dimension, 0 if there is none.
+  [[nodiscard]] std::size_t length(const std::string& name) const;
+  /// Returns the length of a dimension that counts parts of the file. Throws InputError if it is larger than
+  /// the file.
+  [[nodiscard]] std::size_t count(const std::string& dimension) const;
+  /// Returns the lengths along a variable's dimensions.
+  [[nodiscard]] std::vector<std::size_t> shape(const Variable& variable) const;
+  /// Returns the number of values. Throws InputError if the file is too small to hold them.
+  [[nodiscard]] std::size_t size(const Variable& variable) const;
+
+  /// Returns the attributes of a variable, of the file where it is null. Those of types that a file defines
+  /// are left out, and named in `lost`.
+  [[nodiscard]] std::vector<Attribute> attributes(const Variable* variable,
+                                                  std::vector<std::string>& lost) const;
+  /// Returns a text that a variable has, empty if there is none.
+  [[nodiscard]] std::string text(const Variable& variable, const std::string& attribute) const;
+
+  /// Reads all values, as 32-bit integers; throws InputError where one does not fit or is not whole.
+  void read(const Variable& variable, std::int32_t* values) const;
+  [[nodiscard]] std::vector<std::int64_t> integers(const Variable& variable) const;
+  [[nodiscard]] std::vector<double> reals(const Variable& variable) const;
+  /// Returns a part of them: `counts` from `starts` along each dimension.
+  [[nodiscard]] std::vector<double> reals(const Variable& variable, const std::vector<std::size_t>& starts,
+                                          const std::vector<std::size_t>& counts) const;
+  /// Returns the bytes of all values in the byte order of this machine.
+  [[nodiscard]] std::string bytes(const Variable& variable) const;
+  /// Returns the rows of a table of characters, each up to its zero byte and without blanks at its end.
+  [[nodiscard]] std::vector<std::string> texts(const Variable& variable) const;
+  /// Returns values of a part, `counts` from `starts` along each dimension, in the type of the file.
+  [[nodiscard]] Values values(const Variable& variable, const std::vector<std::size_t>& starts,
+                              const std::vector<std::size_t>& counts) const;
+
+  [[nodiscard]] Storage storage() const;
+
+  /// Throws InputError for a fault of a variable.
+  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+
+ private:
+  void check(int status, const std::string& what) const;
+  void inquire();
+
+  std::lock_guard<std::mutex> lock_;
+  std::string name_;
+  std::string memory_;  // of a file that is not on disk
+  std::uint64_t size_ = 0;
+  int id_ = -1;
+  std::vector<Dimension> dimensions_;
+  std::vector<Variable> variables_;
+  std::map<std::string, std::size_t> by_name_;
+};
+
+class NcOutput;
+
+/// Writes values of a variable that was declared.
+class NcSink {
+ public:
+  NcSink(const NcOutput& file, std::string name, int variable)
+      : file_(&file), name_(std::move(name)), variable_(variable) {}
+  /// Write all values.
+  void integers(const std::vector<std::int64_t>& values) const;
+  void integers(const std::vector<std::int32_t>& values) const;
+  void reals(const std::vector<double>& values) const;
+  /// Write the part of `counts` values from `starts` on.
+  void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+            const std::vector<double>& values) const;
+  void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+            const std::vector<float>& values) const;
+  void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+            const std::vector<std::int64_t>& values) const;
+  void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+            const std::vector<std::int32_t>& values) const;
+  /// Writes the part of `counts` values from 0 on, in the variable's own type.
+  void bytes(const std::vector<std::size_t>& counts, const std::string& values) const;
+
+ private:
+  const NcOutput* file_;
+  std::string name_;
+  int variable_;
+};
+
+/// A file that is written: first all is declared, then `finish` writes the values.
+class NcOutput {
+ public:
+  NcOutput(const FilePath& path, const Storage& storage);
+  ~NcOutput();
+  NcOutput(const NcOutput&) = delete;
+  NcOutput& operator=(const NcOutput&) = delete;
+  NcOutput(NcOutput&&) = delete;
+  NcOutput& operator=(NcOutput&&) = delete;
+
+  void attribute(const Attribute& attribute);
+  /// Declares a dimension; the same one may be declared again. Returns false if it is there with another
+  /// length.
+  bool dimension(const Dimension& dimension);
+  /// Declares a variable. Its values are to be written by what is given to `later`.
+  NcSink variable(const std::string& name, NcType type, const std::vector<std::string>& dimensions,
+                  const std::vector<Attribute>& attributes = {});
+  /// Has `finish` call `put`.
+  void later(std::function<void()> put) { puts_.push_back(std::move(put)); }
+  [[nodiscard]] bool has_variable(const std::string& name) const { return declared_.contains(name); }
+  /// Returns whether the file can hold 64-bit integers.
+  [[nodiscard]] bool holds_wide_integers() const noexcept;
+
+  /// Writes all values and replaces the target.
+  void finish();
+
+ private:
+  void check(int status, const std::string& what) const;
+  void put_attribute(int variable, const Attribute& attribute, const std::string& of) const;
+
+  friend class NcSink;
+  std::lock_guard<std::mutex> lock_;
+  FilePath path_;
+  OutputFile out_;
+  Storage storage_;
+  int id_ = -1;
+  std::map<std::string, std::pair<int, std::size_t>> dimensions_;
+  std::set<std::string> declared_;
+  std::vector<std::function<void()>> puts_;
+};
+
+}  // namespace meshorder::exodus

@@ -1,0 +1,517 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/index.hpp"
+#include "io/exodus/exodus.hpp"
+#include "io/exodus/reading.hpp"
+#include "io/labels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+// Reads a file: points, elements and their numbers, and all that is kept as it is.
+
+namespace meshorder::exodus {
+
+const Variable* Reading::take(const std::string& name) {
+  const Variable* const variable = file.find(name);
+  if (variable != nullptr) taken.insert(name);
+  return variable;
+}
+
+std::vector<std::string> Reading::take_names(const std::string& name, std::size_t count) {
+  const Variable* const variable = take(name);
+  std::vector<std::string> names = variable == nullptr ? std::vector<std::string>() : file.texts(*variable);
+  names.resize(count);
+  return names;
+}
+
+void Reading::require_shape(const Variable& variable, const std::vector<std::size_t>& expected) const {
+  const std::vector<std::size_t> shape = file.shape(variable);
+  if (shape == expected) return;
+  file.fail(fmt::format("{} has {} values, not {}", variable.name, fmt::join(shape, " × "),
+                        fmt::join(expected, " × ")),
+            "the file may be damaged");
+}
+
+std::string Reading::add_array(DataArray array) {
+  const std::string name = array.name;
+  for (int k = 2; !arrays_.emplace(array.association, array.name).second; ++k) {
+    array.name = fmt::format("{} ({})", name, k);
+  }
+  mesh.data.push_back(std::move(array));
+  return mesh.data.back().name;
+}
+
+std::string Reading::add_set(EntitySet set) {
+  const std::string name = set.name;
+  for (int k = 2; !sets_.emplace(set.association, set.name).second; ++k) {
+    set.name = fmt::format("{} ({})", name, k);
+  }
+  mesh.sets.push_back(std::move(set));
+  return mesh.sets.back().name;
+}
+
+std::vector<std::int64_t> read_ids(Reading& reading, const std::string& variable, std::size_t objects) {
+  std::vector<std::int64_t> ids(objects);
+  std::iota(ids.begin(), ids.end(), std::int64_t{1});
+  const Variable* const found = reading.take(variable);
+  if (found == nullptr) return ids;
+  reading.require_shape(*found, {objects});
+  std::vector<std::int64_t> given = reading.file.integers(*found);
+  std::vector<std::int64_t> sorted = given;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice == sorted.end()) return given;
+  reading.notes.push_back(fmt::format("{} gives the id {} twice; the ids are now 1, 2, …", variable, *twice));
+  return ids;
+}
+
+namespace {
+
+Index checked_length(const NcInput& file, const std::string& dimension) {
+  const std::size_t length = file.length(dimension);
+  if (length > static_cast<std::size_t>(kMaxIndex)) {
+    file.fail(fmt::format("{} is {}", dimension, length), "2,147,483,647 is the largest");
+  }
+  return static_cast<Index>(length);
+}
+
+/// Refuses files whose content cannot follow an order.
+void refuse_unknown_kinds(const NcInput& file) {
+  for (const Dimension& dimension : file.dimensions()) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kKinds{{
+        {"num_ed_blk", "blocks of edges"},
+        {"num_fa_blk", "blocks of faces"},
+        {"num_edge_sets", "sets of edges"},
+        {"num_face_sets", "sets of faces"},
+    }};
+    for (const auto& [name, words] : kKinds) {
+      if (dimension.name == name && dimension.length > 0) {
+        file.fail(fmt::format("has {} {}", dimension.length, words), "blocks of elements are understood");
+      }
+    }
+  }
+  // of a piece of a decomposed mesh (Nemesis)
+  constexpr std::array<std::string_view, 9> kCommunication{"node_mapi",   "node_mapb",   "node_mape",
+                                                           "elem_mapi",   "elem_mapb",   "n_comm_nids",
+                                                           "n_comm_proc", "e_comm_eids", "e_comm_sids"};
+  for (const std::string_view name : kCommunication) {
+    if (file.find(std::string(name)) == nullptr) continue;
+    file.fail(fmt::format("is a piece of a decomposed mesh: {} names nodes or elements of this piece", name),
+              "order the whole mesh before it is decomposed");
+  }
+}
+
+void read_points(Reading& reading) {
+  const NcInput& file = reading.file;
+  Metadata& metadata = *reading.metadata;
+  Mesh& mesh = reading.mesh;
+  const Index nodes = checked_length(file, "num_nodes");
+  const std::size_t dimension = file.length("num_dim");
+  if (dimension < 1 || dimension > 3) {
+    file.fail(fmt::format("num_dim is {}", dimension), "1, 2 and 3 are possible");
+  }
+  metadata.coordinates = static_cast<int>(dimension);
+  mesh.dimension = dimension == 3 ? 3 : 2;
+  const auto count = static_cast<std::size_t>(nodes);
+  const auto read_axis = [&](const Variable& variable, const std::vector<double>& values, std::size_t k) {
+    mesh.points.resize(count);
+    for (std::size_t v = 0; v < count; ++v) mesh.points[v][k] = values[v];
+    metadata.coordinate_type = variable.type;
+  };
+  if (const Variable* const all = reading.take("coord")) {
+    reading.require_shape(*all, {dimension, count});
+    metadata.packs_coordinates = true;
+    for (std::size_t k = 0; k < dimension; ++k) read_axis(*all, file.reals(*all, {k, 0}, {1, count}), k);
+    return;
+  }
+  constexpr std::array kNames{"coordx", "coordy", "coordz"};
+  for (std::size_t k = 0; k < dimension && nodes > 0; ++k) {
+    const Variable* const one = reading.take(kNames[k]);
+    if (one == nullptr) file.fail(fmt::format("{} is not there", kNames[k]), "the points need coordinates");
+    reading.require_shape(*one, {count});
+    read_axis(*one, file.reals(*one), k);
+  }
+}
+
+/// Reserves memory for the elements of all blocks.
+void reserve_cells(Reading& reading, std::size_t blocks, Index elements) {
+  std::size_t entries = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const Variable* const connect = reading.file.find(fmt::format("connect{}", b + 1));
+    if (connect != nullptr) entries += reading.file.size(*connect);
+  }
+  // no more elements than numbers of nodes
+  reading.mesh.cells.reserve(std::min<Offset>(elements, static_cast<Offset>(entries)),
+                             static_cast<Offset>(entries));
+}
+
+/// Reads the elements of a block into the mesh.
+void read_elements(Reading& reading, const Variable& connect, BlockRecord& block, std::size_t elements) {
+  const NcInput& file = reading.file;
+  Cells& cells = reading.mesh.cells;
+  const std::size_t begin = cells.vertices.size();
+  const auto nodes = static_cast<std::size_t>(block.nodes);
+  if (file.size(connect) > static_cast<std::size_t>(kMaxIndex) * 64) {
+    file.fail(connect.name + " is too large", "the file may be damaged");
+  }
+  cells.vertices.resize(begin + elements * nodes);
+  file.read(connect, cells.vertices.data() + begin);
+  const std::span<const int> order = file_order(block.shape, block.nodes);
+  const auto count = static_cast<std::uint32_t>(reading.mesh.points.size());
+  std::array<Index, 27> of_file{};
+  for (std::size_t e = 0; e < elements; ++e) {
+    Index* const row = cells.vertices.data() + begin + e * nodes;
+    for (std::size_t k = 0; k < nodes; ++k) {
+      // numbers below 1 become large
+      const std::uint32_t place = static_cast<std::uint32_t>(row[k]) - 1;
+      if (place >= count) {
+        file.fail(fmt::format("{}, element {}: node {} does not exist", connect.name, e + 1, row[k]),
+                  fmt::format("the nodes are 1 to {}", count));
+      }
+      row[k] = static_cast<Index>(place);
+    }
+    if (order.empty()) continue;
+    std::copy_n(row, nodes, of_file.begin());
+    for (std::size_t k = 0; k < nodes; ++k) row[k] = of_file[static_cast<std::size_t>(order[k])];
+  }
+  cells.shapes.insert(cells.shapes.end(), elements, block.shape);
+  for (std::size_t e = 0; e < elements; ++e) {
+    cells.offsets.push_back(cells.offsets.back() + static_cast<Offset>(nodes));
+  }
+}
+
+/// Reads the columns of attributes of a block; `columns` receives the arrays by name.
+void read_attributes(Reading& reading, std::size_t b, BlockRecord& block,
+                     std::map<std::string, DataArray>& columns) {
+  const NcInput& file = reading.file;
+  const std::string number = std::to_string(b + 1);
+  const Variable* const variable = reading.take("attrib" + number);
+  if (variable == nullptr) return;
+  const Index first = reading.block_ends[b];
+  const auto elements = static_cast<std::size_t>(reading.block_ends[b + 1] - first);
+  const std::vector<std::size_t> shape = file.shape(*variable);
+  // a single attribute may go without the second dimension
+  const std::size_t count = shape.size() == 1 ? 1 : shape.size() == 2 ? shape[1] : 0;
+  if (count == 0 || shape[0] != elements)
+    reading.require_shape(*variable, {elements, std::max<std::size_t>(count, 1)});
+  block.names_attributes = file.find("attrib_name" + number) != nullptr;
+  const std::vector<std::string> names = reading.take_names("attrib_name" + number, count);
+  block.attribute_type = variable->type;
+  const std::vector<double> values = file.reals(*variable);
+  std::set<std::string> used;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::string name(kAttribute);
+    name += names[k].empty() || used.contains(names[k]) ? std::to_string(k + 1) : names[k];
+    if (!used.insert(name.substr(kAttribute.size())).second) name += " of " + number;
+    DataArray& array = columns[name];
+    if (array.name.empty()) {
+      array.name = name;
+      array.association = Association::cells;
+      array.values = std::vector<double>();
+    }
+    auto& column = std::get<std::vector<double>>(array.values);
+    for (std::size_t e = 0; e < elements; ++e) {
+      column.push_back(values[e * count + k]);
+      array.indices.push_back(first + static_cast<Index>(e));
+    }
+    block.attributes.emplace_back(names[k], name);
+  }
+}
+
+/// Gives the mesh labels by the blocks' ids, or by a property that holds labels.
+void label_cells(Reading& reading) {
+  Metadata& metadata = *reading.metadata;
+  auto& names = metadata.block_properties;
+  const auto property = std::find(names.begin(), names.end(), kLabelProperty);
+  if (property != names.end()) {
+    const auto place = static_cast<std::size_t>(property - names.begin());
+    std::set<std::tuple<std::int64_t, Shape, int>> keys;
+    bool tells_blocks = true;
+    for (const BlockRecord& block : metadata.blocks) {
+      tells_blocks = tells_blocks && (block.nodes == 0 ||
+                                      keys.emplace(block.properties[place], block.shape, block.nodes).second);
+    }
+    if (tells_blocks) {
+      for (BlockRecord& block : metadata.blocks) {
+        block.label = block.properties[place];
+        block.properties.erase(block.properties.begin() + static_cast<std::ptrdiff_t>(place));
+      }
+      names.erase(property);
+    }
+  }
+  if (std::all_of(metadata.blocks.begin(), metadata.blocks.end(),
+                  [](const BlockRecord& block) { return block.nodes == 0 || block.label == 0; })) {
+    return;
+  }
+  std::vector<std::int64_t> labels;
+  labels.reserve(reading.mesh.cells.shapes.size());
+  for (std::size_t b = 0; b < metadata.blocks.size(); ++b) {
+    labels.insert(labels.end(), static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]),
+                  metadata.blocks[b].label);
+  }
+  reading.add_array({.name = std::string(kLabel),
+                     .association = Association::cells,
+                     .values = label_values(std::move(labels))});
+}
+
+void name_blocks(Reading& reading) {
+  for (std::size_t b = 0; b < reading.metadata->blocks.size(); ++b) {
+    BlockRecord& block = reading.metadata->blocks[b];
+    if (block.name.empty() || block.nodes == 0) continue;
+    EntitySet set{block.name, Association::cells, {}};
+    set.members.resize(static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]));
+    std::iota(set.members.begin(), set.members.end(), reading.block_ends[b]);
+    block.in_mesh = reading.add_set(std::move(set));
+  }
+}
+
+void read_blocks(Reading& reading) {
+  const NcInput& file = reading.file;
+  Metadata& metadata = *reading.metadata;
+  Mesh& mesh = reading.mesh;
+  const std::size_t count = file.count("num_el_blk");
+  const Index elements = checked_length(file, "num_elem");
+  const std::vector<std::int64_t> ids = read_ids(reading, "eb_prop1", count);
+  metadata.names_blocks = file.find("eb_names") != nullptr;
+  const std::vector<std::string> names = reading.take_names("eb_names", count);
+  (void)reading.take("eb_status");
+  metadata.blocks.resize(count);
+  metadata.block_properties = read_properties(reading, "eb", count, [&](std::size_t b, std::int64_t value) {
+    metadata.blocks[b].properties.push_back(value);
+  });
+  std::map<std::string, DataArray> attributes;
+  reading.block_ends.assign(1, 0);
+  reserve_cells(reading, count, elements);
+  for (std::size_t b = 0; b < count; ++b) {
+    BlockRecord& block = metadata.blocks[b];
+    block.id = block.label = ids[b];
+    block.name = names[b];
+    const Variable* const connect = reading.take(fmt::format("connect{}", b + 1));
+    const std::vector<std::size_t> shape =
+        connect == nullptr ? std::vector<std::size_t>{0, 0} : file.shape(*connect);
+    block.type = connect == nullptr ? "" : file.text(*connect, "elem_type");
+    const std::string numbered = std::to_string(b + 1);
+    if (file.find("ebepecnt" + numbered) != nullptr || file.find("facconn" + numbered) != nullptr ||
+        file.find("edgconn" + numbered) != nullptr || shape.size() != 2) {
+      file.fail(fmt::format("block {} (id {}) has elements of type '{}'", b + 1, block.id, block.type),
+                "elements with a fixed number of nodes are understood");
+    }
+    if (shape[0] > static_cast<std::size_t>(elements - mesh.cell_count())) {
+      file.fail(fmt::format("connect{} has more elements than num_elem, {}, leaves", b + 1, elements),
+                "the file may be damaged");
+    }
+    if (shape[0] > 0) {
+      const Shape* const found =
+          shape[1] > 1024 ? nullptr : shape_of(block.type, static_cast<int>(shape[1]), metadata.coordinates);
+      if (found == nullptr) {
+        file.fail(
+            fmt::format("block {} (id {}) has elements of type '{}' with {} nodes", b + 1, block.id,
+                        block.type, shape[1]),
+            "spheres, bars, triangles, quadrilaterals, shells, tetrahedra, pyramids, wedges and hexahedra "
+            "are understood");
+      }
+      block.shape = *found;
+      block.nodes = static_cast<int>(shape[1]);
+      block.connect_type = connect->type;
+      if (mesh.cell_count() > 0) mesh.cell_blocks.push_back(mesh.cell_count());
+      read_elements(reading, *connect, block, shape[0]);
+    }
+    reading.block_ends.push_back(mesh.cell_count());
+    read_attributes(reading, b, block, attributes);
+  }
+  if (mesh.cell_count() != elements) {
+    file.fail(fmt::format("num_elem is {}, but the blocks have {} elements", elements, mesh.cell_count()),
+              "the file may be damaged");
+  }
+  if (!mesh.cell_blocks.empty()) mesh.cell_blocks.insert(mesh.cell_blocks.begin(), 0);
+  label_cells(reading);
+  name_blocks(reading);
+  for (auto& [name, array] : attributes) {
+    if (index_size(array.indices) == elements) array.indices.clear();
+    reading.add_array(std::move(array));
+  }
+}
+
+void read_nodal_attributes(Reading& reading) {
+  const NcInput& file = reading.file;
+  const Variable* const variable = reading.take("nattrb");
+  if (variable == nullptr) return;
+  const auto count = file.count("num_att_in_nblk");
+  const auto nodes = reading.mesh.points.size();
+  reading.require_shape(*variable, {nodes, count});
+  const std::vector<std::string> names = reading.take_names("nattrib_name", count);
+  const std::vector<double> values = file.reals(*variable);
+  for (std::size_t k = 0; k < count; ++k) {
+    std::vector<double> column(nodes);
+    for (std::size_t v = 0; v < nodes; ++v) column[v] = values[v * count + k];
+    const std::string name = names[k].empty() ? std::to_string(k + 1) : names[k];
+    reading.metadata->nodal_attributes.emplace_back(
+        names[k], reading.add_array({.name = std::string(kAttribute) + name, .values = std::move(column)}));
+  }
+}
+
+/// Returns the numbers of all nodes or elements; none if they are 1, 2, … or not there.
+std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& name, std::size_t count,
+                                       bool& is_there) {
+  const Variable* const variable = reading.take(name);
+  is_there = variable != nullptr;
+  if (variable == nullptr) return {};
+  reading.require_shape(*variable, {count});
+  std::vector<std::int64_t> numbers = reading.file.integers(*variable);
+  bool plain = true;
+  for (std::size_t i = 0; i < count && plain; ++i) plain = numbers[i] == static_cast<std::int64_t>(i) + 1;
+  if (plain) return {};
+  std::vector<std::int64_t> sorted = numbers;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice == sorted.end()) return numbers;
+  reading.notes.push_back(fmt::format("{} is left out: it gives the number {} twice", name, *twice));
+  is_there = false;
+  return {};
+}
+
+void read_maps(Reading& reading) {
+  Metadata& metadata = *reading.metadata;
+  Mesh& mesh = reading.mesh;
+  const std::size_t nodes = mesh.points.size();
+  const std::size_t elements = mesh.cells.shapes.size();
+  mesh.vertex_ids = read_numbers(reading, "node_num_map", nodes, metadata.has_node_numbers);
+  mesh.cell_ids = read_numbers(reading, "elem_num_map", elements, metadata.has_element_numbers);
+  if (reading.take("elem_map") != nullptr) {
+    reading.notes.emplace_back(
+        "the order map of elements, elem_map, is left out: the new order takes its place");
+  }
+  const auto read_all = [&](const std::string& of, const char* prefix, Association association,
+                            std::size_t count, std::vector<MapRecord>& maps) {
+    const std::size_t number = reading.file.count("num_" + of + "_maps");
+    const std::vector<std::int64_t> ids = read_ids(reading, std::string(prefix) + "_prop1", number);
+    const std::vector<std::string> names = reading.take_names(std::string(prefix) + "ap_names", number);
+    for (std::size_t m = 0; m < number; ++m) {
+      const Variable* const variable = reading.take(fmt::format("{}_map{}", of, m + 1));
+      if (variable == nullptr) continue;
+      reading.require_shape(*variable, {count});
+      const std::string name = names[m].empty() ? std::to_string(ids[m]) : names[m];
+      DataArray array{.name = name == kOriginal ? name : std::string(kMap) + name,
+                      .association = association,
+                      .values = label_values(reading.file.integers(*variable))};
+      maps.push_back({ids[m], names[m], reading.add_array(std::move(array)), variable->type});
+    }
+  };
+  read_all("node", "nm", Association::vertices, nodes, metadata.node_maps);
+  read_all("elem", "em", Association::cells, elements, metadata.element_maps);
+}
+
+/// Returns whether a dimension's length depends on which nodes or elements there are.
+bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension) {
+  constexpr std::array<std::string_view, 6> kWhole{"num_nodes", "num_elem", "num_edge",
+                                                   "num_face",  "num_node", "num_elements"};
+  constexpr std::array<std::string_view, 9> kNumbered{"num_el_in_blk", "num_nod_per_el", "num_att_in_blk",
+                                                      "num_nod_ns",    "num_df_ns",      "num_side_ss",
+                                                      "num_df_ss",     "num_ele_els",    "num_df_els"};
+  constexpr std::array<std::string_view, 7> kFixed{"len_string", "len_line", "len_name",  "four",
+                                                   "num_dim",    "num_info", "num_qa_rec"};
+  const std::string& name = dimension.name;
+  if (std::find(kWhole.begin(), kWhole.end(), name) != kWhole.end()) return true;
+  const auto is_numbered = [&](std::string_view begin) {
+    return name.size() > begin.size() && name.starts_with(begin) &&
+           std::isdigit(static_cast<unsigned char>(name[begin.size()])) != 0;
+  };
+  if (std::any_of(kNumbered.begin(), kNumbered.end(), is_numbered)) return true;
+  if (dimension.unlimited || std::find(kFixed.begin(), kFixed.end(), name) != kFixed.end()) return false;
+  if (name.ends_with("_var") || name.ends_with("_sets") || name == "num_el_blk") return false;
+  // another name for them
+  return dimension.length == reading.mesh.points.size() ||
+         dimension.length == reading.mesh.cells.shapes.size();
+}
+
+/// Keeps the dimensions and variables that nothing has been made of, where an order does not change them.
+void keep_others(Reading& reading) {
+  const NcInput& file = reading.file;
+  Metadata& metadata = *reading.metadata;
+  std::vector<std::string> lost;
+  std::set<int> used;
+  for (const Variable& variable : file.variables()) {
+    if (reading.taken.contains(variable.name)) {
+      used.insert(variable.dimensions.begin(), variable.dimensions.end());
+      std::vector<Attribute> attributes = file.attributes(&variable, lost);
+      std::erase_if(attributes, [](const Attribute& attribute) {
+        return attribute.name == "elem_type" || attribute.name == "name" || attribute.name == "_FillValue";
+      });
+      if (!attributes.empty()) metadata.variable_attributes.emplace(variable.name, std::move(attributes));
+      continue;
+    }
+    std::vector<Dimension> dimensions;
+    for (const int place : variable.dimensions)
+      dimensions.push_back(file.dimensions()[static_cast<std::size_t>(place)]);
+    if (std::any_of(dimensions.begin(), dimensions.end(), [&](const Dimension& dimension) {
+          return is_of_nodes_or_elements(reading, dimension);
+        })) {
+      reading.notes.push_back(fmt::format(
+          "the variable {} is left out: it belongs to nodes or elements in a way that is not known",
+          variable.name));
+      continue;
+    }
+    if (size_of(variable.type) == 0) {
+      reading.notes.push_back(
+          fmt::format("the variable {} is left out: it has no numbers or characters", variable.name));
+      continue;
+    }
+    metadata.plain.push_back({variable.name, variable.type, std::move(dimensions),
+                              file.attributes(&variable, lost), file.bytes(variable)});
+  }
+  for (std::size_t place = 0; place < file.dimensions().size(); ++place) {
+    const Dimension& dimension = file.dimensions()[place];
+    if (!used.contains(static_cast<int>(place)) && !is_of_nodes_or_elements(reading, dimension)) {
+      metadata.dimensions.push_back(dimension);
+    }
+  }
+  metadata.attributes = file.attributes(nullptr, lost);
+  for (const std::string& name : lost)
+    reading.notes.push_back(fmt::format("the attribute {} is left out", name));
+}
+
+/// Counts the steps; none where no variable has values at them.
+void read_steps(Reading& reading) {
+  const auto& dimensions = reading.file.dimensions();
+  const auto found = std::find_if(dimensions.begin(), dimensions.end(),
+                                  [](const Dimension& dimension) { return dimension.name == "time_step"; });
+  if (found == dimensions.end()) return;
+  const auto place = static_cast<int>(found - dimensions.begin());
+  const auto& variables = reading.file.variables();
+  const bool used = std::any_of(variables.begin(), variables.end(), [&](const Variable& variable) {
+    return !variable.dimensions.empty() && variable.dimensions.front() == place;
+  });
+  reading.metadata->steps = used ? found->length : 0;
+  reading.metadata->steps_unlimited = found->unlimited;
+}
+
+}  // namespace
+
+Mesh read(const FilePath& path, Notes& notes) {
+  Reading reading(path, notes);
+  Metadata& metadata = *reading.metadata;
+  metadata.storage = reading.file.storage();
+  const std::size_t given = std::max(reading.file.length("len_name"), reading.file.length("len_string"));
+  metadata.name_length = std::clamp<std::size_t>(given, 33, 1024);
+  read_steps(reading);
+  if (reading.file.find("connect1") == nullptr && reading.file.length("num_elem") == 0) {
+    reading.file.fail("has no blocks of elements", "it may be a file of netCDF that is not one of Exodus");
+  }
+  refuse_unknown_kinds(reading.file);
+  read_points(reading);
+  read_blocks(reading);
+  read_maps(reading);
+  read_nodal_attributes(reading);
+  read_sets(reading);
+  read_variables(reading);
+  keep_others(reading);
+  reading.mesh.format_metadata = reading.metadata;
+  return std::move(reading.mesh);
+}
+
+}  // namespace meshorder::exodus

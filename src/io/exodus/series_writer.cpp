@@ -1,0 +1,299 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/index.hpp"
+#include "base/text.hpp"
+#include "io/exodus/writing.hpp"
+#include "io/unsupported.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+// Writes the variables of nodes and elements, step by step.
+
+namespace meshorder::exodus {
+namespace {
+
+constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers up to here are exact as double
+
+/// Returns one component of an array for `count` vertices or cells from `first` on; NaN, or 0 of whole
+/// numbers, where it has no row.
+template <class Number>
+std::vector<Number> column(const DataArray& array, Index component, const std::vector<Index>& table,
+                           Index first, Index count) {
+  Number nothing{};
+  if constexpr (std::is_floating_point_v<Number>) nothing = std::numeric_limits<Number>::quiet_NaN();
+  std::vector<Number> result(static_cast<std::size_t>(count), nothing);
+  std::visit(
+      [&](const auto& values) {
+        for (Index k = 0; k < count; ++k) {
+          const Offset row = table.empty() ? first + k : table[first + k];
+          if (row < 0) continue;
+          result[k] = number_as<Number>(values[static_cast<std::size_t>(row * array.components + component)]);
+        }
+      },
+      array.values);
+  return result;
+}
+
+/// Writes values of one step for `count` vertices or cells from `first` on, along the last dimension of the
+/// variable; nothing but NaN or 0 where there is no array.
+void put(const NcSink& sink, NcType type, std::vector<std::size_t> starts, const DataArray* array,
+         Index component, const std::vector<Index>& table, Index first, Index count) {
+  std::vector<std::size_t> counts(starts.size(), 1);
+  const auto put_as = [&]<class Number>(Number nothing) {
+    in_parts(count, [&](Index begin, Index rows) {
+      starts.back() = static_cast<std::size_t>(begin);
+      counts.back() = static_cast<std::size_t>(rows);
+      sink.part(starts, counts,
+                array == nullptr ? std::vector<Number>(static_cast<std::size_t>(rows), nothing)
+                                 : column<Number>(*array, component, table, first + begin, rows));
+    });
+  };
+  if (type == kFloat) return put_as(std::numeric_limits<float>::quiet_NaN());
+  if (is_whole(type)) return put_as(std::int64_t{0});
+  put_as(std::numeric_limits<double>::quiet_NaN());
+}
+
+/// Returns the type in which an array is written where no file gave it one.
+NcType type_for(const DataArray& array) {
+  return std::holds_alternative<std::vector<float>>(array.values) ? kFloat : kDouble;
+}
+
+bool is_exact(const DataArray& array) {
+  return std::visit(
+      [](const auto& values) {
+        using Number = typename std::decay_t<decltype(values)>::value_type;
+        if constexpr (std::is_integral_v<Number> && sizeof(Number) == 8) {
+          return std::none_of(values.begin(), values.end(),
+                              [](Number value) { return std::abs(static_cast<double>(value)) > kExact; });
+        }
+        return true;
+      },
+      array.values);
+}
+
+/// Returns the names of the variables that the components of an array become.
+std::vector<std::string> names_of_components(const DataArray& array) {
+  constexpr std::array<std::string_view, 3> kAxes{"X", "Y", "Z"};
+  const auto count = static_cast<std::size_t>(array.components);
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::string suffix = count <= kAxes.size() ? std::string(kAxes[k]) : std::to_string(k + 1);
+    if (array.component_names.size() == count && !array.component_names[k].empty())
+      suffix = array.component_names[k];
+    names.push_back(array.name + "_" + suffix);
+  }
+  return names;
+}
+
+class SeriesPlanner {
+ public:
+  SeriesPlanner(Writing& writing, Association association) : writing_(writing), association_(association) {}
+
+  std::vector<SeriesPlan> plans() && {
+    const Metadata& of_file = writing_.metadata;
+    for (const Series& series : association_ == Association::vertices ? of_file.nodal : of_file.elements) {
+      add(series);
+    }
+    for (const DataArray& array : writing_.mesh.data) {
+      if (array.association == association_ && !writing_.placed.contains(&array)) add(array);
+    }
+    return std::move(plans_);
+  }
+
+ private:
+  void add(const Series& series) {
+    SeriesPlan plan{.name = series.name, .type = series.type};
+    plan.present = series.present;
+    bool found = series.arrays.empty();
+    for (const std::string& name : series.arrays) {
+      plan.arrays.push_back(writing_.take(name, association_));
+      const DataArray* const array = plan.arrays.back();
+      found = found || array != nullptr;
+      if (array != nullptr && is_whole(plan.type) && !are_whole(array->values)) plan.type = kDouble;
+    }
+    if (!found) return;
+    names_.insert(plan.name);
+    plans_.push_back(std::move(plan));
+  }
+
+  void add(const DataArray& array) {
+    Notes& notes = writing_.notes;
+    if (std::holds_alternative<std::vector<std::string>>(array.values)) {
+      return note_array_unsupported(array, "Exodus", notes);
+    }
+    if (!is_exact(array)) {
+      notes.push_back(fmt::format(
+          "the array '{}' loses digits: variables of Exodus are real numbers of 53 bits", array.name));
+    }
+    if (array.components == 1) return add(array, 0, array.name);
+    const std::vector<std::string> names = names_of_components(array);
+    notes.push_back(fmt::format("the array '{}' of {} components is written as the variables '{}' to '{}'",
+                                array.name, names.size(), names.front(), names.back()));
+    for (Index k = 0; k < array.components; ++k) add(array, k, names[k]);
+  }
+
+  void add(const DataArray& array, Index component, const std::string& wanted) {
+    std::string name = wanted;
+    for (int k = 2; !names_.insert(name).second; ++k) name = fmt::format("{} ({})", wanted, k);
+    if (name != wanted) {
+      writing_.notes.push_back(fmt::format("the array '{}' is written as the variable '{}'", wanted, name));
+    }
+    const std::size_t steps = std::max<std::size_t>(1, writing_.metadata.steps);
+    if (steps > 1) {
+      writing_.notes.push_back(
+          fmt::format("the variable '{}' has the same values in all {} steps", name, steps));
+    }
+    plans_.push_back({.name = name,
+                      .type = type_for(array),
+                      .arrays = std::vector<const DataArray*>(steps, &array),
+                      .component = component});
+  }
+
+  Writing& writing_;
+  Association association_;
+  std::set<std::string> names_;
+  std::vector<SeriesPlan> plans_;
+};
+
+std::vector<std::string> names_of_series(const std::vector<SeriesPlan>& series) {
+  std::vector<std::string> names;
+  names.reserve(series.size());
+  for (const SeriesPlan& one : series) names.push_back(one.name);
+  return names;
+}
+
+void note_filled(const DataArray& array, Notes& notes) {
+  notes.push_back(fmt::format("the array '{}' is given for some {}; the others get NaN", array.name,
+                              to_string(array.association)));
+}
+
+/// Returns the number of cells of each block that an array has a row for.
+std::vector<Index> rows_in_blocks(const Writing& writing, const DataArray& array) {
+  std::vector<Index> rows;
+  std::vector<Index> firsts;
+  for (const BlockPlan& block : writing.blocks) {
+    rows.push_back(array.is_dense() ? block.cells.count : 0);
+    firsts.push_back(block.cells.first);
+  }
+  for (const Index cell : array.indices) {
+    // an empty block begins where the next one does
+    const auto next = std::upper_bound(firsts.begin(), firsts.end(), cell);
+    ++rows[static_cast<std::size_t>(next - firsts.begin()) - 1];
+  }
+  return rows;
+}
+
+/// Returns whether each block has values of a variable.
+std::vector<bool> presence(Writing& writing, const SeriesPlan& series) {
+  std::vector<bool> present(writing.blocks.size(), false);
+  if (series.arrays.empty()) {
+    for (std::size_t b = 0; b < present.size(); ++b) {
+      const BlockRecord* const record = writing.blocks[b].record;
+      const auto place = record == nullptr
+                             ? series.present.size()
+                             : static_cast<std::size_t>(record - writing.metadata.blocks.data());
+      present[b] = place < series.present.size() && series.present[place];
+    }
+    return present;
+  }
+  const DataArray* last = nullptr;
+  for (const DataArray* const array : series.arrays) {
+    if (array == nullptr || array == last) continue;
+    last = array;
+    const std::vector<Index> rows = rows_in_blocks(writing, *array);
+    bool filled = false;
+    for (std::size_t b = 0; b < present.size(); ++b) {
+      present[b] = present[b] || rows[b] > 0;
+      filled = filled || (rows[b] > 0 && rows[b] < writing.blocks[b].cells.count);
+    }
+    if (filled && series.component == 0) note_filled(*array, writing.notes);
+  }
+  return present;
+}
+
+}  // namespace
+
+std::vector<Index> row_table(const DataArray& array, Index count) {
+  std::vector<Index> table;
+  if (array.is_dense()) return table;
+  table.assign(static_cast<std::size_t>(count), -1);
+  for (Index row = 0; row < index_size(array.indices); ++row) table[array.indices[row]] = row;
+  return table;
+}
+
+std::vector<SeriesPlan> plan_series(Writing& writing, Association association) {
+  return SeriesPlanner(writing, association).plans();
+}
+
+void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series) {
+  if (series.empty()) return;
+  NcOutput& file = writing.file;
+  const Mesh& mesh = writing.mesh;
+  file.dimension({"num_nod_var", series.size()});
+  writing.write_names("name_nod_var", "num_nod_var", names_of_series(series));
+  const bool packed = writing.metadata.packs_nodal;
+  if (mesh.points.empty()) return;
+  const NcSink together =
+      packed ? writing.declare("vals_nod_var", kDouble, {"time_step", "num_nod_var", "num_nodes"})
+             : NcSink(file, "", -1);
+  for (std::size_t v = 0; v < series.size(); ++v) {
+    const SeriesPlan& one = series[v];
+    const DataArray* const first = one.arrays.empty() ? nullptr : one.arrays.front();
+    if (first != nullptr && !first->is_dense() && one.component == 0) note_filled(*first, writing.notes);
+    const NcSink sink =
+        packed ? together
+               : writing.declare(fmt::format("vals_nod_var{}", v + 1), one.type, {"time_step", "num_nodes"});
+    file.later([sink, &one, &mesh, v, packed] {
+      const DataArray* last = nullptr;
+      std::vector<Index> table;
+      for (std::size_t step = 0; step < one.arrays.size(); ++step) {
+        const DataArray* const array = one.arrays[step];
+        if (array != nullptr && array != last) table = row_table(*array, mesh.vertex_count());
+        last = array;
+        put(sink, one.type, packed ? std::vector{step, v, std::size_t{0}} : std::vector{step, std::size_t{0}},
+            array, one.component, table, 0, mesh.vertex_count());
+      }
+    });
+  }
+}
+
+void write_elemental(Writing& writing, const std::vector<SeriesPlan>& series) {
+  if (series.empty()) return;
+  NcOutput& file = writing.file;
+  file.dimension({"num_elem_var", series.size()});
+  writing.write_names("name_elem_var", "num_elem_var", names_of_series(series));
+  std::vector<std::int32_t> table(writing.blocks.size() * series.size(), 0);
+  for (std::size_t v = 0; v < series.size(); ++v) {
+    const SeriesPlan& one = series[v];
+    const std::vector<bool> present = presence(writing, one);
+    std::vector<std::pair<std::size_t, NcSink>> sinks;
+    for (std::size_t b = 0; b < writing.blocks.size(); ++b) {
+      if (!present[b]) continue;
+      table[b * series.size() + v] = 1;
+      if (writing.blocks[b].cells.count == 0) continue;
+      sinks.emplace_back(b, writing.declare(fmt::format("vals_elem_var{}eb{}", v + 1, b + 1), one.type,
+                                            {"time_step", fmt::format("num_el_in_blk{}", b + 1)}));
+    }
+    file.later([sinks, &one, &writing] {
+      const DataArray* last = nullptr;
+      std::vector<Index> rows;
+      for (std::size_t step = 0; step < one.arrays.size(); ++step) {
+        const DataArray* const array = one.arrays[step];
+        if (array != nullptr && array != last) rows = row_table(*array, writing.mesh.cell_count());
+        last = array;
+        for (const auto& [b, sink] : sinks) {
+          const Block& cells = writing.blocks[b].cells;
+          put(sink, one.type, {step, 0}, array, one.component, rows, cells.first, cells.count);
+        }
+      }
+    });
+  }
+  const NcSink sink = writing.declare("elem_var_tab", kInt, {"num_el_blk", "num_elem_var"});
+  file.later([sink, table] { sink.integers(table); });
+}
+
+}  // namespace meshorder::exodus

@@ -1,0 +1,346 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/index.hpp"
+#include "io/exodus/writing.hpp"
+#include "io/unsupported.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <utility>
+
+// Writes the sets of nodes, sides and elements.
+
+namespace meshorder::exodus {
+namespace {
+
+/// Finds rows of arrays that cover few vertices or cells.
+class SparseRows {
+ public:
+  explicit SparseRows(const DataArray& array) {
+    rows_.reserve(array.indices.size());
+    for (Index row = 0; row < index_size(array.indices); ++row) rows_.emplace_back(array.indices[row], row);
+    if (!std::is_sorted(rows_.begin(), rows_.end())) std::sort(rows_.begin(), rows_.end());
+    is_dense_ = array.is_dense();
+  }
+
+  /// Returns −1 if there is none.
+  [[nodiscard]] Index find(Index place) const {
+    if (is_dense_) return place;
+    const auto found = std::lower_bound(rows_.begin(), rows_.end(), std::pair{place, Index{0}});
+    return found == rows_.end() || found->first != place ? -1 : found->second;
+  }
+
+ private:
+  std::vector<std::pair<Index, Index>> rows_;  // place, row
+  bool is_dense_ = false;
+};
+
+/// Returns the number that a text of up to nine digits is, −1 for other texts.
+std::int64_t number_of(std::string_view text) {
+  std::int64_t value = -1;
+  const bool digits = !text.empty() && text.size() <= 9 &&
+                      std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+  if (digits) std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+bool is_side_set(const DataArray& array) {
+  if (array.association != Association::cells || array.components != 1) return false;
+  if (!array.name.starts_with(kSetKinds[kSideSets].word) || !are_whole(array.values)) return false;
+  const std::vector<std::int64_t> masks = whole_values(array.values);
+  return std::all_of(masks.begin(), masks.end(),
+                     [](std::int64_t mask) { return mask >= 0 && mask < (1 << kMostSides); });
+}
+
+/// Plans the sets of one kind.
+class FamilyPlanner {
+ public:
+  FamilyPlanner(Writing& writing, std::size_t kind)
+      : writing_(writing), kind_(kSetKinds[kind]), family_(writing.metadata.sets[kind]) {}
+
+  void add(const EntitySet& set) {
+    SetPlan& plan = begin(set.name);
+    plan.members.reserve(set.members.size());
+    for (const Index member : set.members) plan.members.push_back(member + 1);
+    plan.factors = find_factors(set.name);
+    if (plan.factors != nullptr && plan.factors->components != 1) plan.factors = nullptr;
+    if (plan.factors != nullptr) writing_.placed.insert(plan.factors);
+  }
+
+  void add(const DataArray& array) {
+    writing_.placed.insert(&array);
+    SetPlan& plan = begin(array.name);
+    const std::vector<std::int64_t> masks = whole_values(array.values);
+    for (Index row = 0; row < index_size(masks); ++row) {
+      const Index cell = array.is_dense() ? row : array.indices[row];
+      Index rank = 0;
+      for (int side = 1; side <= kMostSides; ++side) {
+        if ((masks[row] >> (side - 1) & 1) == 0) continue;
+        plan.members.push_back(cell + 1);
+        plan.sides.push_back(side);
+        plan.ranks.push_back(rank++);
+      }
+    }
+    add_factors(plan, array.name);
+  }
+
+  /// Adds sets without sides, which have no array.
+  void add_empty(const SetRecord& record) {
+    plans_.push_back({.id = record.id, .name = record.name, .record = &record});
+    plans_.back().variables.resize(family_.variables.size());
+  }
+
+  std::vector<SetPlan> plans() && {
+    std::set<std::int64_t> taken;
+    for (const SetPlan& plan : plans_) {
+      if (plan.record != nullptr) taken.insert(plan.id);
+    }
+    for (SetPlan& plan : plans_) {
+      if (plan.record != nullptr) continue;
+      while (plan.id < 1 || !taken.insert(plan.id).second) {
+        plan.id = taken.empty() ? 1 : std::max<std::int64_t>(1, *taken.rbegin() + 1);
+      }
+    }
+    return std::move(plans_);
+  }
+
+ private:
+  SetPlan& begin(const std::string& in_mesh) {
+    SetPlan& plan = plans_.emplace_back();
+    plan.variables.resize(family_.variables.size());
+    const auto record = std::find_if(family_.sets.begin(), family_.sets.end(),
+                                     [&](const SetRecord& of_file) { return of_file.in_mesh == in_mesh; });
+    if (record != family_.sets.end()) {
+      plan.record = &*record;
+      plan.id = record->id;
+      plan.name = record->name;
+      take_variables(plan);
+      return plan;
+    }
+    const bool has_word = in_mesh.starts_with(kind_.word);
+    plan.name = has_word ? in_mesh.substr(kind_.word.size()) : in_mesh;
+    plan.id = has_word ? number_of(plan.name) : -1;
+    if (plan.id >= 0) plan.name.clear();
+    return plan;
+  }
+
+  void take_variables(SetPlan& plan) {
+    for (std::size_t v = 0; v < plan.record->variables.size(); ++v) {
+      for (const std::string& array : plan.record->variables[v].arrays) {
+        plan.variables[v].push_back(writing_.take(array, kind_.association));
+      }
+    }
+  }
+
+  [[nodiscard]] const DataArray* find_factors(const std::string& in_mesh) const {
+    const DataArray* const found =
+        find_array(writing_.mesh, title(kind_, in_mesh) + std::string(kFactors), kind_.association);
+    const bool usable = found != nullptr && !std::holds_alternative<std::vector<std::string>>(found->values);
+    return usable ? found : nullptr;
+  }
+
+  /// Finds the factors of sides, and how many each side has.
+  void add_factors(SetPlan& plan, const std::string& in_mesh) {
+    const DataArray* const factors = find_factors(in_mesh);
+    if (factors == nullptr || plan.members.empty()) return;
+    std::vector<int> counts;
+    counts.reserve(plan.members.size());
+    for (std::size_t i = 0; i < plan.members.size(); ++i) {
+      const Index cell = plan.members[i] - 1;
+      counts.push_back(nodes_of_side(writing_.mesh.cells.shapes[cell], writing_.mesh.cells.vertex_count(cell),
+                                     plan.sides[i], writing_.mesh.dimension == 3 ? 3 : 2));
+    }
+    const int most_nodes = *std::max_element(counts.begin(), counts.end());
+    const Index most_sides = *std::max_element(plan.ranks.begin(), plan.ranks.end()) + 1;
+    int width = 0;
+    if (plan.record != nullptr && plan.record->factor_width > 0) {
+      width = plan.record->factor_width;
+      if (!plan.record->factors_by_nodes) counts.assign(counts.size(), width);
+    } else if (most_nodes > 0 && factors->components == most_sides * most_nodes) {
+      width = most_nodes;
+    } else if (factors->components % most_sides == 0) {
+      width = factors->components / most_sides;
+      counts.assign(counts.size(), width);
+    }
+    if (width == 0 || factors->components < most_sides * width) return;
+    plan.factors = factors;
+    plan.factor_width = width;
+    plan.factor_counts = std::move(counts);
+    writing_.placed.insert(factors);
+  }
+
+  Writing& writing_;
+  const SetKind& kind_;
+  const SetFamily& family_;
+  std::vector<SetPlan> plans_;
+};
+
+/// Returns the values of an array for the members of a set: `counts` of each, or one. Members without a row
+/// get `missing`.
+std::vector<double> values_of_members(const SetPlan& plan, const DataArray& array, int width,
+                                      const std::vector<int>& counts, double missing) {
+  const SparseRows rows(array);
+  std::vector<double> result;
+  result.reserve(plan.members.size());
+  std::visit(
+      [&](const auto& values) {
+        for (std::size_t i = 0; i < plan.members.size(); ++i) {
+          const Index row = rows.find(plan.members[i] - 1);
+          const Index rank = plan.ranks.empty() ? 0 : plan.ranks[i];
+          const int count = counts.empty() ? 1 : counts[i];
+          for (int k = 0; k < count; ++k) {
+            const Offset column = Offset{rank} * width + k;
+            const bool there = row >= 0 && column < array.components;
+            result.push_back(
+                there ? number_as<double>(
+                            values[static_cast<std::size_t>(Offset{row} * array.components + column)])
+                      : missing);
+          }
+        }
+      },
+      array.values);
+  return result;
+}
+
+/// Declares the sets of one kind.
+class FamilyWriter {
+ public:
+  FamilyWriter(Writing& writing, std::size_t kind, const std::vector<SetPlan>& plans)
+      : writing_(writing), kind_(kSetKinds[kind]), family_(writing.metadata.sets[kind]), plans_(plans) {}
+
+  void write() {
+    if (plans_.empty()) return;
+    const std::string prefix(kind_.prefix);
+    const std::string count(kind_.count);
+    writing_.file.dimension({count, plans_.size()});
+    std::vector<std::int64_t> ids;
+    std::vector<std::int64_t> status;
+    std::vector<std::string> names;
+    for (const SetPlan& plan : plans_) {
+      ids.push_back(plan.id);
+      status.push_back(plan.members.empty() ? 0 : 1);
+      names.push_back(plan.name);
+    }
+    writing_.write_integers(prefix + "_status", count, status);
+    writing_.write_integers(prefix + "_prop1", count, ids, {text_attribute("name", "ID")});
+    for (std::size_t p = 0; p < family_.properties.size(); ++p) {
+      std::vector<std::int64_t> values;
+      for (const SetPlan& plan : plans_)
+        values.push_back(plan.record != nullptr ? plan.record->properties[p] : 0);
+      writing_.write_integers(fmt::format("{}_prop{}", prefix, p + 2), count, values,
+                              {text_attribute("name", family_.properties[p])});
+    }
+    const bool named =
+        std::any_of(names.begin(), names.end(), [](const std::string& name) { return !name.empty(); });
+    if (named || family_.has_names) writing_.write_names(prefix + "_names", count, names);
+    for (std::size_t s = 0; s < plans_.size(); ++s) write_set(std::to_string(s + 1), plans_[s]);
+    write_variables();
+  }
+
+ private:
+  void write_set(const std::string& number, const SetPlan& plan) {
+    if (plan.members.empty()) return;
+    NcOutput& file = writing_.file;
+    const std::string size = std::string(kind_.size) + number;
+    const NcType type = plan.record != nullptr && plan.record->type == kInt64 ? kInt64 : kInt;
+    file.dimension({size, plan.members.size()});
+    const NcSink members = writing_.declare(std::string(kind_.members) + number, type, {size});
+    file.later([members, &plan] { members.integers(plan.members); });
+    if (!plan.sides.empty()) {
+      const NcSink sides = writing_.declare("side_ss" + number, type, {size});
+      file.later([sides, &plan] { sides.integers(plan.sides); });
+    }
+    if (plan.factors == nullptr) return;
+    std::size_t factors = plan.members.size();
+    if (!plan.factor_counts.empty()) {
+      factors = 0;
+      for (const int count : plan.factor_counts) factors += static_cast<std::size_t>(count);
+    }
+    const std::string factor_size = std::string(kind_.factor_size) + number;
+    file.dimension({factor_size, factors});
+    const NcSink sink =
+        writing_.declare("dist_fact_" + std::string(kind_.prefix) + number,
+                         plan.record != nullptr ? plan.record->factor_type : kDouble, {factor_size});
+    file.later([sink, &plan] {
+      sink.reals(values_of_members(plan, *plan.factors, plan.factor_width, plan.factor_counts, 1));
+    });
+  }
+
+  void write_variables() {
+    if (family_.variables.empty()) return;
+    const std::string of(kind_.variable);
+    const std::string count = "num_" + of + "_var";
+    writing_.file.dimension({count, family_.variables.size()});
+    writing_.write_names("name_" + of + "_var", count, family_.variables);
+    std::vector<std::int32_t> table;
+    for (const SetPlan& plan : plans_) {
+      for (const auto& arrays : plan.variables) {
+        table.push_back(
+            std::any_of(arrays.begin(), arrays.end(), [](const auto* array) { return array != nullptr; }));
+      }
+    }
+    const NcSink sink = writing_.declare(of + "_var_tab", kInt, {std::string(kind_.count), count});
+    writing_.file.later([sink, table] { sink.integers(table); });
+    for (std::size_t v = 0; v < family_.variables.size(); ++v) {
+      for (std::size_t s = 0; s < plans_.size(); ++s) {
+        if (table[s * family_.variables.size() + v] != 0) write_variable(v, s);
+      }
+    }
+  }
+
+  void write_variable(std::size_t v, std::size_t s) {
+    const SetPlan& plan = plans_[s];
+    const std::string number = std::to_string(s + 1);
+    const NcSink sink =
+        writing_.declare(fmt::format("vals_{}_var{}{}{}", kind_.variable, v + 1, kind_.prefix, number),
+                         plan.record->variables[v].type, {"time_step", std::string(kind_.size) + number});
+    writing_.file.later([sink, &plan, v] {
+      constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+      for (std::size_t step = 0; step < plan.variables[v].size(); ++step) {
+        const DataArray* const array = plan.variables[v][step];
+        const std::size_t members = plan.members.size();
+        sink.part({step, 0}, {1, members},
+                  array == nullptr ? std::vector<double>(members, kNothing)
+                                   : values_of_members(plan, *array, 1, {}, kNothing));
+      }
+    });
+  }
+
+  Writing& writing_;
+  const SetKind& kind_;
+  const SetFamily& family_;
+  const std::vector<SetPlan>& plans_;
+};
+
+}  // namespace
+
+std::vector<std::vector<SetPlan>> plan_sets(Writing& writing,
+                                            const std::vector<const EntitySet*>& element_sets) {
+  FamilyPlanner nodes(writing, kNodeSets);
+  FamilyPlanner sides(writing, kSideSets);
+  FamilyPlanner elements(writing, kElementSets);
+  for (const EntitySet& set : writing.mesh.sets) {
+    if (set.association == Association::vertices) nodes.add(set);
+  }
+  for (const EntitySet* const set : element_sets) elements.add(*set);
+  for (const SetRecord& record : writing.metadata.sets[kSideSets].sets) {
+    const DataArray* const array = find_array(writing.mesh, record.in_mesh, Association::cells);
+    if (record.in_mesh.empty()) {
+      sides.add_empty(record);
+    } else if (array != nullptr && is_side_set(*array)) {
+      sides.add(*array);
+    }
+  }
+  for (const DataArray& array : writing.mesh.data) {
+    if (!writing.placed.contains(&array) && is_side_set(array)) sides.add(array);
+  }
+  return {std::move(nodes).plans(), std::move(sides).plans(), std::move(elements).plans()};
+}
+
+void write_sets(Writing& writing, const std::vector<std::vector<SetPlan>>& plans) {
+  for (std::size_t kind = 0; kind < plans.size(); ++kind) FamilyWriter(writing, kind, plans[kind]).write();
+}
+
+}  // namespace meshorder::exodus
