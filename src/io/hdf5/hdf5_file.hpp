@@ -7,10 +7,9 @@
 // otherwise: every function here holds one lock for the whole program and keeps the library quiet meanwhile.
 // Code of others that calls the same library at the same time is not kept out.
 
+#include "io/hdf5/library.hpp"
 #include "io/stream/file_path.hpp"
 #include <meshorder/mesh.hpp>
-
-#include <hdf5.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include <hdf5.h>
+#include "io/hdf5/library.hpp"
 
 #include <mutex>
 #include <string>
