@@ -60,10 +60,11 @@ void parse(pugi::xml_document& xml, const std::string& text) {
   xml.load_buffer(text.data(), text.size(), kParse);
 }
 
-std::string text_of(const pugi::xml_document& xml) {
+std::string text_of(const pugi::xml_document& xml, std::string_view prolog) {
   TextWriter writer;
-  xml.save(writer, "", pugi::format_raw | pugi::format_no_declaration, pugi::encoding_utf8);
-  return std::move(writer.text);
+  writer.text = prolog;
+  xml.document_element().print(writer, "", pugi::format_raw, pugi::encoding_utf8);
+  return std::move(writer.text) + "\n";
 }
 
 std::string indented_text_of(const pugi::xml_document& xml) {
@@ -166,7 +167,16 @@ std::string Document::without_values(const std::vector<std::size_t>& items) cons
     pugi::xml_node node = all[item];
     while (node.first_child()) node.remove_child(node.first_child());
   }
-  return text_of(copy);
+  return text_of(copy, prolog());
+}
+
+std::string_view Document::prolog() const {
+  constexpr std::string_view kPlain = "<?xml version=\"1.0\"?>\n";
+  const std::string_view before = std::string_view(source_).substr(0, source_.find("<Xdmf"));
+  const std::size_t encoding = before.find("encoding=");
+  const bool is_utf8 =
+      encoding == std::string_view::npos || same_but_for_case(before.substr(encoding + 10, 5), "utf-8");
+  return is_utf8 && before.size() < source_.size() && before.starts_with('<') ? before : kPlain;
 }
 
 }  // namespace meshorder::xdmf

@@ -41,6 +41,8 @@ class Document {
   [[nodiscard]] std::string without_values(const std::vector<std::size_t>& items) const;
 
  private:
+  /// Returns what stands before the root element: the declaration, which pugixml has, and the blanks.
+  [[nodiscard]] std::string_view prolog() const;
   [[nodiscard]] const std::vector<pugi::xml_node>& selected(pugi::xml_node from, std::string path) const;
 
   std::string file_;
@@ -58,8 +60,8 @@ std::vector<pugi::xml_node> elements_named(const pugi::xml_document& xml, std::s
 /// Parses XML that `Document::without_values` made.
 void parse(pugi::xml_document& xml, const std::string& text);
 
-/// Returns XML as text, as it was parsed or with a line for each element.
-std::string text_of(const pugi::xml_document& xml);
+/// Returns XML as text: as it was parsed, after what stands before its root, or with a line for each element.
+std::string text_of(const pugi::xml_document& xml, std::string_view prolog);
 std::string indented_text_of(const pugi::xml_document& xml);
 
 /// Returns the first of two attributes that is there; an empty text without.

@@ -177,7 +177,7 @@ class XdmfWriter {
   }
 
   [[nodiscard]] std::string xml_text() const {
-    if (!layout_.is_made) return text_of(xml_);
+    if (!layout_.is_made) return text_of(xml_, layout_.xml.substr(0, layout_.xml.find("<Xdmf")));
     return indented_text_of(xml_);
   }
 
