@@ -339,25 +339,36 @@ DatasetInfo File::info(const std::string& path) const {
   return info;
 }
 
+void File::read(const std::string& path, hid_t type, void* values) const {
+  const Handle dataset = open_dataset(path);
+  if (H5Dread(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+    const std::string cause = last_cause();
+    fail(path, fmt::format("cannot be read ({})", cause), "the file may be damaged or cut short");
+  }
+}
+
 Values File::read(const std::string& path) const {
   const Session session;
   const DatasetInfo of = info(path);
-  const Handle dataset = open_dataset(path);
   Values values;
   const auto read_as = [&]<std::size_t I>(std::integral_constant<std::size_t, I> /*alternative*/) {
     if (I != of.alternative) return;
     auto& numbers = values.emplace<I>();
     resize_in_steps(numbers, of.size());
-    if (!numbers.empty() &&
-        H5Dread(dataset.id(), native_types()[I], H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()) < 0) {
-      const std::string cause = last_cause();
-      fail(path, fmt::format("cannot be read ({})", cause), "the file may be damaged or cut short");
-    }
+    if (!numbers.empty()) read(path, native_types()[I], numbers.data());
   };
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     (read_as(std::integral_constant<std::size_t, I>{}), ...);
   }
   (std::make_index_sequence<10>());
+  return values;
+}
+
+std::vector<Index> File::read_indices(const std::string& path) const {
+  const Session session;
+  std::vector<Index> values;
+  resize_in_steps(values, info(path).size());
+  if (!values.empty()) read(path, H5T_NATIVE_INT32, values.data());
   return values;
 }
 
@@ -381,12 +392,24 @@ std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
 
 void File::write(const std::string& path, const Values& values, const std::vector<std::uint64_t>& shape) {
   const Session session;
+  std::visit(
+      [&](const auto& numbers) {
+        write(path, native_types()[values.index()], numbers.data(), numbers.size(), shape);
+      },
+      values);
+}
+
+void File::write(const std::string& path, std::span<const Index> values,
+                 const std::vector<std::uint64_t>& shape) {
+  const Session session;
+  write(path, H5T_NATIVE_INT32, values.data(), values.size(), shape);
+}
+
+void File::write(const std::string& path, hid_t type, const void* values, std::uint64_t count,
+                 const std::vector<std::uint64_t>& shape) {
   const std::vector<hsize_t> dims(shape.begin(), shape.end());
   const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
-  const hid_t type = native_types()[values.index()];
   Handle dataset(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
-  const std::uint64_t count =
-      std::visit([](const auto& numbers) { return std::uint64_t{numbers.size()}; }, values);
   if (!dataset.is_open()) {
     const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links.id(), 1);
@@ -404,13 +427,8 @@ void File::write(const std::string& path, const Values& values, const std::vecto
       dataset = std::move(copy);
     }
   }
-  const bool written =
-      dataset.is_open() && std::visit(
-                               [&](const auto& numbers) {
-                                 return numbers.empty() || H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL,
-                                                                    H5P_DEFAULT, numbers.data()) >= 0;
-                               },
-                               values);
+  const bool written = dataset.is_open() && (count == 0 || H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL,
+                                                                    H5P_DEFAULT, values) >= 0);
   if (!written) fail(path, fmt::format("cannot be written ({})", last_cause()), "is the disk full?");
 }
 

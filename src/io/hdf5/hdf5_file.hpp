@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -73,6 +74,8 @@ class File {
   [[nodiscard]] DatasetInfo info(const std::string& path) const;
   /// Returns the values of a dataset that `info` accepts, row by row, in its own number type.
   [[nodiscard]] Values read(const std::string& path) const;
+  /// Returns whole numbers as indices, those out of range as the limit that they exceed, which no index is.
+  [[nodiscard]] std::vector<Index> read_indices(const std::string& path) const;
   /// Returns the paths of all datasets with at least one dimension, and the length of their first.
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> datasets() const;
 
@@ -80,6 +83,7 @@ class File {
   /// (the shape only if it has as many values; else it gets a new one); one that is not is made with the type
   /// of the values.
   void write(const std::string& path, const Values& values, const std::vector<std::uint64_t>& shape);
+  void write(const std::string& path, std::span<const Index> values, const std::vector<std::uint64_t>& shape);
   /// Removes a dataset if it is there.
   void remove(const std::string& path);
 
@@ -94,6 +98,9 @@ class File {
  private:
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
   [[nodiscard]] Handle open_dataset(const std::string& path) const;
+  void read(const std::string& path, hid_t type, void* values) const;
+  void write(const std::string& path, hid_t type, const void* values, std::uint64_t count,
+             const std::vector<std::uint64_t>& shape);
   [[noreturn]] void fail(const std::string& path, const std::string& what, const std::string& remedy) const;
 
   Handle file_;

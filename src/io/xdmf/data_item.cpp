@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/xdmf/data_item.hpp"
 
+#include "base/index.hpp"
 #include "base/text.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +10,8 @@
 #include <array>
 #include <charconv>
 #include <cstring>
+#include <limits>
+#include <tuple>
 #include <type_traits>
 #include <variant>
 
@@ -179,6 +182,30 @@ Values DataReader::read(const DataPlace& place) {
   const pugi::xml_node item = document_.item(place.item);
   if (place.format == Format::hdf) return file(item, place.file).read(place.dataset);
   return place.format == Format::xml ? read_text(place, item) : read_binary(place, item);
+}
+
+std::vector<Index> DataReader::read_indices(const DataPlace& place) {
+  const pugi::xml_node item = document_.item(place.item);
+  constexpr std::size_t kFirstIntegral = 2;
+  if (place.alternative < kFirstIntegral) {
+    throw document_.error(item, "the DataItem does not hold whole numbers", "Int or UInt is needed");
+  }
+  if (place.format == Format::hdf) return file(item, place.file).read_indices(place.dataset);
+  const Values values = read(place);
+  std::vector<Index> indices;
+  std::visit(
+      [&](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_integral_v<Number>) {
+          indices.reserve(numbers.size());
+          for (const Number number : numbers) {
+            const Index limit = std::cmp_less(number, 0) ? std::numeric_limits<Index>::min() : kMaxIndex;
+            indices.push_back(std::in_range<Index>(number) ? static_cast<Index>(number) : limit);
+          }
+        }
+      },
+      values);
+  return indices;
 }
 
 Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const {

@@ -63,6 +63,8 @@ class DataReader {
   [[nodiscard]] DataPlace place_of(pugi::xml_node item);
   /// Returns the values, as many as its shape says.
   [[nodiscard]] Values read(const DataPlace& place);
+  /// Returns whole numbers as indices, those out of range as the limit that they exceed, which no index is.
+  [[nodiscard]] std::vector<Index> read_indices(const DataPlace& place);
 
   /// Returns the opened HDF5 files by their names in the XML.
   [[nodiscard]] const std::map<std::string, hdf5::File>& files() const noexcept { return files_; }

@@ -11,6 +11,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -290,8 +291,7 @@ class XdmfReader {
     if (const auto known = known_topologies_.find(key); known != known_topologies_.end())
       return known->second;
     field.base = topology.attribute("BaseOffset").as_int(0);
-    const Piece piece = piece_of(topology, item, field.place, field.base);
-    field.part = part_of(grid, topology, piece);
+    field.part = part_of(grid, topology, piece_of(topology, item, field.place, field.base));
     known_topologies_.emplace(key, field.part);
     layout_->fields.push_back(field);
     return field.part;
@@ -316,15 +316,10 @@ class XdmfReader {
   Piece piece_of(pugi::xml_node topology, pugi::xml_node item, const DataPlace& place, int base) {
     Piece piece;
     piece.base = base;
-    const Values values = data_.read(place);
-    std::vector<std::int64_t> wide;
-    if (!is_integral(values)) {
-      throw document_.error(item, "the Topology does not hold whole numbers", "Int or UInt is needed");
-    }
+    std::vector<Index> numbers = data_.read_indices(place);
     const std::string type = attribute(topology, "TopologyType", "Type");
     const std::int64_t claimed = claimed_cells(topology);
     if (same_but_for_case(type, "Mixed")) {
-      const auto numbers = vtk::integers_of<std::int64_t>(values);
       if (!read_mixed(numbers, claimed, true, piece.cells) &&
           (claimed < 0 || !read_mixed(numbers, claimed, false, piece.cells))) {
         throw document_.error(item, fmt::format("the mixed Topology is damaged near value {}", fault_at_),
@@ -339,17 +334,16 @@ class XdmfReader {
     if (nodes == 0) {
       nodes = topology.attribute("NodesPerElement").as_llong(0);
       if (nodes <= 0 && place.shape.size() > 1) nodes = static_cast<std::int64_t>(place.shape.back());
-      if (nodes <= 0 && claimed > 0) nodes = static_cast<std::int64_t>(count_of(values)) / claimed;
+      if (nodes <= 0 && claimed > 0) nodes = std::ssize(numbers) / claimed;
       if (nodes <= 0 && known.number == kPolyvertex) nodes = 1;
       if (nodes <= 0 || nodes > kMaxIndex) {
         throw document_.error(topology, fmt::format("the {} has no NodesPerElement", known.name),
                               "it is needed");
       }
     }
-    const std::size_t entries = count_of(values);
-    const auto cells = static_cast<std::int64_t>(entries) / nodes;
-    if (static_cast<std::int64_t>(entries) % nodes != 0 || (claimed >= 0 && claimed != cells) ||
-        cells > kMaxIndex) {
+    const std::int64_t entries = std::ssize(numbers);
+    const std::int64_t cells = entries / nodes;
+    if (entries % nodes != 0 || (claimed >= 0 && claimed != cells) || cells > kMaxIndex) {
       throw document_.error(item, fmt::format("the Topology has {} entries", entries),
                             claimed >= 0 ? fmt::format("{} cells of {} points are announced", claimed, nodes)
                                          : fmt::format("{} for each cell are needed", nodes));
@@ -358,20 +352,7 @@ class XdmfReader {
                              static_cast<std::uint8_t>(vtk_type(known, nodes)));
     piece.cells.offsets.resize(static_cast<std::size_t>(cells) + 1);
     for (std::int64_t c = 0; c <= cells; ++c) piece.cells.offsets[static_cast<std::size_t>(c)] = c * nodes;
-    std::visit(
-        [&](const auto& numbers) {
-          using Number = typename std::decay_t<decltype(numbers)>::value_type;
-          if constexpr (std::is_integral_v<Number>) {
-            piece.cells.vertices.resize(numbers.size());
-            for (std::size_t i = 0; i < numbers.size(); ++i) {
-              const auto vertex = std::in_range<std::int64_t>(numbers[i])
-                                      ? static_cast<std::int64_t>(numbers[i])
-                                      : std::int64_t{-1};
-              piece.cells.vertices[i] = std::in_range<Index>(vertex) ? static_cast<Index>(vertex) : -1;
-            }
-          }
-        },
-        values);
+    piece.cells.vertices = std::move(numbers);
     check_vertices(item, piece.cells, base);
     return piece;
   }
@@ -395,8 +376,7 @@ class XdmfReader {
 
   /// Appends the cells of a mixed Topology; `counted`: points have a count, too. Returns false for a fault,
   /// at `fault_at_`.
-  bool read_mixed(const std::vector<std::int64_t>& numbers, std::int64_t claimed, bool counted,
-                  FileCells& cells) {
+  bool read_mixed(const std::vector<Index>& numbers, std::int64_t claimed, bool counted, FileCells& cells) {
     cells = {};
     std::size_t i = 0;
     while (i < numbers.size()) {
@@ -412,8 +392,7 @@ class XdmfReader {
       if (nodes <= 0 || std::cmp_greater(nodes, numbers.size() - i)) return false;
       cells.types.push_back(static_cast<std::uint8_t>(vtk_type(*type, nodes)));
       for (std::int64_t k = 0; k < nodes; ++k) {
-        const std::int64_t vertex = numbers[i++];
-        cells.vertices.push_back(std::in_range<Index>(vertex) ? static_cast<Index>(vertex) : -1);
+        cells.vertices.push_back(numbers[i++]);
       }
       cells.offsets.push_back(static_cast<Offset>(cells.vertices.size()));
     }
@@ -494,7 +473,7 @@ class XdmfReader {
   }
 
   /// Adds the cells of a piece as a part, or finds the part that has them; returns its number.
-  int part_of(const GridElement& grid, pugi::xml_node topology, const Piece& piece) {
+  int part_of(const GridElement& grid, pugi::xml_node topology, Piece piece) {
     if (grid.series >= 0) {
       // the mesh of a series may be written again in each step
       const auto known = series_parts_.find(grid.series);
@@ -516,7 +495,7 @@ class XdmfReader {
       rows = std::move(*known);
       part.is_ascending = std::is_sorted(rows.begin(), rows.end());
     } else {
-      rows = append(topology, piece);
+      rows = append(topology, std::move(piece));
     }
     if (number > 0) {
       part.set = unused_set_name(part.name);
@@ -540,18 +519,22 @@ class XdmfReader {
     return true;
   }
 
-  std::vector<Index> append(pugi::xml_node topology, const Piece& piece) {
+  std::vector<Index> append(pugi::xml_node topology, Piece piece) {
     const Index first = index_size(cells_.types);
     const Index count = index_size(piece.cells.types);
     if (std::int64_t{first} + count > kMaxIndex) {
       throw document_.error(topology, "the Grids have too many cells", "at most 2147483647 are possible");
     }
     if (count > 0) mesh_.cell_blocks.push_back(first);
-    const Offset before = cells_.offsets.back();
-    cells_.types.insert(cells_.types.end(), piece.cells.types.begin(), piece.cells.types.end());
-    cells_.vertices.insert(cells_.vertices.end(), piece.cells.vertices.begin(), piece.cells.vertices.end());
-    for (std::size_t c = 1; c < piece.cells.offsets.size(); ++c)
-      cells_.offsets.push_back(before + piece.cells.offsets[c]);
+    if (first == 0) {
+      cells_ = std::move(piece.cells);
+    } else {
+      const Offset before = cells_.offsets.back();
+      cells_.types.insert(cells_.types.end(), piece.cells.types.begin(), piece.cells.types.end());
+      cells_.vertices.insert(cells_.vertices.end(), piece.cells.vertices.begin(), piece.cells.vertices.end());
+      for (std::size_t c = 1; c < piece.cells.offsets.size(); ++c)
+        cells_.offsets.push_back(before + piece.cells.offsets[c]);
+    }
     if (where_cells_are_.empty()) where_cells_are_ = topology;
     return all_of(first, count);
   }
@@ -678,17 +661,12 @@ class XdmfReader {
     field.name = name;
     if (!known_arrays_.insert(fmt::format("{} {} set", key_of(field.place), field.part) + name).second)
       return;
-    const Values values = data_.read(field.place);
-    if (!is_integral(values)) {
-      throw document_.error(item, fmt::format("the set '{}' does not hold whole numbers", name),
-                            "Int is needed");
-    }
-    const auto members = vtk::integers_of<std::int64_t>(values);
+    const std::vector<Index> members = data_.read_indices(field.place);
     const std::vector<Index>& rows = rows_[static_cast<std::size_t>(part)];
     const Index count = on_vertices ? mesh_.vertex_count() : index_size(rows);
     std::vector<bool> taken(static_cast<std::size_t>(count), false);
     EntitySet& set = set_of(field);
-    for (const std::int64_t member : members) {
+    for (const Index member : members) {
       if (member < 0 || member >= count || taken[static_cast<std::size_t>(member)]) {
         throw document_.error(item,
                               fmt::format("the set '{}' names {}{}", name, member,

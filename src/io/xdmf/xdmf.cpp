@@ -87,11 +87,17 @@ struct Hdf5Output {
 
 class XdmfWriter {
  public:
-  XdmfWriter(const Mesh& mesh, const Layout& layout, const FilePath& path, Notes& notes)
-      : mesh_(mesh), layout_(layout), path_(path), stem_(path.path().stem().string()), notes_(notes) {
+  /// `rows`: the cells of each part.
+  XdmfWriter(const Mesh& mesh, const Layout& layout, std::vector<std::vector<Index>> rows,
+             const FilePath& path, Notes& notes)
+      : mesh_(mesh),
+        layout_(layout),
+        path_(path),
+        stem_(path.path().stem().string()),
+        notes_(notes),
+        rows_(std::move(rows)) {
     parse(xml_, layout.xml);
     items_ = elements_named(xml_, "DataItem");
-    rows_ = cells_of_parts(mesh, layout);
   }
 
   void write() {
@@ -195,34 +201,58 @@ class XdmfWriter {
     set_attribute(item, "Precision", std::to_string(precision));
   }
 
-  /// Writes values to a place: rows of so many components.
+  /// Returns the shape of values at a place, in rows of so many components: the old one if it fits.
+  std::vector<std::uint64_t> shape_at(const DataPlace& place, std::size_t count, std::size_t components) {
+    std::vector<std::uint64_t> shape = place.shape;
+    if (hdf5::DatasetInfo{shape, 0}.size() == count && !layout_.is_made) return shape;
+    shape = {count / components};
+    if (components > 1) shape.push_back(components);
+    set_shape(items_[place.item], shape);
+    if (place.format == Format::hdf) shapes_[files_.at(place.file).name + ":" + place.dataset] = shape;
+    return shape;
+  }
+
+  /// Writes values to a place in their own number type: rows of so many components.
   void put(const DataPlace& place, const Values& values, std::size_t components) {
     pugi::xml_node item = items_[place.item];
-    const std::size_t count = size_of(values);
-    std::vector<std::uint64_t> shape = place.shape;
-    const bool same_shape = hdf5::DatasetInfo{shape, 0}.size() == count;
-    if (!same_shape || layout_.is_made) {
-      shape = {count / components};
-      if (components > 1) shape.push_back(components);
-    }
-    if (values.index() != place.alternative || layout_.is_made) set_number_type(item, values.index());
-    if (!same_shape || layout_.is_made) set_shape(item, shape);
+    const std::vector<std::uint64_t> shape = shape_at(place, size_of(values), components);
+    const bool same_type = values.index() == place.alternative;
+    if (!same_type || layout_.is_made) set_number_type(item, values.index());
     switch (place.format) {
       case Format::xml:
         item.text().set(text_of_values(values, components).c_str());
         return;
-      case Format::hdf: {
-        Hdf5Output& output = files_.at(place.file);
-        if (values.index() != place.alternative) output.file->remove(place.dataset);
-        output.file->write(place.dataset, values, shape);
-        output.datasets.insert(place.dataset);
-        if (layout_.is_made) item.text().set((place.file + ":" + place.dataset).c_str());
-        if (!same_shape) shapes_[output.name + ":" + place.dataset] = shape;
-        return;
-      }
+      case Format::hdf:
+        if (!same_type) files_.at(place.file).file->remove(place.dataset);
+        files_.at(place.file).file->write(place.dataset, values, shape);
+        return name_dataset(place);
       case Format::binary:
         put_binary(item, place, values);
     }
+  }
+
+  /// Writes indices to a place in the number type that it has, unless that is too narrow.
+  void put_indices(const DataPlace& place, std::span<const Index> indices, std::size_t components) {
+    constexpr std::size_t kInt32 = 6;
+    if (place.format != Format::hdf || place.alternative < kInt32) {
+      const Values values = values_as(std::max(place.alternative, kInt32), [&](auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_integral_v<Number>) {
+          numbers.reserve(indices.size());
+          for (const Index index : indices) numbers.push_back(static_cast<Number>(index));
+        }
+      });
+      return put(place, values, components);
+    }
+    if (layout_.is_made) set_number_type(items_[place.item], place.alternative);
+    files_.at(place.file).file->write(place.dataset, indices, shape_at(place, indices.size(), components));
+    name_dataset(place);
+  }
+
+  /// Writes the name of a dataset that a made layout does not have yet; `rename_files` replaces its file.
+  void name_dataset(const DataPlace& place) {
+    files_.at(place.file).datasets.insert(place.dataset);
+    if (layout_.is_made) items_[place.item].text().set((place.file + ":" + place.dataset).c_str());
   }
 
   void put_binary(pugi::xml_node item, const DataPlace& place, const Values& values) {
@@ -330,12 +360,18 @@ class XdmfWriter {
     } else if (topology.attribute("Dimensions")) {
       set_attribute(topology, "Dimensions", std::to_string(rows.size()));
     }
-    constexpr std::size_t kInt32 = 6;  // narrower ones might not hold the numbers
-    const Values values = values_as(std::max(field.place.alternative, kInt32), [&](auto& numbers) {
-      using Number = typename std::decay_t<decltype(numbers)>::value_type;
-      if constexpr (std::is_integral_v<Number>) fill_topology(rows, type == nullptr, field.base, numbers);
-    });
-    put(field.place, values, nodes);
+    if (type != nullptr && field.base == 0 && is_identity(rows, mesh_.cell_count()) &&
+        !is_turned(rows.front())) {
+      return put_indices(field.place, mesh_.cells.vertices, nodes);
+    }
+    put_indices(field.place, numbers_of(rows, type == nullptr, field.base), nodes);
+  }
+
+  /// Whether the cell is a linear wedge that the file has the other way round.
+  [[nodiscard]] bool is_turned(Index c) const {
+    constexpr int kCorners = 6;
+    return !layout_.inward_wedges && mesh_.cells.shapes[c] == Shape::wedge &&
+           mesh_.cells.vertex_count(c) == kCorners;
   }
 
   /// Returns the type of all these cells, null if they have several.
@@ -349,26 +385,28 @@ class XdmfWriter {
     return common ? topology_type_of(shape, vertices) : nullptr;
   }
 
-  template <class Number>
-  void fill_topology(const std::vector<Index>& rows, bool mixed, int base,
-                     std::vector<Number>& numbers) const {
+  /// Returns the entries of a Topology.
+  [[nodiscard]] std::vector<Index> numbers_of(const std::vector<Index>& rows, bool mixed, int base) const {
+    constexpr std::array<std::size_t, 6> kTurned{0, 2, 1, 3, 5, 4};
     std::size_t size = 0;
     for (const Index c : rows)
       size += static_cast<std::size_t>(mesh_.cells.vertex_count(c)) + (mixed ? 2 : 0);
+    std::vector<Index> numbers;
     numbers.reserve(size);
-    const std::array<std::size_t, 6> turned{0, 2, 1, 3, 5, 4};
     for (const Index c : rows) {
       const auto cell = mesh_.cells[c];
       if (mixed) {
         const TopologyType& type = *topology_type_of(mesh_.cells.shapes[c], static_cast<int>(cell.size()));
-        numbers.push_back(static_cast<Number>(type.number));
-        if (type.nodes == 0) numbers.push_back(static_cast<Number>(cell.size()));
+        numbers.push_back(type.number);
+        if (type.nodes == 0) numbers.push_back(static_cast<Index>(cell.size()));
       }
-      const bool turn = mesh_.cells.shapes[c] == Shape::wedge && cell.size() == 6 && !layout_.inward_wedges;
-      for (std::size_t k = 0; k < cell.size(); ++k) {
-        numbers.push_back(static_cast<Number>(cell[turn ? turned[k] : k] + base));
+      if (is_turned(c)) {
+        for (const std::size_t k : kTurned) numbers.push_back(cell[k] + base);
+      } else {
+        for (const Index v : cell) numbers.push_back(v + base);
       }
     }
+    return numbers;
   }
 
   void write_array(const Field& field) {
@@ -391,16 +429,12 @@ class XdmfWriter {
     const bool on_cells = field.association == Association::cells;
     std::vector<Index> place;
     if (on_cells) place = places_in(rows_[static_cast<std::size_t>(field.part)]);
-    const Values values = values_as(std::max<std::size_t>(field.place.alternative, 6), [&](auto& numbers) {
-      using Number = typename std::decay_t<decltype(numbers)>::value_type;
-      if constexpr (std::is_integral_v<Number>) {
-        for (const Index member : set->members) {
-          const Index row = on_cells ? place[static_cast<std::size_t>(member)] : member;
-          if (row >= 0) numbers.push_back(static_cast<Number>(row));
-        }
-      }
-    });
-    put(field.place, values, 1);
+    std::vector<Index> numbers;
+    for (const Index member : set->members) {
+      const Index row = on_cells ? place[static_cast<std::size_t>(member)] : member;
+      if (row >= 0) numbers.push_back(row);
+    }
+    put_indices(field.place, numbers, 1);
   }
 
   /// Removes the Attribute or the Set of a field that the mesh has no longer.
@@ -612,9 +646,9 @@ class XdmfWriter {
   FilePath path_;
   std::string stem_;
   Notes& notes_;
+  std::vector<std::vector<Index>> rows_;  // cells of each part
   pugi::xml_document xml_;
   std::vector<pugi::xml_node> items_;
-  std::vector<std::vector<Index>> rows_;     // cells of each part
   std::map<std::string, Hdf5Output> files_;  // by their names in the old XML
   std::map<std::string, std::vector<std::uint64_t>>
       shapes_;  // that have changed, by the new name of a dataset
@@ -625,12 +659,12 @@ class XdmfWriter {
 }  // namespace
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  const auto* const own = dynamic_cast<const Layout*>(mesh.format_metadata.get());
-  if (own != nullptr && !cells_of_parts(mesh, *own).front().empty()) {
-    XdmfWriter(mesh, *own, path, notes).write();
-    return;
+  if (const auto* const own = dynamic_cast<const Layout*>(mesh.format_metadata.get())) {
+    std::vector<std::vector<Index>> rows = cells_of_parts(mesh, *own);
+    if (!rows.front().empty()) return XdmfWriter(mesh, *own, std::move(rows), path, notes).write();
   }
-  XdmfWriter(mesh, layout_of(mesh, path), path, notes).write();
+  const Layout layout = layout_of(mesh, path);
+  XdmfWriter(mesh, layout, cells_of_parts(mesh, layout), path, notes).write();
   note_metadata_unsupported(mesh, "XDMF", notes);
 }
 
