@@ -280,8 +280,11 @@ File File::change(const std::filesystem::path& path, std::string name) {
 File File::in_memory(std::string_view bytes, std::string name) {
   const Session session;
   const Handle access = memory_access(bytes);
-  Handle file(bytes.empty() ? H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id())
-                            : H5Fopen(name.c_str(), H5F_ACC_RDWR, access.id()),
+  // the library takes two files of one name for the same
+  static std::uint64_t number = 0;
+  const std::string label = fmt::format("meshorder-memory-{}", number++);
+  Handle file(bytes.empty() ? H5Fcreate(label.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id())
+                            : H5Fopen(label.c_str(), H5F_ACC_RDWR, access.id()),
               H5Fclose);
   if (!file.is_open()) {
     throw InputError(name, fmt::format("HDF5 cannot open it ({})", last_cause()),

@@ -178,6 +178,7 @@ struct Volumes {
 /// other linear cells have: of a positive one where there are none. Meshes in which signs are mixed tell
 /// nothing, and cells with a wrong number of vertices have no say.
 bool wedges_face_inward(const std::vector<Point>& points, const FileCells& cells) {
+  if (std::find(cells.types.begin(), cells.types.end(), kLinearWedge) == cells.types.end()) return false;
   Volumes wedges;
   Volumes others;
   for (std::size_t c = 0; c < cells.types.size(); ++c) {
