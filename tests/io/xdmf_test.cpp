@@ -125,6 +125,16 @@ TEST(Xdmf, WritesWhatItReadInTheSameWords) {
   EXPECT_EQ(files_of(again), files);
 }
 
+TEST(Xdmf, LeavesOutWhatTheMeshHasNoLonger) {
+  Mesh mesh = read_xdmf(kMixed);
+  mesh.data.erase(mesh.data.begin());
+  mesh.sets.erase(mesh.sets.begin());
+  const Files files = files_of(mesh);
+  EXPECT_THAT(files.at("m.xdmf"), testing::Not(HasSubstr("Tensor6")));
+  EXPECT_THAT(files.at("m.xdmf"), testing::Not(HasSubstr("\"some\"")));
+  test::expect_same(read_files(files), mesh);
+}
+
 TEST(Xdmf, MovesEverythingOfAMixedMesh) {
   const Mesh before = read_xdmf(kMixed);
   Mesh mesh = before;

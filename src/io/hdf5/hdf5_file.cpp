@@ -59,7 +59,7 @@ Handle dataset_access() {
 std::string external_link_on(hid_t file, const std::string& path) {
   const Handle access = link_access();
   for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
-    const std::string part = path.substr(0, end);
+    std::string part = path.substr(0, end);
     H5L_info_t link;
     if (H5Lget_info(file, part.c_str(), &link, access.id()) < 0) return {};
     if (link.type == H5L_TYPE_EXTERNAL) return part;
@@ -92,7 +92,7 @@ Handle file_access() {
 
 Handle memory_access(std::string_view bytes) {
   Handle access = file_access();
-  H5Pset_fapl_core(access.id(), kCoreStep, 0);
+  H5Pset_fapl_core(access.id(), kCoreStep, false);
   if (!bytes.empty()) {
     std::string copy(bytes);  // the library copies it once more, and wants to be allowed to write
     H5Pset_file_image(access.id(), copy.data(), copy.size());
@@ -167,7 +167,8 @@ class CopyWithoutValues {
     H5O_info_t group;
     H5Oget_info(from, &group);
     first_paths_.emplace(group.addr, path.empty() ? "/" : path);
-    for (const std::string& name : names_in(from)) copy_link(from, to, name, path + "/" + name);
+    for (const std::string& name : names_in(from))
+      copy_link(from, to, name, fmt::format("{}/{}", path, name));
   }
 
  private:
@@ -181,7 +182,7 @@ class CopyWithoutValues {
       H5Lcreate_hard(target_, known->second.c_str(), to, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
       return;
     }
-    if (object.type == H5O_TYPE_DATASET && paths_.count(path) > 0) {
+    if (object.type == H5O_TYPE_DATASET && paths_.contains(path)) {
       const Handle dataset(H5Dopen2(from, name.c_str(), H5P_DEFAULT), H5Dclose);
       const Handle space(H5Dget_space(dataset.id()), H5Sclose);
       (void)empty_copy(dataset.id(), to, name.c_str(), space.id());
@@ -198,7 +199,7 @@ class CopyWithoutValues {
   }
 
   static void copy_reference(hid_t from, hid_t to, const std::string& name, const H5L_info_t& link) {
-    std::string value(link.u.val_size, '\0');
+    std::string value(link.u.val_size, '\0');  // NOLINT(*-union-access): the library's
     if (H5Lget_val(from, name.c_str(), value.data(), value.size(), H5P_DEFAULT) < 0) return;
     if (link.type == H5L_TYPE_SOFT) {
       H5Lcreate_soft(value.c_str(), to, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
@@ -397,7 +398,7 @@ void File::write(const std::string& path, const Values& values, const std::vecto
   const Session session;
   std::visit(
       [&](const auto& numbers) {
-        write(path, native_types()[values.index()], numbers.data(), numbers.size(), shape);
+        this->write(path, native_types()[values.index()], numbers.data(), numbers.size(), shape);
       },
       values);
 }

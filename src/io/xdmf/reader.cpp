@@ -415,7 +415,7 @@ class XdmfReader {
     }
   }
 
-  [[nodiscard]] std::span<const Index> vertices_of(const FileCells& cells, Index c) const {
+  static std::span<const Index> vertices_of(const FileCells& cells, Index c) {
     const auto k = static_cast<std::size_t>(c);
     return {cells.vertices.data() + cells.offsets[k], cells.vertices.data() + cells.offsets[k + 1]};
   }
@@ -566,7 +566,7 @@ class XdmfReader {
   }
 
   [[nodiscard]] std::string name_of(pugi::xml_node element) const {
-    const std::string name = element.attribute("Name").value();
+    std::string name = element.attribute("Name").value();
     if (name.empty())
       throw document_.error(element, fmt::format("the <{}> has no Name", element.name()), "it is needed");
     return name;

@@ -77,7 +77,7 @@ const TopologyType* topology_type(std::int64_t number) {
 const TopologyType* topology_type_of(Shape shape, int vertices) {
   switch (shape) {
     case Shape::poly_vertex:
-      return &kTopologyTypes[0];
+      return kTopologyTypes.data();
     case Shape::polyline:
       return &kTopologyTypes[1];
     case Shape::line:

@@ -104,6 +104,7 @@ class XdmfWriter {
     OutputFile xml(path_);
     open_files();
     for (const Field& field : layout_.fields) write_field(field);
+    remove_gone();
     add_others();
     rename_files();
     for (auto& [name, output] : files_) finish(output);
@@ -437,11 +438,26 @@ class XdmfWriter {
     put_indices(field.place, numbers, 1);
   }
 
-  /// Removes the Attribute or the Set of a field that the mesh has no longer.
+  /// Marks the Attribute or the Set of a field that the mesh has no longer; see `remove_gone`.
   void remove_element(const Field& field) {
-    if (field.place.format == Format::hdf) files_.at(field.place.file).file->remove(field.place.dataset);
-    pugi::xml_node element = items_[field.place.item].parent();
-    element.parent().remove_child(element);
+    if (field.place.format == Format::hdf) {
+      gone_datasets_.insert(field.place.file + ":" + field.place.dataset);
+    } else {
+      gone_.push_back(items_[field.place.item].parent());
+    }
+  }
+
+  /// Removes what the mesh has no longer, also where several time steps name one dataset.
+  void remove_gone() {
+    for (const pugi::xml_node item : items_) {
+      const auto [file, dataset] = split_hdf5_name(item.text().get());
+      if (gone_datasets_.contains(fmt::format("{}:{}", file, dataset))) gone_.push_back(item.parent());
+    }
+    for (const std::string& name : gone_datasets_) {
+      const auto [file, dataset] = split_hdf5_name(name);
+      files_.at(file).file->remove(dataset);
+    }
+    for (pugi::xml_node element : gone_) element.parent().remove_child(element);
   }
 
   /// Returns the row of each cell in a part, −1 for those of other parts.
@@ -653,6 +669,8 @@ class XdmfWriter {
   std::map<std::string, std::vector<std::uint64_t>>
       shapes_;  // that have changed, by the new name of a dataset
   std::vector<OutputFile> binaries_;
+  std::set<std::string> gone_datasets_;  // with their files
+  std::vector<pugi::xml_node> gone_;
   std::set<std::pair<Association, std::string>> names_;  // of arrays
 };
 
