@@ -24,16 +24,23 @@ std::array<hid_t, 10> native_types() {
           H5T_NATIVE_UINT16, H5T_NATIVE_INT32, H5T_NATIVE_UINT32, H5T_NATIVE_INT64, H5T_NATIVE_UINT64};
 }
 
-/// Returns the alternative of Values that holds numbers of a type without loss; that of strings if none does.
+/// Returns the alternative of Values for the usual number types, in either byte order; 10 for all others.
 std::size_t alternative_of(hid_t type) {
-  const std::size_t bytes = H5Tget_size(type);
-  const H5T_class_t kind = H5Tget_class(type);
-  if (kind == H5T_FLOAT) return bytes <= sizeof(float) ? 1 : 0;
-  if (kind == H5T_INTEGER && bytes <= 8) {
-    const std::size_t place = bytes == 1 ? 2 : bytes == 2 ? 4 : bytes <= 4 ? 6 : 8;
-    return H5Tget_sign(type) == H5T_SGN_NONE ? place + 1 : place;
-  }
-  return native_types().size();
+  // the library trusts the bit fields of others, which a damaged file may have put anywhere
+  const std::array<std::array<hid_t, 2>, 10> known{{{H5T_IEEE_F64LE, H5T_IEEE_F64BE},
+                                                    {H5T_IEEE_F32LE, H5T_IEEE_F32BE},
+                                                    {H5T_STD_I8LE, H5T_STD_I8BE},
+                                                    {H5T_STD_U8LE, H5T_STD_U8BE},
+                                                    {H5T_STD_I16LE, H5T_STD_I16BE},
+                                                    {H5T_STD_U16LE, H5T_STD_U16BE},
+                                                    {H5T_STD_I32LE, H5T_STD_I32BE},
+                                                    {H5T_STD_U32LE, H5T_STD_U32BE},
+                                                    {H5T_STD_I64LE, H5T_STD_I64BE},
+                                                    {H5T_STD_U64LE, H5T_STD_U64BE}}};
+  const auto found = std::find_if(known.begin(), known.end(), [&](const std::array<hid_t, 2>& orders) {
+    return std::any_of(orders.begin(), orders.end(), [&](hid_t one) { return H5Tequal(type, one) > 0; });
+  });
+  return static_cast<std::size_t>(found - known.begin());
 }
 
 Handle link_access() {
@@ -314,7 +321,8 @@ DatasetInfo File::info(const std::string& path) const {
   DatasetInfo info;
   info.alternative = alternative_of(type.id());
   if (info.alternative == native_types().size()) {
-    fail(path, "does not hold plain numbers", "numbers of up to 64 bits are understood");
+    fail(path, "does not hold plain numbers",
+         "whole numbers of 8 to 64 bits, float and double are understood");
   }
   const int rank = H5Sget_simple_extent_ndims(space.id());
   if (rank < 0 || H5Sget_simple_extent_type(space.id()) == H5S_NULL) {
