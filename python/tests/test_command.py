@@ -39,7 +39,7 @@ def listed_subcommands(program):
 
 @pytest.fixture
 def deck(mesh, tmp_path):
-    """A mesh of hexahedra, tetrahedra and triangles with data and sets, as files of Abaqus and XDMF hold it."""
+    """A mesh of hexahedra, tetrahedra and triangles with data and sets, as files of Abaqus, which is meshio's, and XDMF hold it."""
     points, cells = mesh
     random = np.random.default_rng(3)
     made = meshio.Mesh(
@@ -133,20 +133,19 @@ def test_no_files_are_found_where_there_are_none(line):
 
 
 def test_order_of_a_file_of_meshios_into_another(deck, tmp_path):
-    done = ok("order", "deck.xmf", "-o", "out.xmf", "--vertices", "rcm", "--maps", "m", "--json", cwd=tmp_path)
+    done = ok("order", "deck.inp", "-o", "out.inp", "--vertices", "rcm", "--maps", "m", "--json", cwd=tmp_path)
     result = json.loads(done.stdout)
-    assert (result["input"], result["output"]) == ("deck.xmf", "out.xmf")
-    assert "deck.xmf: read by meshio" in done.stderr and "out.xmf: written by meshio" in done.stderr
+    assert (result["input"], result["output"]) == ("deck.inp", "out.inp")
+    assert "deck.inp: read by meshio" in done.stderr and "out.inp: written by meshio" in done.stderr
     assert "meshorder-" not in done.stdout + done.stderr
     assert [f"meshorder: warning: {note}" for note in result["notes"]] == done.stderr.splitlines()
     # of the mesh that meshio wrote there are no checksums
     identity = json.loads((tmp_path / "m.maps.json").read_text())
     assert identity["before"] and identity["after"] is None
-    moved = meshio.read(tmp_path / "out.xmf")
+    before, moved = meshio.read(tmp_path / "deck.inp"), meshio.read(tmp_path / "out.inp")
     places = np.load(tmp_path / "m.vertices.new_to_old.npy")
-    np.testing.assert_array_equal(moved.points, deck.points[places])
-    np.testing.assert_array_equal(moved.point_data["t"], deck.point_data["t"][places])
-    assert cells_by_corners(moved, moved.cell_data["centre"]) == cells_by_corners(deck, deck.cell_data["centre"])
+    np.testing.assert_array_equal(moved.points, before.points[places])
+    assert cells_by_corners(moved) == cells_by_corners(before)
     # the map of cells is that of the file
     places = np.load(tmp_path / "m.cells.new_to_old.npy")
     centres = np.concatenate(deck.cell_data["centre"])[places]

@@ -17,6 +17,7 @@ Format obj_format();
 Format ply_format();
 Format stl_format();
 Format su2_format();            ///< .su2
+Format xdmf_format();           ///< .xdmf with .h5 beside it; only where HDF5 is built in
 Format matrix_market_format();  ///< .mtx
 Format metis_graph_format();    ///< .graph
 Format exodus_format();         ///< Exodus II, in builds with netCDF

@@ -17,13 +17,16 @@
 namespace meshorder {
 namespace {
 
-const std::array kFormats{
-    tetgen_format(), vega_format(),          gmsh_format(),        medit_format(), vtu_format(),
-    vtk_format(),    off_format(),           obj_format(),         ply_format(),   stl_format(),
-    su2_format(),    matrix_market_format(), metis_graph_format(),
+const std::vector<Format> kFormats{
+    tetgen_format(),        vega_format(),        gmsh_format(), medit_format(), vtu_format(), vtk_format(),
+    off_format(),           obj_format(),         ply_format(),  stl_format(),   su2_format(),
 #ifdef MESHORDER_HAS_NETCDF
     exodus_format(),
 #endif
+#ifdef MESHORDER_HAS_HDF5
+    xdmf_format(),
+#endif
+    matrix_market_format(), metis_graph_format(),
 };
 
 /// A format of which this build lacks the library.
@@ -82,6 +85,16 @@ bool is_exodus(std::string_view bytes) {
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("num_el_blk") != std::string_view::npos;
 }
 
+/// Returns whether XML is that of XDMF, by the first of the elements that VTK's files and those begin with.
+bool is_xdmf(std::string_view word, std::string_view rest_of_line, std::string_view rest) {
+  for (const std::string_view text : {word, rest_of_line, rest.substr(0, 4096)}) {
+    const std::size_t xdmf = text.find("<Xdmf");
+    const std::size_t vtk = text.find("<VTKFile");
+    if (xdmf != vtk) return xdmf < vtk;
+  }
+  return false;
+}
+
 /// Returns the name of the format whose files begin like this, or an empty text. Comments and empty lines
 /// before the first word are passed over.
 std::string_view format_that_begins(std::string_view bytes) {
@@ -95,7 +108,7 @@ std::string_view format_that_begins(std::string_view bytes) {
     if (word.empty() || word.front() == '#' || word.front() == '%') continue;
     if (word.starts_with("$")) return "Gmsh";
     if (word.starts_with("MeshVersion")) return "Medit";
-    if (word.starts_with("<")) return "VTU";
+    if (word.starts_with("<")) return is_xdmf(word, line, bytes) ? "XDMF" : "VTU";
     if (word.starts_with("*")) return "Vega";
     if (word.ends_with("OFF")) return "OFF";
     if (word == "ply") return "PLY";
@@ -109,6 +122,8 @@ std::string_view format_that_begins(std::string_view bytes) {
 }
 
 }  // namespace
+
+bool is_single_file(const Format& format) { return format.name != "TetGen" && format.name != "XDMF"; }
 
 std::string Format::key() const { return lower_case(std::string(name)); }
 
@@ -169,7 +184,7 @@ std::vector<FormatInfo> formats() {
   for (const Format& format : kFormats) {
     result.push_back({.name = format.key(),
                       .extensions = {format.extensions.begin(), format.extensions.end()},
-                      .single_file = format.name != "TetGen",
+                      .single_file = is_single_file(format),
                       .groups_cells_by_type = format.groups_cells_by_type});
   }
   return result;

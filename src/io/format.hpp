@@ -37,6 +37,9 @@ struct Format {
   [[nodiscard]] std::string key() const;
 };
 
+/// Returns whether a mesh of the format is one file. Those of others do not fit one stream.
+bool is_single_file(const Format& format);
+
 /// Returns all formats, in the order of the help text.
 std::span<const Format> all_formats();
 

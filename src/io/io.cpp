@@ -163,8 +163,9 @@ Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path, cons
 
 Permutation write_mesh(const Mesh& mesh, std::ostream& stream, std::string_view format, Notes* notes) {
   const Format& known = format_named(format);
-  if (known.name == "TetGen") {
-    throw InvalidArgument("a mesh in the format 'tetgen' is several files, which do not fit one stream");
+  if (!is_single_file(known)) {
+    throw InvalidArgument("a mesh in the format '" + known.key() +
+                          "' is several files, which do not fit one stream");
   }
   const MemoryFiles written = write_mesh_to_memory(mesh, format, "<stream>", notes);
   const std::string& bytes = written.files.front().bytes;

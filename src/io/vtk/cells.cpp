@@ -157,6 +157,7 @@ class DefaultTypes {
 
 /// Whether the linear wedges are numbered as by VTK 9.7. Cells with a wrong number of vertices have no say.
 bool wedges_face_inward(const std::vector<Point>& points, const FileCells& cells) {
+  if (std::find(cells.types.begin(), cells.types.end(), kLinearWedge) == cells.types.end()) return false;
   WedgeVote vote(points);
   for (std::size_t c = 0; c < cells.types.size(); ++c) {
     if (cells.types[c] < kTetrahedron || cells.types[c] > kPyramid || cells.types[c] == kVoxel) continue;

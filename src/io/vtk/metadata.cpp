@@ -41,23 +41,6 @@ std::optional<std::vector<Index>> members_of(const std::vector<Number>& marks) {
   return members;
 }
 
-/// Returns membership as an array: 1 for each member if they ascend, else their ranks, which keep their
-/// order.
-Values marks_of(const EntitySet& set, Index count) {
-  if (std::adjacent_find(set.members.begin(), set.members.end(), std::greater_equal<>()) ==
-      set.members.end()) {
-    std::vector<std::uint8_t> marks(count, 0);
-    for (const Index member : set.members) marks[member] = 1;
-    return marks;
-  }
-  std::vector<std::int32_t> ranks(count, 0);
-  std::int32_t rank = 0;
-  for (const Index member : set.members) {
-    if (ranks[member] == 0) ranks[member] = ++rank;
-  }
-  return ranks;
-}
-
 template <class Number>
 std::vector<Number> filled(const DataArray& array, const std::vector<Number>& values, Index count) {
   Number nothing{};
@@ -134,6 +117,21 @@ const ArrayFacts* find_facts(const Metadata& metadata, std::optional<Association
     return fact.association == association && fact.array == array;
   });
   return found == metadata.facts.end() ? nullptr : &*found;
+}
+
+Values marks_of(const EntitySet& set, Index count) {
+  if (std::adjacent_find(set.members.begin(), set.members.end(), std::greater_equal<>()) ==
+      set.members.end()) {
+    std::vector<std::uint8_t> marks(count, 0);
+    for (const Index member : set.members) marks[member] = 1;
+    return marks;
+  }
+  std::vector<std::int32_t> ranks(count, 0);
+  std::int32_t rank = 0;
+  for (const Index member : set.members) {
+    if (ranks[member] == 0) ranks[member] = ++rank;
+  }
+  return ranks;
 }
 
 void add_array(Mesh& mesh, DataArray array) {

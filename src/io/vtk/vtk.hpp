@@ -212,6 +212,10 @@ Mesh read_vtu(const FilePath& path, Notes& notes);
 
 // ---- writing
 
+/// Returns membership as an array: 1 for each member if they ascend, else their ranks from 1, which keep
+/// their order. `count` is the number of all vertices or cells.
+Values marks_of(const EntitySet& set, Index count);
+
 /// The input of both writers, made from a mesh. Borrows the mesh and the notes.
 ///
 /// VTK's formats hold full arrays only: partial arrays are filled up, sets become arrays "set:NAME" and ids

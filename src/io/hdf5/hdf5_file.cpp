@@ -1,0 +1,479 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/hdf5/hdf5_file.hpp"
+
+#include "base/resize_in_steps.hpp"
+#include "io/hdf5/session.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <type_traits>
+#include <variant>
+
+namespace meshorder::hdf5 {
+namespace {
+
+constexpr std::size_t kCoreStep = std::size_t{1} << 20;  // by which a file in memory grows, in bytes
+
+/// Returns the library's number types in memory, in the order of Values.
+std::array<hid_t, 10> native_types() {
+  return {H5T_NATIVE_DOUBLE, H5T_NATIVE_FLOAT, H5T_NATIVE_INT8,   H5T_NATIVE_UINT8, H5T_NATIVE_INT16,
+          H5T_NATIVE_UINT16, H5T_NATIVE_INT32, H5T_NATIVE_UINT32, H5T_NATIVE_INT64, H5T_NATIVE_UINT64};
+}
+
+/// Returns the alternative of Values for the usual number types, in either byte order; 10 for all others.
+std::size_t alternative_of(hid_t type) {
+  // the library trusts the bit fields of others, which a damaged file may have put anywhere
+  const std::array<std::array<hid_t, 2>, 10> known{{{H5T_IEEE_F64LE, H5T_IEEE_F64BE},
+                                                    {H5T_IEEE_F32LE, H5T_IEEE_F32BE},
+                                                    {H5T_STD_I8LE, H5T_STD_I8BE},
+                                                    {H5T_STD_U8LE, H5T_STD_U8BE},
+                                                    {H5T_STD_I16LE, H5T_STD_I16BE},
+                                                    {H5T_STD_U16LE, H5T_STD_U16BE},
+                                                    {H5T_STD_I32LE, H5T_STD_I32BE},
+                                                    {H5T_STD_U32LE, H5T_STD_U32BE},
+                                                    {H5T_STD_I64LE, H5T_STD_I64BE},
+                                                    {H5T_STD_U64LE, H5T_STD_U64BE}}};
+  const auto found = std::find_if(known.begin(), known.end(), [&](const std::array<hid_t, 2>& orders) {
+    return std::any_of(orders.begin(), orders.end(), [&](hid_t one) { return H5Tequal(type, one) > 0; });
+  });
+  return static_cast<std::size_t>(found - known.begin());
+}
+
+Handle link_access() {
+  Handle access(H5Pcreate(H5P_LINK_ACCESS), H5Pclose);
+  // links to other files are not followed: the XML says where the data are
+  const auto refuse = [](const char* /*file*/, const char* /*group*/, const char* /*target*/,
+                         const char* /*object*/, unsigned* /*flags*/, hid_t /*access*/,
+                         void* /*data*/) -> herr_t { return -1; };
+  H5Pset_elink_cb(access.id(), refuse, nullptr);
+  return access;
+}
+
+Handle dataset_access() {
+  Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+  const auto refuse = [](const char* /*file*/, const char* /*group*/, const char* /*target*/,
+                         const char* /*object*/, unsigned* /*flags*/, hid_t /*access*/,
+                         void* /*data*/) -> herr_t { return -1; };
+  H5Pset_elink_cb(access.id(), refuse, nullptr);
+  return access;
+}
+
+/// Returns the first part of a path, up to a link to another file; an empty text without one.
+std::string external_link_on(hid_t file, const std::string& path) {
+  const Handle access = link_access();
+  for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+    std::string part = path.substr(0, end);
+    H5L_info_t link;
+    if (H5Lget_info(file, part.c_str(), &link, access.id()) < 0) return {};
+    if (link.type == H5L_TYPE_EXTERNAL) return part;
+    if (end == std::string::npos) return {};
+  }
+}
+
+/// Returns the name of a filter of the dataset that this library lacks; an empty text if it has all.
+std::string lacking_filter(hid_t creation) {
+  const int filters = H5Pget_nfilters(creation);
+  for (int i = 0; i < filters; ++i) {
+    unsigned flags = 0;
+    std::size_t values = 0;
+    std::array<char, 64> name{};
+    const H5Z_filter_t filter = H5Pget_filter2(creation, static_cast<unsigned>(i), &flags, &values, nullptr,
+                                               name.size(), name.data(), nullptr);
+    if (filter >= 0 && H5Zfilter_avail(filter) <= 0) {
+      name.back() = '\0';
+      return name.front() == '\0' ? std::to_string(filter) : std::string(name.data());
+    }
+  }
+  return {};
+}
+
+Handle file_access() {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
+  return access;
+}
+
+Handle memory_access(std::string_view bytes) {
+  Handle access = file_access();
+  H5Pset_fapl_core(access.id(), kCoreStep, false);
+  if (!bytes.empty()) {
+    std::string copy(bytes);  // the library copies it once more, and wants to be allowed to write
+    H5Pset_file_image(access.id(), copy.data(), copy.size());
+  }
+  return access;
+}
+
+// ---- copies of files without the values of some datasets
+
+/// Copies an attribute to another object. Those that hold references are left out: they name places in the
+/// old file.
+void copy_attribute(hid_t from, const char* name, hid_t to) {
+  const Handle attribute(H5Aopen(from, name, H5P_DEFAULT), H5Aclose);
+  const Handle type(H5Aget_type(attribute.id()), H5Tclose);
+  const Handle space(H5Aget_space(attribute.id()), H5Sclose);
+  if (!type.is_open() || !space.is_open() || H5Tdetect_class(type.id(), H5T_REFERENCE) > 0) return;
+  const Handle memory(H5Tget_native_type(type.id(), H5T_DIR_DEFAULT), H5Tclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+  const std::size_t size = std::max(H5Tget_size(type.id()), H5Tget_size(memory.id()));
+  const Handle copy(H5Acreate2(to, name, type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (!copy.is_open() || count <= 0) return;
+  std::vector<char> bytes(static_cast<std::size_t>(count) * size);
+  if (H5Aread(attribute.id(), memory.id(), bytes.data()) < 0) return;
+  H5Awrite(copy.id(), memory.id(), bytes.data());
+  if (H5Tdetect_class(memory.id(), H5T_VLEN) > 0 || H5Tis_variable_str(memory.id()) > 0) {
+    H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, bytes.data());
+  }
+}
+
+void copy_attributes(hid_t from, hid_t to) {
+  struct Both {
+    hid_t from;
+    hid_t to;
+  } both{from, to};
+  const auto visit = [](hid_t object, const char* name, const H5A_info_t* /*info*/, void* data) -> herr_t {
+    const auto* pair = static_cast<const Both*>(data);
+    copy_attribute(object, name, pair->to);
+    return 0;
+  };
+  H5Aiterate2(both.from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit, &both);
+}
+
+std::vector<std::string> names_in(hid_t group) {
+  std::vector<std::string> names;
+  const auto visit = [](hid_t /*group*/, const char* name, const H5L_info_t* /*info*/, void* data) -> herr_t {
+    static_cast<std::vector<std::string>*>(data)->emplace_back(name);
+    return 0;
+  };
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &names);
+  return names;
+}
+
+/// Makes a dataset of the type, the attributes, chunks and filters of another one.
+Handle empty_copy(hid_t dataset, hid_t target, const char* name, hid_t space) {
+  const Handle type(H5Dget_type(dataset), H5Tclose);
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  const bool chunked = H5Pget_layout(creation.id()) == H5D_CHUNKED;
+  if (H5Pget_layout(creation.id()) != H5D_COMPACT) {
+    H5Pset_alloc_time(creation.id(), chunked ? H5D_ALLOC_TIME_INCR : H5D_ALLOC_TIME_LATE);
+  }
+  Handle copy(H5Dcreate2(target, name, type.id(), space, H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
+  if (copy.is_open()) copy_attributes(dataset, copy.id());
+  return copy;
+}
+
+class CopyWithoutValues {
+ public:
+  CopyWithoutValues(const std::set<std::string>& paths, hid_t target) : paths_(paths), target_(target) {}
+
+  void copy_group(hid_t from, hid_t to, const std::string& path) {
+    copy_attributes(from, to);
+    H5O_info_t group;
+    H5Oget_info(from, &group);
+    first_paths_.emplace(group.addr, path.empty() ? "/" : path);
+    for (const std::string& name : names_in(from))
+      copy_link(from, to, name, fmt::format("{}/{}", path, name));
+  }
+
+ private:
+  void copy_link(hid_t from, hid_t to, const std::string& name, const std::string& path) {
+    H5L_info_t link;
+    if (H5Lget_info(from, name.c_str(), &link, H5P_DEFAULT) < 0) return;
+    if (link.type != H5L_TYPE_HARD) return copy_reference(from, to, name, link);
+    H5O_info_t object;
+    if (H5Oget_info_by_name(from, name.c_str(), &object, H5P_DEFAULT) < 0) return;
+    if (const auto known = first_paths_.find(object.addr); known != first_paths_.end()) {
+      H5Lcreate_hard(target_, known->second.c_str(), to, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+      return;
+    }
+    if (object.type == H5O_TYPE_DATASET && paths_.contains(path)) {
+      const Handle dataset(H5Dopen2(from, name.c_str(), H5P_DEFAULT), H5Dclose);
+      const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+      (void)empty_copy(dataset.id(), to, name.c_str(), space.id());
+    } else if (object.type == H5O_TYPE_GROUP && has_listed(path)) {
+      const Handle old_group(H5Gopen2(from, name.c_str(), H5P_DEFAULT), H5Gclose);
+      const Handle creation(H5Gget_create_plist(old_group.id()), H5Pclose);
+      const Handle new_group(H5Gcreate2(to, name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose);
+      copy_group(old_group.id(), new_group.id(), path);
+      return;
+    } else {
+      H5Ocopy(from, name.c_str(), to, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+    }
+    first_paths_.emplace(object.addr, path);
+  }
+
+  static void copy_reference(hid_t from, hid_t to, const std::string& name, const H5L_info_t& link) {
+    std::string value(link.u.val_size, '\0');  // NOLINT(*-union-access): the library's
+    if (H5Lget_val(from, name.c_str(), value.data(), value.size(), H5P_DEFAULT) < 0) return;
+    if (link.type == H5L_TYPE_SOFT) {
+      H5Lcreate_soft(value.c_str(), to, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+    } else if (link.type == H5L_TYPE_EXTERNAL) {
+      const char* file = nullptr;
+      const char* object = nullptr;
+      unsigned flags = 0;
+      if (H5Lunpack_elink_val(value.data(), value.size(), &flags, &file, &object) < 0) return;
+      H5Lcreate_external(file, object, to, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+    }
+  }
+
+  /// Returns whether one of the datasets is somewhere in the group.
+  [[nodiscard]] bool has_listed(const std::string& group) const {
+    const auto next = paths_.lower_bound(group + "/");
+    return next != paths_.end() && next->starts_with(group + "/");
+  }
+
+  const std::set<std::string>& paths_;
+  hid_t target_;
+  std::map<haddr_t, std::string> first_paths_;  // in the copy, of objects by their place in the old file
+};
+
+}  // namespace
+
+Handle::~Handle() {
+  if (id_ < 0) return;
+  const Session session;
+  close_(id_);
+}
+
+std::uint64_t DatasetInfo::size() const {
+  std::uint64_t size = 1;
+  for (const std::uint64_t n : shape) {
+    if (n != 0 && size > UINT64_MAX / n) return UINT64_MAX;
+    size *= n;
+  }
+  return size;
+}
+
+std::string normal_path(std::string_view path) {
+  std::string result;
+  for (const char c : path) {
+    if (c == '/' && !result.empty() && result.back() == '/') continue;
+    if (result.empty() && c != '/') result = "/";
+    result += c;
+  }
+  if (result.size() > 1 && result.back() == '/') result.pop_back();
+  return result;
+}
+
+void File::fail(const std::string& path, const std::string& what, const std::string& remedy) const {
+  throw InputError(name_, path.empty() ? what : fmt::format("the dataset '{}' {}", path, what), remedy);
+}
+
+File File::open(const FilePath& path) {
+  const Session session;
+  if (path.store() != nullptr) return in_memory(path.read(), path.string());
+  const Handle access = file_access();
+  Handle file(H5Fopen(path.string().c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
+  if (!file.is_open()) {
+    const std::string cause = last_cause();
+    throw InputError(path.string(), fmt::format("HDF5 cannot open it ({})", cause),
+                     "it may be damaged, cut short, or open for writing elsewhere");
+  }
+  return {std::move(file), path.string()};
+}
+
+File File::change(const std::filesystem::path& path, std::string name) {
+  const Session session;
+  const Handle access = file_access();
+  Handle file(H5Fopen(path.string().c_str(), H5F_ACC_RDWR, access.id()), H5Fclose);
+  if (!file.is_open()) {
+    throw InputError(name, fmt::format("HDF5 cannot write it ({})", last_cause()), "is the disk full?");
+  }
+  return {std::move(file), std::move(name)};
+}
+
+File File::in_memory(std::string_view bytes, std::string name) {
+  const Session session;
+  const Handle access = memory_access(bytes);
+  // the library takes two files of one name for the same
+  static std::uint64_t number = 0;
+  const std::string label = fmt::format("meshorder-memory-{}", number++);
+  Handle file(bytes.empty() ? H5Fcreate(label.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id())
+                            : H5Fopen(label.c_str(), H5F_ACC_RDWR, access.id()),
+              H5Fclose);
+  if (!file.is_open()) {
+    throw InputError(name, fmt::format("HDF5 cannot open it ({})", last_cause()),
+                     "it may be damaged or cut short");
+  }
+  return {std::move(file), std::move(name)};
+}
+
+Handle File::open_dataset(const std::string& path) const {
+  const Handle access = dataset_access();
+  Handle dataset(H5Dopen2(file_.id(), path.c_str(), access.id()), H5Dclose);
+  if (dataset.is_open()) return dataset;
+  if (const std::string link = external_link_on(file_.id(), path); !link.empty()) {
+    fail(path, fmt::format("is behind '{}', a link to another file, which is not followed", link),
+         "name that file in the XML, or copy the dataset into this one (h5copy)");
+  }
+  fail(path, "is missing or damaged", "`h5ls -r` lists what the file has");
+}
+
+DatasetInfo File::info(const std::string& path) const {
+  const Session session;
+  const Handle dataset = open_dataset(path);
+  const Handle type(H5Dget_type(dataset.id()), H5Tclose);
+  const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+  const Handle creation(H5Dget_create_plist(dataset.id()), H5Pclose);
+  DatasetInfo info;
+  info.alternative = alternative_of(type.id());
+  if (info.alternative == native_types().size()) {
+    fail(path, "does not hold plain numbers",
+         "whole numbers of 8 to 64 bits, float and double are understood");
+  }
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  if (rank < 0 || H5Sget_simple_extent_type(space.id()) == H5S_NULL) {
+    fail(path, "has no values", "the file may be damaged");
+  }
+  std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
+  H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr);
+  info.shape.assign(shape.begin(), shape.end());
+
+  const H5D_layout_t layout = H5Pget_layout(creation.id());
+  if (layout == H5D_VIRTUAL || H5Pget_external_count(creation.id()) > 0) {
+    fail(path, "has its values in other files", "copy them into one file (h5repack)");
+  }
+  if (const std::string filter = lacking_filter(creation.id()); !filter.empty()) {
+    fail(path, fmt::format("is compressed by the filter '{}', which this HDF5 lacks", filter),
+         "decompress it (h5repack -f NONE)");
+  }
+  // no filter of HDF5 makes more than some thousand bytes of one
+  constexpr std::uint64_t kMostFromOneByte = 4096;
+  const std::uint64_t stored = H5Dget_storage_size(dataset.id());
+  const std::uint64_t possible = layout == H5D_CHUNKED ? kMostFromOneByte * (stored + 1) : stored;
+  if (info.size() > possible / std::min<std::size_t>(H5Tget_size(type.id()), 8) && info.size() > 0) {
+    fail(path, fmt::format("claims {} values, but only {} bytes are there", info.size(), stored),
+         "it may never have been written, or the file is damaged");
+  }
+  return info;
+}
+
+void File::read(const std::string& path, hid_t type, void* values) const {
+  const Handle dataset = open_dataset(path);
+  if (H5Dread(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+    const std::string cause = last_cause();
+    fail(path, fmt::format("cannot be read ({})", cause), "the file may be damaged or cut short");
+  }
+}
+
+Values File::read(const std::string& path) const {
+  const Session session;
+  const DatasetInfo of = info(path);
+  Values values;
+  const auto read_as = [&]<std::size_t I>(std::integral_constant<std::size_t, I> /*alternative*/) {
+    if (I != of.alternative) return;
+    auto& numbers = values.emplace<I>();
+    resize_in_steps(numbers, of.size());
+    if (!numbers.empty()) read(path, native_types()[I], numbers.data());
+  };
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (read_as(std::integral_constant<std::size_t, I>{}), ...);
+  }
+  (std::make_index_sequence<10>());
+  return values;
+}
+
+std::vector<Index> File::read_indices(const std::string& path) const {
+  const Session session;
+  std::vector<Index> values;
+  resize_in_steps(values, info(path).size());
+  if (!values.empty()) read(path, H5T_NATIVE_INT32, values.data());
+  return values;
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
+  const Session session;
+  std::vector<std::pair<std::string, std::uint64_t>> result;
+  const auto visit = [](hid_t file, const char* name, const H5O_info_t* object, void* data) -> herr_t {
+    if (object->type != H5O_TYPE_DATASET) return 0;
+    const Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+    const Handle space(dataset.is_open() ? H5Dget_space(dataset.id()) : -1, H5Sclose);
+    const int rank = space.is_open() ? H5Sget_simple_extent_ndims(space.id()) : 0;
+    if (rank <= 0) return 0;
+    std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
+    H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr);
+    static_cast<decltype(result)*>(data)->emplace_back(normal_path(name), shape.front());
+    return 0;
+  };
+  H5Ovisit2(file_.id(), H5_INDEX_NAME, H5_ITER_INC, visit, &result, H5O_INFO_BASIC);
+  return result;
+}
+
+void File::write(const std::string& path, const Values& values, const std::vector<std::uint64_t>& shape) {
+  const Session session;
+  std::visit(
+      [&](const auto& numbers) {
+        this->write(path, native_types()[values.index()], numbers.data(), numbers.size(), shape);
+      },
+      values);
+}
+
+void File::write(const std::string& path, std::span<const Index> values,
+                 const std::vector<std::uint64_t>& shape) {
+  const Session session;
+  write(path, H5T_NATIVE_INT32, values.data(), values.size(), shape);
+}
+
+void File::write(const std::string& path, hid_t type, const void* values, std::uint64_t count,
+                 const std::vector<std::uint64_t>& shape) {
+  const std::vector<hsize_t> dims(shape.begin(), shape.end());
+  const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
+  Handle dataset(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.is_open()) {
+    const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+    H5Pset_create_intermediate_group(links.id(), 1);
+    dataset =
+        Handle(H5Dcreate2(file_.id(), path.c_str(), type, space.id(), links.id(), H5P_DEFAULT, H5P_DEFAULT),
+               H5Dclose);
+  } else {
+    const Handle old_space(H5Dget_space(dataset.id()), H5Sclose);
+    const hssize_t old_count = H5Sget_simple_extent_npoints(old_space.id());
+    if (old_count < 0 || static_cast<std::uint64_t>(old_count) != count) {
+      const std::string aside = path + ".old";
+      H5Lmove(file_.id(), path.c_str(), file_.id(), aside.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+      Handle copy = empty_copy(dataset.id(), file_.id(), path.c_str(), space.id());
+      H5Ldelete(file_.id(), aside.c_str(), H5P_DEFAULT);
+      dataset = std::move(copy);
+    }
+  }
+  const bool written = dataset.is_open() && (count == 0 || H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL,
+                                                                    H5P_DEFAULT, values) >= 0);
+  if (!written) fail(path, fmt::format("cannot be written ({})", last_cause()), "is the disk full?");
+}
+
+void File::remove(const std::string& path) {
+  const Session session;
+  H5Ldelete(file_.id(), path.c_str(), H5P_DEFAULT);
+}
+
+std::string File::without_values(const std::set<std::string>& paths) const {
+  const Session session;
+  const File copy = in_memory({}, name_);
+  const Handle from(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
+  const Handle to(H5Gopen2(copy.file_.id(), "/", H5P_DEFAULT), H5Gclose);
+  CopyWithoutValues(paths, copy.file_.id()).copy_group(from.id(), to.id(), "");
+  return copy.bytes();
+}
+
+std::string File::bytes() const {
+  const Session session;
+  flush();
+  const ssize_t size = H5Fget_file_image(file_.id(), nullptr, 0);
+  std::string result(size > 0 ? static_cast<std::size_t>(size) : 0, '\0');
+  if (size <= 0 || H5Fget_file_image(file_.id(), result.data(), result.size()) != size) {
+    fail("", "HDF5 cannot give the bytes of a file in memory", "");
+  }
+  return result;
+}
+
+void File::flush() const {
+  const Session session;
+  if (H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) < 0) {
+    fail("", fmt::format("cannot be written to the end ({})", last_cause()), "is the disk full?");
+  }
+}
+
+}  // namespace meshorder::hdf5

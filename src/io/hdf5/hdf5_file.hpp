@@ -1,0 +1,113 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// HDF5 files, by the C interface of libhdf5 (The HDF Group, HDF5 1.10 reference manual).
+//
+// libhdf5 is not thread-safe as Debian builds it, and it reports faults on standard error unless told
+// otherwise: every function here holds one lock for the whole program and keeps the library quiet meanwhile.
+// Code of others that calls the same library at the same time is not kept out.
+
+#include "io/hdf5/library.hpp"
+#include "io/stream/file_path.hpp"
+#include <meshorder/mesh.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshorder::hdf5 {
+
+/// A handle of libhdf5, closed at the end of its life. Negative: none, as the library returns for a failure.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+
+  Handle() = default;
+  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  ~Handle();
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+
+  [[nodiscard]] hid_t id() const noexcept { return id_; }
+  [[nodiscard]] bool is_open() const noexcept { return id_ >= 0; }
+
+ private:
+  hid_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+/// Size and number type of a dataset.
+struct DatasetInfo {
+  std::vector<std::uint64_t> shape;  ///< one row of values: {n}; none: a single value
+  std::size_t alternative = 0;       ///< of Values
+
+  /// Returns the number of values.
+  [[nodiscard]] std::uint64_t size() const;
+};
+
+/// An open HDF5 file. All faults are thrown as InputError, which names the file and the dataset.
+class File {
+ public:
+  /// Opens a file to read it.
+  static File open(const FilePath& path);
+  /// Opens a file on disk to change it. `name` stands in messages.
+  static File change(const std::filesystem::path& path, std::string name);
+  /// Opens a copy of a file's bytes to change it in memory. No bytes: an empty file.
+  static File in_memory(std::string_view bytes, std::string name);
+
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+
+  /// Returns the size and number type of a dataset of numbers whose values are in this file. Refuses one that
+  /// claims more values than its bytes can hold.
+  [[nodiscard]] DatasetInfo info(const std::string& path) const;
+  /// Returns the values of a dataset that `info` accepts, row by row, in its own number type.
+  [[nodiscard]] Values read(const std::string& path) const;
+  /// Returns whole numbers as indices, those out of range as the limit that they exceed, which no index is.
+  [[nodiscard]] std::vector<Index> read_indices(const std::string& path) const;
+  /// Returns the paths of all datasets with at least one dimension, and the length of their first.
+  [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> datasets() const;
+
+  /// Writes numbers to a dataset. One that is there keeps its number type, attributes, chunks and compression
+  /// (the shape only if it has as many values; else it gets a new one); one that is not is made with the type
+  /// of the values.
+  void write(const std::string& path, const Values& values, const std::vector<std::uint64_t>& shape);
+  void write(const std::string& path, std::span<const Index> values, const std::vector<std::uint64_t>& shape);
+  /// Removes a dataset if it is there.
+  void remove(const std::string& path);
+
+  /// Returns the bytes of a copy of this file in which these datasets are there with their types, attributes,
+  /// chunks and filters, but without their values. Everything else is copied.
+  [[nodiscard]] std::string without_values(const std::set<std::string>& paths) const;
+  /// Returns the bytes of a file in memory.
+  [[nodiscard]] std::string bytes() const;
+  /// Writes what is buffered; throws if that fails.
+  void flush() const;
+
+ private:
+  File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
+  [[nodiscard]] Handle open_dataset(const std::string& path) const;
+  void read(const std::string& path, hid_t type, void* values) const;
+  void write(const std::string& path, hid_t type, const void* values, std::uint64_t count,
+             const std::vector<std::uint64_t>& shape);
+  [[noreturn]] void fail(const std::string& path, const std::string& what, const std::string& remedy) const;
+
+  Handle file_;
+  std::string name_;
+};
+
+/// Returns the path with one slash before each part and none at its end.
+std::string normal_path(std::string_view path);
+
+}  // namespace meshorder::hdf5

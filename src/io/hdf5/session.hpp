@@ -1,0 +1,30 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/hdf5/library.hpp"
+
+#include <mutex>
+#include <string>
+
+namespace meshorder::hdf5 {
+
+/// Keeps other threads out of libhdf5 and the library quiet as long as it lives. May be nested.
+class Session {
+ public:
+  Session();
+  ~Session();
+  Session(const Session&) = delete;
+  Session(Session&&) = delete;
+  Session& operator=(const Session&) = delete;
+  Session& operator=(Session&&) = delete;
+
+ private:
+  std::unique_lock<std::recursive_mutex> lock_;
+  H5E_auto2_t handler_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// Returns what the library says of the last failure, its first cause; an empty text if there is none.
+std::string last_cause();
+
+}  // namespace meshorder::hdf5

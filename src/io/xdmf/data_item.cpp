@@ -1,0 +1,268 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/xdmf/data_item.hpp"
+
+#include "base/index.hpp"
+#include "base/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <limits>
+#include <tuple>
+#include <type_traits>
+#include <variant>
+
+namespace meshorder::xdmf {
+namespace {
+
+using Format = DataPlace::Format;
+
+constexpr std::string_view kBlanksOfXml = " \t\r\n";
+
+/// Names of number types as VTK's readers want them: one of a byte is no Int to them.
+struct NumberType {
+  std::string_view name;
+  int precision;  ///< bytes
+  std::size_t alternative;
+};
+constexpr std::array kNumberTypes{
+    NumberType{"Float", 8, 0}, NumberType{"Float", 4, 1}, NumberType{"Char", 1, 2},
+    NumberType{"UChar", 1, 3}, NumberType{"Short", 2, 4}, NumberType{"UShort", 2, 5},
+    NumberType{"Int", 4, 6},   NumberType{"UInt", 4, 7},  NumberType{"Int", 8, 8},
+    NumberType{"UInt", 8, 9},  NumberType{"Int", 1, 2},   NumberType{"UInt", 1, 3},
+    NumberType{"Int", 2, 4},   NumberType{"UInt", 2, 5},
+};
+
+std::string_view trimmed_blanks(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanksOfXml);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanksOfXml) - first + 1);
+}
+
+std::uint64_t product(const std::vector<std::uint64_t>& shape) { return hdf5::DatasetInfo{shape, 0}.size(); }
+
+/// Returns all text of an element.
+std::string text_in(pugi::xml_node element) {
+  std::string text;
+  for (const pugi::xml_node child : element.children()) {
+    if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) text += child.value();
+  }
+  return text;
+}
+
+std::size_t bytes_of_number(std::size_t alternative) {
+  constexpr std::array<std::size_t, 10> kBytes{8, 4, 1, 1, 2, 2, 4, 4, 8, 8};
+  return kBytes[alternative];
+}
+
+}  // namespace
+
+std::pair<std::string, int> number_type_of(std::size_t alternative) {
+  const auto found = std::find_if(kNumberTypes.begin(), kNumberTypes.end(),
+                                  [&](const NumberType& type) { return type.alternative == alternative; });
+  return {std::string(found->name), found->precision};
+}
+
+std::string key_of(const DataPlace& place) {
+  if (place.format == Format::hdf) return place.file + ":" + place.dataset;
+  return std::to_string(place.item);
+}
+
+std::pair<std::string, std::string> split_hdf5_name(std::string_view text) {
+  text = trimmed_blanks(text);
+  std::size_t colon = text.find(":/");
+  if (colon == std::string_view::npos) colon = text.rfind(':');
+  if (colon == std::string_view::npos) return {};
+  return {std::string(trimmed_blanks(text.substr(0, colon))),
+          hdf5::normal_path(trimmed_blanks(text.substr(colon + 1)))};
+}
+
+DataPlace DataReader::place_of(pugi::xml_node item) {
+  item = document_.resolved(item);
+  const std::string kind = attribute(item, "ItemType", "Type");
+  if (!kind.empty() && !same_but_for_case(kind, "Uniform")) {
+    throw document_.error(item, fmt::format("the DataItem is a {}", kind.substr(0, 40)),
+                          "only whole arrays can be reordered: write the values as an array of their own");
+  }
+  DataPlace place;
+  place.item = document_.number(item);
+
+  const std::string dimensions = attribute(item, "Dimensions");
+  std::string_view rest = dimensions;
+  for (std::string_view word = next_word(rest, kBlanksOfXml); !word.empty();
+       word = next_word(rest, kBlanksOfXml)) {
+    std::uint64_t size = 0;
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), size);
+    if (code != std::errc{} || end != word.data() + word.size()) {
+      throw document_.error(item, fmt::format("Dimensions is '{}'", dimensions.substr(0, 40)),
+                            "whole numbers, such as 100 3, are needed");
+    }
+    place.shape.push_back(size);
+  }
+  if (place.shape.empty()) {
+    throw document_.error(item, "the DataItem has no Dimensions", "Dimensions=\"100 3\" is needed");
+  }
+
+  const std::string format = attribute(item, "Format");
+  const std::string text = text_in(item);
+  if (same_but_for_case(format, "HDF") || same_but_for_case(format, "HDF5") ||
+      same_but_for_case(format, "H5")) {
+    place.format = Format::hdf;
+    if (text.find('|') != std::string::npos) {
+      throw document_.error(item, "the DataItem selects a part of a dataset",
+                            "only whole arrays can be reordered: write the values as an array of their own");
+    }
+    std::tie(place.file, place.dataset) = split_hdf5_name(text);
+    if (place.file.empty()) {
+      throw document_.error(item, fmt::format("'{}' names no dataset", text.substr(0, 100)),
+                            "file.h5:/path is needed");
+    }
+    const hdf5::DatasetInfo info = file(item, place.file).info(place.dataset);
+    if (info.size() != product(place.shape)) {
+      throw document_.error(item,
+                            fmt::format("Dimensions is '{}', but '{}' in {} has {} values", dimensions,
+                                        place.dataset, place.file, info.size()),
+                            "the XML and the HDF5 file may be of different runs");
+    }
+    place.alternative = info.alternative;
+    return place;
+  }
+  if (same_but_for_case(format, "Binary")) {
+    place.format = Format::binary;
+  } else if (!format.empty() && !same_but_for_case(format, "XML")) {
+    throw document_.error(item, fmt::format("the Format is '{}'", format.substr(0, 40)),
+                          "HDF, XML and Binary are understood");
+  }
+  const std::string type = attribute(item, "NumberType", "DataType");
+  const std::string precision = attribute(item, "Precision");
+  const auto found = std::find_if(kNumberTypes.begin(), kNumberTypes.end(), [&](const NumberType& known) {
+    if (!same_but_for_case(known.name, type.empty() ? "Float" : type)) return false;
+    const bool usual = known.precision == 4 || known.name.ends_with("Char") || known.name.ends_with("Short");
+    return precision.empty() ? usual : std::to_string(known.precision) == precision;
+  });
+  if (found == kNumberTypes.end()) {
+    throw document_.error(item, fmt::format("the numbers are '{}' of {} bytes", type, precision),
+                          "Float, Int, UInt, Char and UChar are understood");
+  }
+  place.alternative = found->alternative;
+  if (place.format == Format::xml) return place;
+
+  place.file = trimmed_blanks(text);
+  const std::string order = attribute(item, "Endian");
+  if (same_but_for_case(order, "Big")) place.order = std::endian::big;
+  if (same_but_for_case(order, "Little")) place.order = std::endian::little;
+  const std::string compression = attribute(item, "Compression");
+  if (!compression.empty() && !same_but_for_case(compression, "Raw")) {
+    throw document_.error(item, fmt::format("the binary file is compressed ({})", compression.substr(0, 40)),
+                          "write it without Compression");
+  }
+  place.seek = item.attribute("Seek").as_ullong(0);
+  return place;
+}
+
+FilePath DataReader::path_of(pugi::xml_node item, const std::string& name) const {
+  FilePath path = path_.beside(name);
+  if (!path.is_file()) {
+    throw document_.error(item, fmt::format("the data file '{}' is missing", name),
+                          fmt::format("it is looked for at {}", path.string()));
+  }
+  return path;
+}
+
+const hdf5::File& DataReader::file(pugi::xml_node item, const std::string& name) {
+  const auto known = files_.find(name);
+  if (known != files_.end()) return known->second;
+  return files_.emplace(name, hdf5::File::open(path_of(item, name))).first->second;
+}
+
+Values DataReader::read(const DataPlace& place) {
+  const pugi::xml_node item = document_.item(place.item);
+  if (place.format == Format::hdf) return file(item, place.file).read(place.dataset);
+  return place.format == Format::xml ? read_text(place, item) : read_binary(place, item);
+}
+
+std::vector<Index> DataReader::read_indices(const DataPlace& place) {
+  const pugi::xml_node item = document_.item(place.item);
+  constexpr std::size_t kFirstIntegral = 2;
+  if (place.alternative < kFirstIntegral) {
+    throw document_.error(item, "the DataItem does not hold whole numbers", "Int or UInt is needed");
+  }
+  if (place.format == Format::hdf) return file(item, place.file).read_indices(place.dataset);
+  const Values values = read(place);
+  std::vector<Index> indices;
+  std::visit(
+      [&](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_integral_v<Number>) {
+          indices.reserve(numbers.size());
+          for (const Number number : numbers) {
+            const Index limit = std::cmp_less(number, 0) ? std::numeric_limits<Index>::min() : kMaxIndex;
+            indices.push_back(std::in_range<Index>(number) ? static_cast<Index>(number) : limit);
+          }
+        }
+      },
+      values);
+  return indices;
+}
+
+Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const {
+  const std::string text = text_in(item);
+  const std::uint64_t count = product(place.shape);
+  return values_as(place.alternative, [&](auto& numbers) {
+    using Number = typename std::decay_t<decltype(numbers)>::value_type;
+    if constexpr (std::is_arithmetic_v<Number>) {
+      numbers.reserve(std::min<std::uint64_t>(count, text.size() / 2 + 1));
+      const char* p = text.data();
+      const char* const end = p + text.size();
+      while (true) {
+        while (p != end && kBlanksOfXml.find(*p) != std::string_view::npos) ++p;
+        if (p == end) break;
+        Number number{};
+        const char* const begin = *p == '+' ? p + 1 : p;
+        const auto [next, code] = std::from_chars(begin, end, number);
+        if (code != std::errc{} || (next != end && kBlanksOfXml.find(*next) == std::string_view::npos)) {
+          const std::string_view word(p, static_cast<std::size_t>(end - p));
+          throw document_.error(
+              item,
+              fmt::format("'{}' is not a number of the type",
+                          word.substr(0, std::min<std::size_t>(word.find_first_of(kBlanksOfXml), 40))),
+              fmt::format("value {} (counted from 0) is wrong or out of range", numbers.size()));
+        }
+        numbers.push_back(number);
+        p = next;
+      }
+      if (numbers.size() != count) {
+        throw document_.error(item, fmt::format("the DataItem has {} values", numbers.size()),
+                              fmt::format("its Dimensions say {}", count));
+      }
+    }
+  });
+}
+
+Values DataReader::read_binary(const DataPlace& place, pugi::xml_node item) const {
+  const std::string bytes = path_of(item, place.file).read();
+  const std::uint64_t count = product(place.shape);
+  const std::size_t size = bytes_of_number(place.alternative);
+  if (place.seek > bytes.size() || count > (bytes.size() - place.seek) / size) {
+    throw document_.error(
+        item, fmt::format("the file '{}' has {} bytes", place.file, bytes.size()),
+        fmt::format("{} values of {} bytes from byte {} on are needed", count, size, place.seek));
+  }
+  return values_as(place.alternative, [&](auto& numbers) {
+    using Number = typename std::decay_t<decltype(numbers)>::value_type;
+    if constexpr (std::is_arithmetic_v<Number>) {
+      numbers.resize(count);
+      if (count > 0) std::memcpy(numbers.data(), bytes.data() + place.seek, count * sizeof(Number));
+      if (place.order != std::endian::native) {
+        auto* const raw = reinterpret_cast<char*>(numbers.data());
+        for (std::size_t i = 0; i < count; ++i)
+          std::reverse(raw + i * sizeof(Number), raw + (i + 1) * sizeof(Number));
+      }
+    }
+  });
+}
+
+}  // namespace meshorder::xdmf

@@ -1,0 +1,83 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Arrays of XDMF files: DataItem elements and what they name.
+
+#include "io/hdf5/hdf5_file.hpp"
+#include "io/stream/file_path.hpp"
+#include "io/xdmf/document.hpp"
+#include <meshorder/mesh.hpp>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace meshorder::xdmf {
+
+/// Where the values of a DataItem are.
+struct DataPlace {
+  enum class Format : std::uint8_t { xml, hdf, binary };
+  Format format = Format::xml;
+  std::size_t item = 0;                     ///< number of the DataItem element; see `Document::number`
+  std::string file = {};                    ///< as the XML names it
+  std::string dataset = {};                 ///< in an HDF5 file
+  std::size_t alternative = 0;              ///< of Values: the number type of the values
+  std::endian order = std::endian::native;  ///< in a binary file
+  std::uint64_t seek = 0;                   ///< first byte in a binary file
+  std::vector<std::uint64_t> shape = {};
+};
+
+/// Names an array: two DataItems with one key have the same values.
+std::string key_of(const DataPlace& place);
+
+/// Returns the attributes NumberType and Precision of numbers of an alternative of Values.
+std::pair<std::string, int> number_type_of(std::size_t alternative);
+
+/// Calls `work` with no values of the number type of that alternative, and returns the Values that it made.
+template <class Work>
+Values values_as(std::size_t alternative, const Work& work) {
+  Values values;
+  const auto make = [&]<std::size_t I>(std::integral_constant<std::size_t, I> /*number*/) {
+    if (I == alternative) work(values.emplace<I>());
+  };
+  [&]<std::size_t... I>(std::index_sequence<I...>) { (make(std::integral_constant<std::size_t, I>{}), ...); }
+  (std::make_index_sequence<10>());
+  return values;
+}
+
+/// Splits "mesh.h5:/Mesh/topology".
+std::pair<std::string, std::string> split_hdf5_name(std::string_view text);
+
+/// Reads the arrays that a document names; each HDF5 file is opened once.
+class DataReader {
+ public:
+  DataReader(const Document& document, FilePath path) : document_(document), path_(std::move(path)) {}
+
+  /// Returns where the values of a DataItem are; follows references. Throws for what is not understood.
+  [[nodiscard]] DataPlace place_of(pugi::xml_node item);
+  /// Returns the values, as many as its shape says.
+  [[nodiscard]] Values read(const DataPlace& place);
+  /// Returns whole numbers as indices, those out of range as the limit that they exceed, which no index is.
+  [[nodiscard]] std::vector<Index> read_indices(const DataPlace& place);
+
+  /// Returns the opened HDF5 files by their names in the XML.
+  [[nodiscard]] const std::map<std::string, hdf5::File>& files() const noexcept { return files_; }
+
+ private:
+  const hdf5::File& file(pugi::xml_node item, const std::string& name);
+  [[nodiscard]] Values read_text(const DataPlace& place, pugi::xml_node item) const;
+  [[nodiscard]] Values read_binary(const DataPlace& place, pugi::xml_node item) const;
+  [[nodiscard]] FilePath path_of(pugi::xml_node item, const std::string& name) const;
+
+  const Document& document_;
+  FilePath path_;
+  std::map<std::string, hdf5::File> files_;
+};
+
+}  // namespace meshorder::xdmf

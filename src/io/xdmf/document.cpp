@@ -1,0 +1,182 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/xdmf/document.hpp"
+
+#include "base/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace meshorder::xdmf {
+namespace {
+
+constexpr unsigned kParse = pugi::parse_full | pugi::parse_ws_pcdata;
+constexpr int kMostReferences = 16;
+constexpr std::size_t kLongestPath = 1000;
+
+class TextWriter : public pugi::xml_writer {
+ public:
+  void write(const void* data, std::size_t size) override {
+    text.append(static_cast<const char*>(data), size);
+  }
+  std::string text;
+};
+
+bool is_include(pugi::xml_node element) {
+  const std::string_view name = element.name();
+  return name == "include" || name.ends_with(":include");
+}
+
+/// Returns a path that begins with the root's name as one that XPath understands.
+std::string trimmed_path(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+}  // namespace
+
+std::string attribute(pugi::xml_node element, const char* name, const char* other_name) {
+  const pugi::xml_attribute own = element.attribute(name);
+  return own ? own.value() : element.attribute(other_name).value();
+}
+
+std::vector<pugi::xml_node> elements_named(const pugi::xml_document& xml, std::string_view name) {
+  struct Finder : pugi::xml_tree_walker {
+    bool for_each(pugi::xml_node& node) override {
+      if (node.name() == wanted) found.push_back(node);
+      return true;
+    }
+    std::string_view wanted;
+    std::vector<pugi::xml_node> found;
+  } finder;
+  finder.wanted = name;
+  pugi::xml_node whole = xml.root();
+  whole.traverse(finder);
+  return std::move(finder.found);
+}
+
+void parse(pugi::xml_document& xml, const std::string& text) {
+  xml.load_buffer(text.data(), text.size(), kParse);
+}
+
+std::string text_of(const pugi::xml_document& xml, std::string_view prolog) {
+  TextWriter writer;
+  writer.text = prolog;
+  xml.document_element().print(writer, "", pugi::format_raw, pugi::encoding_utf8);
+  return std::move(writer.text) + "\n";
+}
+
+std::string indented_text_of(const pugi::xml_document& xml) {
+  TextWriter writer;
+  xml.save(writer, "  ", pugi::format_indent, pugi::encoding_utf8);
+  return std::move(writer.text);
+}
+
+Document::Document(const FilePath& path) : file_(path.string()), source_(path.read()) {
+  const pugi::xml_parse_result result = xml_.load_buffer(source_.data(), source_.size(), kParse);
+  const auto line_of = [&](std::ptrdiff_t byte) {
+    const auto end = source_.begin() + std::min<std::ptrdiff_t>(byte, std::ssize(source_));
+    return 1 + std::count(source_.begin(), end, '\n');
+  };
+  if (!result) {
+    throw InputError(Location{file_, line_of(result.offset), -1},
+                     fmt::format("the XML is malformed ({})", result.description()),
+                     "the file may be cut short");
+  }
+  if (std::string_view(root().name()) != "Xdmf") {
+    throw InputError(Location{file_, 1, -1}, fmt::format("the file is a <{}>", root().name()),
+                     "a file of XDMF begins with <Xdmf …>");
+  }
+  items_ = elements_named(xml_, "DataItem");
+  for (std::size_t i = 0; i < items_.size(); ++i) numbers_.emplace(items_[i].hash_value(), i);
+  const std::vector<pugi::xml_node> grids = elements_named(xml_, "Grid");
+  for (std::size_t i = 0; i < grids.size(); ++i) numbers_.emplace(grids[i].hash_value(), i);
+}
+
+InputError Document::error(pugi::xml_node at, const std::string& what, const std::string& remedy) const {
+  const std::ptrdiff_t byte = std::clamp<std::ptrdiff_t>(at.offset_debug(), 0, std::ssize(source_));
+  std::string line = what;
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  return {Location{file_, 1 + std::count(source_.begin(), source_.begin() + byte, '\n'), -1}, line, remedy};
+}
+
+const std::vector<pugi::xml_node>& Document::selected(pugi::xml_node from, std::string path) const {
+  path = trimmed_path(path);
+  if (path.starts_with("xpointer(") && path.ends_with(")")) path = path.substr(9, path.size() - 10);
+  std::vector<pugi::xml_node>& found = selected_[path];
+  if (!found.empty()) return found;
+  try {
+    if (!path.empty() && path.size() <= kLongestPath) {
+      for (const pugi::xpath_node& node : xml_.select_nodes(path.c_str())) {
+        if (node.node().type() == pugi::node_element) found.push_back(node.node());
+      }
+    }
+  } catch (const pugi::xpath_exception& fault) {
+    throw error(from, fmt::format("'{}' is no XPath ({})", path.substr(0, 100), fault.what()),
+                "/Xdmf/Domain/Grid[1]/Topology is one");
+  }
+  if (found.empty()) {
+    throw error(from, fmt::format("'{}' names no element of the file", path.substr(0, 100)),
+                "references to elements of the same file are understood");
+  }
+  return found;
+}
+
+pugi::xml_node Document::resolved(pugi::xml_node element) const {
+  for (int i = 0; i < kMostReferences; ++i) {
+    const pugi::xml_attribute reference = element.attribute("Reference");
+    if (!reference) return element;
+    const bool in_text = same_but_for_case(reference.value(), "XML");
+    const std::string path = in_text ? element.text().get() : reference.value();
+    const pugi::xml_node next = selected(element, path).front();
+    if (std::string_view(next.name()) != element.name()) {
+      throw error(element, fmt::format("the <{}> refers to a <{}>", element.name(), next.name()),
+                  "an element refers to one of its name");
+    }
+    element = next;
+  }
+  throw error(element, "the references lead in a circle", "an element refers to one with data");
+}
+
+std::vector<pugi::xml_node> Document::children(pugi::xml_node grid) const {
+  std::vector<pugi::xml_node> result;
+  for (const pugi::xml_node child : grid.children()) {
+    if (child.type() != pugi::node_element) continue;
+    if (!is_include(child)) {
+      result.push_back(resolved(child));
+      continue;
+    }
+    if (*child.attribute("href").value() != '\0') {
+      throw error(child, fmt::format("the file includes '{}'", child.attribute("href").value()),
+                  "put both into one file");
+    }
+    for (const pugi::xml_node node : selected(child, child.attribute("xpointer").value())) {
+      result.push_back(resolved(node));
+    }
+  }
+  return result;
+}
+
+std::string Document::without_values(const std::vector<std::size_t>& items) const {
+  pugi::xml_document copy;
+  copy.reset(xml_);
+  const std::vector<pugi::xml_node> all = elements_named(copy, "DataItem");
+  for (const std::size_t item : items) {
+    pugi::xml_node node = all[item];
+    while (node.first_child()) node.remove_child(node.first_child());
+  }
+  return text_of(copy, prolog());
+}
+
+std::string_view Document::prolog() const {
+  constexpr std::string_view kPlain = "<?xml version=\"1.0\"?>\n";
+  const std::string_view before = std::string_view(source_).substr(0, source_.find("<Xdmf"));
+  const std::size_t encoding = before.find("encoding=");
+  const bool is_utf8 =
+      encoding == std::string_view::npos || same_but_for_case(before.substr(encoding + 10, 5), "utf-8");
+  return is_utf8 && before.size() < source_.size() && before.starts_with('<') ? before : kPlain;
+}
+
+}  // namespace meshorder::xdmf

@@ -1,0 +1,70 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/stream/file_path.hpp"
+#include <meshorder/error.hpp>
+
+#include <pugixml.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace meshorder::xdmf {
+
+/// The XML of an XDMF file.
+class Document {
+ public:
+  /// Throws InputError for a file that is not XML or whose root is not <Xdmf>.
+  explicit Document(const FilePath& path);
+
+  [[nodiscard]] pugi::xml_node root() const { return xml_.document_element(); }
+  [[nodiscard]] const std::string& file() const noexcept { return file_; }
+
+  /// Makes an InputError at the line of an element.
+  [[nodiscard]] InputError error(pugi::xml_node at, const std::string& what, const std::string& remedy) const;
+
+  /// Returns the element that one refers to by Reference="…", or itself.
+  [[nodiscard]] pugi::xml_node resolved(pugi::xml_node element) const;
+  /// Returns the child elements of a Grid, with those that xi:include and references name in their place.
+  [[nodiscard]] std::vector<pugi::xml_node> children(pugi::xml_node grid) const;
+  /// Returns the number of a DataItem or a Grid among those of its name, in the order of the file.
+  [[nodiscard]] std::size_t number(pugi::xml_node element) const { return numbers_.at(element.hash_value()); }
+  /// Returns the DataItem of that number.
+  [[nodiscard]] pugi::xml_node item(std::size_t number) const { return items_[number]; }
+
+  /// Returns the XML in which the given DataItems have no values.
+  [[nodiscard]] std::string without_values(const std::vector<std::size_t>& items) const;
+
+ private:
+  /// Returns what stands before the root element: the declaration, which pugixml has, and the blanks.
+  [[nodiscard]] std::string_view prolog() const;
+  [[nodiscard]] const std::vector<pugi::xml_node>& selected(pugi::xml_node from, std::string path) const;
+
+  std::string file_;
+  std::string source_;
+  pugi::xml_document xml_;
+  std::vector<pugi::xml_node> items_;
+  std::unordered_map<std::size_t, std::size_t>
+      numbers_;  // of DataItems and Grids, by pugixml's hash of a node
+  mutable std::map<std::string, std::vector<pugi::xml_node>, std::less<>> selected_;  // by path
+};
+
+/// Returns all elements of a name in the order of the file.
+std::vector<pugi::xml_node> elements_named(const pugi::xml_document& xml, std::string_view name);
+
+/// Parses XML that `Document::without_values` made.
+void parse(pugi::xml_document& xml, const std::string& text);
+
+/// Returns XML as text: as it was parsed, after what stands before its root, or with a line for each element.
+std::string text_of(const pugi::xml_document& xml, std::string_view prolog);
+std::string indented_text_of(const pugi::xml_document& xml);
+
+/// Returns the first of two attributes that is there; an empty text without.
+std::string attribute(pugi::xml_node element, const char* name, const char* other_name = "");
+
+}  // namespace meshorder::xdmf

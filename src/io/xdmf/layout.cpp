@@ -1,0 +1,105 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/index.hpp"
+#include "io/xdmf/xdmf.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+// The layout of files for meshes from other formats. The paths in the HDF5 file and the names of Grids are
+// those that DOLFINx's XDMFFile writes.
+
+namespace meshorder::xdmf {
+namespace {
+
+/// Names of Grids by how many dimensions their cells have less than those of the mesh.
+constexpr std::array<std::string_view, 4> kGridNames{"mesh", "facet_tags", "ridge_tags", "peak_tags"};
+
+/// Returns the cells by dimension, highest first; dimensions without cells are left out.
+std::vector<std::vector<Index>> cells_by_dimension(const Mesh& mesh, std::vector<int>& dimensions) {
+  std::vector<std::vector<Index>> cells;
+  for (int d = mesh.cells.highest_dimension(); d >= 0; --d) {
+    std::vector<Index> of_dimension;
+    for (Index c = 0; c < mesh.cell_count(); ++c) {
+      if (dimension(mesh.cells.shapes[c]) == d) of_dimension.push_back(c);
+    }
+    if (of_dimension.empty()) continue;
+    dimensions.push_back(d);
+    cells.push_back(std::move(of_dimension));
+  }
+  return cells;
+}
+
+}  // namespace
+
+Layout layout_of(const Mesh& mesh, const FilePath& path) {
+  Layout layout;
+  layout.is_made = true;
+  layout.stem = path.path().stem().string();
+  const std::string file = layout.stem + ".h5";
+  layout.hdf5[file] = hdf5::File::in_memory({}, file).bytes();
+  layout.xml = "<?xml version=\"1.0\"?><Xdmf Version=\"3.0\"><Domain>";
+  std::vector<int> dimensions;
+  const std::vector<std::vector<Index>> cells = cells_by_dimension(mesh, dimensions);
+  std::size_t item = 0;
+  const auto add_item = [&](Field::Role role, const std::string& dataset, std::size_t alternative, int part) {
+    DataPlace place{DataPlace::Format::hdf, item++, file, dataset, alternative};
+    place.shape = {0};
+    layout.fields.push_back({role, std::move(place), part});
+    layout.xml += "<DataItem Dimensions=\"0\" Format=\"HDF\"/>";
+  };
+  constexpr std::size_t kDouble = 0;
+  constexpr std::size_t kInt32 = 6;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto part = static_cast<int>(i);
+    const std::string name(kGridNames[static_cast<std::size_t>(dimensions.front() - dimensions[i])]);
+    layout.parts.push_back({name, i == 0 ? "" : name});
+    layout.xml += fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\"><Topology TopologyType=\"\">", name);
+    add_item(Field::Role::topology, fmt::format("/{}/{}/topology", i == 0 ? "Mesh" : "MeshTags", name),
+             kInt32, part);
+    layout.xml +=
+        fmt::format("</Topology><Geometry GeometryType=\"{}\">", mesh.dimension == 2 ? "XY" : "XYZ");
+    add_item(Field::Role::points, "/Mesh/mesh/geometry", kDouble, part);
+    layout.xml += "</Geometry></Grid>";
+  }
+  layout.xml += "</Domain></Xdmf>";
+  return layout;
+}
+
+std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const Layout& layout) {
+  if (layout.is_made) {
+    std::vector<int> dimensions;
+    return cells_by_dimension(mesh, dimensions);
+  }
+  std::vector<std::vector<Index>> cells(layout.parts.size());
+  std::vector<bool> taken(mesh.cells.shapes.size(), false);
+  for (std::size_t p = 1; p < layout.parts.size(); ++p) {
+    const auto set = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& candidate) {
+      return candidate.association == Association::cells && candidate.name == layout.parts[p].set;
+    });
+    if (set == mesh.sets.end()) continue;
+    cells[p] = set->members;
+    if (layout.parts[p].is_ascending) std::sort(cells[p].begin(), cells[p].end());
+    if (!layout.parts[p].has_own_cells) continue;
+    for (const Index c : cells[p]) taken[static_cast<std::size_t>(c)] = true;
+  }
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (!taken[static_cast<std::size_t>(c)]) cells.front().push_back(c);
+  }
+  return cells;
+}
+
+Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
+  std::vector<int> dimensions;
+  std::vector<Index> new_to_old;
+  new_to_old.reserve(mesh.cells.shapes.size());
+  blocks.clear();
+  for (const std::vector<Index>& cells : cells_by_dimension(mesh, dimensions)) {
+    blocks.push_back(index_size(new_to_old));
+    new_to_old.insert(new_to_old.end(), cells.begin(), cells.end());
+  }
+  return Permutation::from_new_to_old(std::move(new_to_old));
+}
+
+}  // namespace meshorder::xdmf

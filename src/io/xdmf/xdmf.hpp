@@ -1,0 +1,101 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Declarations shared by the reader and the writer of XDMF 2 and 3.
+//
+// Format: the XDMF project's "XDMF Model and Format", https://www.xdmf.org/index.php/XDMF_Model_and_Format.
+// The numbers of topology types are those of XDMF's own library (XdmfTopologyType.cpp). Nodes of cells are in
+// VTK's order: VTK's readers take them as they are (IO/Xdmf2/vtkXdmfHeavyData.cxx).
+
+#include "io/format.hpp"
+#include "io/xdmf/data_item.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshorder::xdmf {
+
+// ---- types of cells
+
+/// A topology type.
+struct TopologyType {
+  std::string_view name;
+  int number;  ///< in mixed topologies
+  int vtk;     ///< VTK's number of the type
+  Shape shape;
+  int nodes;  ///< 0: any number, which mixed topologies give for each cell
+};
+
+inline constexpr int kPolyvertex = 1;
+inline constexpr int kPolyline = 2;
+inline constexpr int kMixed = 0x70;
+
+/// Returns the type of that name in any case, null if there is none; knows the short names of XDMF 2.
+const TopologyType* topology_type(std::string_view name);
+/// Returns the type of that number, null if there is none.
+const TopologyType* topology_type(std::int64_t number);
+/// Returns the type of cells of this shape, null if there is none.
+const TopologyType* topology_type_of(Shape shape, int vertices);
+/// Returns VTK's number for cells of a type with so many nodes.
+int vtk_type(const TopologyType& type, std::int64_t nodes);
+
+/// Returns whether XDMF has a type for these cells. Node orders above second order are known for meshes from
+/// XDMF only.
+bool holds(const Mesh& mesh, Shape shape, int vertices);
+
+// ---- what a file has
+
+/// The cells of one Topology.
+struct Part {
+  std::string name;           ///< of its Grid
+  std::string set;            ///< of the cells, in the order of the file; empty for the first part
+  bool has_own_cells = true;  ///< false: its cells are those of parts before it
+  bool is_ascending = true;   ///< whether its cells are in the order of the mesh
+};
+
+/// What the values of a DataItem are.
+struct Field {
+  enum class Role : std::uint8_t { points, topology, array, set };
+  Role role;
+  DataPlace place;
+  int part = 0;  ///< of cells
+  Association association = Association::vertices;
+  std::string name = {};  ///< of the array or the set
+  int axis = -1;          ///< of points in separate arrays
+  int base = 0;           ///< number of the first point in a topology
+};
+
+/// Data of XDMF's files beyond the mesh.
+struct Layout final : FormatMetadata {
+  std::string stem;                         ///< of the name of the .xdmf file
+  std::string xml;                          ///< without values
+  std::map<std::string, std::string> hdf5;  ///< bytes of files without values, by their names in the XML
+  std::vector<Part> parts;
+  std::vector<Field> fields;
+  std::vector<std::string> words;  ///< see `contents`
+  bool inward_wedges = false;      ///< linear wedges in the order of VTK 9.7
+  bool is_made = false;            ///< by `layout_of`
+
+  [[nodiscard]] std::vector<std::string> contents() const override { return words; }
+};
+
+Mesh read(const FilePath& path, Notes& notes);
+void write(const Mesh& mesh, const FilePath& path, Notes& notes);
+
+/// Returns the layout of a file for a mesh from another format: a Grid for the cells of the highest
+/// dimension, and one for those of each lower dimension.
+Layout layout_of(const Mesh& mesh, const FilePath& path);
+
+/// Returns the cells of each part, in the order of the file.
+std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const Layout& layout);
+
+/// Returns the places of the cells in a file of `layout_of`, by dimension, highest first. `blocks` receives
+/// the first cell of each dimension.
+Permutation places(const Mesh& mesh, std::vector<Index>& blocks);
+
+}  // namespace meshorder::xdmf
