@@ -17,6 +17,7 @@ Format obj_format();
 Format ply_format();
 Format stl_format();
 Format su2_format();            ///< .su2
+Format abaqus_format();         ///< .inp of Abaqus and CalculiX
 Format matrix_market_format();  ///< .mtx
 Format metis_graph_format();    ///< .graph
 
