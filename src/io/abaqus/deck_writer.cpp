@@ -64,13 +64,17 @@ class DeckWriter {
   }
 
   void write() {
-    const auto is_mesh = [](const Section& section) { return section.part != Part::text; };
-    const auto after_mesh = std::find_if(deck_.sections.rbegin(), deck_.sections.rend(), is_mesh).base();
-    for (auto section = deck_.sections.begin(); section != deck_.sections.end(); ++section) {
+    const auto after_last = [&](auto is_wanted) {
+      return std::find_if(deck_.sections.rbegin(), deck_.sections.rend(), is_wanted).base();
+    };
+    const auto after_mesh = after_last([](const Section& section) { return section.part != Part::text; });
+    const auto after_nodes = after_last([](const Section& section) { return section.part == Part::nodes; });
+    for (auto section = deck_.sections.begin();; ++section) {
+      if (section == after_nodes) write_sets_of_cards();
       if (section == after_mesh) write_new_sets();
+      if (section == deck_.sections.end()) break;
       write(*section);
     }
-    if (after_mesh == deck_.sections.end()) write_new_sets();
     file_.commit();
     out_.note_rounded(notes_);
   }
@@ -96,10 +100,32 @@ class DeckWriter {
     return places;
   }
 
+  /// Writes as many nodes as the card had, in the order of the mesh. Where they are not its own any more, the
+  /// card does not name their set; `write_sets_of_cards` does.
   void write_nodes(const Section& section) {
-    out_.text(section.text);
-    for (const Index v : places_of(section, nodes_))
+    out_.text(has_its_nodes(section) ? section.text : without_parameter(section.text, "NSET"));
+    for (Index v = section.first; v < section.first + section.count; ++v) {
       out_.node(nodes_.at(v), mesh_.points[v], mesh_.dimension);
+    }
+  }
+
+  [[nodiscard]] bool has_its_nodes(const Section& section) const {
+    const std::vector<Index> places = places_of(section, nodes_);
+    return places.empty() ||
+           (places.front() == section.first && index_size(places) == places.back() + 1 - section.first);
+  }
+
+  /// Writes the sets that *NODE named, after the last of these cards.
+  void write_sets_of_cards() {
+    for (const Section& section : deck_.sections) {
+      if (section.part != Part::nodes || has_its_nodes(section)) continue;
+      const std::string set(parse_card(section.text).value("NSET"));
+      if (set.empty()) continue;
+      std::vector<std::int64_t> members;
+      for (const Index v : places_of(section, nodes_)) members.push_back(nodes_.at(v));
+      const bool quoted = set.find_first_of(" ,=") != std::string::npos;
+      out_.set(Association::vertices, quoted ? '"' + set + '"' : set, members);
+    }
   }
 
   void write_elements(const Section& section) {

@@ -38,18 +38,27 @@ struct RealText {
   bool is_rounded = false;
 
   explicit RealText(double value) {
+    write(value);
+    if (text.size() <= kMostCharacters) return;
+    double rounded = 0;
+    for (int digits = 16; text.size() > kMostCharacters; --digits) {
+      char* const begin = buffer.data();
+      char* const end = begin + buffer.size();
+      text =
+          without_padding(begin, std::to_chars(begin, end, value, std::chars_format::scientific, digits).ptr);
+      std::from_chars(text.data(), text.data() + text.size(), rounded);
+      if (text.size() <= kMostCharacters) write(rounded);  // without zeros at its end
+    }
+    is_rounded = rounded != value;
+  }
+
+ private:
+  void write(double value) {
     char* const begin = buffer.data();
     char* const end = begin + buffer.size();
     text = without_padding(begin, std::to_chars(begin, end, value).ptr);
     if (text.size() <= kMostCharacters) return;
-    const std::string shortest(text);
-    for (int digits = 16; text.size() > kMostCharacters; --digits) {
-      text =
-          without_padding(begin, std::to_chars(begin, end, value, std::chars_format::scientific, digits).ptr);
-    }
-    double again = 0;
-    std::from_chars(text.data(), text.data() + text.size(), again);
-    is_rounded = again != value;
+    text = without_padding(begin, std::to_chars(begin, end, value, std::chars_format::scientific).ptr);
   }
 };
 
