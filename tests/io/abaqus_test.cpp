@@ -15,6 +15,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace meshorder {
@@ -220,9 +221,23 @@ TEST(Abaqus, ListsARangeThatIsNoneAnyMore) {
 }
 
 TEST(Abaqus, ComesBackFromAnyOrder) {
-  const TemporaryFolder folder;
-  test::expect_order_and_back(folder.file("m.inp", kDeck));
-  test::expect_order_and_back(folder.file("n.inp", with(std::string(kDeck), "*FILM", "*USER")));
+  for (const std::string& deck : {std::string(kDeck), with(std::string(kDeck), "*FILM", "*USER")}) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const Mesh mesh = read_deck(deck);
+      const Permutation vertices = test::shuffled(mesh.vertex_count(), seed);
+      const Permutation cells = test::shuffled_cells(mesh, seed);
+      Mesh moved = mesh;
+      apply_reordering(moved, vertices, cells);
+      Mesh back = read_deck(deck_of(moved));
+      test::expect_same(test::sorted_members(back), test::sorted_members(moved));
+      apply_reordering(back, vertices.inverse(), cells.inverse());
+      test::expect_same(test::sorted_members(back), test::sorted_members(mesh));
+      // cards come back, too, but ranges and sets of cards are lists now
+      const std::string text = deck_of(back);
+      EXPECT_THAT(text, HasSubstr(kDeck.substr(kDeck.find("*SURFACE"),
+                                               kDeck.find("*FILM") - kDeck.find("*SURFACE"))));
+    }
+  }
 }
 
 TEST(Abaqus, KeepsNumbersWhereACardMayNameThem) {
@@ -429,7 +444,7 @@ TEST(Abaqus, WritesNumbersInTwentyCharacters) {
     EXPECT_NEAR(again / value, 1, 1e-12) << text;
   }
   Mesh mesh = test::cells_of_type(Shape::triangle, 3, 1);
-  mesh.points[0] = {-1.2345678901234567e-5, 0, 0};
+  mesh.points = {{-1.2345678901234567e-5, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   Notes notes;
   (void)deck_of(mesh, &notes);
   EXPECT_THAT(notes, testing::Contains(HasSubstr("one coordinate is rounded")));
@@ -455,7 +470,7 @@ TEST(Abaqus, IsAPlainDeckAfterCellsWereLeftOut) {
 TEST(Abaqus, NamesWhatOthersLose) {
   const Mesh mesh = read_deck(kDeck);
   EXPECT_THAT(mesh.format_metadata->contents(),
-              ElementsAre("the types of elements C3D8R, S4", "surfaces of the deck: 'top'",
+              ElementsAre("the types of elements C3D8R", "surfaces of the deck: 'top'",
                           HasSubstr("cards of the deck: *SURFACE, *MATERIAL")));
 }
 
@@ -479,7 +494,7 @@ TEST(Abaqus, NotesMembersThatDoNotExist) {
   const Mesh mesh = read_deck(deck, &notes);
   ASSERT_EQ(notes.size(), 2U);
   EXPECT_THAT(notes[0],
-              HasSubstr("m.inp:35: the node set 'ENDS' names 2 numbers that the deck does not have, the "
+              HasSubstr("m.inp:34: the node set 'ENDS' names 2 numbers that the deck does not have, the "
                         "first is 77"));
   EXPECT_THAT(notes[1], HasSubstr("the set 'nobody', which does not exist"));
 }

@@ -312,17 +312,19 @@ class ReferenceFinder {
       terms_left_ = number_of(next_field(line));
       return;
     }
-    for (std::size_t k = 0; !line.empty() && terms_left_ > 0; ++k) {
+    while (!line.empty() && terms_left_ > 0) {
       const std::string_view field = next_field(line);
-      if (k % 3 == 0) add('n', field);
-      if (k % 3 == 2) --terms_left_;
+      if (in_term_ == 0) add('n', field);
+      if (in_term_ == 2) --terms_left_;
+      in_term_ = (in_term_ + 1) % 3;
     }
   }
 
   const Card& card_;
   std::string_view lines_;
   std::vector<Reference> found_;
-  std::int64_t terms_left_ = 0;
+  std::int64_t terms_left_ = 0;  // of an equation
+  int in_term_ = 0;              // fields of the present term so far
 };
 
 }  // namespace
