@@ -169,12 +169,13 @@ def test_gmsh_and_this_writer_agree_on_the_order_of_nodes(command, tmp_path):
     gmsh.initialize()
     try:
         gmsh.option.setNumber("General.Terminal", 0)
-        volume = {dimension: gmsh.model.addDiscreteEntity(dimension) for dimension in (1, 2, 3)}
-        gmsh.model.mesh.addNodes(3, volume[3], list(range(1, 31)), numpy.round(random.random(90), 6).tolist())
+        volume = gmsh.model.addDiscreteEntity(3)
+        gmsh.model.mesh.addNodes(3, volume, list(range(1, 31)), numpy.round(random.random(90), 6).tolist())
         tag = 1
         for kind in kinds:
             _, dimension, _, count, _, _ = gmsh.model.mesh.getElementProperties(kind)
-            gmsh.model.mesh.addElementsByType(volume[dimension], kind, [tag], list(range(1, count + 1)))
+            entity = gmsh.model.addDiscreteEntity(dimension)
+            gmsh.model.mesh.addElementsByType(entity, kind, [tag], list(range(1, count + 1)))
             tag += 1
         for name in ("a.msh", "a.inp"):
             gmsh.write(str(tmp_path / name))
