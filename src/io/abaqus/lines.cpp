@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/abaqus/lines.hpp"
 
-#include "base/text.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -14,6 +13,8 @@ namespace {
 
 constexpr std::size_t kMostFiles = 10000;
 constexpr std::size_t kMostNested = 16;
+
+bool is_space(char c) { return c == ' ' || c == '\t'; }
 
 /// Returns whether a path stays in the folder that it starts from.
 bool stays_below(const std::filesystem::path& path) {
@@ -35,7 +36,10 @@ bool DeckLines::peek(std::string_view& line) {
     if (files_.size() == 1) return false;
     files_.pop_back();
   }
-  line = trimmed(at().peek_line());
+  line = at().peek_line();
+  // plain loops: this is done for every line of a mesh
+  while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
+  while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
   return true;
 }
 

@@ -81,46 +81,55 @@ std::string name_for(const std::string& given, std::set<std::string>& taken) {
 
 std::string short_real(double value) { return std::string(RealText(value).text); }
 
-void DeckOutput::coordinate(double value) {
+void DeckOutput::add(std::string_view before, std::int64_t number) {
+  const fmt::format_int digits(number);
+  line_.append(before).append(digits.data(), digits.size());
+}
+
+void DeckOutput::add_coordinate(double value) {
   const RealText real(value);
   if (real.is_rounded) ++rounded_;
-  out_.write(", ");
-  out_.write(real.text);
+  line_.append(", ").append(real.text);
+}
+
+void DeckOutput::write_line() {
+  out_.write(line_ += line_end_);
+  line_.clear();
 }
 
 void DeckOutput::node(std::int64_t number, const Point& point, int dimension) {
-  out_.integer("", number);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) coordinate(point[k]);
-  end_line();
+  add("", number);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) add_coordinate(point[k]);
+  write_line();
 }
 
 void DeckOutput::element(std::int64_t number, const std::vector<std::int64_t>& nodes) {
-  out_.integer("", number);
+  add("", number);
   std::size_t on_line = 1;
   for (const std::int64_t node : nodes) {
     if (on_line == kPerLine) {
-      out_.write(",");
-      end_line();
+      line_ += ',';
+      write_line();
       on_line = 0;
     }
-    out_.integer(on_line == 0 ? "" : ", ", node);
+    add(on_line == 0 ? "" : ", ", node);
     ++on_line;
   }
-  end_line();
+  write_line();
 }
 
 void DeckOutput::list(const std::vector<std::int64_t>& numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    out_.integer(i % kPerLine == 0 ? "" : ", ", numbers[i]);
-    if (i % kPerLine == kPerLine - 1 || i + 1 == numbers.size()) end_line();
+    add(i % kPerLine == 0 ? "" : ", ", numbers[i]);
+    if (i % kPerLine == kPerLine - 1 || i + 1 == numbers.size()) write_line();
   }
 }
 
 void DeckOutput::set(Association association, std::string_view name,
                      const std::vector<std::int64_t>& members) {
   const std::string_view keyword = association == Association::vertices ? "NSET" : "ELSET";
-  out_.print("*{}, {}={}", keyword, keyword, name);
-  end_line();
+  line_ = fmt::format("*{}, {}={}", keyword, keyword, name);
+  write_line();
   list(members);
 }
 

@@ -19,7 +19,6 @@ class DeckOutput {
   DeckOutput(OutputFile& out, std::string_view line_end) : out_(out), line_end_(line_end) {}
 
   void text(std::string_view text) { out_.write(text); }
-  void end_line() { out_.write(line_end_); }
 
   /// Writes the line of a node with `dimension` coordinates.
   void node(std::int64_t number, const Point& point, int dimension);
@@ -34,10 +33,14 @@ class DeckOutput {
   void note_rounded(Notes& notes) const;
 
  private:
-  void coordinate(double value);
+  void add(std::string_view before, std::int64_t number);
+  void add_coordinate(double value);
+  /// Ends the line that was added to, and writes it.
+  void write_line();
 
   OutputFile& out_;
   std::string line_end_;
+  std::string line_;  // so far
   std::int64_t rounded_ = 0;
 };
 

@@ -27,6 +27,27 @@ constexpr std::size_t kMostNodes = 20;
 bool is_comment(std::string_view line) { return line.starts_with("**"); }
 bool is_keyword(std::string_view line) { return line.starts_with('*') && !is_comment(line); }
 
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+void skip_blanks(std::string_view& line) {
+  while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+}
+
+/// Takes the next field of a data line if it is a plain number of type T; returns false and leaves it there
+/// otherwise. Reads each byte once, where `next_field` and a parser read it several times.
+template <class T>
+bool take_plain(std::string_view& line, T& value) {
+  std::string_view rest = line;
+  skip_blanks(rest);
+  const auto [after, code] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+  if (code != std::errc{}) return false;
+  rest.remove_prefix(static_cast<std::size_t>(after - rest.data()));
+  skip_blanks(rest);
+  if (!rest.empty() && rest.front() != ',') return false;
+  line = rest.substr(rest.empty() ? 0 : 1);
+  return true;
+}
+
 /// Returns why a card keeps a deck from being read; an empty text if it does not.
 std::string_view fault_of(std::string_view keyword) {
   constexpr std::array<std::string_view, 6> kGenerators{"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY"};
@@ -178,10 +199,7 @@ class DeckReader {
   /// Takes the number of a node or element from the front of a line.
   Index take_number(std::string_view& line, std::string_view what) {
     std::int64_t number = 0;
-    const std::string_view field = next_field(line);
-    const char* const end = field.data() + field.size();
-    const auto [after, code] = std::from_chars(field.data(), end, number);
-    if (code != std::errc{} || after != end) number = parse_integer<std::int64_t>(lines_.at(), field, what);
+    if (!take_plain(line, number)) number = parse_integer<std::int64_t>(lines_.at(), next_field(line), what);
     if (number < 1 || number > kMaxIndex) {
       lines_.at().fail(fmt::format("{} is {}", what, number), "1 to 2147483647 are possible");
     }
@@ -189,12 +207,11 @@ class DeckReader {
   }
 
   double take_coordinate(std::string_view& line) {
-    const std::string_view field = next_field(line);
-    if (field.empty()) return 0;
     double value = 0;
-    const char* const end = field.data() + field.size();
-    const auto [after, code] = std::from_chars(field.data(), end, value);
-    if (code != std::errc{} || after != end) value = parse_real(lines_.at(), field, "a coordinate");
+    if (!take_plain(line, value)) {
+      const std::string_view field = next_field(line);
+      if (!field.empty()) value = parse_real(lines_.at(), field, "a coordinate");
+    }
     if (!std::isfinite(value)) lines_.at().fail("a coordinate is not finite", "a finite number is needed");
     return value;
   }
@@ -232,7 +249,7 @@ class DeckReader {
     }
     Point point{0, 0, 0};
     for (std::size_t k = 0; k < 3 && !line.empty(); ++k) {
-      if (k == 2 && !trimmed(line).empty()) has_third_coordinate_ = true;
+      if (k == 2) has_third_coordinate_ = true;
       point[k] = take_coordinate(line);
     }
     if (line.find_first_not_of(" \t,") != std::string_view::npos) {
@@ -280,8 +297,9 @@ class DeckReader {
     const Offset first = mesh_.cells.offsets.back();
     for (std::size_t given = 0;;) {
       while (!line.empty()) {
-        if (trimmed(line.substr(0, line.find(','))).empty()) {  // a comma at the end
-          (void)next_field(line);
+        skip_blanks(line);
+        if (line.empty() || line.front() == ',') {  // a comma at the end
+          line.remove_prefix(line.empty() ? 0 : 1);
           continue;
         }
         if (given == nodes) {
@@ -428,7 +446,9 @@ class DeckReader {
       const Section& section = deck_->sections[i];
       if (section.part != Part::text || !is_keyword(trimmed(section.text))) continue;
       const Card card = parse_card(section.text);
-      if (card.keyword == "ELEMENT" || references(card, section.text)) continue;
+      const bool is_set = card.keyword == "NSET" || card.keyword == "ELSET";
+      if (card.keyword == "ELEMENT" || (is_set && !has_other_file(card))) continue;
+      if (references(card, section.text)) continue;
       const std::vector<std::int64_t> numbers = numbers_in(section.text);
       const bool names_any = card.keyword == "PARAMETER" || has_other_file(card) ||
                              std::any_of(numbers.begin(), numbers.end(), [&](std::int64_t number) {
