@@ -455,6 +455,11 @@ TEST(Abaqus, AddsNewSetsToItsDeck) {
   mesh.sets.push_back({"new", Association::vertices, {14, 0}});
   const std::string text = deck_of(mesh);
   EXPECT_THAT(text, HasSubstr("20, 9, 10, 13, 12, 11, 14\n*NSET, NSET=new\n99, 1\n*NSET, nset=ENDS"));
+  mesh.sets.front().members.pop_back();
+  Notes notes;
+  (void)deck_of(mesh, &notes);
+  EXPECT_THAT(
+      notes, ElementsAre("the set 'Nall' of vertices is written as the deck has it; changes of it are lost"));
 }
 
 TEST(Abaqus, IsAPlainDeckAfterCellsWereLeftOut) {

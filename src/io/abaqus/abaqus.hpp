@@ -12,7 +12,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace meshorder::abaqus {
@@ -33,9 +32,9 @@ struct Section {
 /// What a deck says, in its own order.
 struct Deck {
   std::vector<Section> sections;
-  IdMap nodes;                                            ///< numbers in the order of the file
-  IdMap elements;                                         ///< of those that are cells
-  std::vector<std::pair<Association, std::string>> sets;  ///< that the deck has, by their names in the mesh
+  IdMap nodes;                  ///< numbers in the order of the file
+  IdMap elements;               ///< of those that are cells
+  std::vector<EntitySet> sets;  ///< of the deck; members are positions in the file
   std::string line_end = "\n";
   /// Cards that may name nodes or elements by number and are not understood: "*USER ELEMENT (line 12)". With
   /// one of them all numbers must stay.

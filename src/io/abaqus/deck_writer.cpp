@@ -7,6 +7,8 @@
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -189,16 +191,38 @@ class DeckWriter {
     out_.list(now);
   }
 
+  static const EntitySet* find(const std::vector<EntitySet>& sets, const EntitySet& like) {
+    const auto found = std::find_if(sets.begin(), sets.end(), [&](const EntitySet& set) {
+      return set.association == like.association && set.name == like.name;
+    });
+    return found == sets.end() ? nullptr : &*found;
+  }
+
+  /// Returns whether a set of the mesh has the members that the deck says.
+  [[nodiscard]] bool is_as_in_deck(const EntitySet& set, const EntitySet& of_deck) const {
+    if (set.members.size() != of_deck.members.size()) return false;
+    std::vector<Index> members = set.members;
+    std::vector<Index> wanted = of_deck.members;
+    for (Index& member : wanted) member = numbers_of(set.association).place(member);
+    std::sort(members.begin(), members.end());
+    std::sort(wanted.begin(), wanted.end());
+    return members == wanted;
+  }
+
+  /// Writes sets that the deck does not have; notes those that are no longer as it has them.
   void write_new_sets() {
     std::vector<EntitySet> added;
     for (const EntitySet& set : mesh_.sets) {
-      const bool is_of_deck = std::any_of(deck_.sets.begin(), deck_.sets.end(), [&](const auto& known) {
-        return known.first == set.association && known.second == set.name;
-      });
-      if (!is_of_deck) added.push_back(set);
+      if (find(deck_.sets, set) == nullptr) added.push_back(set);
     }
     write_sets(
         out_, added, [&](Index v) { return nodes_.at(v); }, [&](Index c) { return elements_.at(c); }, notes_);
+    for (const EntitySet& of_deck : deck_.sets) {
+      const EntitySet* const set = find(mesh_.sets, of_deck);
+      if (set != nullptr && is_as_in_deck(*set, of_deck)) continue;
+      notes_.push_back(fmt::format("the set '{}' of {} is written as the deck has it; changes of it are lost",
+                                   of_deck.name, to_string(of_deck.association)));
+    }
   }
 
   const Mesh& mesh_;

@@ -393,7 +393,7 @@ class DeckReader {
     mesh_.vertex_ids = deck_->nodes.ids_unless_from(1);
     mesh_.cell_ids = deck_->elements.ids_unless_from(1);
     mesh_.sets = sets_.members(deck_->nodes, deck_->elements, other_elements_, mesh_.cells, notes_);
-    for (const EntitySet& set : mesh_.sets) deck_->sets.emplace_back(set.association, set.name);
+    deck_->sets = mesh_.sets;
     list_contents();
     find_unknown_cards();
     if (!lines_.included().empty()) {
