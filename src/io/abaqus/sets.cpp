@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace meshorder::abaqus {
@@ -102,8 +103,8 @@ std::string SetReader::add_line(std::string_view line) {
 void SetReader::add_members(const Addition& addition, const IdMap& items,
                             const std::unordered_set<std::int64_t>& others, const Cells& cells,
                             Notes& notes) {
-  std::vector<Index> members;
-  for (Index k = 0; k < addition.count; ++k) members.push_back(addition.first + k);
+  std::vector<Index> members(static_cast<std::size_t>(addition.count));
+  std::iota(members.begin(), members.end(), addition.first);
   std::int64_t missing = 0;
   Index first_missing = 0;
   for (const Index number : addition.numbers) {
