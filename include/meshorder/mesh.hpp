@@ -103,7 +103,8 @@ struct EntitySet {
 };
 
 /// Data that only one format has, kept by its reader for its writer: materials, encodings, whole sections of
-/// text. Must not depend on the order of vertices or cells. Only the formats of this library derive from it.
+/// text. Must not depend on the order of vertices or cells, unless `moved` follows it. Only the formats of
+/// this library derive from it.
 class MESHORDER_API FormatMetadata {
  public:
   FormatMetadata() = default;
@@ -114,6 +115,16 @@ class MESHORDER_API FormatMetadata {
   virtual ~FormatMetadata() = default;
   /// Lists, in a user's words, the parts that another format loses: {"2 materials", "Gmsh's $Periodic"}.
   [[nodiscard]] virtual std::vector<std::string> contents() const = 0;
+  /// Returns the same data for a mesh whose vertices and cells moved, null if they do not matter to it.
+  ///
+  /// @param vertices  the new position of each vertex; empty where all stay
+  /// @param cells     the new position of each cell, −1 for one that was left out; empty where all stay
+  [[nodiscard]] virtual std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,
+                                                                    std::span<const Index> cells) const {
+    (void)vertices;
+    (void)cells;
+    return nullptr;
+  }
 };
 
 /// A simulation mesh with the arrays, sets and ids of its file. Plain data: who changes one member keeps the

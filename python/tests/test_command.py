@@ -54,7 +54,7 @@ def deck(mesh, tmp_path):
         point_sets={"left": np.flatnonzero(points[:, 0] == 0)},
         cell_sets={"some": [np.arange(5, len(cells), 7)], "last": [np.array([8, 2])]},
     )
-    of_abaqus.write(tmp_path / "deck.inp")
+    of_abaqus.write(tmp_path / "deck.inp", float_fmt=".10e")
     meshio.xdmf.write(tmp_path / "deck.xmf", meshio.Mesh(points, made.cells, made.point_data, made.cell_data), "XML")
     return made
 
@@ -197,17 +197,17 @@ def test_apply_undoes_order(deck, tmp_path):
 
 
 def test_info_and_compare_name_the_users_file(deck, tmp_path):
-    done = ok("info", "deck.inp", "--json", cwd=tmp_path)
-    assert json.loads(done.stdout)["file"] == "deck.inp" and json.loads(done.stdout)["format"] == "meshio"
-    assert ok("info", "deck.inp", "-q", cwd=tmp_path).stderr == ""
-    done = ok("compare", "deck.inp", "--methods", "rcm", "--budget", "0.1", cwd=tmp_path)
-    assert done.stdout.startswith("deck.inp: ")
+    done = ok("info", "deck.xmf", "--json", cwd=tmp_path)
+    assert json.loads(done.stdout)["file"] == "deck.xmf" and json.loads(done.stdout)["format"] == "meshio"
+    assert ok("info", "deck.xmf", "-q", cwd=tmp_path).stderr == ""
+    done = ok("compare", "deck.xmf", "--methods", "rcm", "--budget", "0.1", cwd=tmp_path)
+    assert done.stdout.startswith("deck.xmf: ")
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux's")
 def test_a_full_disk_behind_stdout_is_an_error(deck, tmp_path):
     with open("/dev/full", "w") as full:
-        for line in ("info deck.inp", "methods"):
+        for line in ("info deck.xmf", "methods"):
             words = [str(COMMAND), *line.split()]
             done = subprocess.run(words, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True)
             assert done.returncode == 2
@@ -227,9 +227,9 @@ def test_cells_are_never_lost(mesh, tmp_path):
 
 
 def test_what_cannot_be_read_or_written_gives_one_line(tmp_path):
-    (tmp_path / "bad.inp").write_text("*NODE\n1, what\n")
+    (tmp_path / "bad.bdf").write_text("GRID,1,,what\n")
     (tmp_path / "empty.exo").write_text("")
-    for line in ("info bad.inp", "info none.inp", "info empty.exo", "order bad.inp -o no/b.inp"):
+    for line in ("info bad.bdf", "info none.bdf", "info empty.exo", "order bad.bdf -o no/b.bdf"):
         done = run(*line.split(), cwd=tmp_path)
         assert done.returncode == 2 and done.stdout == ""
         assert re.fullmatch(r"(meshorder: .*\n)+", done.stderr)
@@ -238,9 +238,9 @@ def test_what_cannot_be_read_or_written_gives_one_line(tmp_path):
 
 def test_without_meshio_one_line_tells_how_to_get_it(tmp_path):
     (tmp_path / "meshio.py").write_text("raise ImportError\n")
-    done = run("info", "a.inp", cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path)})
+    done = run("info", "a.bdf", cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path)})
     assert done.returncode == 2 and done.stdout == ""
-    assert re.fullmatch(r"meshorder: a\.inp: .*pip install meshio.*\n", done.stderr)
+    assert re.fullmatch(r"meshorder: a\.bdf: .*pip install meshio.*\n", done.stderr)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX's signals")
@@ -248,7 +248,7 @@ def test_without_meshio_one_line_tells_how_to_get_it(tmp_path):
 def test_signals_end_it(deck, tmp_path, number):
     temporary = tmp_path / "tmp"
     temporary.mkdir()
-    command = [str(COMMAND), "compare", "deck.inp", "--budget", "60"]
+    command = [str(COMMAND), "compare", "deck.xmf", "--budget", "60"]
     environment = {**os.environ, "TMPDIR": str(temporary)}
 
     def heed():  # processes in the background ignore SIGINT

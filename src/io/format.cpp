@@ -18,8 +18,9 @@ namespace meshorder {
 namespace {
 
 const std::vector<Format> kFormats{
-    tetgen_format(),        vega_format(),        gmsh_format(), medit_format(), vtu_format(), vtk_format(),
-    off_format(),           obj_format(),         ply_format(),  stl_format(),   su2_format(),
+    tetgen_format(),        vega_format(),        gmsh_format(), medit_format(),
+    vtu_format(),           vtk_format(),         off_format(),  obj_format(),
+    ply_format(),           stl_format(),         su2_format(),  abaqus_format(),
 #ifdef MESHORDER_HAS_NETCDF
     exodus_format(),
 #endif
@@ -95,6 +96,26 @@ bool is_xdmf(std::string_view word, std::string_view rest_of_line, std::string_v
   return false;
 }
 
+/// Returns whether a file is a deck of Abaqus, whose first word, before the lines `rest`, has an asterisk as
+/// in Vega's files. Both have *MATERIAL and *INCLUDE.
+bool is_deck(std::string_view word, std::string_view rest) {
+  constexpr std::array<std::string_view, 4> kOfVega{"*VERTICES", "*ELEMENTS", "*SET", "*REGION"};
+  constexpr std::array<std::string_view, 4> kOfBoth{"*MATERIAL", "*INCLUDE", "*MATERIAL,", "*INCLUDE,"};
+  const auto is_one_of = [&](const auto& keywords) {
+    return std::any_of(keywords.begin(), keywords.end(),
+                       [&](std::string_view keyword) { return same_but_for_case(keyword, word); });
+  };
+  while (is_one_of(kOfBoth)) {
+    if (word.ends_with(',')) return true;
+    while (!rest.empty() && !trimmed(rest).starts_with('*')) {
+      rest.remove_prefix(std::min(rest.find_first_of("\r\n"), rest.size() - 1) + 1);
+    }
+    if (rest.empty()) return false;
+    word = next_word(rest, " \t\r\n");
+  }
+  return !is_one_of(kOfVega);
+}
+
 /// Returns the name of the format whose files begin like this, or an empty text. Comments and empty lines
 /// before the first word are passed over.
 std::string_view format_that_begins(std::string_view bytes) {
@@ -109,7 +130,7 @@ std::string_view format_that_begins(std::string_view bytes) {
     if (word.starts_with("$")) return "Gmsh";
     if (word.starts_with("MeshVersion")) return "Medit";
     if (word.starts_with("<")) return is_xdmf(word, line, bytes) ? "XDMF" : "VTU";
-    if (word.starts_with("*")) return "Vega";
+    if (word.starts_with("*")) return is_deck(word, bytes) ? "Abaqus" : "Vega";
     if (word.ends_with("OFF")) return "OFF";
     if (word == "ply") return "PLY";
     if (same_but_for_case(word, "solid")) return "STL";

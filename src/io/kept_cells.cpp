@@ -161,6 +161,9 @@ void keep_cells_at(Mesh& mesh, const std::vector<Index>& kept, Notes& notes) {
     for (const Index c : kept) ids.push_back(mesh.cell_ids[c]);
     mesh.cell_ids = std::move(ids);
   }
+  if (mesh.format_metadata) {
+    if (auto metadata = mesh.format_metadata->moved({}, place)) mesh.format_metadata = std::move(metadata);
+  }
 
   std::erase_if(mesh.data, [&](DataArray& array) {
     if (array.association == Association::vertices) return false;

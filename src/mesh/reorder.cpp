@@ -74,6 +74,10 @@ void move_all(Mesh& mesh, const Permutation& vertices, const Permutation& cells)
     const Permutation& order = set.association == Association::vertices ? vertices : cells;
     for (Index& member : set.members) member = order.old_to_new()[member];
   }
+  if (!mesh.format_metadata) return;
+  if (auto metadata = mesh.format_metadata->moved(vertices.old_to_new(), cells.old_to_new())) {
+    mesh.format_metadata = std::move(metadata);
+  }
 }
 
 void move_ids(std::vector<std::int64_t>& ids, const Permutation& order) {

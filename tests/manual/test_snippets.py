@@ -105,7 +105,7 @@ def sample_files(tmp_path_factory):
         meshorder.write(mesh, folder / name)
     import meshio
 
-    for name in ("my-mesh.inp", "part.inp"):
+    for name in ("my-mesh.inp", "part.bdf"):
         meshio.write(folder / name, meshio.Mesh(points, [("tetra", cells)]))
     import scipy.io
     import scipy.sparse

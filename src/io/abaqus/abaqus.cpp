@@ -1,0 +1,131 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/abaqus/abaqus.hpp"
+
+#include "io/abaqus/output.hpp"
+#include "io/all_formats.hpp"
+#include "io/labels.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/unsupported.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace meshorder::abaqus {
+namespace {
+
+/// Writes a deck of nodes, elements and sets for a mesh that has no deck of its own.
+class PlainWriter {
+ public:
+  PlainWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
+      : mesh_(mesh),
+        notes_(notes),
+        file_(path),
+        out_(file_, "\n"),
+        vertex_ids_(are_numbers(mesh.vertex_ids)),
+        cell_ids_(are_numbers(mesh.cell_ids)) {}
+
+  void write() {
+    write_nodes();
+    write_elements();
+    std::vector<EntitySet> sets = mesh_.sets;
+    add_sets_of_labels(sets);
+    write_sets(
+        out_, sets, [&](Index v) { return vertex_number(v); }, [&](Index c) { return cell_number(c); },
+        notes_);
+    file_.commit();
+    note_losses();
+  }
+
+ private:
+  /// Returns whether ids can be the numbers of nodes or elements: above 0, and each given once.
+  static bool are_numbers(std::vector<std::int64_t> ids) {
+    constexpr std::int64_t kLargest = 999'999'999;  // Abaqus's
+    std::sort(ids.begin(), ids.end());
+    return !ids.empty() && ids.front() > 0 && ids.back() <= kLargest &&
+           std::adjacent_find(ids.begin(), ids.end()) == ids.end();
+  }
+
+  [[nodiscard]] std::int64_t vertex_number(Index v) const {
+    return vertex_ids_ ? mesh_.vertex_ids[v] : v + std::int64_t{1};
+  }
+  [[nodiscard]] std::int64_t cell_number(Index c) const {
+    return cell_ids_ ? mesh_.cell_ids[c] : c + std::int64_t{1};
+  }
+
+  void write_nodes() {
+    out_.text("*NODE\n");
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      out_.node(vertex_number(v), mesh_.points[v], mesh_.dimension);
+    }
+  }
+
+  void write_elements() {
+    ElementKind last{Shape::polygon, 0};
+    std::vector<std::int64_t> nodes;
+    for (Index c = 0; c < mesh_.cell_count(); ++c) {
+      const auto cell = mesh_.cells[c];
+      const ElementKind kind{mesh_.cells.shapes[c], static_cast<int>(cell.size())};
+      if (kind != last) file_.print("*ELEMENT, TYPE={}\n", type_of(kind, mesh_.dimension == 2));
+      last = kind;
+      nodes.resize(cell.size());
+      for (std::size_t k = 0; k < cell.size(); ++k) nodes[node_place(kind, k)] = vertex_number(cell[k]);
+      out_.element(cell_number(c), nodes);
+    }
+  }
+
+  void add_sets_of_labels(std::vector<EntitySet>& sets) {
+    const Labels labels = labels_of(mesh_, Association::cells);
+    if (!labels.any()) return;
+    std::map<std::int64_t, EntitySet> by_label;
+    for (Index c = 0; c < mesh_.cell_count(); ++c) {
+      if (labels.given[c]) by_label[labels.values[c]].members.push_back(c);
+    }
+    for (auto& [label, set] : by_label) {
+      set.name = fmt::format("label_{}", label);
+      sets.push_back(std::move(set));
+    }
+    notes_.emplace_back("labels of cells are written as sets of the names label_N");
+  }
+
+  void note_losses() {
+    out_.note_rounded(notes_);
+    for (const DataArray& array : mesh_.data) {
+      if (&array != label_array(mesh_, Association::cells)) note_array_unsupported(array, "Abaqus", notes_);
+    }
+    for (const bool of_vertices : {true, false}) {
+      const auto& ids = of_vertices ? mesh_.vertex_ids : mesh_.cell_ids;
+      if (ids.empty() || (of_vertices ? vertex_ids_ : cell_ids_)) continue;
+      notes_.push_back(fmt::format(
+          "the ids of {} are not written: numbers of Abaqus are 1 to 999999999 and differ from each other",
+          of_vertices ? "vertices" : "cells"));
+    }
+    note_metadata_unsupported(mesh_, "Abaqus", notes_);
+  }
+
+  const Mesh& mesh_;
+  Notes& notes_;
+  OutputFile file_;
+  DeckOutput out_;
+  bool vertex_ids_;
+  bool cell_ids_;
+};
+
+bool holds(const Mesh& mesh, Shape shape, int vertices) {
+  return !type_of({shape, vertices}, false).empty() || own_deck(mesh) != nullptr;
+}
+
+void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
+  if (const Metadata* const own = own_deck(mesh)) return write_into_deck(mesh, *own, path, notes);
+  PlainWriter(mesh, path, notes).write();
+}
+
+}  // namespace
+}  // namespace meshorder::abaqus
+
+namespace meshorder {
+
+Format abaqus_format() { return {"Abaqus", {".inp"}, true, abaqus::read, abaqus::write, abaqus::holds}; }
+
+}  // namespace meshorder

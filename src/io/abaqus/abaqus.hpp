@@ -1,0 +1,74 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Declarations shared by the reader and the writers of Abaqus's and CalculiX's decks.
+
+#include "io/abaqus/elements.hpp"
+#include "io/format.hpp"
+#include "io/stream/id_map.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshorder::abaqus {
+
+enum class Part : std::uint8_t { text, nodes, elements };
+
+/// A card of a deck.
+struct Section {
+  Part part = Part::text;
+  /// All lines of the card, as they are in the file; of nodes and elements those of the keyword, and comments
+  /// between the data.
+  std::string text = {};
+  Index first = 0;  ///< of the file's nodes or elements that the card has
+  Index count = 0;
+  ElementKind kind = {};  ///< of elements
+};
+
+/// What a deck says, in its own order.
+struct Deck {
+  std::vector<Section> sections;
+  IdMap nodes;                  ///< numbers in the order of the file
+  IdMap elements;               ///< of those that are cells
+  std::vector<EntitySet> sets;  ///< of the deck; members are positions in the file
+  std::string line_end = "\n";
+  /// Cards that may name nodes or elements by number and are not understood: "*USER ELEMENT (line 12)". With
+  /// one of them all numbers must stay.
+  std::vector<std::string> unknown;
+  std::vector<std::string> contents;  ///< what other formats lose
+};
+
+/// A deck, and where its nodes and elements are in the mesh.
+struct Metadata final : FormatMetadata {
+  std::shared_ptr<const Deck> deck;
+  std::vector<Index> vertex_of;  ///< of each node of the file; empty if they are in its order
+  std::vector<Index> cell_of;    ///< of each element of the file; likewise
+  bool whole = true;             ///< false after cells were left out: the deck no longer fits the mesh
+
+  [[nodiscard]] std::vector<std::string> contents() const override { return deck->contents; }
+  [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,
+                                                            std::span<const Index> cells) const override;
+};
+
+/// Returns the deck that a mesh can be written into; null if it came from elsewhere or no longer fits. Valid
+/// as long as the mesh. O(cells).
+const Metadata* own_deck(const Mesh& mesh);
+
+/// Returns whether numbers in the mesh's deck must stay, because a card may have some that are not
+/// understood.
+bool binds_ids(const Mesh& mesh);
+
+/// Returns the positions, in the file, of items whose numbers are from, from + step, … ≤ to; ascending by
+/// number. `step` is 1 or more. O(numbers), or O(items) if these are fewer.
+std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step);
+
+Mesh read(const FilePath& path, Notes& notes);
+
+/// Writes a mesh into its deck; notes what has no place.
+void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes);
+
+}  // namespace meshorder::abaqus

@@ -1,0 +1,355 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Keywords and their data lines: Abaqus Keywords Reference Guide; G. Dhondt, CalculiX CrunchiX User's Manual,
+// "Input deck format".
+#include "io/abaqus/cards.hpp"
+
+#include "base/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <system_error>
+#include <utility>
+
+namespace meshorder::abaqus {
+namespace {
+
+constexpr std::string_view kEnds = "\r\n";
+
+/// Returns the bytes of the line at the front, with its end.
+std::string_view first_line(std::string_view text) {
+  const std::size_t end = text.find_first_of(kEnds);
+  if (end == std::string_view::npos) return text;
+  return text.substr(0, end + (text.substr(end, 2) == "\r\n" ? 2 : 1));
+}
+
+std::string_view without_end(std::string_view line) { return line.substr(0, line.find_first_of(kEnds)); }
+
+/// A part of a keyword line between commas; a comma in quotes is none.
+struct Piece {
+  std::size_t begin;
+  std::size_t end;
+};
+
+std::vector<Piece> pieces_of(std::string_view lines) {
+  std::vector<Piece> pieces;
+  bool quoted = false;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (lines[i] == '"') quoted = !quoted;
+    if (lines[i] != ',' || quoted) continue;
+    pieces.push_back({begin, i});
+    begin = i + 1;
+  }
+  pieces.push_back({begin, lines.size()});
+  return pieces;
+}
+
+/// Returns `text` in capitals and without blanks, which CalculiX passes over in keywords.
+std::string compact(std::string_view text) {
+  std::string result = capitals(text);
+  std::erase_if(result, [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; });
+  return result;
+}
+
+std::string_view without_quotes(std::string_view value) {
+  const bool quoted = value.size() >= 2 && value.front() == '"' && value.back() == '"';
+  return quoted ? value.substr(1, value.size() - 2) : value;
+}
+
+std::string_view trimmed_of_ends(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+Card::Parameter parameter_of(std::string_view piece) {
+  const std::size_t equals = piece.find('=');
+  Card::Parameter result{compact(piece.substr(0, equals)), {}};
+  if (equals != std::string_view::npos) {
+    result.value = without_quotes(trimmed_of_ends(piece.substr(equals + 1)));
+  }
+  return result;
+}
+
+}  // namespace
+
+const Card::Parameter* Card::find(std::string_view name) const {
+  const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const Parameter& parameter) { return parameter.name == name; });
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+std::string_view Card::value(std::string_view name) const {
+  const Parameter* const parameter = find(name);
+  return parameter == nullptr ? std::string_view() : parameter->value;
+}
+
+std::string_view keyword_lines(std::string_view lines) {
+  std::size_t length = 0;
+  while (length < lines.size()) {
+    const std::string_view line = first_line(lines.substr(length));
+    length += line.size();
+    if (!trimmed(without_end(line)).ends_with(',')) break;
+  }
+  return lines.substr(0, length);
+}
+
+Card parse_card(std::string_view lines) {
+  lines = keyword_lines(lines);
+  const std::vector<Piece> pieces = pieces_of(lines);
+  const auto text_of = [&](Piece piece) { return lines.substr(piece.begin, piece.end - piece.begin); };
+  Card card;
+  const std::string_view keyword = trimmed_of_ends(text_of(pieces.front()));
+  card.title = capitals(keyword);
+  card.keyword = compact(keyword.substr(keyword.starts_with('*') ? 1 : 0));
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    Card::Parameter parameter = parameter_of(text_of(pieces[i]));
+    if (!parameter.name.empty()) card.parameters.push_back(std::move(parameter));
+  }
+  return card;
+}
+
+std::string without_parameter(std::string_view lines, std::string_view name) {
+  const std::string_view keyword = keyword_lines(lines);
+  std::string result;
+  for (const Piece piece : pieces_of(keyword)) {
+    const std::string_view text = keyword.substr(piece.begin, piece.end - piece.begin);
+    if (piece.begin > 0 && parameter_of(text).name == name) {
+      // the end of the last line stays
+      const std::size_t last = text.find_last_not_of(" \t\r\n") + 1;
+      if (piece.end == keyword.size()) result += text.substr(last);
+      continue;
+    }
+    if (piece.begin > 0) result += ',';
+    result += text;
+  }
+  return result.append(lines.substr(keyword.size()));
+}
+
+std::string_view next_field(std::string_view& line) {
+  const std::size_t comma = line.find(',');
+  const std::string_view field = trimmed(line.substr(0, comma));
+  line = comma == std::string_view::npos ? std::string_view() : line.substr(comma + 1);
+  return field;
+}
+
+std::int64_t number_of(std::string_view field) {
+  if (const std::size_t dot = field.rfind('.');
+      dot != std::string_view::npos && dot > 0 &&
+      std::isdigit(static_cast<unsigned char>(field.front())) == 0) {
+    field.remove_prefix(dot + 1);
+  }
+  std::int64_t number = 0;
+  const char* const end = field.data() + field.size();
+  const auto [after, code] = std::from_chars(field.data(), end, number);
+  return code == std::errc{} && after == end && number > 0 ? number : 0;
+}
+
+std::string capitals(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return result;
+}
+
+namespace {
+
+/// Which fields of a data line are nodes (n), elements (e) and neither (-); the last letter stands for all
+/// further fields where a + follows.
+struct Layout {
+  std::string_view keyword;
+  std::string_view fields;
+};
+
+constexpr std::array kLayouts{
+    Layout{"BOUNDARY", "n"},       Layout{"BOUNDARYF", "e"},    Layout{"CFLUX", "n"},
+    Layout{"CLOAD", "n"},          Layout{"DFLUX", "e"},        Layout{"DISTRIBUTINGCOUPLING", "n"},
+    Layout{"DLOAD", "e"},          Layout{"DSFLUX", ""},        Layout{"DSLOAD", ""},
+    Layout{"ELSET", "e+"},         Layout{"FILM", "e"},         Layout{"KINEMATICCOUPLING", "n"},
+    Layout{"MASSFLOW", "e"},       Layout{"MODELCHANGE", "e+"}, Layout{"MPC", "-n+"},
+    Layout{"NODALTHICKNESS", "n"}, Layout{"NORMAL", "en"},      Layout{"NSET", "n+"},
+    Layout{"RADIATE", "e"},        Layout{"RELEASE", "e"},      Layout{"RETAINEDNODALDOFS", "n"},
+    Layout{"SUBMODEL", "n+"},      Layout{"TEMPERATURE", "n"},
+};
+
+/// Keywords whose lines name no node and no element by number.
+constexpr std::array<std::string_view, 115> kPlain{
+    // clang-format off
+    "AMPLITUDE", "ASSEMBLY", "BEAMGENERALSECTION", "BEAMSECTION", "BUCKLE", "CHANGEFRICTION",
+    "CHANGEMATERIAL", "CHANGEPLASTIC", "CLEARANCE", "COHESIVESECTION", "COMPLEXFREQUENCY", "CONDUCTIVITY",
+    "CONSTRAINT", "CONTACT", "CONTACTCONTROLS", "CONTACTDAMPING", "CONTACTFILE", "CONTACTINCLUSIONS",
+    "CONTACTOUTPUT", "CONTACTPAIR", "CONTACTPRINT", "CONTACTPROPERTYASSIGNMENT", "CONTROLS",
+    "COUPLEDTEMPERATURE-DISPLACEMENT", "COUPLING", "CREEP", "CYCLICHARDENING", "CYCLICSYMMETRYMODEL",
+    "DAMAGEEVOLUTION", "DAMAGEINITIATION", "DAMPING", "DASHPOT", "DEFORMATIONPLASTICITY", "DENSITY", "DEPVAR",
+    "DESIGNRESPONSE", "DISTRIBUTING", "DYNAMIC", "ELASTIC", "ELECTRICALCONDUCTIVITY", "ELEMENTOUTPUT",
+    "ELFILE", "ELPRINT", "ENDASSEMBLY", "ENDINSTANCE", "ENDPART", "ENDSTEP", "ENERGYFILE", "ENERGYOUTPUT",
+    "ENERGYPRINT", "EXPANSION", "FILEFORMAT", "FLUIDCONSTANTS", "FLUIDSECTION", "FREQUENCY", "FRICTION",
+    "GAP", "GAPCONDUCTANCE", "GAPHEATGENERATION", "GREEN", "HEADING", "HEATTRANSFER", "HOURGLASSSTIFFNESS",
+    "HYPERELASTIC", "HYPERFOAM", "INSTANCE", "KINEMATIC", "MAGNETICPERMEABILITY", "MASS", "MATERIAL",
+    "MEMBRANESECTION", "MODALDAMPING", "MODALDYNAMIC", "MOHRCOULOMB", "NOANALYSIS", "NODEFILE", "NODEOUTPUT",
+    "NODEPRINT", "OUTPUT", "PART", "PHYSICALCONSTANTS", "PLASTIC", "POTENTIAL", "PRE-TENSIONSECTION",
+    "PREPRINT", "RANDOMRESPONSE", "RATEDEPENDENT", "RESTART", "RIGIDBODY", "ROTARYINERTIA", "SECTIONCONTROLS",
+    "SECTIONPRINT", "SELECTCYCLICSYMMETRYMODES", "SENSITIVITY", "SHELLGENERALSECTION", "SHELLSECTION",
+    "SOLIDSECTION", "SPECIFICGASCONSTANT", "SPECIFICHEAT", "SPRING", "STATIC", "STEADYSTATEDYNAMICS", "STEP",
+    "SURFACEBEHAVIOR", "SURFACEINTERACTION", "TIE", "TIMEPOINTS", "TRANSFORM", "TRANSVERSESHEARSTIFFNESS",
+    "UNCOUPLEDTEMPERATURE-DISPLACEMENT", "USERMATERIAL", "VALUESATINFINITY", "VIEWFACTOR", "VISCO",
+    "VISCOELASTIC",
+    // clang-format on
+};
+
+/// Returns the fields of the cards whose parameters decide them; none for other cards.
+std::optional<std::string_view> fields_by_parameters(const Card& card) {
+  const std::string type = compact(card.value("TYPE"));
+  if (card.keyword == "SURFACE") {
+    if (type.empty() || type == "ELEMENT") return "e";
+    if (type == "NODE") return "n";
+  }
+  if (card.keyword == "INITIALCONDITIONS") {
+    constexpr std::array<std::string_view, 8> kOnNodes{"TEMPERATURE",   "VELOCITY",        "DISPLACEMENT",
+                                                       "FLUIDVELOCITY", "PRESSURE",        "MASSFLOW",
+                                                       "TOTALPRESSURE", "ROTATINGVELOCITY"};
+    if (std::find(kOnNodes.begin(), kOnNodes.end(), type) != kOnNodes.end()) return "n";
+    if (type == "STRESS" || type == "PLASTICSTRAIN") return "e";
+  }
+  if (card.keyword == "ORIENTATION") {
+    const std::string_view definition = card.value("DEFINITION");
+    if (definition.empty() || same_but_for_case(definition, "COORDINATES")) return "";
+  }
+  return {};
+}
+
+std::optional<std::string_view> fields_of(const Card& card) {
+  if (std::find(kPlain.begin(), kPlain.end(), card.keyword) != kPlain.end()) return "";
+  if (has_other_file(card)) return {};
+  if (const auto fields = fields_by_parameters(card)) return fields;
+  for (const Layout& layout : kLayouts) {
+    if (layout.keyword == card.keyword) return layout.fields;
+  }
+  return {};
+}
+
+/// Returns what the k-th field of a line is: n, e or -.
+char field_at(std::string_view fields, std::size_t k) {
+  const bool repeats = fields.ends_with('+');
+  const std::size_t given = fields.size() - (repeats ? 1 : 0);
+  if (k < given) return fields[k];
+  return repeats ? fields[given - 1] : '-';
+}
+
+/// Collects references from the lines below a keyword.
+class ReferenceFinder {
+ public:
+  ReferenceFinder(const Card& card, std::string_view lines) : card_(card), lines_(lines) {}
+
+  std::optional<std::vector<Reference>> find() {
+    const std::size_t begin = keyword_lines(lines_).size();
+    add_parameters(lines_.substr(0, begin));
+    if (card_.keyword == "EQUATION") {
+      if (has_other_file(card_)) return {};
+      for_lines(begin, [this](std::string_view line) { add_terms(line); });
+      return std::move(found_);
+    }
+    const auto fields = fields_of(card_);
+    if (!fields) return {};
+    if (!fields->empty()) for_lines(begin, [&](std::string_view line) { add_fields(line, *fields); });
+    return std::move(found_);
+  }
+
+ private:
+  template <class Work>
+  void for_lines(std::size_t begin, Work work) const {
+    while (begin < lines_.size()) {
+      const std::string_view line = first_line(lines_.substr(begin));
+      if (!trimmed(line).starts_with("**")) work(without_end(line));
+      begin += line.size();
+    }
+  }
+
+  void add(char kind, std::string_view field) {
+    const std::int64_t number = kind == '-' ? 0 : number_of(field);
+    if (number == 0) return;
+    const std::size_t dot = field.rfind('.');
+    if (dot != std::string_view::npos) field.remove_prefix(dot + 1);
+    found_.push_back({kind == 'n' ? Association::vertices : Association::cells,
+                      static_cast<std::size_t>(field.data() - lines_.data()), field.size(), number});
+  }
+
+  /// REF NODE=17 and the like.
+  void add_parameters(std::string_view keyword) {
+    for (const Piece piece : pieces_of(keyword)) {
+      const std::string_view text = keyword.substr(piece.begin, piece.end - piece.begin);
+      const std::size_t equals = text.find('=');
+      if (equals == std::string_view::npos) continue;
+      const std::string name = parameter_of(text).name;
+      if (name == "NODE" || name == "REFNODE" || name == "ROTNODE") {
+        add('n', trimmed_of_ends(text.substr(equals + 1)));
+      }
+    }
+  }
+
+  void add_fields(std::string_view line, std::string_view fields) {
+    bool through_fluid = false;  // CalculiX: the third field is a node of the fluid
+    for (std::size_t k = 0; !line.empty(); ++k) {
+      const std::string_view field = next_field(line);
+      add(through_fluid && k == 2 ? 'n' : field_at(fields, k), field);
+      through_fluid = k == 1 && names_fluid(field);
+    }
+  }
+
+  /// Returns whether a label of a load is one of CalculiX's for networks: F1FC of *FILM, P1NP of *DLOAD.
+  [[nodiscard]] bool names_fluid(std::string_view label) const {
+    const std::string text = capitals(label);
+    return (card_.keyword == "FILM" && text.ends_with("FC")) ||
+           (card_.keyword == "DLOAD" && text.ends_with("NP"));
+  }
+
+  /// A line of *EQUATION: the number of terms, or terms of node, direction and coefficient.
+  void add_terms(std::string_view line) {
+    if (terms_left_ == 0) {
+      terms_left_ = number_of(next_field(line));
+      return;
+    }
+    while (!line.empty() && terms_left_ > 0) {
+      const std::string_view field = next_field(line);
+      if (in_term_ == 0) add('n', field);
+      if (in_term_ == 2) --terms_left_;
+      in_term_ = (in_term_ + 1) % 3;
+    }
+  }
+
+  const Card& card_;
+  std::string_view lines_;
+  std::vector<Reference> found_;
+  std::int64_t terms_left_ = 0;  // of an equation
+  int in_term_ = 0;              // fields of the present term so far
+};
+
+}  // namespace
+
+bool has_other_file(const Card& card) { return card.has("INPUT") || card.has("FILE"); }
+
+std::optional<std::vector<Reference>> references(const Card& card, std::string_view lines) {
+  return ReferenceFinder(card, lines).find();
+}
+
+std::vector<std::int64_t> numbers_in(std::string_view lines) {
+  std::vector<std::int64_t> numbers;
+  const auto add = [&](std::string_view field) {
+    if (const std::int64_t number = number_of(field); number > 0) numbers.push_back(number);
+  };
+  std::size_t begin = keyword_lines(lines).size();
+  for (const Card::Parameter& parameter : parse_card(lines).parameters) add(parameter.value);
+  while (begin < lines.size()) {
+    std::string_view line = first_line(lines.substr(begin));
+    begin += line.size();
+    if (trimmed(line).starts_with("**")) continue;
+    line = without_end(line);
+    while (!line.empty()) add(next_field(line));
+  }
+  return numbers;
+}
+
+}  // namespace meshorder::abaqus

@@ -1,0 +1,73 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Keyword lines of Abaqus's and CalculiX's decks, and the numbers of nodes and elements in the lines below
+// them.
+
+#include <meshorder/mesh.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshorder::abaqus {
+
+/// A keyword with its parameters.
+struct Card {
+  struct Parameter {
+    std::string name;   ///< in capitals and without blanks: "REFNODE"
+    std::string value;  ///< as written, without quotes; empty if there is none
+  };
+  std::string title;    ///< in capitals: "*NODE PRINT"
+  std::string keyword;  ///< in capitals, without blanks and asterisk: "NODEPRINT"
+  std::vector<Parameter> parameters;
+
+  /// Returns the parameter of that name, null if it is not there. Valid as long as the card.
+  [[nodiscard]] const Parameter* find(std::string_view name) const;
+  [[nodiscard]] bool has(std::string_view name) const { return find(name) != nullptr; }
+  /// Returns the value of that parameter, an empty text without it. Valid as long as the card.
+  [[nodiscard]] std::string_view value(std::string_view name) const;
+};
+
+/// Returns the keyword line at the front and the lines that continue it: those after a comma at its end.
+std::string_view keyword_lines(std::string_view lines);
+
+/// Returns the card of a keyword line and the lines that continue it.
+Card parse_card(std::string_view lines);
+
+/// Returns a keyword line, and the lines that continue it, without that parameter and the comma before it.
+std::string without_parameter(std::string_view lines, std::string_view name);
+
+/// Removes the next field from the front of a data line and returns it without blanks around it.
+std::string_view next_field(std::string_view& line);
+
+/// Returns a field as the number of a node or element: digits, perhaps after the name of an instance and a
+/// dot. 0 for all else.
+std::int64_t number_of(std::string_view field);
+
+/// Returns `text` in capitals.
+std::string capitals(std::string_view text);
+
+/// A number of a node or element in the lines of a card.
+struct Reference {
+  Association association;
+  std::size_t begin;  ///< of its digits
+  std::size_t length;
+  std::int64_t number;
+};
+
+/// Returns whether the lines or numbers of a card are in another file.
+bool has_other_file(const Card& card);
+
+/// Returns where a card, given with its lines from the keyword on, names nodes and elements by number; none
+/// if the card is not known.
+std::optional<std::vector<Reference>> references(const Card& card, std::string_view lines);
+
+/// Returns all whole numbers above 0 that are the value of a parameter of a card, given with its lines, or
+/// stand alone in a field below its keyword.
+std::vector<std::int64_t> numbers_in(std::string_view lines);
+
+}  // namespace meshorder::abaqus

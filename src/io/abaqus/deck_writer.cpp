@@ -1,0 +1,245 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
+#include "io/abaqus/abaqus.hpp"
+#include "io/abaqus/cards.hpp"
+#include "io/abaqus/output.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+
+namespace meshorder::abaqus {
+namespace {
+
+/// The numbers that the nodes or elements of a file have in a mesh.
+class Numbers {
+ public:
+  Numbers(const IdMap& of_file, const std::vector<Index>& places, const std::vector<std::int64_t>& ids)
+      : of_file_(of_file), places_(places), ids_(ids) {}
+
+  /// Returns the position in the mesh of the k-th item of the file.
+  [[nodiscard]] Index place(Index k) const { return places_.empty() ? k : places_[k]; }
+  /// Returns the number of the item at that position in the mesh.
+  [[nodiscard]] std::int64_t at(Index place) const {
+    return ids_.empty() ? place + std::int64_t{1} : ids_[place];
+  }
+  /// Returns the present number of the item that had this one in the file; the same where there was none.
+  [[nodiscard]] std::int64_t now(std::int64_t number) const {
+    const Index k = of_file_.find(number);
+    return k < 0 ? number : at(place(k));
+  }
+  [[nodiscard]] bool all_as_in_file() const {
+    for (Index k = 0; k < of_file_.size(); ++k) {
+      if (at(place(k)) != of_file_.id(k)) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] const IdMap& of_file() const { return of_file_; }
+
+ private:
+  const IdMap& of_file_;
+  const std::vector<Index>& places_;
+  const std::vector<std::int64_t>& ids_;
+};
+
+class DeckWriter {
+ public:
+  DeckWriter(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes)
+      : mesh_(mesh),
+        deck_(*own.deck),
+        nodes_(deck_.nodes, own.vertex_of, mesh.vertex_ids),
+        elements_(deck_.elements, own.cell_of, mesh.cell_ids),
+        notes_(notes),
+        file_(path),
+        out_(file_, deck_.line_end),
+        same_numbers_(nodes_.all_as_in_file() && elements_.all_as_in_file()) {
+    if (same_numbers_ || deck_.unknown.empty()) return;
+    throw InputError(path.string(),
+                     "its numbers cannot change, as these may name some: " + join(deck_.unknown),
+                     "keep them: --ids keep");
+  }
+
+  void write() {
+    const auto after_last = [&](auto is_wanted) {
+      return std::find_if(deck_.sections.rbegin(), deck_.sections.rend(), is_wanted).base();
+    };
+    const auto after_mesh = after_last([](const Section& section) { return section.part != Part::text; });
+    const auto after_nodes = after_last([](const Section& section) { return section.part == Part::nodes; });
+    for (auto section = deck_.sections.begin();; ++section) {
+      if (section == after_nodes) write_sets_of_cards();
+      if (section == after_mesh) write_new_sets();
+      if (section == deck_.sections.end()) break;
+      write(*section);
+    }
+    file_.commit();
+    out_.note_rounded(notes_);
+  }
+
+ private:
+  void write(const Section& section) {
+    switch (section.part) {
+      case Part::nodes:
+        return write_nodes(section);
+      case Part::elements:
+        return write_elements(section);
+      case Part::text:
+        return same_numbers_ ? out_.text(section.text) : write_renumbered(section.text);
+    }
+  }
+
+  /// Returns the positions in the mesh of a card's items, ascending.
+  static std::vector<Index> places_of(const Section& section, const Numbers& numbers) {
+    std::vector<Index> places(static_cast<std::size_t>(section.count));
+    std::iota(places.begin(), places.end(), section.first);
+    for (Index& place : places) place = numbers.place(place);
+    std::sort(places.begin(), places.end());
+    return places;
+  }
+
+  /// Writes as many nodes as the card had, in the order of the mesh. Where they are not its own any more, the
+  /// card does not name their set; `write_sets_of_cards` does.
+  void write_nodes(const Section& section) {
+    out_.text(has_its_nodes(section) ? section.text : without_parameter(section.text, "NSET"));
+    for (Index v = section.first; v < section.first + section.count; ++v) {
+      out_.node(nodes_.at(v), mesh_.points[v], mesh_.dimension);
+    }
+  }
+
+  [[nodiscard]] bool has_its_nodes(const Section& section) const {
+    const std::vector<Index> places = places_of(section, nodes_);
+    return places.empty() ||
+           (places.front() == section.first && index_size(places) == places.back() + 1 - section.first);
+  }
+
+  /// Writes the sets that *NODE named, after the last of these cards.
+  void write_sets_of_cards() {
+    for (const Section& section : deck_.sections) {
+      if (section.part != Part::nodes || has_its_nodes(section)) continue;
+      const std::string set(parse_card(section.text).value("NSET"));
+      if (set.empty()) continue;
+      std::vector<std::int64_t> members;
+      for (const Index v : places_of(section, nodes_)) members.push_back(nodes_.at(v));
+      const bool quoted = set.find_first_of(" ,=") != std::string::npos;
+      out_.set(Association::vertices, quoted ? '"' + set + '"' : set, members);
+    }
+  }
+
+  void write_elements(const Section& section) {
+    out_.text(section.text);
+    std::vector<std::int64_t> nodes(static_cast<std::size_t>(section.kind.nodes));
+    for (const Index c : places_of(section, elements_)) {
+      const auto cell = mesh_.cells[c];
+      for (std::size_t k = 0; k < cell.size(); ++k) nodes[node_place(section.kind, k)] = nodes_.at(cell[k]);
+      out_.element(elements_.at(c), nodes);
+    }
+  }
+
+  [[nodiscard]] const Numbers& numbers_of(Association association) const {
+    return association == Association::vertices ? nodes_ : elements_;
+  }
+
+  /// Writes a card with the present numbers of the nodes and elements that it names.
+  void write_renumbered(const std::string& text) {
+    const Card card = parse_card(text);
+    if ((card.keyword == "NSET" || card.keyword == "ELSET") && card.has("GENERATE")) {
+      const Association association = card.keyword == "NSET" ? Association::vertices : Association::cells;
+      return write_generated(text, numbers_of(association));
+    }
+    std::size_t done = 0;
+    for (const Reference& reference : references(card, text).value_or(std::vector<Reference>())) {
+      out_.text(std::string_view(text).substr(done, reference.begin - done));
+      file_.integer("", numbers_of(reference.association).now(reference.number));
+      done = reference.begin + reference.length;
+    }
+    out_.text(std::string_view(text).substr(done));
+  }
+
+  /// Writes a set of ranges: as it is if the ranges hold the same items still, else as a list.
+  void write_generated(const std::string& text, const Numbers& numbers) {
+    std::vector<std::int64_t> now;
+    bool same = true;
+    const std::string_view keyword = keyword_lines(text);
+    std::string_view lines = std::string_view(text).substr(keyword.size());
+    while (!lines.empty()) {
+      std::string_view line = next_word(lines, "\r\n");
+      if (line.empty() || trimmed(line).starts_with("**")) continue;
+      std::array<std::int64_t, 3> range{0, 0, 1};
+      for (std::int64_t& value : range) {
+        const std::int64_t number = line.empty() ? 0 : number_of(next_field(line));
+        if (number > 0) value = number;
+      }
+      const auto& [from, to, step] = range;
+      if (from == 0) continue;
+      std::vector<std::int64_t> of_range;
+      std::vector<std::int64_t> before;
+      for (const Index k : items_in_range(numbers.of_file(), from, std::max(from, to), step)) {
+        before.push_back(numbers.of_file().id(k));
+        of_range.push_back(numbers.at(numbers.place(k)));
+      }
+      std::sort(of_range.begin(), of_range.end());
+      same = same && of_range == before;
+      now.insert(now.end(), of_range.begin(), of_range.end());
+    }
+    if (same) return out_.text(text);
+    out_.text(without_parameter(keyword, "GENERATE"));
+    out_.list(now);
+  }
+
+  static const EntitySet* find(const std::vector<EntitySet>& sets, const EntitySet& like) {
+    const auto found = std::find_if(sets.begin(), sets.end(), [&](const EntitySet& set) {
+      return set.association == like.association && set.name == like.name;
+    });
+    return found == sets.end() ? nullptr : &*found;
+  }
+
+  /// Returns whether a set of the mesh has the members that the deck says.
+  [[nodiscard]] bool is_as_in_deck(const EntitySet& set, const EntitySet& of_deck) const {
+    if (set.members.size() != of_deck.members.size()) return false;
+    std::vector<Index> members = set.members;
+    std::vector<Index> wanted = of_deck.members;
+    for (Index& member : wanted) member = numbers_of(set.association).place(member);
+    std::sort(members.begin(), members.end());
+    std::sort(wanted.begin(), wanted.end());
+    return members == wanted;
+  }
+
+  /// Writes sets that the deck does not have; notes those that are no longer as it has them.
+  void write_new_sets() {
+    std::vector<EntitySet> added;
+    for (const EntitySet& set : mesh_.sets) {
+      if (find(deck_.sets, set) == nullptr) added.push_back(set);
+    }
+    write_sets(
+        out_, added, [&](Index v) { return nodes_.at(v); }, [&](Index c) { return elements_.at(c); }, notes_);
+    for (const EntitySet& of_deck : deck_.sets) {
+      const EntitySet* const set = find(mesh_.sets, of_deck);
+      if (set != nullptr && is_as_in_deck(*set, of_deck)) continue;
+      notes_.push_back(fmt::format("the set '{}' of {} is written as the deck has it; changes of it are lost",
+                                   of_deck.name, to_string(of_deck.association)));
+    }
+  }
+
+  const Mesh& mesh_;
+  const Deck& deck_;
+  Numbers nodes_;
+  Numbers elements_;
+  Notes& notes_;
+  OutputFile file_;
+  DeckOutput out_;
+  bool same_numbers_;
+};
+
+}  // namespace
+
+void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes) {
+  DeckWriter(mesh, own, path, notes).write();
+  for (const DataArray& array : mesh.data) note_array_unsupported(array, "Abaqus", notes);
+}
+
+}  // namespace meshorder::abaqus

@@ -1,0 +1,78 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/abaqus/lines.hpp"
+
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace meshorder::abaqus {
+namespace {
+
+constexpr std::size_t kMostFiles = 10000;
+constexpr std::size_t kMostNested = 16;
+
+bool is_space(char c) { return c == ' ' || c == '\t'; }
+
+/// Returns whether a path stays in the folder that it starts from.
+bool stays_below(const std::filesystem::path& path) {
+  return path.is_relative() && std::find(path.begin(), path.end(), "..") == path.end();
+}
+
+}  // namespace
+
+DeckLines::DeckLines(const FilePath& path) : main_(path) {
+  files_.push_back({path, std::make_unique<Scanner>(path)});
+  const std::string_view text = at().all();
+  const std::size_t end = text.find_first_of("\r\n");
+  const bool is_pair = end != std::string_view::npos && text.substr(end, 2) == "\r\n";
+  line_end_ = is_pair ? "\r\n" : end != std::string_view::npos && text[end] == '\r' ? "\r" : "\n";
+}
+
+bool DeckLines::peek(std::string_view& line) {
+  while (at().bytes_left() == 0) {
+    if (files_.size() == 1) return false;
+    files_.pop_back();
+  }
+  line = at().peek_line();
+  // plain loops: this is done for every line of a mesh
+  while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
+  while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
+  return true;
+}
+
+std::string_view DeckLines::take() {
+  Scanner& file = at();
+  const auto begin = static_cast<std::size_t>(file.byte());
+  (void)file.raw_line();
+  const std::string_view line = file.all().substr(begin, static_cast<std::size_t>(file.byte()) - begin);
+  const bool has_end = line.ends_with('\n') || line.ends_with('\r');
+  if (has_end || files_.size() == 1) return line;
+  last_line_ = std::string(line) + line_end_;
+  return last_line_;
+}
+
+void DeckLines::fail(std::int64_t line, const std::string& what, const std::string& remedy) const {
+  throw InputError(Location{files_.back().scanner->file(), line, -1}, what, remedy);
+}
+
+void DeckLines::include(const std::string& name, std::int64_t line) {
+  const auto refuse = [&](std::string_view fault, const std::string& remedy) {
+    fail(line, fmt::format("the included file '{}' {}", shown(name), fault), remedy);
+  };
+  if (name.empty()) fail(line, "the name of a file is missing", "write *INCLUDE, INPUT=FILE");
+  if (!stays_below(name)) refuse("is not in the deck's folder", "put it there, or its lines into the deck");
+  const FilePath path = main_.beside(name);
+  if (!path.is_file()) refuse("does not exist", "put it into the deck's folder");
+  const bool circular = std::any_of(files_.begin(), files_.end(),
+                                    [&](const OpenFile& file) { return file.path.is_same(path); });
+  if (circular) refuse("includes itself", "remove the circle");
+  if (included_.size() == kMostFiles) fail(line, "more than 10000 files are included", "join them");
+  if (files_.size() > kMostNested) fail(line, "files are included more than 16 deep", "join some of them");
+  included_.push_back(name);
+  if (!path.is_empty()) files_.push_back({path, std::make_unique<Scanner>(path)});
+}
+
+}  // namespace meshorder::abaqus

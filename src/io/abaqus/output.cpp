@@ -1,0 +1,165 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/abaqus/output.hpp"
+
+#include "io/abaqus/cards.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <set>
+#include <utility>
+
+namespace meshorder::abaqus {
+namespace {
+
+constexpr std::size_t kPerLine = 16;
+constexpr std::size_t kMostCharacters = 20;
+
+/// Removes the plus and the leading zeros of an exponent.
+std::string_view without_padding(char* begin, char* end) {
+  char* const e = std::find(begin, end, 'e');
+  if (e == end) return {begin, static_cast<std::size_t>(end - begin)};
+  char* to = e + 1;
+  char* from = e + 1;
+  if (*from == '-') *to++ = *from;
+  while (from + 1 < end && std::isdigit(static_cast<unsigned char>(*from)) == 0) ++from;
+  while (from + 1 < end && *from == '0') ++from;
+  to = std::copy(from, end, to);
+  return {begin, static_cast<std::size_t>(to - begin)};
+}
+
+/// A number as text.
+struct RealText {
+  std::array<char, 40> buffer{};
+  std::string_view text;
+  bool is_rounded = false;
+
+  explicit RealText(double value) {
+    write(value);
+    if (text.size() <= kMostCharacters) return;
+    double rounded = 0;
+    for (int digits = 16; text.size() > kMostCharacters; --digits) {
+      char* const begin = buffer.data();
+      char* const end = begin + buffer.size();
+      text =
+          without_padding(begin, std::to_chars(begin, end, value, std::chars_format::scientific, digits).ptr);
+      std::from_chars(text.data(), text.data() + text.size(), rounded);
+      if (text.size() <= kMostCharacters) write(rounded);  // without zeros at its end
+    }
+    is_rounded = rounded != value;
+  }
+
+ private:
+  void write(double value) {
+    char* const begin = buffer.data();
+    char* const end = begin + buffer.size();
+    text = without_padding(begin, std::to_chars(begin, end, value).ptr);
+    if (text.size() <= kMostCharacters) return;
+    text = without_padding(begin, std::to_chars(begin, end, value, std::chars_format::scientific).ptr);
+  }
+};
+
+/// Returns a name that decks can have and that is not taken yet, in any case; takes it.
+std::string name_for(const std::string& given, std::set<std::string>& taken) {
+  constexpr std::size_t kLongest = 80;
+  std::string name = given;
+  std::replace_if(
+      name.begin(), name.end(),
+      [](unsigned char c) { return c <= ' ' || c == ',' || c == '"' || c == '=' || c == '*' || c == '.'; },
+      '_');
+  if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0) name = "set_" + name;
+  name.resize(std::min(name.size(), kLongest));
+  std::string result = name;
+  for (int k = 2; !taken.insert(capitals(result)).second; ++k) result = fmt::format("{}_{}", name, k);
+  return result;
+}
+
+}  // namespace
+
+std::string short_real(double value) { return std::string(RealText(value).text); }
+
+void DeckOutput::add(std::string_view before, std::int64_t number) {
+  const fmt::format_int digits(number);
+  line_.append(before).append(digits.data(), digits.size());
+}
+
+void DeckOutput::add_coordinate(double value) {
+  const RealText real(value);
+  if (real.is_rounded) ++rounded_;
+  line_.append(", ").append(real.text);
+}
+
+void DeckOutput::write_line() {
+  out_.write(line_ += line_end_);
+  line_.clear();
+}
+
+void DeckOutput::node(std::int64_t number, const Point& point, int dimension) {
+  add("", number);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) add_coordinate(point[k]);
+  write_line();
+}
+
+void DeckOutput::element(std::int64_t number, const std::vector<std::int64_t>& nodes) {
+  add("", number);
+  std::size_t on_line = 1;
+  for (const std::int64_t node : nodes) {
+    if (on_line == kPerLine) {
+      line_ += ',';
+      write_line();
+      on_line = 0;
+    }
+    add(on_line == 0 ? "" : ", ", node);
+    ++on_line;
+  }
+  write_line();
+}
+
+void DeckOutput::list(const std::vector<std::int64_t>& numbers) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    add(i % kPerLine == 0 ? "" : ", ", numbers[i]);
+    if (i % kPerLine == kPerLine - 1 || i + 1 == numbers.size()) write_line();
+  }
+}
+
+void DeckOutput::set(Association association, std::string_view name,
+                     const std::vector<std::int64_t>& members) {
+  const std::string_view keyword = association == Association::vertices ? "NSET" : "ELSET";
+  line_ = fmt::format("*{}, {}={}", keyword, keyword, name);
+  write_line();
+  list(members);
+}
+
+void DeckOutput::note_rounded(Notes& notes) const {
+  if (rounded_ == 0) return;
+  notes.push_back(
+      fmt::format("{} rounded to the 20 characters that Abaqus and CalculiX read of a number",
+                  rounded_ == 1 ? "one coordinate is" : fmt::format("{} coordinates are", rounded_)));
+}
+
+void write_sets(DeckOutput& out, const std::vector<EntitySet>& sets,
+                const std::function<std::int64_t(Index)>& vertex_number,
+                const std::function<std::int64_t(Index)>& cell_number, Notes& notes) {
+  std::array<std::set<std::string>, 2> taken;
+  for (const EntitySet& set : sets) {
+    const bool of_nodes = set.association == Association::vertices;
+    if (set.members.empty()) {
+      notes.push_back(fmt::format("the set '{}' of {} is not written: it has no members", set.name,
+                                  to_string(set.association)));
+      continue;
+    }
+    const std::string name = name_for(set.name, taken[of_nodes ? 0 : 1]);
+    if (name != set.name) notes.push_back(fmt::format("the set '{}' is written as '{}'", set.name, name));
+    std::vector<std::int64_t> numbers;
+    numbers.reserve(set.members.size());
+    for (const Index member : set.members) {
+      numbers.push_back(of_nodes ? vertex_number(member) : cell_number(member));
+    }
+    out.set(set.association, name, numbers);
+  }
+}
+
+}  // namespace meshorder::abaqus

@@ -1,0 +1,59 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/stream/output_file.hpp"
+#include <meshorder/io.hpp>
+#include <meshorder/mesh.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshorder::abaqus {
+
+/// Writes the lines of a deck.
+class DeckOutput {
+ public:
+  DeckOutput(OutputFile& out, std::string_view line_end) : out_(out), line_end_(line_end) {}
+
+  void text(std::string_view text) { out_.write(text); }
+
+  /// Writes the line of a node with `dimension` coordinates.
+  void node(std::int64_t number, const Point& point, int dimension);
+  /// Writes an element and the numbers of its nodes, 16 numbers on a line.
+  void element(std::int64_t number, const std::vector<std::int64_t>& nodes);
+  /// Writes numbers, 16 on a line.
+  void list(const std::vector<std::int64_t>& numbers);
+  /// Writes a set as *NSET or *ELSET.
+  void set(Association association, std::string_view name, const std::vector<std::int64_t>& members);
+
+  /// Notes that coordinates were rounded, if any were.
+  void note_rounded(Notes& notes) const;
+
+ private:
+  void add(std::string_view before, std::int64_t number);
+  void add_coordinate(double value);
+  /// Ends the line that was added to, and writes it.
+  void write_line();
+
+  OutputFile& out_;
+  std::string line_end_;
+  std::string line_;  // so far
+  std::int64_t rounded_ = 0;
+};
+
+/// Returns the text of a number in at most 20 characters, all that Abaqus and CalculiX read; it reads back to
+/// the same bits unless it had to be rounded.
+std::string short_real(double value);
+
+/// Writes the sets that `is_written` accepts under names that decks can have; notes names that change, and
+/// sets without members, which are left out.
+///
+/// @param vertex_number, cell_number  number of a vertex and of a cell by its position
+void write_sets(DeckOutput& out, const std::vector<EntitySet>& sets,
+                const std::function<std::int64_t(Index)>& vertex_number,
+                const std::function<std::int64_t(Index)>& cell_number, Notes& notes);
+
+}  // namespace meshorder::abaqus

@@ -1,0 +1,494 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Abaqus's and CalculiX's decks (.inp): Abaqus Analysis User's Guide, "Input syntax rules"; G. Dhondt,
+// CalculiX CrunchiX User's Manual, "Input deck format".
+#include "base/text.hpp"
+#include "io/abaqus/abaqus.hpp"
+#include "io/abaqus/cards.hpp"
+#include "io/abaqus/lines.hpp"
+#include "io/abaqus/sets.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+#include <unordered_set>
+#include <utility>
+
+namespace meshorder::abaqus {
+namespace {
+
+constexpr std::size_t kMostNodes = 20;
+
+bool is_comment(std::string_view line) { return line.starts_with("**"); }
+bool is_keyword(std::string_view line) { return line.starts_with('*') && !is_comment(line); }
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+void skip_blanks(std::string_view& line) {
+  while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+}
+
+/// Takes the next field of a data line if it is a plain number of type T; returns false and leaves it there
+/// otherwise. Reads each byte once, where `next_field` and a parser read it several times.
+template <class T>
+bool take_plain(std::string_view& line, T& value) {
+  std::string_view rest = line;
+  skip_blanks(rest);
+  const auto [after, code] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+  if (code != std::errc{}) return false;
+  rest.remove_prefix(static_cast<std::size_t>(after - rest.data()));
+  skip_blanks(rest);
+  if (!rest.empty() && rest.front() != ',') return false;
+  line = rest.substr(rest.empty() ? 0 : 1);
+  return true;
+}
+
+/// Returns why a card keeps a deck from being read; an empty text if it does not.
+std::string_view fault_of(std::string_view keyword) {
+  constexpr std::array<std::string_view, 6> kGenerators{"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY"};
+  if (std::find(kGenerators.begin(), kGenerators.end(), keyword) != kGenerators.end()) {
+    return "makes nodes or elements that have no lines to move";
+  }
+  return {};
+}
+
+/// A node of an element that no card before it has.
+struct UnknownNode {
+  Offset entry;  ///< of Cells::vertices
+  Index number;
+  std::int64_t line;
+  std::int32_t file;
+};
+
+class DeckReader {
+ public:
+  DeckReader(const FilePath& path, Notes& notes) : lines_(path), notes_(notes) {
+    if (lines_.at().all().find('\0') != std::string_view::npos) {
+      throw InputError(path.string(), "is no text, as decks of Abaqus and CalculiX are", "give its deck");
+    }
+    deck_->line_end = lines_.line_end();
+  }
+
+  Mesh read() {
+    std::string_view line;
+    while (lines_.peek(line)) {
+      if (is_keyword(line)) {
+        read_card();
+      } else if (line.empty() || is_comment(line) || has_card_) {
+        add_line();
+      } else {
+        lines_.at().fail(fmt::format("expected a keyword such as *NODE, found '{}'", shown(line)),
+                         "the file may be no deck of Abaqus or CalculiX");
+      }
+    }
+    finish();
+    return std::move(mesh_);
+  }
+
+ private:
+  // ---- cards
+
+  Section& begin_section(Part part, std::string text, std::int64_t line) {
+    lines_of_sections_.push_back(line);
+    Section& section = deck_->sections.emplace_back();
+    section.part = part;
+    section.text = std::move(text);
+    return section;
+  }
+
+  /// Takes a line into the text of the last card.
+  void add_line() {
+    if (deck_->sections.empty() || deck_->sections.back().part != Part::text) {
+      begin_section(Part::text, {}, lines_.at().line());
+    }
+    deck_->sections.back().text += lines_.take();
+  }
+
+  /// Takes a keyword line and the lines that continue it.
+  std::string take_keyword() {
+    std::string text(lines_.take());
+    std::string_view line;
+    while (trimmed(std::string_view(text).substr(0, text.find_last_not_of("\r\n") + 1)).ends_with(',') &&
+           lines_.peek(line) && !line.starts_with('*')) {
+      text += lines_.take();
+    }
+    return text;
+  }
+
+  void read_card() {
+    has_card_ = true;
+    line_ = lines_.at().line();
+    const std::string file = lines_.at().file();
+    std::string text = take_keyword();
+    const Card card = parse_card(text);
+    if (card.keyword == "INCLUDE") return lines_.include(std::string(card.value("INPUT")), line_);
+    if (const std::string_view fault = fault_of(card.keyword); !fault.empty()) {
+      lines_.fail(line_, fmt::format("{} {}", card.title, fault),
+                  "let a preprocessor write all nodes and elements");
+    }
+    if (card.keyword == "NODE") return read_nodes(card, std::move(text));
+    if (card.keyword == "ELEMENT") return read_elements(card, std::move(text));
+    follow_parts(card);
+    begin_section(Part::text, std::move(text), line_);
+    if (card.keyword == "NSET" || card.keyword == "ELSET") {
+      return read_set(card, {file, line_});
+    }
+    std::string_view line;
+    if (card.keyword == "SYSTEM" && lines_.peek(line) && !line.starts_with('*')) {
+      lines_.at().fail("*SYSTEM gives coordinates in a system of their own",
+                       "write the deck in global coordinates");
+    }
+  }
+
+  /// Checks that the deck has one part at most, in one instance.
+  void follow_parts(const Card& card) {
+    constexpr std::string_view kRemedy =
+        "write the deck without parts and assemblies: in Abaqus/CAE a choice of Model > Edit Attributes";
+    if (card.keyword == "PART" && ++parts_ > 1) {
+      lines_.fail(line_, "a second *PART, whose numbers are those of the first", std::string(kRemedy));
+    }
+    if (card.keyword == "INSTANCE" && ++instances_ > 1) {
+      lines_.fail(line_, "a second *INSTANCE, whose numbers are those of the first", std::string(kRemedy));
+    }
+    if (card.keyword == "ASSEMBLY" || card.keyword == "ENDINSTANCE") in_assembly_ = true;
+    if (card.keyword == "ENDASSEMBLY" || card.keyword == "INSTANCE") in_assembly_ = false;
+    sets_.enter_assembly(in_assembly_);
+  }
+
+  void refuse_in_assembly(std::string_view title) const {
+    if (!in_assembly_) return;
+    lines_.fail(line_, fmt::format("{} of the assembly, beside those of its part", title),
+                "write the deck without parts and assemblies: in Abaqus/CAE a choice of Model > Edit "
+                "Attributes");
+  }
+
+  /// Opens the file of the parameter INPUT, whose lines come inline. Returns the keyword's lines without it.
+  std::string with_input(const Card& card, std::string text) {
+    if (!card.has("INPUT")) return text;
+    lines_.include(std::string(card.value("INPUT")), line_);
+    return without_parameter(text, "INPUT");
+  }
+
+  // ---- data lines
+
+  /// Gives the next data line of nodes or elements, not yet taken; returns false at the next keyword.
+  /// Comments go to `comments`, blank lines nowhere.
+  bool peek_data(std::string_view& line, std::string& comments) {
+    while (lines_.peek(line)) {
+      if (line.empty()) {
+        (void)lines_.take();
+      } else if (is_comment(line)) {
+        comments += lines_.take();
+      } else {
+        return line.front() != '*';
+      }
+    }
+    return false;
+  }
+
+  /// Makes a section of comments that came after the last data line.
+  void end_data(std::string comments) {
+    if (!comments.empty()) begin_section(Part::text, std::move(comments), lines_.at().line());
+  }
+
+  /// Takes the number of a node or element from the front of a line.
+  Index take_number(std::string_view& line, std::string_view what) {
+    std::int64_t number = 0;
+    if (!take_plain(line, number)) number = parse_integer<std::int64_t>(lines_.at(), next_field(line), what);
+    if (number < 1 || number > kMaxIndex) {
+      lines_.at().fail(fmt::format("{} is {}", what, number), "1 to 2147483647 are possible");
+    }
+    return static_cast<Index>(number);
+  }
+
+  double take_coordinate(std::string_view& line) {
+    double value = 0;
+    if (!take_plain(line, value)) {
+      const std::string_view field = next_field(line);
+      if (!field.empty()) value = parse_real(lines_.at(), field, "a coordinate");
+    }
+    if (!std::isfinite(value)) lines_.at().fail("a coordinate is not finite", "a finite number is needed");
+    return value;
+  }
+
+  // ---- nodes
+
+  void read_nodes(const Card& card, std::string text) {
+    refuse_in_assembly("*NODE");
+    const std::string_view system = card.value("SYSTEM");
+    if (!system.empty() && !same_but_for_case(system, "R")) {
+      lines_.fail(line_, "*NODE gives coordinates in a system of their own",
+                  "write the deck in global coordinates");
+    }
+    const std::string set(card.value("NSET"));
+    text = with_input(card, std::move(text));
+    const std::size_t place = deck_->sections.size();
+    begin_section(Part::nodes, std::move(text), line_).first = mesh_.vertex_count();
+    std::string comments;
+    std::string_view line;
+    while (peek_data(line, comments)) {
+      deck_->sections[place].text += std::exchange(comments, {});
+      read_node(line);
+      (void)lines_.take();
+    }
+    Section& section = deck_->sections[place];
+    section.count = mesh_.vertex_count() - section.first;
+    if (!set.empty()) sets_.add_block(Association::vertices, set, section.first, section.count);
+    end_data(std::move(comments));
+  }
+
+  void read_node(std::string_view line) {
+    const Index number = take_number(line, "the number of a node");
+    if (!deck_->nodes.add(number)) {
+      lines_.at().fail(fmt::format("node {} is given twice", number), "numbers must differ");
+    }
+    Point point{0, 0, 0};
+    for (std::size_t k = 0; k < 3 && !line.empty(); ++k) {
+      if (k == 2) has_third_coordinate_ = true;
+      point[k] = take_coordinate(line);
+    }
+    if (line.find_first_not_of(" \t,") != std::string_view::npos) {
+      lines_.at().fail("a node has more than three coordinates", "give normals by *NORMAL");
+    }
+    mesh_.points.push_back(point);
+  }
+
+  // ---- elements
+
+  void read_elements(const Card& card, std::string text) {
+    refuse_in_assembly("*ELEMENT");
+    const std::string type = capitals(card.value("TYPE"));
+    if (type.empty()) lines_.fail(line_, "*ELEMENT has no TYPE", "write *ELEMENT, TYPE=C3D4 or the like");
+    const std::string set(card.value("ELSET"));
+    const auto kind = kind_of(type);
+    if (!kind) return keep_elements(type, card, std::move(text));
+    text = with_input(card, std::move(text));
+    const std::size_t place = deck_->sections.size();
+    Section& begun = begin_section(Part::elements, std::move(text), line_);
+    begun.first = mesh_.cell_count();
+    begun.kind = *kind;
+    std::string comments;
+    std::string_view line;
+    while (peek_data(line, comments)) {
+      deck_->sections[place].text += std::exchange(comments, {});
+      read_element(*kind, type, line, deck_->sections[place].text);
+    }
+    Section& section = deck_->sections[place];
+    section.count = mesh_.cell_count() - section.first;
+    if (section.count > 0) mesh_.cell_blocks.push_back(section.first);
+    if (!set.empty()) sets_.add_block(Association::cells, set, section.first, section.count);
+    note_type(type, *kind);
+    end_data(std::move(comments));
+  }
+
+  /// Reads an element, which goes on in the next lines until it has all nodes, and takes its lines.
+  void read_element(ElementKind kind, const std::string& type, std::string_view line, std::string& comments) {
+    const Index number = take_number(line, "the number of an element");
+    if (!deck_->elements.add(number)) {
+      lines_.at().fail(fmt::format("element {} is given twice", number), "numbers must differ");
+    }
+    const auto nodes = static_cast<std::size_t>(kind.nodes);
+    std::array<Index, kMostNodes> cell{};
+    const Offset first = mesh_.cells.offsets.back();
+    for (std::size_t given = 0;;) {
+      while (!line.empty()) {
+        skip_blanks(line);
+        if (line.empty() || line.front() == ',') {  // a comma at the end
+          line.remove_prefix(line.empty() ? 0 : 1);
+          continue;
+        }
+        if (given == nodes) {
+          lines_.at().fail(fmt::format("element {} has more than the {} nodes of {}", number, nodes, type),
+                           "remove them or give its type");
+        }
+        const Index node = take_number(line, "a node of the element");
+        // the k-th node of the element is the same vertex of the cell
+        const std::size_t k = node_place(kind, given++);
+        cell[k] = deck_->nodes.find(node);
+        if (cell[k] < 0) {
+          cell[k] = 0;
+          unknown_nodes_.push_back({first + static_cast<Offset>(k), node, lines_.at().line(), file_number()});
+        }
+      }
+      (void)lines_.take();
+      if (given == nodes) break;
+      if (!peek_data(line, comments)) {
+        lines_.at().fail(fmt::format("element {} has {} of the {} nodes of {}", number, given, nodes, type),
+                         "lines are missing");
+      }
+    }
+    mesh_.cells.push_back(kind.shape, {cell.data(), nodes});
+  }
+
+  /// Returns the number of the present file for `unknown_nodes_`.
+  std::int32_t file_number() {
+    const std::string& file = lines_.at().file();
+    if (files_.empty() || files_.back() != file) files_.push_back(file);
+    return static_cast<std::int32_t>(files_.size()) - 1;
+  }
+
+  /// Keeps elements of a type that is not known, as they are.
+  void keep_elements(const std::string& type, const Card& card, std::string text) {
+    text = with_input(card, std::move(text));
+    begin_section(Part::text, std::move(text), line_);
+    deck_->unknown.push_back(fmt::format("elements of type {} (line {})", shown(type), line_));
+    deck_->contents.push_back(fmt::format("elements of type {}", shown(type)));
+    if (const std::string_view set = card.value("ELSET"); !set.empty()) {
+      sets_.add_block(Association::cells, set, 0, 0);
+    }
+    std::string_view line;
+    bool goes_on = false;
+    while (lines_.peek(line) && !is_keyword(line)) {
+      if (!line.empty() && !is_comment(line)) {
+        const bool ends_with_comma = line.ends_with(',');
+        if (!goes_on) other_elements_.insert(take_number(line, "the number of an element"));
+        goes_on = ends_with_comma;
+      }
+      deck_->sections.back().text += lines_.take();
+    }
+  }
+
+  /// Remembers types that a mesh of another format would not be written as.
+  void note_type(const std::string& type, ElementKind kind) {
+    const bool usual = type == type_of(kind, true) || type == type_of(kind, false);
+    if (usual || std::find(types_.begin(), types_.end(), type) != types_.end()) return;
+    types_.push_back(type);
+  }
+
+  // ---- sets
+
+  void read_set(const Card& card, SetReader::Place place) {
+    const bool of_nodes = card.keyword == "NSET";
+    if (card.value(card.keyword).empty()) {
+      lines_.fail(line_, fmt::format("*{} has no name", card.keyword),
+                  fmt::format("write *{}, {}=NAME", card.keyword, card.keyword));
+    }
+    sets_.begin_card(of_nodes ? Association::vertices : Association::cells, card, std::move(place));
+    if (has_other_file(card)) return;
+    std::string_view line;
+    while (lines_.peek(line) && !is_keyword(line)) {
+      if (!is_comment(line)) {
+        if (const std::string fault = sets_.add_line(line); !fault.empty()) {
+          lines_.at().fail(fault, "numbers and names of sets are possible");
+        }
+      }
+      deck_->sections.back().text += lines_.take();
+    }
+  }
+
+  // ---- the end
+
+  void finish() {
+    if (deck_->nodes.size() == 0) throw InputError(lines_.at().file(), "has no *NODE", no_mesh());
+    if (deck_->elements.size() == 0) throw InputError(lines_.at().file(), "has no *ELEMENT", no_mesh());
+    resolve_nodes();
+    const bool has_volume = mesh_.cells.highest_dimension() == 3;
+    mesh_.dimension = has_volume || has_third_coordinate_ ? 3 : 2;
+    if (mesh_.cell_blocks.size() < 2) mesh_.cell_blocks.clear();
+    mesh_.vertex_ids = deck_->nodes.ids_unless_from(1);
+    mesh_.cell_ids = deck_->elements.ids_unless_from(1);
+    mesh_.sets = sets_.members(deck_->nodes, deck_->elements, other_elements_, mesh_.cells, notes_);
+    deck_->sets = mesh_.sets;
+    list_contents();
+    find_unknown_cards();
+    if (!lines_.included().empty()) {
+      notes_.push_back(
+          fmt::format("included files are part of the deck from here on: {}", join(lines_.included())));
+    }
+    auto metadata = std::make_shared<Metadata>();
+    metadata->deck = deck_;
+    mesh_.format_metadata = std::move(metadata);
+  }
+
+  static std::string no_mesh() { return "it may be cut short, or its mesh be in another file"; }
+
+  /// Finds nodes that come after the elements that name them.
+  void resolve_nodes() {
+    for (const UnknownNode& unknown : unknown_nodes_) {
+      const Index v = deck_->nodes.find(unknown.number);
+      if (v < 0) {
+        throw InputError(Location{files_[static_cast<std::size_t>(unknown.file)], unknown.line, -1},
+                         fmt::format("a node of the element is {}, which no *NODE has", unknown.number),
+                         "add it, or correct the element");
+      }
+      mesh_.cells.vertices[static_cast<std::size_t>(unknown.entry)] = v;
+    }
+  }
+
+  void list_contents() {
+    constexpr std::array<std::string_view, 4> kElsewhere{"HEADING", "NSET", "ELSET", "ELEMENT"};
+    std::vector<std::string> titles;
+    std::vector<std::string> surfaces;
+    for (const Section& section : deck_->sections) {
+      if (section.part != Part::text || !is_keyword(trimmed(section.text))) continue;
+      const Card card = parse_card(section.text);
+      if (card.keyword == "SURFACE") surfaces.push_back(fmt::format("'{}'", shown(card.value("NAME"))));
+      const bool elsewhere =
+          std::find(kElsewhere.begin(), kElsewhere.end(), card.keyword) != kElsewhere.end();
+      const std::string title = card.title;
+      if (elsewhere || std::find(titles.begin(), titles.end(), title) != titles.end()) continue;
+      titles.push_back(title);
+    }
+    std::vector<std::string>& contents = deck_->contents;
+    if (!types_.empty()) contents.push_back("the types of elements " + join(types_));
+    if (!surfaces.empty()) contents.push_back("surfaces of the deck: " + join(surfaces));
+    if (!titles.empty()) contents.push_back("cards of the deck: " + join(titles));
+  }
+
+  /// Lists the cards that may have numbers where nothing here looks for them.
+  void find_unknown_cards() {
+    for (std::size_t i = 0; i < deck_->sections.size(); ++i) {
+      const Section& section = deck_->sections[i];
+      if (section.part != Part::text || !is_keyword(trimmed(section.text))) continue;
+      const Card card = parse_card(section.text);
+      const bool is_set = card.keyword == "NSET" || card.keyword == "ELSET";
+      if (card.keyword == "ELEMENT" || (is_set && !has_other_file(card))) continue;
+      if (references(card, section.text)) continue;
+      const std::vector<std::int64_t> numbers = numbers_in(section.text);
+      const bool names_any = card.keyword == "PARAMETER" || has_other_file(card) ||
+                             std::any_of(numbers.begin(), numbers.end(), [&](std::int64_t number) {
+                               return deck_->nodes.find(number) >= 0 || deck_->elements.find(number) >= 0;
+                             });
+      if (names_any) {
+        deck_->unknown.push_back(fmt::format("{} (line {})", card.title, lines_of_sections_[i]));
+      }
+    }
+    if (deck_->unknown.empty()) return;
+    constexpr std::size_t kShown = 3;
+    const std::size_t more = deck_->unknown.size() - std::min(kShown, deck_->unknown.size());
+    const std::vector<std::string> first(deck_->unknown.begin(),
+                                         deck_->unknown.end() - static_cast<std::ptrdiff_t>(more));
+    notes_.push_back(fmt::format(
+        "all nodes and elements keep their numbers, and only their lines move, as these may name some by "
+        "number: {}{}",
+        join(first), more > 0 ? fmt::format(" and {} more", more) : ""));
+  }
+
+  DeckLines lines_;
+  Notes& notes_;
+  Mesh mesh_;
+  std::shared_ptr<Deck> deck_ = std::make_shared<Deck>();
+  SetReader sets_;
+  std::vector<std::int64_t> lines_of_sections_;
+  std::vector<UnknownNode> unknown_nodes_;
+  std::vector<std::string> files_;                   // of unknown_nodes_
+  std::unordered_set<std::int64_t> other_elements_;  // that are no cells
+  std::vector<std::string> types_;
+  std::int64_t line_ = 0;  // of the last keyword
+  int parts_ = 0;
+  int instances_ = 0;
+  bool in_assembly_ = false;  // outside of its instance
+  bool has_card_ = false;
+  bool has_third_coordinate_ = false;
+};
+
+}  // namespace
+
+Mesh read(const FilePath& path, Notes& notes) { return DeckReader(path, notes).read(); }
+
+}  // namespace meshorder::abaqus

@@ -1,0 +1,75 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/abaqus/cards.hpp"
+#include "io/stream/id_map.hpp"
+#include <meshorder/io.hpp>
+#include <meshorder/mesh.hpp>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <unordered_set>
+#include <vector>
+
+namespace meshorder::abaqus {
+
+/// The node and element sets of a deck: what its cards add to them, in their order, and then their members.
+class SetReader {
+ public:
+  /// Where a card of a set is.
+  struct Place {
+    std::string file;
+    std::int64_t line = 0;
+  };
+
+  /// Sets of the assembly and of its part have names of their own.
+  void enter_assembly(bool inside) { in_assembly_ = inside; }
+
+  /// Adds nodes or elements first, first + 1, … in the order of the file to the set of that name.
+  void add_block(Association association, std::string_view name, Index first, Index count);
+  /// Begins a card *NSET or *ELSET, whose lines follow.
+  void begin_card(Association association, const Card& card, Place place);
+  /// Adds a data line; returns what is wrong with it, an empty text if nothing is.
+  std::string add_line(std::string_view line);
+
+  /// Returns the sets with their members. Notes names and numbers that do not exist; `others` are elements
+  /// that are no cells.
+  std::vector<EntitySet> members(const IdMap& nodes, const IdMap& elements,
+                                 const std::unordered_set<std::int64_t>& others, const Cells& cells,
+                                 Notes& notes);
+
+ private:
+  /// What one card adds to a set.
+  struct Addition {
+    std::size_t set = 0;
+    Association association = Association::vertices;
+    bool in_assembly = false;
+    bool of_instance = false;  ///< names and numbers are those of the part
+    Place place = {};
+    bool generate = false;
+    Index first = 0;  ///< a block
+    Index count = 0;
+    std::vector<Index> numbers;
+    std::vector<std::array<std::int64_t, 3>> ranges;  ///< from, to, step
+    std::vector<std::string> names;
+    std::string nodes_of;  ///< an element set
+  };
+  using Key = std::tuple<Association, bool, std::string>;  ///< bool: of the assembly
+
+  std::size_t set_named(Association association, std::string_view name);
+  [[nodiscard]] const EntitySet* find(Association association, const Addition& from,
+                                      std::string_view name) const;
+  void add_members(const Addition& addition, const IdMap& items,
+                   const std::unordered_set<std::int64_t>& others, const Cells& cells, Notes& notes);
+
+  bool in_assembly_ = false;
+  std::vector<EntitySet> sets_;
+  std::map<Key, std::size_t> places_;
+  std::vector<Addition> additions_;
+};
+
+}  // namespace meshorder::abaqus

@@ -1,0 +1,594 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/abaqus/abaqus.hpp"
+
+#include "io/abaqus/cards.hpp"
+#include "io/abaqus/output.hpp"
+#include "io/format.hpp"
+#include "support/files.hpp"
+#include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+namespace meshorder {
+namespace {
+
+using abaqus::ElementKind;
+using test::TemporaryFolder;
+using test::with;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+// two hexahedra with a wedge on them and shells, with all kinds of references
+constexpr std::string_view kDeck =
+    "*Heading\n"
+    " a deck, 1, 2\n"
+    "** made by hand\n"
+    "*NODE, NSET=Nall\n"
+    "1, 0., 0., 0.\n"
+    "2, 1., 0, 0\n"
+    "3, 1, 1, 0\n"
+    "4, 0, 1, 0\n"
+    "** between\n"
+    "5, 0, 0, 1\n"
+    "6, 1, 0, 1\n"
+    "7, 1, 1, 1\n"
+    "8, 0, 1, 1\n"
+    "*Node\n"
+    "9, .1D0, 0, 2\n"
+    "10, 1, 0, 2\n"
+    "11, 1, 1, 2\n"
+    "12, 0, 1, 2\n"
+    "13, .5, 0, 3\n"
+    "14, .5, 1, 3\n"
+    "99, 5, 5\n"
+    "** elements\n"
+    "*ELEMENT, TYPE=C3D8R, ELSET=solid\n"
+    "1, 1, 2, 3, 4, 5, 6, 7, 8\n"
+    "2, 5, 6, 7, 8,\n"
+    "   9, 10, 11, 12\n"
+    "*element,type=s4,\n"
+    "  elset = \"the skin\"\n"
+    "11, 1, 4, 3, 2\n"
+    "12, 1, 2, 6, 5\n"
+    "13, 5, 6, 10, 9\n"
+    "*Element, type=C3D6, elset=solid\n"
+    "20, 9, 10, 13, 12, 11, 14\n"
+    "*NSET, nset=ENDS\n"
+    "1, 14,\n"
+    "3\n"
+    "*nset, NSET=ends\n"
+    "3, nall\n"
+    "*ELSET, ELSET=even, GENERATE\n"
+    "2, 20, 2\n"
+    "*ELSET, ELSET=all, GENERATE\n"
+    "11, 13, 1\n"
+    "*NSET, NSET=of skin, ELSET=\"THE SKIN\"\n"
+    "*SURFACE, NAME=top, TYPE=ELEMENT\n"
+    "20, S2\n"
+    "solid, S1\n"
+    "*MATERIAL, NAME=steel\n"
+    "*ELASTIC\n"
+    "210000, 0.3\n"
+    "*RIGID BODY, ELSET=all, REF NODE=99\n"
+    "*EQUATION\n"
+    "2\n"
+    "13, 1, 1., 14, 1, -1.\n"
+    "*MPC\n"
+    "BEAM, 1, 2\n"
+    "*Step, INC=10\n"
+    "*Boundary\n"
+    "ends, 1, 3\n"
+    "10, 2, 2\n"
+    "** not 13, 2\n"
+    "*Cload\n"
+    "  14 , 3, -10\n"
+    "*DLOAD\n"
+    "2, P1, 14.\n"
+    "*FILM\n"
+    "20, F2FC, 13, 5\n"
+    "*END STEP";
+
+Mesh read_deck(std::string_view content, Notes* notes = nullptr) {
+  const TemporaryFolder folder;
+  return read_mesh(folder.file("m.inp", content), {.notes = notes});
+}
+
+std::string deck_of(const Mesh& mesh, Notes* notes = nullptr) {
+  const TemporaryFolder folder;
+  write_mesh(mesh, folder.path() / "m.inp", notes);
+  return test::content_of(folder.path() / "m.inp");
+}
+
+const EntitySet& set_of(const Mesh& mesh, std::string_view name) {
+  const auto found = std::find_if(mesh.sets.begin(), mesh.sets.end(),
+                                  [&](const EntitySet& set) { return set.name == name; });
+  EXPECT_NE(found, mesh.sets.end()) << name;
+  return found == mesh.sets.end() ? mesh.sets.front() : *found;
+}
+
+/// Moves the last vertex and the last cell of each block to the front.
+void turn_round(Mesh& mesh, Ids ids) {
+  std::vector<Index> vertices(mesh.points.size());
+  std::iota(vertices.begin(), vertices.end(), Index{1});
+  vertices.back() = 0;
+  apply_reordering(mesh, Permutation::from_old_to_new(std::move(vertices)), test::shuffled_cells(mesh, 7),
+                   ids);
+}
+
+TEST(Abaqus, ReadsNodesElementsAndSets) {
+  Notes notes;
+  const Mesh mesh = read_deck(kDeck, &notes);
+  EXPECT_THAT(notes, IsEmpty());
+  ASSERT_EQ(mesh.vertex_count(), 15);
+  ASSERT_EQ(mesh.cell_count(), 6);
+  EXPECT_EQ(mesh.points[8], (Point{0.1, 0, 2}));
+  EXPECT_EQ(mesh.points[14], (Point{5, 5, 0}));
+  EXPECT_EQ(mesh.dimension, 3);
+  EXPECT_EQ(mesh.vertex_ids.back(), 99);
+  EXPECT_THAT(mesh.cell_ids, ElementsAre(1, 2, 11, 12, 13, 20));
+  EXPECT_THAT(mesh.cell_blocks, ElementsAre(0, 2, 5));
+  EXPECT_THAT(mesh.cells[1], ElementsAre(4, 5, 6, 7, 8, 9, 10, 11));
+  EXPECT_EQ(mesh.cells.shapes[2], Shape::quad);
+  EXPECT_THAT(mesh.cells[5], ElementsAre(8, 9, 12, 11, 10, 13));
+  EXPECT_THAT(set_of(mesh, "Nall").members, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
+  EXPECT_THAT(set_of(mesh, "solid").members, ElementsAre(0, 1, 5));
+  EXPECT_THAT(set_of(mesh, "the skin").members, ElementsAre(2, 3, 4));
+  EXPECT_THAT(set_of(mesh, "ENDS").members, ElementsAre(0, 13, 2, 1, 3, 4, 5, 6, 7));
+  EXPECT_THAT(set_of(mesh, "even").members, ElementsAre(1, 3, 5));
+  EXPECT_THAT(set_of(mesh, "of skin").members, ElementsAre(0, 3, 2, 1, 5, 4, 9, 8));
+}
+
+TEST(Abaqus, WritesWhatItReadButForTheLinesOfNodesAndElements) {
+  const std::string written = deck_of(read_deck(kDeck));
+  std::string expected(kDeck);
+  expected = with(expected, "1, 0., 0., 0.\n2, 1., 0, 0\n", "** between\n1, 0, 0, 0\n2, 1, 0, 0\n");
+  expected = with(expected, "4, 0, 1, 0\n** between\n", "4, 0, 1, 0\n");
+  expected = with(expected, ".1D0", "0.1");
+  expected = with(expected, "13, .5", "13, 0.5");
+  expected = with(expected, "14, .5", "14, 0.5");
+  expected = with(expected, "99, 5, 5\n", "99, 5, 5, 0\n");
+  expected = with(expected, "2, 5, 6, 7, 8,\n   9", "2, 5, 6, 7, 8, 9");
+  EXPECT_EQ(written, expected);
+  EXPECT_EQ(deck_of(read_deck(written)), written);
+}
+
+std::vector<std::string> sorted_lines(std::string_view text) {
+  std::vector<std::string> result;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size() - 1);
+    result.emplace_back(text.substr(0, end));
+    text.remove_prefix(end + 1);
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+TEST(Abaqus, MovesLinesAndKeepsNumbers) {
+  const Mesh mesh = read_deck(with(std::string(kDeck), "*NODE, NSET=Nall", "*NODE"));
+  Mesh moved = mesh;
+  turn_round(moved, Ids::keep);
+  const std::string text = deck_of(moved);
+  const std::string original = deck_of(mesh);
+  EXPECT_THAT(text, HasSubstr("*NODE\n** between\n99, 5, 5, 0\n1, 0, 0, 0\n"));
+  EXPECT_EQ(text.substr(text.find("*NSET")), original.substr(original.find("*NSET")))
+      << "cards after the mesh";
+  EXPECT_EQ(sorted_lines(text), sorted_lines(original)) << "the same lines in another order";
+  EXPECT_NE(text, original);
+}
+
+TEST(Abaqus, RenumbersAllThatNamesNodesAndElements) {
+  Mesh mesh = read_deck(kDeck);
+  turn_round(mesh, Ids::renumber);
+  const std::string text = deck_of(mesh);
+  // node 99 is the first now, and all others have moved up by one
+  EXPECT_THAT(text, HasSubstr("*NODE\n** between\n1, 5, 5, 0\n2, 0, 0, 0\n"));
+  EXPECT_THAT(
+      text, HasSubstr("14, 0.5, 0, 3\n99, 0.5, 1, 3\n*NSET, NSET=Nall\n2, 3, 4, 5, 6, 7, 8, 9\n** elements"))
+      << "the set of a card whose nodes are in two cards now";
+  EXPECT_THAT(text, HasSubstr("*NSET, nset=ENDS\n2, 99,\n4\n*nset, NSET=ends\n4, nall\n"));
+  EXPECT_THAT(text, HasSubstr("REF NODE=1\n"));
+  EXPECT_THAT(text, HasSubstr("*EQUATION\n2\n14, 1, 1., 99, 1, -1.\n*MPC\nBEAM, 2, 3\n"));
+  EXPECT_THAT(text,
+              HasSubstr("INC=10\n*Boundary\nends, 1, 3\n11, 2, 2\n** not 13, 2\n*Cload\n  99 , 3, -10\n"));
+  EXPECT_THAT(text, HasSubstr("*FILM\n20, F2FC, 14, 5\n"));
+  EXPECT_THAT(text, HasSubstr("*ELASTIC\n210000, 0.3\n"));
+  EXPECT_THAT(text, HasSubstr("*ELSET, ELSET=all, GENERATE\n11, 13, 1\n")) << "all of a block stay all of it";
+  EXPECT_TRUE(text.starts_with(kDeck.substr(0, kDeck.find("*NODE"))));
+  EXPECT_EQ(deck_of(read_deck(text)), text);
+  test::expect_same(test::sorted_members(read_deck(text)), test::sorted_members(mesh));
+}
+
+TEST(Abaqus, ListsARangeThatIsNoneAnyMore) {
+  Mesh mesh = read_deck(kDeck);
+  std::vector<Index> cells(mesh.cells.shapes.size());
+  std::iota(cells.begin(), cells.end(), Index{0});
+  std::swap(cells[2], cells[3]);
+  apply_reordering(mesh, Permutation::identity(mesh.vertex_count()),
+                   Permutation::from_old_to_new(std::move(cells)));
+  const std::string text = deck_of(mesh);
+  EXPECT_THAT(text, HasSubstr("*ELSET, ELSET=even\n2, 11, 20\n"));
+}
+
+TEST(Abaqus, ComesBackFromAnyOrder) {
+  for (const std::string& deck : {std::string(kDeck), with(std::string(kDeck), "*FILM", "*USER")}) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const Mesh mesh = read_deck(deck);
+      const Permutation vertices = test::shuffled(mesh.vertex_count(), seed);
+      const Permutation cells = test::shuffled_cells(mesh, seed);
+      Mesh moved = mesh;
+      apply_reordering(moved, vertices, cells);
+      Mesh back = read_deck(deck_of(moved));
+      test::expect_same(test::sorted_members(back), test::sorted_members(moved));
+      apply_reordering(back, vertices.inverse(), cells.inverse());
+      test::expect_same(test::sorted_members(back), test::sorted_members(mesh));
+      // cards come back, too, but ranges and sets of cards are lists now
+      const std::string text = deck_of(back);
+      EXPECT_THAT(text, HasSubstr(kDeck.substr(kDeck.find("*SURFACE"),
+                                               kDeck.find("*FILM") - kDeck.find("*SURFACE"))));
+    }
+  }
+}
+
+TEST(Abaqus, KeepsNumbersWhereACardMayNameThem) {
+  const std::string deck = with(std::string(kDeck), "*FILM", "*NEW LOAD");
+  Notes notes;
+  Mesh mesh = read_deck(deck, &notes);
+  EXPECT_THAT(notes,
+              ElementsAre("all nodes and elements keep their numbers, and only their lines move, as these "
+                          "may name some by number: *NEW LOAD (line 65)"));
+  const std::vector<std::int64_t> ids = mesh.vertex_ids;
+  turn_round(mesh, Ids::renumber);
+  EXPECT_EQ(mesh.vertex_ids.front(), 99);
+  EXPECT_THAT(deck_of(mesh), HasSubstr(kDeck.substr(kDeck.find("*NSET"), 400)));
+  mesh.vertex_ids = ids;
+  const TemporaryFolder folder;
+  EXPECT_THAT(test::write_error(mesh, folder.path() / "m.inp"), HasSubstr("*NEW LOAD (line 65); keep them"));
+
+  notes.clear();
+  (void)read_deck(with(std::string(kDeck), "*FILM\n20, F2FC, 13, 5", "*NEW LOAD\n200, F2FC, 1000"), &notes);
+  EXPECT_THAT(notes, IsEmpty()) << "no node or element has such a number";
+}
+
+TEST(Abaqus, KeepsElementsOfTypesThatItDoesNotKnow) {
+  const std::string deck = with(std::string(kDeck), "*NSET, nset=ENDS",
+                                "*ELEMENT, TYPE=U1, ELSET=user\n31, 1,\n2\n32, 2, 3\n*ELSET, ELSET=odd\n"
+                                "31, 1\n*NSET, nset=ENDS");
+  Notes notes;
+  Mesh mesh = read_deck(deck, &notes);
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("elements of type U1 (line 34)")));
+  EXPECT_EQ(mesh.cell_count(), 6);
+  EXPECT_THAT(set_of(mesh, "odd").members, ElementsAre(0));
+  EXPECT_THAT(set_of(mesh, "user").members, IsEmpty());
+  turn_round(mesh, Ids::renumber);
+  EXPECT_THAT(deck_of(mesh), HasSubstr("TYPE=U1, ELSET=user\n31, 1,\n2\n32, 2, 3\n"));
+}
+
+TEST(Abaqus, ReadsIncludedFiles) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "sub");
+  (void)folder.file("sub/nodes.txt", "1, 0, 0, 0\r\n2, 1, 0, 0\r\n3, 0, 1, 0\r\n4, 0, 0, 1");
+  (void)folder.file("cells.inc", "*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 4");
+  Notes notes;
+  const Mesh mesh = read_mesh(folder.file("m.inp",
+                                          "*NODE, INPUT=sub/nodes.txt, NSET=all\n*Include, Input=cells.inc\n"
+                                          "*NSET, NSET=a\n4\n"),
+                              {.notes = &notes});
+  EXPECT_THAT(notes,
+              ElementsAre("included files are part of the deck from here on: sub/nodes.txt, cells.inc"));
+  EXPECT_EQ(deck_of(mesh),
+            "*NODE, NSET=all\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n"
+            "*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 4\n*NSET, NSET=a\n4\n");
+
+  for (const auto& [name, fault] :
+       {std::pair{"/etc/passwd", "is not in the deck's folder"},
+        std::pair{"../m.inp", "is not in the deck's folder"}, std::pair{"none.inc", "does not exist"},
+        std::pair{"n.inp", "includes itself"}}) {
+    const auto path = folder.file("n.inp", std::string("** first\n*INCLUDE, INPUT=") + name + "\n");
+    EXPECT_THAT(test::read_error(path), HasSubstr(fault));
+    EXPECT_THAT(test::read_error(path), HasSubstr("n.inp:2: "));
+  }
+}
+
+TEST(Abaqus, ReadsOnePartInOneInstance) {
+  constexpr std::string_view kParts =
+      "*Part, name=beam\n*Node\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*Element, type=C3D4\n"
+      "1, 1, 2, 3, 4\n*Nset, nset=a\n1\n*End Part\n*Assembly, name=all\n*Instance, name=beam-1, part=beam\n"
+      "*End Instance\n*Nset, nset=A, instance=beam-1\n2, 3\n*Nset, nset=b\nbeam-1.4, beam-1.a, A\n"
+      "*End Assembly\n*Step\n*Boundary\nbeam-1.4, 1\n*End Step\n";
+  Mesh mesh = read_deck(kParts);
+  ASSERT_EQ(mesh.sets.size(), 3U);
+  EXPECT_THAT(set_of(mesh, "a").members, ElementsAre(0));
+  EXPECT_THAT(set_of(mesh, "Assembly.A").members, ElementsAre(1, 2));
+  EXPECT_THAT(set_of(mesh, "b").members, ElementsAre(3, 0, 1, 2));
+  EXPECT_EQ(deck_of(mesh), kParts);
+  turn_round(mesh, Ids::renumber);
+  EXPECT_THAT(deck_of(mesh), HasSubstr("3, 4\n*Nset, nset=b\nbeam-1.1, beam-1.a, A\n"));
+  EXPECT_THAT(deck_of(mesh), HasSubstr("*Boundary\nbeam-1.1, 1\n"));
+
+  const std::string second = with(std::string(kParts), "*End Instance\n",
+                                  "*End Instance\n*Instance, name=beam-2, part=beam\n*End Instance\n");
+  const TemporaryFolder folder;
+  EXPECT_THAT(test::read_error(folder.file("m.inp", second)), HasSubstr(":15: a second *INSTANCE"));
+  const std::string of_assembly = with(std::string(kParts), "*End Assembly\n", "*Node\n1, 2, 3, 4\n");
+  EXPECT_THAT(test::read_error(folder.file("m.inp", of_assembly)), HasSubstr(":19: *NODE of the assembly"));
+}
+
+TEST(Abaqus, KeepsLineEndsOfTheFile) {
+  std::string deck(kDeck);
+  for (std::size_t at = deck.find('\n'); at != std::string::npos; at = deck.find('\n', at + 2)) {
+    deck.replace(at, 1, "\r\n");
+  }
+  Mesh mesh = read_deck(deck);
+  turn_round(mesh, Ids::renumber);
+  std::string text = deck_of(mesh);
+  for (std::size_t at = text.find("\r\n"); at != std::string::npos; at = text.find("\r\n", at))
+    text.erase(at, 2);
+  EXPECT_THAT(text, Not(testing::AnyOf(HasSubstr("\n"), HasSubstr("\r"))));
+}
+
+TEST(Abaqus, KnowsTypesByRule) {
+  const auto is = [](std::string_view type, Shape shape, int nodes) {
+    const auto kind = abaqus::kind_of(type);
+    return kind && *kind == ElementKind{shape, nodes};
+  };
+  for (const std::string_view type : {"C3D4", "C3D4H", "DC3D4", "AC3D4", "F3D4", "C3D4P"}) {
+    EXPECT_TRUE(is(type, Shape::tetrahedron, 4)) << type;
+  }
+  for (const std::string_view type : {"C3D10", "C3D10M", "C3D10MH", "C3D10T", "DC3D10"}) {
+    EXPECT_TRUE(is(type, Shape::tetrahedron, 10)) << type;
+  }
+  for (const std::string_view type : {"C3D8", "C3D8R", "C3D8I", "C3D8RHT", "SC8R", "COH3D8", "DCC3D8D"}) {
+    EXPECT_TRUE(is(type, Shape::hexahedron, 8)) << type;
+  }
+  for (const std::string_view type : {"S3", "S3R", "STRI3", "CPS3", "CPE3", "CAX3", "R3D3", "M3D3", "DS3"}) {
+    EXPECT_TRUE(is(type, Shape::triangle, 3)) << type;
+  }
+  for (const std::string_view type :
+       {"S4", "S4R5", "CPEG4R", "CAX4RHT", "M3D4R", "SFM3D4", "R3D4", "COH2D4"}) {
+    EXPECT_TRUE(is(type, Shape::quad, 4)) << type;
+  }
+  for (const std::string_view type :
+       {"B21", "B31H", "B33", "PIPE31", "T2D2", "T3D2", "SAX1", "SPRINGA", "ELBOW31"}) {
+    EXPECT_TRUE(is(type, Shape::line, 2)) << type;
+  }
+  for (const std::string_view type : {"B22", "B32OS", "T3D3", "SAX2", "PIPE32"}) {
+    EXPECT_TRUE(is(type, Shape::line, 3)) << type;
+  }
+  EXPECT_TRUE(is("C3D5", Shape::pyramid, 5));
+  EXPECT_TRUE(is("C3D6", Shape::wedge, 6));
+  EXPECT_TRUE(is("C3D15", Shape::wedge, 15));
+  EXPECT_TRUE(is("C3D20RP", Shape::hexahedron, 20));
+  EXPECT_TRUE(is("STRI65", Shape::triangle, 6));
+  EXPECT_TRUE(is("S8R5", Shape::quad, 8));
+  EXPECT_TRUE(is("S9R5", Shape::quad, 9));
+  EXPECT_TRUE(is("MASS", Shape::vertex, 1));
+  for (const std::string_view type : {"U1", "C3D27", "CONN3D2", "CIN3D8", "D", "C3D", "S", ""}) {
+    EXPECT_FALSE(abaqus::kind_of(type)) << type;
+  }
+}
+
+TEST(Abaqus, WritesAllTypesThatItHolds) {
+  const Format& format = format_named("abaqus");
+  std::vector<std::pair<Shape, int>> types = test::linear_types();
+  const auto quadratic = test::quadratic_types();
+  types.insert(types.end(), quadratic.begin(), quadratic.end());
+  int held = 0;
+  for (const auto& [shape, count] : types) {
+    Mesh mesh = test::cells_of_type(shape, count, 3);
+    mesh.data.clear();
+    for (Point& point : mesh.points) {
+      for (double& x : point) x = std::round(x * 1e6) / 1e6;  // to be written in full
+    }
+    if (!format.holds(mesh, shape, count)) continue;
+    ++held;
+    test::expect_write_and_read(mesh, "m.inp");
+    const Mesh again = read_deck(deck_of(mesh));
+    EXPECT_EQ(again.cells, mesh.cells) << type_name(shape, count);
+    EXPECT_EQ(deck_of(again), deck_of(mesh)) << type_name(shape, count);
+  }
+  EXPECT_EQ(held, 14);
+}
+
+TEST(Abaqus, PutsTheMiddleOfALineBetweenItsEnds) {
+  const Mesh mesh = test::cells_of_type(Shape::line, 3, 1);
+  EXPECT_THAT(deck_of(mesh), HasSubstr("*ELEMENT, TYPE=T3D3\n1, 1, 3, 2\n"));
+}
+
+TEST(Abaqus, WritesAPlainDeck) {
+  Mesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1e-300}};
+  mesh.cells.push_back(Shape::tetrahedron, std::array<Index, 4>{0, 1, 2, 3});
+  mesh.cells.push_back(Shape::triangle, std::array<Index, 3>{0, 2, 1});
+  mesh.vertex_ids = {5, 6, 7, 9};
+  mesh.data = {{std::string(kLabel), Association::cells, 1, std::vector<std::int32_t>{3, 4}, {}, {}}};
+  mesh.sets = {{"a b", Association::vertices, {0, 3}},
+               {"A_B", Association::vertices, {1}},
+               {"1", Association::cells, {1}},
+               {"none", Association::cells, {}}};
+  Notes notes;
+  EXPECT_EQ(deck_of(mesh, &notes),
+            "*NODE\n5, 0, 0, 0\n6, 1, 0, 0\n7, 0, 1, 0\n9, 0, 0, -1e-300\n"
+            "*ELEMENT, TYPE=C3D4\n1, 5, 6, 7, 9\n*ELEMENT, TYPE=S3\n2, 5, 7, 6\n"
+            "*NSET, NSET=a_b\n5, 9\n*NSET, NSET=A_B_2\n6\n*ELSET, ELSET=set_1\n2\n"
+            "*ELSET, ELSET=label_3\n1\n*ELSET, ELSET=label_4\n2\n");
+  EXPECT_THAT(notes, ElementsAre("labels of cells are written as sets of the names label_N",
+                                 "the set 'a b' is written as 'a_b'", "the set 'A_B' is written as 'A_B_2'",
+                                 "the set '1' is written as 'set_1'",
+                                 "the set 'none' of cells is not written: it has no members"));
+}
+
+TEST(Abaqus, WritesNumbersInTwentyCharacters) {
+  EXPECT_EQ(abaqus::short_real(1), "1");
+  EXPECT_EQ(abaqus::short_real(1e-5), "1e-5");
+  EXPECT_EQ(abaqus::short_real(1e100), "1e100");
+  EXPECT_EQ(abaqus::short_real(-0.1), "-0.1");
+  EXPECT_EQ(abaqus::short_real(-0.000997305283291371), "-9.97305283291371e-4")
+      << "as it is, in 20 characters";
+  for (const double value : {-1.2345678901234567e-5, -1.2345678901234567e-105, 0.00012345678901234567,
+                             -123456.78901234567, 0.1 + 0.2, -2.2250738585072014e-308}) {
+    const std::string text = abaqus::short_real(value);
+    EXPECT_LE(text.size(), 20U) << text;
+    double again = 0;
+    std::from_chars(text.data(), text.data() + text.size(), again);
+    EXPECT_NEAR(again / value, 1, 1e-12) << text;
+  }
+  Mesh mesh = test::cells_of_type(Shape::triangle, 3, 1);
+  mesh.points = {{-1.2345678901234567e-5, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  Notes notes;
+  (void)deck_of(mesh, &notes);
+  EXPECT_THAT(notes, testing::Contains(HasSubstr("one coordinate is rounded")));
+}
+
+TEST(Abaqus, AddsNewSetsToItsDeck) {
+  Mesh mesh = read_deck(kDeck);
+  mesh.sets.push_back({"new", Association::vertices, {14, 0}});
+  const std::string text = deck_of(mesh);
+  EXPECT_THAT(text, HasSubstr("20, 9, 10, 13, 12, 11, 14\n*NSET, NSET=new\n99, 1\n*NSET, nset=ENDS"));
+  mesh.sets.front().members.pop_back();
+  Notes notes;
+  (void)deck_of(mesh, &notes);
+  EXPECT_THAT(
+      notes, ElementsAre("the set 'Nall' of vertices is written as the deck has it; changes of it are lost"));
+}
+
+TEST(Abaqus, IsAPlainDeckAfterCellsWereLeftOut) {
+  Mesh mesh = read_deck(kDeck);
+  (void)keep_cells(mesh, {.dimension = 2});
+  Notes notes;
+  const std::string text = deck_of(mesh, &notes);
+  EXPECT_THAT(text, HasSubstr("*ELEMENT, TYPE=S4\n11, 1, 4, 3, 2\n12, 1, 2, 6, 5\n13, 5, 6, 10, 9\n"));
+  EXPECT_THAT(text, Not(HasSubstr("*MATERIAL")));
+  EXPECT_THAT(notes, testing::Contains(HasSubstr("cards of the deck: *SURFACE, *MATERIAL, *ELASTIC")));
+}
+
+TEST(Abaqus, NamesWhatOthersLose) {
+  const Mesh mesh = read_deck(kDeck);
+  EXPECT_THAT(mesh.format_metadata->contents(),
+              ElementsAre("the types of elements C3D8R", "surfaces of the deck: 'top'",
+                          HasSubstr("cards of the deck: *SURFACE, *MATERIAL")));
+}
+
+TEST(Abaqus, IsToldFromVegaByItsFirstBytes) {
+  const auto is = [](std::string_view bytes) {
+    const Format* const format = format_of_bytes(bytes);
+    return format == nullptr ? "" : std::string(format->name);
+  };
+  EXPECT_EQ(is("** comment\n*Heading\n"), "Abaqus");
+  EXPECT_EQ(is("\n*NODE\n1, 2, 3, 4"), "Abaqus");
+  EXPECT_EQ(is("*Include, input=a.inp"), "Abaqus");
+  EXPECT_EQ(is("*MATERIAL, NAME=a\n*NODE"), "Abaqus");
+  EXPECT_EQ(is("*VERTICES\n4 3"), "Vega");
+  EXPECT_EQ(is("*MATERIAL steel\nENU, 1, 2\n*VERTICES\n"), "Vega");
+  EXPECT_EQ(is("*INCLUDE a.veg\n"), "Vega");
+}
+
+TEST(Abaqus, NotesMembersThatDoNotExist) {
+  Notes notes;
+  const std::string deck = with(std::string(kDeck), "1, 14,\n3\n", "1, 14,\n3, 77, 78, nobody\n");
+  const Mesh mesh = read_deck(deck, &notes);
+  ASSERT_EQ(notes.size(), 2U);
+  EXPECT_THAT(notes[0],
+              HasSubstr("m.inp:34: the node set 'ENDS' names 2 numbers that the deck does not have, the "
+                        "first is 77"));
+  EXPECT_THAT(notes[1], HasSubstr("the set 'nobody', which does not exist"));
+}
+
+TEST(Abaqus, RefusesBrokenFiles) {
+  const auto changed = [](std::string_view old, std::string_view fresh) {
+    return with(std::string(kDeck), old, fresh);
+  };
+  const auto line_of = [](std::string_view text) {
+    const std::string_view before = kDeck.substr(0, kDeck.find(text));
+    std::string result = ":";
+    result.append(std::to_string(1 + std::count(before.begin(), before.end(), '\n')));
+    return result.append(": ");
+  };
+  test::expect_broken(
+      "m.inp",
+      {{"no keyword", "1, 2, 3\n*NODE\n", ":1: expected a keyword such as *NODE, found '1, 2, 3'"},
+       {"no nodes", "*ELEMENT, TYPE=C3D4\n", "has no *NODE"},
+       {"no elements", "*NODE\n1, 2, 3\n", "has no *ELEMENT"},
+       {"a word", changed("3, 1, 1, 0", "3, 1, one, 0"), line_of("3, 1, 1, 0") + "a coordinate is 'one'"},
+       {"not finite", changed("3, 1, 1, 0", "3, 1, nan, 0"),
+        line_of("3, 1, 1, 0") + "a coordinate is not finite"},
+       {"huge", changed("3, 1, 1, 0", "3, 1, 1e999, 0"), line_of("3, 1, 1, 0") + "a coordinate is 1e999"},
+       {"number 0", changed("3, 1, 1, 0", "0, 1, 1, 0"), line_of("3, 1, 1, 0") + "the number of a node is 0"},
+       {"huge number", changed("3, 1, 1, 0", "3000000000, 1, 1, 0"), "1 to 2147483647 are possible"},
+       {"fourth coordinate", changed("3, 1, 1, 0", "3, 1, 1, 0, 1"), "more than three coordinates"},
+       {"node twice", changed("3, 1, 1, 0", "2, 1, 1, 0"), line_of("3, 1, 1, 0") + "node 2 is given twice"},
+       {"element twice", changed("12, 1, 2, 6, 5", "11, 1, 2, 6, 5"),
+        line_of("12, 1, 2, 6, 5") + "element 11 is given twice"},
+       {"no such node", changed("12, 1, 2, 6, 5", "12, 1, 2, 6, 55"),
+        line_of("12, 1, 2, 6, 5") + "a node of the element is 55, which no *NODE has"},
+       {"too few nodes", changed("12, 1, 2, 6, 5", "12, 1, 2, 6"),
+        line_of("13, 5, 6, 10, 9") + "element 12 has more than the 4 nodes of S4"},
+       {"cut element", changed("13, 5, 6, 10, 9", "13, 5, 6"),
+        line_of("*Element, type=C3D6") + "element 13 has 2 of the 4 nodes of S4"},
+       {"too many nodes", changed("12, 1, 2, 6, 5", "12, 1, 2, 6, 5, 3"),
+        line_of("12, 1, 2, 6, 5") + "element 12 has more than the 4 nodes of S4"},
+       {"no type", changed("type=C3D6", "typ=C3D6"), line_of("*Element, type=C3D6") + "*ELEMENT has no TYPE"},
+       {"no name", changed("nset=ENDS", "set=ENDS"), line_of("*NSET, nset=ENDS") + "*NSET has no name"},
+       {"generated nodes", changed("*Step", "*NGEN"), line_of("*Step") + "*NGEN makes nodes or elements"},
+       {"cylindrical nodes", changed("NSET=Nall", "SYSTEM=C"), ":4: *NODE gives coordinates in a system"},
+       {"another system", changed("*NODE,", "*SYSTEM\n0, 0, 1\n*NODE,"), ":5: *SYSTEM gives coordinates"},
+       {"bad range", changed("2, 20, 2", "20, 2, 2"), line_of("2, 20, 2") + "the range 20 to 2 is empty"},
+       {"long range", changed("2, 20, 2", "2, 20, 2, 1"), "a line of GENERATE has first, last and step"},
+       {"huge member", changed("1, 14,\n3\n", "1, 14,\n3000000000\n"), "the number 3000000000 is too large"},
+       {"binary", std::string("*NODE\n1\0", 8), "is no text"}});
+  const Mesh sparse = read_deck(with(std::string(kDeck), "2, 20, 2", "2, 999999999999, 2"));
+  EXPECT_EQ(set_of(sparse, "even").members.size(), 3U) << "in time proportional to the elements";
+}
+
+TEST(Abaqus, NoticesATruncatedMesh) {
+  // without cards after the mesh, so that a cut can only be in it
+  const std::string mesh(kDeck.substr(0, kDeck.find("*NSET")));
+  for (std::size_t length = 0; length < mesh.size(); length += 3) {
+    const TemporaryFolder folder;
+    try {
+      (void)read_mesh(folder.file("m.inp", std::string_view(mesh).substr(0, length)));
+    } catch (const Error&) {  // one clear error; no crash
+    }
+  }
+}
+
+TEST(Abaqus, FindsNumbersInCards) {
+  const auto numbers = [](const std::string& text) {
+    std::string result;
+    const auto found = abaqus::references(abaqus::parse_card(text), text);
+    if (!found) return std::string("unknown");
+    for (const abaqus::Reference& reference : *found) {
+      result += reference.association == Association::vertices ? 'n' : 'e';
+      result += text.substr(reference.begin, reference.length) + " ";
+    }
+    return result;
+  };
+  EXPECT_EQ(numbers("*boundary, OP=NEW\n 12, 1, 3\nleft, 2\n13,4\n"), "n12 n13 ");
+  EXPECT_EQ(numbers("*SURFACE, NAME=a\n12, S1\n"), "e12 ");
+  EXPECT_EQ(numbers("*SURFACE, NAME=a, TYPE=NODE\n12\n"), "n12 ");
+  EXPECT_EQ(numbers("*SURFACE, NAME=a, TYPE=CUTTING SURFACE\n12\n"), "unknown");
+  EXPECT_EQ(numbers("*EQUATION\n3\n1,2,0.5,2,2,\n0.5,3,2,1\n2\n4,1,1,5,1,1"), "n1 n2 n3 n4 n5 ");
+  EXPECT_EQ(numbers("*MPC\nTIE, 12, left, 4\n"), "n12 n4 ");
+  EXPECT_EQ(numbers("*INITIAL CONDITIONS, TYPE=TEMPERATURE\n12, 20\n"), "n12 ");
+  EXPECT_EQ(numbers("*INITIAL CONDITIONS, TYPE=STRESS\n12, 1, 20\n"), "e12 ");
+  EXPECT_EQ(numbers("*INITIAL CONDITIONS, TYPE=SOLUTION\n12, 1, 20\n"), "unknown");
+  EXPECT_EQ(numbers("*DLOAD\n12, P1NP, 7\n3, P1, 7\n"), "e12 n7 e3 ");
+  EXPECT_EQ(numbers("*PRE-TENSION SECTION, SURFACE=a, NODE=7\n1, 0, 0\n"), "n7 ");
+  EXPECT_EQ(numbers("*RIGIDBODY, NSET=a,\n REFNODE = 7, ROTNODE=8\n"), "n7 n8 ");
+  EXPECT_EQ(numbers("*NODE PRINT, NSET=a\n1\n"), "");
+  EXPECT_EQ(numbers("*NORMAL\n12, 7, 1, 0, 0\n"), "e12 n7 ");
+  EXPECT_EQ(numbers("*BOUNDARY, INPUT=file\n"), "unknown");
+}
+
+}  // namespace
+}  // namespace meshorder
