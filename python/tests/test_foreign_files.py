@@ -91,11 +91,11 @@ def test_second_order_cells_there_and_back(tmp_path):
     corners = np.vstack([np.zeros(3), np.eye(3)])
     points = np.concatenate([corners, corners[edges].mean(axis=1)])
     given = meshio.Mesh(points, [("tetra10", [np.arange(10)])])
-    given.write(tmp_path / "mesh.xdmf")
-    mesh = meshorder.read(tmp_path / "mesh.xdmf")
+    given.write(tmp_path / "mesh.med")
+    mesh = meshorder.read(tmp_path / "mesh.med")
     assert [(shape, rows.shape[1]) for shape, rows in mesh.cells] == [("tetrahedron", 10)]
-    meshorder.write(mesh, tmp_path / "again.xdmf")
-    read = meshio.read(tmp_path / "again.xdmf")
+    meshorder.write(mesh, tmp_path / "again.med")
+    read = meshio.read(tmp_path / "again.med")
     assert [block.type for block in read.cells] == ["tetra10"]
     np.testing.assert_array_equal(read.cells[0].data, given.cells[0].data)
 

@@ -4,6 +4,7 @@
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -201,10 +202,11 @@ TEST(Xdmf, SetsAndPartialArraysOfOtherFormatsBecomeArrays) {
 
 TEST(Xdmf, PointsThatMoveInASeriesAreAnArrayOfEachStep) {
   const auto grid = [](const char* points, int step) {
-    return "<Grid><Time Value=\"" + std::to_string(step) +
-           "\"/><Topology TopologyType=\"Triangle\"><DataItem Dimensions=\"1 3\" NumberType=\"Int\">0 1 2"
-           "</DataItem></Topology><Geometry GeometryType=\"XY\"><DataItem Dimensions=\"3 2\">" +
-           points + "</DataItem></Geometry></Grid>";
+    return fmt::format(
+        "<Grid><Time Value=\"{}\"/><Topology TopologyType=\"Triangle\"><DataItem Dimensions=\"1 3\" "
+        "NumberType=\"Int\">0 1 2</DataItem></Topology><Geometry GeometryType=\"XY\"><DataItem "
+        "Dimensions=\"3 2\">{}</DataItem></Geometry></Grid>",
+        step, points);
   };
   const std::string text =
       "<Xdmf Version=\"3.0\"><Domain><Grid GridType=\"Collection\" CollectionType=\"Temporal\">" +

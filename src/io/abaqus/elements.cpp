@@ -81,7 +81,7 @@ std::optional<ElementKind> with_nodes(const Kinds& kinds, int nodes) {
 /// where 3 is a cubic one between two nodes.
 int nodes_of_beam(int digits) { return digits % 10 == 2 ? 3 : 2; }
 
-std::optional<ElementKind> kind_of(Family family, int digits) {
+std::optional<ElementKind> kind_in_family(Family family, int digits) {
   switch (family) {
     case Family::solid:
       return with_nodes(kSolids, digits);
@@ -114,7 +114,7 @@ std::optional<ElementKind> kind_of(std::string_view type) {
   for (const Prefix& prefix : kPrefixes) {
     if (!type.starts_with(prefix.name)) continue;
     const std::string_view rest = type.substr(prefix.name.size());
-    if (const auto number = leading_number(rest)) return kind_of(prefix.family, *number);
+    if (const auto number = leading_number(rest)) return kind_in_family(prefix.family, *number);
   }
   return {};
 }
