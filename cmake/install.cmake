@@ -75,7 +75,7 @@ if(MESHORDER_HAS_METIS)
   list(PREPEND core_libraries metis)
 endif()
 set(hdf5_module hdf5)
-if(HDF5_HDF5_LIBRARY MATCHES "hdf5_serial")
+if(HDF5_SERIAL_LIBRARY MATCHES "hdf5_serial")
   set(hdf5_module hdf5-serial)  # Debian's, beside those for MPI
 endif()
 set(io_text "meshes with files, C++20")

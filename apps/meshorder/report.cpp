@@ -113,7 +113,7 @@ void add_mesh(Page& page, const std::string& file, const ReportArguments& argume
   studied.record.verdict = verdict_on(studied.record);
   if (!studied.doubt.empty()) {
     notes.push_back(name + ": " + studied.doubt);
-    if (!studied.record.verdict.empty()) studied.record.verdict += " But " + studied.doubt + ".";
+    if (!studied.record.verdict.empty()) studied.record.verdict += ". But " + studied.doubt;
   }
 
   progress.stage("the surface of " + name, from + 0.9 * (to - from), to);

@@ -63,7 +63,7 @@ def test_bare_meshes_of_every_format(tmp_path, suffix):
 
 @pytest.mark.parametrize(
     "suffix, kept",
-    [(".med", {"point t", "point u"}), (".bdf", set())],
+    [(".med", {"point t", "point u", "cell m"}), (".bdf", set())],
 )  # fmt: skip
 def test_what_a_format_keeps_is_read_and_what_not_is_told(tmp_path, suffix, kept):
     given = made_by_meshio()

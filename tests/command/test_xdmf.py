@@ -35,7 +35,7 @@ def order(command, source, target, *options):
     done = command.ok("order", source, "-o", target, "--vertices", "rcm", "--elements", "min",
                       "--maps", f"{target}-maps", *options)
     assert all(" is no better" in line or "$Entities" in line for line in done.stderr.splitlines()), done.stderr
-    return [numpy.load(f"{target}-maps.{of}.old_to_new.npy") for of in ("vertices", "elements")]
+    return [numpy.load(f"{target}-maps.{of}.old_to_new.npy") for of in ("vertices", "cells")]
 
 
 def item(name, path, shape, kind="Float", precision=8):
