@@ -54,3 +54,13 @@ def tetrahedra(n):
 @pytest.fixture(scope="session")
 def mesh():
     return tetrahedra(8)
+
+
+@pytest.fixture
+def model():
+    """Gmsh's model, empty."""
+    gmsh = pytest.importorskip("gmsh")
+    gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    yield gmsh.model
+    gmsh.finalize()

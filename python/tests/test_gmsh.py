@@ -10,14 +10,6 @@ from meshorder import InvalidArgument
 gmsh = pytest.importorskip("gmsh")
 
 
-@pytest.fixture
-def model():
-    gmsh.initialize(interruptible=False)
-    gmsh.option.setNumber("General.Terminal", 0)
-    yield gmsh.model
-    gmsh.finalize()
-
-
 def make_box(order=1, size=0.3, recombine=False):
     gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
     gmsh.model.occ.addBox(1, 0, 0, 1, 1, 1)

@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/exodus/netcdf.hpp"
 
+#include "io/hdf5/mutex.hpp"
+
 #include <fmt/format.h>
 #include <netcdf.h>
 #include <netcdf_mem.h>
@@ -27,11 +29,6 @@ namespace {
 constexpr std::string_view kDamaged = "the file may be damaged";
 constexpr std::uint64_t kMostExpansion = 1032;  // of deflate
 constexpr std::size_t kBuffer = std::size_t{1} << 18;
-
-std::mutex& library_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 std::size_t product(const std::vector<std::size_t>& lengths) {
   return std::accumulate(lengths.begin(), lengths.end(), std::size_t{1}, std::multiplies<>());
@@ -86,7 +83,7 @@ Storage plain_storage(bool large) { return {large ? NC_FORMAT_CDF5 : NC_FORMAT_6
 
 // ---- reading
 
-NcInput::NcInput(const FilePath& path) : lock_(library_mutex()), name_(path.string()) {
+NcInput::NcInput(const FilePath& path) : lock_(hdf5::library_mutex()), name_(path.string()) {
   constexpr std::size_t kStart = 8;
   std::error_code code;
   const bool on_disk = path.store() == nullptr && std::filesystem::is_regular_file(path.path(), code) &&
@@ -382,7 +379,7 @@ int creation_mode(int kind) {
 }  // namespace
 
 NcOutput::NcOutput(const FilePath& path, const Storage& storage)
-    : lock_(library_mutex()), path_(path), out_(path), storage_(storage) {
+    : lock_(hdf5::library_mutex()), path_(path), out_(path), storage_(storage) {
   const int mode = NC_CLOBBER | creation_mode(storage.kind);
   if (path.store() != nullptr) {
     // an initial size would be the least that the file gets

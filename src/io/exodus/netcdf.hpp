@@ -130,7 +130,7 @@ class NcInput {
   void check(int status, const std::string& what) const;
   void inquire();
 
-  std::lock_guard<std::mutex> lock_;
+  std::lock_guard<std::recursive_mutex> lock_;
   std::string name_;
   std::string memory_;  // of a file that is not on disk
   std::uint64_t size_ = 0;
@@ -200,7 +200,7 @@ class NcOutput {
   void put_attribute(int variable, const Attribute& attribute, const std::string& of) const;
 
   friend class NcSink;
-  std::lock_guard<std::mutex> lock_;
+  std::lock_guard<std::recursive_mutex> lock_;
   FilePath path_;
   OutputFile out_;
   Storage storage_;

@@ -1,15 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/hdf5/session.hpp"
 
+#include "io/hdf5/mutex.hpp"
+
 namespace meshorder::hdf5 {
-namespace {
-
-std::recursive_mutex& library_mutex() {
-  static std::recursive_mutex mutex;
-  return mutex;
-}
-
-}  // namespace
 
 Session::Session() : lock_(library_mutex()) {
   H5Eget_auto2(H5E_DEFAULT, &handler_, &data_);
