@@ -5,6 +5,8 @@ A cell is an affine image of its reference element. Gmsh, VTK and meshio read wh
 nodes of its own reference element are, or which nodes bound an edge or a face of its cell.
 """
 
+from typing import Any
+
 import meshio
 import meshorder
 import numpy as np
@@ -67,7 +69,7 @@ def points_of(cell):
 
 def grid_by_vtk(path):
     readers = {".vtu": vtkXMLUnstructuredGridReader, ".vtk": vtkUnstructuredGridReader, ".exo": vtkExodusIIReader}
-    reader = readers[path.suffix]()
+    reader: Any = readers[path.suffix]()
     reader.SetFileName(str(path))
     reader.Update()
     grid = reader.GetOutputDataObject(0)

@@ -101,6 +101,9 @@ def sample_files(tmp_path_factory):
         "second.vtu",
         "mesh.mesh",
         "my-mesh.mesh",
+        "my-mesh.su2",
+        "my-mesh.xdmf",
+        "my-mesh.exo",
     ):
         meshorder.write(mesh, folder / name)
     import meshio
