@@ -32,6 +32,10 @@ LIBRARIES = {
     "hwy": {"kernels", "payoff"},
     "lz4.h": {"io"},
     "lzma.h": {"io"},
+    "netcdf.h": {"io"},
+    "netcdf_mem.h": {"io"},
+    "hdf5.h": {"io"},
+    "pugixml.hpp": {"io"},
     "zlib.h": {"io"},
 }
 SYSTEM = re.compile(r"(dlfcn|fcntl|sched|spawn|unistd|sys/\w+)\.h")

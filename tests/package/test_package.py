@@ -127,7 +127,7 @@ def test_every_subcommand_has_a_manual_page(prefix, tmp_path):
 
 
 @pytest.mark.parametrize("typed, completed", [
-    ("meshorder o", "order"),
+    ("meshorder o", "order openfoam"),
     ("meshorder models ", "list make"),
     ("meshorder order --vert", "--vertices"),
     ("meshorder order mesh.off --vertices lex", ""),
