@@ -233,7 +233,7 @@ TEST(Medit, TellsTheOrderOfNodesOfCellsFromOtherFormats) {
                         "0 1 1\n2 1 1\n1 0 1\n1 2 1\n1 1 0\n1 1 2\n1 1 1\n"));
   Notes notes;
   const std::string without =
-      text.substr(0, text.find("\nHexahedraQ2Ordering")) + text.substr(text.find("\nHexahedraQ2\n"));
+      text.substr(0, text.find("\nHexahedraQ2Ordering")) + text.substr(text.find("\nEnd\n"));
   (void)read(without, &notes);
   EXPECT_THAT(notes, ElementsAre(AllOf(HasSubstr("HexahedraQ2"), HasSubstr("VTK's order"))));
 }

@@ -182,11 +182,13 @@ void note_missing_labels(const Labels& labels, std::string_view what, Notes& not
 }
 
 void write_all_cells(OutputFile& out, const WriteContext& from) {
-  for (const std::size_t kind : from.layout.kinds) {
-    if (!from.own && kind >= kLinearKinds) write_ordering(out, kind);
-    write_cells(out, from, kind);
+  for (const std::size_t kind : from.layout.kinds) write_cells(out, from, kind);
+  if (!from.own) {
+    for (const std::size_t kind : from.layout.kinds) {
+      if (kind >= kLinearKinds) write_ordering(out, kind);
+    }
+    return;
   }
-  if (!from.own) return;
   for (const std::size_t kind : from.own->empty_sections) {
     if (from.layout.counts[kind] == 0) write_cells(out, from, kind);
   }
