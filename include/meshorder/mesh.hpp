@@ -183,9 +183,11 @@ inline constexpr std::string_view kOriginal = "original";
 /// What becomes of the ids of vertices and cells. An order that moves no vertex leaves the ids of vertices as
 /// they are; likewise for cells.
 enum class Ids : std::uint8_t {
-  renumber,  ///< the same numbers, ascending along the new order (cells: within each dimension of each block)
-  keep,      ///< every vertex and cell keeps its id, so that other files that name it stay valid
-  attach,    ///< as `renumber`; the arrays `kOriginal` hold the old ids, or old positions from 0
+  /// The same numbers, ascending along the new order (cells: within each dimension of each block). A deck of
+  /// Abaqus with cards that may name others by number, and are not understood, keeps its ids.
+  renumber,
+  keep,    ///< every vertex and cell keeps its id, so that other files that name it stay valid
+  attach,  ///< as `renumber`; the arrays `kOriginal` hold the old ids, or old positions from 0
 };
 
 /// Options of `reorder`.
