@@ -25,6 +25,8 @@
 namespace meshorder::command {
 namespace {
 
+const std::map<std::string, int> kDimensionsByName{{"volume", 3}, {"surface", 2}, {"curve", 1}, {"point", 0}};
+
 /// Returns "-1 is not allowed, must be 0 or more".
 std::string refusal(const std::string& text, const std::string& must) {
   return text + " is not allowed, must be " + must;
@@ -94,13 +96,11 @@ void add_common(CLI::App& subcommand, Common& common, const std::string& quiet) 
 }
 
 void add_keeping_options(CLI::App& subcommand, Keeping& keeping) {
-  static const std::map<std::string, int> kDimensions{
-      {"volume", 3}, {"surface", 2}, {"curve", 1}, {"point", 0}};
   subcommand
       .add_option_function<std::string>(
-          "--only", [&keeping](const std::string& name) { keeping.dimension = kDimensions.at(name); },
+          "--only", [&keeping](const std::string& name) { keeping.dimension = kDimensionsByName.at(name); },
           "Keep only these cells, with all vertices: volume, surface, curve or point")
-      ->check(CLI::IsMember(kDimensions))
+      ->check(CLI::IsMember(kDimensionsByName))
       ->type_name("CELLS");
   subcommand.add_flag(
       "--strict", keeping.strict,

@@ -4,6 +4,7 @@
 #include <meshorder/error.hpp>
 
 #ifdef MESHORDER_HAS_ZLIB
+#define ZLIB_CONST  // its input is not written to
 #include <zlib.h>
 
 #include <algorithm>
@@ -64,8 +65,7 @@ class Inflation {
     if (stream_.avail_in > 0) return;
     const std::size_t size =
         std::min<std::size_t>(bytes_.size() - fed_, std::numeric_limits<std::int32_t>::max());
-    // zlib does not write to its input
-    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes_.data() + fed_));
+    stream_.next_in = reinterpret_cast<const Bytef*>(bytes_.data() + fed_);
     stream_.avail_in = static_cast<uInt>(size);
     fed_ += size;
   }
