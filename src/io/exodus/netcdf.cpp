@@ -384,13 +384,14 @@ NcOutput::NcOutput(const FilePath& path, const Storage& storage)
   if (path.store() != nullptr) {
     // an initial size would be the least that the file gets
     check(nc_create_mem(path.string().c_str(), mode, 0, &id_), "");
+    // filled at first: bytes between variables, which the library does not write, would be what memory held
   } else {
     out_.close();
     std::size_t buffer = kBuffer;
     check(nc__create(out_.temporary().c_str(), mode, 0, &buffer, &id_), "");
+    int old = 0;
+    nc_set_fill(id_, NC_NOFILL, &old);
   }
-  int old = 0;
-  nc_set_fill(id_, NC_NOFILL, &old);
 }
 
 NcOutput::~NcOutput() {
