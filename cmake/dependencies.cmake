@@ -49,9 +49,9 @@ if("io" IN_LIST components)
     meshorder_find_library(netcdf::netcdf netcdf.h netcdf)  # Exodus II
   endif()
   if(NOT MESHORDER_HDF5 STREQUAL "OFF")
-    meshorder_find_library(hdf5::hdf5 hdf5.h "hdf5_serial;hdf5" hdf5/serial)  # XDMF
-    if(TARGET hdf5::hdf5)
-      meshorder_require(pugixml libpugixml-dev)        # its XML
+    find_package(pugixml QUIET)                        # XDMF's XML
+    if(TARGET pugixml::pugixml)
+      meshorder_find_library(hdf5::hdf5 hdf5.h "hdf5_serial;hdf5" hdf5/serial)  # its arrays
     endif()
   endif()
   set(file_libraries "")

@@ -333,6 +333,7 @@ class Su2Reader {
   /// Puts the nodes of wedges in the mesh's order, unless they are in it.
   void turn_wedges() {
     Cells& cells = mesh_.cells;
+    if (std::find(cells.shapes.begin(), cells.shapes.end(), Shape::wedge) == cells.shapes.end()) return;
     WedgeVote vote(mesh_.points);
     for (Index c = 0; c < elements_; ++c) vote.add(cells.shapes[c], cells[c]);
     metadata_->wedges_face_inward = vote.wedges_face_inward();
