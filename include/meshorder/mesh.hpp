@@ -125,6 +125,9 @@ class MESHORDER_API FormatMetadata {
     (void)cells;
     return nullptr;
   }
+  /// Returns whether vertices and cells must keep their ids, because the data may name them in a way that is
+  /// not understood; `Ids::renumber` then does as `Ids::keep`.
+  [[nodiscard]] virtual bool binds_ids() const { return false; }
 };
 
 /// A simulation mesh with the arrays, sets and ids of its file. Plain data: who changes one member keeps the

@@ -144,8 +144,6 @@ std::string_view format_that_begins(std::string_view bytes) {
 
 }  // namespace
 
-bool is_single_file(const Format& format) { return format.name != "TetGen" && format.name != "XDMF"; }
-
 std::string Format::key() const { return lower_case(std::string(name)); }
 
 std::span<const Format> all_formats() { return kFormats; }
@@ -205,7 +203,7 @@ std::vector<FormatInfo> formats() {
   for (const Format& format : kFormats) {
     result.push_back({.name = format.key(),
                       .extensions = {format.extensions.begin(), format.extensions.end()},
-                      .single_file = is_single_file(format),
+                      .single_file = format.single_file,
                       .groups_cells_by_type = format.groups_cells_by_type});
   }
   return result;

@@ -32,13 +32,12 @@ struct Format {
   /// Returns the places that the cells of a mesh of another format have in a file, where types do not decide
   /// them; `blocks` receives the first cell of each part that stays together. Null: cells keep their order.
   Permutation (*places)(const Mesh&, std::vector<Index>& blocks) = nullptr;
+  bool single_file = true;  ///< whether a mesh is one file; others do not fit one stream
+  int first_number = 0;     ///< that vertices and cells have by their places where the mesh has no ids
 
   /// Returns the name in lower case, as the public functions take it.
   [[nodiscard]] std::string key() const;
 };
-
-/// Returns whether a mesh of the format is one file. Those of others do not fit one stream.
-bool is_single_file(const Format& format);
 
 /// Returns all formats, in the order of the help text.
 std::span<const Format> all_formats();

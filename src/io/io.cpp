@@ -163,7 +163,7 @@ Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path, cons
 
 Permutation write_mesh(const Mesh& mesh, std::ostream& stream, std::string_view format, Notes* notes) {
   const Format& known = format_named(format);
-  if (!is_single_file(known)) {
+  if (!known.single_file) {
     throw InvalidArgument("a mesh in the format '" + known.key() +
                           "' is several files, which do not fit one stream");
   }

@@ -4,7 +4,6 @@
 #include "mesh/reorder.hpp"
 
 #include "base/arena.hpp"
-#include "io/abaqus/abaqus.hpp"
 #include "io/format.hpp"
 #include "io/tetgen/tetgen.hpp"
 #include "io/vega/parts.hpp"
@@ -12,9 +11,8 @@
 #include <meshorder/error.hpp>
 
 #include <algorithm>
-#include <array>
 #include <numeric>
-#include <string_view>
+#include <span>
 #include <utility>
 
 namespace meshorder {
@@ -25,8 +23,10 @@ std::int64_t first_number(const Mesh& mesh) {
   const FormatMetadata* const metadata = mesh.format_metadata.get();
   if (const auto* of_tetgen = dynamic_cast<const tetgen::Metadata*>(metadata)) return of_tetgen->base;
   if (const auto* of_vega = dynamic_cast<const vega::Metadata*>(metadata)) return of_vega->vertex_base;
-  constexpr std::array<std::string_view, 4> kFromOne{"gmsh", "medit", "abaqus", "exodus"};
-  return std::find(kFromOne.begin(), kFromOne.end(), mesh.format) != kFromOne.end() ? 1 : 0;
+  const std::span<const Format> formats = all_formats();
+  const auto own = std::find_if(formats.begin(), formats.end(),
+                                [&](const Format& format) { return format.key() == mesh.format; });
+  return own == formats.end() ? 0 : own->first_number;
 }
 
 /// Writes the numbers down that a file gives by position, so that they can move with what they belong to.
@@ -104,7 +104,7 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options) {
 void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
   const bool has_vertex_ids = !mesh.vertex_ids.empty();
   const bool has_cell_ids = !mesh.cell_ids.empty();
-  if (ids == Ids::renumber && abaqus::binds_ids(mesh)) ids = Ids::keep;
+  if (mesh.format_metadata && mesh.format_metadata->binds_ids()) ids = Ids::keep;
   if (ids == Ids::keep) write_down_ids(mesh, !vertices.is_identity(), !cells.is_identity());
   try {
     move_mesh(mesh, vertices, cells, ids);

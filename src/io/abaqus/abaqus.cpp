@@ -126,6 +126,14 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 
 namespace meshorder {
 
-Format abaqus_format() { return {"Abaqus", {".inp"}, true, abaqus::read, abaqus::write, abaqus::holds}; }
+Format abaqus_format() {
+  return {.name = "Abaqus",
+          .extensions = {".inp"},
+          .groups_cells_by_type = true,
+          .read = abaqus::read,
+          .write = abaqus::write,
+          .holds = abaqus::holds,
+          .first_number = 1};
+}
 
 }  // namespace meshorder

@@ -52,15 +52,12 @@ struct Metadata final : FormatMetadata {
   [[nodiscard]] std::vector<std::string> contents() const override { return deck->contents; }
   [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,
                                                             std::span<const Index> cells) const override;
+  [[nodiscard]] bool binds_ids() const override { return whole && !deck->unknown.empty(); }
 };
 
 /// Returns the deck that a mesh can be written into; null if it came from elsewhere or no longer fits. Valid
 /// as long as the mesh. O(cells).
 const Metadata* own_deck(const Mesh& mesh);
-
-/// Returns whether numbers in the mesh's deck must stay, because a card may have some that are not
-/// understood.
-bool binds_ids(const Mesh& mesh);
 
 /// Returns the positions, in the file, of items whose numbers are from, from + step, … ≤ to; ascending by
 /// number. `step` is 1 or more. O(numbers), or O(items) if these are fewer.

@@ -49,11 +49,6 @@ const Metadata* own_deck(const Mesh& mesh) {
   return fits ? own : nullptr;
 }
 
-bool binds_ids(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
-  return own != nullptr && own->whole && !own->deck->unknown.empty();
-}
-
 std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step) {
   std::vector<Index> found;
   if (to < from) return found;

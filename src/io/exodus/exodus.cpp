@@ -692,9 +692,14 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
 namespace meshorder {
 
 Format exodus_format() {
-  return {
-      "Exodus",      {".exo", ".e", ".ex2", ".g"}, false, exodus::read, exodus::write, exodus::holds, nullptr,
-      exodus::places};
+  return {.name = "Exodus",
+          .extensions = {".exo", ".e", ".ex2", ".g"},
+          .groups_cells_by_type = false,
+          .read = exodus::read,
+          .write = exodus::write,
+          .holds = exodus::holds,
+          .places = exodus::places,
+          .first_number = 1};
 }
 
 }  // namespace meshorder

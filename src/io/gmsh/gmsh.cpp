@@ -561,6 +561,14 @@ std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, A
 
 }  // namespace gmsh
 
-Format gmsh_format() { return {"Gmsh", {".msh"}, false, gmsh::read, gmsh::write, gmsh::holds}; }
+Format gmsh_format() {
+  return {.name = "Gmsh",
+          .extensions = {".msh"},
+          .groups_cells_by_type = false,
+          .read = gmsh::read,
+          .write = gmsh::write,
+          .holds = gmsh::holds,
+          .first_number = 1};
+}
 
 }  // namespace meshorder

@@ -228,6 +228,14 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 
 namespace meshorder {
 
-Format medit_format() { return {"Medit", {".mesh"}, true, medit::read, medit::write, medit::holds}; }
+Format medit_format() {
+  return {.name = "Medit",
+          .extensions = {".mesh"},
+          .groups_cells_by_type = true,
+          .read = medit::read,
+          .write = medit::write,
+          .holds = medit::holds,
+          .first_number = 1};
+}
 
 }  // namespace meshorder

@@ -336,9 +336,14 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 namespace meshorder {
 
 Format tetgen_format() {
-  return {
-      "TetGen",        {".node", ".ele", ".face", ".edge"}, true, tetgen::read, tetgen::write, tetgen::holds,
-      tetgen::conflict};
+  return {.name = "TetGen",
+          .extensions = {".node", ".ele", ".face", ".edge"},
+          .groups_cells_by_type = true,
+          .read = tetgen::read,
+          .write = tetgen::write,
+          .holds = tetgen::holds,
+          .conflict = tetgen::conflict,
+          .single_file = false};
 }
 
 }  // namespace meshorder

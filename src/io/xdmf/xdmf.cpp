@@ -691,7 +691,14 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 namespace meshorder {
 
 Format xdmf_format() {
-  return {"XDMF", {".xdmf", ".xmf"}, false, xdmf::read, xdmf::write, xdmf::holds, nullptr, xdmf::places};
+  return {.name = "XDMF",
+          .extensions = {".xdmf", ".xmf"},
+          .groups_cells_by_type = false,
+          .read = xdmf::read,
+          .write = xdmf::write,
+          .holds = xdmf::holds,
+          .places = xdmf::places,
+          .single_file = false};
 }
 
 }  // namespace meshorder
