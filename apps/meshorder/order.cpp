@@ -6,6 +6,7 @@
 #include "io/kept_cells.hpp"
 #include "io/stream/output_file.hpp"
 #include "maps.hpp"
+#include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
@@ -17,6 +18,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -55,6 +57,22 @@ void note_no_better(GraphRef graph, const ReorderOptions& options, const Permuta
   if (method == "auto" || method == "original" || method == "scrambled" || !options.group_by.empty()) return;
   const std::string reason = reason_to_keep(graph, vertices, method, made_for(method));
   if (!reason.empty()) notes.push_back(reason + "; --vertices original keeps the order");
+}
+
+/// Notes a method that was asked for by name and makes the order of the elements no better. `mesh` has been
+/// reordered by `cells`.
+void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permutation& cells, Notes& notes) {
+  const std::string& method = options.methods.elements;
+  if (method == "auto" || method == "original" || method == "scrambled" || !options.group_by.empty()) return;
+  const CellSelection elements = CellSelection::elements(cell_arrays(mesh));
+  const Permutation as_written = Permutation::identity(elements.size());
+  std::vector<Index> as_it_was(as_written.new_to_old().begin(), as_written.new_to_old().end());
+  std::sort(as_it_was.begin(), as_it_was.end(), [&](Index a, Index b) {
+    return cells.new_to_old()[elements.cell(a)] < cells.new_to_old()[elements.cell(b)];
+  });
+  const std::string reason =
+      reason_to_keep_elements(elements.incidence(), as_it_was, as_written.new_to_old(), method);
+  if (!reason.empty()) notes.push_back(reason + "; --elements original keeps the order");
 }
 
 /// Returns {"count", "method", "chosen_by", "because", "kept", "seconds"}.
@@ -108,6 +126,7 @@ void run(const OrderArguments& arguments) {
   const EdgeSpan before = edge_span(graph, Permutation::identity(mesh.vertex_count()));
   const EdgeSpan after = edge_span(graph, maps.vertices);
   note_no_better(graph, options, maps.vertices, notes);
+  note_no_better(mesh, options, maps.cells, notes);
   note_convergence(order.vertices.fiedler, "the vertices", notes);
   note_convergence(order.cells.fiedler, "the elements", notes);
 

@@ -104,7 +104,7 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options) {
 void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
   const bool has_vertex_ids = !mesh.vertex_ids.empty();
   const bool has_cell_ids = !mesh.cell_ids.empty();
-  if (mesh.format_metadata && mesh.format_metadata->binds_ids()) ids = Ids::keep;
+  if (ids == Ids::renumber && mesh.format_metadata && mesh.format_metadata->binds_ids()) ids = Ids::keep;
   if (ids == Ids::keep) write_down_ids(mesh, !vertices.is_identity(), !cells.is_identity());
   try {
     move_mesh(mesh, vertices, cells, ids);

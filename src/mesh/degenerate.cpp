@@ -4,8 +4,28 @@
 #include "base/parallel.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
 
 namespace meshorder {
+namespace {
+
+/// Returns whether a number occurs twice. `sorted` is room to work in.
+bool repeats(std::span<const Index> numbers, std::vector<Index>& sorted) {
+  constexpr std::size_t kComparedInPairs = 10;
+  if (numbers.size() <= kComparedInPairs) {
+    bool repeated = false;
+    for (std::size_t i = 1; i < numbers.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) repeated |= numbers[i] == numbers[j];
+    }
+    return repeated;
+  }
+  sorted.assign(numbers.begin(), numbers.end());
+  std::sort(sorted.begin(), sorted.end());
+  return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+}
+
+}  // namespace
 
 std::vector<Index> degenerate_cells(const Cells& cells) {
   constexpr Index kCellsAtOnce = 65536;
@@ -13,10 +33,7 @@ std::vector<Index> degenerate_cells(const Cells& cells) {
   for_each_chunk(cells.size(), kCellsAtOnce, [&](Index chunk, Index begin, Index end) {
     std::vector<Index> sorted;
     for (Index c = begin; c < end; ++c) {
-      const auto vertices = cells[c];
-      sorted.assign(vertices.begin(), vertices.end());
-      std::sort(sorted.begin(), sorted.end());
-      if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) found[chunk].push_back(c);
+      if (repeats(cells[c], sorted)) found[chunk].push_back(c);
     }
   });
   std::vector<Index> result;

@@ -6,6 +6,7 @@
 #include <meshorder/mesh.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace meshorder {
@@ -15,11 +16,13 @@ namespace {
 [[noreturn]] void fail(const std::string& what) { throw InvalidArgument("mesh: " + what); }
 
 void check_members(const std::vector<Index>& members, Index count, const std::string& owner) {
-  for (const Index member : members) {
-    if (member < 0 || member >= count) {
-      fail(owner + " names " + std::to_string(member) + ", outside 0 … " + std::to_string(count - 1));
-    }
-  }
+  // without a jump out of the loop, which would keep it from being vectorised
+  bool all_exist = true;
+  for (const Index member : members) all_exist &= (member >= 0) & (member < count);
+  if (all_exist) return;
+  const auto wrong = std::find_if(members.begin(), members.end(),
+                                  [&](Index member) { return member < 0 || member >= count; });
+  fail(owner + " names " + std::to_string(*wrong) + ", outside 0 … " + std::to_string(count - 1));
 }
 
 void check_cells(const Mesh& mesh) {
@@ -29,8 +32,11 @@ void check_cells(const Mesh& mesh) {
       !std::is_sorted(cells.offsets.begin(), cells.offsets.end())) {
     fail("offsets do not fit the cells");
   }
+  std::array<int, kShapes> least{};
+  for (int shape = 0; shape < kShapes; ++shape)
+    least[shape] = std::max(1, corners(static_cast<Shape>(shape), 1));
   for (Index c = 0; c < cells.size(); ++c) {
-    if (cells.vertex_count(c) < std::max(1, corners(cells.shapes[c], 1))) {
+    if (cells.vertex_count(c) < least[static_cast<std::size_t>(cells.shapes[c])]) {
       fail("cell " + std::to_string(c) + " has too few vertices for a " +
            std::string(to_string(cells.shapes[c])));
     }

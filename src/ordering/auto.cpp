@@ -89,6 +89,13 @@ Order auto_vertices(const VertexInput& input, const OrderOptions& options) {
 Order auto_elements(const ElementInput& input, const OrderOptions& options) {
   MethodChoice choice = choose_element_method(input, options.workload);
   Order result = order_incidence(choice.name, input, options);
+  const Permutation as_is = Permutation::identity(input.elements.size());
+  if (std::string reason = reason_to_keep_elements(input.elements, as_is.new_to_old(),
+                                                   result.permutation.new_to_old(), choice.name);
+      !reason.empty()) {
+    choice = {"original", std::move(reason)};
+    result.permutation = as_is;
+  }
   result.method = std::move(choice);
   return result;
 }

@@ -3,6 +3,7 @@
 
 #include "metrics/edge_span.hpp"
 #include "metrics/factor_entries.hpp"
+#include "metrics/working_set.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +13,8 @@
 namespace meshorder {
 namespace {
 
-constexpr double kGain = 0.98;       // of the old span, at most, to be worth a new order
-constexpr double kTolerated = 1.05;  // of the old mean span
+constexpr double kGain = 0.98;       // of the old figure, at most, to be worth a new order
+constexpr double kTolerated = 1.05;  // of the old figure
 
 std::string with_one_digit(double number) {
   std::array<char, 32> text{};
@@ -60,6 +61,20 @@ std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string
   if (new_mean <= kGain * old_mean) return {};
   if (new_mean <= kTolerated * old_mean && geometric_mean_gains(graph, as_is, order)) return {};
   return sentence("the mean edge span", with_one_digit(old_mean), method, with_one_digit(new_mean));
+}
+
+std::string reason_to_keep_elements(IncidenceRef elements, std::span<const Index> as_is,
+                                    std::span<const Index> order, std::string_view method) {
+  const auto before = working_sets(elements, as_is);
+  const auto after = working_sets(elements, order);
+  std::array<double, kElementsAtOnce.size()> ratios{};
+  for (std::size_t k = 0; k < ratios.size(); ++k) ratios[k] = after[k] / std::max(before[k], 1.0);
+  const auto [best, worst] = std::minmax_element(ratios.begin(), ratios.end());
+  if (*best <= kGain && *worst <= kTolerated) return {};
+  const auto telling = static_cast<std::size_t>((*worst > kTolerated ? worst : best) - ratios.begin());
+  return sentence("the mean number of vertices that " + std::to_string(kElementsAtOnce[telling]) +
+                      " consecutive elements use",
+                  with_one_digit(before[telling]), method, with_one_digit(after[telling]));
 }
 
 }  // namespace meshorder

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
+#include "graph/incidence.hpp"
 #include <meshorder/options.hpp>
 #include <meshorder/permutation.hpp>
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,5 +23,14 @@ Workload made_for(std::string_view method);
 /// figures; empty if the order is better. O(n + entries).
 std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string_view method,
                            Workload workload);
+
+/// Judges an order of elements by the working sets of `kElementsAtOnce` elements: one of these must fall by
+/// 2 % at least, and none may grow by more than 5 %. Returns why the elements are better left where they are,
+/// as above. O(vertices + elements).
+///
+/// @param as_is  the elements in their old order
+/// @param order  the elements in the order to be judged
+std::string reason_to_keep_elements(IncidenceRef elements, std::span<const Index> as_is,
+                                    std::span<const Index> order, std::string_view method);
 
 }  // namespace meshorder

@@ -77,13 +77,19 @@ Order order_cells(std::string_view method, const CellArrays& cells, const Permut
                   const PointsView& points, const IndexView& groups, const OrderOptions& options) {
   const CellSelection elements = CellSelection::elements(cells);
   const auto facet_graph = [&] { return joined_by_facet(cells, elements); };
-  Order result = order_incidence(method, {elements.incidence(), vertices, points, facet_graph}, options);
+  const ElementInput input{elements.incidence(), vertices, points, facet_graph};
+  MethodChoice choice{std::string(method), {}};
+  // in groups the old order is no alternative, and `auto` has nothing to judge
+  if (method == "auto" && !(groups.empty() && options.groups.empty()))
+    choice = choose_element_method(input, options.workload);
+  Order result = order_incidence(choice.name, input, options);
+  if (!choice.reason.empty()) result.method = std::move(choice);
 
   std::vector<Index> sequence;
   sequence.reserve(static_cast<std::size_t>(cells.size()));
   for (const Index e : result.permutation.new_to_old()) sequence.push_back(elements.cell(e));
   const CellSelection lower = CellSelection::lower_dimensional(cells);
-  const std::string_view lower_method = method == "original" ? "original" : "lexmax";
+  const std::string_view lower_method = result.method.name == "original" ? "original" : "lexmax";
   const Order of_lower =
       order_incidence(lower_method, {lower.incidence(), vertices, points, facet_graph}, options);
   for (const Index e : of_lower.permutation.new_to_old()) sequence.push_back(lower.cell(e));

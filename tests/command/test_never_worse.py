@@ -85,3 +85,35 @@ def test_a_method_asked_for_by_name_is_obeyed_with_a_warning(command, lattice, t
     assert (moved != numpy.arange(len(moved))).any()
     done = command.run("order", "random.vtu", "-o", "out.vtu", "--vertices", "hilbert")
     assert "no better" not in done.stderr
+
+
+def distinct_vertices(cells, count=64):
+    """The mean number of vertices that `count` consecutive cells use."""
+    return numpy.mean([len(numpy.unique(cells[k:k + count])) for k in range(0, len(cells), count)])
+
+
+def test_elements_are_judged_apart(command, lattice, tmp_path):
+    before = meshio.read(tmp_path / "random.vtu").cells[0].data
+    result = command.json("order", "random.vtu", "-o", "out.vtu", "--vertices", "original")
+    assert result["vertices"]["kept"] and not result["cells"]["kept"] and result["cells"]["method"] == "lexmax"
+    after = meshio.read(tmp_path / "out.vtu").cells[0].data
+    assert distinct_vertices(after) < 0.9 * distinct_vertices(before)
+    # behind a good order of vertices and elements nothing is left to do
+    command.ok("order", "random.vtu", "-o", "good.vtu")
+    result = command.json("order", "good.vtu", "-o", "again.vtu", "--maps", "m")
+    assert result["cells"]["kept"] and result["cells"]["method"] == "original"
+    assert "lexmax is no better: the mean number of vertices that " in result["cells"]["because"]
+    assert (tmp_path / "m.cells.old_to_new.npy").exists()
+    good = meshio.read(tmp_path / "good.vtu").cells[0].data
+    assert distinct_vertices(meshio.read(tmp_path / "again.vtu").cells[0].data) == distinct_vertices(good)
+
+
+def test_elements_by_a_method_asked_for_by_name_give_a_warning(command, lattice, tmp_path):
+    command.ok("order", "random.vtu", "-o", "good.vtu")
+    done = command.run("order", "good.vtu", "-o", "out.vtu", "--vertices", "original", "--elements", "scrambled")
+    assert done.returncode == 0 and "no better" not in done.stderr  # nobody expects that to be better
+    done = command.run("order", "good.vtu", "-o", "out.vtu", "--vertices", "original", "--elements", "mean")
+    assert "warning: mean is no better: the mean number of vertices that " in done.stderr
+    assert "--elements original keeps the order" in done.stderr
+    done = command.run("order", "random.vtu", "-o", "out.vtu", "--vertices", "original", "--elements", "lexmax")
+    assert "no better" not in done.stderr

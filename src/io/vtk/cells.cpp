@@ -193,17 +193,22 @@ bool take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes)
   bool plain = true;  // shapes and vertices determine all types
   const Index count = index_size(cells.types);
   mesh.cells.shapes.resize(count);
+  const CellType* usual_type = nullptr;  // of the last cell, if it needs no work: neighbours are mostly alike
+  Offset usual_vertices = 0;
   for (Index c = 0; c < count; ++c) {
     const CellType* type = known[cells.types[c]];
     if (type == nullptr) throw unknown_type(cells.types[c], c, error);
     const Offset vertices = cells.offsets[c + 1] - cells.offsets[c];
+    mesh.cells.shapes[c] = type->shape;
+    if (type == usual_type && vertices == usual_vertices) continue;
     if (!fits(*type, vertices) || vertices > kMaxIndex) {
       throw error(
           "cell " + std::to_string(c) + " (counted from 0) is a " + std::string(type->name) + " of " +
               std::to_string(vertices) + " vertices",
           (type->vertices > 0 ? "it has " : "it has at least ") + std::to_string(std::abs(type->vertices)));
     }
-    mesh.cells.shapes[c] = type->shape;
+    usual_type = kSwappedTypes[cells.types[c]] == nullptr ? type : nullptr;
+    usual_vertices = vertices;
     if (!inward_wedges || type->number != kLinearWedge) {
       swap_vertices(*type, cells.vertices.data() + cells.offsets[c]);
     }
