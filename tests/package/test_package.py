@@ -197,6 +197,21 @@ def test_pkg_config(prefix, tmp_path, environment):
     assert prefix.exists()
 
 
+@pytest.mark.parametrize("source, options", [("matrix_test", True), ("plex_test", False)])
+def test_the_plugin_for_petsc(prefix, tmp_path, environment, source, options):
+    """A program that PETSc loads the plugin into, which finds its library beside itself; and one linked with it."""
+    plugin = prefix / "lib" / "libmeshorder_petsc.so"
+    if not plugin.exists():
+        pytest.skip("built without MESHORDER_PETSC")
+    module = "PETSc" if options else "meshorder-petsc"
+    flags = run("pkg-config", "--cflags", "--libs", module, env=environment).split()
+    run("mpicc", ROOT / "plugins" / "petsc" / f"{source}.c", *flags, "-lm", "-o", tmp_path / source, env=environment)
+    if options:
+        run(tmp_path / source, "-dll_append", plugin, env={**os.environ, "OMPI_MCA_plm": "isolated"})
+    else:
+        run(tmp_path / source, env={**environment, "OMPI_MCA_plm": "isolated"})
+
+
 def test_subproject():
     """The core without METIS, within a project that sets no build type. What was compiled is kept."""
     said = configure(USER, USER_BUILD, "--fresh", f"-DMESHORDER_SOURCE={ROOT}", "-DMESHORDER_METIS=OFF")
