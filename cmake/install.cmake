@@ -110,8 +110,10 @@ foreach(component IN LISTS components)
   endif()
 endforeach()
 
-# ---- plugins for solvers
+# ---- plugins for solvers: headers alone, which ask for their solver where they are included, and a library
 
+install(FILES plugins/dealii/meshorder/dealii.hpp plugins/dolfinx/meshorder/dolfinx.hpp
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshorder COMPONENT development)
 if(TARGET meshorder_petsc)
   install(TARGETS meshorder_petsc LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT petsc)
   install(FILES plugins/petsc/meshorder_petsc.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT petsc)
