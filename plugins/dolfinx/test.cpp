@@ -6,6 +6,7 @@
 #include <meshorder/dolfinx.hpp>
 
 #include <basix/finite-element.h>
+#include <dolfinx/common/log.h>
 #include <dolfinx/fem/DofMap.h>
 
 #include <algorithm>
@@ -131,6 +132,7 @@ void test_the_same_solution() {
 
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
+  dolfinx::init_logging(argc, argv);  // warnings only
   test_direction();
   test_the_same_solution();
   MPI_Finalize();

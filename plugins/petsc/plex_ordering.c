@@ -2,29 +2,46 @@
 #include "meshorder_petsc.h"
 #include "order.h"
 
-/* Returns the mean of each cell's coordinates in `means`, to be freed, or null for a mesh without
- * coordinates. */
-static PetscErrorCode CellCentres(DM dm, PetscInt begin, PetscInt end, PetscInt* dimension, double** means) {
+/* Returns in `centres`, to be freed, the centre of each point, the mean of the centres that bound it, or null
+ * for a mesh without coordinates. */
+static PetscErrorCode Centres(DM dm, PetscInt begin, PetscInt end, PetscInt* dimension, double** centres) {
   PetscSection section;
   Vec coordinates;
+  const PetscScalar* values;
+  PetscInt depth;
 
   PetscFunctionBeginUser;
-  *means = NULL;
+  *centres = NULL;
   PetscCall(DMGetCoordinateDim(dm, dimension));
   PetscCall(DMGetCoordinateSection(dm, &section));
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
   if (!coordinates) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(*dimension * (end - begin), means));
-  for (PetscInt cell = begin; cell < end; ++cell) {
-    PetscInt size = 0;
-    PetscScalar* values = NULL;
-    double* const mean = *means + *dimension * (cell - begin);
-    PetscCall(DMPlexVecGetClosure(dm, section, coordinates, cell, &size, &values));
-    for (PetscInt k = 0; k < size; ++k) mean[k % *dimension] += (double)PetscRealPart(values[k]);
-    for (PetscInt axis = 0; axis < *dimension; ++axis)
-      mean[axis] *= (double)*dimension / (double)PetscMax(size, 1);
-    PetscCall(DMPlexVecRestoreClosure(dm, section, coordinates, cell, &size, &values));
+  PetscCall(PetscCalloc1(*dimension * (end - begin), centres));
+  PetscCall(DMPlexGetDepth(dm, &depth));
+  PetscCall(VecGetArrayRead(coordinates, &values));
+  for (PetscInt d = 0; d <= depth; ++d) {
+    PetscInt first, last;
+    PetscCall(DMPlexGetDepthStratum(dm, d, &first, &last));
+    for (PetscInt point = first; point < last; ++point) {
+      double* const centre = *centres + *dimension * (point - begin);
+      if (d == 0) {
+        PetscInt offset;
+        PetscCall(PetscSectionGetOffset(section, point, &offset));
+        for (PetscInt axis = 0; axis < *dimension; ++axis)
+          centre[axis] = (double)PetscRealPart(values[offset + axis]);
+        continue;
+      }
+      PetscInt size;
+      const PetscInt* cone;
+      PetscCall(DMPlexGetConeSize(dm, point, &size));
+      PetscCall(DMPlexGetCone(dm, point, &cone));
+      for (PetscInt k = 0; k < size; ++k) {
+        const double* const part = *centres + *dimension * (cone[k] - begin);
+        for (PetscInt axis = 0; axis < *dimension; ++axis) centre[axis] += part[axis] / (double)size;
+      }
+    }
   }
+  PetscCall(VecRestoreArrayRead(coordinates, &values));
   PetscFunctionReturn(0);
 }
 
@@ -70,15 +87,10 @@ static PetscErrorCode KindsDestroy(Kinds* kinds) {
   PetscFunctionReturn(0);
 }
 
-/* Gives a point that has no new number yet (-1) the next one of its kind. */
-static void number_point(Kinds* kinds, PetscInt begin, PetscInt point, PetscInt* old_to_new) {
-  if (old_to_new[point - begin] < 0) {
-    old_to_new[point - begin] = kinds->numbers[kinds->next[kinds->kind[point - begin]]++];
-  }
-}
-
-/* Finds the order of the cells in [begin, end): cells[k] is the old number of the cell at place k, from 0. */
-static PetscErrorCode OrderCells(DM dm, PetscInt begin, PetscInt end, const char* method, PetscInt* cells) {
+/* Finds the order of the cells in [first, last): cells[k] is the old number of the cell at place k, from 0.
+ */
+static PetscErrorCode OrderCells(DM dm, PetscInt begin, PetscInt end, PetscInt first, PetscInt last,
+                                 const char* method, PetscInt* cells) {
   PetscInt count = 0;
   PetscInt dimension;
   PetscInt* offsets = NULL;
@@ -87,14 +99,51 @@ static PetscErrorCode OrderCells(DM dm, PetscInt begin, PetscInt end, const char
 
   PetscFunctionBeginUser;
   PetscCall(DMPlexCreateNeighborCSR(dm, 0, &count, &offsets, &neighbours));
-  PetscCheck(count == end - begin, PETSC_COMM_SELF, PETSC_ERR_SUP,
+  PetscCheck(count == last - first, PETSC_COMM_SELF, PETSC_ERR_SUP,
              "meshorder: the graph of cells has %" PetscInt_FMT " vertices, the mesh %" PetscInt_FMT " cells",
-             count, end - begin);
-  PetscCall(CellCentres(dm, begin, end, &dimension, &centres));
-  PetscCall(MeshorderOrderGraph(count, offsets, neighbours, dimension, centres, method, cells));
+             count, last - first);
+  PetscCall(Centres(dm, begin, end, &dimension, &centres));
+  PetscCall(MeshorderOrderGraph(count, offsets, neighbours, dimension,
+                                centres ? centres + dimension * (first - begin) : NULL, method, cells));
   PetscCall(PetscFree(centres));
   PetscCall(PetscFree(offsets));
   PetscCall(PetscFree(neighbours));
+  PetscFunctionReturn(0);
+}
+
+/* Numbers all points: cells in their order, then those of each lower depth as the ones above them meet them.
+ */
+static PetscErrorCode NumberPoints(DM dm, PetscInt begin, PetscInt end, PetscInt cell_count,
+                                   const PetscInt* cells, PetscInt first_cell, PetscInt* old_to_new) {
+  Kinds kinds;
+  PetscInt taken = 0;
+  PetscInt* sequence; /* the points that have their numbers, in the order in which they got them */
+
+  PetscFunctionBeginUser;
+  PetscCall(KindsCreate(dm, begin, end, &kinds));
+  PetscCall(PetscMalloc1(end - begin, &sequence));
+  for (PetscInt k = 0; k < end - begin; ++k) old_to_new[k] = -1;
+  for (PetscInt k = 0; k < cell_count; ++k) sequence[taken++] = first_cell + cells[k];
+  for (PetscInt k = 0; k < taken; ++k) {
+    PetscInt size;
+    const PetscInt* cone;
+    const PetscInt point = sequence[k];
+    old_to_new[point - begin] = kinds.numbers[kinds.next[kinds.kind[point - begin]]++];
+    PetscCall(DMPlexGetConeSize(dm, point, &size));
+    PetscCall(DMPlexGetCone(dm, point, &cone));
+    for (PetscInt c = 0; c < size; ++c) {
+      if (old_to_new[cone[c] - begin] != -1) continue;
+      old_to_new[cone[c] - begin] = -2; /* it is in the sequence */
+      sequence[taken++] = cone[c];
+    }
+  }
+  for (PetscInt point = begin; point < end; ++point) { /* those of no cell */
+    if (old_to_new[point - begin] < 0) {
+      old_to_new[point - begin] = kinds.numbers[kinds.next[kinds.kind[point - begin]]++];
+    }
+  }
+  PetscCall(PetscFree(sequence));
+  PetscCall(KindsDestroy(&kinds));
   PetscFunctionReturn(0);
 }
 
@@ -103,7 +152,6 @@ PetscErrorCode MeshorderDMPlexOrdering(DM dm, const char* method, IS* perm) {
   PetscInt* cells;
   PetscInt* old_to_new;
   PetscBool is_plex, distributed;
-  Kinds kinds;
 
   PetscFunctionBeginUser;
   PetscCall(PetscObjectTypeCompare((PetscObject)dm, DMPLEX, &is_plex));
@@ -116,21 +164,9 @@ PetscErrorCode MeshorderDMPlexOrdering(DM dm, const char* method, IS* perm) {
   PetscCall(DMPlexGetChart(dm, &begin, &end));
   PetscCall(DMPlexGetHeightStratum(dm, 0, &first_cell, &end_cell));
   PetscCall(PetscMalloc1(end_cell - first_cell, &cells));
-  if (end_cell > first_cell) PetscCall(OrderCells(dm, first_cell, end_cell, method, cells));
-
-  PetscCall(KindsCreate(dm, begin, end, &kinds));
+  if (end_cell > first_cell) PetscCall(OrderCells(dm, begin, end, first_cell, end_cell, method, cells));
   PetscCall(PetscMalloc1(end - begin, &old_to_new));
-  for (PetscInt k = 0; k < end - begin; ++k) old_to_new[k] = -1;
-  for (PetscInt k = 0; k < end_cell - first_cell; ++k) {
-    PetscInt size;
-    PetscInt* closure = NULL; /* pairs of a point and its orientation, the cell itself first */
-    PetscCall(DMPlexGetTransitiveClosure(dm, first_cell + cells[k], PETSC_TRUE, &size, &closure));
-    for (PetscInt p = 0; p < size; ++p) number_point(&kinds, begin, closure[2 * p], old_to_new);
-    PetscCall(DMPlexRestoreTransitiveClosure(dm, first_cell + cells[k], PETSC_TRUE, &size, &closure));
-  }
-  for (PetscInt point = begin; point < end; ++point)
-    number_point(&kinds, begin, point, old_to_new); /* of no cell */
-  PetscCall(KindsDestroy(&kinds));
+  PetscCall(NumberPoints(dm, begin, end, end_cell - first_cell, cells, first_cell, old_to_new));
   PetscCall(PetscFree(cells));
   PetscCall(
       ISCreateGeneral(PetscObjectComm((PetscObject)dm), end - begin, old_to_new, PETSC_OWN_POINTER, perm));
