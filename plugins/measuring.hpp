@@ -19,7 +19,7 @@ namespace measuring {
 
 struct Tetrahedra {
   std::vector<std::array<double, 3>> points;
-  std::vector<std::array<int, 4>> cells;  ///< positive volume by the right-hand rule, as VTK has it
+  std::vector<std::array<int, 4>> cells;  ///< of positive volume as VTK counts it, as TetGen makes them
 };
 
 /// Reads PREFIX.node and PREFIX.ele, as `tetgen` writes them, numbered from 0.
@@ -42,7 +42,7 @@ inline Tetrahedra read_tetgen(const std::string& prefix) {
   for (std::size_t c = 0; c < cells && elements; ++c) {
     std::array<int, 4> cell{};
     elements >> skipped >> cell[0] >> cell[1] >> cell[2] >> cell[3];
-    mesh.cells.push_back({cell[0], cell[2], cell[1], cell[3]});  // TetGen's are the other way round
+    mesh.cells.push_back(cell);
   }
   if (points == 0 || cells == 0 || !nodes || !elements) {
     throw std::runtime_error(prefix + ": no .node and .ele of TetGen, numbered from 0");
