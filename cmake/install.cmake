@@ -1,6 +1,6 @@
 # What `cmake --install` puts where. Install components: library (shared C++ library), c (shared C library), development
-# (headers, archives, CMake and pkg-config files, examples), command (program, manual, completions, documents) and
-# licence. All paths are relative to the prefix, so that an installed tree can be moved.
+# (headers, archives, CMake and pkg-config files, examples), petsc (plugin for PETSc, if it was built), command (program,
+# manual, completions, documents) and licence. All paths are relative to the prefix, so that an installed tree can be moved.
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -46,9 +46,13 @@ install(FILES ${generated}/meshorder-config.cmake ${generated}/meshorder-config-
 
 # ---- pkg-config
 
-# meshorder_pkg_config(<component> DESCRIPTION … REQUIRES <modules> LIBRARIES <flags> DEFINITIONS <flags>)
+# meshorder_pkg_config(<component> DESCRIPTION … REQUIRES <modules> LIBRARIES <flags> DEFINITIONS <flags>
+#                      INSTALL_COMPONENT <name>)   the latter: development, unless told otherwise
 function(meshorder_pkg_config component)
-  cmake_parse_arguments(PC "" "DESCRIPTION" "REQUIRES;LIBRARIES;DEFINITIONS" ${ARGN})
+  cmake_parse_arguments(PC "" "DESCRIPTION;INSTALL_COMPONENT" "REQUIRES;LIBRARIES;DEFINITIONS" ${ARGN})
+  if(NOT PC_INSTALL_COMPONENT)
+    set(PC_INSTALL_COMPONENT development)
+  endif()
   set(prefix ${CMAKE_INSTALL_PREFIX})
   if(NOT IS_ABSOLUTE ${CMAKE_INSTALL_LIBDIR})
     file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
@@ -65,7 +69,7 @@ function(meshorder_pkg_config component)
   list(JOIN PC_DEFINITIONS " " definitions)
   configure_file(cmake/component.pc.in ${generated}/meshorder-${component}.pc @ONLY)
   install(FILES ${generated}/meshorder-${component}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
-          COMPONENT development)
+          COMPONENT ${PC_INSTALL_COMPONENT})
 endfunction()
 
 set(core_text "orders of graphs and meshes, C++20")
@@ -105,6 +109,17 @@ foreach(component IN LISTS components)
                          LIBRARIES -lmeshorder_${component} ${${component}_libraries})
   endif()
 endforeach()
+
+# ---- plugins for solvers: headers alone, which ask for their solver where they are included, and a library
+
+install(FILES plugins/dealii/meshorder/dealii.hpp plugins/dolfinx/meshorder/dolfinx.hpp
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshorder COMPONENT development)
+if(TARGET meshorder_petsc)
+  install(TARGETS meshorder_petsc LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT petsc)
+  install(FILES plugins/petsc/meshorder_petsc.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT petsc)
+  meshorder_pkg_config(petsc DESCRIPTION "orders for PETSc" REQUIRES PETSc LIBRARIES -lmeshorder_petsc
+                       INSTALL_COMPONENT petsc)
+endif()
 
 # ---- the command, with what its own help says as manual and completions
 

@@ -51,6 +51,7 @@ packages_to_test=(
   libxcursor1          "Gmsh's Python module, which pip installs"
   libxft2              "Gmsh's Python module, which pip installs"
   libxinerama1         "Gmsh's Python module, which pip installs"
+  libpetsc-real-dev    "the plugin for PETSc"
   calculix-ccx         "solves decks before and after they are ordered"
   python3-jsonschema   "checks JSON against its schemas"
   doxygen              "reads the public headers for the manual"

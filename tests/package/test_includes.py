@@ -38,6 +38,9 @@ LIBRARIES = {
     "pugixml.hpp": {"io"},
     "zlib.h": {"io"},
 }
+# plugins/: the headers of each solver, by their beginnings, and those that plugins give to users
+HOSTS = {"petsc": ("petsc",), "dealii": ("deal.II/",), "dolfinx": ("dolfinx", "basix/", "xtl/", "mpi.h", "petsc")}
+OF_PLUGINS = {"meshorder/dealii.hpp", "meshorder/dolfinx.hpp"}
 SYSTEM = re.compile(r"(dlfcn|fcntl|sched|spawn|unistd|sys/\w+)\.h")
 
 
@@ -51,7 +54,7 @@ def includes(path):
 
 
 def is_standard(header):
-    return re.fullmatch(r"[a-z_]+|std\w+\.h", header) is not None
+    return re.fullmatch(r"[a-z_]+|std\w+\.h|string\.h", header) is not None
 
 
 def test_public_headers_include_public_and_standard_headers_only():
@@ -62,9 +65,9 @@ def test_public_headers_include_public_and_standard_headers_only():
 
 def test_every_public_header_that_is_included_exists():
     there = {str(path.relative_to(ROOT / "include")).removesuffix(".in") for path in files("include")}
-    wrong = [f"{path}: {header}" for top in ("include", "src", "lab", "apps", "examples") for path in files(top)
-             for kind, header in includes(path)
-             if kind == "<" and header.startswith("meshorder") and header not in there]
+    wrong = [f"{path}: {header}" for top in ("include", "src", "lab", "apps", "examples", "plugins")
+             for path in files(top) for kind, header in includes(path)
+             if kind == "<" and header.startswith("meshorder") and header not in there | OF_PLUGINS]
     assert not wrong
 
 
@@ -87,6 +90,16 @@ def test_layer_includes_only_those_below(layer):
             if not fine:
                 wrong.append(f"{path.relative_to(ROOT)}: {header}")
     assert not wrong
+
+
+def test_plugins_include_public_headers_and_their_solver_s():
+    """Headers beside them may be made of a .py, as DOLFINx's forms are."""
+    wrong = [f"{path.relative_to(ROOT)}: {header}" for host, beginnings in HOSTS.items()
+             for path in files(f"plugins/{host}") for kind, header in includes(path)
+             if not (header.startswith(("meshorder", *beginnings)) or is_standard(header) if kind == "<"
+                     else any((path.parent / header).with_suffix(suffix).exists() for suffix in (".h", ".hpp", ".py")))]
+    assert not wrong
+    assert {path.name for path in (ROOT / "plugins").iterdir() if path.is_dir()} == set(HOSTS)
 
 
 @pytest.mark.parametrize("folder, above", [("src", ("lab/", "apps/", "tests/")), ("lab", ("apps/", "tests/"))])

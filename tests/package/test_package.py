@@ -90,7 +90,7 @@ def without_comments(text):
 
 def test_public_headers_are_few_and_name_no_other_library(prefix):
     headers = [path for path in (prefix / "include").rglob("*") if path.is_file()]
-    assert 10 <= len(headers) <= 20
+    assert 10 <= len(headers) <= 24
     for path in headers:
         found = re.findall(r"\b(?:tbb|eigen|fmt|metis|hwy)\b", without_comments(path.read_text(encoding="utf-8")),
                            re.IGNORECASE)
@@ -195,6 +195,21 @@ def test_pkg_config(prefix, tmp_path, environment):
         "CMAKE_PROJECT_VERSION")
     run("pkg-config", "--validate", "meshorder-payoff", env=environment)
     assert prefix.exists()
+
+
+@pytest.mark.parametrize("source, options", [("matrix_test", True), ("plex_test", False)])
+def test_the_plugin_for_petsc(prefix, tmp_path, environment, source, options):
+    """A program that PETSc loads the plugin into, which finds its library beside itself; and one linked with it."""
+    plugin = prefix / "lib" / "libmeshorder_petsc.so"
+    if not plugin.exists():
+        pytest.skip("built without MESHORDER_PETSC")
+    module = "PETSc" if options else "meshorder-petsc"
+    flags = run("pkg-config", "--cflags", "--libs", module, env=environment).split()
+    run("mpicc", ROOT / "plugins" / "petsc" / f"{source}.c", *flags, "-lm", "-o", tmp_path / source, env=environment)
+    if options:
+        run(tmp_path / source, "-dll_append", plugin, env={**os.environ, "OMPI_MCA_plm": "isolated"})
+    else:
+        run(tmp_path / source, env={**environment, "OMPI_MCA_plm": "isolated"})
 
 
 def test_subproject():
