@@ -224,7 +224,10 @@ class UnvReader {
 
   double coordinate() {
     const std::string_view word = in_.word("a coordinate");
-    if (mesh_.points.empty() && word.find_first_of("eE") != std::string_view::npos) file_->exponent = 'E';
+    if (mesh_.points.empty()) {
+      const std::size_t letter = word.find_first_of("DdEe");
+      if (letter != std::string_view::npos) file_->exponent = word[letter];
+    }
     const double value = real_of(in_, word, "a coordinate");
     if (!std::isfinite(value)) in_.fail("a coordinate is not finite", "a finite number is needed");
     return value;
