@@ -475,11 +475,11 @@ class UnvReader {
   // ---- the end
 
   void finish() {
-    const std::string kNoMesh = "it may be cut short, or its mesh be in another file";
+    const std::string no_mesh = "it may be cut short, or its mesh be in another file";
     if (file_->nodes.size() == 0)
-      throw InputError(in_.file(), "has no nodes (dataset 2411, 781 or 15)", kNoMesh);
+      throw InputError(in_.file(), "has no nodes (dataset 2411, 781 or 15)", no_mesh);
     if (file_->elements.size() == 0) {
-      throw InputError(in_.file(), "has no elements that are cells (dataset 2412 or 780)", kNoMesh);
+      throw InputError(in_.file(), "has no elements that are cells (dataset 2412 or 780)", no_mesh);
     }
     resolve_nodes();
     check_systems();
