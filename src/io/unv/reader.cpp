@@ -188,7 +188,7 @@ class UnvReader {
     if (!in_.at_line_end()) in_.fail(fmt::format("{} has too many numbers", what), "the file may be damaged");
   }
 
-  Index checked_number(std::int64_t number, std::string_view what) const {
+  [[nodiscard]] Index checked_number(std::int64_t number, std::string_view what) const {
     if (number < 1 || number > kMaxIndex) {
       in_.fail(fmt::format("{} is {}", what, number), "1 to 2147483647 are possible");
     }
