@@ -10,7 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
+#include <utility>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -295,17 +296,53 @@ TEST(Unv, SkipsBinaryData) {
   EXPECT_TRUE(written(mesh).starts_with(binary));
 }
 
+/// The corners of the edges whose middle nodes follow the corners of a second-order cell, in VTK's order.
+std::vector<std::pair<int, int>> edges_of(Shape shape) {
+  switch (shape) {
+    case Shape::line:
+      return {{0, 1}};
+    case Shape::triangle:
+      return {{0, 1}, {1, 2}, {2, 0}};
+    case Shape::quad:
+      return {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+    case Shape::tetrahedron:
+      return {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    case Shape::wedge:
+      return {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
+    default:
+      return {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+  }
+}
+
 TEST(Unv, PutsMiddleNodesBetweenTheirCorners) {
-  // by geometry: of parabolic elements every second node of a ring is the middle of its neighbours
+  // a ring of corners with the middle nodes between them, the middle nodes above its corners, the rest
   for (const auto& [shape, nodes] : test::quadratic_types()) {
     const unv::ElementKind kind{shape, nodes};
-    const auto order = unv::file_order(kind);
     if (unv::type_of(kind) == 0) continue;
     SCOPED_TRACE(type_name(shape, nodes));
+    const auto order = unv::file_order(kind);
     ASSERT_EQ(order.size(), static_cast<std::size_t>(nodes));
-    const int ring = shape == Shape::line ? 3 : shape == Shape::quad || shape == Shape::hexahedron ? 8 : 6;
-    const int corner_count = corners(shape, nodes);
-    for (int k = 0; k < ring; ++k) EXPECT_EQ(order[static_cast<std::size_t>(k)] < corner_count, k % 2 == 0);
+    const int first_middle = corners(shape, nodes);
+    const auto edges = edges_of(shape);
+    const auto edge = [&](std::size_t k) {
+      return edges.at(static_cast<std::size_t>(order[k] - first_middle));
+    };
+    const std::size_t ring = shape == Shape::line                                 ? 3
+                             : shape == Shape::quad || shape == Shape::hexahedron ? 8
+                                                                                  : 6;
+    for (std::size_t k = 1; k < ring; k += 2) {
+      EXPECT_EQ(edge(k), (std::pair{order[k - 1], order[(k + 1) % ring]}));
+    }
+    if (dimension(shape) < 3) continue;
+    const std::size_t above = ring + ring / 2;  // of the middle nodes that lead there
+    for (std::size_t k = ring; k < above; ++k) {
+      const std::size_t end = shape == Shape::tetrahedron ? above : above + 2 * (k - ring);
+      EXPECT_EQ(edge(k), (std::pair{order[2 * (k - ring)], order[end]}));
+    }
+    const std::size_t rest = order.size() - above;
+    for (std::size_t k = 1; k < rest; k += 2) {
+      EXPECT_EQ(edge(above + k), (std::pair{order[above + k - 1], order[above + (k + 1) % rest]}));
+    }
   }
   EXPECT_EQ(unv::kind_of(74, 3), unv::kind_of(71, 3));
   EXPECT_FALSE(unv::kind_of(43, 9));
