@@ -25,7 +25,7 @@ TYPES = {
     "quad8": 16, "hexahedron20": 17, "wedge15": 18, "pyramid13": 19,
 }  # fmt: skip
 UNKNOWN_TO_MESHIO = {"wedge15", "pyramid13"}  # version 5.3.5 stops at them
-FORMATS = [".msh", ".vtk", ".vtu", ".mesh", ".su2"] + [
+FORMATS = [".msh", ".vtk", ".vtu", ".mesh", ".su2", ".unv"] + [
     suffix
     for suffix, library in ((".inp", ""), (".exo", "netcdf"), (".xdmf", "hdf5"))
     if library in meshorder.build_info()
@@ -137,7 +137,7 @@ def test_faces_and_nodes_of_edges_stay_right(model, tmp_path, name, source):
             meshorder.write(mesh, path)
         except meshorder.InputError:
             continue
-        if target == ".msh":
+        if target in (".msh", ".unv"):
             assert_right_by_gmsh(kind, path)
         if target in (".vtu", ".vtk", ".exo"):
             assert_right_by_vtk(kind, path)

@@ -148,3 +148,30 @@ def test_refusals():
             meshorder.reorder(gmsh.option)
     finally:
         gmsh.finalize()
+
+
+def groups():
+    """For each named physical group the nodes of its elements by their coordinates, sorted."""
+    place, found = nodes(), {}
+    for dimension, tag in gmsh.model.getPhysicalGroups():
+        cells = []
+        for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, tag):
+            for _, tags, ends in zip(*gmsh.model.mesh.getElements(dimension, entity)):
+                corners = np.round([place[end] for end in ends.tolist()], 12) + 0.0
+                cells += corners.reshape(len(tags), -1).tolist()
+        found[dimension, gmsh.model.getPhysicalName(dimension, tag)] = sorted(cells)
+    return {group: cells for group, cells in found.items() if group[1]}
+
+
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("source", [".msh", ".unv"])
+def test_groups_of_universal_files_are_found_again(model, tmp_path, source, order):
+    make_box(order)
+    before = groups()
+    assert {name for _, name in before} == {"left", "right", "wall"}
+    gmsh.write(str(tmp_path / f"a{source}"))
+    mesh, _ = meshorder.reorder(meshorder.read(tmp_path / f"a{source}"), vertices="rcm")
+    meshorder.write(mesh, tmp_path / "b.unv")
+    gmsh.clear()
+    gmsh.open(str(tmp_path / "b.unv"))
+    assert groups() == before

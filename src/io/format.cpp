@@ -27,7 +27,7 @@ const std::vector<Format> kFormats{
 #ifdef MESHORDER_HAS_HDF5
     xdmf_format(),
 #endif
-    matrix_market_format(), metis_graph_format(),
+    matrix_market_format(), metis_graph_format(), unv_format(),
 };
 
 /// A format of which this build lacks the library.
@@ -130,6 +130,7 @@ std::string_view format_that_begins(std::string_view bytes) {
     if (word.starts_with("$")) return "Gmsh";
     if (word.starts_with("MeshVersion")) return "Medit";
     if (word.starts_with("<")) return is_xdmf(word, line, bytes) ? "XDMF" : "VTU";
+    if (word == "-1") return "UNV";
     if (word.starts_with("*")) return is_deck(word, bytes) ? "Abaqus" : "Vega";
     if (word.ends_with("OFF")) return "OFF";
     if (word == "ply") return "PLY";

@@ -103,7 +103,7 @@ TEST(FormatOf, SaysWhatToDoWithFilesOfOtherPrograms) {
             "a.VTP: holds VTK's PolyData; save it as .ply or .vtu, in ParaView by Save Data");
   EXPECT_EQ(message("a.vts"),
             "a.vts: is structured; its order is its grid's, and there is nothing to reorder");
-  EXPECT_NE(message("a.unv").find("gmsh IN -save -format msh41 -o OUT.msh"), std::string::npos);
+  EXPECT_NE(message("a.geo").find("gmsh IN -3 -o OUT.msh"), std::string::npos);
   // no extension has both advice and a reader
   for (const Format& format : all_formats()) {
     for (const std::string_view extension : format.extensions) EXPECT_EQ(other_format(extension), nullptr);

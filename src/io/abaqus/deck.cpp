@@ -1,21 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/abaqus/abaqus.hpp"
+#include "io/file_numbers.hpp"
 
 #include <algorithm>
 
 namespace meshorder::abaqus {
 namespace {
-
-/// Moves the places of items; `moves` is empty where all stay. Returns whether all still have a place.
-bool move_places(std::vector<Index>& places, std::span<const Index> moves) {
-  if (moves.empty()) return true;
-  if (places.empty()) {
-    places.assign(moves.begin(), moves.end());
-  } else {
-    for (Index& place : places) place = moves[static_cast<std::size_t>(place)];
-  }
-  return std::none_of(places.begin(), places.end(), [](Index place) { return place < 0; });
-}
 
 /// Returns whether the cells that a card's elements are have the card's type.
 bool has_kind(const Mesh& mesh, const Metadata& metadata, const Section& section) {

@@ -3,6 +3,7 @@
 #include "io/abaqus/abaqus.hpp"
 #include "io/abaqus/cards.hpp"
 #include "io/abaqus/output.hpp"
+#include "io/file_numbers.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
@@ -16,37 +17,6 @@
 
 namespace meshorder::abaqus {
 namespace {
-
-/// The numbers that the nodes or elements of a file have in a mesh.
-class Numbers {
- public:
-  Numbers(const IdMap& of_file, const std::vector<Index>& places, const std::vector<std::int64_t>& ids)
-      : of_file_(of_file), places_(places), ids_(ids) {}
-
-  /// Returns the position in the mesh of the k-th item of the file.
-  [[nodiscard]] Index place(Index k) const { return places_.empty() ? k : places_[k]; }
-  /// Returns the number of the item at that position in the mesh.
-  [[nodiscard]] std::int64_t at(Index place) const {
-    return ids_.empty() ? place + std::int64_t{1} : ids_[place];
-  }
-  /// Returns the present number of the item that had this one in the file; the same where there was none.
-  [[nodiscard]] std::int64_t now(std::int64_t number) const {
-    const Index k = of_file_.find(number);
-    return k < 0 ? number : at(place(k));
-  }
-  [[nodiscard]] bool all_as_in_file() const {
-    for (Index k = 0; k < of_file_.size(); ++k) {
-      if (at(place(k)) != of_file_.id(k)) return false;
-    }
-    return true;
-  }
-  [[nodiscard]] const IdMap& of_file() const { return of_file_; }
-
- private:
-  const IdMap& of_file_;
-  const std::vector<Index>& places_;
-  const std::vector<std::int64_t>& ids_;
-};
 
 class DeckWriter {
  public:
@@ -94,7 +64,7 @@ class DeckWriter {
   }
 
   /// Returns the positions in the mesh of a card's items, ascending.
-  static std::vector<Index> places_of(const Section& section, const Numbers& numbers) {
+  static std::vector<Index> places_of(const Section& section, const FileNumbers& numbers) {
     std::vector<Index> places(static_cast<std::size_t>(section.count));
     std::iota(places.begin(), places.end(), section.first);
     for (Index& place : places) place = numbers.place(place);
@@ -140,7 +110,7 @@ class DeckWriter {
     }
   }
 
-  [[nodiscard]] const Numbers& numbers_of(Association association) const {
+  [[nodiscard]] const FileNumbers& numbers_of(Association association) const {
     return association == Association::vertices ? nodes_ : elements_;
   }
 
@@ -161,7 +131,7 @@ class DeckWriter {
   }
 
   /// Writes a set of ranges: as it is if the ranges hold the same items still, else as a list.
-  void write_generated(const std::string& text, const Numbers& numbers) {
+  void write_generated(const std::string& text, const FileNumbers& numbers) {
     std::vector<std::int64_t> now;
     bool same = true;
     const std::string_view keyword = keyword_lines(text);
@@ -227,8 +197,8 @@ class DeckWriter {
 
   const Mesh& mesh_;
   const Deck& deck_;
-  Numbers nodes_;
-  Numbers elements_;
+  FileNumbers nodes_;
+  FileNumbers elements_;
   Notes& notes_;
   OutputFile file_;
   DeckOutput out_;

@@ -66,11 +66,6 @@ void Scanner::next_line() {
   ++line_;
 }
 
-bool Scanner::at_line_end() {
-  skip_blanks();
-  return at_break();
-}
-
 bool Scanner::at_end() {
   while (at_line_end()) {
     if (position_ >= text_.size()) return true;
@@ -100,8 +95,8 @@ std::string_view Scanner::word(std::string_view what) {
 }
 
 template <class T>
-bool Scanner::take_number(T& value) {
-  if (at_end()) return false;
+bool Scanner::take_any_number(T& value) {
+  if (!skip_to_word() && at_end()) return false;
   const char* const end = text_.data() + text_.size();
   const auto [after, code] = std::from_chars(text_.data() + position_, end, value);
   const bool whole =
@@ -111,9 +106,10 @@ bool Scanner::take_number(T& value) {
   return true;
 }
 
-template bool Scanner::take_number<std::int32_t>(std::int32_t&);
-template bool Scanner::take_number<std::int64_t>(std::int64_t&);
-template bool Scanner::take_number<std::uint64_t>(std::uint64_t&);
+template bool Scanner::take_any_number<std::int32_t>(std::int32_t&);
+template bool Scanner::take_any_number<std::int64_t>(std::int64_t&);
+template bool Scanner::take_any_number<std::uint64_t>(std::uint64_t&);
+template bool Scanner::take_any_number<double>(double&);
 
 double Scanner::real(std::string_view what) {
   double value = 0;

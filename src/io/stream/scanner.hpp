@@ -10,6 +10,7 @@
 #include <bit>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -47,11 +48,19 @@ class Scanner {
   /// Skips blanks, line ends and comments; returns true if nothing is left.
   bool at_end();
   /// Skips blanks and comments on this line only; returns true at its end.
-  bool at_line_end();
+  bool at_line_end() {
+    if (skip_spaces()) return false;
+    skip_blanks();
+    return at_break();
+  }
   /// Takes the next word, on any line; `what` names it in the error at the end of the file.
   std::string_view word(std::string_view what);
   /// Returns the next word without taking it; empty at the end of the file.
   std::string_view peek_word();
+  /// Takes the next word if all of it is a plain number in the range of T; returns false and leaves it there
+  /// otherwise. Reads each byte once, where `word` and a parser read it twice.
+  template <class T>
+  bool take_number(T& value);
   /// Takes the next word as an integer of type T.
   template <class T>
   T integer(std::string_view what);
@@ -84,10 +93,26 @@ class Scanner {
   void skip_blanks();
   void next_line();
   [[nodiscard]] bool at_break() const;
-  /// Takes the next word if all of it is a plain number in the range of T; returns false and leaves it there
-  /// otherwise. Reads each byte once, where `word` and a parser read it twice.
+  /// Skips spaces; returns whether a word follows. False does not tell that none does: after a tab, say.
+  bool skip_spaces() {
+    while (text_[position_] == ' ') ++position_;  // a zero byte ends the text
+    return text_[position_] > ' ' && text_[position_] != comment_;
+  }
+  /// Skips spaces and line feeds; returns as `skip_spaces`.
+  bool skip_to_word() {
+    while (!skip_spaces()) {
+      if (text_[position_] != '\n') return false;
+      ++position_;
+      ++line_;
+    }
+    return true;
+  }
+  /// Takes digits before a space or line feed, too few to overflow; returns false and takes nothing but
+  /// spaces otherwise. Most numbers of a mesh are such.
   template <class T>
-  bool take_number(T& value);
+  bool take_digits(T& value);
+  template <class T>
+  bool take_any_number(T& value);
 
   std::string file_;
   std::string text_;
@@ -110,6 +135,30 @@ extern template std::int32_t parse_integer<std::int32_t>(const Scanner&, std::st
 extern template std::int64_t parse_integer<std::int64_t>(const Scanner&, std::string_view, std::string_view);
 extern template std::uint64_t parse_integer<std::uint64_t>(const Scanner&, std::string_view,
                                                            std::string_view);
+
+template <class T>
+bool Scanner::take_digits(T& value) {
+  if (!skip_to_word()) return false;
+  const char* const begin = text_.data() + position_;
+  const char* at = begin;
+  T number = 0;
+  for (; *at >= '0' && *at <= '9'; ++at) {
+    if (at - begin == std::numeric_limits<T>::digits10) return false;
+    number = static_cast<T>(10 * number + (*at - '0'));
+  }
+  if (at == begin || (*at != ' ' && *at != '\n')) return false;
+  position_ += static_cast<std::size_t>(at - begin);
+  value = number;
+  return true;
+}
+
+template <class T>
+bool Scanner::take_number(T& value) {
+  if constexpr (std::is_integral_v<T>) {
+    if (take_digits(value)) return true;
+  }
+  return take_any_number(value);
+}
 
 template <class T>
 T Scanner::integer(std::string_view what) {

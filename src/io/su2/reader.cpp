@@ -205,11 +205,13 @@ class Su2Reader {
 
   void read_elements(Index count, int wanted_dimension, bool& numbered) {
     Cells& cells = mesh_.cells;
-    cells.reserve(Offset{cells.size()} + count,
-                  cells.offsets.back() + Offset{count} * (wanted_dimension + 1));
+    // once: to reserve for each of many markers would copy all cells as often
+    if (cells.size() == 0) cells.reserve(count, Offset{count} * (wanted_dimension + 1));
     std::array<Index, 8> cell{};
     for (Index c = 0; c < count; ++c) {
-      const auto type = parse_integer<std::int32_t>(in_, first_word(), "the type of an element");
+      std::int32_t type = 0;
+      if (!in_.take_number(type))
+        type = parse_integer<std::int32_t>(in_, first_word(), "the type of an element");
       const ElementKind* const kind = kind_of_type(type);
       if (kind == nullptr || dimension(kind->shape) != wanted_dimension) {
         in_.fail(fmt::format("an element of type {} in {}= of a mesh with NDIME= {}", type, keyword_,
@@ -257,7 +259,9 @@ class Su2Reader {
       Point& point = mesh_.points[v];
       for (std::size_t k = 0; k < static_cast<std::size_t>(mesh_.dimension); ++k) {
         if (k > 0) expect_more("a coordinate");
-        point[k] = k == 0 ? parse_real(in_, first_word(), "a coordinate") : in_.real("a coordinate");
+        if (!in_.take_number(point[k])) {
+          point[k] = parse_real(in_, k == 0 ? first_word() : in_.word("a coordinate"), "a coordinate");
+        }
         if (!std::isfinite(point[k])) in_.fail("a coordinate is not finite", "a finite number is needed");
       }
       take_number(v, metadata_->numbers_points);

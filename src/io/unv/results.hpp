@@ -1,0 +1,41 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Reading of results, and of numbers in text.
+
+#include "io/stream/scanner.hpp"
+#include "io/unv/unv.hpp"
+
+#include <optional>
+
+namespace meshorder::unv {
+
+/// The first records of a dataset of results.
+struct ResultsHeader {
+  Results results;   ///< without the array's name
+  std::string name;  ///< of the dataset
+};
+
+/// A dataset of results before all nodes and elements are known.
+struct FoundResults : ResultsHeader {
+  std::int64_t line = 0;
+  std::vector<std::int64_t> numbers = {};  ///< of nodes or elements
+  std::vector<double> values = {};         ///< components · numbers
+  std::string text = {};                   ///< the lines before the values
+  std::string all = {};                    ///< all lines
+};
+
+/// Takes the records before the values; none if the values are neither at nodes nor at elements, or of a kind
+/// that is not known.
+std::optional<ResultsHeader> read_results_header(Scanner& in, int dataset);
+
+/// Returns the values as an array; none if a node or element does not exist or comes twice.
+std::optional<DataArray> array_of(const FoundResults& found, const IdMap& items);
+
+/// Returns the numbers of those systems of coordinates in a dataset 2420 that are not the global one.
+std::vector<std::int64_t> local_systems(std::string_view text);
+
+/// Returns a number as Fortran writes it: 1.5D-3, 1.5E-3, 1.5-103. Throws an Error at the scanner's line.
+double real_of(const Scanner& at, std::string_view word, std::string_view what);
+
+}  // namespace meshorder::unv

@@ -1,0 +1,591 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/unv/unv.hpp"
+
+#include "base/text.hpp"
+#include "io/all_formats.hpp"
+#include "io/file_numbers.hpp"
+#include "io/labels.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <type_traits>
+#include <utility>
+
+namespace meshorder::unv {
+namespace {
+
+constexpr std::string_view kName = "I-deas";
+constexpr std::size_t kLongestGroup = 40;
+constexpr std::size_t kLongestLine = 80;
+constexpr int kWidth = 10;  // of whole numbers
+constexpr int kDigitsOfCoordinates = 16;
+
+/// Writes the lines of a universal file.
+class Lines {
+ public:
+  Lines(OutputFile& out, std::string_view line_end) : out_(out), line_end_(line_end) {}
+
+  void text(std::string_view text) { out_.write(text); }
+
+  void integer(std::int64_t value, int width = kWidth) {
+    const fmt::format_int digits(value);
+    const auto size = static_cast<int>(digits.size());
+    // what fills the field would run into the number before
+    line_.append(static_cast<std::size_t>(std::max(width - size, line_.empty() ? 0 : 1)), ' ');
+    line_.append(digits.data(), digits.size());
+  }
+
+  /// Adds a number with that many digits after the point, or as many as it takes to read the same number.
+  void exact(double value, int digits, char exponent) {
+    char* const end = rounded(value, digits);
+    double read = 0;
+    std::from_chars(buffer_.data(), end, read);
+    // 17 digits are always enough
+    add(digits < kDigitsOfCoordinates && read != value ? rounded(value, kDigitsOfCoordinates) : end, digits,
+        exponent);
+  }
+
+  /// Adds a number with that many digits after the point; returns whether it reads back the same.
+  bool real(double value, int digits) {
+    char* const end = rounded(value, digits);
+    double read = 0;
+    std::from_chars(buffer_.data(), end, read);
+    add(end, digits, 'E');
+    return read == value;
+  }
+
+  void end_line() {
+    out_.write(line_ += line_end_);
+    line_.clear();
+  }
+
+  void line(std::string_view text) {
+    line_ = text;
+    end_line();
+  }
+
+  void delimiter() { line("    -1"); }
+
+  void begin_dataset(int dataset) {
+    delimiter();
+    integer(dataset, 6);
+    end_line();
+  }
+
+ private:
+  char* rounded(double value, int digits) {
+    return std::to_chars(buffer_.data(), buffer_.data() + buffer_.size(), value,
+                         std::chars_format::scientific, digits)
+        .ptr;
+  }
+
+  /// Adds the number in the buffer: 8 columns wider than its digits, or 9 with 16 of them.
+  void add(char* end, int digits, char exponent) {
+    const auto width = static_cast<std::size_t>(digits < kDigitsOfCoordinates ? digits + 8 : digits + 9);
+    const auto size = static_cast<std::size_t>(end - buffer_.data());
+    line_.append(std::max<std::size_t>(width, size + 1) - size, ' ');
+    std::replace(buffer_.data(), end, 'e', exponent);
+    line_.append(buffer_.data(), size);
+  }
+
+  OutputFile& out_;
+  std::string line_end_;
+  std::string line_;  // so far
+  std::array<char, 64> buffer_{};
+};
+
+/// Returns the file of a mesh that came from elsewhere: nodes, then elements.
+Contents plain_contents(const Mesh& mesh) {
+  Contents file;
+  Section& nodes = file.sections.emplace_back();
+  nodes.part = Part::nodes;
+  nodes.dataset = kNodes;
+  nodes.count = mesh.vertex_count();
+  Section& elements = file.sections.emplace_back();
+  elements.part = Part::elements;
+  elements.dataset = kElements;
+  elements.count = mesh.cell_count();
+  return file;
+}
+
+/// Returns which item of the file is at each place of the mesh; empty if they are in its order.
+std::vector<Index> inverse(const std::vector<Index>& places) {
+  std::vector<Index> items(places.size());
+  for (Index k = 0; k < index_size(places); ++k) items[places[k]] = k;
+  return items;
+}
+
+class UnvWriter {
+ public:
+  UnvWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
+      : mesh_(mesh),
+        own_(own_file(mesh)),
+        plain_(own_ != nullptr ? Contents() : plain_contents(mesh)),
+        file_(own_ != nullptr ? *own_->file : plain_),
+        notes_(notes),
+        vertex_ids_(are_file_numbers(mesh.vertex_ids) ? mesh.vertex_ids : std::vector<std::int64_t>()),
+        cell_ids_(are_file_numbers(mesh.cell_ids) ? mesh.cell_ids : std::vector<std::int64_t>()),
+        nodes_(file_.nodes, own_ != nullptr ? own_->vertex_of : none_, vertex_ids_),
+        elements_(file_.elements, own_ != nullptr ? own_->cell_of : none_, cell_ids_),
+        labels_(labels_of(mesh, Association::cells)),
+        materials_(materials_of(mesh)),
+        out_(path),
+        lines_(out_, file_.line_end) {
+    if (own_ == nullptr) return;
+    file_node_ = inverse(own_->vertex_of);
+    file_element_ = inverse(own_->cell_of);
+    if (file_.unknown.empty() || (nodes_.all_as_in_file() && elements_.all_as_in_file())) return;
+    throw InputError(path.string(),
+                     "its numbers cannot change, as these may name some: " + join(file_.unknown),
+                     "keep them: --ids keep");
+  }
+
+  void write() {
+    for (const Section& section : file_.sections) write(section);
+    write_new_groups();
+    write_new_results();
+    out_.commit();
+    note_losses();
+  }
+
+ private:
+  void write(const Section& section) {
+    switch (section.part) {
+      case Part::text:
+        return lines_.text(section.text);
+      case Part::nodes:
+        return write_nodes(section);
+      case Part::elements:
+        return write_elements(section);
+      case Part::groups:
+        return write_groups(section);
+      case Part::results:
+        return write_results(section);
+    }
+  }
+
+  // ---- nodes and elements
+
+  [[nodiscard]] NodeFields fields_of_node(Index v) const {
+    if (own_ == nullptr) return {};
+    return file_.node_fields[file_node_.empty() ? v : file_node_[v]];
+  }
+
+  void write_nodes(const Section& section) {
+    lines_.begin_dataset(section.dataset);
+    const bool single = section.dataset == kNodesInSingle;
+    for (Index v = section.first; v < section.first + section.count; ++v) {
+      const NodeFields fields = fields_of_node(v);
+      lines_.integer(nodes_.at(v));
+      lines_.integer(fields.system);
+      lines_.integer(fields.displacement_system);
+      lines_.integer(fields.colour);
+      if (!single) lines_.end_line();
+      for (const double value : mesh_.points[v]) {
+        lines_.exact(value, single ? 5 : kDigitsOfCoordinates, file_.exponent);
+      }
+      lines_.end_line();
+    }
+    lines_.delimiter();
+  }
+
+  [[nodiscard]] ElementFields fields_of_element(Index c) const {
+    ElementFields fields;
+    if (own_ != nullptr) {
+      fields = file_.element_fields[file_element_.empty() ? c : file_element_[c]];
+      fields.beam[0] = nodes_.now(fields.beam[0]);
+    } else {
+      fields.type = type_of({mesh_.cells.shapes[c], mesh_.cells.vertex_count(c)});
+      fields.has_beam = is_beam(fields.type);
+    }
+    if (labels_.any()) fields.property = labels_.values[c];
+    if (!materials_.empty()) fields.material = materials_[c];
+    return fields;
+  }
+
+  void write_elements(const Section& section) {
+    lines_.begin_dataset(section.dataset);
+    std::vector<std::int64_t> nodes;
+    for (Index c = section.first; c < section.first + section.count; ++c) {
+      const auto cell = mesh_.cells[c];
+      const std::span<const int> order = file_order({mesh_.cells.shapes[c], static_cast<int>(cell.size())});
+      nodes.resize(cell.size());
+      for (std::size_t k = 0; k < cell.size(); ++k) {
+        nodes[k] = nodes_.at(cell[order.empty() ? k : static_cast<std::size_t>(order[k])]);
+      }
+      write_element(section, elements_.at(c), fields_of_element(c), nodes);
+    }
+    for (const OtherElement& other : section.others) {
+      nodes = other.nodes;
+      for (std::int64_t& node : nodes) node = nodes_.now(node);
+      ElementFields fields = other.fields;
+      fields.beam[0] = nodes_.now(fields.beam[0]);
+      write_element(section, other.number, fields, nodes);
+    }
+    lines_.delimiter();
+  }
+
+  void write_element(const Section& section, std::int64_t number, const ElementFields& fields,
+                     const std::vector<std::int64_t>& nodes) {
+    const bool of_old = section.dataset == kElementsOfOld;
+    lines_.integer(number);
+    lines_.integer(fields.type);
+    if (of_old) lines_.integer(fields.property_table);
+    lines_.integer(fields.property);
+    if (of_old) lines_.integer(fields.material_table);
+    lines_.integer(fields.material);
+    lines_.integer(fields.colour);
+    lines_.integer(index_size(nodes));
+    lines_.end_line();
+    if (fields.has_beam) {
+      for (const std::int64_t value : fields.beam) lines_.integer(value);
+      lines_.end_line();
+    }
+    list(nodes);
+  }
+
+  /// Writes numbers, 8 on a line.
+  void list(const std::vector<std::int64_t>& numbers) {
+    constexpr std::size_t kOnLine = 8;
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      lines_.integer(numbers[k]);
+      if (k % kOnLine == kOnLine - 1 || k + 1 == numbers.size()) lines_.end_line();
+    }
+  }
+
+  /// Returns the numbers of materials in the array of that name; none if it is not whole numbers, one each.
+  static std::vector<std::int64_t> materials_of(const Mesh& mesh) {
+    const DataArray* const array = find_array(mesh, kMaterial, Association::cells);
+    if (array == nullptr || array->components != 1 || !array->is_dense()) return {};
+    return std::visit(
+        [](const auto& values) -> std::vector<std::int64_t> {
+          using Value = typename std::decay_t<decltype(values)>::value_type;
+          if constexpr (std::is_integral_v<Value>) {
+            std::vector<std::int64_t> result;
+            result.reserve(values.size());
+            for (const Value value : values) result.push_back(static_cast<std::int64_t>(value));
+            return result;
+          } else {
+            return {};
+          }
+        },
+        array->values);
+  }
+
+  // ---- groups
+
+  const EntitySet* find_set(std::string_view name, Association association) const {
+    const auto found = std::find_if(mesh_.sets.begin(), mesh_.sets.end(), [&](const EntitySet& set) {
+      return set.association == association && set.name == name;
+    });
+    return found == mesh_.sets.end() ? nullptr : &*found;
+  }
+
+  void add_members(const EntitySet* set, std::vector<std::array<std::int64_t, 4>>& members) {
+    if (set == nullptr) return;
+    written_.insert(set);
+    const bool of_nodes = set->association == Association::vertices;
+    for (const Index member : set->members) {
+      members.push_back(
+          {of_nodes ? kNodeCode : kElementCode, of_nodes ? nodes_.at(member) : elements_.at(member), 0, 0});
+    }
+  }
+
+  void write_groups(const Section& section) {
+    lines_.begin_dataset(section.dataset);
+    for (Index g = section.first; g < section.first + section.count; ++g) {
+      const Group& group = file_.groups[g];
+      std::vector<std::array<std::int64_t, 4>> members;
+      const EntitySet* const nodes = find_set(group.set, Association::vertices);
+      const EntitySet* const elements = find_set(group.set, Association::cells);
+      // a group whose sets were removed goes with them
+      const bool is_gone = nodes == nullptr && elements == nullptr && (group.has_nodes || group.has_elements);
+      if (is_gone && group.others.empty()) continue;
+      add_members(nodes, members);
+      add_members(elements, members);
+      members.insert(members.end(), group.others.begin(), group.others.end());
+      write_group(section.dataset, group.fields, group.name, members);
+    }
+    lines_.delimiter();
+  }
+
+  void write_group(int dataset, const std::vector<std::int64_t>& fields, std::string_view name,
+                   const std::vector<std::array<std::int64_t, 4>>& members) {
+    for (const std::int64_t field : fields) lines_.integer(field);
+    lines_.integer(index_size(members));
+    lines_.end_line();
+    lines_.line(name);
+    const auto each = static_cast<std::size_t>(numbers_of_member(dataset));
+    std::vector<std::int64_t> numbers;
+    numbers.reserve(each * members.size());
+    for (const auto& member : members) numbers.insert(numbers.end(), member.begin(), member.begin() + each);
+    list(numbers);
+  }
+
+  /// Returns a name that groups can have and that is not taken yet; takes it.
+  static std::string name_for(const std::string& given, std::set<std::string>& taken) {
+    std::string name(trimmed(given));
+    // Gmsh reads the first word
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return c <= ' '; }, '_');
+    if (name.empty()) name = "group";
+    name.resize(std::min(name.size(), kLongestGroup));
+    std::string result = name;
+    for (int k = 2; !taken.insert(result).second; ++k) {
+      const std::string end = fmt::format("_{}", k);
+      result = name.substr(0, kLongestGroup - end.size()) + end;
+    }
+    return result;
+  }
+
+  /// Writes sets that no group of the file is; those of one name become one group.
+  void write_new_groups() {
+    std::set<std::string> taken;
+    std::int64_t last = 0;
+    for (const Group& group : file_.groups) {
+      taken.insert(group.name);
+      last = std::max(last, group.fields[0]);
+    }
+    bool begun = false;
+    for (const EntitySet& set : mesh_.sets) {
+      if (written_.contains(&set)) continue;
+      std::vector<std::array<std::int64_t, 4>> members;
+      const EntitySet* const nodes = find_set(set.name, Association::vertices);
+      const EntitySet* const elements = find_set(set.name, Association::cells);
+      if (nodes != nullptr && !written_.contains(nodes)) add_members(nodes, members);
+      if (elements != nullptr && !written_.contains(elements)) add_members(elements, members);
+      if (!written_.contains(&set)) add_members(&set, members);  // another set of that name
+      if (members.empty()) {
+        notes_.push_back(fmt::format("the set '{}' of {} is not written: it has no members", set.name,
+                                     to_string(set.association)));
+        continue;
+      }
+      const std::string name = name_for(set.name, taken);
+      if (name != set.name) notes_.push_back(fmt::format("the set '{}' is written as '{}'", set.name, name));
+      if (!begun) lines_.begin_dataset(dataset_of_groups());
+      begun = true;
+      write_group(dataset_of_groups(), {++last, 0, 0, 0, 0, 0, 0}, name, members);
+    }
+    if (begun) lines_.delimiter();
+  }
+
+  /// Returns the number of the file's own dataset of groups, that of Gmsh's files without one.
+  [[nodiscard]] int dataset_of_groups() const {
+    const auto own = std::find_if(file_.sections.begin(), file_.sections.end(),
+                                  [](const Section& section) { return section.part == Part::groups; });
+    return own == file_.sections.end() ? kGroups : own->dataset;
+  }
+
+  // ---- results
+
+  static bool holds_integers(const DataArray& array) {
+    return std::visit(
+        [](const auto& values) {
+          using Value = typename std::decay_t<decltype(values)>::value_type;
+          if constexpr (std::is_integral_v<Value>) {
+            constexpr std::int64_t kLargest = 999'999'999;
+            return std::all_of(values.begin(), values.end(), [](Value value) {
+              return std::cmp_less_equal(value, kLargest) && std::cmp_greater(value, -kLargest / 10);
+            });
+          } else {
+            return false;
+          }
+        },
+        array.values);
+  }
+
+  void write_results(const Section& section) {
+    const Results& results = file_.results[section.first];
+    const DataArray* const array = find_array(mesh_, results.array, results.association);
+    if (array == nullptr || array->components != results.components ||
+        std::holds_alternative<std::vector<std::string>>(array->values) ||
+        (results.integers && !holds_integers(*array))) {
+      return;
+    }
+    written_arrays_.insert(array);
+    lines_.text(section.text);
+    const bool counts = results.association == Association::cells;
+    write_rows(*array, results, counts ? results.components_in_file : 0);
+    lines_.delimiter();
+  }
+
+  /// Writes rows: the number of the node or element and, if not 0, `components` on a line, then the values.
+  void write_rows(const DataArray& array, const Results& results, std::int64_t components) {
+    const FileNumbers& numbers = array.association == Association::vertices ? nodes_ : elements_;
+    const auto width = static_cast<std::size_t>(array.components);
+    const std::size_t on_line = results.integers ? 8 : results.digits > 5 ? 3 : 6;
+    bool is_rounded = false;
+    std::visit(
+        [&](const auto& values) {
+          using Value = typename std::decay_t<decltype(values)>::value_type;
+          if constexpr (!std::is_same_v<Value, std::string>) {
+            for (Index row = 0; row < row_count(array); ++row) {
+              lines_.integer(numbers.at(array.is_dense() ? row : array.indices[row]));
+              if (components > 0) lines_.integer(components);
+              lines_.end_line();
+              for (std::size_t k = 0; k < width; ++k) {
+                const Value value = values[static_cast<std::size_t>(row) * width + k];
+                if (results.integers) {
+                  lines_.integer(static_cast<std::int64_t>(value));
+                } else if (own_ != nullptr) {
+                  lines_.exact(static_cast<double>(value), results.digits, 'E');
+                } else if (!lines_.real(static_cast<double>(value), results.digits)) {
+                  is_rounded = true;
+                }
+                if (k % on_line == on_line - 1 || k + 1 == width) lines_.end_line();
+              }
+            }
+          }
+        },
+        array.values);
+    if (is_rounded) {
+      notes_.push_back(fmt::format("the values of the array '{}' are rounded to the {} digits that {} keeps",
+                                   array.name, results.digits + 1, kName));
+    }
+  }
+
+  /// Writes arrays that no dataset of the file is.
+  void write_new_results() {
+    std::int64_t label = 0;
+    for (const DataArray& array : mesh_.data) {
+      const bool is_field =
+          &array == label_array(mesh_, Association::cells) ||
+          (array.association == Association::cells && array.name == kMaterial && !materials_.empty());
+      if (is_field || written_arrays_.contains(&array)) continue;
+      if (std::holds_alternative<std::vector<std::string>>(array.values) || row_count(array) == 0) {
+        note_array_unsupported(array, kName, notes_);
+        continue;
+      }
+      Results results;
+      results.integers = holds_integers(array);
+      results.digits = 12;
+      write_header(array, results, ++label);
+      write_rows(array, results, array.association == Association::cells ? array.components : 0);
+      lines_.delimiter();
+    }
+  }
+
+  void write_header(const DataArray& array, const Results& results, std::int64_t label) {
+    /// What is said of values with so many components.
+    struct Meaning {
+      Index components;
+      int characteristic;
+      int type;  ///< one of those that are not known
+    };
+    constexpr std::array kMeanings{Meaning{1, 1, 94}, Meaning{3, 2, 95}, Meaning{6, 4, 97},
+                                   Meaning{9, 5, 98}};
+    const auto* const meaning = std::find_if(kMeanings.begin(), kMeanings.end(), [&](const Meaning& known) {
+      return known.components == array.components;
+    });
+    const bool is_known = meaning != kMeanings.end();
+    std::string name = array.name;
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, '_');
+    name = name.empty() ? "results" : name.substr(0, kLongestLine);
+    if (name != array.name) {
+      notes_.push_back(fmt::format("the array '{}' is written as '{}'", array.name, name));
+    }
+    lines_.begin_dataset(kResults);
+    lines_.integer(label);
+    lines_.end_line();
+    lines_.line(name);
+    lines_.integer(array.association == Association::vertices ? 1 : 2);
+    lines_.end_line();
+    for (int k = 0; k < 5; ++k) lines_.line("NONE");
+    // unknown model, static analysis
+    list({0, 1, is_known ? meaning->characteristic : 0, is_known ? meaning->type : 93,
+          results.integers ? 1 : 4, array.components});
+    list({0, 0, 0, 0, 0, 0, 0, 0});
+    list({0, 0});
+    for (int record = 0; record < 2; ++record) {
+      for (int k = 0; k < 6; ++k) (void)lines_.real(0, 5);
+      lines_.end_line();
+    }
+  }
+
+  void note_losses() {
+    for (const bool of_vertices : {true, false}) {
+      const auto& ids = of_vertices ? mesh_.vertex_ids : mesh_.cell_ids;
+      if (ids.empty() || !(of_vertices ? vertex_ids_ : cell_ids_).empty()) continue;
+      notes_.push_back(fmt::format(
+          "the ids of {} are not written: numbers of {} are 1 to 999999999 and differ from each other",
+          of_vertices ? "vertices" : "cells", kName));
+    }
+    if (own_ == nullptr) note_metadata_unsupported(mesh_, kName, notes_);
+  }
+
+  const Mesh& mesh_;
+  const Metadata* own_;  // null if the mesh comes from elsewhere
+  Contents plain_;
+  const Contents& file_;
+  Notes& notes_;
+  std::vector<Index> none_;
+  std::vector<std::int64_t> vertex_ids_;
+  std::vector<std::int64_t> cell_ids_;
+  FileNumbers nodes_;
+  FileNumbers elements_;
+  Labels labels_;
+  std::vector<std::int64_t> materials_;
+  OutputFile out_;
+  Lines lines_;
+  std::vector<Index> file_node_;     // of each vertex; empty if they are in the file's order
+  std::vector<Index> file_element_;  // of each cell; likewise
+  std::set<const EntitySet*> written_;
+  std::set<const DataArray*> written_arrays_;
+};
+
+bool holds(const Mesh& mesh, Shape shape, int vertices) {
+  return type_of({shape, vertices}) != 0 || own_file(mesh) != nullptr;
+}
+
+}  // namespace
+
+std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> vertices,
+                                                      std::span<const Index> cells) const {
+  auto result = std::make_shared<Metadata>(*this);
+  if (!whole) return result;
+  const bool all_vertices = move_places(result->vertex_of, vertices);
+  const bool all_cells = move_places(result->cell_of, cells);
+  result->whole = all_vertices && all_cells;
+  return result;
+}
+
+const Metadata* own_file(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  if (own == nullptr || !own->whole) return nullptr;
+  const Contents& file = *own->file;
+  if (file.nodes.size() != mesh.vertex_count() || file.elements.size() != mesh.cell_count()) return nullptr;
+  for (Index k = 0; k < file.elements.size(); ++k) {
+    const Index c = own->cell_of.empty() ? k : own->cell_of[k];
+    const int vertices = mesh.cells.vertex_count(c);
+    const auto kind = kind_of(file.element_fields[k].type, vertices);
+    if (kind != ElementKind{mesh.cells.shapes[c], vertices}) return nullptr;
+  }
+  return own;
+}
+
+void write(const Mesh& mesh, const FilePath& path, Notes& notes) { UnvWriter(mesh, path, notes).write(); }
+
+}  // namespace meshorder::unv
+
+namespace meshorder {
+
+Format unv_format() {
+  return {.name = "UNV",
+          .extensions = {".unv", ".uff"},
+          .groups_cells_by_type = false,
+          .read = unv::read,
+          .write = unv::write,
+          .holds = unv::holds,
+          .first_number = 1};
+}
+
+}  // namespace meshorder

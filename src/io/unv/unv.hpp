@@ -1,0 +1,174 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Declarations shared by the reader and the writer of I-deas universal files.
+//
+// Format: SDRC, I-deas Universal File Datasets. A file is a row of datasets, each between two lines of −1.
+
+#include "io/format.hpp"
+#include "io/stream/id_map.hpp"
+#include "io/unv/elements.hpp"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshorder::unv {
+
+// Numbers of datasets, by what they hold.
+inline constexpr int kNodes = 2411;
+inline constexpr int kNodesInDouble = 781;
+inline constexpr int kNodesInSingle = 15;
+inline constexpr int kElements = 2412;
+inline constexpr int kElementsOfOld = 780;
+inline constexpr int kGroups = 2477;
+inline constexpr int kResults = 2414;
+inline constexpr int kResultsAtNodes = 55;
+inline constexpr int kResultsAtElements = 56;
+inline constexpr int kSystems = 2420;  ///< of coordinates
+
+// Codes of what a group holds.
+inline constexpr std::int64_t kNodeCode = 7;
+inline constexpr std::int64_t kElementCode = 8;
+
+/// The fields of a node besides its number and coordinates.
+struct NodeFields {
+  std::int64_t system = 1;
+  std::int64_t displacement_system = 1;
+  std::int64_t colour = 11;
+
+  auto operator<=>(const NodeFields&) const = default;
+};
+
+/// The fields of an element besides its number and nodes.
+struct ElementFields {
+  std::int64_t type = 0;
+  std::int64_t property_table = 0;  ///< of dataset 780 alone; likewise the material's
+  std::int64_t property = 1;
+  std::int64_t material_table = 0;
+  std::int64_t material = 0;
+  std::int64_t colour = 7;
+  bool has_beam = false;                  ///< whether there is a line of the next three
+  std::array<std::int64_t, 3> beam = {};  ///< node that gives the orientation, cross-sections of both ends
+
+  auto operator<=>(const ElementFields&) const = default;
+};
+
+/// The fields of all items in the order of the file; each combination is stored once.
+template <class Fields>
+class FieldTable {
+ public:
+  void add(const Fields& fields) {
+    if (size_ > 0 && different_[last_] == fields) {
+      if (!of_.empty()) of_.push_back(last_);
+      ++size_;
+      return;
+    }
+    const auto [found, is_new] = places_.try_emplace(fields, static_cast<Index>(different_.size()));
+    if (is_new) different_.push_back(fields);
+    last_ = found->second;
+    if (size_ > 0 && of_.empty()) of_.resize(static_cast<std::size_t>(size_), 0);
+    if (size_ > 0) of_.push_back(last_);
+    ++size_;
+  }
+  [[nodiscard]] const Fields& operator[](Index item) const { return different_[of_.empty() ? 0 : of_[item]]; }
+  /// Returns the combinations.
+  [[nodiscard]] const std::vector<Fields>& different() const { return different_; }
+
+ private:
+  Index size_ = 0;
+  Index last_ = 0;
+  std::vector<Fields> different_;
+  std::vector<Index> of_;  // of each item; empty while all have the first
+  std::map<Fields, Index> places_;
+};
+
+/// An element that is no cell.
+struct OtherElement {
+  std::int64_t number;
+  ElementFields fields;
+  std::vector<std::int64_t> nodes;  ///< their numbers
+};
+
+/// A permanent group.
+struct Group {
+  std::vector<std::int64_t> fields;                 ///< the first line without the number of members
+  std::string name;                                 ///< as in the file
+  std::string set;                                  ///< name of its sets in the mesh
+  bool has_nodes = false;                           ///< whether there is a set of vertices
+  bool has_elements = false;                        ///< or of cells; of vertices if the group is empty
+  std::vector<std::array<std::int64_t, 4>> others;  ///< members of other kinds: code, number, two more
+};
+
+/// Values at nodes or elements.
+struct Results {
+  std::string array;  ///< name in the mesh
+  Association association = Association::vertices;
+  Index components = 1;
+  std::int64_t components_in_file = 1;  ///< where complex numbers are one component
+  int digits = 5;                       ///< after the point
+  bool integers = false;                ///< whether the values are whole numbers
+};
+
+enum class Part : std::uint8_t { text, nodes, elements, groups, results };
+
+/// A dataset, or what is between two.
+struct Section {
+  Part part = Part::text;
+  int dataset = 0;
+  std::string text = {};  ///< all lines of what is kept as it is; of results, those before the values
+  Index first = 0;        ///< of the file's nodes, elements, groups or results
+  Index count = 0;
+  std::vector<OtherElement> others = {};  ///< of elements
+};
+
+/// What a universal file says, in its own order.
+struct Contents {
+  std::vector<Section> sections;
+  IdMap nodes;     ///< numbers in the order of the file
+  IdMap elements;  ///< of those that are cells
+  FieldTable<NodeFields> node_fields;
+  FieldTable<ElementFields> element_fields;
+  std::vector<Group> groups;
+  std::vector<Results> results;
+  char exponent = 'D';  ///< letter before exponents of coordinates
+  std::string line_end = "\n";
+  /// Datasets that may name nodes or elements by number and are not understood: "dataset 791 (line 12)".
+  /// With one of them all numbers must stay.
+  std::vector<std::string> unknown;
+  std::vector<std::string> lost_elsewhere;  ///< what other formats lose
+};
+
+/// A universal file, and where its nodes and elements are in the mesh.
+struct Metadata final : FormatMetadata {
+  std::shared_ptr<const Contents> file;
+  std::vector<Index> vertex_of;  ///< of each node of the file; empty if they are in its order
+  std::vector<Index> cell_of;    ///< of each element of the file; likewise
+  bool whole = true;             ///< false after cells were left out: the file no longer fits the mesh
+
+  [[nodiscard]] std::vector<std::string> contents() const override { return file->lost_elsewhere; }
+  [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,
+                                                            std::span<const Index> cells) const override;
+  [[nodiscard]] bool binds_ids() const override { return whole && !file->unknown.empty(); }
+};
+
+/// Name of the array on cells that holds the numbers of materials, where they differ.
+inline constexpr std::string_view kMaterial = "material";
+
+/// Returns how many numbers a dataset of groups gives to a member, 2 or 4; 0 if it is none of groups.
+int numbers_of_member(int dataset);
+
+Mesh read(const FilePath& path, Notes& notes);
+void write(const Mesh& mesh, const FilePath& path, Notes& notes);
+
+/// Returns the file that a mesh can be written into; null if it came from elsewhere or no longer fits. Valid
+/// as long as the mesh. O(cells).
+const Metadata* own_file(const Mesh& mesh);
+
+}  // namespace meshorder::unv
