@@ -18,9 +18,9 @@ namespace meshorder {
 namespace {
 
 const std::vector<Format> kFormats{
-    tetgen_format(),        vega_format(),        gmsh_format(), medit_format(),
-    vtu_format(),           vtk_format(),         off_format(),  obj_format(),
-    ply_format(),           stl_format(),         su2_format(),  abaqus_format(),
+    tetgen_format(),        vega_format(),        gmsh_format(),    medit_format(), vtu_format(),
+    vtk_format(),           off_format(),         obj_format(),     ply_format(),   stl_format(),
+    su2_format(),           abaqus_format(),      nastran_format(),
 #ifdef MESHORDER_HAS_NETCDF
     exodus_format(),
 #endif

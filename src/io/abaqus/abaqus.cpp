@@ -3,6 +3,7 @@
 
 #include "io/abaqus/output.hpp"
 #include "io/all_formats.hpp"
+#include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
@@ -15,6 +16,8 @@
 namespace meshorder::abaqus {
 namespace {
 
+constexpr std::int64_t kLargest = 999'999'999;  // of the numbers of nodes and elements
+
 /// Writes a deck of nodes, elements and sets for a mesh that has no deck of its own.
 class PlainWriter {
  public:
@@ -23,8 +26,8 @@ class PlainWriter {
         notes_(notes),
         file_(path),
         out_(file_, "\n"),
-        vertex_ids_(are_numbers(mesh.vertex_ids)),
-        cell_ids_(are_numbers(mesh.cell_ids)) {}
+        vertex_ids_(can_be_numbers(mesh.vertex_ids, kLargest)),
+        cell_ids_(can_be_numbers(mesh.cell_ids, kLargest)) {}
 
   void write() {
     write_nodes();
@@ -39,14 +42,6 @@ class PlainWriter {
   }
 
  private:
-  /// Returns whether ids can be the numbers of nodes or elements: above 0, and each given once.
-  static bool are_numbers(std::vector<std::int64_t> ids) {
-    constexpr std::int64_t kLargest = 999'999'999;  // Abaqus's
-    std::sort(ids.begin(), ids.end());
-    return !ids.empty() && ids.front() > 0 && ids.back() <= kLargest &&
-           std::adjacent_find(ids.begin(), ids.end()) == ids.end();
-  }
-
   [[nodiscard]] std::int64_t vertex_number(Index v) const {
     return vertex_ids_ ? mesh_.vertex_ids[v] : v + std::int64_t{1};
   }

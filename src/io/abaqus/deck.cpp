@@ -1,21 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/abaqus/abaqus.hpp"
+#include "io/deck/numbers.hpp"
 
 #include <algorithm>
 
 namespace meshorder::abaqus {
 namespace {
-
-/// Moves the places of items; `moves` is empty where all stay. Returns whether all still have a place.
-bool move_places(std::vector<Index>& places, std::span<const Index> moves) {
-  if (moves.empty()) return true;
-  if (places.empty()) {
-    places.assign(moves.begin(), moves.end());
-  } else {
-    for (Index& place : places) place = moves[static_cast<std::size_t>(place)];
-  }
-  return std::none_of(places.begin(), places.end(), [](Index place) { return place < 0; });
-}
 
 /// Returns whether the cells that a card's elements are have the card's type.
 bool has_kind(const Mesh& mesh, const Metadata& metadata, const Section& section) {
@@ -47,23 +37,6 @@ const Metadata* own_deck(const Mesh& mesh) {
     return section.part != Part::elements || has_kind(mesh, *own, section);
   });
   return fits ? own : nullptr;
-}
-
-std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step) {
-  std::vector<Index> found;
-  if (to < from) return found;
-  if ((to - from) / step < items.size()) {
-    for (std::int64_t number = from; number <= to; number += step) {
-      if (const Index item = items.find(number); item >= 0) found.push_back(item);
-    }
-    return found;
-  }
-  for (Index item = 0; item < items.size(); ++item) {
-    const std::int64_t number = items.id(item);
-    if (number >= from && number <= to && (number - from) % step == 0) found.push_back(item);
-  }
-  std::sort(found.begin(), found.end(), [&](Index a, Index b) { return items.id(a) < items.id(b); });
-  return found;
 }
 
 }  // namespace meshorder::abaqus
