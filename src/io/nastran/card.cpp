@@ -317,12 +317,14 @@ RealText real_text(double value) {
     char* const end =
         std::to_chars(begin, begin + buffer.size(), value, std::chars_format::scientific, digits).ptr;
     double rounded = 0;
-    std::from_chars(begin, end, rounded);
+    if (std::from_chars(begin, end, rounded).ec != std::errc{}) continue;  // above the largest number
     if (std::string text = shortest(rounded); text.size() <= kLargeWidth) {
       result.is_rounded = rounded != value;
       best = std::move(text);
     }
   }
+  constexpr double kLargest = 1.797693134e308;
+  if (best.empty()) return {shortest(std::copysign(kLargest, value)), true};
   return {std::move(best), result.is_rounded};
 }
 

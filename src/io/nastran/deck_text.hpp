@@ -24,6 +24,8 @@ class DeckText {
   [[nodiscard]] const std::string& text() const { return text_; }
   /// Returns the lines between BEGIN BULK and ENDDATA; all up to ENDDATA where there is no BEGIN BULK.
   [[nodiscard]] Piece bulk() const { return bulk_; }
+  /// Returns false for a file with BEGIN BULK, but without ENDDATA.
+  [[nodiscard]] bool has_end() const { return section_ == Section::end || bulk_.begin == 0; }
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::string& line_end() const { return lines_.line_end(); }
   [[nodiscard]] const std::vector<std::string>& included() const { return lines_.included(); }

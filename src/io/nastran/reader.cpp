@@ -378,6 +378,7 @@ class DeckReader {
       notes_.push_back(
           fmt::format("included files are part of the file from here on: {}", join(file_.included())));
     }
+    if (!file_.has_end()) notes_.emplace_back("the file has no ENDDATA; it may be cut short");
     note_kept_numbers(deck_->unknown, notes_);
   }
 
