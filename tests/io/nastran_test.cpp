@@ -7,6 +7,7 @@
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -255,6 +256,52 @@ TEST(Nastran, TakesCornersOfElementsThatLackSomeNodesOfEdges) {
   EXPECT_THAT(mesh.cells[0], ElementsAre(0, 1, 2));
   EXPECT_THAT(notes, ElementsAre(HasSubstr("one element is without some of the nodes of edges")));
   EXPECT_THAT(moved(deck, {3, 2, 1, 0}, {0}), HasSubstr("CTRIA6,1,1,4,3,2,,1\n"));
+}
+
+TEST(Nastran, ReadsNodesOfEdgesIntoTheOrderOfVtk) {
+  struct Case {
+    std::string card;
+    std::vector<Point> corners;
+    std::vector<std::array<std::size_t, 2>> of_nastran;  ///< edges by their corners
+    std::vector<std::array<std::size_t, 2>> of_vtk;
+  };
+  const std::vector<Case> cases{
+      {"CPENTA",
+       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}},
+       {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 4}, {2, 5}, {3, 4}, {4, 5}, {5, 3}},
+       {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}},
+      {"CPYRAM",
+       {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}},
+       {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}},
+       {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}}},
+  };
+  for (const Case& of : cases) {
+    const auto middle = [&](std::array<std::size_t, 2> edge) {
+      const Point& a = of.corners[edge[0]];
+      const Point& b = of.corners[edge[1]];
+      return Point{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+    };
+    std::vector<Point> points = of.corners;
+    for (const auto& edge : of.of_nastran) points.push_back(middle(edge));
+    std::string deck;
+    std::string element = of.card + ",1,1";
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      deck += fmt::format("GRID,{},,{:.1f},{:.1f},{:.1f}\n", k + 1, points[k][0], points[k][1], points[k][2]);
+      element += fmt::format("{},{}", (k + 2) % 8 == 0 ? "\n" : "", k + 1);
+    }
+    const TemporaryFolder folder;
+    const Mesh mesh = read_mesh(folder.file("a.bdf", deck + element + "\n"));
+    const auto cell = mesh.cells[0];
+    ASSERT_EQ(cell.size(), points.size());
+    for (std::size_t k = 0; k < of.of_vtk.size(); ++k) {
+      EXPECT_EQ(mesh.points[cell[of.corners.size() + k]], middle(of.of_vtk[k])) << of.card << k;
+    }
+    // a mesh without the deck is written in Nastran's order, too
+    Mesh other = mesh;
+    other.format_metadata.reset();
+    write_mesh(other, folder.path() / "b.bdf");
+    EXPECT_EQ(read_mesh(folder.path() / "b.bdf").cells, mesh.cells);
+  }
 }
 
 TEST(Nastran, WritesWhatChangedInItsDeck) {

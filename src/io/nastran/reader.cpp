@@ -329,9 +329,9 @@ class DeckReader {
     }
     for (const auto& [name, card] : strangers_) {
       split_card(card.of(text), fields_);
-      const bool names =
-          !fields_.fault.empty() || std::any_of(fields_.fields.begin() + 1, fields_.fields.end(),
-                                                [&](const Field& field) { return may_name(field.text); });
+      const std::size_t first = name == "SET1" ? 2 : 1;  // behind the number of the set
+      bool names = !fields_.fault.empty();
+      for (std::size_t k = first; k < fields_.fields.size(); ++k) names = names || may_name(fields_.text(k));
       if (names) add(shown(name), card.begin);
     }
   }
