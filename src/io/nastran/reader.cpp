@@ -69,7 +69,7 @@ class DeckReader {
   }
 
   /// Returns the number of a node, element or property that a field is.
-  std::int64_t number(std::size_t field, std::string_view what) const {
+  [[nodiscard]] std::int64_t number(std::size_t field, std::string_view what) const {
     const std::string_view text = fields_.text(field);
     const std::int64_t result = number_of(text);
     if (result == 0 || result > kMaxIndex) {
