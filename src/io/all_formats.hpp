@@ -19,6 +19,7 @@ Format stl_format();
 Format su2_format();            ///< .su2
 Format xdmf_format();           ///< .xdmf with .h5 beside it; only where HDF5 is built in
 Format abaqus_format();         ///< .inp of Abaqus and CalculiX
+Format nastran_format();        ///< bulk data of Nastran
 Format matrix_market_format();  ///< .mtx
 Format metis_graph_format();    ///< .graph
 Format unv_format();            ///< .unv of I-deas

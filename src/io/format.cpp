@@ -18,9 +18,9 @@ namespace meshorder {
 namespace {
 
 const std::vector<Format> kFormats{
-    tetgen_format(),        vega_format(),        gmsh_format(), medit_format(),
-    vtu_format(),           vtk_format(),         off_format(),  obj_format(),
-    ply_format(),           stl_format(),         su2_format(),  abaqus_format(),
+    tetgen_format(),        vega_format(),        gmsh_format(),    medit_format(), vtu_format(),
+    vtk_format(),           off_format(),         obj_format(),     ply_format(),   stl_format(),
+    su2_format(),           abaqus_format(),      nastran_format(),
 #ifdef MESHORDER_HAS_NETCDF
     exodus_format(),
 #endif
@@ -116,10 +116,26 @@ bool is_deck(std::string_view word, std::string_view rest) {
   return !is_one_of(kOfVega);
 }
 
+/// Returns whether a file is one of Nastran, by the first line that is no comment.
+bool is_bulk_data(std::string_view bytes) {
+  constexpr std::array<std::string_view, 6> kWords{"SOL", "CEND", "BEGIN", "NASTRAN", "GRID", "GRID*"};
+  while (!bytes.empty()) {
+    const std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
+    bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
+    std::string_view rest = line;
+    const std::string_view word = next_word(rest, " \t,");
+    if (word.empty() || word.starts_with('$')) continue;
+    return std::any_of(kWords.begin(), kWords.end(),
+                       [&](std::string_view known) { return same_but_for_case(known, word); });
+  }
+  return false;
+}
+
 /// Returns the name of the format whose files begin like this, or an empty text. Comments and empty lines
 /// before the first word are passed over.
 std::string_view format_that_begins(std::string_view bytes) {
   if (is_exodus(bytes)) return "Exodus";
+  if (is_bulk_data(bytes)) return "Nastran";
   while (!bytes.empty()) {
     std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
     bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));

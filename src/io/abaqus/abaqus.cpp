@@ -3,7 +3,7 @@
 
 #include "io/abaqus/output.hpp"
 #include "io/all_formats.hpp"
-#include "io/file_numbers.hpp"
+#include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
@@ -16,6 +16,8 @@
 namespace meshorder::abaqus {
 namespace {
 
+constexpr std::int64_t kLargest = 999'999'999;  // of the numbers of nodes and elements
+
 /// Writes a deck of nodes, elements and sets for a mesh that has no deck of its own.
 class PlainWriter {
  public:
@@ -24,8 +26,8 @@ class PlainWriter {
         notes_(notes),
         file_(path),
         out_(file_, "\n"),
-        vertex_ids_(are_file_numbers(mesh.vertex_ids)),
-        cell_ids_(are_file_numbers(mesh.cell_ids)) {}
+        vertex_ids_(can_be_numbers(mesh.vertex_ids, kLargest)),
+        cell_ids_(can_be_numbers(mesh.cell_ids, kLargest)) {}
 
   void write() {
     write_nodes();

@@ -59,10 +59,6 @@ struct Metadata final : FormatMetadata {
 /// as long as the mesh. O(cells).
 const Metadata* own_deck(const Mesh& mesh);
 
-/// Returns the positions, in the file, of items whose numbers are from, from + step, … ≤ to; ascending by
-/// number. `step` is 1 or more. O(numbers), or O(items) if these are fewer.
-std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step);
-
 Mesh read(const FilePath& path, Notes& notes);
 
 /// Writes a mesh into its deck; notes what has no place.

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/abaqus/abaqus.hpp"
-#include "io/file_numbers.hpp"
+#include "io/deck/numbers.hpp"
 
 #include <algorithm>
 
@@ -37,23 +37,6 @@ const Metadata* own_deck(const Mesh& mesh) {
     return section.part != Part::elements || has_kind(mesh, *own, section);
   });
   return fits ? own : nullptr;
-}
-
-std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step) {
-  std::vector<Index> found;
-  if (to < from) return found;
-  if ((to - from) / step < items.size()) {
-    for (std::int64_t number = from; number <= to; number += step) {
-      if (const Index item = items.find(number); item >= 0) found.push_back(item);
-    }
-    return found;
-  }
-  for (Index item = 0; item < items.size(); ++item) {
-    const std::int64_t number = items.id(item);
-    if (number >= from && number <= to && (number - from) % step == 0) found.push_back(item);
-  }
-  std::sort(found.begin(), found.end(), [&](Index a, Index b) { return items.id(a) < items.id(b); });
-  return found;
 }
 
 }  // namespace meshorder::abaqus

@@ -3,7 +3,7 @@
 #include "io/abaqus/abaqus.hpp"
 #include "io/abaqus/cards.hpp"
 #include "io/abaqus/output.hpp"
-#include "io/file_numbers.hpp"
+#include "io/deck/numbers.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
@@ -161,38 +161,10 @@ class DeckWriter {
     out_.list(now);
   }
 
-  static const EntitySet* find(const std::vector<EntitySet>& sets, const EntitySet& like) {
-    const auto found = std::find_if(sets.begin(), sets.end(), [&](const EntitySet& set) {
-      return set.association == like.association && set.name == like.name;
-    });
-    return found == sets.end() ? nullptr : &*found;
-  }
-
-  /// Returns whether a set of the mesh has the members that the deck says.
-  [[nodiscard]] bool is_as_in_deck(const EntitySet& set, const EntitySet& of_deck) const {
-    if (set.members.size() != of_deck.members.size()) return false;
-    std::vector<Index> members = set.members;
-    std::vector<Index> wanted = of_deck.members;
-    for (Index& member : wanted) member = numbers_of(set.association).place(member);
-    std::sort(members.begin(), members.end());
-    std::sort(wanted.begin(), wanted.end());
-    return members == wanted;
-  }
-
-  /// Writes sets that the deck does not have; notes those that are no longer as it has them.
   void write_new_sets() {
-    std::vector<EntitySet> added;
-    for (const EntitySet& set : mesh_.sets) {
-      if (find(deck_.sets, set) == nullptr) added.push_back(set);
-    }
     write_sets(
-        out_, added, [&](Index v) { return nodes_.at(v); }, [&](Index c) { return elements_.at(c); }, notes_);
-    for (const EntitySet& of_deck : deck_.sets) {
-      const EntitySet* const set = find(mesh_.sets, of_deck);
-      if (set != nullptr && is_as_in_deck(*set, of_deck)) continue;
-      notes_.push_back(fmt::format("the set '{}' of {} is written as the deck has it; changes of it are lost",
-                                   of_deck.name, to_string(of_deck.association)));
-    }
+        out_, sets_beside(deck_.sets, mesh_.sets, nodes_, elements_, notes_),
+        [&](Index v) { return nodes_.at(v); }, [&](Index c) { return elements_.at(c); }, notes_);
   }
 
   const Mesh& mesh_;

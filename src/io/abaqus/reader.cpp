@@ -5,8 +5,9 @@
 #include "base/text.hpp"
 #include "io/abaqus/abaqus.hpp"
 #include "io/abaqus/cards.hpp"
-#include "io/abaqus/lines.hpp"
 #include "io/abaqus/sets.hpp"
+#include "io/deck/lines.hpp"
+#include "io/deck/numbers.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -126,7 +127,7 @@ class DeckReader {
     const std::string file = lines_.at().file();
     std::string text = take_keyword();
     const Card card = parse_card(text);
-    if (card.keyword == "INCLUDE") return lines_.include(std::string(card.value("INPUT")), line_);
+    if (card.keyword == "INCLUDE") return include(card.value("INPUT"));
     if (const std::string_view fault = fault_of(card.keyword); !fault.empty()) {
       lines_.fail(line_, fmt::format("{} {}", card.title, fault),
                   "let a preprocessor write all nodes and elements");
@@ -167,10 +168,15 @@ class DeckReader {
                 "Attributes");
   }
 
+  void include(std::string_view name) {
+    if (name.empty()) lines_.fail(line_, "the name of a file is missing", "write *INCLUDE, INPUT=FILE");
+    lines_.include(std::string(name), line_);
+  }
+
   /// Opens the file of the parameter INPUT, whose lines come inline. Returns the keyword's lines without it.
   std::string with_input(const Card& card, std::string text) {
     if (!card.has("INPUT")) return text;
-    lines_.include(std::string(card.value("INPUT")), line_);
+    include(card.value("INPUT"));
     return without_parameter(text, "INPUT");
   }
 
@@ -458,15 +464,7 @@ class DeckReader {
         deck_->unknown.push_back(fmt::format("{} (line {})", card.title, lines_of_sections_[i]));
       }
     }
-    if (deck_->unknown.empty()) return;
-    constexpr std::size_t kShown = 3;
-    const std::size_t more = deck_->unknown.size() - std::min(kShown, deck_->unknown.size());
-    const std::vector<std::string> first(deck_->unknown.begin(),
-                                         deck_->unknown.end() - static_cast<std::ptrdiff_t>(more));
-    notes_.push_back(fmt::format(
-        "all nodes and elements keep their numbers, and only their lines move, as these may name some by "
-        "number: {}{}",
-        join(first), more > 0 ? fmt::format(" and {} more", more) : ""));
+    note_kept_numbers(deck_->unknown, notes_);
   }
 
   DeckLines lines_;

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/abaqus/sets.hpp"
 
-#include "io/abaqus/abaqus.hpp"
+#include "io/deck/numbers.hpp"
 #include "io/stream/scanner.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
+#include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/unv/results.hpp"
@@ -489,7 +490,7 @@ class UnvReader {
     make_sets();
     make_arrays();
     list_losses();
-    note_unknown();
+    note_kept_numbers(file_->unknown, notes_);
     auto metadata = std::make_shared<Metadata>();
     metadata->file = file_;
     mesh_.format_metadata = std::move(metadata);
@@ -557,20 +558,6 @@ class UnvReader {
     if (!types.empty()) lost.push_back("the types of elements " + join(types));
     if (!other_types_.empty()) lost.push_back("elements of the types " + join(other_types_));
     lost.insert(lost.end(), kept_.begin(), kept_.end());
-  }
-
-  void note_unknown() {
-    const std::vector<std::string>& unknown = file_->unknown;
-    if (unknown.empty()) return;
-    constexpr std::size_t kShown = 3;
-    const std::size_t shown_count = std::min(kShown, unknown.size());
-    const std::vector<std::string> first(unknown.begin(),
-                                         unknown.begin() + static_cast<std::ptrdiff_t>(shown_count));
-    const std::size_t more = unknown.size() - shown_count;
-    notes_.push_back(fmt::format(
-        "all nodes and elements keep their numbers, and only their lines move, as these may name some by "
-        "number: {}{}",
-        join(first), more > 0 ? fmt::format(" and {} more", more) : ""));
   }
 
   static constexpr const char* kCutShort = "the file may be cut short";

@@ -3,7 +3,7 @@
 
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
-#include "io/file_numbers.hpp"
+#include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
@@ -25,7 +25,8 @@ namespace {
 constexpr std::string_view kName = "I-deas";
 constexpr std::size_t kLongestGroup = 40;
 constexpr std::size_t kLongestLine = 80;
-constexpr int kWidth = 10;  // of whole numbers
+constexpr int kWidth = 10;                            // of whole numbers
+constexpr std::int64_t kLargestNumber = 999'999'999;  // more digits fill the width
 constexpr int kDigitsOfCoordinates = 16;
 
 /// Writes the lines of a universal file.
@@ -131,8 +132,10 @@ class UnvWriter {
         plain_(own_ != nullptr ? Contents() : plain_contents(mesh)),
         file_(own_ != nullptr ? *own_->file : plain_),
         notes_(notes),
-        vertex_ids_(are_file_numbers(mesh.vertex_ids) ? mesh.vertex_ids : std::vector<std::int64_t>()),
-        cell_ids_(are_file_numbers(mesh.cell_ids) ? mesh.cell_ids : std::vector<std::int64_t>()),
+        vertex_ids_(can_be_numbers(mesh.vertex_ids, kLargestNumber) ? mesh.vertex_ids
+                                                                    : std::vector<std::int64_t>()),
+        cell_ids_(can_be_numbers(mesh.cell_ids, kLargestNumber) ? mesh.cell_ids
+                                                                : std::vector<std::int64_t>()),
         nodes_(file_.nodes, own_ != nullptr ? own_->vertex_of : none_, vertex_ids_),
         elements_(file_.elements, own_ != nullptr ? own_->cell_of : none_, cell_ids_),
         labels_(labels_of(mesh, Association::cells)),

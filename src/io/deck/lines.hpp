@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace meshorder::abaqus {
+namespace meshorder {
 
 /// The lines of a deck and, in place, of the files that it includes.
 class DeckLines {
@@ -49,4 +49,4 @@ class DeckLines {
   std::vector<std::string> included_;
 };
 
-}  // namespace meshorder::abaqus
+}  // namespace meshorder

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/abaqus/lines.hpp"
+#include "io/deck/lines.hpp"
 
 #include <meshorder/error.hpp>
 
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 
-namespace meshorder::abaqus {
+namespace meshorder {
 namespace {
 
 constexpr std::size_t kMostFiles = 10000;
@@ -62,7 +62,6 @@ void DeckLines::include(const std::string& name, std::int64_t line) {
   const auto refuse = [&](std::string_view fault, const std::string& remedy) {
     fail(line, fmt::format("the included file '{}' {}", shown(name), fault), remedy);
   };
-  if (name.empty()) fail(line, "the name of a file is missing", "write *INCLUDE, INPUT=FILE");
   if (!stays_below(name)) refuse("is not in the deck's folder", "put it there, or its lines into the deck");
   const FilePath path = main_.beside(name);
   if (!path.is_file()) refuse("does not exist", "put it into the deck's folder");
@@ -75,4 +74,4 @@ void DeckLines::include(const std::string& name, std::int64_t line) {
   if (!path.is_empty()) files_.push_back({path, std::make_unique<Scanner>(path)});
 }
 
-}  // namespace meshorder::abaqus
+}  // namespace meshorder

@@ -1,0 +1,95 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/deck/numbers.hpp"
+
+#include "base/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace meshorder {
+
+bool move_places(std::vector<Index>& places, std::span<const Index> moves) {
+  if (moves.empty()) return true;
+  if (places.empty()) {
+    places.assign(moves.begin(), moves.end());
+  } else {
+    for (Index& place : places) place = moves[static_cast<std::size_t>(place)];
+  }
+  return std::none_of(places.begin(), places.end(), [](Index place) { return place < 0; });
+}
+
+bool can_be_numbers(std::vector<std::int64_t> ids, std::int64_t largest) {
+  std::sort(ids.begin(), ids.end());
+  return !ids.empty() && ids.front() > 0 && ids.back() <= largest &&
+         std::adjacent_find(ids.begin(), ids.end()) == ids.end();
+}
+
+std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step) {
+  std::vector<Index> found;
+  if (to < from) return found;
+  if ((to - from) / step < items.size()) {
+    for (std::int64_t number = from; number <= to; number += step) {
+      if (const Index item = items.find(number); item >= 0) found.push_back(item);
+    }
+    return found;
+  }
+  for (Index item = 0; item < items.size(); ++item) {
+    const std::int64_t number = items.id(item);
+    if (number >= from && number <= to && (number - from) % step == 0) found.push_back(item);
+  }
+  std::sort(found.begin(), found.end(), [&](Index a, Index b) { return items.id(a) < items.id(b); });
+  return found;
+}
+
+namespace {
+
+const EntitySet* find(const std::vector<EntitySet>& sets, const EntitySet& like) {
+  const auto found = std::find_if(sets.begin(), sets.end(), [&](const EntitySet& set) {
+    return set.association == like.association && set.name == like.name;
+  });
+  return found == sets.end() ? nullptr : &*found;
+}
+
+/// Returns whether a set of the mesh has the members that the deck says.
+bool is_as_in_deck(const EntitySet& set, const EntitySet& of_deck, const FileNumbers& numbers) {
+  if (set.members.size() != of_deck.members.size()) return false;
+  std::vector<Index> members = set.members;
+  std::vector<Index> wanted = of_deck.members;
+  for (Index& member : wanted) member = numbers.place(member);
+  std::sort(members.begin(), members.end());
+  std::sort(wanted.begin(), wanted.end());
+  return members == wanted;
+}
+
+}  // namespace
+
+std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
+                                   const std::vector<EntitySet>& of_mesh, const FileNumbers& nodes,
+                                   const FileNumbers& elements, Notes& notes) {
+  std::vector<EntitySet> added;
+  for (const EntitySet& set : of_mesh) {
+    if (find(of_deck, set) == nullptr) added.push_back(set);
+  }
+  for (const EntitySet& wanted : of_deck) {
+    const EntitySet* const set = find(of_mesh, wanted);
+    const bool of_nodes = wanted.association == Association::vertices;
+    if (set != nullptr && is_as_in_deck(*set, wanted, of_nodes ? nodes : elements)) continue;
+    notes.push_back(fmt::format("the set '{}' of {} is written as the deck has it; changes of it are lost",
+                                wanted.name, to_string(wanted.association)));
+  }
+  return added;
+}
+
+void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes) {
+  if (unknown.empty()) return;
+  constexpr std::size_t kShown = 3;
+  const std::size_t more = unknown.size() - std::min(kShown, unknown.size());
+  const std::vector<std::string> first(unknown.begin(), unknown.end() - static_cast<std::ptrdiff_t>(more));
+  notes.push_back(fmt::format(
+      "all nodes and elements keep their numbers, and only their lines move, as these may name some by "
+      "number: {}{}",
+      join(first), more > 0 ? fmt::format(" and {} more", more) : ""));
+}
+
+}  // namespace meshorder

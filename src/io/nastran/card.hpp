@@ -1,0 +1,111 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Cards of Nastran's bulk data: their lines and fields.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshorder::nastran {
+
+/// The bytes of a card or of another part of a text.
+struct Piece {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+
+  [[nodiscard]] std::string_view of(std::string_view text) const { return text.substr(begin, end - begin); }
+};
+
+/// Goes through the cards of a text of whole lines: a line with a name and those that continue it, with the
+/// comments between them. Comments and empty lines around cards belong to none.
+class Cards {
+ public:
+  /// `text` must outlive this object.
+  Cards(std::string_view text, Piece part) : text_(text), at_(part.begin), end_(part.end) {}
+
+  /// Moves to the next card; returns false if there is none.
+  bool next();
+  /// Returns where the card is.
+  [[nodiscard]] Piece place() const { return card_; }
+  /// Returns its lines.
+  [[nodiscard]] std::string_view lines() const { return card_.of(text_); }
+  /// Returns whether it is a line that continues a card, but has none before it.
+  [[nodiscard]] bool is_orphan() const { return is_orphan_; }
+
+ private:
+  std::string_view text_;
+  std::size_t at_;
+  std::size_t end_;
+  Piece card_;
+  bool is_orphan_ = false;
+};
+
+/// A field of a card.
+struct Field {
+  std::size_t begin = 0;   ///< in the card
+  std::size_t length = 0;  ///< bytes that the line has of it
+  std::size_t width = 0;   ///< 8 or 16 columns; 0 between commas
+  std::string_view text;   ///< without blanks around it
+};
+
+/// A card by its fields; those of the lines that continue it follow without gap: 8 of a line, 4 of one with
+/// large fields. Field 0 is the name.
+struct CardFields {
+  std::vector<Field> fields;
+  bool is_large = false;     ///< whether the first line has large fields
+  std::string_view fault{};  ///< why the fields cannot be told; empty if they can
+
+  /// Returns the text of a field without blanks; empty where the card has none.
+  [[nodiscard]] std::string_view text(std::size_t field) const {
+    return field < fields.size() ? fields[field].text : std::string_view();
+  }
+};
+
+/// Takes the fields of a card's lines; memory of `result` is used again. The texts are valid as long as
+/// `card`.
+void split_card(std::string_view card, CardFields& result);
+
+/// Returns the name of a card in capitals, without the asterisk of large fields.
+std::string name_of(const CardFields& card);
+
+/// Returns a field as an integer; none for all else.
+std::optional<std::int64_t> integer_of(std::string_view field);
+
+/// Returns a field as a number above 0, the number of a node, element or property; 0 for all else.
+std::int64_t number_of(std::string_view field);
+
+/// Returns a field as a real number, which may lack the letter of its exponent (1.5-3 is 0.0015); none for
+/// what is no finite number.
+std::optional<double> real_of(std::string_view field);
+
+/// A number to be written into a field; 0 leaves the field blank.
+struct Edit {
+  std::size_t field = 0;
+  std::int64_t number = 0;
+};
+
+/// Appends a card with other numbers in some fields, ascending, in the columns of the old ones. Returns false
+/// for a number that does not fit its field.
+bool append_edited(std::string& out, std::string_view card, const CardFields& fields,
+                   const std::vector<Edit>& edits);
+
+/// Appends a card of small fields, or large ones where a text needs it, with lines as needed. `line_end` ends
+/// each. Texts of more than 16 characters are not possible.
+void append_card(std::string& out, std::string_view name, const std::vector<std::string>& texts,
+                 std::string_view line_end);
+
+/// A real number as a field.
+struct RealText {
+  std::string text;         ///< at most 16 characters
+  bool is_rounded = false;  ///< whether it reads back to another number
+};
+
+/// Returns the shortest text that reads back to the same bits, or to the nearest number that has one of 16
+/// characters: with a point, and no letter before the exponent.
+RealText real_text(double value);
+
+}  // namespace meshorder::nastran

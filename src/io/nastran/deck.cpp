@@ -1,0 +1,41 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/deck/numbers.hpp"
+#include "io/nastran/nastran.hpp"
+
+namespace meshorder::nastran {
+namespace {
+
+/// Returns whether each element of the deck is a cell of its type.
+bool has_cells_of(const Mesh& mesh, const Metadata& metadata) {
+  const Deck& deck = *metadata.deck;
+  for (Index k = 0; k < mesh.cell_count(); ++k) {
+    const Index c = metadata.cell_of.empty() ? k : metadata.cell_of[k];
+    const ElementCard& card = deck.elements[k];
+    if (mesh.cells.shapes[c] != card.type->shape || mesh.cells.vertex_count(c) != card.nodes) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> vertices,
+                                                      std::span<const Index> cells) const {
+  auto result = std::make_shared<Metadata>(*this);
+  if (!whole) return result;
+  const bool all_vertices = move_places(result->vertex_of, vertices);
+  const bool all_cells = move_places(result->cell_of, cells);
+  result->whole = all_vertices && all_cells;
+  return result;
+}
+
+const Metadata* own_deck(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  if (own == nullptr || !own->whole) return nullptr;
+  const Deck& deck = *own->deck;
+  if (deck.node_numbers.size() != mesh.vertex_count() || deck.element_numbers.size() != mesh.cell_count()) {
+    return nullptr;
+  }
+  return has_cells_of(mesh, *own) ? own : nullptr;
+}
+
+}  // namespace meshorder::nastran

@@ -1,0 +1,152 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/nastran/deck_text.hpp"
+
+#include "base/text.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace meshorder::nastran {
+namespace {
+
+constexpr std::size_t kTab = 8;
+
+/// Returns whether a line begins with that word, in any case, and no further letter.
+bool begins_with(std::string_view line, std::string_view word) {
+  if (line.size() < word.size() || !same_but_for_case(line.substr(0, word.size()), word)) return false;
+  return line.size() == word.size() ||
+         std::string_view(" \t,=$'\"").find(line[word.size()]) != std::string_view::npos;
+}
+
+/// Returns the word behind BEGIN; empty for other lines.
+std::string_view word_after_begin(std::string_view line) {
+  if (!begins_with(line, "BEGIN")) return {};
+  line.remove_prefix(std::string_view("BEGIN").size());
+  return next_word(line, " \t=$");
+}
+
+bool begins_bulk(std::string_view line) { return same_but_for_case(word_after_begin(line), "BULK"); }
+
+/// Returns whether a text has the line BEGIN BULK.
+bool has_begin_bulk(std::string_view text) {
+  constexpr std::array<std::string_view, 3> kSpellings{"BEGIN", "begin", "Begin"};
+  for (const std::string_view word : kSpellings) {
+    for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
+      const std::size_t line = at == 0 ? 0 : text.find_last_of("\r\n", at - 1) + 1;
+      const std::string_view rest = text.substr(at, text.find_first_of("\r\n", at) - at);
+      if (trimmed(text.substr(line, at - line)).empty() && begins_bulk(rest)) return true;
+    }
+  }
+  return false;
+}
+
+void append_without_tabs(std::string& out, std::string_view line) {
+  std::size_t column = 0;
+  for (const char c : line) {
+    const std::size_t blanks = c == '\t' ? kTab - column % kTab : 0;
+    if (c == '\t') {
+      out.append(blanks, ' ');
+      column += blanks;
+    } else {
+      out += c;
+      ++column;
+    }
+  }
+}
+
+}  // namespace
+
+DeckText::DeckText(const FilePath& path) : path_(path.string()), lines_(path) {
+  const std::string_view all = lines_.at().all();
+  if (all.find('\0') != std::string_view::npos) {
+    throw InputError(path.string(), "is no text, as bulk data of Nastran is", "give its bulk data");
+  }
+  if (has_begin_bulk(all)) section_ = Section::control;
+  text_.reserve(all.size() + 1);
+  read();
+  if (section_ != Section::end) bulk_.end = text_.size();
+}
+
+void DeckText::read() {
+  std::string_view line;
+  while (lines_.peek(line)) {
+    if (&lines_.at() != file_) {
+      file_ = &lines_.at();
+      origins_.push_back({text_.size(), file_->file(), file_->line()});
+    }
+    if (section_ != Section::end && begins_with(line, "INCLUDE")) {
+      include();
+    } else {
+      take_line(line);
+    }
+  }
+}
+
+/// Takes a line, given also without blanks around it.
+void DeckText::take_line(std::string_view line) {
+  const std::size_t begin = text_.size();
+  if (section_ == Section::bulk) {
+    if (begins_with(line, "ENDDATA")) {
+      section_ = Section::end;
+      bulk_.end = begin;
+    } else if (!word_after_begin(line).empty()) {
+      lines_.at().fail("a second section of bulk data begins", "give models without superelements");
+    } else if (begins_with(line, "CEND")) {
+      lines_.at().fail("case control without BEGIN BULK behind it", "the file may be cut short");
+    }
+  }
+  const bool starts_bulk = section_ == Section::control && begins_bulk(line);
+  const bool is_fixed = !line.starts_with('$') && line.find(',') == std::string_view::npos;
+  const std::string_view taken = lines_.take();
+  if (section_ == Section::bulk && is_fixed && taken.find('\t') != std::string_view::npos) {
+    append_without_tabs(text_, taken);
+  } else {
+    text_ += taken;
+  }
+  if (text_.back() != '\n' && text_.back() != '\r') text_ += lines_.line_end();
+  if (starts_bulk) {
+    section_ = Section::bulk;
+    bulk_.begin = text_.size();
+  }
+}
+
+/// Goes on with the lines of a file: INCLUDE 'name'.
+void DeckText::include() {
+  const std::int64_t number = lines_.at().line();
+  std::string_view line;
+  (void)lines_.peek(line);
+  line = trimmed(line.substr(std::string_view("INCLUDE").size()));
+  if (line.starts_with('=')) line = trimmed(line.substr(1));
+  std::string name(line.substr(0, line.find('$')));
+  if (!line.empty() && (line.front() == '\'' || line.front() == '"')) {
+    const std::size_t end = line.find(line.front(), 1);
+    if (end == std::string_view::npos) {
+      lines_.at().fail("the name of the included file does not end on its line", "write it on one line");
+    }
+    name = line.substr(1, end - 1);
+  }
+  name.erase(name.find_last_not_of(" \t") + 1);
+  (void)lines_.take();
+  if (name.empty()) lines_.fail(number, "the name of a file is missing", "write INCLUDE 'FILE'");
+  lines_.include(name, number);
+  file_ = nullptr;
+}
+
+Location DeckText::location(std::size_t byte) const {
+  const auto after = std::upper_bound(origins_.begin(), origins_.end(), byte,
+                                      [](std::size_t at, const Origin& origin) { return at < origin.begin; });
+  const Origin& origin = *std::prev(after);
+  const std::string_view before = std::string_view(text_).substr(origin.begin, byte - origin.begin);
+  std::int64_t line = origin.line;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const bool is_pair = before[k] == '\r' && k + 1 < before.size() && before[k + 1] == '\n';
+    if ((before[k] == '\n' || before[k] == '\r') && !is_pair) ++line;
+  }
+  return {origin.file, line, -1};
+}
+
+void DeckText::fail(std::size_t byte, const std::string& what, const std::string& remedy) const {
+  throw InputError(location(byte), what, remedy);
+}
+
+}  // namespace meshorder::nastran

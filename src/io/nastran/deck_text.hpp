@@ -1,0 +1,60 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/deck/lines.hpp"
+#include "io/nastran/card.hpp"
+#include <meshorder/error.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshorder::nastran {
+
+/// Reads a file of Nastran as one text, with included files in place, and finds the bulk data in it. Tabs
+/// before the comments of bulk data become blanks up to the next multiple of 8 columns.
+class DeckText {
+ public:
+  explicit DeckText(const FilePath& path);
+
+  /// Returns all lines, each with an end. Valid until it is moved from.
+  [[nodiscard]] std::string& text() { return text_; }
+  [[nodiscard]] const std::string& text() const { return text_; }
+  /// Returns the lines between BEGIN BULK and ENDDATA; all up to ENDDATA where there is no BEGIN BULK.
+  [[nodiscard]] Piece bulk() const { return bulk_; }
+  /// Returns false for a file with BEGIN BULK, but without ENDDATA.
+  [[nodiscard]] bool has_end() const { return section_ == Section::end || bulk_.begin == 0; }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] const std::string& line_end() const { return lines_.line_end(); }
+  [[nodiscard]] const std::vector<std::string>& included() const { return lines_.included(); }
+
+  /// Throws InputError at the line of that byte of the text.
+  [[noreturn]] void fail(std::size_t byte, const std::string& what, const std::string& remedy) const;
+  /// Returns the line of that byte in its file.
+  [[nodiscard]] Location location(std::size_t byte) const;
+
+ private:
+  /// Lines of one file, one behind the other.
+  struct Origin {
+    std::size_t begin;  // in the text
+    std::string file;
+    std::int64_t line;
+  };
+  enum class Section : std::uint8_t { control, bulk, end };
+
+  void read();
+  void take_line(std::string_view line);
+  void include();
+
+  std::string path_;
+  DeckLines lines_;
+  Section section_ = Section::bulk;
+  std::string text_;
+  Piece bulk_;
+  std::vector<Origin> origins_;
+  const Scanner* file_ = nullptr;  // of the last line
+};
+
+}  // namespace meshorder::nastran

@@ -1,0 +1,327 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
+#include "io/deck/numbers.hpp"
+#include "io/labels.hpp"
+#include "io/nastran/lists.hpp"
+#include "io/nastran/nastran.hpp"
+#include "io/nastran/references.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace meshorder::nastran {
+namespace {
+
+constexpr std::size_t kWidestField = 16;
+
+/// Returns which item of the file is at each place of the mesh.
+std::vector<Index> items_at(const FileNumbers& numbers) {
+  std::vector<Index> items(static_cast<std::size_t>(numbers.of_file().size()));
+  for (Index k = 0; k < numbers.of_file().size(); ++k) items[numbers.place(k)] = k;
+  return items;
+}
+
+class BulkWriter {
+ public:
+  BulkWriter(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes)
+      : mesh_(mesh),
+        deck_(*own.deck),
+        nodes_(deck_.node_numbers, own.vertex_of, mesh.vertex_ids),
+        elements_(deck_.element_numbers, own.cell_of, mesh.cell_ids),
+        labels_(labels_of(mesh, Association::cells)),
+        notes_(notes),
+        file_(path),
+        same_numbers_(nodes_.all_as_in_file() && elements_.all_as_in_file()) {
+    if (same_numbers_ || deck_.unknown.empty()) return;
+    throw InputError(path.string(),
+                     "its numbers cannot change, as these may name some: " + join(deck_.unknown),
+                     "keep them: --ids keep");
+  }
+
+  void write() {
+    const std::vector<Index> nodes = items_at(nodes_);
+    const std::vector<Index> elements = items_at(elements_);
+    std::size_t done = 0;  // bytes of the text
+    Index v = 0;
+    Index c = 0;
+    while (v < index_size(nodes) || c < index_size(elements)) {
+      // the next card of a node or element has the place of the next node or element of the mesh
+      const bool is_node = v < index_size(nodes) && (c == index_size(elements) ||
+                                                     deck_.nodes[v].begin < deck_.elements[c].place.begin);
+      const Piece place = is_node ? deck_.nodes[v] : deck_.elements[c].place;
+      write_text({done, place.begin});
+      done = place.end;
+      if (is_node) {
+        write_node(nodes[v], v);
+        ++v;
+      } else {
+        write_element(deck_.elements[elements[c]], c);
+        ++c;
+      }
+      flush();
+    }
+    write_text({done, deck_.bulk.end});
+    write_new_sets();
+    file_.write(std::string_view(deck_.text).substr(deck_.bulk.end));
+    file_.commit();
+    note_losses();
+  }
+
+ private:
+  void flush() {
+    file_.write(out_);
+    out_.clear();
+  }
+
+  void append_edited_card(std::string_view card) {
+    if (append_edited(out_, card, fields_, edits_)) return;
+    throw InputError(file_.target().string(),
+                     fmt::format("a number of {} is wider than its field", name_of(fields_)),
+                     "keep the numbers: --ids keep");
+  }
+
+  // ---- nodes
+
+  void write_node(Index item, Index v) {
+    const std::string_view card = deck_.nodes[item].of(deck_.text);
+    const bool moved = mesh_.points[v] != deck_.points[item];
+    if (!moved && nodes_.at(v) == deck_.node_numbers.id(item)) {
+      out_.append(card);
+      return;
+    }
+    split_card(card, fields_);
+    if (moved) return write_moved_node(v);
+    edits_.assign(1, {1, nodes_.at(v)});
+    append_edited_card(card);
+  }
+
+  /// Writes a node with other coordinates than in the file.
+  void write_moved_node(Index v) {
+    std::vector<std::string> texts{std::to_string(nodes_.at(v)), ""};
+    for (const double x : mesh_.points[v]) {
+      RealText real = real_text(x);
+      if (real.is_rounded) ++rounded_;
+      texts.push_back(std::move(real.text));
+    }
+    for (std::size_t field = 6; field < fields_.fields.size(); ++field) {
+      texts.emplace_back(fields_.text(field));
+    }
+    while (texts.back().empty()) texts.pop_back();
+    append_checked("GRID", texts);
+  }
+
+  void append_checked(std::string_view name, const std::vector<std::string>& texts) {
+    const bool fits = std::all_of(texts.begin(), texts.end(),
+                                  [](const std::string& text) { return text.size() <= kWidestField; });
+    if (!fits) {
+      throw InputError(file_.target().string(),
+                       fmt::format("a field of {} has more than 16 characters", name), "shorten it");
+    }
+    append_card(out_, name, texts, deck_.line_end);
+  }
+
+  // ---- elements
+
+  void write_element(const ElementCard& element, Index c) {
+    const std::string_view card = element.place.of(deck_.text);
+    split_card(card, fields_);
+    edits_.clear();
+    const ElementType& type = *element.type;
+    edit(1, elements_.at(c));
+    if (type.has_property) edit_property(c);
+    const auto cell = mesh_.cells[c];
+    std::array<std::int64_t, kMostNodes> nodes{};
+    for (std::size_t k = 0; k < cell.size(); ++k) {
+      nodes[node_place(type.shape, element.nodes, k)] = nodes_.at(cell[k]);
+    }
+    const std::size_t first = type.first_node();
+    for (std::size_t k = 0; k < cell.size(); ++k) edit(first + k, nodes[k]);
+    for (std::size_t k = cell.size(); k < static_cast<std::size_t>(type.most); ++k) edit_node(first + k);
+    edit_extra(type.extra);
+    append_edited_card(card);
+  }
+
+  /// Gives a field a number, if it has another.
+  void edit(std::size_t field, std::int64_t number) {
+    if (number_of(fields_.text(field)) != number) edits_.push_back({field, number});
+  }
+
+  /// Gives a field that may name a node the node's present number.
+  void edit_node(std::size_t field) {
+    const std::int64_t number = number_of(fields_.text(field));
+    if (number > 0) edit(field, nodes_.now(number));
+  }
+
+  void edit_property(Index c) {
+    const std::int64_t before = number_of(fields_.text(2));
+    const bool given = labels_.any() && labels_.given[c];
+    const std::int64_t label = given ? labels_.values[c] : before;
+    if (label < 1 || label > kLargestNumber) {
+      lost_labels_ = lost_labels_ || given;
+      return;
+    }
+    // a blank field stays where the element keeps its number
+    const bool is_default = before == 0 && label == number_of(fields_.text(1)) && edits_.empty();
+    if (!is_default) edit(2, label);
+  }
+
+  /// The node of an orientation and the points of warping, of beams.
+  void edit_extra(Extra extra) {
+    if (extra == Extra::none) return;
+    const bool is_node = fields_.text(kOrientation + 1).empty() && fields_.text(kOrientation + 2).empty();
+    if (is_node) edit_node(kOrientation);
+    if (extra == Extra::warping) {
+      edit_node(kWarpingA);
+      edit_node(kWarpingB);
+    }
+  }
+
+  // ---- other cards
+
+  void write_text(Piece part) {
+    const std::string_view text = deck_.text;
+    if (same_numbers_ || part.begin == part.end) return file_.write(part.of(text));
+    std::size_t done = part.begin;
+    const Piece bulk{std::max(part.begin, deck_.bulk.begin), std::min(part.end, deck_.bulk.end)};
+    if (bulk.begin < bulk.end) {
+      Cards cards(text, bulk);
+      while (cards.next()) {
+        out_.append(text.substr(done, cards.place().begin - done));
+        write_card(cards.lines());
+        done = cards.place().end;
+        flush();
+      }
+    }
+    file_.write(text.substr(done, part.end - done));
+  }
+
+  /// Writes a card with the present numbers of the nodes and elements that it names.
+  void write_card(std::string_view card) {
+    split_card(card, fields_);
+    const std::string name = name_of(fields_);
+    const auto found = references(name, fields_);
+    if (!found || found->defines_points) {
+      out_.append(card);
+      return;
+    }
+    edits_.clear();
+    for (const Reference& reference : found->fields) {
+      edit(reference.field, now(reference.association, number_of(fields_.text(reference.field))));
+    }
+    if (found->is_range) return write_ranges(card, name, *found);
+    if (found->list > 0) {
+      for (std::size_t field = found->list; field < fields_.fields.size(); ++field) {
+        const std::int64_t number = number_of(fields_.text(field));
+        if (number > 0) edit(field, now(found->of_list, number));
+      }
+    }
+    append_edited_card(card);
+  }
+
+  [[nodiscard]] std::int64_t now(Association association, std::int64_t number) const {
+    return numbers_of(association).now(number);
+  }
+
+  [[nodiscard]] const FileNumbers& numbers_of(Association association) const {
+    return association == Association::vertices ? nodes_ : elements_;
+  }
+
+  /// Writes a card with ranges of numbers: as it is if they hold the same items still, else as a list.
+  void write_ranges(std::string_view card, const std::string& name, const References& found) {
+    std::vector<NumberRange> ranges;
+    if (name == "PLOAD4") {
+      const std::int64_t from = number_of(fields_.text(2));
+      ranges.push_back({from, std::max(from, number_of(fields_.text(8))), 1});
+    } else {
+      ranges = ranges_of(fields_, found.list).value_or(ranges);
+    }
+    const bool of_nodes = found.of_list == Association::vertices;
+    const FileNumbers& numbers = numbers_of(found.of_list);
+    std::vector<Index> items;
+    const std::vector<std::int64_t> others = numbers_in_list(
+        ranges, numbers.of_file(), of_nodes ? deck_.other_points : deck_.other_elements, items);
+    std::vector<std::int64_t> before;
+    std::vector<std::int64_t> after;
+    for (const Index item : items) {
+      before.push_back(numbers.of_file().id(item));
+      after.push_back(numbers.at(numbers.place(item)));
+    }
+    std::sort(before.begin(), before.end());
+    std::sort(after.begin(), after.end());
+    if (before == after && edits_.empty()) {
+      out_.append(card);
+    } else if (before == after) {
+      append_edited_card(card);
+    } else if (name == "PLOAD4") {
+      for (const std::int64_t number : after) {
+        edits_ = {{2, number}, {7, 0}, {8, 0}};
+        append_edited_card(card);
+      }
+    } else {
+      after.insert(after.end(), others.begin(), others.end());
+      write_list(name, found.list, after);
+    }
+  }
+
+  /// Writes a card with a list of numbers in place of that from field `list` on.
+  void write_list(const std::string& name, std::size_t list, const std::vector<std::int64_t>& numbers) {
+    constexpr std::size_t kInPload2 = 6;  // which does not go on in a second line
+    std::vector<std::string> head;
+    for (std::size_t field = 1; field < list; ++field) head.emplace_back(fields_.text(field));
+    for (const Edit& changed : edits_) head[changed.field - 1] = std::to_string(changed.number);
+    const std::size_t most = name == "PLOAD2" ? kInPload2 : numbers.size();
+    for (std::size_t begin = 0; begin < numbers.size(); begin += most) {
+      std::vector<std::string> texts = head;
+      for (std::size_t k = begin; k < std::min(begin + most, numbers.size()); ++k) {
+        texts.push_back(std::to_string(numbers[k]));
+      }
+      append_checked(name, texts);
+    }
+  }
+
+  void write_new_sets() {
+    std::int64_t number = deck_.last_set;
+    for (const EntitySet& set : sets_beside(deck_.sets, mesh_.sets, nodes_, elements_, notes_)) {
+      std::vector<std::int64_t> members;
+      for (const Index member : set.members) members.push_back(numbers_of(set.association).at(member));
+      append_set(out_, ++number, set, members, deck_.line_end, notes_);
+      flush();
+    }
+  }
+
+  void note_losses() const {
+    if (rounded_ > 0) notes_.push_back(rounded_note(rounded_));
+    if (lost_labels_) notes_.emplace_back("labels that are no numbers of properties are not written");
+    for (const DataArray& array : mesh_.data) {
+      if (&array != label_array(mesh_, Association::cells)) note_array_unsupported(array, "Nastran", notes_);
+    }
+  }
+
+  const Mesh& mesh_;
+  const Deck& deck_;
+  FileNumbers nodes_;
+  FileNumbers elements_;
+  Labels labels_;
+  Notes& notes_;
+  OutputFile file_;
+  bool same_numbers_;
+  std::string out_;  // not written yet
+  CardFields fields_;
+  std::vector<Edit> edits_;
+  std::int64_t rounded_ = 0;
+  bool lost_labels_ = false;
+};
+
+}  // namespace
+
+void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes) {
+  BulkWriter(mesh, own, path, notes).write();
+}
+
+}  // namespace meshorder::nastran

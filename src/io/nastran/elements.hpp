@@ -1,0 +1,53 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Elements of Nastran that are cells, and the order of their nodes.
+
+#include <meshorder/mesh.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace meshorder::nastran {
+
+/// What a field before the nodes, or instead of a direction, may hold.
+enum class Extra : std::uint8_t {
+  none,
+  orientation,  ///< field 5 is a node if it is an integer and the next two are blank, else a direction
+  warping       ///< likewise, and fields 17 and 18 are points
+};
+
+/// A card of elements.
+struct ElementType {
+  std::string_view name;
+  Shape shape;
+  int corners;               ///< nodes that every element has
+  int most;                  ///< with those of edges, faces and the interior
+  bool has_property = true;  ///< whether field 2 is the number of a property
+  Extra extra = Extra::none;
+
+  /// Returns the field of the first node; field 1 is the number of the element.
+  [[nodiscard]] std::size_t first_node() const { return has_property ? 3 : 2; }
+};
+
+constexpr std::size_t kMostNodes = 20;
+constexpr std::size_t kOrientation = 5;
+constexpr std::size_t kWarpingA = 17;
+constexpr std::size_t kWarpingB = 18;
+
+/// Returns the type of a card by its name in capitals; null if it holds no cells. Valid for the life of the
+/// program.
+const ElementType* element_type(std::string_view name);
+
+/// Returns whether elements can have all of their first `nodes` nodes and no others.
+bool has_size(const ElementType& type, int nodes);
+
+/// Returns the card that cells of a mesh of another format are written as; an empty text if there is none.
+std::string_view card_of(Shape shape, int nodes);
+
+/// Returns the place of the k-th vertex of a cell among the nodes of its element. Behind the corners Nastran
+/// has the edges from the bottom to the top before those of the top, VTK after them.
+std::size_t node_place(Shape shape, int nodes, std::size_t k);
+
+}  // namespace meshorder::nastran

@@ -1,0 +1,183 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/nastran/nastran.hpp"
+
+#include "io/all_formats.hpp"
+#include "io/deck/numbers.hpp"
+#include "io/labels.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace meshorder::nastran {
+namespace {
+
+/// Writes bulk data of nodes, elements and sets for a mesh that has no deck of its own.
+class PlainBulkWriter {
+ public:
+  PlainBulkWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
+      : mesh_(mesh),
+        notes_(notes),
+        file_(path),
+        labels_(labels_of(mesh, Association::cells)),
+        vertex_ids_(can_be_numbers(mesh.vertex_ids, kLargestNumber)),
+        cell_ids_(can_be_numbers(mesh.cell_ids, kLargestNumber)) {
+    if (mesh.vertex_count() > kLargestNumber || mesh.cell_count() > kLargestNumber) {
+      throw InputError(path.string(), "has more than 99999999 vertices or cells", "Nastran numbers no more");
+    }
+  }
+
+  void write() {
+    file_.write("CEND\nBEGIN BULK\n");
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) write_node(v);
+    for (Index c = 0; c < mesh_.cell_count(); ++c) write_element(c);
+    write_sets();
+    file_.write("ENDDATA\n");
+    file_.commit();
+    note_losses();
+  }
+
+ private:
+  [[nodiscard]] std::int64_t vertex_number(Index v) const {
+    return vertex_ids_ ? mesh_.vertex_ids[v] : v + std::int64_t{1};
+  }
+  [[nodiscard]] std::int64_t cell_number(Index c) const {
+    return cell_ids_ ? mesh_.cell_ids[c] : c + std::int64_t{1};
+  }
+
+  void write_node(Index v) {
+    std::array<RealText, 3> reals;
+    for (std::size_t k = 0; k < reals.size(); ++k) {
+      reals[k] = real_text(mesh_.points[v][k]);
+      if (reals[k].is_rounded) ++rounded_;
+    }
+    file_.print("GRID*   {:>16}                {:>16}{:>16}\n*       {:>16}\n", vertex_number(v),
+                reals[0].text, reals[1].text, reals[2].text);
+  }
+
+  void write_element(Index c) {
+    const auto cell = mesh_.cells[c];
+    const Shape shape = mesh_.cells.shapes[c];
+    const int nodes = static_cast<int>(cell.size());
+    std::array<std::int64_t, 2 + kMostNodes> numbers{cell_number(c), property(c)};
+    for (std::size_t k = 0; k < cell.size(); ++k) {
+      numbers[2 + node_place(shape, nodes, k)] = vertex_number(cell[k]);
+    }
+    line_.clear();
+    constexpr std::size_t kOnLine = 8;
+    line_.append(card_of(shape, nodes));
+    line_.resize(kOnLine, ' ');
+    for (std::size_t k = 0; k < 2 + cell.size(); ++k) {
+      if (k > 0 && k % kOnLine == 0) line_ += "+\n+       ";
+      const fmt::format_int digits(numbers[k]);
+      line_.append(8 - digits.size(), ' ').append(digits.data(), digits.size());
+    }
+    file_.write(line_ += '\n');
+  }
+
+  /// Returns the property of a cell: its label where that is possible.
+  std::int64_t property(Index c) {
+    const bool given = labels_.any() && labels_.given[c];
+    const std::int64_t label = given ? labels_.values[c] : 1;
+    if (label >= 1 && label <= kLargestNumber) return label;
+    ++lost_labels_;
+    return 1;
+  }
+
+  void write_sets() {
+    std::int64_t number = 0;
+    for (const EntitySet& set : mesh_.sets) {
+      std::vector<std::int64_t> members;
+      const bool of_nodes = set.association == Association::vertices;
+      for (const Index member : set.members) {
+        members.push_back(of_nodes ? vertex_number(member) : cell_number(member));
+      }
+      line_.clear();
+      append_set(line_, ++number, set, members, "\n", notes_);
+      file_.write(line_);
+    }
+  }
+
+  void note_losses() {
+    if (rounded_ > 0) notes_.push_back(rounded_note(rounded_));
+    if (lost_labels_ > 0) {
+      notes_.push_back(
+          fmt::format("{} cells whose labels are not from 1 to 99999999 have the property 1", lost_labels_));
+    }
+    for (const DataArray& array : mesh_.data) {
+      if (&array != label_array(mesh_, Association::cells)) note_array_unsupported(array, "Nastran", notes_);
+    }
+    for (const bool of_vertices : {true, false}) {
+      const auto& ids = of_vertices ? mesh_.vertex_ids : mesh_.cell_ids;
+      if (ids.empty() || (of_vertices ? vertex_ids_ : cell_ids_)) continue;
+      notes_.push_back(fmt::format(
+          "the ids of {} are not written: numbers of Nastran are 1 to 99999999 and differ from each other",
+          of_vertices ? "vertices" : "cells"));
+    }
+    note_metadata_unsupported(mesh_, "Nastran", notes_);
+  }
+
+  const Mesh& mesh_;
+  Notes& notes_;
+  OutputFile file_;
+  Labels labels_;
+  std::string line_;
+  std::int64_t rounded_ = 0;
+  std::int64_t lost_labels_ = 0;
+  bool vertex_ids_;
+  bool cell_ids_;
+};
+
+bool holds(const Mesh& mesh, Shape shape, int vertices) {
+  return !card_of(shape, vertices).empty() || own_deck(mesh) != nullptr;
+}
+
+void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
+  if (const Metadata* const own = own_deck(mesh)) return write_into_deck(mesh, *own, path, notes);
+  PlainBulkWriter(mesh, path, notes).write();
+}
+
+}  // namespace
+
+std::string rounded_note(std::int64_t coordinates) {
+  return fmt::format("{} rounded to the 16 characters of a field of Nastran",
+                     coordinates == 1 ? "one coordinate is" : fmt::format("{} coordinates are", coordinates));
+}
+
+void append_set(std::string& out, std::int64_t number, const EntitySet& set,
+                const std::vector<std::int64_t>& members, std::string_view line_end, Notes& notes) {
+  if (members.empty()) {
+    notes.push_back(fmt::format("the set '{}' of {} is not written: it has no members", set.name,
+                                to_string(set.association)));
+    return;
+  }
+  std::string name = set.name;
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, '_');
+  if (name != set.name) notes.push_back(fmt::format("the set '{}' is written as '{}'", set.name, name));
+  std::vector<std::string> texts{std::to_string(number),
+                                 set.association == Association::vertices ? "GRID" : "ELEM"};
+  for (const std::int64_t member : members) texts.push_back(std::to_string(member));
+  out.append(kSetComment).append(name).append(line_end);
+  append_card(out, "SET3", texts, line_end);
+}
+
+}  // namespace meshorder::nastran
+
+namespace meshorder {
+
+Format nastran_format() {
+  return {.name = "Nastran",
+          .extensions = {".bdf", ".nas", ".fem"},
+          .groups_cells_by_type = false,
+          .read = nastran::read,
+          .write = nastran::write,
+          .holds = nastran::holds,
+          .first_number = 1};
+}
+
+}  // namespace meshorder

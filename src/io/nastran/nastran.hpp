@@ -1,0 +1,83 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Declarations shared by the reader and the writers of Nastran's bulk data.
+
+#include "io/format.hpp"
+#include "io/nastran/card.hpp"
+#include "io/nastran/elements.hpp"
+#include "io/stream/id_map.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshorder::nastran {
+
+/// Numbers of nodes, elements and properties fit 8 columns.
+constexpr std::int64_t kLargestNumber = 99'999'999;
+
+/// A card of an element that is a cell.
+struct ElementCard {
+  Piece place;
+  const ElementType* type = nullptr;
+  int nodes = 0;  ///< of the cell: all that the card has, or the corners where some of the others are missing
+};
+
+/// A file, and where its nodes and elements are in it.
+struct Deck {
+  std::string text;  ///< all lines, those of included files in place
+  Piece bulk;        ///< the lines between BEGIN BULK and ENDDATA, or all
+  std::vector<Piece> nodes;
+  std::vector<ElementCard> elements;
+  IdMap node_numbers;
+  IdMap element_numbers;
+  std::vector<Point> points;                 ///< of the nodes
+  std::vector<std::int64_t> other_points;    ///< numbers of points that are no nodes, ascending
+  std::vector<std::int64_t> other_elements;  ///< of elements that are no cells, ascending
+  std::vector<EntitySet> sets;               ///< of the cards SET3; members are positions in the file
+  std::int64_t last_set = 0;                 ///< the largest number of a set
+  std::string line_end = "\n";
+  /// Cards that may name nodes or elements by number and are not understood: "CWELD (line 12)". With one of
+  /// them all numbers must stay.
+  std::vector<std::string> unknown;
+  std::vector<std::string> contents;  ///< what other formats lose
+};
+
+/// A deck, and where its nodes and elements are in the mesh.
+struct Metadata final : FormatMetadata {
+  std::shared_ptr<const Deck> deck;
+  std::vector<Index> vertex_of;  ///< of each node of the file; empty if they are in its order
+  std::vector<Index> cell_of;    ///< of each element of the file; likewise
+  bool whole = true;             ///< false after cells were left out: the deck no longer fits the mesh
+
+  [[nodiscard]] std::vector<std::string> contents() const override { return deck->contents; }
+  [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,
+                                                            std::span<const Index> cells) const override;
+  [[nodiscard]] bool binds_ids() const override { return whole && !deck->unknown.empty(); }
+};
+
+/// Returns the deck that a mesh can be written into; null if it came from elsewhere or no longer fits. Valid
+/// as long as the mesh. O(cells).
+const Metadata* own_deck(const Mesh& mesh);
+
+/// The words before the name of a set, in the comment above its SET3.
+constexpr std::string_view kSetComment = "$ set: ";
+
+Mesh read(const FilePath& path, Notes& notes);
+
+/// Writes a mesh into its deck; notes what has no place.
+void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes);
+
+/// Appends a set as SET3, with its name in a comment. Notes a set without members, which is left out, and a
+/// name that changes.
+void append_set(std::string& out, std::int64_t number, const EntitySet& set,
+                const std::vector<std::int64_t>& members, std::string_view line_end, Notes& notes);
+
+/// Returns the note on coordinates that do not fit a field.
+std::string rounded_note(std::int64_t coordinates);
+
+}  // namespace meshorder::nastran

@@ -1,0 +1,415 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Nastran's bulk data: MSC Nastran Quick Reference Guide, "Bulk Data Entries".
+#include "base/text.hpp"
+#include "io/deck/numbers.hpp"
+#include "io/labels.hpp"
+#include "io/nastran/deck_text.hpp"
+#include "io/nastran/lists.hpp"
+#include "io/nastran/nastran.hpp"
+#include "io/nastran/references.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace meshorder::nastran {
+namespace {
+
+/// A node of an element that no card before it has.
+struct MissingNode {
+  Offset entry;  ///< of Cells::vertices
+  std::int64_t number;
+  std::size_t byte;
+};
+
+void add_once(std::vector<std::string>& list, const std::string& text) {
+  if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+}
+
+class DeckReader {
+ public:
+  DeckReader(const FilePath& path, Notes& notes) : file_(path), notes_(notes) {
+    deck_->line_end = file_.line_end();
+    deck_->bulk = file_.bulk();
+  }
+
+  Mesh read() {
+    Cards cards(file_.text(), file_.bulk());
+    while (cards.next()) {
+      card_ = cards.place();
+      if (cards.is_orphan()) fail("expected a card such as GRID, found a line that continues one", "add it");
+      split_card(cards.lines(), fields_);
+      read_card();
+    }
+    finish();
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
+    file_.fail(card_.begin, what, remedy);
+  }
+
+  void read_card() {
+    const std::string name = name_of(fields_);
+    if (name == "GRID") return read_node();
+    if (const ElementType* const type = element_type(name); type != nullptr && read_element(*type)) return;
+    read_other(name);
+  }
+
+  void check_lines() const {
+    if (!fields_.fault.empty()) {
+      fail(std::string(fields_.fault),
+           "write it in fields of 8 or 16 columns, its lines one behind the other");
+    }
+  }
+
+  /// Returns the number of a node, element or property that a field is.
+  [[nodiscard]] std::int64_t number(std::size_t field, std::string_view what) const {
+    const std::string_view text = fields_.text(field);
+    const std::int64_t result = number_of(text);
+    if (result == 0 || result > kMaxIndex) {
+      fail(fmt::format("{} is '{}'", what, shown(text)), "a number from 1 to 2147483647 is needed");
+    }
+    return result;
+  }
+
+  // ---- nodes
+
+  void read_node() {
+    check_lines();
+    const std::int64_t id = number(1, "the number of a node");
+    if (!deck_->node_numbers.add(id)) fail(fmt::format("node {} is given twice", id), "numbers must differ");
+    const std::string_view system = fields_.text(2);
+    if (!system.empty() && system != "0") {
+      fail(fmt::format("node {} is given in the coordinate system {}", id, shown(system)),
+           "write the nodes in the basic system: field CP of GRID blank or 0");
+    }
+    Point point{0, 0, 0};
+    for (std::size_t k = 0; k < point.size(); ++k) {
+      const std::string_view text = fields_.text(3 + k);
+      if (text.empty()) continue;
+      const auto value = real_of(text);
+      if (!value) {
+        fail(fmt::format("a coordinate of node {} is '{}'", id, shown(text)), "a finite number is needed");
+      }
+      point[k] = *value;
+    }
+    for (std::size_t field = 6; field < fields_.fields.size(); ++field) {
+      has_more_in_nodes_ = has_more_in_nodes_ || !fields_.text(field).empty();
+    }
+    mesh_.points.push_back(point);
+    deck_->nodes.push_back(card_);
+  }
+
+  // ---- elements
+
+  /// Reads an element that is a cell; returns false for one that is none: a spring to the ground.
+  bool read_element(const ElementType& type) {
+    check_lines();
+    const std::size_t first = type.first_node();
+    if (type.name == "CBUSH" && (fields_.text(first).empty() || number_of(fields_.text(first + 1)) == 0)) {
+      return false;
+    }
+    const std::int64_t id = number(1, "the number of an element");
+    if (!deck_->element_numbers.add(id)) {
+      fail(fmt::format("element {} is given twice", id), "numbers must differ");
+    }
+    const int nodes = nodes_of(type, id);
+    std::array<Index, kMostNodes> cell{};
+    const Offset entry = mesh_.cells.offsets.back();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(nodes); ++k) {
+      const std::size_t place = node_place(type.shape, nodes, k);
+      const std::int64_t node = number(first + place, fmt::format("a node of element {}", id));
+      cell[k] = deck_->node_numbers.find(node);
+      if (cell[k] < 0) {
+        cell[k] = 0;
+        missing_.push_back({entry + static_cast<Offset>(k), node, card_.begin});
+      }
+    }
+    begin_block();
+    mesh_.cells.push_back(type.shape, {cell.data(), static_cast<std::size_t>(nodes)});
+    deck_->elements.push_back({card_, &type, nodes});
+    add_property(type, id);
+    note_other_fields(type);
+    return true;
+  }
+
+  /// Returns the number of vertices that the cell gets.
+  int nodes_of(const ElementType& type, std::int64_t id) {
+    int given = 0;
+    int last = 0;
+    for (int k = 0; k < type.most; ++k) {
+      const std::string_view text = fields_.text(type.first_node() + static_cast<std::size_t>(k));
+      if (text.empty() || text == "0") continue;
+      ++given;
+      last = k + 1;
+    }
+    if (last < type.corners) {
+      fail(fmt::format("element {} has {} of the {} nodes of {}", id, last, type.corners, type.name),
+           "fields or lines are missing");
+    }
+    if (given == last && has_size(type, given)) return given;
+    ++without_some_;
+    return type.corners;
+  }
+
+  /// Elements with another card before them do not move to the others.
+  void begin_block() {
+    const bool first = deck_->elements.empty();
+    if (first || other_since_) mesh_.cell_blocks.push_back(mesh_.cell_count());
+    other_since_ = false;
+  }
+
+  void add_property(const ElementType& type, std::int64_t id) {
+    if (!type.has_property) return;
+    // a blank field is the number of the element
+    const std::int64_t property = fields_.text(2).empty() ? id : number(2, "the property of an element");
+    labels_.push_back(property);
+    labelled_.push_back(mesh_.cell_count() - 1);
+  }
+
+  /// Remembers what other formats lose.
+  void note_other_fields(const ElementType& type) {
+    const std::size_t end = type.first_node() + static_cast<std::size_t>(type.most);
+    for (std::size_t field = end; field < fields_.fields.size(); ++field) {
+      if (fields_.text(field).empty()) continue;
+      add_once(with_more_, std::string(type.name));
+      return;
+    }
+  }
+
+  // ---- other cards
+
+  void read_other(const std::string& name) {
+    other_since_ = true;
+    const auto found = references(name, fields_);
+    if (name == "GRDSET" && !fields_.text(2).empty() && fields_.text(2) != "0") {
+      fail("GRDSET gives nodes in a coordinate system",
+           "write them in the basic system: field CP blank or 0");
+    }
+    if (!found) {
+      strangers_.push_back({name, card_});
+    } else {
+      if (found->defines_element) deck_->other_elements.push_back(number_of(fields_.text(1)));
+      if (found->defines_points) {
+        for (const NumberRange& range :
+             ranges_of(fields_, found->list).value_or(std::vector<NumberRange>())) {
+          add_points(range);
+        }
+      }
+    }
+    deck_->last_set =
+        name.starts_with("SET") ? std::max(deck_->last_set, number_of(fields_.text(1))) : deck_->last_set;
+    if (name == "SET3" && found && found->list > 0) {
+      sets_.push_back(card_);
+    } else {
+      add_once(others_, shown(name));
+    }
+  }
+
+  void add_points(const NumberRange& range) {
+    constexpr std::int64_t kMost = 10'000'000;  // of one range
+    if (range.to - range.from > kMost) fail("a range of more than ten million points", "correct it");
+    for (std::int64_t n = range.from; n <= range.to; n += range.step) deck_->other_points.push_back(n);
+  }
+
+  // ---- the end
+
+  void finish() {
+    const std::string& path = file_.path();
+    if (mesh_.vertex_count() == 0) throw InputError(path, "has no GRID", kNoMesh);
+    if (mesh_.cell_count() == 0) throw InputError(path, "has no elements that are cells", kNoMesh);
+    resolve_nodes();
+    mesh_.dimension = 3;
+    if (mesh_.cell_blocks.size() < 2) mesh_.cell_blocks.clear();
+    mesh_.vertex_ids = deck_->node_numbers.ids_unless_from(1);
+    mesh_.cell_ids = deck_->element_numbers.ids_unless_from(1);
+    sort_once(deck_->other_points);
+    sort_once(deck_->other_elements);
+    add_labels();
+    read_sets();
+    list_contents();
+    find_unknown();
+    note_all();
+    deck_->points = mesh_.points;
+    deck_->text = std::move(file_.text());
+    auto metadata = std::make_shared<Metadata>();
+    metadata->deck = deck_;
+    mesh_.format_metadata = std::move(metadata);
+  }
+
+  static void sort_once(std::vector<std::int64_t>& numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  }
+
+  /// Finds nodes that come after the elements that name them.
+  void resolve_nodes() {
+    for (const MissingNode& missing : missing_) {
+      const Index v = deck_->node_numbers.find(missing.number);
+      if (v < 0) {
+        file_.fail(missing.byte,
+                   fmt::format("a node of the element is {}, which no GRID has", missing.number),
+                   "add it, or correct the element");
+      }
+      mesh_.cells.vertices[static_cast<std::size_t>(missing.entry)] = v;
+    }
+  }
+
+  void add_labels() {
+    if (labels_.empty()) return;
+    DataArray& array = mesh_.data.emplace_back();
+    array.name = kLabel;
+    array.association = Association::cells;
+    if (index_size(labels_) < mesh_.cell_count()) array.indices = std::move(labelled_);
+    array.values = label_values(std::move(labels_));
+  }
+
+  void read_sets() {
+    for (const Piece card : sets_) {
+      const std::string_view text = file_.text();
+      split_card(card.of(text), fields_);
+      const auto found = references("SET3", fields_);
+      const auto ranges = ranges_of(fields_, found->list);
+      EntitySet set;
+      set.association = found->of_list;
+      set.name = name_of_set(text, card);
+      const bool of_nodes = set.association == Association::vertices;
+      if (!ranges) continue;
+      (void)numbers_in_list(*ranges, of_nodes ? deck_->node_numbers : deck_->element_numbers, {},
+                            set.members);
+      mesh_.sets.push_back(std::move(set));
+    }
+    deck_->sets = mesh_.sets;
+  }
+
+  /// Returns the name in the comment above a card, or the number of the set.
+  [[nodiscard]] std::string name_of_set(std::string_view text, Piece card) const {
+    const std::string_view before = text.substr(0, card.begin);
+    const std::size_t end = before.find_last_not_of("\r\n") + 1;
+    const std::size_t begin = before.substr(0, end).find_last_of("\r\n") + 1;
+    const std::string_view line = before.substr(begin, end - begin);
+    if (line.starts_with(kSetComment)) return std::string(line.substr(kSetComment.size()));
+    return fmt::format("SET3 {}", fields_.text(1));
+  }
+
+  void list_contents() {
+    std::vector<std::string>& contents = deck_->contents;
+    if (file_.bulk().begin > 0) contents.emplace_back("executive and case control");
+    if (has_more_in_nodes_) contents.emplace_back("displacement systems and constraints of GRID");
+    if (!with_more_.empty()) contents.push_back("fields behind the nodes of " + join(with_more_));
+    if (without_some_ > 0) contents.emplace_back("nodes of edges, of elements that have only some");
+    if (!others_.empty()) contents.push_back("cards of the bulk data: " + join(others_));
+  }
+
+  [[nodiscard]] bool is_item(std::int64_t number) const {
+    return deck_->node_numbers.find(number) >= 0 || deck_->element_numbers.find(number) >= 0;
+  }
+
+  /// Returns whether a text of fields may name nodes or elements.
+  [[nodiscard]] bool may_name(std::string_view text) const {
+    return same_but_for_case(text, "THRU") || is_item(number_of(text));
+  }
+
+  void find_unknown() {
+    const std::string_view text = file_.text();
+    const auto add = [&](std::string_view what, std::size_t byte) {
+      deck_->unknown.push_back(fmt::format("{} (line {})", what, file_.location(byte).line));
+    };
+    find_in_control(text.substr(0, file_.bulk().begin), add);
+    constexpr std::string_view kMove = "$HMMOVE";  // lists of elements, in comments
+    const Piece bulk = file_.bulk();
+    if (const std::size_t at = bulk.of(text).find(kMove); at != std::string_view::npos) {
+      add(kMove, bulk.begin + at);
+    }
+    for (const auto& [name, card] : strangers_) {
+      split_card(card.of(text), fields_);
+      const std::size_t first = name == "SET1" ? 2 : 1;  // behind the number of the set
+      bool names = !fields_.fault.empty();
+      for (std::size_t k = first; k < fields_.fields.size(); ++k) names = names || may_name(fields_.text(k));
+      if (names) add(shown(name), card.begin);
+    }
+  }
+
+  /// Finds sets and curves of case control, which are numbers of nodes or elements.
+  template <class Add>
+  void find_in_control(std::string_view control, const Add& add) const {
+    bool in_set = false;
+    for (std::size_t begin = 0; begin < control.size();) {
+      const std::size_t end = std::min(control.find_first_of("\r\n", begin), control.size());
+      std::string_view line = control.substr(begin, end - begin);
+      const std::size_t byte = begin;
+      begin = end + 1;
+      line = line.substr(0, line.find('$'));
+      std::string_view rest = line;
+      const std::string_view word = next_word(rest, " \t=");
+      const bool is_curve = word.size() > 1 && same_but_for_case(word.substr(0, 2), "XY");
+      const bool goes_on = in_set;
+      const bool is_set = word.size() == 3 && same_but_for_case(word, "SET");
+      if (is_set) (void)next_word(rest, " \t=");  // its number
+      in_set = (is_set || in_set) && trimmed(line).ends_with(',');
+      if (!is_set && !goes_on && !is_curve) continue;
+      if (is_curve || names_items(goes_on && !is_set ? line : rest)) {
+        add(is_curve ? shown(word) : std::string("SET of case control"), byte);
+        in_set = false;
+      }
+    }
+  }
+
+  [[nodiscard]] bool names_items(std::string_view list) const {
+    for (std::string_view word; !(word = next_word(list, " \t,=")).empty();) {
+      if (may_name(word)) return true;
+    }
+    return false;
+  }
+
+  void note_all() {
+    if (without_some_ > 0) {
+      notes_.push_back(
+          fmt::format("{} without some of the nodes of edges: the cells have the corners alone",
+                      without_some_ == 1 ? "one element is" : fmt::format("{} elements are", without_some_)));
+    }
+    if (!file_.included().empty()) {
+      notes_.push_back(
+          fmt::format("included files are part of the file from here on: {}", join(file_.included())));
+    }
+    if (!file_.has_end()) notes_.emplace_back("the file has no ENDDATA; it may be cut short");
+    note_kept_numbers(deck_->unknown, notes_);
+  }
+
+  static constexpr const char* kNoMesh = "it may be cut short, or its mesh be in another file";
+
+  /// A card that is not known.
+  struct Stranger {
+    std::string name;
+    Piece card;
+  };
+
+  DeckText file_;
+  Notes& notes_;
+  Mesh mesh_;
+  std::shared_ptr<Deck> deck_ = std::make_shared<Deck>();
+  Piece card_;  // that is being read
+  CardFields fields_;
+  std::vector<MissingNode> missing_;
+  std::vector<std::int64_t> labels_;
+  std::vector<Index> labelled_;
+  std::vector<Piece> sets_;
+  std::vector<Stranger> strangers_;
+  std::vector<std::string> others_;     // names of other cards
+  std::vector<std::string> with_more_;  // names of elements
+  std::int64_t without_some_ = 0;
+  bool has_more_in_nodes_ = false;
+  bool other_since_ = false;  // another card since the last element
+};
+
+}  // namespace
+
+Mesh read(const FilePath& path, Notes& notes) { return DeckReader(path, notes).read(); }
+
+}  // namespace meshorder::nastran

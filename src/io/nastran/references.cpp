@@ -1,0 +1,279 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Fields of cards: MSC Nastran Quick Reference Guide, "Bulk Data Entries".
+#include "io/nastran/references.hpp"
+
+#include "base/text.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace meshorder::nastran {
+namespace {
+
+/// What the fields behind the name are: nodes (n), elements (e), the number of an element that is no cell
+/// (x), and neither (-). Letters in parentheses repeat to the end of the card. A capital letter begins a list
+/// of nodes (N), elements (E) or points that are no nodes (S). A card that ends with "." has no further ones.
+struct Layout {
+  std::string_view name;
+  std::string_view fields;
+};
+
+constexpr std::array kLayouts{
+    // loads
+    Layout{"ACCEL1", "--------N"},
+    Layout{"DAREA", "-n--n"},
+    Layout{"DELAY", "-n--n"},
+    Layout{"DPHASE", "-n--n"},
+    Layout{"FORCE", "-n"},
+    Layout{"FORCE1", "-n-nn"},
+    Layout{"FORCE2", "-n-nnnn"},
+    Layout{"MOMENT", "-n"},
+    Layout{"MOMENT1", "-n-nn"},
+    Layout{"MOMENT2", "-n-nnnn"},
+    Layout{"PLOAD", "--nnnn"},
+    Layout{"PLOAD1", "-e"},
+    Layout{"PLOADX1", "-e--nn"},
+    Layout{"QBDY1", "--E"},
+    Layout{"QBDY3", "--nE"},
+    Layout{"QHBDY", "----nnnnnnnn"},
+    Layout{"QVOL", "--nE"},
+    Layout{"RFORCE", "-n"},
+    Layout{"SLOAD", "-(n-)"},
+    Layout{"TEMP", "-n-n-n"},
+    Layout{"TEMPP1", "-e------E"},
+    Layout{"TEMPRB", "-e--------------E"},
+    Layout{"TIC", "-n"},
+    // constraints and sets of degrees of freedom
+    Layout{"ASET", "(n-)"},
+    Layout{"ASET1", "-N"},
+    Layout{"BNDGRID", "-N"},
+    Layout{"BSET", "(n-)"},
+    Layout{"BSET1", "-N"},
+    Layout{"CSET", "(n-)"},
+    Layout{"CSET1", "-N"},
+    Layout{"MPC", "(-n--n---)"},
+    Layout{"OMIT", "(n-)"},
+    Layout{"OMIT1", "-N"},
+    Layout{"QSET", "(n-)"},
+    Layout{"QSET1", "-N"},
+    Layout{"SEQGP", "(n-)"},
+    Layout{"SPC", "-n--n"},
+    Layout{"SPC1", "--N"},
+    Layout{"SPCD", "-n--n"},
+    Layout{"SUPORT", "(n-)"},
+    Layout{"SUPORT1", "-(n-)"},
+    Layout{"USET", "-(n-)"},
+    Layout{"USET1", "--N"},
+    // rigid elements
+    Layout{"RBAR", "xnn"},
+    Layout{"RBAR1", "xnn"},
+    Layout{"RBE1", "(xn-n-n--)"},
+    Layout{"RBE2", "xn-N"},
+    Layout{"RJOINT", "xnn"},
+    Layout{"RROD", "xnn"},
+    Layout{"RSPLINE", "x-n(n-)"},
+    Layout{"RTRPLT", "xnnn"},
+    // elements that are no cells
+    Layout{"CBUSH", "x-nnG"},
+    Layout{"CBUSH1D", "x-nn"},
+    Layout{"CDAMP1", "x-n-n"},
+    Layout{"CDAMP2", "x-n-n"},
+    Layout{"CDAMP3", "x-nn"},
+    Layout{"CDAMP4", "x-nn"},
+    Layout{"CDAMP5", "x-nn"},
+    Layout{"CELAS1", "x-n-n"},
+    Layout{"CELAS2", "x-n-n"},
+    Layout{"CELAS3", "x-nn"},
+    Layout{"CELAS4", "x-nn"},
+    Layout{"CGAP", "x-nnG"},
+    Layout{"CHBDYE", "xe"},
+    Layout{"CHBDYG", "x-------nnnnnnnn"},
+    Layout{"CMASS1", "x-n-n"},
+    Layout{"CMASS2", "x-n-n"},
+    Layout{"CMASS3", "x-nn"},
+    Layout{"CMASS4", "x-nn"},
+    Layout{"CONM1", "xn"},
+    Layout{"CONM2", "xn"},
+    Layout{"CONV", "---nnnnnnnnn"},
+    Layout{"CVISC", "x-nn"},
+    Layout{"PLOTEL", "xnn"},
+    // points, systems, others
+    Layout{"BLSEG", "-N"},
+    Layout{"BSURF", "-E"},
+    Layout{"CORD1C", "-nnn-nnn"},
+    Layout{"CORD1R", "-nnn-nnn"},
+    Layout{"CORD1S", "-nnn-nnn"},
+    Layout{"DVGRID", "-n"},
+    Layout{"EIGB", "---------n"},
+    Layout{"EIGC", "---n"},
+    Layout{"EIGR", "---------n"},
+    Layout{"EPOINT", "S"},
+    Layout{"RADBC", "n-nE"},
+    Layout{"SPOINT", "S"},
+};
+
+/// Cards that name no nodes and no elements.
+constexpr std::array<std::string_view, 125> kPlain{
+    // clang-format off
+    "ACCEL", "BCPROP", "BCTADD", "BCTPARM", "BFRIC", "CORD2C", "CORD2R", "CORD2S", "CREEP",
+    "DAMPING", "DCONADD", "DCONSTR", "DEQATN", "DESVAR", "DLINK", "DLOAD", "DOPTPRM", "DTABLE", "DVMREL1",
+    "DVPREL1", "ECHOOFF", "ECHOON", "EIGP", "EIGRL", "FREQ", "FREQ1", "FREQ2", "FREQ3", "FREQ4",
+    "FREQ5", "GRAV", "GRDSET", "LOAD", "LSEQ", "MAT1", "MAT10", "MAT2", "MAT3", "MAT4",
+    "MAT5", "MAT8", "MAT9", "MATEP", "MATG", "MATHE", "MATHP", "MATORT", "MATS1", "MATT1",
+    "MATT2", "MATT3", "MATT4", "MATT5", "MATT8", "MATT9", "MDLPRM", "MPCADD", "NLPARM", "NLPCI",
+    "NSMADD", "PBAR", "PBARL", "PBCOMP", "PBEAM", "PBEAML", "PBEND", "PBUSH", "PBUSH1D", "PBUSHT",
+    "PCOMP", "PCOMPG", "PCOMPP", "PCONV", "PDAMP", "PDAMPT", "PELAS", "PELAST", "PFAST", "PGAP",
+    "PHBDY", "PLCOMP", "PLPLANE", "PLSOLID", "PLY", "PMASS", "PROD", "PSHEAR", "PSHELL", "PSHLN1",
+    "PSLDN1", "PSOLID", "PTUBE", "PVISC", "PWELD", "RADM", "RADMT", "RADSET", "RANDPS", "RANDT1",
+    "RFORCEADD", "RLOAD1", "RLOAD2", "SPCADD", "STACK", "TABDMP1", "TABLED1", "TABLED2", "TABLED3",
+    "TABLED4", "TABLEM1", "TABLEM2", "TABLEM3", "TABLEM4", "TABLES1", "TABLEST", "TABRND1", "TABRNDG",
+    "TEMPD", "TLOAD1", "TLOAD2", "TSTEP", "TSTEP1", "TSTEPNL", "VIEW", "VIEW3D",
+    // clang-format on
+};
+
+constexpr Association association_of(char letter) {
+  return letter == 'n' || letter == 'N' ? Association::vertices : Association::cells;
+}
+
+bool is_word(std::string_view field, std::string_view word) {
+  return field.size() == word.size() && same_but_for_case(field, word);
+}
+
+/// Collects what a card names.
+class Finder {
+ public:
+  explicit Finder(const CardFields& card) : card_(card) {}
+
+  std::optional<References> by_layout(std::string_view layout) {
+    const std::size_t open = layout.find('(');
+    const std::string_view begin = layout.substr(0, open);
+    const std::string_view repeated =
+        open == std::string_view::npos ? "" : layout.substr(open + 1, layout.find(')') - open - 1);
+    for (std::size_t field = 1; field < card_.fields.size(); ++field) {
+      const std::size_t k = field - 1;
+      if (k >= begin.size() && repeated.empty()) break;
+      const char letter = k < begin.size() ? begin[k] : repeated[(k - begin.size()) % repeated.size()];
+      if (letter == 'N' || letter == 'E' || letter == 'S') return with_list(letter, field);
+      add(letter, field);
+    }
+    return found_;
+  }
+
+  /// The grid points of RBE3 stand behind each weight and its components; then UM and ALPHA.
+  std::optional<References> of_rbe3() {
+    found_.defines_element = true;
+    add('n', 3);
+    bool in_dependent = false;  // behind UM: pairs of points and components
+    int since = 0;              // fields since the last weight or UM
+    for (std::size_t field = 5; field < card_.fields.size(); ++field) {
+      const std::string_view text = card_.text(field);
+      if (text.empty()) continue;
+      if (is_word(text, "ALPHA")) break;
+      if (is_word(text, "UM")) {
+        in_dependent = true;
+        since = 0;
+        continue;
+      }
+      const bool is_real = text.find('.') != std::string_view::npos;
+      if (in_dependent) {
+        if (since++ % 2 == 0) add('n', field);
+      } else if (is_real) {
+        since = 0;
+      } else if (++since > 1) {
+        add('n', field);
+      }
+    }
+    return found_;
+  }
+
+  /// The columns of a matrix by points; its first card names none.
+  std::optional<References> of_dmig() { return card_.text(2) == "0" ? found_ : by_layout("-n--(n---)"); }
+
+  /// Pressure on solids and shells: the face by two nodes, or a range of elements.
+  std::optional<References> of_pload4() {
+    if (is_word(card_.text(7), "THRU")) {
+      found_.list = 2;
+      found_.of_list = Association::cells;
+      found_.is_range = true;
+      return found_;
+    }
+    return by_layout("-e----nn");
+  }
+
+  std::optional<References> of_param() { return is_word(card_.text(1), "GRDPNT") ? by_layout("-n") : found_; }
+
+  /// A set of grid points or elements, of properties or others.
+  std::optional<References> of_set3() {
+    const std::string_view kind = card_.text(2);
+    if (is_word(kind, "GRID")) return by_layout("--N");
+    if (is_word(kind, "ELEM")) return by_layout("--E");
+    if (is_word(kind, "PROP") || is_word(kind, "POINT"))
+      return is_word(kind, "PROP") ? found_ : by_layout("--N");
+    return {};
+  }
+
+ private:
+  void add(char letter, std::size_t field) {
+    if (letter == 'x' && field == 1) found_.defines_element = true;
+    if (letter == 'G') letter = card_.text(field + 1).empty() ? 'n' : '-';
+    if (letter != 'n' && letter != 'e') return;
+    if (number_of(card_.text(field)) > 0) found_.fields.push_back({association_of(letter), field});
+  }
+
+  std::optional<References> with_list(char letter, std::size_t field) {
+    found_.list = field;
+    found_.of_list = association_of(letter);
+    if (letter == 'S') found_.defines_points = true;
+    for (std::size_t k = field; k < card_.fields.size(); ++k) {
+      if (is_word(card_.text(k), "THRU")) found_.is_range = true;
+      if (is_word(card_.text(k), "EXCEPT")) return {};
+    }
+    if (found_.is_range && !ranges_of(card_, field)) return {};
+    return found_;
+  }
+
+  const CardFields& card_;
+  References found_;
+};
+
+}  // namespace
+
+std::optional<References> references(std::string_view name, const CardFields& card) {
+  if (!card.fault.empty()) return {};
+  Finder finder(card);
+  if (name == "PLOAD4") return finder.of_pload4();
+  if (name == "PLOAD2") return finder.by_layout("--E");
+  if (name == "RBE3") return finder.of_rbe3();
+  if (name == "DMIG") return finder.of_dmig();
+  if (name == "PARAM") return finder.of_param();
+  if (name == "SET3") return finder.of_set3();
+  for (const Layout& layout : kLayouts) {
+    if (layout.name == name) return finder.by_layout(layout.fields);
+  }
+  if (std::find(kPlain.begin(), kPlain.end(), name) != kPlain.end()) return References();
+  return {};
+}
+
+std::optional<std::vector<NumberRange>> ranges_of(const CardFields& card, std::size_t list) {
+  std::vector<NumberRange> ranges;
+  for (std::size_t k = list; k < card.fields.size(); ++k) {
+    const std::string_view text = card.text(k);
+    if (text.empty()) continue;
+    if (is_word(text, "THRU") || is_word(text, "BY")) {
+      std::size_t next = k + 1;
+      while (next < card.fields.size() && card.text(next).empty()) ++next;  // on the next line
+      const std::int64_t number = number_of(card.text(next));
+      if (ranges.empty() || number == 0) return {};
+      (is_word(text, "BY") ? ranges.back().step : ranges.back().to) = number;
+      k = next;
+      continue;
+    }
+    const std::int64_t number = number_of(text);
+    if (number == 0) return {};
+    ranges.push_back({number, number, 1});
+  }
+  return ranges;
+}
+
+}  // namespace meshorder::nastran

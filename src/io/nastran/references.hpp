@@ -1,0 +1,50 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Where the cards of bulk data that are neither nodes nor cells name nodes and elements.
+
+#include "io/nastran/card.hpp"
+#include <meshorder/mesh.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace meshorder::nastran {
+
+/// A field with the number of a node or element.
+struct Reference {
+  Association association;
+  std::size_t field;
+};
+
+/// What a card names.
+struct References {
+  std::vector<Reference> fields = {};  ///< ascending
+  /// The fields from here to the end of the card are a list of numbers, and of ranges "1 THRU 9" or
+  /// "1 THRU 9 BY 2"; 0 if there is none.
+  std::size_t list = 0;
+  Association of_list = Association::vertices;
+  bool is_range = false;  ///< whether the list has a range
+  /// Numbers that the card gives to items which are no vertices and no cells: points or elements.
+  bool defines_points = false;   ///< the list has them
+  bool defines_element = false;  ///< field 1 has it
+};
+
+/// Returns what a card of that name in capitals names; none if the card is not known, or is written in a way
+/// that is not.
+std::optional<References> references(std::string_view name, const CardFields& card);
+
+/// A range of numbers from, from + step, … ≤ to; one number if from = to.
+struct NumberRange {
+  std::int64_t from;
+  std::int64_t to;
+  std::int64_t step;
+};
+
+/// Returns the numbers and ranges of the list of a card; none if there is something else in it.
+std::optional<std::vector<NumberRange>> ranges_of(const CardFields& card, std::size_t list);
+
+}  // namespace meshorder::nastran
