@@ -160,6 +160,18 @@ H5_index_t order_of(hid_t group) {
   return (flags & H5P_CRT_ORDER_INDEXED) != 0 ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME;
 }
 
+/// Returns how a copy of a group is made: one that keeps the order of its links if the group does. The list
+/// of the group itself would do harm, as it has the addresses of its links in the old file.
+Handle creation_of_copy(hid_t group) {
+  const Handle old(H5Gget_create_plist(group), H5Pclose);
+  Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  unsigned flags = 0;
+  if (H5Pget_link_creation_order(old.id(), &flags) >= 0 && flags != 0) {
+    H5Pset_link_creation_order(creation.id(), flags);
+  }
+  return creation;
+}
+
 /// Returns the number of characters of each row of a dataset of texts, 0 for other types.
 std::size_t width_of_texts(hid_t type) {
   constexpr std::size_t kMostCharacters = 1024;
@@ -231,7 +243,7 @@ class CopyWithoutValues {
       (void)empty_copy(dataset.id(), to, name.c_str(), space.id());
     } else if (object.type == H5O_TYPE_GROUP && has_listed(path)) {
       const Handle old_group(H5Gopen2(from, name.c_str(), H5P_DEFAULT), H5Gclose);
-      const Handle creation(H5Gget_create_plist(old_group.id()), H5Pclose);
+      const Handle creation = creation_of_copy(old_group.id());
       const Handle new_group(H5Gcreate2(to, name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose);
       copy_group(old_group.id(), new_group.id(), path);
       return;
