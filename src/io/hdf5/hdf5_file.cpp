@@ -116,7 +116,11 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
   const Handle space(H5Aget_space(attribute.id()), H5Sclose);
   if (!type.is_open() || !space.is_open() || H5Tdetect_class(type.id(), H5T_REFERENCE) > 0) return;
-  const Handle memory(H5Tget_native_type(type.id(), H5T_DIR_DEFAULT), H5Tclose);
+  // what needs no conversion gets none: the library trusts the bit fields of numbers, which a damaged file
+  // may have put anywhere
+  const bool varies = H5Tdetect_class(type.id(), H5T_VLEN) > 0 || H5Tis_variable_str(type.id()) > 0;
+  const Handle memory(varies ? H5Tget_native_type(type.id(), H5T_DIR_DEFAULT) : H5Tcopy(type.id()), H5Tclose);
+  if (!memory.is_open()) return;
   const hssize_t count = H5Sget_simple_extent_npoints(space.id());
   const std::size_t size = std::max(H5Tget_size(type.id()), H5Tget_size(memory.id()));
   const Handle copy(H5Acreate2(to, name, type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
@@ -124,9 +128,7 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   std::vector<char> bytes(static_cast<std::size_t>(count) * size);
   if (H5Aread(attribute.id(), memory.id(), bytes.data()) < 0) return;
   H5Awrite(copy.id(), memory.id(), bytes.data());
-  if (H5Tdetect_class(memory.id(), H5T_VLEN) > 0 || H5Tis_variable_str(memory.id()) > 0) {
-    H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, bytes.data());
-  }
+  if (varies) H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, bytes.data());
 }
 
 void copy_attributes(hid_t from, hid_t to) {
@@ -578,13 +580,14 @@ std::optional<std::string> File::text_attribute(const std::string& path, const s
   return value;
 }
 
-void File::write_texts(const std::string& path, std::span<const std::string> texts, std::size_t width) {
+void File::write_texts(const std::string& path, std::span<const std::string> texts, std::size_t width,
+                       char filling) {
   const Session session;
   std::string bytes;
   bytes.reserve(texts.size() * width);
   for (const std::string& text : texts) {
     bytes += text.substr(0, width);
-    bytes.append(width - std::min(width, text.size()), '\0');
+    bytes.append(width - std::min(width, text.size()), filling);
   }
   const Handle type = type_of_texts(width);
   const Handle old(has(path) ? H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT) : -1, H5Dclose);

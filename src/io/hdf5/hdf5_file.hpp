@@ -102,9 +102,10 @@ class File {
   /// of the values.
   void write(const std::string& path, const Values& values, const std::vector<std::uint64_t>& shape);
   void write(const std::string& path, std::span<const Index> values, const std::vector<std::uint64_t>& shape);
-  /// Writes texts to a dataset, as rows of so many characters: cut or with zero bytes at their ends. One that
-  /// is there keeps its attributes.
-  void write_texts(const std::string& path, std::span<const std::string> texts, std::size_t width);
+  /// Writes texts to a dataset, as rows of so many characters: cut or filled at their ends. One that is there
+  /// keeps its attributes.
+  void write_texts(const std::string& path, std::span<const std::string> texts, std::size_t width,
+                   char filling = '\0');
   /// Makes a group, and those around it, where it is not there.
   void make_group(const std::string& path);
   /// Gives a group or a dataset an attribute. A whole number keeps the number type that the attribute has.

@@ -54,6 +54,7 @@ std::vector<Family> families_in(const Reading& reading, const std::string& root)
     Family family{reading.file.integer_attribute(path, "NUM").value_or(0)};
     if (reading.file.has(path + "/GRO/NOM")) family.groups = reading.file.read_texts(path + "/GRO/NOM");
     std::erase(family.groups, "");
+    for (std::string& group : family.groups) group = utf8(std::move(group));
     const bool known = std::any_of(families.begin(), families.end(),
                                    [&](const Family& other) { return other.number == family.number; });
     if (!known && family.number != 0) families.push_back(std::move(family));

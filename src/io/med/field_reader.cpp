@@ -34,7 +34,7 @@ std::vector<std::string> short_names(const std::string& text, std::size_t count)
     std::string name = k * kShortName < text.size() ? text.substr(k * kShortName, kShortName) : std::string();
     name.resize(name.find_last_not_of(' ') + 1);
     any = any || !name.empty();
-    names.push_back(std::move(name));
+    names.push_back(utf8(std::move(name)));
   }
   return any ? names : std::vector<std::string>();
 }
@@ -155,14 +155,15 @@ class FieldReader {
                     "the file may be damaged");
     }
     piece.points = static_cast<std::size_t>(points);
-    std::string name = field_.name;
+    piece.counts_profile = reading_.file.integer_attribute(group, "NBR") == index_size(items);
+    std::string name = utf8(field_.name);
     if (piece.at_nodes) {
       name += fmt::format(" at nodes of {}", piece.type->name);
     } else if (points > 1) {
       name += piece.type == nullptr ? " at points of nodes"
                                     : fmt::format(" at Gauss points of {}", piece.type->name);
     }
-    if (is_other_profile) name += " in " + piece.profile;
+    if (is_other_profile) name += " in " + utf8(piece.profile);
     reading_.take(path);
     Values values = reading_.file.read(path);
     Gathered& gathered = array_for(name + suffix_, piece, values);

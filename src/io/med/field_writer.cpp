@@ -215,7 +215,8 @@ class FieldWriter {
           }
         },
         array->values);
-    writing_.file.set_attribute(group, "NBR", static_cast<std::int64_t>(rows.rows.size()));
+    const std::size_t count = piece.counts_profile ? rows.rows.size() : items_of(piece.type);
+    writing_.file.set_attribute(group, "NBR", static_cast<std::int64_t>(count));
     if (profile == piece.profile) return;
     if (writing_.file.text_attribute(piece.support, "PFL").value_or("") == piece.profile)
       writing_.file.set_attribute(piece.support, "PFL", profile);
@@ -393,7 +394,7 @@ class FieldWriter {
     file.make_group(group);
     file.set_attribute(support, "GAU", std::string());
     file.set_attribute(support, "PFL", profile);
-    file.set_attribute(group, "NBR", static_cast<std::int64_t>(rows.rows.size()));
+    file.set_attribute(group, "NBR", static_cast<std::int64_t>(items_of(geometry)));
     file.set_attribute(group, "NGA", std::int64_t{1});
     file.set_attribute(group, "GAU", std::string());
     Values values;

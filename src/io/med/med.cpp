@@ -166,11 +166,17 @@ class ItemWriter {
   }
 
   void write_families_of(const std::string& path, const Items& of_file, const std::vector<Index>& items) {
-    if (families_.empty() && !of_file.has_families) return;
+    if (!of_file.has_families && !has_families(items)) return;
     const std::vector<std::int64_t> numbers = families_.empty()
                                                   ? std::vector<std::int64_t>(items.size(), 0)
                                                   : *rows_for<std::int64_t>(families_, {}, items);
     writing_.put_integers(path, numbers, items.size());
+  }
+
+  [[nodiscard]] bool has_families(const std::vector<Index>& items) const {
+    return !families_.empty() && std::any_of(items.begin(), items.end(), [&](Index item) {
+      return families_[static_cast<std::size_t>(item)] != 0;
+    });
   }
 
   void write_names(const std::string& path, const std::vector<Index>& items) {
@@ -180,7 +186,7 @@ class ItemWriter {
       names = rows_for<std::string>(texts, name_rows_, items);
     }
     if (!names) return writing_.file.remove(path);
-    writing_.file.write_texts(path, *names, kShortName);
+    writing_.file.write_texts(path, *names, kShortName, ' ');
     writing_.file.set_attribute(path, "CGT", std::int64_t{1});
     writing_.file.set_attribute(path, "NBR", static_cast<std::int64_t>(items.size()));
   }

@@ -72,7 +72,8 @@ struct Piece {
   const GeometryType* type = nullptr;  ///< null: vertices
   bool at_nodes = false;               ///< at the nodes of cells
   std::size_t components = 1;
-  std::size_t points = 1;  ///< nodes or Gauss points of a cell
+  std::size_t points = 1;       ///< nodes or Gauss points of a cell
+  bool counts_profile = false;  ///< attribute NBR is the size of the profile, not of the mesh
 };
 
 /// Pairs of vertices or of cells of one type that the file calls the same.
@@ -115,6 +116,9 @@ struct Layout final : FormatMetadata {
   [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> new_vertices,
                                                             std::span<const Index> new_cells) const override;
 };
+
+/// Returns a text in UTF-8: itself, or one that is not as Latin-1.
+std::string utf8(std::string text);
 
 /// Returns the path of the dataset of a profile.
 std::string profile_path(const std::string& profile);

@@ -41,6 +41,34 @@ std::pair<Index, Index> Reading::range(const GeometryType* type) const {
   return found == ranges.end() ? std::pair<Index, Index>{0, 0} : found->second;
 }
 
+std::string utf8(std::string text) {
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+  const auto is_valid = [&] {
+    for (std::size_t at = 0; at < text.size();) {
+      const unsigned char first = byte(at++);
+      std::size_t more = 0;
+      if (first >= 0x80) more = first >= 0xC2 && first < 0xE0 ? 1 : first >= 0xE1 && first < 0xF0 ? 2 : 4;
+      if (more > 2 || at + more > text.size()) return false;
+      for (; more > 0; --more) {
+        if ((byte(at++) & 0xC0U) != 0x80U) return false;
+      }
+    }
+    return true;
+  };
+  if (is_valid()) return text;
+  std::string result;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const unsigned char one = byte(at);
+    if (one < 0x80) {
+      result += static_cast<char>(one);
+    } else {
+      result += static_cast<char>(0xC0U | (one >> 6U));
+      result += static_cast<char>(0x80U | (one & 0x3FU));
+    }
+  }
+  return result;
+}
+
 namespace {
 
 constexpr std::string_view kCutCells = "cut them into cells with a fixed number of nodes first";
@@ -323,6 +351,7 @@ class ItemReader {
     if ((items.has_names = file.has(group + "/NOM"))) {
       reading_.take(group + "/NOM");
       std::vector<std::string> names = file.read_texts(group + "/NOM");
+      for (std::string& name : names) name = utf8(std::move(name));
       if (index_size(names) != count) {
         reading_.fail(group + "/NOM", fmt::format("has {} names, not {}", names.size(), count),
                       "the file may be damaged");
@@ -453,7 +482,7 @@ void note_others(Reading& reading) {
 void read_description(Reading& reading) {
   const std::string text = reading.file.text_attribute(reading.layout->mesh_path(), "DES").value_or("");
   if (!text.empty() && text.find_first_not_of(' ') != std::string::npos) {
-    reading.layout->words.push_back(fmt::format("the description '{}'", text));
+    reading.layout->words.push_back(fmt::format("the description '{}'", utf8(text)));
   }
 }
 
