@@ -144,13 +144,22 @@ void copy_attributes(hid_t from, hid_t to) {
   H5Aiterate2(both.from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit, &both);
 }
 
+/// Returns the names in a group, in the order of the names or of the creation of links. The library's own
+/// sorting trusts what a damaged group says of its size.
 std::vector<std::string> names_in(hid_t group, H5_index_t index = H5_INDEX_NAME) {
-  std::vector<std::string> names;
-  const auto visit = [](hid_t /*group*/, const char* name, const H5L_info_t* /*info*/, void* data) -> herr_t {
-    static_cast<std::vector<std::string>*>(data)->emplace_back(name);
+  std::vector<std::pair<std::int64_t, std::string>> links;
+  const auto visit = [](hid_t /*group*/, const char* name, const H5L_info_t* info, void* data) -> herr_t {
+    static_cast<decltype(links)*>(data)->emplace_back(info->corder, name);
     return 0;
   };
-  H5Literate(group, index, H5_ITER_INC, nullptr, visit, &names);
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit, &links);
+  if (index == H5_INDEX_NAME) {
+    for (auto& [order, name] : links) order = 0;
+  }
+  std::sort(links.begin(), links.end());
+  std::vector<std::string> names;
+  names.reserve(links.size());
+  for (auto& [order, name] : links) names.push_back(std::move(name));
   return names;
 }
 
@@ -458,7 +467,8 @@ std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
     static_cast<decltype(result)*>(data)->emplace_back(normal_path(name), shape.front());
     return 0;
   };
-  H5Ovisit2(file_.id(), H5_INDEX_NAME, H5_ITER_INC, visit, &result, H5O_INFO_BASIC);
+  H5Ovisit2(file_.id(), H5_INDEX_NAME, H5_ITER_NATIVE, visit, &result, H5O_INFO_BASIC);
+  std::sort(result.begin(), result.end());
   return result;
 }
 
@@ -628,7 +638,9 @@ void File::set_attribute(const std::string& path, const std::string& name, std::
   const Session session;
   const auto type_of_old = [&] {
     const Handle old = open_attribute(path, name);
-    return Handle(old.is_open() ? H5Aget_type(old.id()) : H5Tcopy(H5T_STD_I64LE), H5Tclose);
+    Handle type(old.is_open() ? H5Aget_type(old.id()) : -1, H5Tclose);
+    const bool is_known = type.is_open() && alternative_of(type.id()) < native_types().size();
+    return is_known ? std::move(type) : Handle(H5Tcopy(H5T_STD_I64LE), H5Tclose);
   };
   const Handle type = type_of_old();
   put_attribute(path, name, type.id(), H5T_NATIVE_INT64, &value);
