@@ -131,7 +131,10 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   if (varies) H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, bytes.data());
 }
 
-void copy_attributes(hid_t from, hid_t to) {
+/// Copies all attributes to another object. Returns false, and copies none, where one is damaged: the library
+/// does not survive to iterate over such.
+bool copy_attributes(hid_t from, hid_t to) {
+  if (H5Aexists(from, "\x01") < 0) return false;
   struct Both {
     hid_t from;
     hid_t to;
@@ -141,7 +144,7 @@ void copy_attributes(hid_t from, hid_t to) {
     copy_attribute(object, name, pair->to);
     return 0;
   };
-  H5Aiterate2(both.from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit, &both);
+  return H5Aiterate2(both.from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit, &both) >= 0;
 }
 
 /// Returns the names in a group, in the order of the names or of the creation of links. The library's own
@@ -220,7 +223,7 @@ Handle empty_copy(hid_t dataset, hid_t target, const char* name, hid_t space) {
     H5Pset_alloc_time(creation.id(), chunked ? H5D_ALLOC_TIME_INCR : H5D_ALLOC_TIME_LATE);
   }
   Handle copy(H5Dcreate2(target, name, type.id(), space, H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
-  if (copy.is_open()) copy_attributes(dataset, copy.id());
+  if (copy.is_open()) (void)copy_attributes(dataset, copy.id());
   return copy;
 }
 
@@ -229,13 +232,16 @@ class CopyWithoutValues {
   CopyWithoutValues(const std::set<std::string>& paths, hid_t target) : paths_(paths), target_(target) {}
 
   void copy_group(hid_t from, hid_t to, const std::string& path) {
-    copy_attributes(from, to);
+    if (!copy_attributes(from, to)) damaged_ = path;
     H5O_info_t group;
     H5Oget_info(from, &group);
     first_paths_.emplace(group.addr, path.empty() ? "/" : path);
     for (const std::string& name : names_in(from, order_of(from)))
       copy_link(from, to, name, fmt::format("{}/{}", path, name));
   }
+
+  /// Returns the path of a group whose attributes could not be copied; an empty text without.
+  [[nodiscard]] const std::string& damaged() const noexcept { return damaged_; }
 
  private:
   void copy_link(hid_t from, hid_t to, const std::string& name, const std::string& path) {
@@ -286,6 +292,7 @@ class CopyWithoutValues {
 
   const std::set<std::string>& paths_;
   hid_t target_;
+  std::string damaged_;
   std::map<haddr_t, std::string> first_paths_;  // in the copy, of objects by their place in the old file
 };
 
@@ -605,7 +612,7 @@ void File::write_texts(const std::string& path, std::span<const std::string> tex
   if (old.is_open()) H5Lmove(file_.id(), path.c_str(), file_.id(), aside.c_str(), H5P_DEFAULT, H5P_DEFAULT);
   write(path, type.id(), bytes.data(), texts.size(), {texts.size()});
   if (!old.is_open()) return;
-  copy_attributes(old.id(), open_dataset(path).id());
+  (void)copy_attributes(old.id(), open_dataset(path).id());
   H5Ldelete(file_.id(), aside.c_str(), H5P_DEFAULT);
 }
 
@@ -673,7 +680,12 @@ std::string File::without_values(const std::set<std::string>& paths) const {
   const File copy = in_memory({}, name_);
   const Handle from(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
   const Handle to(H5Gopen2(copy.file_.id(), "/", H5P_DEFAULT), H5Gclose);
-  CopyWithoutValues(paths, copy.file_.id()).copy_group(from.id(), to.id(), "");
+  CopyWithoutValues work(paths, copy.file_.id());
+  work.copy_group(from.id(), to.id(), "");
+  if (!work.damaged().empty()) {
+    throw InputError(name_, fmt::format("the attributes of the group '{}' cannot be read", work.damaged()),
+                     "the file may be damaged");
+  }
   return copy.bytes();
 }
 

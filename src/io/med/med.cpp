@@ -278,6 +278,14 @@ void note_texts(Writing& writing) {
   }
 }
 
+bool needs_version_4(const Mesh& mesh) {
+  constexpr int kNodes = 18;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (mesh.cells.shapes[c] == Shape::wedge && mesh.cells.vertex_count(c) == kNodes) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 const DataArray* Writing::take(std::string_view name, Association association) {
@@ -339,8 +347,8 @@ Layout new_layout(const Mesh& mesh) {
   hdf5::File file = hdf5::File::in_memory({}, "");
   const std::string infos = "/INFOS_GENERALES";
   file.make_group(infos);
-  // versions up to 3.0 are read by all programs that read 3 and 4
-  file.set_attribute(infos, "MAJ", std::int64_t{3});
+  // 3.0 is read by all programs that read 3 and 4; it does not know wedges of 18 nodes
+  file.set_attribute(infos, "MAJ", std::int64_t{needs_version_4(mesh) ? 4 : 3});
   file.set_attribute(infos, "MIN", std::int64_t{0});
   file.set_attribute(infos, "REL", std::int64_t{0});
   const std::string path = layout.mesh_path();
