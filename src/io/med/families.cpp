@@ -50,7 +50,7 @@ std::vector<std::int64_t> numbers_in(const Mesh& mesh, const std::string& name, 
 std::vector<Family> families_in(const Reading& reading, const std::string& root) {
   std::vector<Family> families;
   for (const std::string& name : reading.file.names(root)) {
-    const std::string path = root + "/" + name;
+    const std::string path = fmt::format("{}/{}", root, name);
     Family family{reading.file.integer_attribute(path, "NUM").value_or(0)};
     if (reading.file.has(path + "/GRO/NOM")) family.groups = reading.file.read_texts(path + "/GRO/NOM");
     std::erase(family.groups, "");
@@ -173,7 +173,8 @@ class FamilyWriter {
   /// Returns the numbers of families that the mesh has from a file of MED.
   std::vector<std::int64_t> start() {
     const Layout& layout = writing_.layout;
-    if (layout.is_made) return std::vector<std::int64_t>(item_count(writing_.mesh, association_), 0);
+    std::vector<std::int64_t> none(item_count(writing_.mesh, association_), 0);
+    if (layout.is_made) return none;
     (void)writing_.take(layout.families_array, association_);
     return numbers_in(writing_.mesh, layout.families_array, association_);
   }
@@ -251,7 +252,8 @@ class FamilyWriter {
     const std::string root = writing_.layout.families_path(association_);
     std::string name = fmt::format("FAM_{}_{}", number, fmt::join(groups, "_")).substr(0, kLongestName);
     std::replace(name.begin(), name.end(), '/', '_');
-    for (int k = 2; file.has(root + "/" + name); ++k) name = fmt::format("FAM_{}_{}", number, k);
+    for (int k = 2; file.has(fmt::format("{}/{}", root, name)); ++k)
+      name = fmt::format("FAM_{}_{}", number, k);
     const std::string path = root + "/" + name;
     file.make_group(path + "/GRO");
     file.set_attribute(path, "NUM", number);

@@ -22,9 +22,6 @@ constexpr std::int64_t kReals = 6;
 constexpr std::int64_t kIntegers = 24;
 constexpr std::int64_t kLongIntegers = 26;
 
-constexpr std::size_t kInt32 = 6;
-constexpr std::size_t kInt64 = 8;
-
 bool is_text_array(const DataArray& array) {
   return std::holds_alternative<std::vector<std::string>>(array.values);
 }
@@ -159,7 +156,8 @@ class FieldWriter {
 
   /// Returns values in the order of a file, as numbers of a type.
   template <class Number>
-  std::vector<Number> values_of(const DataArray& array, const Rows& rows, const Piece& piece) const {
+  [[nodiscard]] std::vector<Number> values_of(const DataArray& array, const Rows& rows,
+                                              const Piece& piece) const {
     const std::span<const int> order = order_of_points(piece);
     const std::size_t width = piece.points * piece.components;
     std::vector<Number> result;

@@ -121,19 +121,24 @@ std::optional<std::vector<Result>> rows_for(const Array& values, const std::vect
 class ItemWriter {
  public:
   ItemWriter(Writing& writing, Association association)
-      : writing_(writing), association_(association), families_(write_families(writing, association)) {
+      : writing_(writing),
+        association_(association),
+        families_(write_families(writing, association)),
+        names_(find_array(writing.mesh, kNames, association)),
+        global_numbers_(find_array(writing.mesh, kGlobalNumbers, association)) {
     const bool on_vertices = association == Association::vertices;
     const Index count = on_vertices ? writing.mesh.vertex_count() : writing.mesh.cell_count();
-    names_ = find_array(writing.mesh, kNames, association);
     const bool has_texts = names_ != nullptr && names_->components == 1 &&
                            std::holds_alternative<std::vector<std::string>>(names_->values);
     if (!has_texts) names_ = nullptr;
     if (names_ != nullptr) {
       (void)writing.take(kNames, association);
       name_rows_ = rows_by_item(*names_, count);
+      note_cut_names();
     }
-    global_numbers_ = find_array(writing.mesh, kGlobalNumbers, association);
-    const bool are_whole = global_numbers_ != nullptr && global_numbers_->components == 1 &&
+    // those of other formats become a field
+    const bool are_whole = !writing.layout.is_made && global_numbers_ != nullptr &&
+                           global_numbers_->components == 1 &&
                            (global_numbers_->values.index() == kInt32Alternative ||
                             global_numbers_->values.index() == kInt64Alternative);
     if (!are_whole) global_numbers_ = nullptr;
@@ -173,6 +178,15 @@ class ItemWriter {
     writing_.put_integers(path, numbers, items.size());
   }
 
+  void note_cut_names() {
+    const auto& texts = std::get<std::vector<std::string>>(names_->values);
+    if (std::none_of(texts.begin(), texts.end(),
+                     [](const std::string& text) { return text.size() > kShortName; }))
+      return;
+    writing_.notes.push_back(
+        fmt::format("the names of {} are cut to {} characters", to_string(association_), kShortName));
+  }
+
   [[nodiscard]] bool has_families(const std::vector<Index>& items) const {
     return !families_.empty() && std::any_of(items.begin(), items.end(), [&](Index item) {
       return families_[static_cast<std::size_t>(item)] != 0;
@@ -180,13 +194,17 @@ class ItemWriter {
   }
 
   void write_names(const std::string& path, const std::vector<Index>& items) {
-    std::optional<std::vector<std::string>> names;
-    if (names_ != nullptr) {
+    std::vector<std::string> names;
+    bool any = false;
+    for (const Index item : items) {
+      if (names_ == nullptr) break;
+      const Index row = name_rows_.empty() ? item : name_rows_[static_cast<std::size_t>(item)];
       const auto& texts = std::get<std::vector<std::string>>(names_->values);
-      names = rows_for<std::string>(texts, name_rows_, items);
+      names.push_back(row < 0 ? std::string() : texts[static_cast<std::size_t>(row)]);
+      any = any || row >= 0;
     }
-    if (!names) return writing_.file.remove(path);
-    writing_.file.write_texts(path, *names, kShortName, ' ');
+    if (!any) return writing_.file.remove(path);
+    writing_.file.write_texts(path, names, kShortName, ' ');
     writing_.file.set_attribute(path, "CGT", std::int64_t{1});
     writing_.file.set_attribute(path, "NBR", static_cast<std::int64_t>(items.size()));
   }
@@ -209,9 +227,9 @@ class ItemWriter {
   Writing& writing_;
   Association association_;
   std::vector<std::int64_t> families_;
-  const DataArray* names_ = nullptr;
+  const DataArray* names_;
   std::vector<Index> name_rows_;
-  const DataArray* global_numbers_ = nullptr;
+  const DataArray* global_numbers_;
   std::vector<Index> global_rows_;
 };
 

@@ -116,7 +116,7 @@ void find_mesh(Reading& reading) {
   const std::string mesh = layout.mesh_path();
   std::vector<std::string> steps;
   for (const std::string& name : file.names(mesh)) {
-    if (has_mesh(file, mesh + "/" + name)) steps.push_back(name);
+    if (has_mesh(file, fmt::format("{}/{}", mesh, name))) steps.push_back(name);
   }
   if (steps.empty()) reading.fail(mesh, "has no nodes", "the file may be damaged");
   if (steps.size() > 1) {
@@ -273,7 +273,7 @@ void turn_cells(Reading& reading) {
 void read_all_cells(Reading& reading) {
   const std::string path = reading.layout->cells_path();
   for (const std::string& name : reading.file.names(path)) {
-    if (geometry_type(name) == nullptr) fail_at_type(reading, path + "/" + name, name);
+    if (geometry_type(name) == nullptr) fail_at_type(reading, fmt::format("{}/{}", path, name), name);
   }
   for (const GeometryType& type : geometry_types()) {
     if (reading.file.has(fmt::format("{}/{}", path, type.name))) read_cells(reading, type);
@@ -456,9 +456,10 @@ void read_equivalences(Reading& reading) {
   const std::string root = "/EQS/" + reading.layout->mesh;
   const std::vector<std::string> names = file.names(root);
   for (const std::string& name : names) {
-    for (const std::string& step : file.names(root + "/" + name)) {
+    for (const std::string& step : file.names(fmt::format("{}/{}", root, name))) {
       const std::string group = fmt::format("{}/{}/{}", root, name, step);
-      for (const std::string& items : file.names(group)) read_equivalence(reading, group + "/" + items);
+      for (const std::string& items : file.names(group))
+        read_equivalence(reading, fmt::format("{}/{}", group, items));
     }
   }
   if (!names.empty())
