@@ -92,7 +92,7 @@ foreach(library IN ITEMS ZLIB.zlib LZMA.liblzma LZ4.liblz4 NETCDF.netcdf HDF5.${
     list(APPEND io_requires ${module})
   endif()
 endforeach()
-if(MESHORDER_HAS_HDF5)
+if(MESHORDER_HAS_XDMF)
   list(APPEND io_requires pugixml)
 endif()
 set(payoff_text "what an order is worth, C++20")

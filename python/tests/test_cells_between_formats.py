@@ -27,7 +27,7 @@ TYPES = {
 UNKNOWN_TO_MESHIO = {"wedge15", "pyramid13"}  # version 5.3.5 stops at them
 FORMATS = [".msh", ".vtk", ".vtu", ".mesh", ".su2", ".unv"] + [
     suffix
-    for suffix, library in ((".inp", ""), (".exo", "netcdf"), (".xdmf", "hdf5"))
+    for suffix, library in ((".inp", ""), (".exo", "netcdf"), (".xdmf", "hdf5"), (".med", "hdf5"))
     if library in meshorder.build_info()
 ]
 IMAGE = np.array([[2.0, 0.3, 0.1], [-0.2, 1.5, 0.4], [0.25, -0.1, 1.8]])
@@ -137,7 +137,7 @@ def test_faces_and_nodes_of_edges_stay_right(model, tmp_path, name, source):
             meshorder.write(mesh, path)
         except meshorder.InputError:
             continue
-        if target in (".msh", ".unv"):
+        if target in (".msh", ".unv", ".med"):
             assert_right_by_gmsh(kind, path)
         if target in (".vtu", ".vtk", ".exo"):
             assert_right_by_vtk(kind, path)

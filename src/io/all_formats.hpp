@@ -18,6 +18,7 @@ Format ply_format();
 Format stl_format();
 Format su2_format();            ///< .su2
 Format xdmf_format();           ///< .xdmf with .h5 beside it; only where HDF5 is built in
+Format med_format();            ///< .med of Salome and Code_Aster; only where HDF5 is built in
 Format abaqus_format();         ///< .inp of Abaqus and CalculiX
 Format nastran_format();        ///< bulk data of Nastran
 Format matrix_market_format();  ///< .mtx

@@ -24,8 +24,11 @@ const std::vector<Format> kFormats{
 #ifdef MESHORDER_HAS_NETCDF
     exodus_format(),
 #endif
-#ifdef MESHORDER_HAS_HDF5
+#ifdef MESHORDER_HAS_XDMF
     xdmf_format(),
+#endif
+#ifdef MESHORDER_HAS_HDF5
+    med_format(),
 #endif
     matrix_market_format(), metis_graph_format(), unv_format(),
 };
@@ -42,8 +45,11 @@ const std::vector<LackingFormat> kLackingFormats{
 #ifndef MESHORDER_HAS_NETCDF
     {"Exodus", {".exo", ".e", ".ex2", ".g"}, "netCDF", "MESHORDER_NETCDF"},
 #endif
+#ifndef MESHORDER_HAS_XDMF
+    {"XDMF", {".xdmf", ".xmf"}, "HDF5 and pugixml", "MESHORDER_HDF5"},
+#endif
 #ifndef MESHORDER_HAS_HDF5
-    {"XDMF", {".xdmf", ".xmf"}, "HDF5", "MESHORDER_HDF5"},
+    {"MED", {".med"}, "HDF5", "MESHORDER_HDF5"},
 #endif
 };
 
@@ -84,6 +90,12 @@ bool is_exodus(std::string_view bytes) {
   if (bytes.starts_with("CDF\x01") || bytes.starts_with("CDF\x02") || bytes.starts_with("CDF\x05"))
     return true;
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("num_el_blk") != std::string_view::npos;
+}
+
+/// Returns whether the bytes are a file of HDF5 with a name that MED gives.
+bool is_med(std::string_view bytes) {
+  return bytes.starts_with("\x89HDF\r\n\x1a\n") && (bytes.find("INFOS_GENERALES") != std::string_view::npos ||
+                                                    bytes.find("ENS_MAA") != std::string_view::npos);
 }
 
 /// Returns whether XML is that of XDMF, by the first of the elements that VTK's files and those begin with.
@@ -136,6 +148,7 @@ bool is_bulk_data(std::string_view bytes) {
 std::string_view format_that_begins(std::string_view bytes) {
   if (is_exodus(bytes)) return "Exodus";
   if (is_bulk_data(bytes)) return "Nastran";
+  if (is_med(bytes)) return "MED";
   while (!bytes.empty()) {
     std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
     bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));

@@ -27,7 +27,6 @@ constexpr std::array kOtherFormats{
     OtherFormat{".vts", kStructured, kGridOrder},
     OtherFormat{".vtr", kStructured, kGridOrder},
     OtherFormat{".cgns", "is a CGNS file", kByGmsh},
-    OtherFormat{".med", "is a MED file", kByGmsh},
     OtherFormat{".mdpa", "is a mesh of Kratos", kByMeshio},
     OtherFormat{".h5m", "is a mesh of MOAB", kByMeshio},
     OtherFormat{".avs", "is an AVS-UCD file", kByMeshio},

@@ -38,6 +38,11 @@ void WedgeVote::add(Shape shape, std::span<const Index> cell) {
   volumes.negative += volume < 0 ? 1 : 0;
 }
 
+int WedgeVote::sign_of_volumes() const {
+  const Volumes all{wedges_.positive + others_.positive, wedges_.negative + others_.negative};
+  return all.sign();
+}
+
 bool WedgeVote::wedges_face_inward() const {
   const bool others_tell = others_.positive + others_.negative > 0;
   return wedges_.sign() != 0 && wedges_.sign() == (others_tell ? others_.sign() : 1);

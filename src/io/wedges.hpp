@@ -26,6 +26,10 @@ class WedgeVote {
   /// nothing: false.
   [[nodiscard]] bool wedges_face_inward() const;
 
+  /// Returns 1 or −1 where at least 19 of 20 cells, wedges with their first triangle inward, have volumes of
+  /// that sign, else 0.
+  [[nodiscard]] int sign_of_volumes() const;
+
  private:
   /// Cells by the sign of their volumes.
   struct Volumes {

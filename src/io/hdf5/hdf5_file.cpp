@@ -116,7 +116,11 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
   const Handle space(H5Aget_space(attribute.id()), H5Sclose);
   if (!type.is_open() || !space.is_open() || H5Tdetect_class(type.id(), H5T_REFERENCE) > 0) return;
-  const Handle memory(H5Tget_native_type(type.id(), H5T_DIR_DEFAULT), H5Tclose);
+  // what needs no conversion gets none: the library trusts the bit fields of numbers, which a damaged file
+  // may have put anywhere
+  const bool varies = H5Tdetect_class(type.id(), H5T_VLEN) > 0 || H5Tis_variable_str(type.id()) > 0;
+  const Handle memory(varies ? H5Tget_native_type(type.id(), H5T_DIR_DEFAULT) : H5Tcopy(type.id()), H5Tclose);
+  if (!memory.is_open()) return;
   const hssize_t count = H5Sget_simple_extent_npoints(space.id());
   const std::size_t size = std::max(H5Tget_size(type.id()), H5Tget_size(memory.id()));
   const Handle copy(H5Acreate2(to, name, type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
@@ -124,12 +128,13 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   std::vector<char> bytes(static_cast<std::size_t>(count) * size);
   if (H5Aread(attribute.id(), memory.id(), bytes.data()) < 0) return;
   H5Awrite(copy.id(), memory.id(), bytes.data());
-  if (H5Tdetect_class(memory.id(), H5T_VLEN) > 0 || H5Tis_variable_str(memory.id()) > 0) {
-    H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, bytes.data());
-  }
+  if (varies) H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, bytes.data());
 }
 
-void copy_attributes(hid_t from, hid_t to) {
+/// Copies all attributes to another object. Returns false, and copies none, where one is damaged: the library
+/// does not survive to iterate over such.
+bool copy_attributes(hid_t from, hid_t to) {
+  if (H5Aexists(from, "\x01") < 0) return false;
   struct Both {
     hid_t from;
     hid_t to;
@@ -139,17 +144,74 @@ void copy_attributes(hid_t from, hid_t to) {
     copy_attribute(object, name, pair->to);
     return 0;
   };
-  H5Aiterate2(both.from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit, &both);
+  return H5Aiterate2(both.from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit, &both) >= 0;
 }
 
-std::vector<std::string> names_in(hid_t group) {
-  std::vector<std::string> names;
-  const auto visit = [](hid_t /*group*/, const char* name, const H5L_info_t* /*info*/, void* data) -> herr_t {
-    static_cast<std::vector<std::string>*>(data)->emplace_back(name);
+/// Returns the names in a group, in the order of the names or of the creation of links. The library's own
+/// sorting trusts what a damaged group says of its size.
+std::vector<std::string> names_in(hid_t group, H5_index_t index = H5_INDEX_NAME) {
+  std::vector<std::pair<std::int64_t, std::string>> links;
+  const auto visit = [](hid_t /*group*/, const char* name, const H5L_info_t* info, void* data) -> herr_t {
+    static_cast<decltype(links)*>(data)->emplace_back(info->corder, name);
     return 0;
   };
-  H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &names);
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit, &links);
+  if (index == H5_INDEX_NAME) {
+    for (auto& [order, name] : links) order = 0;
+  }
+  std::sort(links.begin(), links.end());
+  std::vector<std::string> names;
+  names.reserve(links.size());
+  for (auto& [order, name] : links) names.push_back(std::move(name));
   return names;
+}
+
+/// Returns the order in which the links of a group were made if it keeps that, else that of their names.
+H5_index_t order_of(hid_t group) {
+  const Handle creation(H5Gget_create_plist(group), H5Pclose);
+  unsigned flags = 0;
+  if (H5Pget_link_creation_order(creation.id(), &flags) < 0) return H5_INDEX_NAME;
+  return (flags & H5P_CRT_ORDER_INDEXED) != 0 ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME;
+}
+
+/// Returns how a copy of a group is made: one that keeps the order of its links if the group does. The list
+/// of the group itself would do harm, as it has the addresses of its links in the old file.
+Handle creation_of_copy(hid_t group) {
+  const Handle old(H5Gget_create_plist(group), H5Pclose);
+  Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  unsigned flags = 0;
+  if (H5Pget_link_creation_order(old.id(), &flags) >= 0 && flags != 0) {
+    H5Pset_link_creation_order(creation.id(), flags);
+  }
+  return creation;
+}
+
+/// Returns the number of characters of each row of a dataset of texts, 0 for other types.
+std::size_t width_of_texts(hid_t type) {
+  constexpr std::size_t kMostCharacters = 1024;
+  if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) <= 0) {
+    const std::size_t size = H5Tget_size(type);
+    return size <= kMostCharacters ? size : 0;
+  }
+  if (H5Tget_class(type) != H5T_ARRAY || H5Tget_array_ndims(type) != 1) return 0;
+  hsize_t count = 0;
+  const Handle base(H5Tget_super(type), H5Tclose);
+  constexpr std::size_t kInt8 = 2;
+  constexpr std::size_t kUint8 = 3;
+  const std::size_t alternative = alternative_of(base.id());
+  if (H5Tget_array_dims2(type, &count) < 0 || (alternative != kInt8 && alternative != kUint8)) return 0;
+  return count <= kMostCharacters ? static_cast<std::size_t>(count) : 0;
+}
+
+/// Returns a type of so many characters, as an array of small numbers.
+Handle type_of_texts(std::size_t width) {
+  const hsize_t count = width;
+  return {H5Tarray_create2(H5T_STD_I8LE, 1, &count), H5Tclose};
+}
+
+std::string without_padding(std::string_view text) {
+  text = text.substr(0, text.find('\0'));
+  return std::string(text.substr(0, text.find_last_not_of(' ') + 1));
 }
 
 /// Makes a dataset of the type, the attributes, chunks and filters of another one.
@@ -161,7 +223,7 @@ Handle empty_copy(hid_t dataset, hid_t target, const char* name, hid_t space) {
     H5Pset_alloc_time(creation.id(), chunked ? H5D_ALLOC_TIME_INCR : H5D_ALLOC_TIME_LATE);
   }
   Handle copy(H5Dcreate2(target, name, type.id(), space, H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
-  if (copy.is_open()) copy_attributes(dataset, copy.id());
+  if (copy.is_open()) (void)copy_attributes(dataset, copy.id());
   return copy;
 }
 
@@ -170,13 +232,16 @@ class CopyWithoutValues {
   CopyWithoutValues(const std::set<std::string>& paths, hid_t target) : paths_(paths), target_(target) {}
 
   void copy_group(hid_t from, hid_t to, const std::string& path) {
-    copy_attributes(from, to);
+    if (!copy_attributes(from, to)) damaged_ = path;
     H5O_info_t group;
     H5Oget_info(from, &group);
     first_paths_.emplace(group.addr, path.empty() ? "/" : path);
-    for (const std::string& name : names_in(from))
+    for (const std::string& name : names_in(from, order_of(from)))
       copy_link(from, to, name, fmt::format("{}/{}", path, name));
   }
+
+  /// Returns the path of a group whose attributes could not be copied; an empty text without.
+  [[nodiscard]] const std::string& damaged() const noexcept { return damaged_; }
 
  private:
   void copy_link(hid_t from, hid_t to, const std::string& name, const std::string& path) {
@@ -195,7 +260,7 @@ class CopyWithoutValues {
       (void)empty_copy(dataset.id(), to, name.c_str(), space.id());
     } else if (object.type == H5O_TYPE_GROUP && has_listed(path)) {
       const Handle old_group(H5Gopen2(from, name.c_str(), H5P_DEFAULT), H5Gclose);
-      const Handle creation(H5Gget_create_plist(old_group.id()), H5Pclose);
+      const Handle creation = creation_of_copy(old_group.id());
       const Handle new_group(H5Gcreate2(to, name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose);
       copy_group(old_group.id(), new_group.id(), path);
       return;
@@ -227,6 +292,7 @@ class CopyWithoutValues {
 
   const std::set<std::string>& paths_;
   hid_t target_;
+  std::string damaged_;
   std::map<haddr_t, std::string> first_paths_;  // in the copy, of objects by their place in the old file
 };
 
@@ -351,6 +417,16 @@ DatasetInfo File::info(const std::string& path) const {
   return info;
 }
 
+std::optional<std::size_t> File::number_type(const std::string& path) const {
+  const Session session;
+  const Handle dataset(has(path) ? H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+  if (!dataset.is_open()) return {};
+  const Handle type(H5Dget_type(dataset.id()), H5Tclose);
+  const std::size_t alternative = alternative_of(type.id());
+  if (alternative == native_types().size()) return {};
+  return alternative;
+}
+
 void File::read(const std::string& path, hid_t type, void* values) const {
   const Handle dataset = open_dataset(path);
   if (H5Dread(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
@@ -398,7 +474,8 @@ std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
     static_cast<decltype(result)*>(data)->emplace_back(normal_path(name), shape.front());
     return 0;
   };
-  H5Ovisit2(file_.id(), H5_INDEX_NAME, H5_ITER_INC, visit, &result, H5O_INFO_BASIC);
+  H5Ovisit2(file_.id(), H5_INDEX_NAME, H5_ITER_NATIVE, visit, &result, H5O_INFO_BASIC);
+  std::sort(result.begin(), result.end());
   return result;
 }
 
@@ -444,6 +521,157 @@ void File::write(const std::string& path, hid_t type, const void* values, std::u
   if (!written) fail(path, fmt::format("cannot be written ({})", last_cause()), "is the disk full?");
 }
 
+Handle File::open_object(const std::string& path) const {
+  const Handle access = link_access();
+  return {H5Oopen(file_.id(), path.c_str(), access.id()), H5Oclose};
+}
+
+bool File::has(const std::string& path) const {
+  const Session session;
+  return open_object(path).is_open();
+}
+
+std::vector<std::string> File::names(const std::string& group) const {
+  const Session session;
+  const Handle object = open_object(group);
+  if (!object.is_open() || H5Iget_type(object.id()) != H5I_GROUP) return {};
+  return names_in(object.id());
+}
+
+std::vector<std::string> File::read_texts(const std::string& path) const {
+  const Session session;
+  const Handle dataset = open_dataset(path);
+  const Handle type(H5Dget_type(dataset.id()), H5Tclose);
+  const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+  const std::size_t width = width_of_texts(type.id());
+  const hssize_t rows = H5Sget_simple_extent_npoints(space.id());
+  if (width == 0 || rows < 0) fail(path, "does not hold texts of one length", "the file may be damaged");
+  const std::uint64_t stored = H5Dget_storage_size(dataset.id());
+  if (static_cast<std::uint64_t>(rows) > stored / width) {
+    fail(path, fmt::format("claims {} texts, but only {} bytes are there", rows, stored),
+         "it may never have been written, or the file is damaged");
+  }
+  std::string bytes(static_cast<std::size_t>(rows) * width, '\0');
+  if (!bytes.empty()) read(path, type.id(), bytes.data());
+  std::vector<std::string> texts;
+  for (std::size_t at = 0; at < bytes.size(); at += width) {
+    texts.push_back(without_padding(std::string_view(bytes).substr(at, width)));
+  }
+  return texts;
+}
+
+Handle File::open_attribute(const std::string& path, const std::string& name) const {
+  const Handle object = open_object(path);
+  if (!object.is_open() || H5Aexists(object.id(), name.c_str()) <= 0) return {};
+  return {H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose};
+}
+
+std::optional<std::int64_t> File::integer_attribute(const std::string& path, const std::string& name) const {
+  const Session session;
+  const Handle attribute = open_attribute(path, name);
+  if (!attribute.is_open()) return {};
+  const Handle type(H5Aget_type(attribute.id()), H5Tclose);
+  const Handle space(H5Aget_space(attribute.id()), H5Sclose);
+  constexpr std::size_t kFirstWhole = 2;
+  const std::size_t alternative = alternative_of(type.id());
+  const bool is_whole = alternative >= kFirstWhole && alternative < native_types().size();
+  if (!is_whole || H5Sget_simple_extent_npoints(space.id()) != 1) return {};
+  std::int64_t value = 0;
+  if (H5Aread(attribute.id(), H5T_NATIVE_INT64, &value) < 0) return {};
+  return value;
+}
+
+std::optional<std::string> File::text_attribute(const std::string& path, const std::string& name) const {
+  const Session session;
+  const Handle attribute = open_attribute(path, name);
+  if (!attribute.is_open()) return {};
+  const Handle type(H5Aget_type(attribute.id()), H5Tclose);
+  const Handle space(H5Aget_space(attribute.id()), H5Sclose);
+  constexpr std::size_t kMostBytes = 65536;
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0) return {};
+  const std::size_t size = H5Tget_size(type.id());
+  if (size > kMostBytes || H5Sget_simple_extent_npoints(space.id()) != 1) return {};
+  std::string value(size, '\0');
+  if (H5Aread(attribute.id(), type.id(), value.data()) < 0) return {};
+  value.resize(std::min(value.find('\0'), value.size()));
+  return value;
+}
+
+void File::write_texts(const std::string& path, std::span<const std::string> texts, std::size_t width,
+                       char filling) {
+  const Session session;
+  std::string bytes;
+  bytes.reserve(texts.size() * width);
+  for (const std::string& text : texts) {
+    bytes += text.substr(0, width);
+    bytes.append(width - std::min(width, text.size()), filling);
+  }
+  const Handle type = type_of_texts(width);
+  const Handle old(has(path) ? H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+  const std::string aside = path + ".old";
+  if (old.is_open()) H5Lmove(file_.id(), path.c_str(), file_.id(), aside.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+  write(path, type.id(), bytes.data(), texts.size(), {texts.size()});
+  if (!old.is_open()) return;
+  (void)copy_attributes(old.id(), open_dataset(path).id());
+  H5Ldelete(file_.id(), aside.c_str(), H5P_DEFAULT);
+}
+
+void File::make_group(const std::string& path) {
+  const Session session;
+  if (has(path)) return;
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links.id(), 1);
+  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  const Handle group(H5Gcreate2(file_.id(), path.c_str(), links.id(), creation.id(), H5P_DEFAULT), H5Gclose);
+  if (!group.is_open()) {
+    throw InputError(name_, fmt::format("the group '{}' cannot be written ({})", path, last_cause()),
+                     "is the disk full?");
+  }
+}
+
+void File::put_attribute(const std::string& path, const std::string& name, hid_t type, hid_t memory,
+                         const void* value) {
+  const Handle object = open_object(path);
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  if (H5Aexists(object.id(), name.c_str()) > 0) H5Adelete(object.id(), name.c_str());
+  const Handle attribute(H5Acreate2(object.id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
+  if (attribute.is_open() && H5Awrite(attribute.id(), memory, value) >= 0) return;
+  throw InputError(name_,
+                   fmt::format("the attribute {} of '{}' cannot be written ({})", name, path, last_cause()),
+                   "is the disk full?");
+}
+
+void File::set_attribute(const std::string& path, const std::string& name, std::int64_t value) {
+  const Session session;
+  const auto type_of_old = [&] {
+    const Handle old = open_attribute(path, name);
+    Handle type(old.is_open() ? H5Aget_type(old.id()) : -1, H5Tclose);
+    const bool is_known = type.is_open() && alternative_of(type.id()) < native_types().size();
+    return is_known ? std::move(type) : Handle(H5Tcopy(H5T_STD_I64LE), H5Tclose);
+  };
+  const Handle type = type_of_old();
+  put_attribute(path, name, type.id(), H5T_NATIVE_INT64, &value);
+}
+
+void File::set_attribute(const std::string& path, const std::string& name, double value) {
+  const Session session;
+  put_attribute(path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+}
+
+void File::set_attribute(const std::string& path, const std::string& name, const std::string& value) {
+  const Session session;
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.id(), value.size() + 1);
+  put_attribute(path, name, type.id(), type.id(), value.c_str());
+}
+
+void File::move(const std::string& path, const std::string& new_path) {
+  const Session session;
+  H5Lmove(file_.id(), path.c_str(), file_.id(), new_path.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+}
+
 void File::remove(const std::string& path) {
   const Session session;
   H5Ldelete(file_.id(), path.c_str(), H5P_DEFAULT);
@@ -454,7 +682,12 @@ std::string File::without_values(const std::set<std::string>& paths) const {
   const File copy = in_memory({}, name_);
   const Handle from(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
   const Handle to(H5Gopen2(copy.file_.id(), "/", H5P_DEFAULT), H5Gclose);
-  CopyWithoutValues(paths, copy.file_.id()).copy_group(from.id(), to.id(), "");
+  CopyWithoutValues work(paths, copy.file_.id());
+  work.copy_group(from.id(), to.id(), "");
+  if (!work.damaged().empty()) {
+    throw InputError(name_, fmt::format("the attributes of the group '{}' cannot be read", work.damaged()),
+                     "the file may be damaged");
+  }
   return copy.bytes();
 }
 

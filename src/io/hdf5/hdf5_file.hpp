@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -72,6 +73,9 @@ class File {
   /// Returns the size and number type of a dataset of numbers whose values are in this file. Refuses one that
   /// claims more values than its bytes can hold.
   [[nodiscard]] DatasetInfo info(const std::string& path) const;
+  /// Returns the number type of a dataset as an alternative of Values, whether its values are there or not;
+  /// nothing without a dataset of plain numbers.
+  [[nodiscard]] std::optional<std::size_t> number_type(const std::string& path) const;
   /// Returns the values of a dataset that `info` accepts, row by row, in its own number type.
   [[nodiscard]] Values read(const std::string& path) const;
   /// Returns whole numbers as indices, those out of range as the limit that they exceed, which no index is.
@@ -79,12 +83,38 @@ class File {
   /// Returns the paths of all datasets with at least one dimension, and the length of their first.
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> datasets() const;
 
+  /// Returns whether there is a group or a dataset of that path.
+  [[nodiscard]] bool has(const std::string& path) const;
+  /// Returns the names in a group, ascending; none if there is no such group.
+  [[nodiscard]] std::vector<std::string> names(const std::string& group) const;
+  /// Returns the texts of a dataset whose rows are arrays of characters (at most 1,024), without the blanks
+  /// and zero bytes at their ends.
+  [[nodiscard]] std::vector<std::string> read_texts(const std::string& path) const;
+  /// Returns a whole number or a text that belongs to a group or a dataset; nothing if it has no such
+  /// attribute or one of another kind.
+  [[nodiscard]] std::optional<std::int64_t> integer_attribute(const std::string& path,
+                                                              const std::string& name) const;
+  [[nodiscard]] std::optional<std::string> text_attribute(const std::string& path,
+                                                          const std::string& name) const;
+
   /// Writes numbers to a dataset. One that is there keeps its number type, attributes, chunks and compression
   /// (the shape only if it has as many values; else it gets a new one); one that is not is made with the type
   /// of the values.
   void write(const std::string& path, const Values& values, const std::vector<std::uint64_t>& shape);
   void write(const std::string& path, std::span<const Index> values, const std::vector<std::uint64_t>& shape);
-  /// Removes a dataset if it is there.
+  /// Writes texts to a dataset, as rows of so many characters: cut or filled at their ends. One that is there
+  /// keeps its attributes.
+  void write_texts(const std::string& path, std::span<const std::string> texts, std::size_t width,
+                   char filling = '\0');
+  /// Makes a group, and those around it, where it is not there. It keeps the order in which its links are made.
+  void make_group(const std::string& path);
+  /// Gives a group or a dataset an attribute. A whole number keeps the number type that the attribute has.
+  void set_attribute(const std::string& path, const std::string& name, std::int64_t value);
+  void set_attribute(const std::string& path, const std::string& name, double value);
+  void set_attribute(const std::string& path, const std::string& name, const std::string& value);
+  /// Gives a group or a dataset another path.
+  void move(const std::string& path, const std::string& new_path);
+  /// Removes a group or a dataset if it is there.
   void remove(const std::string& path);
 
   /// Returns the bytes of a copy of this file in which these datasets are there with their types, attributes,
@@ -98,6 +128,10 @@ class File {
  private:
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
   [[nodiscard]] Handle open_dataset(const std::string& path) const;
+  [[nodiscard]] Handle open_object(const std::string& path) const;
+  [[nodiscard]] Handle open_attribute(const std::string& path, const std::string& name) const;
+  void put_attribute(const std::string& path, const std::string& name, hid_t type, hid_t memory,
+                     const void* value);
   void read(const std::string& path, hid_t type, void* values) const;
   void write(const std::string& path, hid_t type, const void* values, std::uint64_t count,
              const std::vector<std::uint64_t>& shape);

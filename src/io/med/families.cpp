@@ -1,0 +1,290 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/index.hpp"
+#include "io/labels.hpp"
+#include "io/med/med.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <type_traits>
+#include <unordered_map>
+
+// Families and groups: a family holds the vertices, or the cells, that belong to the same groups. Those of
+// vertices have numbers above 0, those of cells below; 0 belongs to no group.
+
+namespace meshorder::med {
+namespace {
+
+constexpr std::string_view kFamilyZero = "FAMILLE_ZERO";
+/// Labels of more kinds are not made groups of.
+constexpr std::size_t kMostLabels = 256;
+
+std::size_t place_of(Association association) { return association == Association::vertices ? 0 : 1; }
+
+std::size_t item_count(const Mesh& mesh, Association association) {
+  return association == Association::vertices ? mesh.points.size() : mesh.cells.shapes.size();
+}
+
+/// Returns the numbers that an array gives to all vertices or cells, 0 where it gives none.
+std::vector<std::int64_t> numbers_in(const Mesh& mesh, const std::string& name, Association association) {
+  std::vector<std::int64_t> numbers(item_count(mesh, association), 0);
+  const DataArray* const array = find_array(mesh, name, association);
+  if (array == nullptr || array->components != 1) return numbers;
+  std::visit(
+      [&](const auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        if constexpr (std::is_integral_v<Value>) {
+          for (std::size_t row = 0; row < values.size(); ++row) {
+            const std::size_t item = array->is_dense() ? row : static_cast<std::size_t>(array->indices[row]);
+            numbers[item] = static_cast<std::int64_t>(values[row]);
+          }
+        }
+      },
+      array->values);
+  return numbers;
+}
+
+/// Returns the families of a file in the order of their numbers, without their signs.
+std::vector<Family> families_in(const Reading& reading, const std::string& root) {
+  std::vector<Family> families;
+  for (const std::string& name : reading.file.names(root)) {
+    const std::string path = fmt::format("{}/{}", root, name);
+    Family family{reading.file.integer_attribute(path, "NUM").value_or(0)};
+    if (reading.file.has(path + "/GRO/NOM")) family.groups = reading.file.read_texts(path + "/GRO/NOM");
+    std::erase(family.groups, "");
+    for (std::string& group : family.groups) group = utf8(std::move(group));
+    const bool known = std::any_of(families.begin(), families.end(),
+                                   [&](const Family& other) { return other.number == family.number; });
+    if (!known && family.number != 0) families.push_back(std::move(family));
+  }
+  std::stable_sort(families.begin(), families.end(), [](const Family& a, const Family& b) {
+    const bool a_below = a.number < 0;
+    const bool b_below = b.number < 0;
+    return a_below != b_below ? a_below : a_below ? a.number > b.number : a.number < b.number;
+  });
+  return families;
+}
+
+void read_families_of(Reading& reading, Association association) {
+  Layout& layout = *reading.layout;
+  std::vector<Family>& families = layout.families[place_of(association)];
+  families = families_in(reading, layout.families_path(association));
+  Mesh& mesh = reading.mesh;
+  std::vector<EntitySet> sets;
+  std::unordered_map<std::string, std::size_t> set_of_name;
+  std::unordered_map<std::int64_t, std::vector<std::size_t>> sets_of_family;
+  for (Family& family : families) {
+    for (const std::string& group : family.groups) {
+      const auto [found, is_new] = set_of_name.emplace(group, sets.size());
+      if (is_new) sets.push_back({group, association, {}});
+      sets_of_family[family.number].push_back(found->second);
+    }
+    std::sort(family.groups.begin(), family.groups.end());
+    family.groups.erase(std::unique(family.groups.begin(), family.groups.end()), family.groups.end());
+  }
+  const std::vector<std::int64_t> numbers = numbers_in(mesh, layout.families_array, association);
+  const std::vector<std::size_t>* of_last = nullptr;
+  std::int64_t last = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] == 0) continue;
+    if (numbers[i] != last) {
+      const auto found = sets_of_family.find(numbers[i]);
+      of_last = found == sets_of_family.end() ? nullptr : &found->second;
+      last = numbers[i];
+    }
+    if (of_last == nullptr) continue;
+    for (const std::size_t set : *of_last) {
+      // a family may name a group twice
+      std::vector<Index>& members = sets[set].members;
+      if (members.empty() || members.back() != static_cast<Index>(i))
+        members.push_back(static_cast<Index>(i));
+    }
+  }
+  for (EntitySet& set : sets) {
+    if (!set.members.empty()) mesh.sets.push_back(std::move(set));
+  }
+}
+
+/// Numbers the vertices or cells by what they belong to.
+class Combinations {
+ public:
+  /// By numbers of families.
+  explicit Combinations(const std::vector<std::int64_t>& families) {
+    of_item_.reserve(families.size());
+    std::unordered_map<std::int64_t, std::size_t> known;
+    for (const std::int64_t family : families) {
+      const auto [found, is_new] = known.emplace(family, all_.size());
+      if (is_new) all_.push_back({family});
+      of_item_.push_back(found->second);
+    }
+  }
+
+  /// Adds a group that these items belong to.
+  void add(const std::string& group, const std::vector<Index>& members) {
+    std::unordered_map<std::size_t, std::size_t> with_group;
+    for (const Index member : members) {
+      std::size_t& own = of_item_[static_cast<std::size_t>(member)];
+      const auto [found, is_new] = with_group.emplace(own, all_.size());
+      if (is_new) {
+        all_.push_back(all_[own]);
+        all_.back().groups.push_back(group);
+      }
+      own = found->second;
+    }
+  }
+
+  [[nodiscard]] const std::vector<Family>& all() const noexcept { return all_; }
+  [[nodiscard]] const std::vector<std::size_t>& of_item() const noexcept { return of_item_; }
+
+ private:
+  std::vector<Family> all_;
+  std::vector<std::size_t> of_item_;
+};
+
+class FamilyWriter {
+ public:
+  FamilyWriter(Writing& writing, Association association)
+      : writing_(writing),
+        association_(association),
+        families_(writing.layout.families[place_of(association)]) {}
+
+  std::vector<std::int64_t> write() {
+    const Mesh& mesh = writing_.mesh;
+    std::vector<std::int64_t> numbers = start();
+    Combinations combinations(numbers);
+    add_sets(combinations);
+    std::vector<bool> is_used(combinations.all().size(), false);
+    for (const std::size_t combination : combinations.of_item()) is_used[combination] = true;
+    std::vector<std::int64_t> number_of(combinations.all().size(), 0);
+    for (std::size_t c = 0; c < number_of.size(); ++c) {
+      if (is_used[c]) number_of[c] = number_for(combinations.all()[c]);
+    }
+    if (std::all_of(number_of.begin(), number_of.end(), [](std::int64_t number) { return number == 0; })) {
+      return {};
+    }
+    numbers.resize(item_count(mesh, association_));
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = number_of[combinations.of_item()[i]];
+    return numbers;
+  }
+
+ private:
+  /// Returns the numbers of families that the mesh has from a file of MED.
+  std::vector<std::int64_t> start() {
+    const Layout& layout = writing_.layout;
+    std::vector<std::int64_t> none(item_count(writing_.mesh, association_), 0);
+    if (layout.is_made) return none;
+    (void)writing_.take(layout.families_array, association_);
+    return numbers_in(writing_.mesh, layout.families_array, association_);
+  }
+
+  void add_sets(Combinations& combinations) {
+    std::set<std::string> names;
+    bool any = false;
+    for (const EntitySet& set : writing_.mesh.sets) {
+      if (set.association != association_) continue;
+      combinations.add(unused_name(set.name, names), set.members);
+      any = true;
+    }
+    if (!any && writing_.layout.is_made) add_labels(combinations);
+  }
+
+  /// Makes groups of labels in a mesh that has no sets.
+  void add_labels(Combinations& combinations) {
+    const Labels labels = labels_of(writing_.mesh, association_);
+    std::map<std::int64_t, std::vector<Index>> members;
+    for (std::size_t i = 0; i < labels.values.size(); ++i) {
+      if (labels.values[i] != 0) members[labels.values[i]].push_back(static_cast<Index>(i));
+      if (members.size() > kMostLabels) return;
+    }
+    for (const auto& [label, of_label] : members) {
+      combinations.add(fmt::format("{}_{}", kLabel, label), of_label);
+    }
+  }
+
+  std::string unused_name(const std::string& name, std::set<std::string>& names) {
+    std::string result = name.substr(0, kLongestGroup);
+    for (int k = 2; !names.insert(result).second; ++k) {
+      const std::string number = fmt::format("_{}", k);
+      result = name.substr(0, kLongestGroup - number.size()) + number;
+    }
+    if (result != name) {
+      writing_.notes.push_back(fmt::format("the set '{}' of {} is written as the group '{}'", name,
+                                           to_string(association_), result));
+    }
+    return result;
+  }
+
+  /// Returns the number of a family of these groups: its own where it still fits, else that of another one or
+  /// of a new one.
+  std::int64_t number_for(const Family& wanted) {
+    std::vector<std::string> groups = wanted.groups;
+    std::sort(groups.begin(), groups.end());
+    const auto fits = [&](const Family& family) { return family.groups == groups; };
+    const auto own = std::find_if(families_.begin(), families_.end(),
+                                  [&](const Family& family) { return family.number == wanted.number; });
+    if (own != families_.end() && fits(*own)) return own->number;
+    const bool may_keep = own == families_.end() && groups.empty() && has_sign(wanted.number);
+    if (wanted.number == 0 ? groups.empty() : may_keep) return wanted.number;
+    const auto other = std::find_if(families_.begin(), families_.end(), fits);
+    if (other != families_.end()) return other->number;
+    if (groups.empty()) return 0;
+    return add_family(groups, wanted.groups);
+  }
+
+  [[nodiscard]] bool has_sign(std::int64_t number) const {
+    return association_ == Association::vertices ? number > 0 : number < 0;
+  }
+
+  /// Writes a new family.
+  std::int64_t add_family(const std::vector<std::string>& sorted, const std::vector<std::string>& groups) {
+    const bool on_vertices = association_ == Association::vertices;
+    constexpr std::int64_t kMost = 2147483647;
+    std::int64_t number = 0;
+    for (const Family& family : families_) {
+      if (family.number < -kMost || family.number > kMost) continue;
+      number = on_vertices ? std::max(number, family.number) : std::min(number, family.number);
+    }
+    number += on_vertices ? 1 : -1;
+    families_.push_back({number, sorted});
+    hdf5::File& file = writing_.file;
+    const std::string root = writing_.layout.families_path(association_);
+    std::string name = fmt::format("FAM_{}_{}", number, fmt::join(groups, "_")).substr(0, kLongestName);
+    std::replace(name.begin(), name.end(), '/', '_');
+    for (int k = 2; file.has(fmt::format("{}/{}", root, name)); ++k)
+      name = fmt::format("FAM_{}_{}", number, k);
+    const std::string path = root + "/" + name;
+    file.make_group(path + "/GRO");
+    file.set_attribute(path, "NUM", number);
+    file.set_attribute(path + "/GRO", "NBR", static_cast<std::int64_t>(groups.size()));
+    file.write_texts(path + "/GRO/NOM", groups, kLongestGroup);
+    return number;
+  }
+
+  Writing& writing_;
+  Association association_;
+  std::vector<Family> families_;
+};
+
+}  // namespace
+
+std::string Layout::families_path(Association association) const {
+  return fmt::format("/FAS/{}/{}", mesh, association == Association::vertices ? "NOEUD" : "ELEME");
+}
+
+void read_families(Reading& reading) {
+  read_families_of(reading, Association::vertices);
+  read_families_of(reading, Association::cells);
+}
+
+std::vector<std::int64_t> write_families(Writing& writing, Association association) {
+  const std::string zero = fmt::format("/FAS/{}/{}", writing.layout.mesh, kFamilyZero);
+  if (!writing.file.has(zero)) {
+    writing.file.make_group(zero);
+    writing.file.set_attribute(zero, "NUM", std::int64_t{0});
+  }
+  return FamilyWriter(writing, association).write();
+}
+
+}  // namespace meshorder::med

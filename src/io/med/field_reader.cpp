@@ -1,0 +1,292 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/index.hpp"
+#include "io/med/med.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <type_traits>
+#include <variant>
+
+// Reads fields: at each step, their values at nodes, in cells, at the nodes of cells and at Gauss points.
+// A dataset has the values of the first component for all items, each with its points one after another, then
+// those of the next component.
+
+namespace meshorder::med {
+namespace {
+
+/// A field of the mesh.
+struct FieldInfo {
+  std::string name;
+  std::string path;
+  std::size_t components = 1;
+  std::vector<std::string> component_names;
+  std::vector<std::string> steps;  ///< names of groups, in the order of their numbers
+};
+
+/// Returns texts of 16 characters one after another; none where all are blank.
+std::vector<std::string> short_names(const std::string& text, std::size_t count) {
+  std::vector<std::string> names;
+  bool any = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::string name = k * kShortName < text.size() ? text.substr(k * kShortName, kShortName) : std::string();
+    name.resize(name.find_last_not_of(' ') + 1);
+    any = any || !name.empty();
+    names.push_back(utf8(std::move(name)));
+  }
+  return any ? names : std::vector<std::string>();
+}
+
+/// Puts the rows of an array in the order of the items, whose places are `items`.
+void sort_rows(DataArray& array, std::vector<Index> items, Index count) {
+  std::vector<Index> order(items.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  if (!std::is_sorted(items.begin(), items.end())) {
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+      return items[static_cast<std::size_t>(a)] < items[static_cast<std::size_t>(b)];
+    });
+    const auto width = static_cast<std::size_t>(array.components);
+    std::visit(
+        [&](auto& values) {
+          auto sorted = values;
+          for (std::size_t r = 0; r < order.size(); ++r) {
+            const auto from =
+                values.begin() + static_cast<Offset>(static_cast<std::size_t>(order[r]) * width);
+            std::copy(from, from + static_cast<Offset>(width),
+                      sorted.begin() + static_cast<Offset>(r * width));
+          }
+          values = std::move(sorted);
+        },
+        array.values);
+    std::sort(items.begin(), items.end());
+  }
+  if (index_size(items) < count) array.indices = std::move(items);
+}
+
+class FieldReader {
+ public:
+  FieldReader(Reading& reading, FieldInfo field) : reading_(reading), field_(std::move(field)) {}
+
+  void read() {
+    for (std::size_t step = 0; step < field_.steps.size(); ++step) read_step(step);
+  }
+
+ private:
+  /// An array of a step while its pieces are read.
+  struct Gathered {
+    DataArray array;
+    std::vector<Index> items;
+    std::vector<std::size_t> pieces;  // places in the layout
+  };
+
+  void read_step(std::size_t step) {
+    gathered_.clear();
+    suffix_ = field_.steps.size() > 1 ? fmt::format(" step {}", step + 1) : "";
+    const std::string path = field_.path + "/" + field_.steps[step];
+    // in the order of the cells
+    if (reading_.file.has(path + "/NOE")) read_support(path + "/NOE", nullptr, false);
+    for (const GeometryType& type : geometry_types()) {
+      for (const std::string_view prefix : {"MAI.", "NOE."}) {
+        const std::string support = fmt::format("{}/{}{}", path, prefix, type.name);
+        if (reading_.file.has(support)) read_support(support, &type, prefix == "NOE.");
+      }
+    }
+    for (Gathered& gathered : gathered_) finish(gathered);
+  }
+
+  void read_support(const std::string& support, const GeometryType* type, bool at_nodes) {
+    const std::vector<std::string> profiles = reading_.file.names(support);
+    const std::string first = reading_.file.text_attribute(support, "PFL").value_or(std::string(kNoProfile));
+    for (const std::string& profile : profiles) {
+      if (!reading_.file.has(fmt::format("{}/{}/CO", support, profile))) continue;
+      const bool is_other = profiles.size() > 1 && profile != first;
+      read_piece({.field = field_.name,
+                  .support = support,
+                  .profile = profile,
+                  .type = type,
+                  .at_nodes = at_nodes,
+                  .components = field_.components},
+                 is_other);
+    }
+  }
+
+  /// Returns the places of the items of a profile.
+  std::vector<Index> items_of(const Piece& piece) {
+    const auto [first, count] = reading_.range(piece.type);
+    if (piece.profile == kNoProfile) {
+      std::vector<Index> items(static_cast<std::size_t>(count));
+      std::iota(items.begin(), items.end(), first);
+      return items;
+    }
+    const std::string path = profile_path(piece.profile);
+    reading_.take(path);
+    std::vector<Index> items = reading_.file.read_indices(path);
+    std::vector<bool> seen(static_cast<std::size_t>(count), false);
+    for (Index& item : items) {
+      if (item < 1 || item > count || seen[static_cast<std::size_t>(item) - 1]) {
+        reading_.fail(path,
+                      fmt::format("names item {}, which {}", item,
+                                  item < 1 || item > count ? "does not exist" : "it named before"),
+                      fmt::format("'{}' has values for 1 to {}", piece.support, count));
+      }
+      seen[static_cast<std::size_t>(item) - 1] = true;
+      item += first - 1;
+    }
+    return items;
+  }
+
+  void read_piece(Piece piece, bool is_other_profile) {
+    const std::string group = piece.support + "/" + piece.profile;
+    const std::string path = group + "/CO";
+    const std::vector<Index> items = items_of(piece);
+    if (items.empty()) return;
+    const std::uint64_t size = reading_.file.info(path).size();
+    const auto points = reading_.file.integer_attribute(group, "NGA").value_or(1);
+    const std::uint64_t row = size / items.size();
+    const bool fits = points >= 1 && size % items.size() == 0 && row % piece.components == 0 &&
+                      row / piece.components == static_cast<std::uint64_t>(points) &&
+                      row <= static_cast<std::uint64_t>(kMaxIndex);
+    if (!fits) {
+      reading_.fail(path,
+                    fmt::format("has {} values, not {} components × {} points × {} items", size,
+                                piece.components, points, items.size()),
+                    "the file may be damaged");
+    }
+    piece.points = static_cast<std::size_t>(points);
+    piece.counts_profile = reading_.file.integer_attribute(group, "NBR") == index_size(items);
+    std::string name = utf8(field_.name);
+    if (piece.at_nodes) {
+      name += fmt::format(" at nodes of {}", piece.type->name);
+    } else if (points > 1) {
+      name += piece.type == nullptr ? " at points of nodes"
+                                    : fmt::format(" at Gauss points of {}", piece.type->name);
+    }
+    if (is_other_profile) name += " in " + utf8(piece.profile);
+    reading_.take(path);
+    Values values = reading_.file.read(path);
+    Gathered& gathered = array_for(name + suffix_, piece, values);
+    append(gathered.array, values, piece, items.size());
+    gathered.items.insert(gathered.items.end(), items.begin(), items.end());
+    gathered.pieces.push_back(reading_.layout->pieces.size());
+    reading_.layout->pieces.push_back(std::move(piece));
+  }
+
+  Gathered& array_for(const std::string& name, const Piece& piece, const Values& values) {
+    const Association association = piece.type == nullptr ? Association::vertices : Association::cells;
+    const auto components = static_cast<Index>(piece.components * piece.points);
+    const auto found = std::find_if(gathered_.begin(), gathered_.end(), [&](const Gathered& gathered) {
+      const DataArray& array = gathered.array;
+      return array.name == name && array.association == association && array.components == components &&
+             array.values.index() == values.index();
+    });
+    if (found != gathered_.end()) return *found;
+    Gathered& made = gathered_.emplace_back();
+    made.array = {.name = name, .association = association, .components = components};
+    std::visit([&](const auto& numbers) { made.array.values = std::decay_t<decltype(numbers)>(); }, values);
+    if (piece.points == 1) made.array.component_names = field_.component_names;
+    return made;
+  }
+
+  /// Appends the values of a piece as rows.
+  void append(DataArray& array, const Values& values, const Piece& piece, std::size_t rows) const {
+    const std::span<const int> order = order_of_points(piece);
+    std::visit(
+        [&](const auto& numbers) {
+          auto& target = std::get<std::decay_t<decltype(numbers)>>(array.values);
+          const std::size_t begin = target.size();
+          const std::size_t width = piece.points * piece.components;
+          target.resize(begin + numbers.size());
+          std::size_t from = 0;
+          for (std::size_t c = 0; c < piece.components; ++c) {
+            for (std::size_t r = 0; r < rows; ++r) {
+              for (std::size_t p = 0; p < piece.points; ++p) {
+                const std::size_t place = order.empty() ? p : static_cast<std::size_t>(order[p]);
+                target[begin + r * width + place * piece.components + c] = numbers[from++];
+              }
+            }
+          }
+        },
+        values);
+  }
+
+  [[nodiscard]] std::span<const int> order_of_points(const Piece& piece) const {
+    const bool by_node = piece.at_nodes && !reading_.layout->in_mesh_order &&
+                         piece.points == static_cast<std::size_t>(piece.type->nodes);
+    return by_node ? mesh_order(*piece.type) : std::span<const int>();
+  }
+
+  void finish(Gathered& gathered) {
+    const bool on_vertices = gathered.array.association == Association::vertices;
+    const Index count = on_vertices ? reading_.mesh.vertex_count() : reading_.mesh.cell_count();
+    sort_rows(gathered.array, std::move(gathered.items), count);
+    const std::string name = reading_.add_array(std::move(gathered.array));
+    for (const std::size_t piece : gathered.pieces) reading_.layout->pieces[piece].array = name;
+  }
+
+  Reading& reading_;
+  FieldInfo field_;
+  std::string suffix_;
+  std::vector<Gathered> gathered_;
+};
+
+/// Returns a field; one without steps if it is not of this mesh.
+FieldInfo field_of(const Reading& reading, const std::string& name) {
+  const hdf5::File& file = reading.file;
+  FieldInfo field{.name = name, .path = "/CHA/" + name, .component_names = {}, .steps = {}};
+  if (file.text_attribute(field.path, "MAI").value_or(reading.layout->mesh) != reading.layout->mesh) {
+    return field;
+  }
+  const auto components = file.integer_attribute(field.path, "NCO").value_or(1);
+  if (components < 1 || components > kMaxIndex) {
+    reading.fail(field.path, fmt::format("has {} components", components), "the file may be damaged");
+  }
+  field.components = static_cast<std::size_t>(components);
+  field.steps = file.names(field.path);
+  const auto number_of = [&](const std::string& step) {
+    const std::string path = field.path + "/" + step;
+    return std::tuple(file.integer_attribute(path, "NDT").value_or(-1),
+                      file.integer_attribute(path, "NOR").value_or(-1), step);
+  };
+  std::vector<std::tuple<std::int64_t, std::int64_t, std::string>> numbers;
+  for (const std::string& step : field.steps) numbers.push_back(number_of(step));
+  std::sort(numbers.begin(), numbers.end());
+  std::transform(numbers.begin(), numbers.end(), field.steps.begin(),
+                 [](const auto& number) { return std::get<std::string>(number); });
+  // one component needs no name
+  const std::string names = file.text_attribute(field.path, "NOM").value_or("");
+  if (components > 1 && field.components <= names.size() / kShortName + 1)
+    field.component_names = short_names(names, field.components);
+  return field;
+}
+
+}  // namespace
+
+std::string profile_path(const std::string& profile) { return fmt::format("/PROFILS/{}/PFL", profile); }
+
+void read_fields(Reading& reading) {
+  std::size_t with_times = 0;
+  std::size_t with_units = 0;
+  const auto is_blank = [](const std::string& text) {
+    return text.find_first_not_of(' ') == std::string::npos;
+  };
+  for (const std::string& name : reading.file.names("/CHA")) {
+    FieldInfo field = field_of(reading, name);
+    if (field.steps.empty()) continue;
+    if (field.steps.size() > 1) ++with_times;
+    if (!is_blank(reading.file.text_attribute(field.path, "UNI").value_or(""))) ++with_units;
+    FieldReader(reading, std::move(field)).read();
+  }
+  std::vector<std::string>& words = reading.layout->words;
+  const auto count = [&](std::size_t number, std::string_view what) {
+    if (number > 0)
+      words.push_back(fmt::format("the {} of {} {}", what, number, number == 1 ? "field" : "fields"));
+  };
+  count(with_times, "times");
+  count(with_units, "units");
+  if (const std::size_t sets = reading.file.names("/GAUSS").size(); sets > 0)
+    words.push_back(fmt::format("the places of {} {} of Gauss points", sets, sets == 1 ? "set" : "sets"));
+}
+
+}  // namespace meshorder::med

@@ -1,0 +1,188 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Declarations shared by the reader and the writer of MED 3 and 4.
+//
+// Format: "Modèle de données et format de fichiers MED 4" (EDF R&D, CEA), and the groups, datasets and
+// attributes that its library writes. The node orders of cells are those that Gmsh's writer translates to.
+//
+// In a Mesh, the cells of a type are a block of cells. Groups are sets of vertices and of cells, and the
+// numbers of families an array `kLabel`. A field is an array of its name, "NAME step K" where it has several
+// steps; its values at the nodes of cells and at Gauss points are arrays "NAME at nodes of TE4" and "NAME at
+// Gauss points of TE4", whose rows have the components of all points, one point after another.
+
+#include "io/format.hpp"
+#include "io/hdf5/hdf5_file.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshorder::med {
+
+inline constexpr std::string_view kNoProfile = "MED_NO_PROFILE_INTERNAL";
+inline constexpr std::string_view kNames = "name";                   ///< array of the names of items
+inline constexpr std::string_view kGlobalNumbers = "global number";  ///< array of the numbers GLB
+/// Array of the numbers of families in files that have a field `kLabel`.
+inline constexpr std::string_view kFamilies = "family";
+inline constexpr std::size_t kLongestName = 64;  ///< characters of the name of a field, a profile or a family
+inline constexpr std::size_t kLongestGroup = 80;  ///< characters of the name of a group
+inline constexpr std::size_t kShortName = 16;     ///< characters of the name of a component, a node or a cell
+
+// ---- types of cells
+
+struct GeometryType {
+  std::string_view name;  ///< of its group in the file
+  int number;             ///< attribute GEO
+  Shape shape;
+  int nodes;
+};
+
+/// Returns all types, in the order in which `group_cells_by_type` arranges cells.
+std::span<const GeometryType> geometry_types();
+/// Returns the type of that name, null if there is none.
+const GeometryType* geometry_type(std::string_view name);
+/// Returns the type of these cells, null if there is none.
+const GeometryType* geometry_type(Shape shape, int nodes);
+/// Returns the place in a Mesh's cell of each node of the file's; empty if they are the same.
+std::span<const int> mesh_order(const GeometryType& type);
+
+// ---- what a file has besides the mesh
+
+/// A family: cells or vertices that belong to the same groups.
+struct Family {
+  std::int64_t number = 0;
+  std::vector<std::string> groups = {};  ///< ascending, as the sets of the mesh are called
+};
+
+/// Values of a field for vertices or for the cells of one type, at one step.
+struct Piece {
+  std::string field = {};
+  std::string support = {};            ///< path of the group "/CHA/field/step/MAI.TE4"
+  std::string profile = {};            ///< name; kNoProfile without one
+  std::string array = {};              ///< of the mesh
+  const GeometryType* type = nullptr;  ///< null: vertices
+  bool at_nodes = false;               ///< at the nodes of cells
+  std::size_t components = 1;
+  std::size_t points = 1;       ///< nodes or Gauss points of a cell
+  bool counts_profile = false;  ///< attribute NBR is the size of the profile, not of the mesh
+};
+
+/// Pairs of vertices or of cells of one type that the file calls the same.
+struct Equivalence {
+  std::string dataset;
+  const GeometryType* type = nullptr;  ///< null: vertices
+  std::vector<Index> members = {};     ///< of the mesh, two for each pair
+};
+
+/// What a file has for vertices or for the cells of a type, besides coordinates and nodes.
+struct Items {
+  bool has_numbers = false;
+  bool has_names = false;
+  bool has_global_numbers = false;
+  bool has_families = false;
+};
+
+/// Data of a file beyond the mesh.
+struct Layout final : FormatMetadata {
+  std::shared_ptr<const std::string> file;  ///< bytes, without the values that depend on the mesh
+  std::string mesh;                         ///< name
+  std::string step;                         ///< of the group of its only step
+  bool is_made = false;                     ///< by `new_layout`
+  bool in_mesh_order = false;               ///< nodes of cells are in the order of a Mesh
+  int axes = 3;                             ///< coordinates of a point
+  Items vertices;
+  std::map<std::string, Items> cells;                ///< by type
+  std::string families_array = std::string(kLabel);  ///< of the mesh, that has the numbers of families
+  std::array<std::vector<Family>, 2> families;       ///< by association
+  std::vector<Piece> pieces;
+  std::vector<Equivalence> equivalences;
+  std::vector<std::string> words;  ///< see `contents`
+
+  [[nodiscard]] std::string mesh_path() const { return "/ENS_MAA/" + mesh; }
+  [[nodiscard]] std::string nodes_path() const { return mesh_path() + "/" + step + "/NOE"; }
+  [[nodiscard]] std::string cells_path() const { return mesh_path() + "/" + step + "/MAI"; }
+  [[nodiscard]] std::string families_path(Association association) const;
+
+  [[nodiscard]] std::vector<std::string> contents() const override { return words; }
+  [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> new_vertices,
+                                                            std::span<const Index> new_cells) const override;
+};
+
+/// Returns a text in UTF-8: itself, or one that is not as Latin-1.
+std::string utf8(std::string text);
+
+/// Returns the path of the dataset of a profile.
+std::string profile_path(const std::string& profile);
+
+/// Returns the layout of a file for a mesh of another format.
+Layout new_layout(const Mesh& mesh);
+
+Mesh read(const FilePath& path, Notes& notes);
+void write(const Mesh& mesh, const FilePath& path, Notes& notes);
+
+// ---- parts of the reader
+
+/// A file that is being read, and what has been found so far.
+struct Reading {
+  Reading(const FilePath& path, Notes& warnings);
+
+  /// Throws InputError for a fault at a group or a dataset.
+  [[noreturn]] void fail(const std::string& path, const std::string& what, const std::string& remedy) const;
+  /// Adds an array under a name that no other has, which is returned.
+  std::string add_array(DataArray array);
+  /// Returns the first cell of a type, or 0 for vertices, and their number.
+  [[nodiscard]] std::pair<Index, Index> range(const GeometryType* type) const;
+  /// Marks a dataset as one that the writer writes.
+  void take(const std::string& path) { taken.insert(hdf5::normal_path(path)); }
+
+  hdf5::File file;
+  std::shared_ptr<Layout> layout = std::make_shared<Layout>();
+  Mesh mesh;
+  std::map<const GeometryType*, std::pair<Index, Index>> ranges;  ///< first cell and number of each type
+  std::set<std::string> taken;
+  Notes& notes;
+
+ private:
+  std::set<std::pair<Association, std::string>> arrays_;
+};
+
+void read_families(Reading& reading);
+void read_fields(Reading& reading);
+
+// ---- parts of the writer
+
+/// A file that is being written.
+struct Writing {
+  const Mesh& mesh;
+  const Layout& layout;
+  hdf5::File& file;
+  Notes& notes;
+  std::map<const GeometryType*, std::vector<Index>> cells;  ///< of each type that the mesh has
+  std::set<const DataArray*> placed;                        ///< arrays that need no field
+
+  /// Returns the array of a name that is not written yet and marks it; null if there is none.
+  const DataArray* take(std::string_view name, Association association);
+  /// Writes numbers of `rows` items to a dataset and sets its attributes.
+  void put(const std::string& path, const Values& values, std::size_t rows);
+  /// Writes whole numbers, as 32-bit ones unless the dataset has wider ones or they do not fit.
+  void put_integers(const std::string& path, const std::vector<std::int64_t>& values, std::size_t rows);
+};
+
+/// Returns the row of an array for each of `count` vertices or cells, −1 where it has none; empty if it is
+/// dense.
+std::vector<Index> rows_by_item(const DataArray& array, Index count);
+
+/// Writes the families and returns their numbers for each vertex or cell; empty if all are 0.
+std::vector<std::int64_t> write_families(Writing& writing, Association association);
+void write_fields(Writing& writing);
+
+}  // namespace meshorder::med

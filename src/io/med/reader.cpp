@@ -1,0 +1,512 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/index.hpp"
+#include "base/resize_in_steps.hpp"
+#include "io/hdf5/session.hpp"
+#include "io/labels.hpp"
+#include "io/med/med.hpp"
+#include "io/stream/id_map.hpp"
+#include "io/wedges.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <type_traits>
+#include <variant>
+
+// Reads a file: the mesh, its numbers and names, and the pairs of equivalences.
+
+namespace meshorder::med {
+
+Reading::Reading(const FilePath& path, Notes& warnings) : file(hdf5::File::open(path)), notes(warnings) {}
+
+void Reading::fail(const std::string& path, const std::string& what, const std::string& remedy) const {
+  throw InputError(file.name(), fmt::format("'{}' {}", path, what), remedy);
+}
+
+std::string Reading::add_array(DataArray array) {
+  const std::string name = array.name;
+  for (int k = 2; !arrays_.emplace(array.association, array.name).second; ++k) {
+    array.name = fmt::format("{} ({})", name, k);
+  }
+  mesh.data.push_back(std::move(array));
+  return mesh.data.back().name;
+}
+
+std::pair<Index, Index> Reading::range(const GeometryType* type) const {
+  if (type == nullptr) return {0, mesh.vertex_count()};
+  const auto found = ranges.find(type);
+  return found == ranges.end() ? std::pair<Index, Index>{0, 0} : found->second;
+}
+
+std::string utf8(std::string text) {
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+  const auto is_valid = [&] {
+    for (std::size_t at = 0; at < text.size();) {
+      const unsigned char first = byte(at++);
+      std::size_t more = 0;
+      if (first >= 0x80) more = first >= 0xC2 && first < 0xE0 ? 1 : first >= 0xE1 && first < 0xF0 ? 2 : 4;
+      if (more > 2 || at + more > text.size()) return false;
+      for (; more > 0; --more) {
+        if ((byte(at++) & 0xC0U) != 0x80U) return false;
+      }
+    }
+    return true;
+  };
+  if (is_valid()) return text;
+  std::string result;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const unsigned char one = byte(at);
+    if (one < 0x80) {
+      result += static_cast<char>(one);
+    } else {
+      result += static_cast<char>(0xC0U | (one >> 6U));
+      result += static_cast<char>(0x80U | (one & 0x3FU));
+    }
+  }
+  return result;
+}
+
+namespace {
+
+constexpr std::string_view kCutCells = "cut them into cells with a fixed number of nodes first";
+
+/// Returns whether the group is that of a step with values of the mesh.
+bool has_mesh(const hdf5::File& file, const std::string& step) {
+  return file.has(step + "/NOE/COO") || !file.names(step + "/MAI").empty();
+}
+
+void check_version(const Reading& reading) {
+  const auto major = reading.file.integer_attribute("/INFOS_GENERALES", "MAJ");
+  if (major && *major < 3) {
+    throw InputError(reading.file.name(), fmt::format("is of version {} of MED", *major),
+                     "write it in version 3 or 4 by medimport, which comes with MED's library");
+  }
+}
+
+/// Finds the mesh and its step.
+void find_mesh(Reading& reading) {
+  const hdf5::File& file = reading.file;
+  check_version(reading);
+  std::vector<std::string> meshes;
+  std::vector<std::string> structured;
+  for (const std::string& name : file.names("/ENS_MAA")) {
+    const bool is_structured = file.integer_attribute("/ENS_MAA/" + name, "TYP").value_or(0) == 1;
+    (is_structured ? structured : meshes).push_back(name);
+  }
+  if (meshes.empty() && !structured.empty()) {
+    reading.fail("/ENS_MAA/" + structured.front(), "is structured",
+                 "its order is its grid's, and there is nothing to reorder");
+  }
+  if (meshes.empty()) {
+    throw InputError(file.name(), "has no mesh", "a file of MED has its meshes in the group ENS_MAA");
+  }
+  if (meshes.size() > 1) {
+    throw InputError(file.name(), fmt::format("has {} meshes: {}", meshes.size(), fmt::join(meshes, ", ")),
+                     "save each in a file of its own");
+  }
+  Layout& layout = *reading.layout;
+  layout.mesh = meshes.front();
+  if (!structured.empty()) {
+    reading.notes.push_back(fmt::format("the mesh '{}' is read; structured ones stay as they are: {}",
+                                        layout.mesh, fmt::join(structured, ", ")));
+  }
+  const std::string mesh = layout.mesh_path();
+  std::vector<std::string> steps;
+  for (const std::string& name : file.names(mesh)) {
+    if (has_mesh(file, fmt::format("{}/{}", mesh, name))) steps.push_back(name);
+  }
+  if (steps.empty()) reading.fail(mesh, "has no nodes", "the file may be damaged");
+  if (steps.size() > 1) {
+    reading.fail(mesh, fmt::format("changes over {} steps", steps.size()),
+                 "save one of its steps in a file of its own");
+  }
+  layout.step = steps.front();
+}
+
+/// Refuses what names nodes or cells in ways that cannot be followed.
+void refuse_unknown_kinds(const Reading& reading) {
+  const Layout& layout = *reading.layout;
+  const std::string step = layout.mesh_path() + "/" + layout.step;
+  for (const auto& [group, words] : {std::pair{"FAC", "faces"}, std::pair{"ARE", "edges"}}) {
+    if (reading.file.names(step + "/" + group).empty()) continue;
+    reading.fail(step + "/" + group, fmt::format("has {} by which its cells are described", words),
+                 "write the cells by their nodes");
+  }
+  for (const std::string& joints : {"/JNT/" + layout.mesh, layout.mesh_path() + "/JNT"}) {
+    if (reading.file.names(joints).empty()) continue;
+    reading.fail(joints, "says that the mesh is a piece of a larger one",
+                 "order the whole mesh before it is divided");
+  }
+}
+
+/// Returns the length of a dataset in rows of `width` values.
+Index row_count_of(const Reading& reading, const std::string& path, std::size_t width) {
+  const std::uint64_t size = reading.file.info(path).size();
+  if (size % width != 0) {
+    reading.fail(path, fmt::format("has {} values, which are no rows of {}", size, width),
+                 "the file may be damaged");
+  }
+  if (size / width > static_cast<std::uint64_t>(kMaxIndex)) {
+    reading.fail(path, fmt::format("has {} rows", size / width), "2,147,483,647 is the most");
+  }
+  return static_cast<Index>(size / width);
+}
+
+void read_points(Reading& reading) {
+  Layout& layout = *reading.layout;
+  Mesh& mesh = reading.mesh;
+  const auto axes = reading.file.integer_attribute(layout.mesh_path(), "ESP").value_or(3);
+  if (axes < 1 || axes > 3) {
+    reading.fail(layout.mesh_path(), fmt::format("has points of {} coordinates", axes),
+                 "1, 2 and 3 are possible");
+  }
+  layout.axes = static_cast<int>(axes);
+  mesh.dimension = axes == 3 ? 3 : 2;
+  const std::string path = layout.nodes_path() + "/COO";
+  const auto width = static_cast<std::size_t>(axes);
+  const Index count = row_count_of(reading, path, width);
+  reading.take(path);
+  const Values values = reading.file.read(path);
+  resize_in_steps(mesh.points, static_cast<std::size_t>(count));
+  std::visit(
+      [&](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_arithmetic_v<Number>) {
+          for (std::size_t k = 0; k < width; ++k) {
+            const auto* const axis = numbers.data() + k * mesh.points.size();
+            for (std::size_t v = 0; v < mesh.points.size(); ++v)
+              mesh.points[v][k] = static_cast<double>(axis[v]);
+          }
+        }
+      },
+      values);
+}
+
+/// Throws for a group of cells that are not understood.
+[[noreturn]] void fail_at_type(const Reading& reading, const std::string& path, const std::string& name) {
+  if (name == "POG" || name == "POG2") reading.fail(path, "has polygons", std::string(kCutCells));
+  if (name == "POE") reading.fail(path, "has polyhedra", std::string(kCutCells));
+  if (name == "O12") reading.fail(path, "has hexagonal prisms", "cut them into wedges first");
+  reading.fail(
+      path, "has cells of an unknown type",
+      "points, lines, triangles, quadrilaterals, tetrahedra, pyramids, wedges and hexahedra of first "
+      "and second order are understood");
+}
+
+/// Reads the nodes of the cells of a type, in the order of the file.
+void read_cells(Reading& reading, const GeometryType& type) {
+  const std::string group = fmt::format("{}/{}", reading.layout->cells_path(), type.name);
+  const std::string path = group + "/NOD";
+  if (!reading.file.has(path) && reading.file.has(group + "/DES")) {
+    reading.fail(group, "describes its cells by faces and edges", "write the cells by their nodes");
+  }
+  const std::string profile = reading.file.text_attribute(group, "PFL").value_or(std::string(kNoProfile));
+  if (!profile.empty() && profile != kNoProfile) {
+    reading.fail(group, fmt::format("has the cells of the profile '{}' only", profile),
+                 "save the mesh as one that does not change");
+  }
+  const auto nodes = static_cast<std::size_t>(type.nodes);
+  const Index count = row_count_of(reading, path, nodes);
+  reading.take(path);
+  Cells& cells = reading.mesh.cells;
+  const Index first = cells.size();
+  if (count > kMaxIndex - first) {
+    reading.fail(path, "is one cell too many", "a mesh has at most 2,147,483,647 cells");
+  }
+  const std::vector<Index> numbers = reading.file.read_indices(path);
+  const auto last = static_cast<std::uint32_t>(reading.mesh.vertex_count());
+  const std::size_t begin = cells.vertices.size();
+  const auto rows = static_cast<std::size_t>(count);
+  resize_in_steps(cells.vertices, begin + rows * nodes);
+  for (std::size_t k = 0; k < nodes; ++k) {
+    const Index* const column = numbers.data() + k * rows;
+    Index* const target = cells.vertices.data() + begin + k;
+    for (std::size_t c = 0; c < rows; ++c) {
+      // numbers below 1 become large
+      const std::uint32_t place = static_cast<std::uint32_t>(column[c]) - 1;
+      if (place >= last) {
+        reading.fail(path, fmt::format("names node {} in cell {}, which does not exist", column[c], c + 1),
+                     fmt::format("the nodes are 1 to {}", last));
+      }
+      target[c * nodes] = static_cast<Index>(place);
+    }
+  }
+  cells.shapes.insert(cells.shapes.end(), rows, type.shape);
+  cells.offsets.reserve(cells.offsets.size() + rows);
+  for (std::size_t c = 0; c < rows; ++c) cells.offsets.push_back(cells.offsets.back() + type.nodes);
+  if (count > 0) reading.mesh.cell_blocks.push_back(first);
+  reading.ranges[&type] = {first, count};
+}
+
+/// Puts the nodes of a cell in the order of a Mesh.
+void turn(std::span<Index> cell, std::span<const int> order) {
+  std::array<Index, 27> of_file{};
+  std::copy(cell.begin(), cell.end(), of_file.begin());
+  for (std::size_t k = 0; k < cell.size(); ++k) cell[static_cast<std::size_t>(order[k])] = of_file[k];
+}
+
+/// Puts the nodes of all cells in the order of a Mesh. Some programs write them so: where nearly all volumes
+/// would be negative, they stay.
+void turn_cells(Reading& reading) {
+  Mesh& mesh = reading.mesh;
+  WedgeVote vote(mesh.points);
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const auto known = static_cast<std::size_t>(corners(mesh.cells.shapes[c], mesh.cells.vertex_count(c)));
+    vote.add(mesh.cells.shapes[c], std::as_const(mesh.cells)[c].first(known));
+  }
+  reading.layout->in_mesh_order = vote.sign_of_volumes() > 0;
+  if (reading.layout->in_mesh_order) {
+    reading.notes.push_back(
+        "the volumes are numbered as in meshio, not as in MED's library, and stay so in MED files");
+    return;
+  }
+  for (const auto& [type, range] : reading.ranges) {
+    const std::span<const int> order = mesh_order(*type);
+    if (order.empty()) continue;
+    for (Index c = range.first; c < range.first + range.second; ++c) turn(mesh.cells[c], order);
+  }
+}
+
+void read_all_cells(Reading& reading) {
+  const std::string path = reading.layout->cells_path();
+  for (const std::string& name : reading.file.names(path)) {
+    if (geometry_type(name) == nullptr) fail_at_type(reading, fmt::format("{}/{}", path, name), name);
+  }
+  for (const GeometryType& type : geometry_types()) {
+    if (reading.file.has(fmt::format("{}/{}", path, type.name))) read_cells(reading, type);
+  }
+  turn_cells(reading);
+}
+
+/// Returns whole numbers of a dataset, as many as there should be rows.
+std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& path, Index rows) {
+  reading.take(path);
+  const Values values = reading.file.read(path);
+  std::vector<std::int64_t> result;
+  std::visit(
+      [&](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_integral_v<Number>) {
+          result.reserve(numbers.size());
+          for (const Number number : numbers) result.push_back(static_cast<std::int64_t>(number));
+        }
+      },
+      values);
+  if (index_size(result) != rows) {
+    reading.fail(path, fmt::format("has {} whole numbers, not {}", result.size(), rows),
+                 "the file may be damaged");
+  }
+  return result;
+}
+
+bool are_unique(std::vector<std::int64_t> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  return std::adjacent_find(numbers.begin(), numbers.end()) == numbers.end();
+}
+
+/// Values that only some types of cells have, collected into one array.
+template <class Value>
+struct Collected {
+  std::vector<Value> values;
+  std::vector<Index> indices;
+
+  void add(std::vector<Value> more, Index first) {
+    for (std::size_t i = 0; i < more.size(); ++i) indices.push_back(first + static_cast<Index>(i));
+    values.insert(values.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  }
+};
+
+/// Reads what belongs to vertices, or to cells of each type, besides coordinates and nodes.
+class ItemReader {
+ public:
+  ItemReader(Reading& reading, Association association) : reading_(reading), association_(association) {}
+
+  void read(const GeometryType* type) {
+    const Layout& layout = *reading_.layout;
+    const bool on_vertices = type == nullptr;
+    const std::string group =
+        on_vertices ? layout.nodes_path() : fmt::format("{}/{}", layout.cells_path(), type->name);
+    const auto [first, count] = reading_.range(type);
+    if (count == 0) return;
+    Items& items = on_vertices ? reading_.layout->vertices : reading_.layout->cells[std::string(type->name)];
+    const hdf5::File& file = reading_.file;
+    if ((items.has_numbers = file.has(group + "/NUM"))) {
+      std::vector<std::int64_t> numbers = read_numbers(reading_, group + "/NUM", count);
+      if (are_unique(numbers)) {
+        numbers_.add(std::move(numbers), first);
+      } else {
+        reading_.notes.push_back(fmt::format("'{}/NUM' gives a number twice and is left out", group));
+        items.has_numbers = false;
+      }
+    }
+    if ((items.has_global_numbers = file.has(group + "/GLB"))) {
+      global_numbers_.add(read_numbers(reading_, group + "/GLB", count), first);
+    }
+    if ((items.has_families = file.has(group + "/FAM"))) {
+      families_.add(read_numbers(reading_, group + "/FAM", count), first);
+    }
+    if ((items.has_names = file.has(group + "/NOM"))) {
+      reading_.take(group + "/NOM");
+      std::vector<std::string> names = file.read_texts(group + "/NOM");
+      for (std::string& name : names) name = utf8(std::move(name));
+      if (index_size(names) != count) {
+        reading_.fail(group + "/NOM", fmt::format("has {} names, not {}", names.size(), count),
+                      "the file may be damaged");
+      }
+      names_.add(std::move(names), first);
+    }
+  }
+
+  void finish() {
+    finish_numbers();
+    add_array(std::string(kNames), std::move(names_));
+    if (!global_numbers_.values.empty()) {
+      Values values = label_values(std::move(global_numbers_.values));
+      add_array(std::string(kGlobalNumbers), std::move(values), std::move(global_numbers_.indices));
+    }
+    if (std::any_of(families_.values.begin(), families_.values.end(),
+                    [](std::int64_t f) { return f != 0; })) {
+      Values values = label_values(std::move(families_.values));
+      add_array(reading_.layout->families_array, std::move(values), std::move(families_.indices));
+    }
+  }
+
+ private:
+  [[nodiscard]] Index count() const {
+    return association_ == Association::vertices ? reading_.mesh.vertex_count() : reading_.mesh.cell_count();
+  }
+
+  /// Makes the ids of all cells from the numbers of some types.
+  void finish_numbers() {
+    if (numbers_.values.empty()) return;
+    Mesh& mesh = reading_.mesh;
+    if (association_ == Association::vertices) {
+      IdMap ids;
+      for (const std::int64_t number : numbers_.values) ids.add(number);
+      mesh.vertex_ids = ids.ids_unless_from(1);
+      return;
+    }
+    mesh.cell_ids.resize(mesh.cells.shapes.size());
+    for (const auto& [type, range] : reading_.ranges) {
+      std::iota(mesh.cell_ids.begin() + range.first, mesh.cell_ids.begin() + range.first + range.second,
+                std::int64_t{1});
+    }
+    for (std::size_t i = 0; i < numbers_.values.size(); ++i)
+      mesh.cell_ids[static_cast<std::size_t>(numbers_.indices[i])] = numbers_.values[i];
+  }
+
+  void add_array(std::string name, Collected<std::string> names) {
+    if (!names.values.empty()) add_array(std::move(name), std::move(names.values), std::move(names.indices));
+  }
+
+  void add_array(std::string name, Values values, std::vector<Index> indices) {
+    if (index_size(indices) == count()) indices.clear();
+    reading_.add_array({.name = std::move(name),
+                        .association = association_,
+                        .values = std::move(values),
+                        .indices = std::move(indices)});
+  }
+
+  Reading& reading_;
+  Association association_;
+  Collected<std::int64_t> numbers_;
+  Collected<std::int64_t> global_numbers_;
+  Collected<std::int64_t> families_;
+  Collected<std::string> names_;
+};
+
+void read_items(Reading& reading) {
+  ItemReader vertices(reading, Association::vertices);
+  vertices.read(nullptr);
+  vertices.finish();
+  ItemReader cells(reading, Association::cells);
+  // in the order of the cells
+  for (const GeometryType& type : geometry_types()) {
+    if (reading.ranges.contains(&type)) cells.read(&type);
+  }
+  cells.finish();
+}
+
+void read_equivalence(Reading& reading, const std::string& group) {
+  const std::string name = group.substr(group.rfind('/') + 1);
+  const GeometryType* const type = name.starts_with("MAI.") ? geometry_type(name.substr(4)) : nullptr;
+  if (name != "NOE" && type == nullptr) {
+    reading.fail(group, "pairs items that are neither nodes nor cells", "pairs of those are understood");
+  }
+  Equivalence equivalence{group + "/COR", type};
+  const Index pairs = row_count_of(reading, equivalence.dataset, 2);
+  reading.take(equivalence.dataset);
+  const auto [first, count] = reading.range(type);
+  equivalence.members = reading.file.read_indices(equivalence.dataset);
+  for (Index& member : equivalence.members) {
+    if (member < 1 || member > count) {
+      reading.fail(equivalence.dataset, fmt::format("names item {}, which does not exist", member),
+                   fmt::format("there are {}", count));
+    }
+    member += first - 1;
+  }
+  if (pairs > 0) reading.layout->equivalences.push_back(std::move(equivalence));
+}
+
+void read_equivalences(Reading& reading) {
+  const hdf5::File& file = reading.file;
+  const std::string root = "/EQS/" + reading.layout->mesh;
+  const std::vector<std::string> names = file.names(root);
+  for (const std::string& name : names) {
+    for (const std::string& step : file.names(fmt::format("{}/{}", root, name))) {
+      const std::string group = fmt::format("{}/{}/{}", root, name, step);
+      for (const std::string& items : file.names(group))
+        read_equivalence(reading, fmt::format("{}/{}", group, items));
+    }
+  }
+  if (!names.empty())
+    reading.layout->words.push_back(fmt::format("the equivalences {}", fmt::join(names, ", ")));
+}
+
+/// Names the datasets of the mesh that are not understood and stay as they are.
+void note_others(Reading& reading) {
+  const std::string step = reading.layout->mesh_path() + "/" + reading.layout->step + "/";
+  for (const auto& [path, rows] : reading.file.datasets()) {
+    if (!path.starts_with(step) || reading.taken.contains(path)) continue;
+    // numbers that were left out
+    if (path.ends_with("/NUM")) {
+      reading.take(path);
+      continue;
+    }
+    reading.notes.push_back(fmt::format("'{}' is not understood and stays as it is in MED files", path));
+  }
+}
+
+void read_description(Reading& reading) {
+  const std::string text = reading.file.text_attribute(reading.layout->mesh_path(), "DES").value_or("");
+  if (!text.empty() && text.find_first_not_of(' ') != std::string::npos) {
+    reading.layout->words.push_back(fmt::format("the description '{}'", utf8(text)));
+  }
+}
+
+}  // namespace
+
+Mesh read(const FilePath& path, Notes& notes) {
+  const hdf5::Session session;
+  Reading reading(path, notes);
+  find_mesh(reading);
+  refuse_unknown_kinds(reading);
+  read_points(reading);
+  read_all_cells(reading);
+  read_description(reading);
+  const std::string fields = "/CHA/" + std::string(kLabel);
+  if (reading.file.has(fields)) reading.layout->families_array = kFamilies;
+  read_items(reading);
+  read_families(reading);
+  read_fields(reading);
+  read_equivalences(reading);
+  note_others(reading);
+  reading.layout->file = std::make_shared<const std::string>(reading.file.without_values(reading.taken));
+  reading.mesh.format_metadata = reading.layout;
+  return std::move(reading.mesh);
+}
+
+}  // namespace meshorder::med

@@ -1,0 +1,64 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/med/med.hpp"
+
+#include <algorithm>
+
+// Types of cells and the order of their nodes.
+
+namespace meshorder::med {
+namespace {
+
+constexpr std::array kGeometryTypes{
+    GeometryType{"TE4", 304, Shape::tetrahedron, 4}, GeometryType{"T10", 310, Shape::tetrahedron, 10},
+    GeometryType{"PY5", 305, Shape::pyramid, 5},     GeometryType{"P13", 313, Shape::pyramid, 13},
+    GeometryType{"PE6", 306, Shape::wedge, 6},       GeometryType{"P15", 315, Shape::wedge, 15},
+    GeometryType{"P18", 318, Shape::wedge, 18},      GeometryType{"HE8", 308, Shape::hexahedron, 8},
+    GeometryType{"H20", 320, Shape::hexahedron, 20}, GeometryType{"H27", 327, Shape::hexahedron, 27},
+    GeometryType{"TR3", 203, Shape::triangle, 3},    GeometryType{"TR6", 206, Shape::triangle, 6},
+    GeometryType{"TR7", 207, Shape::triangle, 7},    GeometryType{"QU4", 204, Shape::quad, 4},
+    GeometryType{"QU8", 208, Shape::quad, 8},        GeometryType{"QU9", 209, Shape::quad, 9},
+    GeometryType{"SE2", 102, Shape::line, 2},        GeometryType{"SE3", 103, Shape::line, 3},
+    GeometryType{"SE4", 104, Shape::line, 4},        GeometryType{"PO1", 1, Shape::vertex, 1},
+};
+
+// MED sees the first face of a volume from the other side: the corners run round it the other way
+constexpr std::array kTetrahedron{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
+constexpr std::array kPyramid{0, 3, 2, 1, 4, 8, 7, 6, 5, 9, 12, 11, 10};
+constexpr std::array kWedge{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13, 17, 16, 15};
+constexpr std::array kHexahedron{0,  3,  2,  1,  4,  7,  6,  5,  11, 10, 9,  8,  15, 14,
+                                 13, 12, 16, 19, 18, 17, 24, 20, 23, 21, 22, 25, 26};
+
+}  // namespace
+
+std::span<const GeometryType> geometry_types() { return kGeometryTypes; }
+
+const GeometryType* geometry_type(std::string_view name) {
+  const auto* const found = std::find_if(kGeometryTypes.begin(), kGeometryTypes.end(),
+                                         [&](const GeometryType& type) { return type.name == name; });
+  return found == kGeometryTypes.end() ? nullptr : found;
+}
+
+const GeometryType* geometry_type(Shape shape, int nodes) {
+  const auto* const found =
+      std::find_if(kGeometryTypes.begin(), kGeometryTypes.end(),
+                   [&](const GeometryType& type) { return type.shape == shape && type.nodes == nodes; });
+  return found == kGeometryTypes.end() ? nullptr : found;
+}
+
+std::span<const int> mesh_order(const GeometryType& type) {
+  const auto nodes = static_cast<std::size_t>(type.nodes);
+  switch (type.shape) {
+    case Shape::tetrahedron:
+      return std::span(kTetrahedron).first(nodes);
+    case Shape::pyramid:
+      return std::span(kPyramid).first(nodes);
+    case Shape::wedge:
+      return std::span(kWedge).first(nodes);
+    case Shape::hexahedron:
+      return std::span(kHexahedron).first(nodes);
+    default:
+      return {};
+  }
+}
+
+}  // namespace meshorder::med

@@ -1,0 +1,152 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/format.hpp"
+#include "support/files.hpp"
+#include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/io.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+using test::TemporaryFolder;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Two tetrahedra and two triangles with ids, sets that overlap, and arrays of several number types.
+Mesh tagged() {
+  Mesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  mesh.cells.push_back(Shape::tetrahedron, std::array<Index, 4>{0, 1, 2, 3});
+  mesh.cells.push_back(Shape::tetrahedron, std::array<Index, 4>{1, 2, 3, 4});
+  mesh.cells.push_back(Shape::triangle, std::array<Index, 3>{0, 2, 1});
+  mesh.cells.push_back(Shape::triangle, std::array<Index, 3>{1, 2, 4});
+  mesh.vertex_ids = {10, 20, 30, 50, 40};
+  mesh.cell_ids = {7, 9, 8, 5};
+  mesh.data = {{"heat", Association::vertices, 1, std::vector<double>{0, 1, 2, 3, 4}, {}, {}},
+               {"owner", Association::cells, 1, std::vector<std::int32_t>{5, 6, 7, 8}, {}, {}},
+               {"parent", Association::vertices, 1, std::vector<std::int64_t>{9, 8}, {1, 3}, {}},
+               {"stress", Association::cells, 2, std::vector<double>{1, 2, 3, 4}, {1, 3}, {"SXX", "SYY"}},
+               {"u step 1", Association::vertices, 1, std::vector<double>{5, 6, 7, 8, 9}, {}, {}},
+               {"u step 2", Association::vertices, 1, std::vector<double>{6, 7, 8, 9, 10}, {}, {}}};
+  mesh.sets = {{"both", Association::cells, {0, 3}},
+               {"held", Association::vertices, {1, 4}},
+               {"left", Association::vertices, {0, 1}},
+               {"skin", Association::cells, {2, 3}}};
+  return mesh;
+}
+
+Mesh through_med(const Mesh& mesh, Notes* notes = nullptr) {
+  const TemporaryFolder folder;
+  write_mesh(mesh, folder.path() / "a.med", notes);
+  return read_mesh(folder.path() / "a.med");
+}
+
+/// The mesh with its data and sets by name, and without what tells families apart.
+Mesh by_name(Mesh mesh) {
+  std::erase_if(mesh.data, [](const DataArray& array) { return array.name == kLabel; });
+  const auto less = [](const auto& a, const auto& b) {
+    return std::pair(a.association, a.name) < std::pair(b.association, b.name);
+  };
+  std::sort(mesh.data.begin(), mesh.data.end(), less);
+  std::sort(mesh.sets.begin(), mesh.sets.end(), less);
+  mesh.cell_blocks.clear();
+  return mesh;
+}
+
+TEST(Med, KeepsIdsSetsArraysAndSteps) {
+  Notes notes;
+  const Mesh mesh = tagged();
+  const Mesh read = through_med(mesh, &notes);
+  EXPECT_THAT(notes, IsEmpty());
+  test::expect_same(by_name(read), by_name(mesh));
+  EXPECT_EQ(read.cell_blocks, (std::vector<Index>{0, 2}));
+}
+
+TEST(Med, NumbersFamiliesByTheirGroups) {
+  const Mesh read = through_med(tagged());
+  const DataArray* const families = find_array(read, kLabel, Association::cells);
+  ASSERT_NE(families, nullptr);
+  // "both", none, "skin", and both of them
+  const auto& numbers = std::get<std::vector<std::int32_t>>(families->values);
+  EXPECT_EQ(numbers[1], 0);
+  EXPECT_EQ(std::set<std::int32_t>(numbers.begin(), numbers.end()), (std::set<std::int32_t>{0, -1, -2, -3}));
+}
+
+TEST(Med, ASetThatChangesGetsAFamilyOfItsOwnAndOthersKeepTheirs) {
+  Mesh mesh = through_med(tagged());
+  const auto families_of = [](const Mesh& of) {
+    return std::get<std::vector<std::int32_t>>(find_array(of, kLabel, Association::cells)->values);
+  };
+  const std::vector<std::int32_t> before = families_of(mesh);
+  mesh.sets.push_back({"new", Association::cells, {2}});
+  const Mesh read = through_med(mesh);
+  const std::vector<std::int32_t> after = families_of(read);
+  EXPECT_EQ(after, (std::vector<std::int32_t>{before[0], before[1], -4, before[3]}));
+  EXPECT_THAT(read.sets, Contains(EntitySet{"new", Association::cells, {2}}));
+}
+
+TEST(Med, LabelsWithoutSetsBecomeGroups) {
+  Mesh mesh = tagged();
+  mesh.sets.clear();
+  mesh.data = {{"label", Association::cells, 1, std::vector<std::int32_t>{4, 2, 0, 4}, {}, {}}};
+  const Mesh read = through_med(mesh);
+  EXPECT_EQ(find_array(read, kLabel, Association::cells)->values, mesh.data[0].values);
+  EXPECT_THAT(read.sets, ElementsAre(EntitySet{"label_2", Association::cells, {1}},
+                                     EntitySet{"label_4", Association::cells, {0, 3}}));
+}
+
+TEST(Med, FollowsCellsThatAreLeftOut) {
+  const TemporaryFolder folder;
+  Mesh mesh = through_med(tagged());
+  // the triangles
+  Mesh volumes = mesh;
+  volumes.cells = {};
+  for (Index c = 0; c < 2; ++c) volumes.cells.push_back(mesh.cells.shapes[c], mesh.cells[c]);
+  volumes.cell_ids.resize(2);
+  volumes.cell_blocks = {0};
+  std::erase_if(volumes.data, [](const DataArray& array) { return array.association == Association::cells; });
+  std::erase_if(volumes.sets, [](const EntitySet& set) { return set.association == Association::cells; });
+  const Mesh read = through_med(volumes);
+  EXPECT_EQ(read.cells, volumes.cells);
+  EXPECT_EQ(find_array(read, "owner", Association::cells), nullptr);
+  EXPECT_NE(find_array(read, "u step 2", Association::vertices), nullptr);
+}
+
+TEST(Med, NamesThatAreTooLongAreCutWithANote) {
+  Mesh mesh = tagged();
+  mesh.sets[0].name = std::string(90, 'a');
+  mesh.data[0].name = std::string(70, 'b');
+  Notes notes;
+  const Mesh read = through_med(mesh, &notes);
+  EXPECT_THAT(notes, Contains(HasSubstr("is written as the group '" + std::string(80, 'a') + "'")));
+  EXPECT_THAT(notes, Contains(HasSubstr("is written as the field '" + std::string(64, 'b') + "'")));
+  EXPECT_NE(find_array(read, std::string(64, 'b'), Association::vertices), nullptr);
+}
+
+TEST(Med, IsToldByItsBytesAndReadFromMemory) {
+  const MemoryFiles written = write_mesh_to_memory(tagged(), "med", "a.med");
+  ASSERT_EQ(written.files.size(), 1U);
+  const std::string& bytes = written.files.front().bytes;
+  const Mesh read = read_mesh(std::as_bytes(std::span(bytes)));
+  EXPECT_EQ(read.format, "med");
+  EXPECT_EQ(read.cells, tagged().cells);
+}
+
+}  // namespace
+}  // namespace meshorder
