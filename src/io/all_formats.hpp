@@ -21,6 +21,7 @@ Format xdmf_format();           ///< .xdmf with .h5 beside it; only where HDF5 i
 Format abaqus_format();         ///< .inp of Abaqus and CalculiX
 Format matrix_market_format();  ///< .mtx
 Format metis_graph_format();    ///< .graph
+Format cgns_format();           ///< .cgns, in builds with the CGNS library
 Format exodus_format();         ///< Exodus II, in builds with netCDF
 
 }  // namespace meshorder

@@ -27,6 +27,9 @@ const std::vector<Format> kFormats{
 #ifdef MESHORDER_HAS_HDF5
     xdmf_format(),
 #endif
+#ifdef MESHORDER_HAS_CGNS
+    cgns_format(),
+#endif
     matrix_market_format(), metis_graph_format(),
 };
 
@@ -44,6 +47,9 @@ const std::vector<LackingFormat> kLackingFormats{
 #endif
 #ifndef MESHORDER_HAS_HDF5
     {"XDMF", {".xdmf", ".xmf"}, "HDF5", "MESHORDER_HDF5"},
+#endif
+#ifndef MESHORDER_HAS_CGNS
+    {"CGNS", {".cgns"}, "the CGNS library", "MESHORDER_CGNS"},
 #endif
 };
 
@@ -86,6 +92,12 @@ bool is_exodus(std::string_view bytes) {
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("num_el_blk") != std::string_view::npos;
 }
 
+/// Returns whether the bytes are a file of ADF, or one of HDF5 with the node that all of CGNS have.
+bool is_cgns(std::string_view bytes) {
+  if (bytes.starts_with("@(#)ADF Database")) return true;
+  return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("CGNSLibraryVersion") != std::string_view::npos;
+}
+
 /// Returns whether XML is that of XDMF, by the first of the elements that VTK's files and those begin with.
 bool is_xdmf(std::string_view word, std::string_view rest_of_line, std::string_view rest) {
   for (const std::string_view text : {word, rest_of_line, rest.substr(0, 4096)}) {
@@ -119,6 +131,7 @@ bool is_deck(std::string_view word, std::string_view rest) {
 /// Returns the name of the format whose files begin like this, or an empty text. Comments and empty lines
 /// before the first word are passed over.
 std::string_view format_that_begins(std::string_view bytes) {
+  if (is_cgns(bytes)) return "CGNS";
   if (is_exodus(bytes)) return "Exodus";
   while (!bytes.empty()) {
     std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));

@@ -26,7 +26,6 @@ constexpr std::array kOtherFormats{
     OtherFormat{".vti", kStructured, kGridOrder},
     OtherFormat{".vts", kStructured, kGridOrder},
     OtherFormat{".vtr", kStructured, kGridOrder},
-    OtherFormat{".cgns", "is a CGNS file", kByGmsh},
     OtherFormat{".med", "is a MED file", kByGmsh},
     OtherFormat{".unv", "is an I-deas universal file",
                 "convert it with gmsh IN -save -format msh41 -o OUT.msh"},

@@ -62,6 +62,8 @@ class File {
  public:
   /// Opens a file to read it.
   static File open(const FilePath& path);
+  /// Opens a file on disk to read it. `name` stands in messages.
+  static File open(const std::filesystem::path& path, std::string name);
   /// Opens a file on disk to change it. `name` stands in messages.
   static File change(const std::filesystem::path& path, std::string name);
   /// Opens a copy of a file's bytes to change it in memory. No bytes: an empty file.
