@@ -94,7 +94,7 @@ bool is_exodus(std::string_view bytes) {
 
 /// Returns whether the bytes are a file of ADF, or one of HDF5 with the node that all of CGNS have.
 bool is_cgns(std::string_view bytes) {
-  if (bytes.starts_with("@(#)ADF Database")) return true;
+  if (bytes.substr(0, 64).find("ADF Database Version") != std::string_view::npos) return true;
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("CGNSLibraryVersion") != std::string_view::npos;
 }
 

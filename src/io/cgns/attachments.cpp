@@ -306,6 +306,7 @@ class AttachmentReader {
 
   void read_parents(Node& node, const std::string& path) {
     if (const Node* const label = node.child(kSectionLabel)) read_label(node, *label);
+    if (Node* const values = node.child(kSectionValues)) read_section_values(node, *values, path);
     for (Node& child : node.children) {
       if (child.name != "ParentElements" && child.name != "ParentElementsPosition" &&
           child.name != "ParentData")
@@ -316,6 +317,24 @@ class AttachmentReader {
       if (section == owner.sections.end()) return;
       const Index first = owner.first_cells[static_cast<std::size_t>(section - owner.sections.begin())];
       read_parents_of(child, *section, first, path + "/" + child.name);
+    }
+  }
+
+  /// Reads values of the cells of a section, as `kSectionValues` describes.
+  void read_section_values(const Node& node, Node& values, const std::string& path) {
+    const ZonePlaces& owner = zone();
+    for (std::size_t k = 0; k < owner.sections.size(); ++k) {
+      const int s = owner.sections[k];
+      if (metadata_.sections[s].name != node.name || values.label != "UserDefinedData_t") continue;
+      std::vector<Index> rows(static_cast<std::size_t>(metadata_.sections[s].count));
+      std::iota(rows.begin(), rows.end(), owner.first_cells[k]);
+      const auto shared = std::make_shared<const std::vector<Index>>(std::move(rows));
+      for (Node& child : values.children) {
+        if (child.label != "DataArray_t") continue;
+        const std::size_t before = metadata_.fields.size();
+        read_values(child, node.name, Association::cells, shared, -1, path + "/" + child.name);
+        if (metadata_.fields.size() > before) metadata_.fields.back().section = s;
+      }
     }
   }
 
@@ -442,14 +461,16 @@ class AttachmentReader {
     const auto count_conditions = [&](const Node& conditions) {
       for (const Node& condition : conditions.children) {
         if (condition.label != "BC_t") continue;
-        if (condition.text() != "BCTypeUserDefined") ++labels["types of boundary conditions"];
+        if (condition.text() != "FamilySpecified" && condition.text() != "UserDefined")
+          ++labels["types of boundary conditions"];
         if (condition.child_of_label("BCDataSet_t") != nullptr) ++labels["BCDataSet_t"];
       }
     };
     for (const Node& base : reading_.tree.root.children) {
       if (base.label != "CGNSBase_t") continue;
       for (const Node& node : base.children) {
-        if (node.label != "Zone_t") ++labels[node.label];
+        const bool is_name_only = node.label == "Family_t" && node.children.empty();
+        if (node.label != "Zone_t" && !is_name_only) ++labels[node.label];
         if (node.label != "Zone_t") continue;
         for (const Node& part : node.children) {
           if (part.label == "ZoneBC_t") count_conditions(part);

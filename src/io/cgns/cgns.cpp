@@ -269,6 +269,7 @@ class Filler {
 
   /// Returns the vertices or cells that have values in a node.
   [[nodiscard]] std::vector<Index> rows_of(const Field& field) const {
+    if (field.section >= 0) return cells_of_section_[field.section];
     if (field.list >= 0) return metadata_.lists[field.list].members;
     std::vector<Index> rows;
     if (field.association == Association::vertices) {

@@ -109,7 +109,8 @@ struct Field {
   std::string array = {};  ///< of the mesh
   Index component = 0;     ///< of the array
   Association association = Association::vertices;
-  int list = -1;  ///< of the vertices or cells that have values, in their order; −1: all
+  int section = -1;  ///< of the cells that have values, in their order; −1: see `list`
+  int list = -1;     ///< of the vertices or cells that have values, in their order; −1: all
 };
 
 /// The nodes of a file without the values that are in the mesh, and where these go.
@@ -134,6 +135,9 @@ struct Metadata final : FormatMetadata {
 /// Name of the node that holds the label of the cells of a section, and of the array of a cell's zone.
 inline constexpr std::string_view kSectionLabel = "label";
 inline constexpr std::string_view kZone = "zone";
+/// Name of the node of a section that holds values of its cells: solutions are on those of the base's
+/// dimension only.
+inline constexpr std::string_view kSectionValues = "CellValues";
 
 /// Returns the metadata of a mesh that came from CGNS, null if it did not.
 const Metadata* own_metadata(const Mesh& mesh);

@@ -156,7 +156,8 @@ class Layout {
       const CellPart& key = division.keys[division.key_of_cell[first]];
       const ElementType& type = *element_type_of(key.shape, key.nodes);
       const auto named = names.find(first);
-      const std::string name = named != names.end() ? named->second
+      const bool is_boundary = dimension(key.shape) < metadata_->cell_dimension;
+      const std::string name = is_boundary && named != names.end() ? named->second
                                : division.by_labels ? fmt::format("{}_{}", type.name, key.label)
                                                     : std::string(type.name);
       add_section(zone, node_names.take(name, ignored), type, first, end - first);
@@ -252,6 +253,12 @@ class Addition {
     for (const EntitySet& set : mesh_.sets) {
       if (!known_sets.contains({set.association, set.name})) add_set(set);
     }
+    for (Node& base : tree_.root.children) {
+      if (base.label != "CGNSBase_t") continue;
+      for (Node& family : families_) {
+        if (base.child(family.name) == nullptr) base.children.push_back(std::move(family));
+      }
+    }
     metadata_.tree = std::make_shared<const Tree>(std::move(tree_));
   }
 
@@ -304,31 +311,60 @@ class Addition {
         array.is_dense() ? all_of(on_vertices ? mesh_.vertex_count() : mesh_.cell_count()) : array.indices);
     for (const auto& [place, members] : parts) {
       const auto [zone, dimension] = place;
-      const bool is_full = (on_vertices || dimension == metadata_.cell_dimension) &&
-                           index_size(members) == full_count(array.association, zone);
-      if (!on_vertices && dimension == 0) {
-        notes_.push_back(
-            fmt::format("the values of the array '{}' on {} points are not written: CGNS has no place "
-                        "for them",
-                        array.name, members.size()));
+      if (!on_vertices && dimension < metadata_.cell_dimension) {
+        add_to_sections(array, members);
         continue;
       }
-      Node& solution = is_full ? full_solution(zone, array.association)
-                               : part_solution(zone, array.association, dimension, members);
-      const int list = is_full ? -1 : list_of(solution);
-      NodeNames names(solution);
-      for (Index k = 0; k < array.components; ++k) {
-        Node node{.name = names.take(array.name + suffix_of(array, k), notes_), .label = "DataArray_t"};
-        node.field = bind(metadata_, {.role = Field::Role::values,
-                                      .place = zone,
-                                      .type = type_of_values(array.values),
-                                      .array = array.name,
-                                      .component = k,
-                                      .association = array.association,
-                                      .list = list});
-        solution.children.push_back(std::move(node));
-      }
+      const bool is_full = index_size(members) == full_count(array.association, zone);
+      Node& solution =
+          is_full ? full_solution(zone, array.association) : part_solution(zone, array.association, members);
+      add_components(array, solution, {.place = zone, .list = is_full ? -1 : list_of(solution)});
     }
+  }
+
+  /// Adds a node for each component of an array; `rows` says for which vertices or cells.
+  void add_components(const DataArray& array, Node& parent, const Field& rows) {
+    NodeNames names(parent);
+    for (Index k = 0; k < array.components; ++k) {
+      Node node{.name = names.take(array.name + suffix_of(array, k), notes_), .label = "DataArray_t"};
+      Field field = rows;
+      field.type = type_of_values(array.values);
+      field.array = array.name;
+      field.component = k;
+      field.association = array.association;
+      node.field = bind(metadata_, std::move(field));
+      parent.children.push_back(std::move(node));
+    }
+  }
+
+  /// Adds values of cells of lower dimensions to their sections, where all cells of a section have one.
+  void add_to_sections(const DataArray& array, const std::vector<Index>& members) {
+    std::map<int, Index> counts;
+    for (const Index member : members) ++counts[metadata_.section_of_cell[member]];
+    for (const auto& [s, count] : counts) {
+      const Section& section = metadata_.sections[s];
+      if (count != section_count(s)) {
+        notes_.push_back(
+            fmt::format("{} values of the array '{}' are not written: CGNS has no place for values on a part "
+                        "of a boundary",
+                        count, array.name));
+        continue;
+      }
+      Node& parent = *zones_[section.zone]->child(section.name);
+      if (parent.child(kSectionValues) == nullptr) {
+        parent.children.push_back({.name = std::string(kSectionValues), .label = "UserDefinedData_t"});
+      }
+      add_components(array, *parent.child(kSectionValues), {.place = section.zone, .section = s});
+    }
+  }
+
+  /// Returns the number of cells that a section has now.
+  [[nodiscard]] Index section_count(int s) {
+    if (section_counts_.empty()) {
+      section_counts_.resize(metadata_.sections.size());
+      for (const Index of_cell : metadata_.section_of_cell) ++section_counts_[of_cell];
+    }
+    return section_counts_[s];
   }
 
   [[nodiscard]] int list_of(const Node& solution) const {
@@ -367,9 +403,8 @@ class Addition {
   }
 
   /// Returns a solution on some vertices or cells of a zone.
-  Node& part_solution(int zone, Association association, int dimension, const std::vector<Index>& members) {
-    const std::string_view location =
-        association == Association::vertices ? "Vertex" : location_name(dimension, metadata_.cell_dimension);
+  Node& part_solution(int zone, Association association, const std::vector<Index>& members) {
+    const std::string_view location = association == Association::vertices ? "Vertex" : "CellCenter";
     for (const std::string& name : part_solutions_[zone]) {
       Node& known = *zones_[zone]->child(name);
       const PointList& list = metadata_.lists[list_of(known)];
@@ -402,15 +437,24 @@ class Addition {
         node.type = "I4";
         node = integer_node(node.name, node.label, {metadata_.cell_dimension});
       } else {
-        node = text_node(node.name, "BC_t", "BCTypeUserDefined");
+        node = text_node(node.name, "BC_t", "FamilySpecified");
       }
       node.children.push_back(text_node("GridLocation", "GridLocation_t",
                                         set.association == Association::vertices
                                             ? "Vertex"
                                             : location_name(highest, metadata_.cell_dimension)));
       node.children.push_back(list_node(zone, set.association, std::move(members), set.name));
+      add_family(node.name);
+      node.children.push_back(text_node("FamilyName", "FamilyName_t", node.name));
       parent.children.push_back(std::move(node));
     }
+  }
+
+  /// Adds a family of that name, by which programs know the parts of a boundary, unless there is one.
+  void add_family(const std::string& name) {
+    const bool is_known = std::any_of(families_.begin(), families_.end(),
+                                      [&](const Node& family) { return family.name == name; });
+    if (!is_known) families_.push_back({.name = name, .label = "Family_t"});
   }
 
   Node& conditions(int zone) {
@@ -423,7 +467,9 @@ class Addition {
   Notes& notes_;
   Tree tree_;
   std::vector<Node*> zones_;
+  std::vector<Node> families_;
   std::map<std::pair<Association, int>, Index> full_counts_;
+  std::vector<Index> section_counts_;
   std::map<std::pair<int, Association>, std::string> full_solutions_;
   std::map<int, std::vector<std::string>> part_solutions_;
 };

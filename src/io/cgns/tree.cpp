@@ -172,7 +172,7 @@ class TreeReader {
     }
     node.bytes.resize(bytes);
     if (bytes > 0) {
-      file_.check(cgio_read_all_data_type(number, id, node.type.c_str(), node.bytes.data()), path);
+      file_.check(cgio_read_all_data(number, id, node.bytes.data()), path);
     }
   }
 
