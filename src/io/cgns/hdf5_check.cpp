@@ -18,6 +18,7 @@ namespace {
 using hdf5::Handle;
 
 constexpr int kMostLevels = 64;
+constexpr std::size_t kMostLetters = 32;
 constexpr std::string_view kDataSet = " data";
 
 /// An attribute of every node and the most bytes that libcgns has room for.
@@ -31,12 +32,7 @@ constexpr std::array kNodeAttributes{NodeAttribute{"name", 33}, NodeAttribute{"l
 class Hdf5Check {
  public:
   Hdf5Check(const std::filesystem::path& path, std::string name)
-      : name_(std::move(name)), data_(hdf5::File::open(path, name_)) {
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);  // as the other handle of the file
-    file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
-    if (!file_.is_open()) fail(fmt::format("cannot be opened ({})", hdf5::last_cause()));
-  }
+      : name_(std::move(name)), file_(hdf5::File::open(path, name_)) {}
 
   void run() {
     const Handle root(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
@@ -96,19 +92,19 @@ class Hdf5Check {
     if (link.type != H5L_TYPE_HARD) {
       fail(parent + " is a link to another node", "copy all into one file with cgnsconvert -l -f IN OUT");
     }
-    H5O_info_t info;
-    if (H5Oget_info_by_name(group, name.c_str(), &info, H5P_DEFAULT) < 0) fail(path + " cannot be read");
-    if (info.type == H5O_TYPE_GROUP) {
-      const Handle child(H5Gopen2(group, name.c_str(), H5P_DEFAULT), H5Gclose);
-      if (!child.is_open()) fail(path + " cannot be read");
-      if (name.size() > 32) fail(path + " has a name of more than 32 characters");
-      check_group(child.id(), path, level + 1);
-    } else if (info.type == H5O_TYPE_DATASET && level > 0) {
+    // H5Oget_info_by_name leaves an id open where the object is damaged
+    const Handle object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
+    if (!object.is_open()) fail(path + " cannot be read");
+    const H5I_type_t kind = H5Iget_type(object.id());
+    if (kind == H5I_GROUP) {
+      if (name.size() > kMostLetters) fail(path + " has a name of more than 32 characters");
+      check_group(object.id(), path, level + 1);
+    } else if (kind == H5I_DATASET && level > 0) {
       // links of libcgns name their targets in datasets of characters
-      const hdf5::DatasetInfo data = data_.info(path);
+      const hdf5::DatasetInfo data = file_.info(path);
       if (data.shape.size() > 12) fail(path + " has more than 12 dimensions");
       if (name == kDataSet) check_type(group, parent, data.alternative);
-    } else if (info.type != H5O_TYPE_DATASET) {
+    } else if (kind != H5I_DATASET) {
       fail(path + " is neither a group nor a dataset");
     }
   }
@@ -127,8 +123,7 @@ class Hdf5Check {
   }
 
   std::string name_;
-  hdf5::File data_;
-  Handle file_;
+  hdf5::File file_;
   std::set<haddr_t> seen_;
 };
 

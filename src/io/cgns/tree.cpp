@@ -27,6 +27,9 @@ namespace fs = std::filesystem;
 
 constexpr int kDeepest = 64;
 
+/// Room for a text of a node: ADF gives more bytes than CGIO promises where a file is damaged.
+using Text = std::array<char, 1024>;
+
 /// A folder of our own for one file, removed at the end: CGIO opens files by their paths only.
 class PrivateFolder {
  public:
@@ -79,7 +82,7 @@ class CgioFile {
   /// Throws InputError with the library's words if a call failed.
   void check(int status, const std::string& place) const {
     if (status == CGIO_ERR_NONE) return;
-    std::array<char, CGIO_MAX_ERROR_LENGTH + 1> message{};
+    Text message{};
     cgio_error_message(message.data());
     throw InputError(name_, fmt::format("{}: {}", place, message.data()),
                      writing_ ? "is the disk full?" : "the file may be damaged");
@@ -113,7 +116,7 @@ class TreeReader {
     file_.check(cgio_is_link(number, id, &link), place);
     Node node;
     if (depth > 0) {
-      std::array<char, CGIO_MAX_NAME_LENGTH + 1> text{};
+      Text text{};
       file_.check(cgio_get_name(number, id, text.data()), place);
       node.name = text.data();
     }
@@ -144,8 +147,8 @@ class TreeReader {
  private:
   void read_data(double id, const std::string& path, Node& node) const {
     const int number = file_.number();
-    std::array<char, CGIO_MAX_LABEL_LENGTH + 1> label{};
-    std::array<char, CGIO_MAX_DATATYPE_LENGTH + 1> type{};
+    Text label{};
+    Text type{};
     file_.check(cgio_get_label(number, id, label.data()), path);
     file_.check(cgio_get_data_type(number, id, type.data()), path);
     node.label = label.data();

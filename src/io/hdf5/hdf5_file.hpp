@@ -70,6 +70,8 @@ class File {
   static File in_memory(std::string_view bytes, std::string name);
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  /// Returns the library's handle, for what the functions below do not do; in a `Session` only.
+  [[nodiscard]] hid_t id() const noexcept { return file_.id(); }
 
   /// Returns the size and number type of a dataset of numbers whose values are in this file. Refuses one that
   /// claims more values than its bytes can hold.
