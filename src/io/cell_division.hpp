@@ -23,7 +23,7 @@ struct CellDivision {
   bool by_labels = false;
   bool by_sets = false;
   std::vector<Index> key_of_cell;  ///< cells of one key are one block
-  std::vector<CellPart> keys;     ///< in the order in which they appear; `first` is not used
+  std::vector<CellPart> keys;      ///< in the order in which they appear; `first` is not used
 };
 
 /// Returns the division of a mesh. Labels of more than 10,000 kinds are no labels of blocks; `by_sets` allows

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 // Reads what names vertices or cells: solutions, boundary conditions, connectivities of zones, parents.
@@ -19,8 +20,7 @@
 namespace meshorder::cgns {
 namespace {
 
-template <std::size_t size>
-bool is_one_of(std::string_view word, const std::array<std::string_view, size>& words) {
+bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
@@ -91,8 +91,8 @@ class AttachmentReader {
                : -1;
   }
 
-  Index position_of(const ZonePlaces& of_zone, Association association, std::int64_t number,
-                    const std::string& path) const {
+  [[nodiscard]] Index position_of(const ZonePlaces& of_zone, Association association, std::int64_t number,
+                                  const std::string& path) const {
     if (association == Association::vertices) {
       if (number < 1 || number > of_zone.vertices) {
         reading_.fail(path, fmt::format("vertex {} does not exist", number),
@@ -404,9 +404,9 @@ class AttachmentReader {
     std::set<std::string> names;
     for (const FoundSet& found : sets_) {
       PointList& list = metadata_.lists[found.list];
-      std::string name = found.name;
-      if (uses[name] > 1) name = metadata_.zones[list.zone].name + "." + name;
-      add_set(list, name, names);
+      const bool is_alone = uses[found.name] == 1;
+      add_set(list, is_alone ? found.name : fmt::format("{}.{}", metadata_.zones[list.zone].name, found.name),
+              names);
     }
   }
 

@@ -212,7 +212,7 @@ std::string suffix_of(const DataArray& array, Index component) {
   constexpr std::array<std::string_view, 6> kSymmetric{"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
   const auto k = static_cast<std::size_t>(component);
   if (array.components == 1) return {};
-  if (array.components <= 3) return std::string(1, "XYZ"[k]);
+  if (array.components <= 3) return {"XYZ"[k]};
   if (index_size(array.component_names) == array.components) return "_" + array.component_names[k];
   if (array.components == 6) return std::string(kSymmetric.at(k));
   if (array.components == 9) return {"XYZ"[k / 3], "XYZ"[k % 3]};

@@ -158,16 +158,16 @@ class MeshReader {
     std::array<Values, 3> axes;
     for (int k = 0; k < physical_dimension_; ++k) {
       const std::string name = std::string("Coordinate") + "XYZ"[k];
+      const std::string axis_path = fmt::format("{}/{}", path, name);
       Node* const axis = grid->child(name);
       if (axis == nullptr) {
         reading_.fail(path, "has no " + name, "save the file with Cartesian coordinates");
       }
       if (axis->type != "R4" && axis->type != "R8") {
-        reading_.fail(path + "/" + name, "is of the type '" + axis->type + "'", "R4 or R8 is expected");
+        reading_.fail(axis_path, "is of the type '" + axis->type + "'", "R4 or R8 is expected");
       }
       if (axis->size() != static_cast<std::uint64_t>(zone.vertices)) {
-        reading_.fail(path + "/" + name,
-                      fmt::format("has {} values for {} vertices", axis->size(), zone.vertices),
+        reading_.fail(axis_path, fmt::format("has {} values for {} vertices", axis->size(), zone.vertices),
                       "ghost vertices (Rind_t) are not understood");
       }
       axes.at(static_cast<std::size_t>(k)) = numbers_of(*axis);
