@@ -52,12 +52,16 @@ if("io" IN_LIST components)
     meshorder_find_library(hdf5::hdf5 hdf5.h "hdf5_serial;hdf5" hdf5/serial)  # MED, XDMF's arrays
     find_package(pugixml QUIET)                        # XDMF's XML
   endif()
+  if(NOT MESHORDER_CGNS STREQUAL "OFF" AND TARGET hdf5::hdf5)
+    meshorder_find_library(cgns::cgns cgns_io.h cgns)  # CGNS
+  endif()
   set(file_libraries "")
   meshorder_switch(ZLIB ZLIB::ZLIB file_libraries)
   meshorder_switch(LZMA LibLZMA::LibLZMA file_libraries)
   meshorder_switch(LZ4 lz4::lz4 file_libraries)
   meshorder_switch(NETCDF netcdf::netcdf file_libraries)
   meshorder_switch(HDF5 hdf5::hdf5 file_libraries)
+  meshorder_switch(CGNS cgns::cgns file_libraries)
   set(MESHORDER_HAS_XDMF OFF)
   if(MESHORDER_HAS_HDF5 AND TARGET pugixml::pugixml)
     set(MESHORDER_HAS_XDMF ON)

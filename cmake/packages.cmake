@@ -67,9 +67,9 @@ set(CPACK_DEBIAN_COMMAND_DESCRIPTION
     "reorders simulation meshes so that physics runs faster
 meshorder reorders the vertices and elements of a simulation mesh, with all
 data in its file, so that neighbours in the mesh are neighbours in memory. It
-reads and writes TetGen, Vega, Gmsh, Medit, SU2, Abaqus, Exodus, XDMF, MED,
-VTK, OFF, OBJ, PLY and STL files, predicts and measures what an order is
-worth, and compares orders.")
+reads and writes TetGen, Vega, Gmsh, Medit, SU2, Abaqus, Nastran, I-deas,
+Exodus, XDMF, CGNS, MED, VTK, OFF, OBJ, PLY and STL files, predicts and
+measures what an order is worth, and compares orders.")
 
 # what Debian wants in the folder of each package; not part of `cmake --install`
 string(TIMESTAMP debian_date "%a, %d %b %Y %H:%M:%S +0000" UTC)

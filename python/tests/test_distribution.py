@@ -20,7 +20,7 @@ SYSTEMS = {"libstdc++", "libgcc_s", "libm", "libc", "libpthread", "libdl", "libr
 #: what THIRD_PARTY.md calls the others
 NAMES = {
     "libtbb": "oneTBB", "libmetis": "METIS", "libz": "zlib", "liblzma": "XZ Utils", "liblz4": "LZ4", "libfmt": "{fmt}",
-    "libhwy": "Highway", "libnetcdf": "netCDF", "libhdf5_serial": "HDF5", "libhdf5": "HDF5", "libpugixml": "pugixml",
+    "libhwy": "Highway", "libnetcdf": "netCDF", "libhdf5_serial": "HDF5", "libhdf5": "HDF5", "libpugixml": "pugixml", "libcgns": "CGNS",
 }  # fmt: skip
 
 of_sources = pytest.mark.skipif(not (ROOT / ".git").exists(), reason="not a checkout of the sources")

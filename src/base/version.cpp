@@ -43,6 +43,9 @@ std::string build_info() {
 #ifdef MESHORDER_HAS_HDF5
   info += " hdf5";
 #endif
+#ifdef MESHORDER_HAS_CGNS
+  info += " cgns";
+#endif
   return info;
 }
 

@@ -24,6 +24,7 @@ Format nastran_format();        ///< bulk data of Nastran
 Format matrix_market_format();  ///< .mtx
 Format metis_graph_format();    ///< .graph
 Format unv_format();            ///< .unv of I-deas
+Format cgns_format();           ///< .cgns, in builds with the CGNS library
 Format exodus_format();         ///< Exodus II, in builds with netCDF
 
 }  // namespace meshorder

@@ -20,17 +20,20 @@ namespace {
 const std::vector<Format> kFormats{
     tetgen_format(),        vega_format(),        gmsh_format(),    medit_format(), vtu_format(),
     vtk_format(),           off_format(),         obj_format(),     ply_format(),   stl_format(),
-    su2_format(),           abaqus_format(),      nastran_format(),
+    su2_format(),           abaqus_format(),      nastran_format(), unv_format(),
 #ifdef MESHORDER_HAS_NETCDF
     exodus_format(),
 #endif
 #ifdef MESHORDER_HAS_XDMF
     xdmf_format(),
 #endif
+#ifdef MESHORDER_HAS_CGNS
+    cgns_format(),
+#endif
 #ifdef MESHORDER_HAS_HDF5
     med_format(),
 #endif
-    matrix_market_format(), metis_graph_format(), unv_format(),
+    matrix_market_format(), metis_graph_format(),
 };
 
 /// A format of which this build lacks the library.
@@ -50,6 +53,9 @@ const std::vector<LackingFormat> kLackingFormats{
 #endif
 #ifndef MESHORDER_HAS_HDF5
     {"MED", {".med"}, "HDF5", "MESHORDER_HDF5"},
+#endif
+#ifndef MESHORDER_HAS_CGNS
+    {"CGNS", {".cgns"}, "the CGNS library", "MESHORDER_CGNS"},
 #endif
 };
 
@@ -96,6 +102,12 @@ bool is_exodus(std::string_view bytes) {
 bool is_med(std::string_view bytes) {
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && (bytes.find("INFOS_GENERALES") != std::string_view::npos ||
                                                     bytes.find("ENS_MAA") != std::string_view::npos);
+}
+
+/// Returns whether the bytes are a file of ADF, or one of HDF5 with the node that all of CGNS have.
+bool is_cgns(std::string_view bytes) {
+  if (bytes.substr(0, 64).find("ADF Database Version") != std::string_view::npos) return true;
+  return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("CGNSLibraryVersion") != std::string_view::npos;
 }
 
 /// Returns whether XML is that of XDMF, by the first of the elements that VTK's files and those begin with.
@@ -146,6 +158,7 @@ bool is_bulk_data(std::string_view bytes) {
 /// Returns the name of the format whose files begin like this, or an empty text. Comments and empty lines
 /// before the first word are passed over.
 std::string_view format_that_begins(std::string_view bytes) {
+  if (is_cgns(bytes)) return "CGNS";
   if (is_exodus(bytes)) return "Exodus";
   if (is_bulk_data(bytes)) return "Nastran";
   if (is_med(bytes)) return "MED";

@@ -26,7 +26,6 @@ constexpr std::array kOtherFormats{
     OtherFormat{".vti", kStructured, kGridOrder},
     OtherFormat{".vts", kStructured, kGridOrder},
     OtherFormat{".vtr", kStructured, kGridOrder},
-    OtherFormat{".cgns", "is a CGNS file", kByGmsh},
     OtherFormat{".mdpa", "is a mesh of Kratos", kByMeshio},
     OtherFormat{".h5m", "is a mesh of MOAB", kByMeshio},
     OtherFormat{".avs", "is an AVS-UCD file", kByMeshio},

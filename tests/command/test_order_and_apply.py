@@ -126,7 +126,7 @@ def write_boxes(folder):
     meshio.write(folder / "other.vtu", meshio.Mesh(points, [("tetra", other)]))
 
 
-@pytest.mark.parametrize("extension", ["vtu", "vtk", "msh", "node", "mesh", "veg", "su2", "xdmf", "med"])
+@pytest.mark.parametrize("extension", ["vtu", "vtk", "msh", "node", "mesh", "veg", "su2", "xdmf", "cgns", "med"])
 def test_maps_know_whether_they_were_applied(command, tmp_path, extension):
     write_boxes(tmp_path)
     made = command.json("order", "a.vtu", "-o", f"b.{extension}", "--vertices", "rcm", "--maps", "m")["maps"]

@@ -40,5 +40,11 @@ TEST(WithoutNetcdf, AnExodusFileIsRefusedByNameOfLibraryAndOption) {
               HasSubstr("MESHORDER_NETCDF=ON"));
 }
 
+TEST(WithoutCgns, ACgnsFileIsRefusedByNameOfLibraryAndOption) {
+  const std::string message = refusal([] { (void)format_of("a.cgns"); });
+  EXPECT_THAT(message, HasSubstr("a.cgns: CGNS needs the CGNS library, which this build of meshorder lacks"));
+  EXPECT_THAT(message, HasSubstr("MESHORDER_CGNS=ON"));
+}
+
 }  // namespace
 }  // namespace meshorder

@@ -1,110 +1,16 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/index.hpp"
 #include "io/exodus/exodus.hpp"
-#include "io/labels.hpp"
-
-#include <algorithm>
-#include <limits>
-#include <map>
-#include <numeric>
-#include <tuple>
 
 // The blocks that the cells of a mesh are divided into.
 
 namespace meshorder::exodus {
-namespace {
 
-constexpr std::size_t kMostBlocks = 10000;
-
-bool is_own(const Mesh& mesh) { return dynamic_cast<const Metadata*>(mesh.format_metadata.get()) != nullptr; }
-
-/// Returns the labels of cells if they can be ids of blocks; else none.
-std::vector<std::int64_t> usable_labels(const Mesh& mesh) {
-  Labels labels = labels_of(mesh, Association::cells);
-  const bool small = std::all_of(labels.values.begin(), labels.values.end(),
-                                 [](std::int64_t x) { return std::in_range<std::int32_t>(x); });
-  return small ? std::move(labels.values) : std::vector<std::int64_t>();
-}
-
-/// Returns the set that each cell belongs to, from 1, where the sets have no cell in common with an earlier
-/// one; 0 for cells of no set. Empty if there are no sets.
-std::vector<std::int64_t> sets_of_cells(const Mesh& mesh) {
-  std::vector<std::int64_t> result;
-  std::int64_t number = 0;
-  for (const EntitySet& set : mesh.sets) {
-    if (set.association == Association::vertices || set.members.empty()) continue;
-    result.resize(mesh.cells.shapes.size(), 0);
-    if (std::any_of(set.members.begin(), set.members.end(), [&](Index c) { return result[c] != 0; }))
-      continue;
-    ++number;
-    for (const Index c : set.members) result[c] = number;
-  }
-  return result;
-}
-
-/// Divides the cells by a value of each, if there are any, and by type. Returns false if the parts are too
-/// many.
-bool divide_by(const Mesh& mesh, const std::vector<std::int64_t>& values, Division& division) {
-  std::map<std::tuple<std::int64_t, Shape, int>, Index> known;
-  std::tuple<std::int64_t, Shape, int> last;
-  division.keys.clear();
-  division.key_of_cell.resize(mesh.cells.shapes.size());
-  Index key = -1;  // neighbours are mostly of one key
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const std::tuple current{values.empty() ? 0 : values[c], mesh.cells.shapes[c],
-                             mesh.cells.vertex_count(c)};
-    if (key < 0 || current != last) {
-      const auto [found, is_new] = known.try_emplace(current, index_size(division.keys));
-      key = found->second;
-      last = current;
-      if (is_new) {
-        if (!values.empty() && division.keys.size() == kMostBlocks) return false;
-        division.keys.push_back({c, 0, std::get<1>(current), std::get<2>(current), std::get<0>(current)});
-      }
-    }
-    ++division.keys[key].count;
-    division.key_of_cell[c] = key;
-  }
-  return true;
-}
-
-}  // namespace
-
-Division divide(const Mesh& mesh) {
-  Division division;
-  std::vector<std::int64_t> values = usable_labels(mesh);
-  division.by_labels =
-      std::any_of(values.begin(), values.end(), [](std::int64_t label) { return label != 0; });
-  if (!division.by_labels) {
-    values = is_own(mesh) ? std::vector<std::int64_t>() : sets_of_cells(mesh);
-    division.by_sets = !values.empty();
-  }
-  if (!divide_by(mesh, values, division)) {
-    division.by_labels = division.by_sets = false;
-    divide_by(mesh, {}, division);
-  }
-  return division;
+CellDivision divide(const Mesh& mesh) {
+  return divide_cells(mesh, dynamic_cast<const Metadata*>(mesh.format_metadata.get()) == nullptr);
 }
 
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
-  const Division division = divide(mesh);
-  std::vector<Index> keys(division.keys.size());
-  std::iota(keys.begin(), keys.end(), Index{0});
-  std::stable_sort(keys.begin(), keys.end(), [&](Index a, Index b) {
-    return dimension(division.keys[a].shape) > dimension(division.keys[b].shape);
-  });
-  std::vector<Index> next(keys.size());
-  Index begin = 0;
-  blocks.clear();
-  for (const Index key : keys) {
-    blocks.push_back(begin);
-    next[key] = begin;
-    begin += division.keys[key].count;
-  }
-  std::vector<Index> old_to_new;
-  old_to_new.reserve(division.key_of_cell.size());
-  for (const Index key : division.key_of_cell) old_to_new.push_back(next[key]++);
-  return Permutation::from_old_to_new(std::move(old_to_new));
+  return places_by_division(divide(mesh), blocks);
 }
 
 }  // namespace meshorder::exodus

@@ -134,7 +134,7 @@ Metadata new_metadata(const Mesh& mesh) {
 
 /// Divides the cells, which are in their places, into blocks.
 void plan_blocks(Writing& writing, bool is_own) {
-  const Division division = divide(writing.mesh);
+  const CellDivision division = divide(writing.mesh);
   using Key = std::tuple<std::int64_t, Shape, int>;
   std::map<Key, const BlockRecord*> records;
   std::set<std::int64_t> ids;

@@ -12,6 +12,7 @@
 // factors" and attributes arrays "attribute NAME", named maps arrays "map NAME". A variable is an array of
 // its name, "NAME step K" where there are several steps, and of "NAME on node set SET" for a set.
 
+#include "io/cell_division.hpp"
 #include "io/exodus/netcdf.hpp"
 #include "io/format.hpp"
 
@@ -178,25 +179,10 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
 // ---- blocks of a mesh
 
-/// Cells of one type, one after another.
-struct Block {
-  Index first = 0;
-  Index count = 0;
-  Shape shape = Shape::vertex;
-  int nodes = 0;
-  std::int64_t label = 0;
-};
+using Block = CellPart;
 
-/// How cells are divided into blocks: by label, by sets where there are no labels, and by type.
-struct Division {
-  bool by_labels = false;
-  bool by_sets = false;
-  std::vector<Index> key_of_cell;  ///< cells of one key are one block
-  std::vector<Block> keys;         ///< in the order in which they appear; `first` is not used
-};
-
-/// Returns the division of a mesh. Labels of more than 10,000 kinds are no labels of blocks.
-Division divide(const Mesh& mesh);
+/// Returns the division of a mesh, by sets for one of another format only.
+CellDivision divide(const Mesh& mesh);
 
 /// Returns the places of cells block by block, cells of the highest dimension first; `blocks` receives the
 /// first cell of each.

@@ -331,14 +331,19 @@ void File::fail(const std::string& path, const std::string& what, const std::str
 File File::open(const FilePath& path) {
   const Session session;
   if (path.store() != nullptr) return in_memory(path.read(), path.string());
+  return open(path.path(), path.string());
+}
+
+File File::open(const std::filesystem::path& path, std::string name) {
+  const Session session;
   const Handle access = file_access();
   Handle file(H5Fopen(path.string().c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   if (!file.is_open()) {
     const std::string cause = last_cause();
-    throw InputError(path.string(), fmt::format("HDF5 cannot open it ({})", cause),
+    throw InputError(name, fmt::format("HDF5 cannot open it ({})", cause),
                      "it may be damaged, cut short, or open for writing elsewhere");
   }
-  return {std::move(file), path.string()};
+  return {std::move(file), std::move(name)};
 }
 
 File File::change(const std::filesystem::path& path, std::string name) {

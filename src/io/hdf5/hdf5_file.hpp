@@ -63,12 +63,16 @@ class File {
  public:
   /// Opens a file to read it.
   static File open(const FilePath& path);
+  /// Opens a file on disk to read it. `name` stands in messages.
+  static File open(const std::filesystem::path& path, std::string name);
   /// Opens a file on disk to change it. `name` stands in messages.
   static File change(const std::filesystem::path& path, std::string name);
   /// Opens a copy of a file's bytes to change it in memory. No bytes: an empty file.
   static File in_memory(std::string_view bytes, std::string name);
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  /// Returns the library's handle, for what the functions below do not do; in a `Session` only.
+  [[nodiscard]] hid_t id() const noexcept { return file_.id(); }
 
   /// Returns the size and number type of a dataset of numbers whose values are in this file. Refuses one that
   /// claims more values than its bytes can hold.

@@ -1,0 +1,608 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/index.hpp"
+#include "base/text.hpp"
+#include "io/cgns/reading.hpp"
+#include "io/labels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+
+// Reads what names vertices or cells: solutions, boundary conditions, connectivities of zones, parents.
+
+namespace meshorder::cgns {
+namespace {
+
+bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+constexpr std::array<std::string_view, 5> kContainers{"FlowSolution_t", "DiscreteData_t", "GridCoordinates_t",
+                                                      "ArbitraryGridMotion_t", "ZoneSubRegion_t"};
+constexpr std::array<std::string_view, 2> kVertexLocations{"Vertex", "Null"};
+/// Nodes of a zone whose parts other formats have a place for.
+constexpr std::array<std::string_view, 8> kHeldByOthers{"ZoneType_t",     "GridCoordinates_t", "Elements_t",
+                                                        "FlowSolution_t", "DiscreteData_t",    "ZoneBC_t",
+                                                        "Ordinal_t",      "ZoneSubRegion_t"};
+
+/// Returns the texts of a node of characters, one for each row of its last dimension.
+std::vector<std::string> rows_of_text(const Node& node) {
+  std::vector<std::string> rows;
+  if (node.type != "C1" || node.dimensions.empty() || node.dimensions.front() < 1) return rows;
+  const auto width = static_cast<std::size_t>(node.dimensions.front());
+  for (std::size_t at = 0; at + width <= node.bytes.size(); at += width) {
+    const std::string row = node.bytes.substr(at, width);
+    const std::size_t end = row.find_last_not_of(std::string_view(" \0", 2));
+    rows.push_back(end == std::string::npos ? std::string() : row.substr(0, end + 1));
+  }
+  return rows;
+}
+
+class AttachmentReader {
+ public:
+  explicit AttachmentReader(Reading& reading) : reading_(reading), metadata_(*reading.metadata) {}
+
+  void read() {
+    for (std::size_t z = 0; z < reading_.zones.size(); ++z) {
+      zone_ = static_cast<int>(z);
+      read_steps();
+      for (Node& node : zone().node->children) read_node(node, zone().path + "/" + node.name);
+    }
+    name_sets();
+    add_section_sets();
+    count_lost();
+  }
+
+ private:
+  /// A set before it has a name of its own.
+  struct FoundSet {
+    int list;
+    std::string name;
+  };
+
+  ZonePlaces& zone() { return reading_.zones[zone_]; }
+
+  // ---- what is where
+
+  /// Returns what values and lists of a node belong to; cells also for their faces and edges.
+  static Association location_of(const Node& node, Association inherited) {
+    const Node* const location = node.child_of_label("GridLocation_t");
+    if (location == nullptr) return inherited;
+    return is_one_of(location->text(), kVertexLocations) ? Association::vertices : Association::cells;
+  }
+
+  /// Returns the cell of an element number in a zone, −1 if there is none.
+  [[nodiscard]] Index cell_of(const ZonePlaces& of_zone, std::int64_t number) const {
+    const auto after =
+        std::upper_bound(of_zone.sections.begin(), of_zone.sections.end(), number,
+                         [&](std::int64_t wanted, int s) { return wanted < metadata_.sections[s].first; });
+    if (after == of_zone.sections.begin()) return -1;
+    const auto k = static_cast<std::size_t>(after - of_zone.sections.begin()) - 1;
+    const std::int64_t place = number - metadata_.sections[of_zone.sections[k]].first;
+    return place < metadata_.sections[of_zone.sections[k]].count
+               ? of_zone.first_cells[k] + static_cast<Index>(place)
+               : -1;
+  }
+
+  [[nodiscard]] Index position_of(const ZonePlaces& of_zone, Association association, std::int64_t number,
+                                  const std::string& path) const {
+    if (association == Association::vertices) {
+      if (number < 1 || number > of_zone.vertices) {
+        reading_.fail(path, fmt::format("vertex {} does not exist", number),
+                      fmt::format("the vertices are 1 to {}", of_zone.vertices));
+      }
+      return of_zone.first_vertex + static_cast<Index>(number) - 1;
+    }
+    const Index cell = cell_of(of_zone, number);
+    if (cell < 0) {
+      reading_.fail(path, fmt::format("element {} does not exist", number),
+                    "the numbers are those of the sections of the zone");
+    }
+    return cell;
+  }
+
+  /// Reads numbers of vertices or elements, or the first and the last of them, and returns the list's place.
+  int read_list(Node& node, int of_zone, Association association, const std::string& path) {
+    const ZonePlaces& owner = reading_.zones[of_zone];
+    PointList list{.zone = of_zone, .association = association};
+    list.is_range = node.label == "IndexRange_t";
+    list.number_type = node.type;
+    const std::vector<std::int64_t> numbers = whole_numbers(reading_, node, path);
+    if (list.is_range) {
+      if (numbers.size() != 2 || numbers[0] > numbers[1]) {
+        reading_.fail(path, "is not a range of two numbers", "a zone without structure has one index");
+      }
+      (void)position_of(owner, association, numbers[0], path);
+      (void)position_of(owner, association, numbers[1], path);
+      const std::size_t total = association == Association::vertices ? reading_.mesh.points.size()
+                                                                     : reading_.mesh.cells.shapes.size();
+      if (static_cast<std::uint64_t>(numbers[1] - numbers[0]) >= total) {
+        reading_.fail(path, "has more numbers than there are elements", "the file may be damaged");
+      }
+      for (std::int64_t number = numbers[0]; number <= numbers[1]; ++number) {
+        list.members.push_back(position_of(owner, association, number, path));
+      }
+    } else {
+      list.members.reserve(numbers.size());
+      for (const std::int64_t number : numbers) {
+        list.members.push_back(position_of(owner, association, number, path));
+      }
+    }
+    const auto place = static_cast<int>(metadata_.lists.size());
+    metadata_.lists.push_back(std::move(list));
+    reading_.bind(node, {.role = Field::Role::list, .place = place, .association = association});
+    return place;
+  }
+
+  // ---- nodes by their labels
+
+  void read_node(Node& node, const std::string& path) {
+    if (node.label == "ZoneBC_t") {
+      for (Node& child : node.children) {
+        if (child.label == "BC_t") read_condition(child, path + "/" + child.name);
+      }
+    } else if (node.label == "ZoneGridConnectivity_t") {
+      for (Node& child : node.children) read_connection(child, path + "/" + child.name);
+    } else if (node.label == "Elements_t") {
+      read_parents(node, path);
+    } else if (is_one_of(node.label, kContainers)) {
+      read_container(node, path);
+    } else if (node.label == "UserDefinedData_t") {
+      read_user_data(node, path);
+    }
+  }
+
+  /// Reads the list that a node has, −1 for none; `children` of these names list vertices or elements.
+  int read_own_list(Node& node, Association association, const std::string& path) {
+    int place = -1;
+    for (Node& child : node.children) {
+      const bool of_elements = child.name == "ElementList" || child.name == "ElementRange";
+      if (!of_elements && child.name != "PointList" && child.name != "PointRange") continue;
+      if (place >= 0) reading_.fail(path, "has two lists of points", "the file may be damaged");
+      place =
+          read_list(child, zone_, of_elements ? Association::cells : association, path + "/" + child.name);
+    }
+    return place;
+  }
+
+  void refuse_ghosts(const Node& node, const std::string& path) const {
+    const Node* const rind = node.child_of_label("Rind_t");
+    if (rind == nullptr) return;
+    const std::vector<std::int64_t> planes = whole_numbers(reading_, *rind, path + "/" + rind->name);
+    if (std::any_of(planes.begin(), planes.end(), [](std::int64_t n) { return n != 0; })) {
+      reading_.fail(path, "has ghost points (Rind_t)", "save the mesh without them");
+    }
+  }
+
+  /// Returns the vertices or the cells of a zone that have values where no list names them.
+  std::shared_ptr<const std::vector<Index>> all_rows(Association association) {
+    auto& known = rows_[{zone_, association}];
+    if (known == nullptr) {
+      if (association == Association::cells) {
+        known = std::make_shared<std::vector<Index>>(zone().centred_cells);
+      } else {
+        std::vector<Index> rows(static_cast<std::size_t>(zone().vertices));
+        std::iota(rows.begin(), rows.end(), zone().first_vertex);
+        known = std::make_shared<std::vector<Index>>(std::move(rows));
+      }
+    }
+    return known;
+  }
+
+  void read_container(Node& node, const std::string& path) {
+    refuse_ghosts(node, path);
+    const Association association = location_of(node, Association::vertices);
+    const int list = read_own_list(node, association, path);
+    if (node.label == "ZoneSubRegion_t") {
+      if (list < 0) return;  // it is that of a boundary condition or a connectivity
+      sets_.push_back({list, node.name});
+    }
+    std::shared_ptr<const std::vector<Index>> rows;
+    if (list >= 0) {
+      rows = std::make_shared<std::vector<Index>>(metadata_.lists[list].members);
+    } else {
+      rows = all_rows(association);
+    }
+    const Association of_rows = list >= 0 ? metadata_.lists[list].association : association;
+    for (Node& child : node.children) {
+      if (child.label == "DataArray_t" && child.field < 0) {
+        read_values(child, node.name, of_rows, rows, list, path + "/" + child.name);
+      }
+    }
+  }
+
+  void read_values(Node& node, const std::string& solution, Association association,
+                   const std::shared_ptr<const std::vector<Index>>& rows, int list, const std::string& path) {
+    Values values = numbers_of(node);
+    if (std::holds_alternative<std::vector<std::string>>(values)) return;
+    if (node.size() != rows->size()) {
+      reading_.fail(path,
+                    fmt::format("has {} values for {} {}", node.size(), rows->size(), to_string(association)),
+                    "the file may be damaged");
+    }
+    const int field = reading_.bind(node, {.role = Field::Role::values,
+                                           .place = zone_,
+                                           .type = node.type,
+                                           .association = association,
+                                           .list = list});
+    const auto step = zone().steps.find(solution);
+    const std::string name =
+        step == zone().steps.end() ? node.name : fmt::format("{} step {}", node.name, step->second);
+    reading_.pieces.push_back({solution, name, zone_, association, rows, std::move(values), field});
+  }
+
+  /// Reads data of users whose meaning is not known: they move where they say where they belong.
+  void read_user_data(Node& node, const std::string& path) {
+    if (node.child_of_label("GridLocation_t") != nullptr) return read_container(node, path);
+    const int list = read_own_list(node, Association::vertices, path);
+    for (const Node& child : node.children) {
+      if (list < 0 && child.label == "DataArray_t" && child.size() > 3 &&
+          (child.size() == static_cast<std::uint64_t>(zone().vertices) ||
+           child.size() == zone().centred_cells.size())) {
+        reading_.notes.push_back(fmt::format(
+            "'{}' is kept as it is, though it has as many values as there are vertices or cells", path));
+      }
+    }
+  }
+
+  // ---- boundary conditions
+
+  void read_condition(Node& node, const std::string& path) {
+    const Association association = location_of(node, Association::vertices);
+    const int list = read_own_list(node, association, path);
+    if (list < 0) reading_.fail(path, "does not say where it applies", "PointList or PointRange is expected");
+    sets_.push_back({list, node.name});
+    for (Node& child : node.children) {
+      if (child.label == "BCDataSet_t") {
+        (void)read_own_list(child, location_of(child, metadata_.lists[list].association),
+                            path + "/" + child.name);
+      }
+    }
+  }
+
+  // ---- connectivities of zones
+
+  void read_connection(Node& node, const std::string& path) {
+    if (node.label == "GridConnectivity1to1_t") {
+      reading_.fail(path, "connects zones by ranges of points, which an order would break",
+                    "save it as GridConnectivity_t with PointList and PointListDonor");
+    }
+    if (node.label == "OversetHoles_t") {
+      const Association association = location_of(node, Association::vertices);
+      for (Node& child : node.children) {
+        if (child.label == "IndexRange_t" || child.label == "IndexArray_t") {
+          (void)read_list(child, zone_, association, path + "/" + child.name);
+        }
+      }
+    }
+    if (node.label != "GridConnectivity_t") return;
+    const Association association = location_of(node, Association::vertices);
+    (void)read_own_list(node, association, path);
+    for (Node& child : node.children) {
+      if (child.name != "PointListDonor" && child.name != "CellListDonor") continue;
+      const Association of_donor = child.name == "CellListDonor" ? Association::cells : association;
+      (void)read_list(child, donor(node, path), of_donor, path + "/" + child.name);
+    }
+  }
+
+  [[nodiscard]] int donor(const Node& node, const std::string& path) const {
+    std::string name = node.text();
+    if (const std::size_t slash = name.rfind('/'); slash != std::string::npos) name.erase(0, slash + 1);
+    for (std::size_t z = 0; z < metadata_.zones.size(); ++z) {
+      if (metadata_.zones[z].name == name) return static_cast<int>(z);
+    }
+    reading_.fail(path, "names the zone '" + node.text() + "', which does not exist",
+                  "the donor is a zone of this file");
+  }
+
+  // ---- parents of faces
+
+  void read_parents(Node& node, const std::string& path) {
+    if (const Node* const label = node.child(kSectionLabel)) read_label(node, *label);
+    if (Node* const values = node.child(kSectionValues)) read_section_values(node, *values, path);
+    for (Node& child : node.children) {
+      if (child.name != "ParentElements" && child.name != "ParentElementsPosition" &&
+          child.name != "ParentData")
+        continue;
+      const ZonePlaces& owner = zone();
+      const auto section = std::find_if(owner.sections.begin(), owner.sections.end(),
+                                        [&](int s) { return metadata_.sections[s].name == node.name; });
+      if (section == owner.sections.end()) return;
+      const Index first = owner.first_cells[static_cast<std::size_t>(section - owner.sections.begin())];
+      read_parents_of(child, *section, first, path + "/" + child.name);
+    }
+  }
+
+  /// Reads values of the cells of a section, as `kSectionValues` describes.
+  void read_section_values(const Node& node, Node& values, const std::string& path) {
+    const ZonePlaces& owner = zone();
+    for (std::size_t k = 0; k < owner.sections.size(); ++k) {
+      const int s = owner.sections[k];
+      if (metadata_.sections[s].name != node.name || values.label != "UserDefinedData_t") continue;
+      std::vector<Index> rows(static_cast<std::size_t>(metadata_.sections[s].count));
+      std::iota(rows.begin(), rows.end(), owner.first_cells[k]);
+      const auto shared = std::make_shared<const std::vector<Index>>(std::move(rows));
+      for (Node& child : values.children) {
+        if (child.label != "DataArray_t") continue;
+        const std::size_t before = metadata_.fields.size();
+        read_values(child, node.name, Association::cells, shared, -1, path + "/" + child.name);
+        if (metadata_.fields.size() > before) metadata_.fields.back().section = s;
+      }
+    }
+  }
+
+  void read_parents_of(Node& node, int section, Index first, const std::string& path) {
+    const std::vector<std::int64_t> values = whole_numbers(reading_, node, path);
+    const auto count = static_cast<std::size_t>(metadata_.sections[section].count);
+    Parents parents{.section = section, .columns = node.name == "ParentData" ? 4U : 2U};
+    if (values.size() != parents.columns * count) {
+      reading_.fail(path, fmt::format("has {} values for {} elements", values.size(), count),
+                    "the file may be damaged");
+    }
+    parents.number_type = node.type;
+    parents.rows.resize(count);
+    std::iota(parents.rows.begin(), parents.rows.end(), first);
+    std::size_t column = 0;
+    if (node.name != "ParentElementsPosition") {
+      for (; column < 2; ++column) {
+        for (std::size_t e = 0; e < count; ++e) {
+          const std::int64_t number = values[column * count + e];
+          parents.cells.push_back(number == 0 ? Index{-1}
+                                              : position_of(zone(), Association::cells, number, path));
+        }
+      }
+    }
+    parents.rest.assign(values.begin() + static_cast<std::ptrdiff_t>(column * count), values.end());
+    const auto place = static_cast<int>(metadata_.parents.size());
+    metadata_.parents.push_back(std::move(parents));
+    reading_.bind(node, {.role = Field::Role::parents, .place = place});
+  }
+
+  // ---- labels of sections
+
+  void read_label(const Node& node, const Node& label) {
+    const Node* const value = label.child("Value");
+    if (label.label != "UserDefinedData_t" || value == nullptr) return;
+    const std::vector<std::int64_t> numbers = whole_numbers(reading_, *value, zone().path + "/" + node.name);
+    if (numbers.size() != 1) return;
+    for (std::size_t k = 0; k < zone().sections.size(); ++k) {
+      const Section& section = metadata_.sections[zone().sections[k]];
+      if (section.name != node.name) continue;
+      labels_.resize(reading_.mesh.cells.shapes.size(), 0);
+      const auto first = labels_.begin() + zone().first_cells[k];
+      std::fill(first, first + section.count, numbers.front());
+    }
+  }
+
+  // ---- times
+
+  void read_steps() {
+    const Node* const data = zone().node->child_of_label("ZoneIterativeData_t");
+    if (data == nullptr) return;
+    for (const Node& pointers : data->children) {
+      if (!pointers.name.ends_with("Pointers")) continue;
+      const std::vector<std::string> names = rows_of_text(pointers);
+      if (std::set<std::string>(names.begin(), names.end()).size() < 2) continue;
+      for (std::size_t step = 0; step < names.size(); ++step) {
+        if (names[step] != "GridCoordinates") zone().steps.emplace(names[step], static_cast<int>(step) + 1);
+      }
+    }
+  }
+
+  // ---- sets
+
+  void name_sets() {
+    std::map<std::string, int> uses;
+    for (const FoundSet& found : sets_) ++uses[found.name];
+    std::set<std::string> names;
+    for (const FoundSet& found : sets_) {
+      PointList& list = metadata_.lists[found.list];
+      const bool is_alone = uses[found.name] == 1;
+      add_set(list, is_alone ? found.name : fmt::format("{}.{}", metadata_.zones[list.zone].name, found.name),
+              names);
+    }
+  }
+
+  void add_set(PointList& list, const std::string& wanted, std::set<std::string>& names) {
+    std::string name = wanted;
+    for (int k = 2; !names.insert(name).second; ++k) name = fmt::format("{} {}", wanted, k);
+    EntitySet set{name, list.association, {}};
+    std::vector<bool> taken(list.association == Association::vertices ? reading_.mesh.points.size()
+                                                                      : reading_.mesh.cells.shapes.size());
+    for (const Index member : list.members) {
+      if (taken[member]) continue;
+      taken[member] = true;
+      set.members.push_back(member);
+    }
+    list.set = name;
+    reading_.mesh.sets.push_back(std::move(set));
+  }
+
+  /// Makes sets of the sections of boundaries that no set has all cells of: some programs name boundaries so.
+  void add_section_sets() {
+    std::vector<bool> is_named(reading_.mesh.cells.shapes.size());
+    std::set<std::string> names;
+    for (const EntitySet& set : reading_.mesh.sets) {
+      names.insert(set.name);
+      if (set.association == Association::vertices) continue;
+      for (const Index member : set.members) is_named[member] = true;
+    }
+    for (const ZonePlaces& owner : reading_.zones) {
+      for (std::size_t k = 0; k < owner.sections.size(); ++k) {
+        const Section& section = metadata_.sections[owner.sections[k]];
+        const Index first = owner.first_cells[k];
+        if (is_named[first] || dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension)
+          continue;
+        PointList list{.zone = section.zone, .association = Association::cells};
+        list.members.resize(static_cast<std::size_t>(section.count));
+        std::iota(list.members.begin(), list.members.end(), first);
+        add_set(list, section.name, names);
+        metadata_.lists.push_back(std::move(list));
+      }
+    }
+    if (labels_.empty()) return;
+    metadata_.has_labels = true;
+    reading_.mesh.data.push_back({.name = std::string(kLabel),
+                                  .association = Association::cells,
+                                  .values = label_values(std::move(labels_))});
+  }
+
+  // ---- what other formats lose
+
+  void count_lost() {
+    std::map<std::string, int> labels;
+    const auto count_conditions = [&](const Node& conditions) {
+      for (const Node& condition : conditions.children) {
+        if (condition.label != "BC_t") continue;
+        if (condition.text() != "FamilySpecified" && condition.text() != "UserDefined")
+          ++labels["types of boundary conditions"];
+        if (condition.child_of_label("BCDataSet_t") != nullptr) ++labels["BCDataSet_t"];
+      }
+    };
+    for (const Node& base : reading_.tree.root.children) {
+      if (base.label != "CGNSBase_t") continue;
+      for (const Node& node : base.children) {
+        const bool is_name_only = node.label == "Family_t" && node.children.empty();
+        if (node.label != "Zone_t" && !is_name_only) ++labels[node.label];
+        if (node.label != "Zone_t") continue;
+        for (const Node& part : node.children) {
+          if (part.label == "ZoneBC_t") count_conditions(part);
+          if (!is_one_of(part.label, kHeldByOthers)) ++labels[part.label];
+        }
+      }
+    }
+    for (const auto& [label, count] : labels) {
+      metadata_.lost.push_back(count == 1 ? label : fmt::format("{} ({})", label, count));
+    }
+  }
+
+  Reading& reading_;
+  Metadata& metadata_;
+  int zone_ = 0;
+  std::map<std::pair<int, Association>, std::shared_ptr<const std::vector<Index>>> rows_;
+  std::vector<FoundSet> sets_;
+  std::vector<std::int64_t> labels_;
+};
+
+// ---- arrays
+
+/// Pieces that become one array.
+using Group = std::vector<Piece*>;
+
+/// Returns whether the pieces have values of one type, for different vertices or cells.
+bool fit_together(const Group& group, std::size_t total) {
+  std::vector<bool> taken(total);
+  for (const Piece* const piece : group) {
+    if (piece->values.index() != group.front()->values.index()) return false;
+    for (const Index row : *piece->rows) {
+      if (taken[row]) return false;
+      taken[row] = true;
+    }
+  }
+  return true;
+}
+
+class ArrayMaker {
+ public:
+  explicit ArrayMaker(Reading& reading) : reading_(reading) {
+    for (const DataArray& array : reading_.mesh.data) names_.insert({array.association, array.name});
+  }
+
+  void make() {
+    std::map<std::pair<Association, std::string>, std::size_t> places;
+    std::vector<Group> groups;
+    for (Piece& piece : reading_.pieces) {
+      const auto [place, is_new] = places.emplace(std::pair{piece.association, piece.name}, groups.size());
+      if (is_new) groups.emplace_back();
+      groups[place->second].push_back(&piece);
+    }
+    for (const Group& group : groups) make_of(group, 0);
+  }
+
+ private:
+  [[nodiscard]] std::size_t total(Association association) const {
+    return association == Association::vertices ? reading_.mesh.points.size()
+                                                : reading_.mesh.cells.shapes.size();
+  }
+
+  /// Makes one array, or one for each solution (level 0) and each zone of it (level 1) where they overlap.
+  void make_of(const Group& group, int level) {
+    const Piece& first = *group.front();
+    if (group.size() == 1 || fit_together(group, total(first.association))) {
+      const std::string before = level == 0 ? ""
+                                 : level == 1
+                                     ? first.solution + "."
+                                     : reading_.metadata->zones[first.zone].name + "." + first.solution + ".";
+      return add(group, before + first.name);
+    }
+    std::map<std::string, Group> parts;
+    std::vector<std::string> order;
+    for (Piece* const piece : group) {
+      const std::string key = level == 0 ? piece->solution : std::to_string(piece->field);
+      if (!parts.contains(key)) order.push_back(key);
+      parts[key].push_back(piece);
+    }
+    for (const std::string& key : order) make_of(parts[key], level + 1);
+  }
+
+  void add(const Group& group, const std::string& wanted) {
+    const Association association = group.front()->association;
+    std::string name = wanted;
+    for (int k = 2; !names_.insert({association, name}).second; ++k) name = fmt::format("{} {}", wanted, k);
+    for (const Piece* const piece : group) reading_.metadata->fields[piece->field].array = name;
+    DataArray array{.name = name, .association = association};
+    for (const Piece* const piece : group) {
+      array.indices.insert(array.indices.end(), piece->rows->begin(), piece->rows->end());
+    }
+    const bool has_duplicates = group.size() == 1 && !fit_together(group, total(association));
+    if (has_duplicates) {
+      reading_.fail("", "the solution '" + group.front()->solution + "' lists a vertex or cell twice",
+                    "each may have one value");
+    }
+    array.values = std::move(group.front()->values);
+    for (std::size_t p = 1; p < group.size(); ++p) {
+      std::visit(
+          [&](auto& all) {
+            auto& more = std::get<std::decay_t<decltype(all)>>(group[p]->values);
+            all.insert(all.end(), more.begin(), more.end());
+            more = {};
+          },
+          array.values);
+    }
+    make_dense(array);
+    reading_.mesh.data.push_back(std::move(array));
+  }
+
+  /// Puts the values of an array that has one for each vertex or cell in the order of these.
+  void make_dense(DataArray& array) const {
+    if (array.indices.size() != total(array.association)) return;
+    if (!std::is_sorted(array.indices.begin(), array.indices.end())) {
+      std::visit(
+          [&](auto& values) {
+            auto sorted = values;
+            for (std::size_t i = 0; i < values.size(); ++i) sorted[array.indices[i]] = values[i];
+            values = std::move(sorted);
+          },
+          array.values);
+    }
+    array.indices.clear();
+  }
+
+  Reading& reading_;
+  std::set<std::pair<Association, std::string>> names_;
+};
+
+}  // namespace
+
+void read_attachments(Reading& reading) { AttachmentReader(reading).read(); }
+
+void add_arrays(Reading& reading) { ArrayMaker(reading).make(); }
+
+}  // namespace meshorder::cgns

@@ -1,0 +1,137 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/cgns/tree.hpp"
+#include "io/hdf5/hdf5_file.hpp"
+#include "io/hdf5/session.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <set>
+#include <utility>
+
+// Checks a file of HDF5 before libcgns reads it, which trusts the lengths of names and the sizes of data.
+
+namespace meshorder::cgns {
+namespace {
+
+using hdf5::Handle;
+
+constexpr int kMostLevels = 64;
+constexpr std::size_t kMostLetters = 32;
+constexpr std::string_view kDataSet = " data";
+
+/// An attribute of every node and the most bytes that libcgns has room for.
+struct NodeAttribute {
+  const char* name;
+  std::size_t most;
+};
+constexpr std::array kNodeAttributes{NodeAttribute{"name", 33}, NodeAttribute{"label", 33},
+                                     NodeAttribute{"type", 3}};
+
+class Hdf5Check {
+ public:
+  Hdf5Check(const std::filesystem::path& path, std::string name)
+      : name_(std::move(name)), file_(hdf5::File::open(path, name_)) {}
+
+  void run() {
+    const Handle root(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
+    if (!root.is_open()) fail("has no root");
+    check_group(root.id(), "", 0);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what,
+                         const std::string& remedy = "the file may be damaged") const {
+    throw InputError(name_, what, remedy);
+  }
+
+  void check_attribute(hid_t group, const std::string& path, const NodeAttribute& wanted) const {
+    const std::string what = fmt::format("{}: the attribute '{}'", path.empty() ? "/" : path, wanted.name);
+    const Handle attribute(H5Aopen(group, wanted.name, H5P_DEFAULT), H5Aclose);
+    if (!attribute.is_open()) {
+      fail(what + " is not there", "it may be a file of HDF5 that is not one of CGNS");
+    }
+    const Handle type(H5Aget_type(attribute.id()), H5Tclose);
+    const Handle space(H5Aget_space(attribute.id()), H5Sclose);
+    const bool fits = H5Tget_class(type.id()) == H5T_STRING && H5Tis_variable_str(type.id()) == 0 &&
+                      H5Tget_size(type.id()) <= wanted.most && H5Sget_simple_extent_npoints(space.id()) == 1;
+    if (!fits) fail(fmt::format("{} is not a text of at most {} bytes", what, wanted.most));
+    std::array<char, 34> text{};
+    if (H5Aread(attribute.id(), type.id(), text.data()) < 0) fail(what + " cannot be read");
+    if (std::string_view(text.data(), text.size()).find('\0') >= wanted.most) fail(what + " has no end");
+  }
+
+  void check_group(hid_t group, const std::string& path, int level) {
+    if (level > kMostLevels) fail(path + ": nodes lie too deep");
+    H5O_info_t info;
+    if (H5Oget_info(group, &info) < 0 || !seen_.insert(info.addr).second) {
+      fail(path + " has two places in the file");
+    }
+    for (const NodeAttribute& attribute : kNodeAttributes) check_attribute(group, path, attribute);
+    for (const std::string& name : names_in(group)) check_link(group, path, name, level);
+  }
+
+  [[nodiscard]] std::vector<std::string> names_in(hid_t group) const {
+    std::vector<std::string> names;
+    const auto visit = [](hid_t /*group*/, const char* name, const H5L_info_t* /*info*/,
+                          void* data) -> herr_t {
+      static_cast<std::vector<std::string>*>(data)->emplace_back(name);
+      return 0;
+    };
+    if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &names) < 0) {
+      fail(fmt::format("a group cannot be read ({})", hdf5::last_cause()));
+    }
+    return names;
+  }
+
+  void check_link(hid_t group, const std::string& parent, const std::string& name, int level) {
+    const std::string path = parent + "/" + name;
+    H5L_info_t link;
+    if (H5Lget_info(group, name.c_str(), &link, H5P_DEFAULT) < 0) fail(path + " cannot be read");
+    if (link.type != H5L_TYPE_HARD) {
+      fail(parent + " is a link to another node", "copy all into one file with cgnsconvert -l -f IN OUT");
+    }
+    // H5Oget_info_by_name leaves an id open where the object is damaged
+    const Handle object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
+    if (!object.is_open()) fail(path + " cannot be read");
+    const H5I_type_t kind = H5Iget_type(object.id());
+    if (kind == H5I_GROUP) {
+      if (name.size() > kMostLetters) fail(path + " has a name of more than 32 characters");
+      check_group(object.id(), path, level + 1);
+    } else if (kind == H5I_DATASET && level > 0) {
+      // links of libcgns name their targets in datasets of characters
+      const hdf5::DatasetInfo data = file_.info(path);
+      if (data.shape.size() > 12) fail(path + " has more than 12 dimensions");
+      if (name == kDataSet) check_type(group, parent, data.alternative);
+    } else if (kind != H5I_DATASET) {
+      fail(path + " is neither a group nor a dataset");
+    }
+  }
+
+  /// Throws unless the type that a node names has the size of the values that it has.
+  void check_type(hid_t group, const std::string& path, std::size_t alternative) const {
+    // in the order of Values
+    constexpr std::array<std::size_t, 10> kSizes{8, 4, 1, 1, 2, 2, 4, 4, 8, 8};
+    const Handle attribute(H5Aopen(group, "type", H5P_DEFAULT), H5Aclose);
+    const Handle type(H5Aget_type(attribute.id()), H5Tclose);
+    std::array<char, 34> text{};
+    H5Aread(attribute.id(), type.id(), text.data());
+    if (size_of_type(text.data()) != kSizes.at(alternative)) {
+      fail(fmt::format("{} says that its values are of the type '{}', and has others", path, text.data()));
+    }
+  }
+
+  std::string name_;
+  hdf5::File file_;
+  std::set<haddr_t> seen_;
+};
+
+}  // namespace
+
+void check_hdf5(const std::filesystem::path& path, const std::string& name) {
+  const hdf5::Session session;
+  Hdf5Check(path, name).run();
+}
+
+}  // namespace meshorder::cgns

@@ -1,0 +1,385 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/index.hpp"
+#include "io/cgns/reading.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <type_traits>
+#include <utility>
+
+// Reads zones: points and sections of elements.
+
+namespace meshorder::cgns {
+
+void Reading::fail(const std::string& place, const std::string& what, const std::string& remedy) const {
+  throw InputError(file, place.empty() ? what : place + ": " + what, remedy);
+}
+
+int Reading::bind(Node& node, Field field) {
+  node.field = static_cast<int>(metadata->fields.size());
+  node.bytes = std::string();
+  metadata->fields.push_back(std::move(field));
+  return node.field;
+}
+
+Values numbers_of(const Node& node) {
+  const auto copied = [&](auto zero) -> Values {
+    std::vector<decltype(zero)> numbers(node.bytes.size() / sizeof(zero));
+    if (!numbers.empty()) std::memcpy(numbers.data(), node.bytes.data(), numbers.size() * sizeof(zero));
+    return numbers;
+  };
+  if (node.type == "R8") return copied(double{});
+  if (node.type == "R4") return copied(float{});
+  if (node.type == "I8") return copied(std::int64_t{});
+  if (node.type == "U4") return copied(std::uint32_t{});
+  if (node.type == "U8") return copied(std::uint64_t{});
+  if (node.type == "I4") return copied(std::int32_t{});
+  return std::vector<std::string>();
+}
+
+std::vector<std::int64_t> whole_numbers(const Reading& reading, const Node& node, const std::string& path) {
+  return std::visit(
+      [&](const auto& numbers) -> std::vector<std::int64_t> {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_integral_v<Number>) {
+          return {numbers.begin(), numbers.end()};
+        } else {
+          reading.fail(path, fmt::format("has values of the type '{}'", node.type),
+                       "whole numbers, I4 or I8, are expected");
+        }
+      },
+      numbers_of(node));
+}
+
+namespace {
+
+constexpr std::int64_t kMostDimensions = 3;
+
+/// A section before its cells are in the mesh.
+struct FoundSection {
+  Node* node;
+  std::string path;
+  Section section;
+  std::int64_t last = 0;
+};
+
+class MeshReader {
+ public:
+  explicit MeshReader(Reading& reading) : reading_(reading) {}
+
+  void read() {
+    Node& base = the_base();
+    for (Node& node : base.children) {
+      if (node.label == "Zone_t") read_zone(node, "/" + base.name + "/" + node.name);
+    }
+    if (reading_.zones.empty()) {
+      reading_.fail("/" + base.name, "has no zones", "a mesh is a zone with sections of elements");
+    }
+    for (std::size_t z = 0; z < reading_.zones.size(); ++z) read_points(static_cast<int>(z));
+    for (std::size_t z = 0; z < reading_.zones.size(); ++z) read_sections(static_cast<int>(z));
+    Mesh& mesh = reading_.mesh;
+    if (mesh.cell_blocks.size() < 2) mesh.cell_blocks.clear();
+    mesh.dimension = physical_dimension_ < 3 ? 2 : 3;
+    if (reading_.zones.size() < 2) return;
+    std::vector<std::int32_t> zones;
+    zones.reserve(mesh.cells.shapes.size());
+    for (const Index s : reading_.metadata->section_of_cell)
+      zones.push_back(reading_.metadata->sections[s].zone + 1);
+    mesh.data.push_back(
+        {.name = std::string(kZone), .association = Association::cells, .values = std::move(zones)});
+  }
+
+ private:
+  Node& the_base() {
+    Node& root = reading_.tree.root;
+    Node* base = nullptr;
+    for (Node& node : root.children) {
+      if (node.label != "CGNSBase_t") continue;
+      if (base != nullptr) {
+        reading_.fail("", fmt::format("has two bases, '{}' and '{}'", base->name, node.name),
+                      "give each a file of its own");
+      }
+      base = &node;
+    }
+    if (base == nullptr) reading_.fail("", "has no base", "it may be a file that is not one of CGNS");
+    const std::vector<std::int64_t> dimensions = whole_numbers(reading_, *base, "/" + base->name);
+    if (dimensions.size() < 2 || dimensions[0] < 1 || dimensions[1] < dimensions[0] ||
+        dimensions[1] > kMostDimensions) {
+      reading_.fail("/" + base->name, "does not give the dimensions of its cells and points",
+                    "two numbers from 1 to 3 are expected");
+    }
+    reading_.metadata->cell_dimension = static_cast<int>(dimensions[0]);
+    physical_dimension_ = static_cast<int>(dimensions[1]);
+    return *base;
+  }
+
+  void read_zone(Node& node, const std::string& path) {
+    const Node* const type = node.child_of_label("ZoneType_t");
+    if (type == nullptr || type->text() == "Structured") {
+      reading_.fail(path, "is a structured zone, whose order is its grid's",
+                    "convert it to an unstructured zone to reorder it");
+    }
+    const std::vector<std::int64_t> size = whole_numbers(reading_, node, path);
+    const bool fits = size.size() == 3 && size[0] >= 0 && size[1] >= 0 && size[0] <= kMaxIndex;
+    if (!fits) {
+      reading_.fail(path, "does not give the numbers of its vertices and cells",
+                    "three numbers are expected, below 2,147,483,648");
+    }
+    if (size[2] > 0) {
+      reading_.notes.push_back(
+          fmt::format("the zone '{}' has its {} boundary vertices first; that they come first is left out",
+                      node.name, size[2]));
+    }
+    const auto z = static_cast<int>(reading_.zones.size());
+    reading_.metadata->zones.push_back({node.name, node.type, size[1]});
+    reading_.bind(node, {.role = Field::Role::zone_size, .place = z});
+    ZonePlaces zone{.node = &node, .path = path};
+    zone.vertices = static_cast<Index>(size[0]);
+    reading_.zones.push_back(std::move(zone));
+  }
+
+  // ---- points
+
+  void read_points(int z) {
+    ZonePlaces& zone = reading_.zones[z];
+    Mesh& mesh = reading_.mesh;
+    zone.first_vertex = mesh.vertex_count();
+    Node* grid = zone.node->child("GridCoordinates");
+    if (grid == nullptr) grid = zone.node->child_of_label("GridCoordinates_t");
+    if (grid == nullptr || grid->label != "GridCoordinates_t") {
+      reading_.fail(zone.path, "has no coordinates", "a node GridCoordinates is expected");
+    }
+    const std::string path = zone.path + "/" + grid->name;
+    std::array<Values, 3> axes;
+    for (int k = 0; k < physical_dimension_; ++k) {
+      const std::string name = std::string("Coordinate") + "XYZ"[k];
+      const std::string axis_path = fmt::format("{}/{}", path, name);
+      Node* const axis = grid->child(name);
+      if (axis == nullptr) {
+        reading_.fail(path, "has no " + name, "save the file with Cartesian coordinates");
+      }
+      if (axis->type != "R4" && axis->type != "R8") {
+        reading_.fail(axis_path, "is of the type '" + axis->type + "'", "R4 or R8 is expected");
+      }
+      if (axis->size() != static_cast<std::uint64_t>(zone.vertices)) {
+        reading_.fail(axis_path, fmt::format("has {} values for {} vertices", axis->size(), zone.vertices),
+                      "ghost vertices (Rind_t) are not understood");
+      }
+      axes.at(static_cast<std::size_t>(k)) = numbers_of(*axis);
+      reading_.bind(*axis, {.role = Field::Role::coordinate, .place = z, .axis = k, .type = axis->type});
+    }
+    if (std::int64_t{mesh.vertex_count()} + zone.vertices > kMaxIndex) {
+      reading_.fail("", "has more than 2,147,483,647 vertices", "split the mesh");
+    }
+    mesh.points.resize(mesh.points.size() + static_cast<std::size_t>(zone.vertices), Point{0, 0, 0});
+    for (std::size_t k = 0; k < static_cast<std::size_t>(physical_dimension_); ++k) {
+      std::visit(
+          [&](const auto& values) {
+            using Number = typename std::decay_t<decltype(values)>::value_type;
+            if constexpr (std::is_floating_point_v<Number>) {
+              for (Index v = 0; v < zone.vertices; ++v) {
+                mesh.points[zone.first_vertex + v][k] = double{values[v]};
+              }
+            }
+          },
+          axes.at(k));
+    }
+    auto& zones = reading_.metadata->zone_of_vertex;
+    if (reading_.zones.size() > 1) zones.resize(mesh.points.size(), z);
+  }
+
+  // ---- sections
+
+  FoundSection found_section(Node& node, int z, const std::string& path) {
+    const std::vector<std::int64_t> type = whole_numbers(reading_, node, path);
+    Node* const range = node.child("ElementRange");
+    const std::vector<std::int64_t> numbers = range == nullptr
+                                                  ? std::vector<std::int64_t>()
+                                                  : whole_numbers(reading_, *range, path + "/ElementRange");
+    if (type.empty() || numbers.size() != 2 || numbers[0] < 1 || numbers[1] < numbers[0] ||
+        numbers[1] - numbers[0] >= kMaxIndex) {
+      reading_.fail(path, "does not give its type and the range of its elements", "the file may be damaged");
+    }
+    FoundSection found{&node, path, {}, numbers[1]};
+    found.section.zone = z;
+    found.section.name = node.name;
+    found.section.type = static_cast<int>(std::clamp<std::int64_t>(type[0], -1, 1000));
+    found.section.first = numbers[0];
+    found.section.count = static_cast<Index>(numbers[1] - numbers[0] + 1);
+    found.section.range_type = range->type;
+    if (found.section.type == kPolygons || found.section.type == kPolyhedra) {
+      reading_.fail(path, "has polygons or polyhedra (NGON_n, NFACE_n), which have no place in a mesh here",
+                    "save it with tetrahedra, pyramids, prisms and hexahedra");
+    }
+    if (type.size() > 1 && type[1] != 0) {
+      reading_.notes.push_back(
+          fmt::format("the section '{}' has its {} boundary elements first; that they come first is left out",
+                      node.name, type[1]));
+      constexpr std::size_t kSecond = 1;
+      const std::size_t width = size_of_type(node.type);
+      std::fill_n(node.bytes.begin() + static_cast<std::ptrdiff_t>(kSecond * width), width, '\0');
+    }
+    return found;
+  }
+
+  void read_sections(int z) {
+    ZonePlaces& zone = reading_.zones[z];
+    std::vector<FoundSection> found;
+    for (Node& node : zone.node->children) {
+      if (node.label == "Elements_t") found.push_back(found_section(node, z, zone.path + "/" + node.name));
+    }
+    std::sort(found.begin(), found.end(),
+              [](const FoundSection& a, const FoundSection& b) { return a.section.first < b.section.first; });
+    for (std::size_t s = 0; s < found.size(); ++s) {
+      if (s > 0 && found[s].section.first <= found[s - 1].last) {
+        reading_.fail(found[s].path,
+                      fmt::format("its elements {} to {} have numbers of '{}'", found[s].section.first,
+                                  found[s].last, found[s - 1].section.name),
+                      "element numbers are unique in a zone");
+      }
+      read_section(zone, found[s]);
+    }
+  }
+
+  void read_section(ZonePlaces& zone, FoundSection& found) {
+    Mesh& mesh = reading_.mesh;
+    Metadata& metadata = *reading_.metadata;
+    const auto s = static_cast<int>(metadata.sections.size());
+    Node* const connectivity = found.node->child("ElementConnectivity");
+    if (connectivity == nullptr)
+      reading_.fail(found.path, "has no ElementConnectivity", "the file may be damaged");
+    if (std::int64_t{mesh.cell_count()} + found.section.count > kMaxIndex) {
+      reading_.fail("", "has more than 2,147,483,647 elements", "split the mesh");
+    }
+    const Index first = mesh.cell_count();
+    found.section.number_type = connectivity->type;
+    const std::string path = found.path + "/ElementConnectivity";
+    std::visit(
+        [&](const auto& numbers) {
+          using Number = typename std::decay_t<decltype(numbers)>::value_type;
+          if constexpr (std::is_integral_v<Number>) {
+            if (found.section.type == kMixedElements) {
+              add_mixed(zone, found, numbers, path);
+            } else {
+              add_alike(zone, found, numbers, path);
+            }
+          } else {
+            reading_.fail(path, "does not hold whole numbers", "I4 or I8 is expected");
+          }
+        },
+        numbers_of(*connectivity));
+    reading_.bind(*connectivity, {.role = Field::Role::connectivity, .place = s});
+    Node* const range = found.node->child("ElementRange");
+    reading_.bind(*range, {.role = Field::Role::range, .place = s});
+    if (Node* const offsets = found.node->child("ElementStartOffset")) {
+      if (found.section.type == kMixedElements) {
+        found.section.offset_type = offsets->type;
+        reading_.bind(*offsets, {.role = Field::Role::offsets, .place = s});
+      }
+    }
+    mesh.cell_blocks.push_back(first);
+    zone.sections.push_back(s);
+    zone.first_cells.push_back(first);
+    metadata.section_of_cell.resize(mesh.cells.shapes.size(), s);
+    for (Index c = first; c < mesh.cell_count(); ++c) {
+      if (dimension(mesh.cells.shapes[c]) == metadata.cell_dimension) zone.centred_cells.push_back(c);
+    }
+    metadata.sections.push_back(std::move(found.section));
+  }
+
+  /// Appends a cell from numbers in the order of the file.
+  template <class Number>
+  void add_cell(const ZonePlaces& zone, const ElementType& type, const Number* numbers, std::size_t entry,
+                const std::string& path) {
+    const std::span<const int> order = file_order(type.shape, type.nodes);
+    const auto nodes = static_cast<std::size_t>(type.nodes);
+    cell_.resize(nodes);
+    for (std::size_t k = 0; k < nodes; ++k) {
+      const Number number = numbers[order.empty() ? k : static_cast<std::size_t>(order[k])];
+      if (number < 1 || static_cast<std::uint64_t>(number) > static_cast<std::uint64_t>(zone.vertices)) {
+        reading_.fail(fmt::format("{}, element {}", path, entry + 1),
+                      fmt::format("vertex {} does not exist", number),
+                      fmt::format("the vertices are 1 to {}", zone.vertices));
+      }
+      cell_[k] = zone.first_vertex + static_cast<Index>(number) - 1;
+    }
+    reading_.mesh.cells.push_back(type.shape, cell_);
+  }
+
+  template <class Number>
+  void add_alike(const ZonePlaces& zone, const FoundSection& found, const std::vector<Number>& numbers,
+                 const std::string& path) {
+    const ElementType* const type = element_type(found.section.type);
+    if (type == nullptr) {
+      reading_.fail(found.path, fmt::format("has elements of the unknown type {}", found.section.type),
+                    "the types are those of ElementType_t");
+    }
+    const auto count = static_cast<std::size_t>(found.section.count);
+    const auto nodes = static_cast<std::size_t>(type->nodes);
+    if (numbers.size() != count * nodes) {
+      reading_.fail(path,
+                    fmt::format("has {} numbers for {} elements of {} nodes", numbers.size(), count, nodes),
+                    "the file may be damaged");
+    }
+    Cells& cells = reading_.mesh.cells;
+    cells.reserve(static_cast<Offset>(cells.shapes.size() + count),
+                  static_cast<Offset>(cells.vertices.size() + numbers.size()));
+    for (std::size_t e = 0; e < count; ++e) add_cell(zone, *type, numbers.data() + e * nodes, e, path);
+  }
+
+  template <class Number>
+  void add_mixed(const ZonePlaces& zone, const FoundSection& found, const std::vector<Number>& numbers,
+                 const std::string& path) {
+    const auto count = static_cast<std::size_t>(found.section.count);
+    std::size_t at = 0;
+    for (std::size_t e = 0; e < count; ++e) {
+      if (at >= numbers.size()) {
+        reading_.fail(path, fmt::format("has {} of {} elements", e, count), "the file may be damaged");
+      }
+      const ElementType* const type = element_type(static_cast<std::int64_t>(numbers[at]));
+      if (type == nullptr || element_type_of(type->shape, type->nodes) != type) {
+        reading_.fail(fmt::format("{}, element {}", path, e + 1),
+                      fmt::format("has the unknown type {}", numbers[at]),
+                      "polygons and polyhedra are not read; other types are those of ElementType_t");
+      }
+      if (numbers.size() - at - 1 < static_cast<std::size_t>(type->nodes)) {
+        reading_.fail(fmt::format("{}, element {}", path, e + 1), "has too few nodes",
+                      "the file may be damaged");
+      }
+      add_cell(zone, *type, numbers.data() + at + 1, e, path);
+      at += static_cast<std::size_t>(type->nodes) + 1;
+    }
+    if (at != numbers.size()) {
+      reading_.fail(path,
+                    fmt::format("has {} numbers more than its {} elements need", numbers.size() - at, count),
+                    "the file may be damaged");
+    }
+  }
+
+  Reading& reading_;
+  int physical_dimension_ = 3;
+  std::vector<Index> cell_;
+};
+
+}  // namespace
+
+Mesh read(const FilePath& path, Notes& notes) {
+  Reading reading(path, notes);
+  reading.tree = read_tree(path);
+  if (reading.tree.root.child_of_label("CGNSLibraryVersion_t") == nullptr) {
+    reading.fail("", "does not give the version of CGNS", "it may be a file that is not one of CGNS");
+  }
+  MeshReader(reading).read();
+  read_attachments(reading);
+  add_arrays(reading);
+  reading.metadata->tree = std::make_shared<const Tree>(std::move(reading.tree));
+  reading.mesh.format_metadata = reading.metadata;
+  return std::move(reading.mesh);
+}
+
+}  // namespace meshorder::cgns

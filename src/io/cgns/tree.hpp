@@ -1,0 +1,70 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// The nodes of a CGNS file, read and written by CGIO, the low-level interface of the CGNS library
+// (https://cgns.github.io/CGNS_docs_current/cgio/). It is the same for files of HDF5 and of ADF.
+
+#include "io/stream/file_path.hpp"
+#include <meshorder/io.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshorder::cgns {
+
+/// A node with its data and children.
+struct Node {
+  std::string name = {};
+  std::string label = {};
+  std::string type = "MT";                    ///< "MT" (none), "C1", "I4", "I8", "R4", "R8" …
+  std::vector<std::int64_t> dimensions = {};  ///< the first one runs fastest
+  std::string bytes = {};                     ///< values in the machine's byte order
+  std::vector<Node> children = {};
+  int field = -1;  ///< place in `Metadata::fields` of what the values are; −1: they are `bytes`
+
+  /// Returns the number of values.
+  [[nodiscard]] std::uint64_t size() const;
+  /// Returns the characters of a C1 node without the spaces at their end.
+  [[nodiscard]] std::string text() const;
+  /// Returns the first child of that label, null if there is none.
+  [[nodiscard]] const Node* child_of_label(std::string_view wanted) const;
+  [[nodiscard]] Node* child_of_label(std::string_view wanted);
+  /// Returns the child of that name, null if there is none.
+  [[nodiscard]] const Node* child(std::string_view wanted) const;
+  [[nodiscard]] Node* child(std::string_view wanted);
+};
+
+/// Makes a node that holds text.
+Node text_node(std::string name, std::string label, std::string_view text);
+/// Makes a node that holds 32-bit integers in one dimension.
+Node integer_node(std::string name, std::string label, const std::vector<std::int32_t>& values);
+
+/// Returns the bytes of one value of a type, 0 for an unknown type.
+std::size_t size_of_type(std::string_view type);
+
+/// In which kind of file the nodes are.
+enum class Storage : std::uint8_t { hdf5, adf };
+
+/// The nodes of a file: the root is without a name.
+struct Tree {
+  Node root;
+  Storage storage = Storage::hdf5;
+};
+
+/// Reads all nodes of a file. Throws InputError for a damaged file, for links to other files, and for values
+/// of a type that is not known.
+Tree read_tree(const FilePath& path);
+
+/// Writes a file, which appears complete or not at all. `fill(node, copy)` gives a copy of a node with a
+/// `field` its type, dimensions and bytes.
+void write_tree(const Tree& tree, const FilePath& path, const std::function<void(Node&)>& fill);
+
+/// Throws InputError unless libcgns can read a file of HDF5 safely: groups with the attributes of nodes, of
+/// the lengths that it expects, and data that are there. `path` is on disk, `name` stands in messages.
+void check_hdf5(const std::filesystem::path& path, const std::string& name);
+
+}  // namespace meshorder::cgns
