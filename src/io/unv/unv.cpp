@@ -131,8 +131,10 @@ class UnvWriter {
         plain_(own_ != nullptr ? Contents() : plain_contents(mesh)),
         file_(own_ != nullptr ? *own_->file : plain_),
         notes_(notes),
-        vertex_ids_(are_file_numbers(mesh.vertex_ids) ? mesh.vertex_ids : std::vector<std::int64_t>()),
-        cell_ids_(are_file_numbers(mesh.cell_ids) ? mesh.cell_ids : std::vector<std::int64_t>()),
+        vertex_ids_(are_file_numbers(mesh.vertex_ids, own_ != nullptr ? 0 : 1) ? mesh.vertex_ids
+                                                                               : std::vector<std::int64_t>()),
+        cell_ids_(are_file_numbers(mesh.cell_ids, own_ != nullptr ? 0 : 1) ? mesh.cell_ids
+                                                                           : std::vector<std::int64_t>()),
         nodes_(file_.nodes, own_ != nullptr ? own_->vertex_of : none_, vertex_ids_),
         elements_(file_.elements, own_ != nullptr ? own_->cell_of : none_, cell_ids_),
         labels_(labels_of(mesh, Association::cells)),
@@ -201,7 +203,7 @@ class UnvWriter {
     ElementFields fields;
     if (own_ != nullptr) {
       fields = file_.element_fields[file_element_.empty() ? c : file_element_[c]];
-      fields.beam[0] = nodes_.now(fields.beam[0]);
+      if (fields.beam[0] != 0) fields.beam[0] = nodes_.now(fields.beam[0]);  // 0 is none
     } else {
       fields.type = type_of({mesh_.cells.shapes[c], mesh_.cells.vertex_count(c)});
       fields.has_beam = is_beam(fields.type);
@@ -227,7 +229,7 @@ class UnvWriter {
       nodes = other.nodes;
       for (std::int64_t& node : nodes) node = nodes_.now(node);
       ElementFields fields = other.fields;
-      fields.beam[0] = nodes_.now(fields.beam[0]);
+      if (fields.beam[0] != 0) fields.beam[0] = nodes_.now(fields.beam[0]);  // 0 is none
       write_element(section, other.number, fields, nodes);
     }
     lines_.delimiter();
