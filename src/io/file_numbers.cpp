@@ -16,10 +16,10 @@ bool move_places(std::vector<Index>& places, std::span<const Index> moves) {
   return std::none_of(places.begin(), places.end(), [](Index place) { return place < 0; });
 }
 
-bool are_file_numbers(std::vector<std::int64_t> ids, std::int64_t smallest) {
+bool are_file_numbers(std::vector<std::int64_t> ids) {
   constexpr std::int64_t kLargest = 999'999'999;  // of Abaqus; more digits fill the fields of I-deas
   std::sort(ids.begin(), ids.end());
-  return !ids.empty() && ids.front() >= smallest && ids.back() <= kLargest &&
+  return !ids.empty() && ids.front() > 0 && ids.back() <= kLargest &&
          std::adjacent_find(ids.begin(), ids.end()) == ids.end();
 }
 

@@ -18,8 +18,8 @@ namespace meshorder {
 /// @return whether all items still have a place
 bool move_places(std::vector<Index>& places, std::span<const Index> moves);
 
-/// Returns whether ids can be the numbers of nodes or elements: `smallest` to 999999999, each given once.
-bool are_file_numbers(std::vector<std::int64_t> ids, std::int64_t smallest = 1);
+/// Returns whether ids can be the numbers of nodes or elements: 1 to 999999999, each given once.
+bool are_file_numbers(std::vector<std::int64_t> ids);
 
 /// The numbers that the nodes or elements of a file have in a mesh.
 class FileNumbers {

@@ -131,10 +131,8 @@ class UnvWriter {
         plain_(own_ != nullptr ? Contents() : plain_contents(mesh)),
         file_(own_ != nullptr ? *own_->file : plain_),
         notes_(notes),
-        vertex_ids_(are_file_numbers(mesh.vertex_ids, own_ != nullptr ? 0 : 1) ? mesh.vertex_ids
-                                                                               : std::vector<std::int64_t>()),
-        cell_ids_(are_file_numbers(mesh.cell_ids, own_ != nullptr ? 0 : 1) ? mesh.cell_ids
-                                                                           : std::vector<std::int64_t>()),
+        vertex_ids_(are_file_numbers(mesh.vertex_ids) ? mesh.vertex_ids : std::vector<std::int64_t>()),
+        cell_ids_(are_file_numbers(mesh.cell_ids) ? mesh.cell_ids : std::vector<std::int64_t>()),
         nodes_(file_.nodes, own_ != nullptr ? own_->vertex_of : none_, vertex_ids_),
         elements_(file_.elements, own_ != nullptr ? own_->cell_of : none_, cell_ids_),
         labels_(labels_of(mesh, Association::cells)),
@@ -142,6 +140,9 @@ class UnvWriter {
         out_(path),
         lines_(out_, file_.line_end) {
     if (own_ == nullptr) return;
+    // the numbers of a file may begin at 0
+    if (vertex_ids_.empty()) vertex_ids_ = mesh.vertex_ids;
+    if (cell_ids_.empty()) cell_ids_ = mesh.cell_ids;
     file_node_ = inverse(own_->vertex_of);
     file_element_ = inverse(own_->cell_of);
     if (file_.unknown.empty() || (nodes_.all_as_in_file() && elements_.all_as_in_file())) return;
