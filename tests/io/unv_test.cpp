@@ -286,6 +286,26 @@ TEST(Unv, ReadsNumbersOfFortran) {
   EXPECT_EQ(read_text(written(mesh)).points, mesh.points);
 }
 
+TEST(Unv, KeepsNumbersFromZero) {
+  const std::string text =
+      "    -1\n  2411\n"
+      "         0         1         1        11\n"
+      "   0.0000000000000000E+00   0.0000000000000000E+00   0.0000000000000000E+00\n"
+      "         1         1         1        11\n"
+      "   1.0000000000000000E+00   0.0000000000000000E+00   0.0000000000000000E+00\n"
+      "    -1\n    -1\n  2412\n"
+      "         0        21         1         0         7         2\n"
+      "         0         0         0\n"
+      "         1         0\n"
+      "    -1\n";
+  Mesh mesh = read_text(text);
+  EXPECT_THAT(mesh.vertex_ids, ElementsAre(0, 1));
+  EXPECT_EQ(written(mesh), text);
+  apply_reordering(mesh, Permutation::from_old_to_new({1, 0}), Permutation::identity(1));
+  EXPECT_THAT(dataset_of(written(mesh), 2412),
+              HasSubstr("         0         0         0\n         0         1\n"));
+}
+
 TEST(Unv, SkipsBinaryData) {
   std::string binary =
       "    -1\n    58b     1     2           1          10        0         0         0           0\nline\n";
@@ -447,8 +467,8 @@ TEST(Unv, RefusesBrokenFiles) {
        {"not finite", changed("1.0000000000000001D-01", "nan"), ":15: a coordinate is not finite"},
        {"huge", changed("1.0000000000000001D-01", "1D999"), ":15: a coordinate is 1D999"},
        {"node twice", changed("        40         1", "        30         1"), ":14: node 30 is given twice"},
-       {"number 0", changed("        40         1", "         0         1"),
-        ":14: the number of a node is 0"},
+       {"number below 0", changed("        40         1", "        -3         1"),
+        ":14: the number of a node is -3"},
        {"element twice", changed("         2       111", "         1       111"),
         ":23: element 1 is given twice"},
        {"no such node",

@@ -190,8 +190,8 @@ class UnvReader {
   }
 
   [[nodiscard]] Index checked_number(std::int64_t number, std::string_view what) const {
-    if (number < 1 || number > kMaxIndex) {
-      in_.fail(fmt::format("{} is {}", what, number), "1 to 2147483647 are possible");
+    if (number < 0 || number > kMaxIndex) {  // libMesh counted from 0
+      in_.fail(fmt::format("{} is {}", what, number), "0 to 2147483647 are possible");
     }
     return static_cast<Index>(number);
   }
@@ -359,7 +359,7 @@ class UnvReader {
     const auto [code, number, leaf, component] = member;
     const bool is_item = code == kNodeCode || code == kElementCode;
     if (is_item && (leaf != 0 || component != 0)) return false;
-    if (!is_item || number < 1 || number > kMaxIndex) {
+    if (!is_item || number < 0 || number > kMaxIndex) {
       group.others.push_back(member);
     } else {
       (code == kNodeCode ? members.nodes : members.elements).push_back(static_cast<Index>(number));

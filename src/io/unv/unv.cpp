@@ -143,6 +143,9 @@ class UnvWriter {
         out_(path),
         lines_(out_, file_.line_end) {
     if (own_ == nullptr) return;
+    // the numbers of a file may begin at 0
+    if (vertex_ids_.empty()) vertex_ids_ = mesh.vertex_ids;
+    if (cell_ids_.empty()) cell_ids_ = mesh.cell_ids;
     file_node_ = inverse(own_->vertex_of);
     file_element_ = inverse(own_->cell_of);
     if (file_.unknown.empty() || (nodes_.all_as_in_file() && elements_.all_as_in_file())) return;
@@ -204,7 +207,7 @@ class UnvWriter {
     ElementFields fields;
     if (own_ != nullptr) {
       fields = file_.element_fields[file_element_.empty() ? c : file_element_[c]];
-      fields.beam[0] = nodes_.now(fields.beam[0]);
+      if (fields.beam[0] != 0) fields.beam[0] = nodes_.now(fields.beam[0]);  // 0 is none
     } else {
       fields.type = type_of({mesh_.cells.shapes[c], mesh_.cells.vertex_count(c)});
       fields.has_beam = is_beam(fields.type);
@@ -230,7 +233,7 @@ class UnvWriter {
       nodes = other.nodes;
       for (std::int64_t& node : nodes) node = nodes_.now(node);
       ElementFields fields = other.fields;
-      fields.beam[0] = nodes_.now(fields.beam[0]);
+      if (fields.beam[0] != 0) fields.beam[0] = nodes_.now(fields.beam[0]);  // 0 is none
       write_element(section, other.number, fields, nodes);
     }
     lines_.delimiter();
