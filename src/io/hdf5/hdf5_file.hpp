@@ -110,7 +110,8 @@ class File {
   /// keeps its attributes.
   void write_texts(const std::string& path, std::span<const std::string> texts, std::size_t width,
                    char filling = '\0');
-  /// Makes a group, and those around it, where it is not there. It keeps the order in which its links are made.
+  /// Makes a group, and those around it, where it is not there. It keeps the order in which its links are
+  /// made.
   void make_group(const std::string& path);
   /// Gives a group or a dataset an attribute. A whole number keeps the number type that the attribute has.
   void set_attribute(const std::string& path, const std::string& name, std::int64_t value);
