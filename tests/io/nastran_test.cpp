@@ -366,7 +366,7 @@ TEST(Nastran, RefusesFaultsWithTheirLine) {
 TEST(Nastran, ReadsOrRefusesEveryPartOfAFile) {
   const TemporaryFolder folder;
   std::size_t read = 0;
-  for (std::size_t length = 1; length < kBulk.size(); ++length) {
+  for (std::size_t length = 1; length < kBulk.size(); length += 7) {
     Notes notes;
     try {
       (void)read_mesh(folder.file("a.bdf", kBulk.substr(0, length)), {.notes = &notes});

@@ -24,9 +24,12 @@ constexpr std::size_t kLargeFields = 4;
 
 /// Returns the end of the line that begins there, its line end included.
 std::size_t end_of_line(std::string_view text, std::size_t begin) {
-  const std::size_t end = text.find_first_of("\r\n", begin);
-  if (end == std::string_view::npos) return text.size();
-  return end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
+  // a plain loop: find_first_of takes several times as long
+  std::size_t end = begin;
+  while (end < text.size() && text[end] != '\n' && text[end] != '\r') ++end;
+  if (end == text.size()) return end;
+  const bool is_pair = text[end] == '\r' && end + 1 < text.size() && text[end + 1] == '\n';
+  return end + (is_pair ? 2 : 1);
 }
 
 /// Returns a line without its end and comment.
@@ -38,10 +41,17 @@ std::string_view without_comment(std::string_view line) {
 
 bool is_free(std::string_view line) { return line.find(',') != std::string_view::npos; }
 
+/// As `trimmed`, faster for short texts.
+std::string_view trimmed_blanks(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
 /// Returns the first field of a line: of 8 columns, or before the first comma.
 std::string_view first_field(std::string_view line) {
   const std::size_t comma = line.find(',');
-  return trimmed(line.substr(0, comma == std::string_view::npos ? kNameWidth : comma));
+  return trimmed_blanks(line.substr(0, comma == std::string_view::npos ? kNameWidth : comma));
 }
 
 bool is_continuation(std::string_view line) {
@@ -51,12 +61,8 @@ bool is_continuation(std::string_view line) {
   return first.empty() || first.front() == '+' || first.front() == '*';
 }
 
-bool is_blank_line(std::string_view line) { return line.find_first_not_of(" \t") == std::string_view::npos; }
-
-std::string_view trimmed_blanks(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
+bool is_blank_line(std::string_view line) {
+  return std::all_of(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\t'; });
 }
 
 /// Returns a name of a line, for comparison: "+A1" and "*A1" name the same.
