@@ -38,15 +38,15 @@ def listed_subcommands(program):
 
 @pytest.fixture
 def deck(mesh, tmp_path):
-    """Tetrahedra and triangles with data as a file of AVS-UCD, which is meshio's, and tetrahedra with sets as one of Abaqus."""
+    """Tetrahedra with data as a file of HMF, which is meshio's, and tetrahedra with sets as one of Abaqus."""
     points, cells = mesh
     made = meshio.Mesh(
         points,
-        [("tetra", cells), ("triangle", cells[:40, :3])],
+        [("tetra", cells)],
         point_data={"t": points @ [1, 10, 100]},
-        cell_data={"centre": [points[c].mean(axis=1) for c in (cells, cells[:40, :3])]},
+        cell_data={"centre": [points[cells].mean(axis=1)]},
     )
-    made.write(tmp_path / "deck.avs")
+    made.write(tmp_path / "deck.hmf")
     of_abaqus = meshio.Mesh(
         points,
         [("tetra", cells)],
@@ -112,9 +112,9 @@ def test_flags_are_those_that_help_shows(tmp_path):
 @pytest.mark.parametrize(
     "line, mesh, output",
     [
-        ("order a.mdpa -o b.avs --json", "a.mdpa", "b.avs"),
-        ("--plugin x.so order -q --vertices rcm a.mdpa --output=b.avs", "a.mdpa", "b.avs"),
-        ("apply m.mdpa a.mdpa -ob.avs", "a.mdpa", "b.avs"),
+        ("order a.mdpa -o b.hmf --json", "a.mdpa", "b.hmf"),
+        ("--plugin x.so order -q --vertices rcm a.mdpa --output=b.hmf", "a.mdpa", "b.hmf"),
+        ("apply m.mdpa a.mdpa -ob.hmf", "a.mdpa", "b.hmf"),
         ("order --maps c.mdpa -- a.mdpa", "a.mdpa", None),
         ("info a.mdpa --measure", "a.mdpa", None),
     ],
@@ -131,16 +131,16 @@ def test_no_files_are_found_where_there_are_none(line):
 
 
 def test_order_of_a_file_of_meshios_into_another(deck, tmp_path):
-    done = ok("order", "deck.avs", "-o", "out.avs", "--vertices", "rcm", "--maps", "m", "--json", cwd=tmp_path)
+    done = ok("order", "deck.hmf", "-o", "out.hmf", "--vertices", "rcm", "--maps", "m", "--json", cwd=tmp_path)
     result = json.loads(done.stdout)
-    assert (result["input"], result["output"]) == ("deck.avs", "out.avs")
-    assert "deck.avs: read by meshio" in done.stderr and "out.avs: written by meshio" in done.stderr
+    assert (result["input"], result["output"]) == ("deck.hmf", "out.hmf")
+    assert "deck.hmf: read by meshio" in done.stderr and "out.hmf: written by meshio" in done.stderr
     assert "meshorder-" not in done.stdout + done.stderr
     assert [f"meshorder: warning: {note}" for note in result["notes"]] == done.stderr.splitlines()
     # of the mesh that meshio wrote there are no checksums
     identity = json.loads((tmp_path / "m.maps.json").read_text())
     assert identity["before"] and identity["after"] is None
-    before, moved = meshio.read(tmp_path / "deck.avs"), meshio.read(tmp_path / "out.avs")
+    before, moved = meshio.read(tmp_path / "deck.hmf"), meshio.read(tmp_path / "out.hmf")
     places = np.load(tmp_path / "m.vertices.new_to_old.npy")
     np.testing.assert_array_equal(moved.points, before.points[places])
     assert cells_by_corners(moved) == cells_by_corners(before)
@@ -148,12 +148,12 @@ def test_order_of_a_file_of_meshios_into_another(deck, tmp_path):
     places = np.load(tmp_path / "m.cells.new_to_old.npy")
     centres = np.concatenate(before.cell_data["centre"])[places]
     np.testing.assert_array_equal(np.concatenate(moved.cell_data["centre"]), centres)
-    assert sorted(path.name for path in tmp_path.iterdir() if path.name.startswith((".", "out"))) == ["out.avs"]
+    assert sorted(path.name for path in tmp_path.iterdir() if path.name.startswith((".", "out"))) == ["out.hmf"]
 
 
 def test_own_formats_on_one_side(deck, tmp_path):
-    ok("order", "deck.avs", "-o", "out.vtu", cwd=tmp_path)
-    moved, before = meshio.read(tmp_path / "out.vtu"), meshio.read(tmp_path / "deck.avs")
+    ok("order", "deck.hmf", "-o", "out.vtu", cwd=tmp_path)
+    moved, before = meshio.read(tmp_path / "out.vtu"), meshio.read(tmp_path / "deck.hmf")
     assert cells_by_corners(moved) == cells_by_corners(before)
 
     ok("order", "deck.inp", "-o", "sets.vtu", cwd=tmp_path)
@@ -163,7 +163,7 @@ def test_own_formats_on_one_side(deck, tmp_path):
 
 
 def test_apply_undoes_order(deck, tmp_path):
-    for name, ordered, back in (("deck.avs", "o.avs", "b.avs"), ("deck.avs", "o.vtu", "b.avs")):
+    for name, ordered, back in (("deck.hmf", "o.hmf", "b.hmf"), ("deck.hmf", "o.vtu", "b.hmf")):
         ok("order", name, "-o", ordered, "--maps", "m", "--vertices", "scrambled", cwd=tmp_path)
         assert "order" in run("apply", "m", ordered, "-o", back, cwd=tmp_path).stderr.splitlines()[-1]
         assert "already" in run("apply", "m", name, "-o", back, "--inverse", cwd=tmp_path).stderr
@@ -172,17 +172,17 @@ def test_apply_undoes_order(deck, tmp_path):
 
 
 def test_info_and_compare_name_the_users_file(deck, tmp_path):
-    done = ok("info", "deck.avs", "--json", cwd=tmp_path)
-    assert json.loads(done.stdout)["file"] == "deck.avs" and json.loads(done.stdout)["format"] == "meshio"
-    assert ok("info", "deck.avs", "-q", cwd=tmp_path).stderr == ""
-    done = ok("compare", "deck.avs", "--methods", "rcm", "--budget", "0.1", cwd=tmp_path)
-    assert done.stdout.startswith("deck.avs: ")
+    done = ok("info", "deck.hmf", "--json", cwd=tmp_path)
+    assert json.loads(done.stdout)["file"] == "deck.hmf" and json.loads(done.stdout)["format"] == "meshio"
+    assert ok("info", "deck.hmf", "-q", cwd=tmp_path).stderr == ""
+    done = ok("compare", "deck.hmf", "--methods", "rcm", "--budget", "0.1", cwd=tmp_path)
+    assert done.stdout.startswith("deck.hmf: ")
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux's")
 def test_a_full_disk_behind_stdout_is_an_error(deck, tmp_path):
     with open("/dev/full", "w") as full:
-        for line in ("info deck.avs", "methods"):
+        for line in ("info deck.hmf", "methods"):
             words = [str(COMMAND), *line.split()]
             done = subprocess.run(words, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True)
             assert done.returncode == 2
@@ -202,9 +202,9 @@ def test_cells_are_never_lost(mesh, tmp_path):
 
 
 def test_what_cannot_be_read_or_written_gives_one_line(tmp_path):
-    (tmp_path / "bad.mdpa").write_text("Begin Nodes\n1 what\n")
+    (tmp_path / "bad.hmf").write_text("nothing\n")
     (tmp_path / "empty.cgns").write_text("")
-    for line in ("info bad.mdpa", "info none.mdpa", "info empty.cgns", "order bad.mdpa -o no/b.mdpa"):
+    for line in ("info bad.hmf", "info none.mdpa", "info empty.cgns", "order bad.hmf -o no/b.hmf"):
         done = run(*line.split(), cwd=tmp_path)
         assert done.returncode == 2 and done.stdout == ""
         assert re.fullmatch(r"(meshorder: .*\n)+", done.stderr)
@@ -223,7 +223,7 @@ def test_without_meshio_one_line_tells_how_to_get_it(tmp_path):
 def test_signals_end_it(deck, tmp_path, number):
     temporary = tmp_path / "tmp"
     temporary.mkdir()
-    command = [str(COMMAND), "compare", "deck.avs", "--budget", "60"]
+    command = [str(COMMAND), "compare", "deck.hmf", "--budget", "60"]
     environment = {**os.environ, "TMPDIR": str(temporary)}
 
     def heed():  # processes in the background ignore SIGINT

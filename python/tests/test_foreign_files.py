@@ -60,7 +60,7 @@ def test_bare_meshes_of_every_format(tmp_path, suffix):
 
 @pytest.mark.parametrize(
     "suffix, kept",
-    [(".avs", {"point t", "point u", "cell m"}), (".post", set())],
+    [(".hmf", {"point t", "point u", "cell m"}), (".post", set())],
 )  # fmt: skip
 def test_what_a_format_keeps_is_read_and_what_not_is_told(tmp_path, suffix, kept):
     given = made_by_meshio()

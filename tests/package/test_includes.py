@@ -34,6 +34,7 @@ LIBRARIES = {
     "lzma.h": {"io"},
     "netcdf.h": {"io"},
     "netcdf_mem.h": {"io"},
+    "cgns_io.h": {"io"},
     "hdf5.h": {"io"},
     "pugixml.hpp": {"io"},
     "zlib.h": {"io"},
