@@ -135,7 +135,11 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> words = app.remaining(true);
   const std::string option = unknown_option(words);
   if (!option.empty()) {
-    const std::string nearest = suggestion(option, options_of(*place.command));
+    const std::vector<std::string> known = options_of(*place.command);
+    if (std::find(known.begin(), known.end(), option) != known.end()) {
+      return "'" + option + "' stands before the command; write " + place.words + " " + option;
+    }
+    const std::string nearest = suggestion(option, known);
     return "unknown option '" + option + "'" + (nearest.empty() ? "; " : nearest + " ") + help;
   }
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !words.empty())

@@ -25,9 +25,9 @@ TYPES = {
     "quad8": 16, "hexahedron20": 17, "wedge15": 18, "pyramid13": 19,
 }  # fmt: skip
 UNKNOWN_TO_MESHIO = {"wedge15", "pyramid13"}  # version 5.3.5 stops at them
-FORMATS = [".msh", ".vtk", ".vtu", ".mesh", ".su2", ".unv"] + [
+FORMATS = [".msh", ".vtk", ".vtu", ".mesh", ".su2", ".unv", ".bdf"] + [
     suffix
-    for suffix, library in ((".inp", ""), (".exo", "netcdf"), (".xdmf", "hdf5"), (".med", "hdf5"))
+    for suffix, library in ((".inp", ""), (".exo", "netcdf"), (".xdmf", "hdf5"), (".med", "hdf5"), (".cgns", "cgns"))
     if library in meshorder.build_info()
 ]
 IMAGE = np.array([[2.0, 0.3, 0.1], [-0.2, 1.5, 0.4], [0.25, -0.1, 1.8]])
@@ -137,7 +137,8 @@ def test_faces_and_nodes_of_edges_stay_right(model, tmp_path, name, source):
             meshorder.write(mesh, path)
         except meshorder.InputError:
             continue
-        if target in (".msh", ".unv", ".med"):
+        # Gmsh 4.15 reads the corners alone of Nastran's second-order pyramids
+        if target in (".msh", ".unv", ".med", ".cgns") or (target == ".bdf" and name != "pyramid13"):
             assert_right_by_gmsh(kind, path)
         if target in (".vtu", ".vtk", ".exo"):
             assert_right_by_vtk(kind, path)

@@ -257,3 +257,9 @@ def test_warnings_that_differ_in_a_name_are_one(command, tmp_path):
     named = [note for note in json.loads(done.stdout)["notes"] if "the set '" in note]
     assert len(named) == 1
     assert re.search(r"the set 'label_10' of cells .*\(likewise 'label_20', 'group 0' and 5 more\)", named[0])
+
+
+@pytest.mark.parametrize("option", ["-q", "--json"])
+def test_an_option_before_its_command_is_told_where_to_stand(command, option):
+    line = command.fails(option, "info", "mesh.msh")
+    assert line == f"meshorder: '{option}' stands before the command; write meshorder info {option}"
