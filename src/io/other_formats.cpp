@@ -11,9 +11,6 @@ constexpr std::string_view kStructured = "is structured";
 constexpr std::string_view kGridOrder = "its order is its grid's, and there is nothing to reorder";
 constexpr std::string_view kByMeshio =
     "the command of the Python package reads it by meshio (pip install meshio)";
-constexpr std::string_view kByGmsh =
-    "convert it with gmsh IN -save -format msh41 -o OUT.msh; the command of the Python package reads it by "
-    "meshio";
 constexpr std::string_view kOneGrid = "save it as one .vtu, in ParaView by Append Datasets and Save Data";
 
 constexpr std::array kOtherFormats{

@@ -104,11 +104,13 @@ def sample_files(tmp_path_factory):
         "my-mesh.su2",
         "my-mesh.xdmf",
         "my-mesh.exo",
+        "my-mesh.bdf",
+        "my-mesh.med",
     ):
         meshorder.write(mesh, folder / name)
     import meshio
 
-    for name in ("my-mesh.inp", "part.bdf"):
+    for name in ("my-mesh.inp", "part.avs"):
         meshio.write(folder / name, meshio.Mesh(points, [("tetra", cells)]))
     import scipy.io
     import scipy.sparse
