@@ -305,6 +305,11 @@ class Addition {
   // ---- arrays
 
   void add_array(const DataArray& array) {
+    if (array.components > 1) {
+      notes_.push_back(fmt::format(
+          "the array '{0}' of {1} components is written as the data '{0}{2}' to '{0}{3}'", array.name,
+          array.components, suffix_of(array, 0), suffix_of(array, array.components - 1)));
+    }
     const bool on_vertices = array.association == Association::vertices;
     const auto parts = parts_of(
         array.association,
