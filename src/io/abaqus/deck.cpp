@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/abaqus/abaqus.hpp"
-#include "io/deck/numbers.hpp"
 
 #include <algorithm>
 
@@ -10,23 +9,13 @@ namespace {
 /// Returns whether the cells that a card's elements are have the card's type.
 bool has_kind(const Mesh& mesh, const Metadata& metadata, const Section& section) {
   for (Index k = section.first; k < section.first + section.count; ++k) {
-    const Index c = metadata.cell_of.empty() ? k : metadata.cell_of[k];
+    const Index c = metadata.cell(k);
     if (ElementKind{mesh.cells.shapes[c], mesh.cells.vertex_count(c)} != section.kind) return false;
   }
   return true;
 }
 
 }  // namespace
-
-std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> vertices,
-                                                      std::span<const Index> cells) const {
-  auto result = std::make_shared<Metadata>(*this);
-  if (!whole) return result;
-  const bool all_vertices = move_places(result->vertex_of, vertices);
-  const bool all_cells = move_places(result->cell_of, cells);
-  result->whole = all_vertices && all_cells;
-  return result;
-}
 
 const Metadata* own_deck(const Mesh& mesh) {
   const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());

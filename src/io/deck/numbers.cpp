@@ -81,6 +81,16 @@ std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
   return added;
 }
 
+void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes) {
+  for (const Association association : {Association::vertices, Association::cells}) {
+    const auto& ids = association == Association::vertices ? mesh.vertex_ids : mesh.cell_ids;
+    if (ids.empty() || can_be_numbers(ids, largest)) continue;
+    notes.push_back(
+        fmt::format("the ids of {} are not written: numbers of {} are 1 to {} and differ from each other",
+                    to_string(association), format, largest));
+  }
+}
+
 void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes) {
   if (unknown.empty()) return;
   constexpr std::size_t kShown = 3;

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshorder {
@@ -63,6 +64,9 @@ class FileNumbers {
 std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
                                    const std::vector<EntitySet>& of_mesh, const FileNumbers& nodes,
                                    const FileNumbers& elements, Notes& notes);
+
+/// Notes the ids of a mesh that are not written because they `can_be_numbers` not.
+void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes);
 
 /// Notes that all numbers stay, for cards that may name nodes or elements; nothing where there are none.
 void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes);

@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/deck/numbers.hpp"
 #include "io/nastran/nastran.hpp"
 
 namespace meshorder::nastran {
@@ -9,7 +8,7 @@ namespace {
 bool has_cells_of(const Mesh& mesh, const Metadata& metadata) {
   const Deck& deck = *metadata.deck;
   for (Index k = 0; k < mesh.cell_count(); ++k) {
-    const Index c = metadata.cell_of.empty() ? k : metadata.cell_of[k];
+    const Index c = metadata.cell(k);
     const ElementCard& card = deck.elements[k];
     if (mesh.cells.shapes[c] != card.type->shape || mesh.cells.vertex_count(c) != card.nodes) return false;
   }
@@ -17,16 +16,6 @@ bool has_cells_of(const Mesh& mesh, const Metadata& metadata) {
 }
 
 }  // namespace
-
-std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> vertices,
-                                                      std::span<const Index> cells) const {
-  auto result = std::make_shared<Metadata>(*this);
-  if (!whole) return result;
-  const bool all_vertices = move_places(result->vertex_of, vertices);
-  const bool all_cells = move_places(result->cell_of, cells);
-  result->whole = all_vertices && all_cells;
-  return result;
-}
 
 const Metadata* own_deck(const Mesh& mesh) {
   const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());

@@ -111,13 +111,7 @@ class PlainBulkWriter {
     for (const DataArray& array : mesh_.data) {
       if (&array != label_array(mesh_, Association::cells)) note_array_unsupported(array, "Nastran", notes_);
     }
-    for (const bool of_vertices : {true, false}) {
-      const auto& ids = of_vertices ? mesh_.vertex_ids : mesh_.cell_ids;
-      if (ids.empty() || (of_vertices ? vertex_ids_ : cell_ids_)) continue;
-      notes_.push_back(fmt::format(
-          "the ids of {} are not written: numbers of Nastran are 1 to 99999999 and differ from each other",
-          of_vertices ? "vertices" : "cells"));
-    }
+    note_unfit_ids(mesh_, "Nastran", kLargestNumber, notes_);
     note_metadata_unsupported(mesh_, "Nastran", notes_);
   }
 

@@ -3,6 +3,7 @@
 
 // Declarations shared by the reader and the writers of Nastran's bulk data.
 
+#include "io/deck/metadata.hpp"
 #include "io/format.hpp"
 #include "io/nastran/card.hpp"
 #include "io/nastran/elements.hpp"
@@ -10,8 +11,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -48,17 +47,7 @@ struct Deck {
 };
 
 /// A deck, and where its nodes and elements are in the mesh.
-struct Metadata final : FormatMetadata {
-  std::shared_ptr<const Deck> deck;
-  std::vector<Index> vertex_of;  ///< of each node of the file; empty if they are in its order
-  std::vector<Index> cell_of;    ///< of each element of the file; likewise
-  bool whole = true;             ///< false after cells were left out: the deck no longer fits the mesh
-
-  [[nodiscard]] std::vector<std::string> contents() const override { return deck->contents; }
-  [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,
-                                                            std::span<const Index> cells) const override;
-  [[nodiscard]] bool binds_ids() const override { return whole && !deck->unknown.empty(); }
-};
+using Metadata = DeckMetadata<Deck>;
 
 /// Returns the deck that a mesh can be written into; null if it came from elsewhere or no longer fits. Valid
 /// as long as the mesh. O(cells).

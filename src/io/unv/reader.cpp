@@ -410,7 +410,7 @@ class UnvReader {
                         missing == 1 ? "a node or element" : fmt::format("{} nodes or elements", missing)));
       }
       if (!group.others.empty()) {
-        file_->lost_elsewhere.push_back(
+        file_->contents.push_back(
             fmt::format("members of the group '{}' that are neither nodes nor cells", shown(group.name)));
       }
     }
@@ -492,7 +492,7 @@ class UnvReader {
     list_losses();
     note_kept_numbers(file_->unknown, notes_);
     auto metadata = std::make_shared<Metadata>();
-    metadata->file = file_;
+    metadata->deck = file_;
     mesh_.format_metadata = std::move(metadata);
   }
 
@@ -554,7 +554,7 @@ class UnvReader {
         types.insert(fmt::format("{}", fields.type));
       }
     }
-    std::vector<std::string>& lost = file_->lost_elsewhere;
+    std::vector<std::string>& lost = file_->contents;
     if (!types.empty()) lost.push_back("the types of elements " + join(types));
     if (!other_types_.empty()) lost.push_back("elements of the types " + join(other_types_));
     lost.insert(lost.end(), kept_.begin(), kept_.end());

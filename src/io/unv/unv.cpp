@@ -130,7 +130,7 @@ class UnvWriter {
       : mesh_(mesh),
         own_(own_file(mesh)),
         plain_(own_ != nullptr ? Contents() : plain_contents(mesh)),
-        file_(own_ != nullptr ? *own_->file : plain_),
+        file_(own_ != nullptr ? *own_->deck : plain_),
         notes_(notes),
         vertex_ids_(can_be_numbers(mesh.vertex_ids, kLargestNumber) ? mesh.vertex_ids
                                                                     : std::vector<std::int64_t>()),
@@ -518,13 +518,7 @@ class UnvWriter {
   }
 
   void note_losses() {
-    for (const bool of_vertices : {true, false}) {
-      const auto& ids = of_vertices ? mesh_.vertex_ids : mesh_.cell_ids;
-      if (ids.empty() || !(of_vertices ? vertex_ids_ : cell_ids_).empty()) continue;
-      notes_.push_back(fmt::format(
-          "the ids of {} are not written: numbers of {} are 1 to 999999999 and differ from each other",
-          of_vertices ? "vertices" : "cells", kName));
-    }
+    note_unfit_ids(mesh_, kName, kLargestNumber, notes_);
     if (own_ == nullptr) note_metadata_unsupported(mesh_, kName, notes_);
   }
 
@@ -554,23 +548,13 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
 
 }  // namespace
 
-std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> vertices,
-                                                      std::span<const Index> cells) const {
-  auto result = std::make_shared<Metadata>(*this);
-  if (!whole) return result;
-  const bool all_vertices = move_places(result->vertex_of, vertices);
-  const bool all_cells = move_places(result->cell_of, cells);
-  result->whole = all_vertices && all_cells;
-  return result;
-}
-
 const Metadata* own_file(const Mesh& mesh) {
   const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   if (own == nullptr || !own->whole) return nullptr;
-  const Contents& file = *own->file;
+  const Contents& file = *own->deck;
   if (file.nodes.size() != mesh.vertex_count() || file.elements.size() != mesh.cell_count()) return nullptr;
   for (Index k = 0; k < file.elements.size(); ++k) {
-    const Index c = own->cell_of.empty() ? k : own->cell_of[k];
+    const Index c = own->cell(k);
     const int vertices = mesh.cells.vertex_count(c);
     const auto kind = kind_of(file.element_fields[k].type, vertices);
     if (kind != ElementKind{mesh.cells.shapes[c], vertices}) return nullptr;

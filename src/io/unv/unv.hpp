@@ -5,6 +5,7 @@
 //
 // Format: SDRC, I-deas Universal File Datasets. A file is a row of datasets, each between two lines of −1.
 
+#include "io/deck/metadata.hpp"
 #include "io/format.hpp"
 #include "io/stream/id_map.hpp"
 #include "io/unv/elements.hpp"
@@ -12,8 +13,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -142,21 +141,11 @@ struct Contents {
   /// Datasets that may name nodes or elements by number and are not understood: "dataset 791 (line 12)".
   /// With one of them all numbers must stay.
   std::vector<std::string> unknown;
-  std::vector<std::string> lost_elsewhere;  ///< what other formats lose
+  std::vector<std::string> contents;  ///< what other formats lose
 };
 
 /// A universal file, and where its nodes and elements are in the mesh.
-struct Metadata final : FormatMetadata {
-  std::shared_ptr<const Contents> file;
-  std::vector<Index> vertex_of;  ///< of each node of the file; empty if they are in its order
-  std::vector<Index> cell_of;    ///< of each element of the file; likewise
-  bool whole = true;             ///< false after cells were left out: the file no longer fits the mesh
-
-  [[nodiscard]] std::vector<std::string> contents() const override { return file->lost_elsewhere; }
-  [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,
-                                                            std::span<const Index> cells) const override;
-  [[nodiscard]] bool binds_ids() const override { return whole && !file->unknown.empty(); }
-};
+using Metadata = DeckMetadata<Contents>;
 
 /// Name of the array on cells that holds the numbers of materials, where they differ.
 inline constexpr std::string_view kMaterial = "material";
