@@ -228,9 +228,9 @@ static PetscErrorCode TestMixedTypes(void) {
     }
   }
   for (PetscInt v = 0; v < 3 * PAIRS + 2; ++v) {
+    const PetscInt column = v / 2;
     sizes[CELLS + v] = 0;
-    coordinates[2 * v] =
-        v < 2 * (PAIRS + 1) ? (PetscScalar)(v / 2) : (PetscScalar)(v - 2 * (PAIRS + 1)) + 0.5;
+    coordinates[2 * v] = v < 2 * (PAIRS + 1) ? (PetscScalar)column : (PetscScalar)(v - 2 * (PAIRS + 1)) + 0.5;
     coordinates[2 * v + 1] = v < 2 * (PAIRS + 1) ? (PetscScalar)(v % 2) : 2;
   }
   PetscCall(DMPlexCreate(PETSC_COMM_SELF, &dm));
