@@ -21,6 +21,7 @@ namespace {
 using Format = DataPlace::Format;
 
 constexpr std::string_view kBlanksOfXml = " \t\r\n";
+constexpr bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
 
 /// Names of number types as VTK's readers want them: one of a byte is no Int to them.
 struct NumberType {
@@ -218,12 +219,12 @@ Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const 
       const char* p = text.data();
       const char* const end = p + text.size();
       while (true) {
-        while (p != end && kBlanksOfXml.find(*p) != std::string_view::npos) ++p;
+        while (p != end && is_blank(*p)) ++p;
         if (p == end) break;
         Number number{};
         const char* const begin = *p == '+' ? p + 1 : p;
         const auto [next, code] = std::from_chars(begin, end, number);
-        if (code != std::errc{} || (next != end && kBlanksOfXml.find(*next) == std::string_view::npos)) {
+        if (code != std::errc{} || (next != end && !is_blank(*next))) {
           const std::string_view word(p, static_cast<std::size_t>(end - p));
           throw document_.error(
               item,
