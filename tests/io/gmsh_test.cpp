@@ -445,6 +445,19 @@ TEST(Gmsh, LabelsOfNamedGroupsAreTheirNumbersAgain) {
             Values(std::vector<std::int32_t>{8, 9, 10, 4, 7}));
 }
 
+TEST(Gmsh, LabelsOfSomeCellsAreGroupsOfThese) {
+  Mesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.cells.push_back(Shape::tetrahedron, std::array<Index, 4>{0, 1, 2, 3});
+  mesh.cells.push_back(Shape::triangle, std::array<Index, 3>{0, 1, 2});
+  mesh.cells.push_back(Shape::triangle, std::array<Index, 3>{0, 1, 3});
+  mesh.data.push_back(
+      {std::string(kLabel), Association::cells, 1, std::vector<std::int32_t>{8, 3}, {2, 1}, {}});
+  const Mesh again = read_text(written(mesh));
+  EXPECT_EQ(find_array(again, kLabel, Association::cells)->values,
+            Values(std::vector<std::int32_t>{0, 3, 8}));
+}
+
 /// The same mesh, as far as Gmsh can hold what others have: data are double, sets of vertices are left out.
 void expect_converted(const Mesh& actual, const Mesh& expected) {
   EXPECT_EQ(actual.points, expected.points);

@@ -542,8 +542,8 @@ const std::vector<double>* parameters_of(const Mesh& mesh) {
 
 std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association) {
   const DataArray* array = find_array(mesh, name, association);
-  if (!array || !array->is_dense()) return {};
-  return std::visit(
+  if (!array || (!array->is_dense() && array->components != 1)) return {};
+  std::vector<std::int32_t> given = std::visit(
       [](const auto& values) {
         using T = typename std::decay_t<decltype(values)>::value_type;
         std::vector<std::int32_t> result;
@@ -557,6 +557,11 @@ std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, A
         return result;
       },
       array->values);
+  if (array->is_dense() || given.empty()) return given;
+  const Index count = association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
+  std::vector<std::int32_t> all(static_cast<std::size_t>(count), 0);
+  for (std::size_t k = 0; k < given.size(); ++k) all[array->indices[k]] = given[k];
+  return all;
 }
 
 }  // namespace gmsh

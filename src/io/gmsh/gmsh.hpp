@@ -217,7 +217,7 @@ struct WriteContext {
   [[nodiscard]] std::int64_t cell_id(Index c) const { return cell_ids.empty() ? c + 1 : cell_ids[c]; }
 };
 
-/// Returns the values of a dense array of 32-bit integers; empty if there is none.
+/// Returns the values of an array of 32-bit integers, 0 where it has none; empty if there is no such array.
 std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association);
 
 /// Returns the values of the array kNodeParameters, or nullptr if it is missing or malformed.
