@@ -15,6 +15,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -29,6 +30,14 @@ constexpr int kDeepest = 64;
 
 /// Room for a text of a node: ADF gives more bytes than CGIO promises where a file is damaged.
 using Text = std::array<char, 1024>;
+
+/// Returns a text as CGIO takes it, which reads 33 bytes of names and labels and 3 of types, however long
+/// these are.
+Text padded(std::string_view text) {
+  Text result{};
+  std::copy_n(text.begin(), std::min(text.size(), result.size() - 1), result.begin());
+  return result;
+}
 
 /// A folder of our own for one file, removed at the end: CGIO opens files by their paths only.
 class PrivateFolder {
@@ -214,10 +223,13 @@ class TreeWriter {
     const auto rank = static_cast<int>(node.dimensions.size());
     // values of no length have no place in ADF
     const bool has_values = rank > 0 && !node.bytes.empty();
-    file_.check(cgio_new_node(file_.number(), parent, node.name.c_str(), node.label.c_str(),
-                              has_values ? node.type.c_str() : "MT", has_values ? rank : 0, dimensions.data(),
-                              has_values ? node.bytes.data() : nullptr, &id),
-                path);
+    const Text name = padded(node.name);
+    const Text label = padded(node.label);
+    const Text type = padded(has_values ? std::string_view(node.type) : "MT");
+    file_.check(
+        cgio_new_node(file_.number(), parent, name.data(), label.data(), type.data(), has_values ? rank : 0,
+                      dimensions.data(), has_values ? node.bytes.data() : nullptr, &id),
+        path);
     for (const Node& child : children) write(child, id, path);
     cgio_release_id(file_.number(), id);
   }
