@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/labels.hpp"
 
+#include "io/unsupported.hpp"
+
 #include <algorithm>
 #include <limits>
 #include <type_traits>
@@ -39,6 +41,13 @@ Labels labels_of(const Mesh& mesh, Association association) {
       },
       array->values);
   return result;
+}
+
+void note_arrays_beside_cell_labels(const Mesh& mesh, std::string_view format, Notes& notes) {
+  const DataArray* const labels = label_array(mesh, Association::cells);
+  for (const DataArray& array : mesh.data) {
+    if (&array != labels) note_array_unsupported(array, format, notes);
+  }
 }
 
 Values label_values(std::vector<std::int64_t> labels) {

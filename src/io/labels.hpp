@@ -4,6 +4,7 @@
 #include "io/format.hpp"
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 namespace meshorder {
@@ -21,6 +22,9 @@ Labels labels_of(const Mesh& mesh, Association association);
 
 /// Returns the array that `labels_of` uses, or nullptr.
 const DataArray* label_array(const Mesh& mesh, Association association);
+
+/// Notes that arrays other than the labels of cells are not written, for formats with nothing but these.
+void note_arrays_beside_cell_labels(const Mesh& mesh, std::string_view format, Notes& notes);
 
 /// Converts labels to the values of an array: 32-bit integers if all fit.
 Values label_values(std::vector<std::int64_t> labels);

@@ -86,9 +86,7 @@ class PlainWriter {
 
   void note_losses() {
     out_.note_rounded(notes_);
-    for (const DataArray& array : mesh_.data) {
-      if (&array != label_array(mesh_, Association::cells)) note_array_unsupported(array, "Abaqus", notes_);
-    }
+    note_arrays_beside_cell_labels(mesh_, "Abaqus", notes_);
     note_unfit_ids(mesh_, "Abaqus", kLargest, notes_);
     note_metadata_unsupported(mesh_, "Abaqus", notes_);
   }

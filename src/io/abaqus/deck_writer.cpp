@@ -1,12 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/text.hpp"
 #include "io/abaqus/abaqus.hpp"
 #include "io/abaqus/cards.hpp"
 #include "io/abaqus/output.hpp"
 #include "io/deck/numbers.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
-#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -29,10 +27,7 @@ class DeckWriter {
         file_(path),
         out_(file_, deck_.line_end),
         same_numbers_(nodes_.all_as_in_file() && elements_.all_as_in_file()) {
-    if (same_numbers_ || deck_.unknown.empty()) return;
-    throw InputError(path.string(),
-                     "its numbers cannot change, as these may name some: " + join(deck_.unknown),
-                     "keep them: --ids keep");
+    if (!same_numbers_) require_known_references(deck_.unknown, path);
   }
 
   void write() {

@@ -2,6 +2,7 @@
 #include "io/deck/numbers.hpp"
 
 #include "base/text.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -89,6 +90,12 @@ void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t larg
         fmt::format("the ids of {} are not written: numbers of {} are 1 to {} and differ from each other",
                     to_string(association), format, largest));
   }
+}
+
+void require_known_references(const std::vector<std::string>& unknown, const FilePath& path) {
+  if (unknown.empty()) return;
+  throw InputError(path.string(), "its numbers cannot change, as these may name some: " + join(unknown),
+                   "keep them: --ids keep");
 }
 
 void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes) {

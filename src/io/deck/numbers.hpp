@@ -4,6 +4,7 @@
 // The numbers that the nodes and elements of a deck have, in the deck and in a mesh whose items moved.
 
 #include "io/format.hpp"
+#include "io/stream/file_path.hpp"
 #include "io/stream/id_map.hpp"
 #include <meshorder/mesh.hpp>
 
@@ -67,6 +68,9 @@ std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
 
 /// Notes the ids of a mesh that are not written because they `can_be_numbers` not.
 void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes);
+
+/// Throws InputError where `unknown` cards may name nodes or elements by number, so that these cannot change.
+void require_known_references(const std::vector<std::string>& unknown, const FilePath& path);
 
 /// Notes that all numbers stay, for cards that may name nodes or elements; nothing where there are none.
 void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes);

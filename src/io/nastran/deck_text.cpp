@@ -13,7 +13,9 @@ constexpr std::size_t kTab = 8;
 
 /// Returns whether a line begins with that word, in any case, and no further letter.
 bool begins_with(std::string_view line, std::string_view word) {
-  if (line.size() < word.size() || !same_but_for_case(line.substr(0, word.size()), word)) return false;
+  constexpr int kCase = 'a' - 'A';
+  if (line.size() < word.size() || (line.front() | kCase) != (word.front() | kCase)) return false;
+  if (!same_but_for_case(line.substr(0, word.size()), word)) return false;
   return line.size() == word.size() ||
          std::string_view(" \t,=$'\"").find(line[word.size()]) != std::string_view::npos;
 }

@@ -1,12 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/text.hpp"
 #include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
 #include "io/nastran/lists.hpp"
 #include "io/nastran/nastran.hpp"
 #include "io/nastran/references.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -38,10 +36,7 @@ class BulkWriter {
         notes_(notes),
         file_(path),
         same_numbers_(nodes_.all_as_in_file() && elements_.all_as_in_file()) {
-    if (same_numbers_ || deck_.unknown.empty()) return;
-    throw InputError(path.string(),
-                     "its numbers cannot change, as these may name some: " + join(deck_.unknown),
-                     "keep them: --ids keep");
+    if (!same_numbers_) require_known_references(deck_.unknown, path);
   }
 
   void write() {
@@ -298,9 +293,7 @@ class BulkWriter {
   void note_losses() const {
     if (rounded_ > 0) notes_.push_back(rounded_note(rounded_));
     if (lost_labels_) notes_.emplace_back("labels that are no numbers of properties are not written");
-    for (const DataArray& array : mesh_.data) {
-      if (&array != label_array(mesh_, Association::cells)) note_array_unsupported(array, "Nastran", notes_);
-    }
+    note_arrays_beside_cell_labels(mesh_, "Nastran", notes_);
   }
 
   const Mesh& mesh_;

@@ -108,9 +108,7 @@ class PlainBulkWriter {
       notes_.push_back(
           fmt::format("{} cells whose labels are not from 1 to 99999999 have the property 1", lost_labels_));
     }
-    for (const DataArray& array : mesh_.data) {
-      if (&array != label_array(mesh_, Association::cells)) note_array_unsupported(array, "Nastran", notes_);
-    }
+    note_arrays_beside_cell_labels(mesh_, "Nastran", notes_);
     note_unfit_ids(mesh_, "Nastran", kLargestNumber, notes_);
     note_metadata_unsupported(mesh_, "Nastran", notes_);
   }

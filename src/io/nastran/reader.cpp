@@ -70,12 +70,14 @@ class DeckReader {
 
   /// Returns the number of a node, element or property that a field is.
   [[nodiscard]] std::int64_t number(std::size_t field, std::string_view what) const {
-    const std::string_view text = fields_.text(field);
-    const std::int64_t result = number_of(text);
-    if (result == 0 || result > kMaxIndex) {
-      fail(fmt::format("{} is '{}'", what, shown(text)), "a number from 1 to 2147483647 is needed");
-    }
+    const std::int64_t result = number_of(fields_.text(field));
+    if (result == 0 || result > kMaxIndex) fail_at_number(field, what);
     return result;
+  }
+
+  [[noreturn]] void fail_at_number(std::size_t field, std::string_view what) const {
+    fail(fmt::format("{} is '{}'", what, shown(fields_.text(field))),
+         "a number from 1 to 2147483647 is needed");
   }
 
   // ---- nodes
@@ -124,7 +126,10 @@ class DeckReader {
     const Offset entry = mesh_.cells.offsets.back();
     for (std::size_t k = 0; k < static_cast<std::size_t>(nodes); ++k) {
       const std::size_t place = node_place(type.shape, nodes, k);
-      const std::int64_t node = number(first + place, fmt::format("a node of element {}", id));
+      const std::int64_t node = number_of(fields_.text(first + place));
+      if (node == 0 || node > kMaxIndex) {
+        fail_at_number(first + place, fmt::format("a node of element {}", id));
+      }
       cell[k] = deck_->node_numbers.find(node);
       if (cell[k] < 0) {
         cell[k] = 0;

@@ -148,10 +148,8 @@ class UnvWriter {
     if (cell_ids_.empty()) cell_ids_ = mesh.cell_ids;
     file_node_ = inverse(own_->vertex_of);
     file_element_ = inverse(own_->cell_of);
-    if (file_.unknown.empty() || (nodes_.all_as_in_file() && elements_.all_as_in_file())) return;
-    throw InputError(path.string(),
-                     "its numbers cannot change, as these may name some: " + join(file_.unknown),
-                     "keep them: --ids keep");
+    const bool same_numbers = nodes_.all_as_in_file() && elements_.all_as_in_file();
+    if (!same_numbers) require_known_references(file_.unknown, path);
   }
 
   void write() {

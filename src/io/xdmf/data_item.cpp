@@ -45,14 +45,27 @@ std::string_view trimmed_blanks(std::string_view text) {
 
 std::uint64_t product(const std::vector<std::uint64_t>& shape) { return hdf5::DatasetInfo{shape, 0}.size(); }
 
-/// Returns all text of an element.
-std::string text_in(pugi::xml_node element) {
-  std::string text;
-  for (const pugi::xml_node child : element.children()) {
-    if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) text += child.value();
+/// All text of an element, which is not copied where it is in one piece.
+class ElementText {
+ public:
+  explicit ElementText(pugi::xml_node element) {
+    for (const pugi::xml_node child : element.children()) {
+      if (child.type() != pugi::node_pcdata && child.type() != pugi::node_cdata) continue;
+      if (!first_.empty() && joined_.empty()) joined_ = first_;
+      if (first_.empty()) {
+        first_ = child.value();
+      } else {
+        joined_ += child.value();
+      }
+    }
   }
-  return text;
-}
+
+  [[nodiscard]] std::string_view view() const { return joined_.empty() ? first_ : joined_; }
+
+ private:
+  std::string_view first_;
+  std::string joined_;  // of several pieces
+};
 
 std::size_t bytes_of_number(std::size_t alternative) {
   constexpr std::array<std::size_t, 10> kBytes{8, 4, 1, 1, 2, 2, 4, 4, 8, 8};
@@ -108,11 +121,12 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
   }
 
   const std::string format = attribute(item, "Format");
-  const std::string text = text_in(item);
+  const ElementText whole_text(item);
+  const std::string_view text = whole_text.view();
   if (same_but_for_case(format, "HDF") || same_but_for_case(format, "HDF5") ||
       same_but_for_case(format, "H5")) {
     place.format = Format::hdf;
-    if (text.find('|') != std::string::npos) {
+    if (text.find('|') != std::string_view::npos) {
       throw document_.error(item, "the DataItem selects a part of a dataset",
                             "only whole arrays can be reordered: write the values as an array of their own");
     }
@@ -210,7 +224,8 @@ std::vector<Index> DataReader::read_indices(const DataPlace& place) {
 }
 
 Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const {
-  const std::string text = text_in(item);
+  const ElementText whole_text(item);
+  const std::string_view text = whole_text.view();
   const std::uint64_t count = product(place.shape);
   return values_as(place.alternative, [&](auto& numbers) {
     using Number = typename std::decay_t<decltype(numbers)>::value_type;
