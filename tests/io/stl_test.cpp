@@ -80,6 +80,16 @@ TEST(Stl, JoinsEqualPointsByFirstAppearance) {
   EXPECT_EQ(find_array(mesh, kLabel, Association::cells)->values, Values(std::vector<std::int32_t>{1, 1, 2}));
 }
 
+TEST(Stl, ReadsFacetsWithoutNormals) {
+  std::string without(kTwoSolids);
+  for (const std::string_view normal : {" normal 0 0 1", " normal 0 0 1", " normal 0 0 0"}) {
+    without.erase(without.find(normal), normal.size());
+  }
+  const TemporaryFolder folder;
+  EXPECT_EQ(read_mesh(folder.file("a.stl", without)).cells,
+            read_mesh(folder.file("b.stl", kTwoSolids)).cells);
+}
+
 TEST(Stl, TakesMinusZeroAsZeroButNothingElseAsEqual) {
   const TemporaryFolder folder;
   const Mesh mesh = read_mesh(
@@ -185,7 +195,7 @@ TEST(Stl, BrokenFilesStopWithTheirPlace) {
         ":7: 'endloop' is missing"},
        {"two coordinates", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\nvertex 1 0 0\n",
         ":5: a coordinate is 'vertex'"},
-       {"no normal", "solid a\nfacet\nouter loop\n", ":3: 'normal' is missing"},
+       {"no normal", "solid a\nfacet\nnorm 0 0 1\n", ":3: 'normal' is missing"},
        {"nan", "solid a\nfacet normal 0 0 1\nouter loop\nvertex nan 0 0\n", ":4: a coordinate is not finite"},
        {"infinite", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 inf 0\n",
         ":4: a coordinate is not finite"},

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
+#include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
@@ -163,6 +164,28 @@ TEST(Su2, KeepsLinesThatNameNoPoint) {
   EXPECT_THAT(mesh.format_metadata->contents(), testing::Contains("SU2's FFD_TAG="));
 }
 
+TEST(Su2, PointsOfBoxesFollowTheOrder) {
+  const std::string boxes =
+      std::string(kPlane) + "FFD_SURFACE_POINTS= 2\nlower\t0\t0.5 1e-1\nlower\t1\t1 0\n";
+  Mesh mesh = read_su2(boxes);
+  EXPECT_EQ(su2_of(mesh), boxes);
+  const std::vector<Index> old_to_new{3, 5, 0, 1, 2, 4};
+  apply_reordering(mesh, Permutation::from_old_to_new(old_to_new), Permutation::identity(mesh.cell_count()));
+  EXPECT_THAT(su2_of(mesh), HasSubstr("FFD_SURFACE_POINTS= 2\nlower\t3\t0.5 1e-1\nlower\t5\t1 0\n"));
+}
+
+TEST(Su2, KeepsTheValuesOfPeriodicBoundaries) {
+  const std::string periodic = with(std::string(kPlane), "PERIODIC_CENTER= 0 0 0\n", "0 0 0\n1 0 0\n0 2 0\n");
+  EXPECT_EQ(su2_of(read_su2(periodic)), periodic);
+}
+
+TEST(Su2, LeavesOutWhatStandsBehindCoordinates) {
+  Notes notes;
+  const Mesh mesh = read_su2(with(std::string(kPlane), "0 2.5 4", "0 2.5 0.1 4"), &notes);
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("points have more numbers than coordinates")));
+  EXPECT_EQ(mesh.points[4], (Point{0, 2.5, 0}));
+}
+
 TEST(Su2, NotesNumbersThatAreNotPlaces) {
   Notes notes;
   (void)read_su2(with(std::string(kPlane), "1 1 2\n", "1 1 3\n"), &notes);
@@ -306,7 +329,7 @@ TEST(Su2, RefusesBrokenFiles) {
           {"NaN", with(file, "0 2.5 4", "nan 2.5 4"), ":12: a coordinate is not finite"},
           {"infinite", with(file, "0 2.5 4", "0 inf 4"), ":12: a coordinate is not finite"},
           {"no coordinate", with(file, "0 2.5 4", "0"), ":12: the line ends before a coordinate"},
-          {"three coordinates", with(file, "0 2.5 4", "0 2.5 0 4"), ":12: the line has too many numbers"},
+          {"a word behind a point", with(file, "0 2.5 4", "0 2.5 4 a"), ":12: a number behind the coord"},
           {"halo points", with(file, "NPOIN= 6", "NPOIN= 6 5"), ":7: only 5 of the 6 points"},
           {"markers", with(file, "NMARK= 3", "NMARK= 4"), "NMARK= 4, but 3 markers follow"},
           {"no count of a marker", with(file, "MARKER_ELEMS= 0\n", ""),
@@ -315,8 +338,14 @@ TEST(Su2, RefusesBrokenFiles) {
           {"twice", with(file, "TAG= sides", "TAG= lower"), ":21: a second marker lower"},
           {"part", with(file, "TAG= sides", "TAG= SEND_RECEIVE"), ":21: the marker SEND_RECEIVE"},
           {"zones", "NZONE= 2\n" + file, ":1: the file has 2 zones"},
-          {"surface points", file + "FFD_SURFACE_POINTS= 1\nlower 0 0 0 0\n",
-           ":28: FFD_SURFACE_POINTS= names"},
+          {"surface point", file + "FFD_SURFACE_POINTS= 1\nlower 6 0 0 0\n",
+           ":29: a point of FFD_SURFACE_POINTS= is 6; 0 to 5"},
+          {"no surface point", file + "FFD_SURFACE_POINTS= 1\nlower\n",
+           ":29: a point of FFD_SURFACE_POINTS="},
+          {"too many surface points", file + "FFD_SURFACE_POINTS= 2\nlower 0 0 0 0\nA= 1\n",
+           ":30: FFD_SURFACE_POINTS= promises more lines"},
+          {"surface points first", "NDIME= 2\nFFD_SURFACE_POINTS= 0\n",
+           ":2: FFD_SURFACE_POINTS= comes before"},
           {"unknown lines", file + "NOVEL= 1\n3 4\n", ":29: expected a keyword"},
           {"two of them", file + "NPOIN= 0\n", ":28: a second NPOIN="},
           {"no points", "NDIME= 2\nNELEM= 1\n5 0 1 2\n", "has no NPOIN="},

@@ -102,6 +102,8 @@ class Su2Reader {
       (void)in_.raw_line();
     } else if (keyword_ == "MARKER_TAG") {
       read_marker();
+    } else if (keyword_ == "FFD_SURFACE_POINTS") {
+      read_surface_points();
     } else {
       keep_keyword();
     }
@@ -137,21 +139,43 @@ class Su2Reader {
     if (keyword_ == "NZONE" && parse_integer<std::int64_t>(in_, value_, "NZONE=") != 1) {
       in_.fail(fmt::format("the file has {} zones", shown(value_)), "give one file for each zone");
     }
-    if (keyword_ == "FFD_SURFACE_POINTS" &&
-        parse_integer<std::int64_t>(in_, value_, "FFD_SURFACE_POINTS=") != 0) {
-      in_.fail("FFD_SURFACE_POINTS= names points, which a new order renumbers",
-               "put 0 there and leave its lines out: SU2_DEF with DV_KIND= FFD_SETTING finds them again");
-    }
     if (keyword_ == "MARKER_ELEMS" || keyword_ == "SEND_RECV") {
       in_.fail(keyword_ + "= has no MARKER_TAG= before it", "the file may be damaged");
     }
     if (!is_plain(keyword_)) notes_.push_back(keyword_ + "= is not known, and its line is kept as it is");
     metadata_->keywords.push_back("SU2's " + keyword_ + "=");
     keep_line();
-    // coordinates of a box, and lines of its control points
-    while (keyword_.starts_with("FFD_") && in_.bytes_left() > 0 &&
-           in_.peek_line().find('=') == std::string_view::npos) {
+    // coordinates of a box, lines of its control points; center, angles and translation
+    const bool has_lines = keyword_.starts_with("FFD_") || keyword_.starts_with("PERIODIC_");
+    while (has_lines && in_.bytes_left() > 0 && in_.peek_line().find('=') == std::string_view::npos) {
       keep_line();
+    }
+  }
+
+  /// Reads lines of a marker's name, a point and its place in the box.
+  void read_surface_points() {
+    if (!has_points_) in_.fail(keyword_ + "= comes before NPOIN=", "the points must come first");
+    keep_lines();
+    metadata_->keywords.push_back("SU2's " + keyword_ + "=");
+    Metadata::Section& section = metadata_->sections.emplace_back(Metadata::Section{Part::surface_points});
+    const Index count = take_count(4);
+    (void)in_.raw_line();
+    for (Index k = 0; k < count; ++k) {
+      if (in_.at_end()) fail_count();
+      const std::string_view line = in_.peek_line();
+      if (line.find('=') != std::string_view::npos) fail_count();
+      std::string_view rest = line;
+      (void)next_word(rest);
+      const std::string_view number = next_word(rest);
+      const auto vertex = parse_integer<std::int64_t>(in_, number, "a point of " + keyword_ + "=");
+      if (vertex < 0 || vertex >= mesh_.vertex_count()) {
+        in_.fail(fmt::format("a point of {}= is {}", keyword_, vertex),
+                 fmt::format("0 to {} are possible", mesh_.vertex_count() - 1));
+      }
+      const auto begin = static_cast<std::size_t>(number.data() - line.data());
+      section.surface_points.push_back({std::string(line.substr(0, begin)), static_cast<Index>(vertex),
+                                        std::string(line.substr(begin + number.size()))});
+      (void)in_.raw_line();
     }
   }
 
@@ -190,6 +214,19 @@ class Su2Reader {
     if (in_.integer<std::int64_t>("the number at the end of the line") != place) has_other_numbers_ = true;
     numbered = true;
     if (!in_.at_line_end()) in_.fail("the line has too many numbers", "one number may follow");
+  }
+
+  /// Takes what stands behind the coordinates of a point. SU2 does not read it.
+  void take_numbers_behind_point(Index v) {
+    if (in_.at_line_end()) return;
+    std::int64_t number = -1;
+    if (in_.take_number(number) && in_.at_line_end()) {
+      if (number != v) has_other_numbers_ = true;
+      metadata_->numbers_points = true;
+      return;
+    }
+    has_more_behind_points_ = true;
+    while (!in_.at_line_end()) (void)parse_real(in_, in_.word("a number"), "a number behind the coordinates");
   }
 
   /// Takes the line end after the last of `count` items.
@@ -264,7 +301,7 @@ class Su2Reader {
         }
         if (!std::isfinite(point[k])) in_.fail("a coordinate is not finite", "a finite number is needed");
       }
-      take_number(v, metadata_->numbers_points);
+      take_numbers_behind_point(v);
     }
     end_items(count);
     if (largest_node_ >= count) {
@@ -329,6 +366,11 @@ class Su2Reader {
   }
 
   void note_numbers() {
+    if (has_more_behind_points_) {
+      notes_.push_back(in_.file() +
+                       ": points have more numbers than coordinates; they are left out, as SU2 "
+                       "does not read them");
+    }
     if (!has_other_numbers_) return;
     notes_.push_back(in_.file() +
                      ": numbers at the ends of lines are not 0, 1, 2 …; as in SU2, places count");
@@ -366,6 +408,7 @@ class Su2Reader {
   std::int64_t line_of_largest_ = 0;
   bool has_points_ = false;
   bool has_other_numbers_ = false;
+  bool has_more_behind_points_ = false;
 };
 
 }  // namespace

@@ -194,6 +194,8 @@ class Su2Writer {
         return out_.print("NMARK= {}\n", markers_.markers.size() + empty_labels());
       case Part::marker:
         return write_marker(section.text);
+      case Part::surface_points:
+        return write_surface_points(section.surface_points);
       case Part::verbatim:
         return out_.write(section.text);
     }
@@ -242,6 +244,15 @@ class Su2Writer {
     }
   }
 
+  void write_surface_points(const std::vector<Metadata::SurfacePoint>& points) {
+    out_.print("FFD_SURFACE_POINTS= {}\n", points.size());
+    for (const Metadata::SurfacePoint& point : points) {
+      out_.integer(point.before, point.vertex);
+      out_.write(point.after);
+      out_.write("\n");
+    }
+  }
+
   // ---- markers
 
   [[nodiscard]] std::optional<std::size_t> place_of(std::string_view name) const {
@@ -282,6 +293,17 @@ class Su2Writer {
 };
 
 }  // namespace
+
+std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> vertices,
+                                                      std::span<const Index> /*cells*/) const {
+  auto result = std::make_shared<Metadata>(*this);
+  if (vertices.empty()) return result;
+  for (Section& section : result->sections) {
+    for (SurfacePoint& point : section.surface_points)
+      point.vertex = vertices[static_cast<std::size_t>(point.vertex)];
+  }
+  return result;
+}
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const Markers markers(mesh);

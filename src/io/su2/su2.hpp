@@ -13,6 +13,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,10 +40,25 @@ inline constexpr std::array<int, 6> kWedge{0, 2, 1, 3, 5, 4};
 
 /// Data of SU2's files beyond the mesh.
 struct Metadata final : FormatMetadata {
-  enum class Part : std::uint8_t { dimension, elements, points, marker_count, marker, verbatim };
+  enum class Part : std::uint8_t {
+    dimension,
+    elements,
+    points,
+    marker_count,
+    marker,
+    surface_points,  ///< of a box of free-form deformation
+    verbatim
+  };
+  /// A line of FFD_SURFACE_POINTS=, which names a point.
+  struct SurfacePoint {
+    std::string before;  ///< the name of the marker, with blanks
+    Index vertex;
+    std::string after;  ///< the point's place in the box
+  };
   struct Section {
     Part part;
     std::string text = {};  ///< the name of a marker; the lines of what is kept as it is
+    std::vector<SurfacePoint> surface_points = {};
   };
   std::vector<Section> sections;        ///< in the order of the file
   std::vector<std::string> keywords;    ///< of the lines that are kept as they are
@@ -52,6 +69,8 @@ struct Metadata final : FormatMetadata {
   bool wedges_face_inward = false;  ///< by their first triangle, as in Gmsh's files
 
   [[nodiscard]] std::vector<std::string> contents() const override { return keywords; }
+  [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,
+                                                            std::span<const Index> cells) const override;
 };
 
 /// Returns the label that a marker's name is, 0 if it is none: "12" and "-3", but not "012".

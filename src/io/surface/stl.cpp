@@ -172,9 +172,11 @@ void expect_word(Scanner& scanner, std::string_view expected) {
 
 void read_facet(Scanner& scanner, Builder& builder) {
   expect_word(scanner, "facet");
-  expect_word(scanner, "normal");
-  Point normal;
-  for (double& x : normal) {
+  Point normal{0, 0, 0};
+  const bool has_normal = !same_but_for_case(scanner.peek_word(), "outer");  // some programs write none
+  if (has_normal) expect_word(scanner, "normal");
+  for (std::size_t k = 0; has_normal && k < normal.size(); ++k) {
+    double& x = normal[k];
     // the normal of a degenerate triangle may be anything; words that are not numbers are ignored
     const std::string_view word = scanner.word("a normal");
     if (std::from_chars(word.data(), word.data() + word.size(), x).ec != std::errc{}) x = 0;
