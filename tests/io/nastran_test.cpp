@@ -332,10 +332,44 @@ TEST(Nastran, WritesAndReadsMeshesOfOtherFormats) {
   EXPECT_EQ(back.cells, mesh.cells);
 }
 
+TEST(Nastran, PutsNodesOfOtherSystemsIntoTheBasicOne) {
+  // 1: x along the basic y, from (1, 0, 0). 2: cylinders in 1. 3: spheres in the basic system. 4: by the
+  // nodes 1, 2 and 3, z along the basic x.
+  const std::string systems =
+      "GRDSET,,1\n"
+      "GRID,1,0,0.,0.,0.\n"
+      "GRID,2,0,1.,0.,0.\n"
+      "GRID,3,0,0.,0.,1.\n"
+      "GRID,4,,2.,3.,4.\n"
+      "GRID,5,2,2.,90.,4.\n"
+      "GRID,6,3,2.,90.,90.\n"
+      "GRID,7,3,2.,0.,45.\n"
+      "GRID,8,4,1.,2.,3.\n"
+      "CORD2R,1,,1.,0.,0.,1.,0.,1.\n,1.,1.,0.\n"
+      "CORD2C,2,1,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n"
+      "CORD2S,3,0,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n"
+      "CORD1R,4,1,2,3\n"
+      "CHEXA,1,1,1,2,3,4,5,6\n,7,8\n";
+  const TemporaryFolder folder;
+  Mesh mesh = read_mesh(folder.file("a.bdf", systems));
+  const std::vector<Point> expected{{0, 0, 0},  {1, 0, 0}, {0, 0, 1}, {-2, 2, 4},
+                                    {-1, 0, 4}, {0, 2, 0}, {0, 0, 2}, {3, -2, 1}};
+  ASSERT_EQ(mesh.points.size(), expected.size());
+  for (std::size_t v = 0; v < expected.size(); ++v) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(mesh.points[v][k], expected[v][k], 1e-15) << v + 1;
+  }
+  write_mesh(mesh, folder.path() / "b.bdf");
+  EXPECT_EQ(test::content_of(folder.path() / "b.bdf"), systems);
+  mesh.points[4] = {7, 8, 9};
+  write_mesh(mesh, folder.path() / "c.bdf");
+  EXPECT_EQ(read_mesh(folder.path() / "c.bdf").points, mesh.points);
+}
+
 TEST(Nastran, RefusesFaultsWithTheirLine) {
   const std::vector<std::array<std::string, 3>> faults{
       {"GRID,99,,5.,5.,5.\n", "GRID,12,,5.,5.,5.\n", "23: node 12 is given twice"},
-      {"GRID,99,,5.,5.,5.\n", "GRID,99,3,5.,5.,5.\n", "23: node 99 is given in the coordinate system 3"},
+      {"GRID,99,,5.,5.,5.\n", "GRID,99,3,5.,5.,5.\n", "23: the coordinate system 3 is not given"},
+      {"GRID,99,,5.,5.,5.\n", "GRID,99,-3,5.,5.,5.\n", "23: the system of a node is '-3'"},
       {"GRID,99,,5.,5.,5.\n", "GRID,99,,5.,5.x,5.\n", "23: a coordinate of node 99 is '5.x'"},
       {"GRID,99,,5.,5.,5.\n", "GRID,99,,5.,nan,5.\n", "23: a coordinate of node 99 is 'nan'"},
       {"GRID,99,,5.,5.,5.\n", "GRID,-3,,5.,5.,5.\n", "23: the number of a node is '-3'"},
@@ -347,7 +381,17 @@ TEST(Nastran, RefusesFaultsWithTheirLine) {
       {"6+A1\n", "6+B1\n", "24: lines that continue a card are not behind it"},
       {"PSOLID  5       1\n", "BEGIN SUPER=2\n", "28: a second section of bulk data begins"},
       {"PSOLID  5       1\n", "INCLUDE 'x.inc'\n", "28: the included file 'x.inc' does not exist"},
-      {"PSOLID  5       1\n", "GRDSET,,3\n", "28: GRDSET gives nodes in a coordinate system"},
+      {"PSOLID  5       1\n", "GRDSET,,3\n", ": the coordinate system 3 is not given"},
+      {"PSOLID  5       1\n", "GRDSET,,3\nCORD1R,3,999,1,2\n",
+       "29: node 999 of the coordinate system is missing"},
+      {"PSOLID  5       1\n", "GRDSET,,3\nCORD1R,3,1,2,3\n", "29: the coordinate system stands on itself"},
+      {"PSOLID  5       1\n", "GRDSET,,3\nCORD2R,3,3,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n",
+       "29: the coordinate system stands on itself"},
+      {"PSOLID  5       1\n", "GRDSET,,3\nCORD2R,3,,0.,0.,0.,0.,0.,1.\n,0.,0.,2.\n",
+       "29: the three points of the coordinate system are on a line"},
+      {"PSOLID  5       1\n", "CORD2R,3,,0.,0.,x,0.,0.,1.\n,0.,0.,2.\n", "28: a coordinate of CORD2R is 'x'"},
+      {"PSOLID  5       1\n", "CORD1S,3,1,2,0\n", "28: field 5 of CORD1S is '0'"},
+      {"PSOLID  5       1\n", "CORD1S,3,1,2,3,3,1,2,3\n", "28: the coordinate system 3 is given twice"},
       {"BEGIN BULK\n", "", ": case control without BEGIN BULK"},
   };
   const TemporaryFolder folder;

@@ -96,9 +96,9 @@ class BulkWriter {
     append_edited_card(card);
   }
 
-  /// Writes a node with other coordinates than in the file.
+  /// Writes a node with other coordinates than in the file, in the basic system.
   void write_moved_node(Index v) {
-    std::vector<std::string> texts{std::to_string(nodes_.at(v)), ""};
+    std::vector<std::string> texts{std::to_string(nodes_.at(v)), deck_.has_default_system ? "0" : ""};
     for (const double x : mesh_.points[v]) {
       RealText real = real_text(x);
       if (real.is_rounded) ++rounded_;

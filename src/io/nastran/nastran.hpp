@@ -34,7 +34,8 @@ struct Deck {
   std::vector<ElementCard> elements;
   IdMap node_numbers;
   IdMap element_numbers;
-  std::vector<Point> points;                 ///< of the nodes
+  std::vector<Point> points;                 ///< of the nodes, in the basic system
+  bool has_default_system = false;           ///< for nodes that name none: GRDSET
   std::vector<std::int64_t> other_points;    ///< numbers of points that are no nodes, ascending
   std::vector<std::int64_t> other_elements;  ///< of elements that are no cells, ascending
   std::vector<EntitySet> sets;               ///< of the cards SET3; members are positions in the file

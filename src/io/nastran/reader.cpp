@@ -8,6 +8,7 @@
 #include "io/nastran/lists.hpp"
 #include "io/nastran/nastran.hpp"
 #include "io/nastran/references.hpp"
+#include "io/nastran/systems.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -87,10 +88,9 @@ class DeckReader {
     const std::int64_t id = number(1, "the number of a node");
     if (!deck_->node_numbers.add(id)) fail(fmt::format("node {} is given twice", id), "numbers must differ");
     const std::string_view system = fields_.text(2);
-    if (!system.empty() && system != "0") {
-      fail(fmt::format("node {} is given in the coordinate system {}", id, shown(system)),
-           "write the nodes in the basic system: field CP of GRID blank or 0");
-    }
+    const bool is_basic = system.empty() || system == "0";
+    system_of_.push_back(system.empty() ? kDefault : is_basic ? 0 : number(2, "the system of a node"));
+    has_systems_ = has_systems_ || !is_basic;
     Point point{0, 0, 0};
     for (std::size_t k = 0; k < point.size(); ++k) {
       const std::string_view text = fields_.text(3 + k);
@@ -194,9 +194,10 @@ class DeckReader {
     other_since_ = true;
     const auto found = references(name, fields_);
     if (name == "GRDSET" && !fields_.text(2).empty() && fields_.text(2) != "0") {
-      fail("GRDSET gives nodes in a coordinate system",
-           "write them in the basic system: field CP blank or 0");
+      default_system_ = number(2, "the system of nodes");
+      has_systems_ = deck_->has_default_system = true;
     }
+    systems_.add(name, fields_, card_.begin);
     if (!found) {
       strangers_.push_back({name, card_});
     } else {
@@ -230,6 +231,7 @@ class DeckReader {
     if (mesh_.vertex_count() == 0) throw InputError(path, "has no GRID", kNoMesh);
     if (mesh_.cell_count() == 0) throw InputError(path, "has no elements that are cells", kNoMesh);
     resolve_nodes();
+    place_nodes();
     mesh_.dimension = 3;
     if (mesh_.cell_blocks.size() < 2) mesh_.cell_blocks.clear();
     mesh_.vertex_ids = deck_->node_numbers.ids_unless_from(1);
@@ -263,6 +265,21 @@ class DeckReader {
                    "add it, or correct the element");
       }
       mesh_.cells.vertices[static_cast<std::size_t>(missing.entry)] = v;
+    }
+  }
+
+  /// Moves nodes that are given in a system of their own to the basic one.
+  void place_nodes() {
+    if (!has_systems_) return;
+    std::replace(system_of_.begin(), system_of_.end(), kDefault, default_system_);
+    const std::vector<Point> given = mesh_.points;
+    const CoordinateSystems::NodePosition in_basic = [&](std::int64_t node, std::size_t byte) {
+      const Index v = deck_->node_numbers.find(node);
+      if (v < 0) file_.fail(byte, fmt::format("node {} of the coordinate system is missing", node), "add it");
+      return systems_.in_basic(system_of_[v], given[v], byte, in_basic);
+    };
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      mesh_.points[v] = systems_.in_basic(system_of_[v], given[v], deck_->nodes[v].begin, in_basic);
     }
   }
 
@@ -401,6 +418,11 @@ class DeckReader {
   std::shared_ptr<Deck> deck_ = std::make_shared<Deck>();
   Piece card_;  // that is being read
   CardFields fields_;
+  CoordinateSystems systems_{file_};
+  static constexpr std::int64_t kDefault = -1;  // of a node that names no system
+  std::int64_t default_system_ = 0;
+  std::vector<std::int64_t> system_of_;  // each node
+  bool has_systems_ = false;             // whether any is not the basic one
   std::vector<MissingNode> missing_;
   std::vector<std::int64_t> labels_;
   std::vector<Index> labelled_;
