@@ -379,6 +379,7 @@ TEST(Nastran, RefusesFaultsWithTheirLine) {
       {"CQUAD4  11              1       4       3       2\n", "CQUAD4,11,,1,4,3\n",
        "29: element 11 has 3 of the 4 nodes of CQUAD4"},
       {"6+A1\n", "6+B1\n", "24: lines that continue a card are not behind it"},
+      {"GRID,99,,5.,5.,5.\n", "GRID,99,,5.,5.,5.\n=,*1,=,*1.,==\n", "24: cards are repeated by '='"},
       {"PSOLID  5       1\n", "BEGIN SUPER=2\n", "28: a second section of bulk data begins"},
       {"PSOLID  5       1\n", "INCLUDE 'x.inc'\n", "28: the included file 'x.inc' does not exist"},
       {"PSOLID  5       1\n", "GRDSET,,3\n", ": the coordinate system 3 is not given"},

@@ -191,6 +191,7 @@ class DeckReader {
   // ---- other cards
 
   void read_other(const std::string& name) {
+    if (name.starts_with('=')) fail("cards are repeated by '='", "write out the cards that it stands for");
     other_since_ = true;
     const auto found = references(name, fields_);
     if (name == "GRDSET" && !fields_.text(2).empty() && fields_.text(2) != "0") {
