@@ -8,6 +8,7 @@
 #include "io/nastran/lists.hpp"
 #include "io/nastran/nastran.hpp"
 #include "io/nastran/references.hpp"
+#include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -215,6 +216,8 @@ class DeckReader {
   void add_points(const NumberRange& range) {
     constexpr std::int64_t kMost = 10'000'000;  // of one range
     if (range.to - range.from > kMost) fail("a range of more than ten million points", "correct it");
+    const std::int64_t count = std::max<std::int64_t>((range.to - range.from) / range.step + 1, 0);
+    claim_memory(static_cast<std::uint64_t>(count) * sizeof(std::int64_t), "a range of points");
     for (std::int64_t n = range.from; n <= range.to; n += range.step) deck_->other_points.push_back(n);
   }
 

@@ -5,6 +5,7 @@
 //
 // VTK's own reader is not used: it trusts the sizes in a header when it allocates, reads past the end of
 // damaged arrays, cannot read the NaN that VTK writes as text, and reports faults on standard error.
+#include "base/memory.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
 
@@ -224,7 +225,10 @@ class VtuReader {
     for (std::int64_t i = 0; i < components && i < 64; ++i) {
       const std::string* name = element.attribute("ComponentName" + std::to_string(i));
       if (name == nullptr) continue;
-      array.component_names.resize(static_cast<std::size_t>(components));
+      if (array.component_names.empty()) {
+        file_.claim(element, bytes_for(static_cast<std::uint64_t>(components), sizeof(std::string)));
+        array.component_names.resize(static_cast<std::size_t>(components));
+      }
       array.component_names[static_cast<std::size_t>(i)] = *name;
     }
     read_facts(element, association, array);
