@@ -38,19 +38,13 @@ void Reading::require_shape(const Variable& variable, const std::vector<std::siz
 }
 
 std::string Reading::add_array(DataArray array) {
-  const std::string name = array.name;
-  for (int k = 2; !arrays_.emplace(array.association, array.name).second; ++k) {
-    array.name = fmt::format("{} ({})", name, k);
-  }
+  array.name = arrays_.use(array.association, array.name);
   mesh.data.push_back(std::move(array));
   return mesh.data.back().name;
 }
 
 std::string Reading::add_set(EntitySet set) {
-  const std::string name = set.name;
-  for (int k = 2; !sets_.emplace(set.association, set.name).second; ++k) {
-    set.name = fmt::format("{} ({})", name, k);
-  }
+  set.name = sets_.use(set.association, set.name);
   mesh.sets.push_back(std::move(set));
   return mesh.sets.back().name;
 }
