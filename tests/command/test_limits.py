@@ -1,5 +1,6 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """What a file may take that claims more than it holds, which files it may name, and how long a byte may take."""
+import contextlib
 import gzip
 import os
 import resource
@@ -67,7 +68,7 @@ def test_arrays_that_share_a_compressed_block(command, tmp_path):
 
 
 def test_a_gzip_file_of_blanks(tmp_path):
-    packed = gzip.compress(b"OFF\n" + b" " * (1 << 30), 1)
+    packed = gzip.compress(b"OFF\n" + b" " * (400 << 20), 9)
     (tmp_path / "a.off.gz").write_bytes(packed)
     line = refused(tmp_path, "info", "a.off.gz")
     assert line.startswith("meshorder: a.off.gz: what is compressed in it would take 1 MiB beside ")
@@ -84,8 +85,8 @@ def test_datasets_of_values_that_are_not_there(tmp_path):
     points = 1 << 20
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file.create_dataset("none", shape=(10**12, 3), dtype="f8", chunks=(1 << 16, 3), compression="gzip", fillvalue=1)
-        file.create_dataset("p", data=[[0.0, 0, 0]] * points, chunks=(points, 3), compression="gzip")
-        file.create_dataset("u", data=[0.0] * points, chunks=(points,), compression="gzip")
+        for name, shape in (("p", (points, 3)), ("u", (points,))):
+            file.create_dataset(name, shape=shape, dtype="f8", chunks=shape, compression="gzip")[...] = 0
     (tmp_path / "a.xdmf").write_text(XDMF.format(10**12, "HDF", "a.h5:/none", ""))
     assert "claims 3000000000000 values, but only 0 bytes are there" in refused(tmp_path, "info", "a.xdmf")
     array = '<Attribute Name="a{}" Center="Node"><DataItem Dimensions="{}" Format="HDF">a.h5:/u</DataItem></Attribute>\n'
@@ -122,12 +123,9 @@ def test_pipes_end_at_the_limit(command, tmp_path):
     os.mkfifo(pipe)
 
     def fill(text, times):
-        with open(pipe, "w") as stream:
-            try:
-                for _ in range(times):
-                    stream.write(text)
-            except BrokenPipeError:
-                pass
+        with contextlib.suppress(BrokenPipeError), open(pipe, "w") as stream:
+            for _ in range(times):
+                stream.write(text)
 
     for times, limit in ((1, "none"), (10**6, "10M")):
         writer = threading.Thread(target=fill, args=(TETRAHEDRON if times == 1 else "# endless\n" * 100, times))
@@ -184,3 +182,32 @@ def test_hdf5_does_not_lead_elsewhere(command, tmp_path):
         assert "is not in the mesh's folder; put it below" in line_of(place, kind)
     (tmp_path / "mesh" / "a.xdmf").write_text(XDMF.format(3, "HDF", "../b.h5:/p", ""))
     command.ok("info", "mesh/a.xdmf", "--allow-includes-from", ".")
+
+
+def repeated(head, unit, tail=""):
+    """A file of about 400 kB."""
+    return head + unit * ((400_000 - len(head)) // len(unit)) + tail
+
+
+GMSH = ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+        "$Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n")
+VIEW = '$NodeData\n1\n"u"\n1\n0\n3\n0\n1\n1\n1 0\n$EndNodeData\n'
+ATTRIBUTE = '<Attribute Name="a" Center="Cell"><DataItem Dimensions="1" Format="XML">1</DataItem></Attribute>\n'
+SET = '<Set Name="a" SetType="Cell"><DataItem Dimensions="1" NumberType="Int" Format="XML">0</DataItem></Set>\n'
+TRIANGLE = XDMF.format(3, "XML", "0 0 0 1 0 0 0 1 0", "|").split("|")
+
+
+@pytest.mark.parametrize(("name", "text"), [
+    ("views.msh", repeated(GMSH, VIEW)),
+    ("attributes.xdmf", repeated(TRIANGLE[0], ATTRIBUTE, TRIANGLE[1])),
+    ("sets.xdmf", repeated(TRIANGLE[0], SET, TRIANGLE[1])),
+    ("ranges.inp", repeated("*NODE\n" + "".join(f"{k},0,0,{k}\n" for k in range(1, 10_000))
+                            + "*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n*NSET,NSET=s,GENERATE\n", "1,1000000000,1\n")),
+], ids=lambda value: value if len(value) < 20 else "")
+def test_repeated_names_take_linear_time(tmp_path, name, text):
+    """Each of these took a minute or more at 1 MB."""
+    (tmp_path / name).write_text(text)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    run_within(8, tmp_path, "info", name)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 5

@@ -336,8 +336,8 @@ void File::claim(const std::string& path, std::uint64_t bytes) const {
 
 File File::open(const FilePath& path) {
   const Session session;
-  if (path.store() != nullptr) return in_memory(path.read(), path.string());
-  if (!path.is_file()) (void)path.read_first(1);  // throws
+  // not those of pipes, which HDF5 would wait for, and of devices, which are refused
+  if (path.store() != nullptr || !path.is_file()) return in_memory(path.read(), path.string());
   std::error_code ignored;
   count_file(path, std::filesystem::file_size(path.path(), ignored));
   return open(path.path(), path.string());
