@@ -14,6 +14,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <set>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -270,28 +273,27 @@ class VtuReader {
           [&](const ArrayRole& other) { return other.role == kind && other.association == association; });
       if (!known) metadata_->roles.push_back({kind, association, *name, {}});
     }
-    std::vector<std::string> names;
+    std::set<std::string> names;
     for (const VtuElement& element : section.children) {
       if (!is_array(element)) {
         note_unknown(element);
         continue;
       }
       DataArray array = read_array(element, association, tuples);
-      if (std::find(names.begin(), names.end(), array.name) != names.end())
+      if (!names.insert(array.name).second)
         throw file_.error(element, "the array '" + array.name + "' is given twice", "names must differ");
-      names.push_back(array.name);
-      const auto before = std::find_if(arrays_.begin(), arrays_.end(), [&](const DataArray& other) {
-        return other.association == association && other.name == array.name;
-      });
-      if (before == arrays_.end()) {
+      const auto [known, is_new] = places_.try_emplace({association, array.name}, arrays_.size());
+      if (is_new) {
         arrays_.push_back(std::move(array));
-      } else if (before->components != array.components || before->values.index() != array.values.index()) {
+        continue;
+      }
+      DataArray& before = arrays_[known->second];
+      if (before.components != array.components || before.values.index() != array.values.index()) {
         throw file_.error(element,
                           "the array '" + array.name + "' is of another type than in the piece before",
                           "all pieces have the same arrays");
-      } else {
-        append(before->values, std::move(array.values));
       }
+      append(before.values, std::move(array.values));
     }
   }
 
@@ -321,6 +323,7 @@ class VtuReader {
   Mesh mesh_;
   std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   std::vector<DataArray> arrays_;
+  std::map<std::pair<Association, std::string>, std::size_t> places_;  // of arrays
   FileCells cells_;
   const VtuElement* types_ = nullptr;
 };
