@@ -7,11 +7,11 @@
 #include "base/run_scope.hpp"
 #include <meshorder/error.hpp>
 
-#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 #include <utility>
 
 namespace meshorder {
@@ -164,11 +164,10 @@ void require_memory(IncidenceRef elements) {
   }
   const std::uint64_t bytes = bytes_for(entries, kBytesEach);
   if (bytes <= memory_limit().bytes) return;
-  throw TooLarge(fmt::format(
-      "the graph of all vertices would have {} entries, as each cell joins all of its vertices, and take {}, "
-      "more than the limit of {}; cut the cells of many vertices, or raise the limit on memory "
-      "(--limit-memory)",
-      entries, size_text(bytes), size_text(memory_limit().bytes)));
+  throw TooLarge("the graph of all vertices would have " + std::to_string(entries) +
+                 " entries, as each cell joins all of its vertices, and take " + size_text(bytes) +
+                 ", more than the limit of " + size_text(memory_limit().bytes) +
+                 "; cut the cells of many vertices, or raise the limit on memory (--limit-memory)");
 }
 
 }  // namespace
