@@ -34,10 +34,10 @@ void require_readable(const fs::path& path, const fs::file_status& status) {
 /// Returns the first `wanted` bytes of a file that has `size`.
 std::string read_sized(std::istream& stream, const std::string& name, std::uintmax_t size,
                        std::uintmax_t wanted) {
-  if (wanted > limit_on_unknown_sizes()) {
-    throw InputError(name,
-                     fmt::format("has {}, more than the limit of {}", size_text(size),
-                                 size_text(limit_on_unknown_sizes())),
+  // a limit on claims is none on what is there
+  const std::uint64_t most = std::max(limit_on_unknown_sizes(), usable_memory() / 4 * 3);
+  if (wanted > most) {
+    throw InputError(name, fmt::format("has {}, more than the limit of {}", size_text(size), size_text(most)),
                      "raise the limit on memory (--limit-memory) if it fits");
   }
   std::string bytes(wanted, '\0');
