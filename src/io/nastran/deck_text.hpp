@@ -55,9 +55,9 @@ class DeckText {
   std::string text_;
   Piece bulk_;
   std::vector<Origin> origins_;
-  /// The last byte whose line was asked for.
+  /// The last byte whose line was asked for; none yet.
   struct Counted {
-    std::size_t byte = 0;
+    std::size_t byte = std::string::npos;
     std::int64_t line = 0;
   };
   mutable Counted counted_;
