@@ -97,6 +97,7 @@ void add_apply(CLI::App& subcommand) {
       subcommand.add_flag("--inverse", arguments->inverse, "Restore the old order, with the old ids");
   add_ids_option(subcommand, arguments->ids)->excludes(inverse);
   add_keeping_options(subcommand, arguments->keeping);
+  add_reading_options(subcommand);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

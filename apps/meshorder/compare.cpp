@@ -164,6 +164,7 @@ void add_compare(CLI::App& subcommand) {
       ->capture_default_str();
   add_cache_option(subcommand, arguments->caches);
   add_ordering_options(subcommand, arguments->ordering);
+  add_reading_options(subcommand);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

@@ -225,6 +225,7 @@ void add_info(CLI::App& subcommand) {
       "--measure", arguments->measure,
       "Run the kernels for a few seconds, in the mesh's order and in a better one, instead of\n"
       "predicting the gain");
+  add_reading_options(subcommand);
   add_common(subcommand, *arguments, std::string(kQuiet) + ": status 0 says that the file can be read");
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

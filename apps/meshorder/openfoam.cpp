@@ -397,6 +397,7 @@ void add_openfoam(CLI::App& subcommand) {
                       "Replace a renumberMeshDict that asks for another order; without it such a file stays");
   subcommand.add_flag("--dry-run", arguments->dry_run, "Write nothing");
   add_ordering_options(subcommand, arguments->ordering);
+  add_reading_options(subcommand);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

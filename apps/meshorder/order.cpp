@@ -195,6 +195,7 @@ void add_order(CLI::App& subcommand) {
       "Also write the permutations as NumPy files, PREFIX.vertices.old_to_new.npy and so on, and\n"
       "PREFIX.maps.json, by which `apply` knows the mesh");
   add_ordering_options(subcommand, arguments->reordering.order);
+  add_reading_options(subcommand);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

@@ -219,6 +219,7 @@ void add_report(CLI::App& subcommand) {
       ->check(positive())
       ->capture_default_str();
   add_ordering_options(subcommand, arguments->ordering);
+  add_reading_options(subcommand);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

@@ -131,6 +131,7 @@ void add_reproduce(CLI::App& subcommand) {
       ->capture_default_str();
   subcommand.add_flag("--no-pin", arguments->no_pin, "Do not bind threads to processors");
   add_ordering_options(subcommand, plan.ordering);
+  add_reading_options(subcommand);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { run(*arguments); });
 }

@@ -13,6 +13,7 @@ void add_serve_steps(CLI::App& subcommand) {
   subcommand.description("Serve a study: read tasks on standard input and simulate them");
   subcommand.group("");  // for `reproduce` only: not shown in the help
   const auto arguments = std::make_shared<Common>();
+  add_reading_options(subcommand);
   add_common(subcommand, *arguments);
   subcommand.callback(
       [arguments] { with_threads(arguments->threads, [] { serve_steps(std::cin, std::cout); }); });

@@ -254,6 +254,7 @@ void add_simulate(CLI::App& subcommand) {
   add_scenario_options(subcommand, *arguments);
   add_output_options(subcommand, *arguments);
   add_ordering_options(subcommand, arguments->ordering);
+  add_reading_options(subcommand);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

@@ -7,9 +7,11 @@
 #include <meshorder/permutation.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,6 +43,13 @@ struct ReadOptions {
   std::function<std::string(std::string_view name)> companion = {};
   Notes* notes = nullptr;  ///< receives warnings; null: they are dropped
   Run run = {};            ///< `threads`; readers report no progress
+  /// The most bytes that a file may take for what it claims rather than holds: compressed or repeated values,
+  /// sizes without values, ranges of numbers. None: 256 MiB and 100 times the size of its files, at most
+  /// three quarters of the memory that this process may have.
+  std::optional<std::uint64_t> memory_limit = {};
+  /// Folders where files may be that this one names to be read with it, besides its own folder. Links are
+  /// followed before.
+  std::vector<std::filesystem::path> include_folders = {};
 };
 
 /// Reads a mesh from a file.
@@ -49,7 +58,8 @@ struct ReadOptions {
 /// @param options  see `ReadOptions`
 /// @return a mesh with at least one cell that `check_mesh` accepts
 /// @throws InputError for a file that is missing, faulty or without cells, with place and remedy; for more
-///         than 2,147,483,647 vertices or cells; for an unknown extension, with the known ones
+///         than 2,147,483,647 vertices or cells; for one that claims more than `options.memory_limit` or
+///         names files elsewhere; for an unknown extension, with the known ones
 /// @throws InvalidArgument for an unknown format, with the known ones
 /// @throws Unavailable for a format or a compression of which this build lacks the library
 [[nodiscard]] MESHORDER_API Mesh read_mesh(const std::filesystem::path& path,

@@ -1,8 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/stepper.hpp"
 
+#include "base/memory.hpp"
 #include "base/stopwatch.hpp"
 #include "io/npy.hpp"
+#include "io/stream/read_limits.hpp"
 #include "lab/scenario/embedded_vertices.hpp"
 #include "lab/scenario/motion_file.hpp"
 #include "lab/scenario/simulation.hpp"
@@ -194,8 +196,25 @@ void serve_steps(std::istream& questions, std::ostream& answers) {
   }
 }
 
+namespace {
+
+/// Returns the arguments of a child, which reads its mesh under the limits of this process.
+std::vector<std::string> arguments_for(int threads) {
+  std::vector<std::string> arguments{"serve-steps", "--threads", std::to_string(threads)};
+  if (const MemoryLimit limit = memory_limit(); limit.is_given) {
+    const bool none = limit.bytes == UINT64_MAX;
+    arguments.insert(arguments.end(), {"--limit-memory", none ? "none" : std::to_string(limit.bytes)});
+  }
+  for (const std::filesystem::path& folder : allowed_include_folders()) {
+    arguments.insert(arguments.end(), {"--allow-includes-from", folder.string()});
+  }
+  return arguments;
+}
+
+}  // namespace
+
 Stepper::Stepper(const std::filesystem::path& program, int threads, const StepperTask& task)
-    : name_(task.scenario), process_(program, {"serve-steps", "--threads", std::to_string(threads)}, true) {
+    : name_(task.scenario), process_(program, arguments_for(threads), true) {
   ready_ = stepper_ready(ask(to_json(task)));
 }
 

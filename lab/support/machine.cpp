@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/support/machine.hpp"
 
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "kernels/simd_target.hpp"
@@ -54,7 +55,7 @@ MachineRecord describe_machine() {
   machine.cores = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
   machine.system = std::string(system.sysname) + " " + system.release + " " + system.machine;
   machine.caches = caches_of_this_machine();
-  machine.memory_bytes = memory_of_this_machine();
+  machine.memory_bytes = usable_memory();
   const std::size_t bytes = buffer_bytes(machine);
   machine.read_bandwidth = read_bandwidth(bytes, kPasses);
   const int threads = thread_count();

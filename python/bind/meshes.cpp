@@ -18,6 +18,7 @@
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -327,18 +328,30 @@ void add_meshes(nb::module_& module) {
     const MeshView view = mesh_view(points, cells, 0);
     return unlocked([&] { return make_mesh(view); });
   });
-  module.def("read", [](const std::filesystem::path& path, const std::string& format) {
-    Notes notes;
-    Mesh mesh = unlocked([&] { return read_mesh(path, {.format = format, .notes = &notes}); });
-    return nb::make_tuple(nb::cast(std::move(mesh)), notes);
-  });
-  module.def("read_bytes", [](const nb::bytes& bytes, const std::string& format) {
-    Notes notes;
-    const std::span data(static_cast<const std::byte*>(bytes.data()), bytes.size());
-    Mesh mesh =
-        unlocked([&] { return read_mesh(data, {.format = format, .name = "bytes", .notes = &notes}); });
-    return nb::make_tuple(nb::cast(std::move(mesh)), notes);
-  });
+  module.def(
+      "read",
+      [](const std::filesystem::path& path, const std::string& format,
+         std::optional<std::uint64_t> memory_limit, std::vector<std::filesystem::path> include_folders) {
+        Notes notes;
+        const ReadOptions options{.format = format,
+                                  .notes = &notes,
+                                  .memory_limit = memory_limit,
+                                  .include_folders = std::move(include_folders)};
+        Mesh mesh = unlocked([&] { return read_mesh(path, options); });
+        return nb::make_tuple(nb::cast(std::move(mesh)), notes);
+      },
+      nb::arg(), nb::arg(), nb::arg().none(), nb::arg());
+  module.def(
+      "read_bytes",
+      [](const nb::bytes& bytes, const std::string& format, std::optional<std::uint64_t> memory_limit) {
+        Notes notes;
+        const std::span data(static_cast<const std::byte*>(bytes.data()), bytes.size());
+        const ReadOptions options{
+            .format = format, .name = "bytes", .notes = &notes, .memory_limit = memory_limit};
+        Mesh mesh = unlocked([&] { return read_mesh(data, options); });
+        return nb::make_tuple(nb::cast(std::move(mesh)), notes);
+      },
+      nb::arg(), nb::arg(), nb::arg().none());
   module.def("formats", [] {
     nb::list list;
     for (const FormatInfo& format : formats())

@@ -1,6 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Meshes as arrays, as files and as meshio's, by what meshio reads."""
 
+import gzip
 import pathlib
 
 import meshio
@@ -159,3 +160,19 @@ def test_refuses_faulty_points(mesh):
         meshorder.order_mesh(None, [[0, 1, 2, 3]])
     with pytest.raises(InvalidArgument):
         meshorder.reorder("mesh.msh")
+
+
+def test_files_take_no_more_than_the_limit(tmp_path):
+    text = b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n" + b" " * (4 << 20)
+    packed = gzip.compress(text)
+    assert len(meshorder.read(packed, "off").shapes) == 1
+    with pytest.raises(InputError, match="would take .* more than the limit of 1 MiB"):
+        meshorder.read(packed, "off", memory_limit=1 << 20)
+    (tmp_path / "mesh").mkdir()
+    (tmp_path / "other.txt").write_text("# nothing\n")
+    mesh = tmp_path / "mesh" / "a.veg"
+    mesh.write_text("*VERTICES\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n*INCLUDE ../other.txt\n"
+                    "*ELEMENTS\nTET\n1 4 0\n1 1 2 3 4\n")  # fmt: skip
+    with pytest.raises(InputError, match="is not in the mesh's folder"):
+        meshorder.read(mesh)
+    assert len(meshorder.read(mesh, include_folders=[tmp_path]).shapes) == 1

@@ -1,14 +1,17 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/incidence.hpp"
 
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/resize_in_steps.hpp"
 #include "base/run_scope.hpp"
+#include <meshorder/error.hpp>
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 #include <utility>
 
 namespace meshorder {
@@ -148,7 +151,29 @@ CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> chunks)
 
 }  // namespace
 
+namespace {
+
+/// Throws TooLarge where elements of many vertices would make a graph beyond the limit on memory.
+void require_memory(IncidenceRef elements) {
+  constexpr Offset kMany = 64;              // vertices of an element
+  constexpr std::uint64_t kBytesEach = 16;  // of an entry, with what orders keep beside the graph
+  std::uint64_t entries = 0;
+  for (Index e = 0; e < elements.size(); ++e) {
+    const Offset size = elements.offsets[e + 1] - elements.offsets[e];
+    if (size > kMany) entries += static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size - 1);
+  }
+  const std::uint64_t bytes = bytes_for(entries, kBytesEach);
+  if (bytes <= memory_limit().bytes) return;
+  throw TooLarge("the graph of all vertices would have " + std::to_string(entries) +
+                 " entries, as each cell joins all of its vertices, and take " + size_text(bytes) +
+                 ", more than the limit of " + size_text(memory_limit().bytes) +
+                 "; cut the cells of many vertices, or raise the limit on memory (--limit-memory)");
+}
+
+}  // namespace
+
 CsrGraph joined_vertices(IncidenceRef elements) {
+  require_memory(elements);
   std::vector<Offset> offsets(Offset{elements.vertex_count} + 1, 0);
   std::vector<Rows> rows = find_rows(elements, offsets);
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());

@@ -5,6 +5,7 @@
 #include "io/format.hpp"
 #include "io/kept_cells.hpp"
 #include "io/stream/gzip.hpp"
+#include "io/stream/read_limits.hpp"
 #include "mesh/degenerate.hpp"
 #include "mesh/reorder.hpp"
 #include <meshorder/error.hpp>
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <istream>
-#include <iterator>
 #include <ostream>
 #include <string>
 #include <utility>
@@ -53,6 +53,7 @@ Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions&
   Notes ignored;
   Notes& notes = options.notes != nullptr ? *options.notes : ignored;
   return in_arena(options.run, [&] {
+    const ReadScope scope(path, options.memory_limit, options.include_folders);
     Mesh mesh = format.read(path, notes);
     mesh.format = format.key();
     if (mesh.cell_count() == 0) throw InputError(path.string(), "has no cells", "a mesh needs at least one");
@@ -72,9 +73,18 @@ Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions&
   });
 }
 
+std::string name_in_memory(const ReadOptions& options) {
+  return options.name.empty() ? "<memory>" : options.name;
+}
+
 Mesh read_from_memory(std::string bytes, const ReadOptions& options) {
-  const std::string name = options.name.empty() ? "<memory>" : options.name;
-  bytes = uncompressed(std::move(bytes), name);
+  const std::string name = name_in_memory(options);
+  {
+    const FilePath file(name);
+    const ReadScope scope(file, options.memory_limit);
+    count_file(file, bytes.size());
+    bytes = uncompressed(std::move(bytes), name);
+  }
   const Format* format = options.format.empty() ? format_of_bytes(bytes) : &format_named(options.format);
   if (format == nullptr) {
     throw InputError(name, "does not look like a mesh of a known format", "name its format");
@@ -150,7 +160,10 @@ Mesh read_mesh(std::span<const std::byte> bytes, const ReadOptions& options) {
 }
 
 Mesh read_mesh(std::istream& stream, const ReadOptions& options) {
-  return read_from_memory(std::string(std::istreambuf_iterator<char>(stream), {}), options);
+  const std::string name = name_in_memory(options);
+  const FilePath file(name);
+  const ReadScope scope(file, options.memory_limit);
+  return read_from_memory(read_to_end(stream, name), options);
 }
 
 Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path, Notes* notes) {

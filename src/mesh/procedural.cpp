@@ -2,6 +2,7 @@
 #include "mesh/procedural.hpp"
 
 #include "base/index.hpp"
+#include "base/memory.hpp"
 #include "base/random.hpp"
 #include <meshorder/error.hpp>
 
@@ -40,6 +41,14 @@ void check_options(const ProceduralOptions& options, double vertices) {
   if (!(options.jitter >= 0 && options.jitter <= 0.15))
     throw InvalidArgument("model: jitter must be 0 … 0.15");
   if (6 * vertices > kMaxIndex) throw InvalidArgument("model: too large, more than 2,147,483,647 tetrahedra");
+  // of a point and six tetrahedra
+  constexpr std::uint64_t kBytesEach =
+      sizeof(Point) + 6 * (4 * sizeof(Index) + sizeof(Offset) + sizeof(Shape));
+  const std::uint64_t bytes = bytes_for(static_cast<std::uint64_t>(vertices), kBytesEach);
+  if (bytes > memory_limit().bytes) {
+    throw InvalidArgument("model: a size of " + std::to_string(options.size) + " would take " +
+                          size_text(bytes) + ", more than the limit of " + size_text(memory_limit().bytes));
+  }
 }
 
 /// Vertices at lattice coordinates in [0, 1]³, jittered inside, and the six tetrahedra of each cube.

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/kernel_timing.hpp"
 
+#include "base/memory.hpp"
 #include "base/run_scope.hpp"
 #include "base/stopwatch.hpp"
 #include "payoff/machine.hpp"
@@ -115,7 +116,7 @@ Timings time_orders(Index orders, const std::function<KernelBench(Index)>& prepa
                     const TimingOptions& options) {
   if (orders <= 0) return {};
   KernelBench reference = prepare(0);
-  const std::size_t memory = options.memory_bytes > 0 ? options.memory_bytes : memory_of_this_machine() / 2;
+  const std::size_t memory = options.memory_bytes > 0 ? options.memory_bytes : usable_memory() / 2;
   const std::size_t fitting = memory / std::max<std::size_t>(1, reference.bytes());
   // beside the reference
   const Index group = static_cast<Index>(std::clamp<std::size_t>(fitting, 2, kMaxIndex)) - 1;

@@ -78,14 +78,6 @@ Caches parse_caches(std::string_view text) {
   return text == "paper" ? caches_of_the_paper() : parse_cache_sizes(text);
 }
 
-std::size_t memory_of_this_machine() {
-  const auto physical =
-      static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  std::size_t limit = 0;
-  std::ifstream control_group("/sys/fs/cgroup/memory.max");
-  return control_group >> limit ? std::min(limit, physical) : physical;
-}
-
 std::vector<int> choose_processors(int threads) {
   cpu_set_t allowed;
   if (::sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return {};

@@ -20,10 +20,6 @@ Caches caches_of_the_paper();
 /// reads. Throws InvalidArgument as that does.
 Caches parse_caches(std::string_view text);
 
-/// Returns the physical memory in bytes, or the limit in /sys/fs/cgroup/memory.max if that is smaller (in
-/// containers).
-std::size_t memory_of_this_machine();
-
 /// Returns processors to bind `threads` threads to, ascending: the last ones that this process may use, one a
 /// core as long as there are enough cores; systems tend to serve interrupts on the first. Empty if the system
 /// does not report its processors or has fewer than `threads`.

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any
 
 from . import _core
@@ -21,24 +22,36 @@ def make_mesh(points: Any, cells: Any = None) -> Mesh:
     return mesh_of_arrays(points, cells)
 
 
-def read(source: str | os.PathLike[str] | bytes, format: str | None = None) -> Mesh:
+def read(
+    source: str | os.PathLike[str] | bytes,
+    format: str | None = None,
+    *,
+    memory_limit: int | None = None,
+    include_folders: Sequence[str | os.PathLike[str]] = (),
+) -> Mesh:
     """Reads a mesh from a file, or from the bytes of one.
 
     Args:
         source: a path or the bytes.
         format: name of the format; None: by the extension, of bytes by the first of them. Files of formats that are not
             ours are read by meshio, where it is installed; the mesh's notes begin with that.
+        memory_limit: bytes that a file may take for what it claims rather than holds, such as compressed values; None:
+            256 MiB and 100 times the file, at most three quarters of the memory. meshio knows no limit.
+        include_folders: where files may be that the mesh names to be read with it, besides its own folder.
 
     Raises:
-        InputError: the file is missing or faulty; the message names line or byte.
+        InputError: the file is missing or faulty, claims more than the limit or names files elsewhere; the message
+            names line or byte.
     """
     if isinstance(source, (bytes, bytearray, memoryview)):
-        return Mesh(*_core.read_bytes(bytes(source), format or ""))
+        return Mesh(*_core.read_bytes(bytes(source), format or "", memory_limit))
     from . import _foreign  # takes time to import
 
     path = os.fspath(source)
     foreign = _foreign.format_of_meshio(path, format or "")
-    return _foreign.read(path, foreign) if foreign else Mesh(*_core.read(path, format or ""))
+    if foreign:
+        return _foreign.read(path, foreign)
+    return Mesh(*_core.read(path, format or "", memory_limit, [os.fspath(folder) for folder in include_folders]))
 
 
 def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:

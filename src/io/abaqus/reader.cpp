@@ -16,6 +16,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <set>
+#include <string>
 #include <system_error>
 #include <unordered_set>
 #include <utility>
@@ -429,6 +431,7 @@ class DeckReader {
   void list_contents() {
     constexpr std::array<std::string_view, 4> kElsewhere{"HEADING", "NSET", "ELSET", "ELEMENT"};
     std::vector<std::string> titles;
+    std::set<std::string> known_titles;
     std::vector<std::string> surfaces;
     for (const Section& section : deck_->sections) {
       if (section.part != Part::text || !is_keyword(trimmed(section.text))) continue;
@@ -436,9 +439,7 @@ class DeckReader {
       if (card.keyword == "SURFACE") surfaces.push_back(fmt::format("'{}'", shown(card.value("NAME"))));
       const bool elsewhere =
           std::find(kElsewhere.begin(), kElsewhere.end(), card.keyword) != kElsewhere.end();
-      const std::string title = card.title;
-      if (elsewhere || std::find(titles.begin(), titles.end(), title) != titles.end()) continue;
-      titles.push_back(title);
+      if (!elsewhere && known_titles.insert(card.title).second) titles.push_back(card.title);
     }
     std::vector<std::string>& contents = deck_->contents;
     if (!types_.empty()) contents.push_back("the types of elements " + join(types_));

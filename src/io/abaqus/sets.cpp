@@ -2,6 +2,7 @@
 #include "io/abaqus/sets.hpp"
 
 #include "io/deck/numbers.hpp"
+#include "io/stream/read_limits.hpp"
 #include "io/stream/scanner.hpp"
 
 #include <fmt/format.h>
@@ -103,6 +104,10 @@ std::string SetReader::add_line(std::string_view line) {
 void SetReader::add_members(const Addition& addition, const IdMap& items,
                             const std::unordered_set<std::int64_t>& others, const Cells& cells,
                             Notes& notes) {
+  const auto claim = [&](std::size_t count) {
+    claim_memory(count * sizeof(Index), "the set", {addition.place.file, addition.place.line});
+  };
+  if (addition.count > 0) claim(static_cast<std::size_t>(addition.count));
   std::vector<Index> members(static_cast<std::size_t>(addition.count));
   std::iota(members.begin(), members.end(), addition.first);
   std::int64_t missing = 0;
@@ -122,6 +127,7 @@ void SetReader::add_members(const Addition& addition, const IdMap& items,
   std::vector<std::string> unknown;
   for (const std::string& name : addition.names) {
     if (const EntitySet* const set = find(addition.association, addition, name)) {
+      claim(set->members.size());
       members.insert(members.end(), set->members.begin(), set->members.end());
     } else {
       unknown.push_back(name);
@@ -131,6 +137,7 @@ void SetReader::add_members(const Addition& addition, const IdMap& items,
     if (const EntitySet* const set = find(Association::cells, addition, addition.nodes_of)) {
       for (const Index c : set->members) {
         const auto cell = cells[c];
+        claim(cell.size());
         members.insert(members.end(), cell.begin(), cell.end());
       }
     } else {

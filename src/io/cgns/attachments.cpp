@@ -3,6 +3,7 @@
 #include "base/text.hpp"
 #include "io/cgns/reading.hpp"
 #include "io/labels.hpp"
+#include "io/stream/read_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -126,6 +127,7 @@ class AttachmentReader {
       if (static_cast<std::uint64_t>(numbers[1] - numbers[0]) >= total) {
         reading_.fail(path, "has more numbers than there are elements", "the file may be damaged");
       }
+      claim_memory(2 * sizeof(Index) * (static_cast<std::uint64_t>(numbers[1] - numbers[0]) + 1), path);
       for (std::int64_t number = numbers[0]; number <= numbers[1]; ++number) {
         list.members.push_back(position_of(owner, association, number, path));
       }

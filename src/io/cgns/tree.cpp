@@ -4,6 +4,7 @@
 #include "base/run_scope.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
 #include <cgns_io.h>
@@ -182,6 +183,7 @@ class TreeReader {
       bytes *= static_cast<std::uint64_t>(length);
       node.dimensions.push_back(length);
     }
+    if (const std::string fault = refused_claim(bytes, path); !fault.empty()) file_.fail(fault, kClaimRemedy);
     node.bytes.resize(bytes);
     if (bytes > 0) {
       file_.check(cgio_read_all_data(number, id, node.bytes.data()), path);
@@ -250,6 +252,7 @@ Tree read_from_disk(const fs::path& path, const std::string& name) {
   const CgioFile file(path, name, CGIO_MODE_READ, type);
   std::error_code code;
   const std::uintmax_t bytes = fs::file_size(path, code);
+  count_file(path, code ? 0 : bytes);
   TreeReader reader(file, code ? 0 : bytes, tree.storage == Storage::hdf5);
   tree.root = reader.read(file.root(), "", 0);
   return tree;

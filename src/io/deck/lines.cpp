@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/deck/lines.hpp"
 
+#include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 namespace meshorder {
 namespace {
@@ -15,11 +15,6 @@ constexpr std::size_t kMostFiles = 10000;
 constexpr std::size_t kMostNested = 16;
 
 bool is_space(char c) { return c == ' ' || c == '\t'; }
-
-/// Returns whether a path stays in the folder that it starts from.
-bool stays_below(const std::filesystem::path& path) {
-  return path.is_relative() && std::find(path.begin(), path.end(), "..") == path.end();
-}
 
 }  // namespace
 
@@ -62,8 +57,8 @@ void DeckLines::include(const std::string& name, std::int64_t line) {
   const auto refuse = [&](std::string_view fault, const std::string& remedy) {
     fail(line, fmt::format("the included file '{}' {}", shown(name), fault), remedy);
   };
-  if (!stays_below(name)) refuse("is not in the deck's folder", "put it there, or its lines into the deck");
   const FilePath path = main_.beside(name);
+  if (!may_include(main_, path)) refuse("is not in the deck's folder", kIncludeRemedy);
   if (!path.is_file()) refuse("does not exist", "put it into the deck's folder");
   const bool circular = std::any_of(files_.begin(), files_.end(),
                                     [&](const OpenFile& file) { return file.path.is_same(path); });

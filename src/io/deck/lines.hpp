@@ -23,8 +23,8 @@ class DeckLines {
   /// Takes the line and returns it with its end, which the last line of the deck may lack. Valid until the
   /// next call.
   std::string_view take();
-  /// Goes on with the lines of a file in the deck's folder or below it. Fails, at that line of the present
-  /// file, for other files, for one that does not exist or includes itself, and for too many.
+  /// Goes on with the lines of a file that the deck may include. Fails, at that line of the present file, for
+  /// others, for one that does not exist or includes itself, and for too many.
   void include(const std::string& name, std::int64_t line);
 
   /// Throws InputError at that line of the present file.

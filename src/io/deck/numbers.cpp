@@ -2,6 +2,7 @@
 #include "io/deck/numbers.hpp"
 
 #include "base/text.hpp"
+#include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -29,6 +30,8 @@ bool can_be_numbers(std::vector<std::int64_t> ids, std::int64_t largest) {
 std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step) {
   std::vector<Index> found;
   if (to < from) return found;
+  const std::int64_t most = std::min<std::int64_t>((to - from) / step + 1, items.size());
+  claim_memory(static_cast<std::uint64_t>(most) * sizeof(Index), "a range of numbers");
   if ((to - from) / step < items.size()) {
     for (std::int64_t number = from; number <= to; number += step) {
       if (const Index item = items.find(number); item >= 0) found.push_back(item);

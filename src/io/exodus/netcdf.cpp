@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/exodus/netcdf.hpp"
 
+#include "base/memory.hpp"
 #include "io/hdf5/mutex.hpp"
+#include "io/stream/read_limits.hpp"
 
 #include <fmt/format.h>
 #include <netcdf.h>
@@ -91,6 +93,7 @@ NcInput::NcInput(const FilePath& path) : lock_(hdf5::library_mutex()), name_(pat
   if (!on_disk) memory_ = path.read();
   const std::string start = on_disk ? path.read_first(kStart) : memory_.substr(0, kStart);
   size_ = on_disk ? std::filesystem::file_size(path.path(), code) : memory_.size();
+  if (on_disk) count_file(path, size_);
   if (start.starts_with("CDF")) {
     check_classic_header(
         name_, [&](std::size_t bytes) { return on_disk ? path.read_first(bytes) : memory_.substr(0, bytes); },
@@ -207,6 +210,12 @@ std::size_t NcInput::size(const Variable& variable) const {
   return product(lengths);
 }
 
+std::size_t NcInput::claimed(std::string_view what, std::size_t count, std::size_t bytes_each) const {
+  const std::string fault = refused_claim(bytes_for(count, bytes_each), what);
+  if (!fault.empty()) fail(fault, kClaimRemedy);
+  return count;
+}
+
 std::vector<Attribute> NcInput::attributes(const Variable* variable, std::vector<std::string>& lost) const {
   const int of = variable == nullptr ? NC_GLOBAL : variable->id;
   int count = 0;
@@ -259,7 +268,7 @@ void NcInput::read(const Variable& variable, std::int32_t* values) const {
 std::vector<std::int64_t> NcInput::integers(const Variable& variable) const {
   if (!is_whole(variable.type)) fail(variable.name + " has no whole numbers", std::string(kDamaged));
   static_assert(sizeof(long long) == sizeof(std::int64_t));
-  std::vector<long long> values(size(variable));
+  std::vector<long long> values(claimed(variable.name, size(variable), 2 * sizeof(long long)));
   check(nc_get_var_longlong(id_, variable.id, values.data()), variable.name);
   return {values.begin(), values.end()};
 }
@@ -275,14 +284,15 @@ std::vector<double> NcInput::reals(const Variable& variable, const std::vector<s
     fail(variable.name + " has no numbers", std::string(kDamaged));
   }
   (void)size(variable);  // throws if it claims too much
-  std::vector<double> values(product(counts));
+  std::vector<double> values(claimed(variable.name, product(counts), sizeof(double)));
   if (values.empty()) return values;
   check(nc_get_vara_double(id_, variable.id, starts.data(), counts.data(), values.data()), variable.name);
   return values;
 }
 
 std::string NcInput::bytes(const Variable& variable) const {
-  std::string result(size(variable) * size_of(variable.type), '\0');
+  std::string result(claimed(variable.name, size(variable), size_of(variable.type)) * size_of(variable.type),
+                     '\0');
   if (!result.empty()) check(nc_get_var(id_, variable.id, result.data()), variable.name);
   return result;
 }
@@ -293,6 +303,7 @@ std::vector<std::string> NcInput::texts(const Variable& variable) const {
     fail(variable.name + " is no table of characters", std::string(kDamaged));
   }
   const std::string all = bytes(variable);
+  (void)claimed(variable.name, lengths[0], sizeof(std::string));
   std::vector<std::string> result;
   for (std::size_t row = 0; row < lengths[0] && !all.empty(); ++row) {
     std::string text = all.substr(row * lengths[1], lengths[1]);
@@ -308,7 +319,7 @@ Values NcInput::values(const Variable& variable, const std::vector<std::size_t>&
                        const std::vector<std::size_t>& counts) const {
   (void)size(variable);  // throws if it claims too much
   const auto read_as = [&]<class Number>(Number /*of*/) -> Values {
-    std::vector<Number> result(product(counts));
+    std::vector<Number> result(claimed(variable.name, product(counts), sizeof(Number)));
     if (!result.empty()) {
       check(read_part(id_, variable.id, starts.data(), counts.data(), result.data()), variable.name);
     }

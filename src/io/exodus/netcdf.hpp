@@ -97,6 +97,9 @@ class NcInput {
   [[nodiscard]] std::vector<std::size_t> shape(const Variable& variable) const;
   /// Returns the number of values. Throws InputError if the file is too small to hold them.
   [[nodiscard]] std::size_t size(const Variable& variable) const;
+  /// Returns `count`. Throws InputError if as many values, of so many bytes each, are beyond the limit on
+  /// what the file may claim.
+  std::size_t claimed(std::string_view what, std::size_t count, std::size_t bytes_each) const;
 
   /// Returns the attributes of a variable, of the file where it is null. Those of types that a file defines
   /// are left out, and named in `lost`.

@@ -38,19 +38,13 @@ void Reading::require_shape(const Variable& variable, const std::vector<std::siz
 }
 
 std::string Reading::add_array(DataArray array) {
-  const std::string name = array.name;
-  for (int k = 2; !arrays_.emplace(array.association, array.name).second; ++k) {
-    array.name = fmt::format("{} ({})", name, k);
-  }
+  array.name = arrays_.use(array.association, array.name);
   mesh.data.push_back(std::move(array));
   return mesh.data.back().name;
 }
 
 std::string Reading::add_set(EntitySet set) {
-  const std::string name = set.name;
-  for (int k = 2; !sets_.emplace(set.association, set.name).second; ++k) {
-    set.name = fmt::format("{} ({})", name, k);
-  }
+  set.name = sets_.use(set.association, set.name);
   mesh.sets.push_back(std::move(set));
   return mesh.sets.back().name;
 }
@@ -145,6 +139,7 @@ void reserve_cells(Reading& reading, std::size_t blocks, Index elements) {
     const Variable* const connect = reading.file.find(fmt::format("connect{}", b + 1));
     if (connect != nullptr) entries += reading.file.size(*connect);
   }
+  (void)reading.file.claimed("the connectivity", entries, sizeof(Index));
   // no more elements than numbers of nodes
   reading.mesh.cells.reserve(std::min<Offset>(elements, static_cast<Offset>(entries)),
                              static_cast<Offset>(entries));
@@ -264,7 +259,8 @@ void name_blocks(Reading& reading) {
     BlockRecord& block = reading.metadata->blocks[b];
     if (block.name.empty() || block.nodes == 0) continue;
     EntitySet set{block.name, Association::cells, {}};
-    set.members.resize(static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]));
+    const auto members = static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]);
+    set.members.resize(reading.file.claimed(block.name, members, sizeof(Index)));
     std::iota(set.members.begin(), set.members.end(), reading.block_ends[b]);
     block.in_mesh = reading.add_set(std::move(set));
   }

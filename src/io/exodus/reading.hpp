@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/exodus/exodus.hpp"
+#include "io/unused_names.hpp"
 
 #include <memory>
 #include <set>
@@ -36,8 +37,8 @@ struct Reading {
   std::vector<Index> block_ends;  ///< blocks + 1: block b has the cells from entry b to entry b + 1
 
  private:
-  std::set<std::pair<Association, std::string>> arrays_;
-  std::set<std::pair<Association, std::string>> sets_;
+  UnusedNames arrays_;
+  UnusedNames sets_;
 };
 
 /// Returns the names of properties besides the ids, and gives each object's values to `put(object, value)`.

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
+#include "base/memory.hpp"
 #include "io/exodus/exodus.hpp"
 #include "io/exodus/reading.hpp"
 
@@ -92,6 +93,8 @@ class SetReader {
       family_.sets[s].properties.push_back(value);
     });
     read_names_of_variables();
+    (void)file.claimed("the records of " + prefix, count,
+                       sizeof(SetRecord) + family_.variables.size() * sizeof(Series));
     for (std::size_t s = 0; s < count; ++s) {
       SetRecord& set = family_.sets[s];
       set.id = ids[s];
@@ -114,7 +117,9 @@ class SetReader {
                                          const char* what) const {
     const std::vector<std::size_t> shape = reading_.file.shape(variable);
     if (shape.size() != 1) reading_.file.fail(variable.name + " is no list", "the file may be damaged");
-    std::vector<std::int32_t> members(reading_.file.size(variable));
+    const std::size_t count = reading_.file.size(variable);
+    // and the set that is made of them
+    std::vector<std::int32_t> members(reading_.file.claimed(variable.name, count, 2 * sizeof(Index)));
     if (!members.empty()) reading_.file.read(variable, members.data());
     for (std::size_t i = 0; i < members.size(); ++i) {
       const std::uint32_t place = static_cast<std::uint32_t>(members[i]) - 1;
@@ -428,6 +433,7 @@ void read_elemental(Reading& reading) {
   const std::size_t count = file.count("num_elem_var");
   const std::vector<std::string> names = reading.take_names("name_elem_var", count);
   const std::size_t blocks = metadata.blocks.size();
+  (void)file.claimed("the table of variables", count, bytes_for(blocks, sizeof(Series)));
   std::vector<std::int64_t> table;
   if (const Variable* const given = reading.take("elem_var_tab")) {
     reading.require_shape(*given, {blocks, count});

@@ -3,8 +3,12 @@
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 #include <utility>
 
 // Data of nodes and elements: the sections $NodeData, $ElementData and $ElementNodeData.
@@ -181,13 +185,6 @@ void restore_labels(DataArray& array) {
   }
 }
 
-/// Returns whether another array has the same name.
-bool is_taken(const Mesh& mesh, const DataArray& array) {
-  return std::any_of(mesh.data.begin(), mesh.data.end(), [&](const DataArray& other) {
-    return &other != &array && other.association == array.association && other.name == array.name;
-  });
-}
-
 /// Returns the smallest number of components of Gmsh's data that is at least `components`; 0 if none is.
 Index gmsh_components(Index components) {
   for (const Index known : {1, 3, 9}) {
@@ -195,6 +192,31 @@ Index gmsh_components(Index components) {
   }
   return 0;
 }
+
+/// How often the arrays of a mesh have each name.
+class ArrayNames {
+ public:
+  explicit ArrayNames(const Mesh& mesh) {
+    for (const DataArray& array : mesh.data) ++uses_[{array.association, array.name}];
+  }
+
+  /// Gives an array that name or, if another one has it, "NAME (2)", "NAME (3)" …
+  void rename(DataArray& array, const std::string& name) {
+    --uses_[{array.association, array.name}];
+    array.name = name;
+    int& last = last_numbers_[{array.association, name}];
+    for (int k = std::max(last, 1) + 1; uses_[{array.association, array.name}] > 0; ++k) {
+      array.name = fmt::format("{} ({})", name, k);
+      last = k;
+    }
+    ++uses_[{array.association, array.name}];
+  }
+
+ private:
+  using Name = std::pair<Association, std::string>;
+  std::map<Name, int> uses_;
+  std::map<Name, int> last_numbers_;
+};
 
 template <class Number>
 double as_double(const Number& value) {
@@ -244,14 +266,14 @@ void name_views(ReadContext& reading) {
   std::map<std::pair<std::string, std::string>, int> steps;
   for (const View& view : views) ++steps[{view.section, view.array}];
   const std::map<std::pair<std::string, std::string>, int> counts = std::move(steps);
+  ArrayNames names(reading.mesh);
   for (std::size_t i = 0; i < views.size(); ++i) {
     View& view = views[i];
     if (view.array.empty()) continue;
     DataArray& array = reading.mesh.data[reading.view_arrays[i]];
     std::string name = view.array;
     if (counts.at({view.section, view.array}) > 1) name += " step " + std::to_string(view.integers[0]);
-    array.name = name;
-    for (int k = 2; is_taken(reading.mesh, array); ++k) array.name = name + " (" + std::to_string(k) + ")";
+    names.rename(array, name);
     restore_labels(array);
     view.array = array.name;
   }

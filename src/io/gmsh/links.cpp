@@ -2,6 +2,7 @@
 #include "io/gmsh/gmsh.hpp"
 
 #include <algorithm>
+#include <set>
 
 // Sections that tie nodes and elements to each other by their numbers: $Periodic and $GhostElements.
 
@@ -62,17 +63,16 @@ void read_periodic(ReadContext& reading) {
   if (reading.metadata.is_version_2()) source.binary = false;
   const Index links = source.count("the number of periodic entities", 8, 28);
   Index missing = 0;
+  std::set<Entity> entities;
   for (Index i = 0; i < links; ++i) {
     PeriodicLink link;
     link.dimension = source.int32("the dimension of a periodic entity");
     link.tag = source.int32("the tag of a periodic entity");
     link.master = source.int32("the tag of a master entity");
-    for (const PeriodicLink& other : reading.metadata.periodic) {
-      if (other.dimension == link.dimension && other.tag == link.tag) {
-        source.fail("the periodic entity " + std::to_string(link.tag) + " of dimension " +
-                        std::to_string(link.dimension) + " is given twice",
-                    "each has one master");
-      }
+    if (!entities.emplace(link.dimension, link.tag).second) {
+      source.fail("the periodic entity " + std::to_string(link.tag) + " of dimension " +
+                      std::to_string(link.dimension) + " is given twice",
+                  "each has one master");
     }
     read_affine(reading, link);
     missing += read_pairs(reading, link);

@@ -1,8 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/hdf5/hdf5_file.hpp"
 
+#include "base/memory.hpp"
 #include "base/resize_in_steps.hpp"
 #include "io/hdf5/session.hpp"
+#include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -328,9 +330,16 @@ void File::fail(const std::string& path, const std::string& what, const std::str
   throw InputError(name_, path.empty() ? what : fmt::format("the dataset '{}' {}", path, what), remedy);
 }
 
+void File::claim(const std::string& path, std::uint64_t bytes) const {
+  claim_memory(bytes, fmt::format("the dataset '{}'", path), {.file = name_});
+}
+
 File File::open(const FilePath& path) {
   const Session session;
-  if (path.store() != nullptr) return in_memory(path.read(), path.string());
+  // not those of pipes, which HDF5 would wait for, and of devices, which are refused
+  if (path.store() != nullptr || !path.is_file()) return in_memory(path.read(), path.string());
+  std::error_code ignored;
+  count_file(path, std::filesystem::file_size(path.path(), ignored));
   return open(path.path(), path.string());
 }
 
@@ -447,6 +456,7 @@ Values File::read(const std::string& path) const {
   const auto read_as = [&]<std::size_t I>(std::integral_constant<std::size_t, I> /*alternative*/) {
     if (I != of.alternative) return;
     auto& numbers = values.emplace<I>();
+    claim(path, bytes_for(of.size(), sizeof(numbers.front())));
     resize_in_steps(numbers, of.size());
     if (!numbers.empty()) read(path, native_types()[I], numbers.data());
   };
@@ -460,7 +470,9 @@ Values File::read(const std::string& path) const {
 std::vector<Index> File::read_indices(const std::string& path) const {
   const Session session;
   std::vector<Index> values;
-  resize_in_steps(values, info(path).size());
+  const std::uint64_t size = info(path).size();
+  claim(path, bytes_for(size, sizeof(Index)));
+  resize_in_steps(values, size);
   if (!values.empty()) read(path, H5T_NATIVE_INT32, values.data());
   return values;
 }
@@ -556,6 +568,7 @@ std::vector<std::string> File::read_texts(const std::string& path) const {
     fail(path, fmt::format("claims {} texts, but only {} bytes are there", rows, stored),
          "it may never have been written, or the file is damaged");
   }
+  claim(path, bytes_for(static_cast<std::uint64_t>(rows), width + sizeof(std::string)));
   std::string bytes(static_cast<std::size_t>(rows) * width, '\0');
   if (!bytes.empty()) read(path, type.id(), bytes.data());
   std::vector<std::string> texts;

@@ -138,6 +138,7 @@ class File {
   void put_attribute(const std::string& path, const std::string& name, hid_t type, hid_t memory,
                      const void* value);
   void read(const std::string& path, hid_t type, void* values) const;
+  void claim(const std::string& path, std::uint64_t bytes) const;
   void write(const std::string& path, hid_t type, const void* values, std::uint64_t count,
              const std::vector<std::uint64_t>& shape);
   [[noreturn]] void fail(const std::string& path, const std::string& what, const std::string& remedy) const;

@@ -2,6 +2,7 @@
 #include "base/index.hpp"
 #include "io/labels.hpp"
 #include "io/med/med.hpp"
+#include "io/stream/read_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include <set>
 #include <type_traits>
 #include <unordered_map>
+#include <unordered_set>
 
 // Families and groups: a family holds the vertices, or the cells, that belong to the same groups. Those of
 // vertices have numbers above 0, those of cells below; 0 belongs to no group.
@@ -49,15 +51,14 @@ std::vector<std::int64_t> numbers_in(const Mesh& mesh, const std::string& name, 
 /// Returns the families of a file in the order of their numbers, without their signs.
 std::vector<Family> families_in(const Reading& reading, const std::string& root) {
   std::vector<Family> families;
+  std::unordered_set<std::int64_t> numbers;
   for (const std::string& name : reading.file.names(root)) {
     const std::string path = fmt::format("{}/{}", root, name);
     Family family{reading.file.integer_attribute(path, "NUM").value_or(0)};
     if (reading.file.has(path + "/GRO/NOM")) family.groups = reading.file.read_texts(path + "/GRO/NOM");
     std::erase(family.groups, "");
     for (std::string& group : family.groups) group = utf8(std::move(group));
-    const bool known = std::any_of(families.begin(), families.end(),
-                                   [&](const Family& other) { return other.number == family.number; });
-    if (!known && family.number != 0) families.push_back(std::move(family));
+    if (family.number != 0 && numbers.insert(family.number).second) families.push_back(std::move(family));
   }
   std::stable_sort(families.begin(), families.end(), [](const Family& a, const Family& b) {
     const bool a_below = a.number < 0;
@@ -95,6 +96,7 @@ void read_families_of(Reading& reading, Association association) {
       last = numbers[i];
     }
     if (of_last == nullptr) continue;
+    if (of_last->size() > 1) claim_memory(of_last->size() * sizeof(Index), "what belongs to several groups");
     for (const std::size_t set : *of_last) {
       // a family may name a group twice
       std::vector<Index>& members = sets[set].members;

@@ -27,10 +27,7 @@ void Reading::fail(const std::string& path, const std::string& what, const std::
 }
 
 std::string Reading::add_array(DataArray array) {
-  const std::string name = array.name;
-  for (int k = 2; !arrays_.emplace(array.association, array.name).second; ++k) {
-    array.name = fmt::format("{} ({})", name, k);
-  }
+  array.name = arrays_.use(array.association, array.name);
   mesh.data.push_back(std::move(array));
   return mesh.data.back().name;
 }

@@ -138,13 +138,13 @@ Location DeckText::location(std::size_t byte) const {
   const auto after = std::upper_bound(origins_.begin(), origins_.end(), byte,
                                       [](std::size_t at, const Origin& origin) { return at < origin.begin; });
   const Origin& origin = *std::prev(after);
-  const std::string_view before = std::string_view(text_).substr(origin.begin, byte - origin.begin);
-  std::int64_t line = origin.line;
-  for (std::size_t k = 0; k < before.size(); ++k) {
-    const bool is_pair = before[k] == '\r' && k + 1 < before.size() && before[k + 1] == '\n';
-    if ((before[k] == '\n' || before[k] == '\r') && !is_pair) ++line;
+  if (counted_.byte < origin.begin || counted_.byte > byte) counted_ = {origin.begin, origin.line};
+  for (; counted_.byte < byte; ++counted_.byte) {
+    const std::size_t k = counted_.byte;
+    const bool is_pair = text_[k] == '\r' && k + 1 < text_.size() && text_[k + 1] == '\n';
+    if ((text_[k] == '\n' || text_[k] == '\r') && !is_pair) ++counted_.line;
   }
-  return {origin.file, line, -1};
+  return {origin.file, counted_.line, -1};
 }
 
 void DeckText::fail(std::size_t byte, const std::string& what, const std::string& remedy) const {

@@ -32,7 +32,8 @@ class DeckText {
 
   /// Throws InputError at the line of that byte of the text.
   [[noreturn]] void fail(std::size_t byte, const std::string& what, const std::string& remedy) const;
-  /// Returns the line of that byte in its file.
+  /// Returns the line of that byte in its file. O(bytes since the last call's), backwards O(bytes of the
+  /// file).
   [[nodiscard]] Location location(std::size_t byte) const;
 
  private:
@@ -54,6 +55,12 @@ class DeckText {
   std::string text_;
   Piece bulk_;
   std::vector<Origin> origins_;
+  /// The last byte whose line was asked for; none yet.
+  struct Counted {
+    std::size_t byte = std::string::npos;
+    std::int64_t line = 0;
+  };
+  mutable Counted counted_;
   const Scanner* file_ = nullptr;  // of the last line
 };
 

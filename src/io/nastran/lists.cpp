@@ -2,6 +2,7 @@
 #include "io/nastran/lists.hpp"
 
 #include "io/deck/numbers.hpp"
+#include "io/stream/read_limits.hpp"
 
 #include <algorithm>
 #include <unordered_set>
@@ -13,9 +14,12 @@ std::vector<std::int64_t> numbers_in_list(const std::vector<NumberRange>& ranges
                                           std::vector<Index>& found) {
   std::vector<std::int64_t> numbers;
   std::unordered_set<Index> seen;
+  const bool may_repeat = ranges.size() > 1;
   for (const auto& [from, to, step] : ranges) {
-    for (const Index item : items_in_range(items, from, to, step)) {
-      if (seen.insert(item).second) found.push_back(item);
+    const std::vector<Index> in_range = items_in_range(items, from, to, step);
+    if (may_repeat) claim_memory(in_range.size() * 8 * sizeof(Index), "a list of numbers");
+    for (const Index item : in_range) {
+      if (!may_repeat || seen.insert(item).second) found.push_back(item);
     }
     for (auto at = std::lower_bound(others.begin(), others.end(), from); at != others.end() && *at <= to;
          ++at) {

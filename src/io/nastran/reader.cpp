@@ -9,12 +9,15 @@
 #include "io/nastran/nastran.hpp"
 #include "io/nastran/references.hpp"
 #include "io/nastran/systems.hpp"
+#include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <set>
+#include <string>
 #include <utility>
 
 namespace meshorder::nastran {
@@ -27,9 +30,15 @@ struct MissingNode {
   std::size_t byte;
 };
 
-void add_once(std::vector<std::string>& list, const std::string& text) {
-  if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
-}
+/// Different texts by their first appearance.
+struct Texts {
+  std::vector<std::string> list;
+  std::set<std::string> known;
+
+  void add(const std::string& text) {
+    if (known.insert(text).second) list.push_back(text);
+  }
+};
 
 class DeckReader {
  public:
@@ -183,7 +192,7 @@ class DeckReader {
     const std::size_t end = type.first_node() + static_cast<std::size_t>(type.most);
     for (std::size_t field = end; field < fields_.fields.size(); ++field) {
       if (fields_.text(field).empty()) continue;
-      add_once(with_more_, std::string(type.name));
+      with_more_.add(std::string(type.name));
       return;
     }
   }
@@ -215,13 +224,15 @@ class DeckReader {
     if (name == "SET3" && found && found->list > 0) {
       sets_.push_back(card_);
     } else {
-      add_once(others_, shown(name));
+      others_.add(shown(name));
     }
   }
 
   void add_points(const NumberRange& range) {
     constexpr std::int64_t kMost = 10'000'000;  // of one range
     if (range.to - range.from > kMost) fail("a range of more than ten million points", "correct it");
+    const std::int64_t count = std::max<std::int64_t>((range.to - range.from) / range.step + 1, 0);
+    claim_memory(static_cast<std::uint64_t>(count) * sizeof(std::int64_t), "a range of points");
     for (std::int64_t n = range.from; n <= range.to; n += range.step) deck_->other_points.push_back(n);
   }
 
@@ -325,9 +336,9 @@ class DeckReader {
     std::vector<std::string>& contents = deck_->contents;
     if (file_.bulk().begin > 0) contents.emplace_back("executive and case control");
     if (has_more_in_nodes_) contents.emplace_back("displacement systems and constraints of GRID");
-    if (!with_more_.empty()) contents.push_back("fields behind the nodes of " + join(with_more_));
+    if (!with_more_.list.empty()) contents.push_back("fields behind the nodes of " + join(with_more_.list));
     if (without_some_ > 0) contents.emplace_back("nodes of edges, of elements that have only some");
-    if (!others_.empty()) contents.push_back("cards of the bulk data: " + join(others_));
+    if (!others_.list.empty()) contents.push_back("cards of the bulk data: " + join(others_.list));
   }
 
   [[nodiscard]] bool is_item(std::int64_t number) const {
@@ -429,8 +440,8 @@ class DeckReader {
   std::vector<Index> labelled_;
   std::vector<Piece> sets_;
   std::vector<Stranger> strangers_;
-  std::vector<std::string> others_;     // names of other cards
-  std::vector<std::string> with_more_;  // names of elements
+  Texts others_;     // names of other cards
+  Texts with_more_;  // names of elements
   std::int64_t without_some_ = 0;
   bool has_more_in_nodes_ = false;
   bool other_since_ = false;  // another card since the last element

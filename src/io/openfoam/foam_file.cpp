@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/openfoam/foam_file.hpp"
 
+#include "io/stream/read_limits.hpp"
 #include "io/stream/scanner.hpp"
 #include <meshorder/error.hpp>
 
@@ -242,6 +243,10 @@ void FoamFile::read_labels(std::vector<Index>& labels, std::string_view what, st
   const std::int64_t limit = end.value_or(count);
   if (!binary_ && take('{')) {
     if (count > kMostAlike) fail(fmt::format("{} {}s are the same", count, what), "the number is wrong");
+    if (const std::string fault = refused_claim(static_cast<std::uint64_t>(count) * sizeof(Index), list);
+        !fault.empty()) {
+      fail(fault, kClaimRemedy);
+    }
     labels.assign(static_cast<std::size_t>(count), checked(integer(of), of, least, limit));
     expect('}', list);
     return;

@@ -6,6 +6,7 @@
 
 #include "base/point.hpp"
 #include "io/openfoam/foam_file.hpp"
+#include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -187,6 +188,8 @@ class CentreReader {
 }  // namespace
 
 PolyMesh read_poly_mesh(const fs::path& folder, bool with_centres) {
+  const FilePath path(folder);
+  const ReadScope scope(path);
   const Sides sides = read_sides(folder);
   PolyMesh mesh;
   mesh.internal_faces = index_size(sides.neighbour);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <iosfwd>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +12,10 @@ namespace meshorder {
 
 /// Returns the path without the ".gz" (in any case) at its end, if it has one.
 std::filesystem::path without_gz(std::filesystem::path path);
+
+/// Returns the rest of a stream, whose name stands in messages. Throws InputError for one that does not end
+/// within the limit on memory.
+std::string read_to_end(std::istream& stream, const std::string& name);
 
 /// Files kept elsewhere than on disk.
 class FileStore {
@@ -54,12 +59,12 @@ class FilePath {
   [[nodiscard]] bool is_empty() const;
   /// Returns whether two paths lead to one file.
   [[nodiscard]] bool is_same(const FilePath& other) const;
-  /// Returns the bytes of the file; of a gzip file what is in it. Throws InputError for a folder, an
-  /// unreadable or an empty file and a damaged gzip file, Unavailable for a gzip file in a build without
-  /// zlib.
+  /// Returns the bytes of the file; of a gzip file what is in it. Throws InputError for a folder, a device,
+  /// an unreadable or an empty file, one that changes meanwhile or exceeds the limit on memory, and a damaged
+  /// gzip file; Unavailable for a gzip file in a build without zlib.
   [[nodiscard]] std::string read() const;
   /// Returns its first bytes, at most `most` (of a pipe all), also of a gzip file as they are. Throws
-  /// InputError for a folder, an unreadable or an empty file.
+  /// InputError for a folder, a device, an unreadable or an empty file.
   [[nodiscard]] std::string read_first(std::size_t most) const;
 
   /// Returns the file of that name in the same folder.

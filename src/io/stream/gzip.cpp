@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/gzip.hpp"
 
+#include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
 #ifdef MESHORDER_HAS_ZLIB
@@ -45,7 +46,9 @@ class Inflation {
       stream_.next_out = reinterpret_cast<Bytef*>(chunk.data());
       stream_.avail_out = static_cast<uInt>(chunk.size());
       const int status = inflate(&stream_, Z_NO_FLUSH);
-      result.append(chunk.data(), chunk.size() - stream_.avail_out);
+      const std::size_t made = chunk.size() - stream_.avail_out;
+      claim_memory(made, "what is compressed in it", {.file = file_});
+      result.append(chunk.data(), made);
       if (status == Z_STREAM_END) {
         if (bytes_left() == 0) return result;
         if (inflateReset(&stream_) != Z_OK) fail("is damaged");

@@ -9,7 +9,8 @@ namespace meshorder {
 ///
 /// @param bytes  all bytes of a file
 /// @param file   its path, for errors
-/// @throws InputError for a damaged or truncated gzip file
+/// @throws InputError for a damaged or truncated gzip file, and for one that expands beyond the limit of
+///         `claim_memory`
 /// @throws Unavailable for a gzip file in a build without zlib
 std::string uncompressed(std::string bytes, const std::string& file);
 

@@ -25,20 +25,16 @@ Scanner::Scanner(const FilePath& file, char comment)
 
 void Scanner::seek(std::int64_t byte) {
   const auto target = std::min(static_cast<std::size_t>(byte), text_.size());
-  if (target < position_) {
-    position_ = 0;
-    line_ = 1;
+  const auto is_pair = [&](std::size_t k) { return text_[k] == '\r' && text_[k + 1] == '\n'; };
+  const auto [first, last] = std::minmax(position_, target);
+  std::int64_t lines = 0;
+  // a pair that begins before has been counted
+  for (std::size_t k = first > 0 && is_pair(first - 1) ? first + 1 : first; k < last; ++k) {
+    if (!is_line_end(text_[k])) continue;
+    ++lines;
+    if (is_pair(k)) ++k;
   }
-  while (position_ < target) {
-    if (is_line_end(text_[position_])) {
-      const bool pair =
-          text_[position_] == '\r' && position_ + 1 < text_.size() && text_[position_ + 1] == '\n';
-      ++line_;
-      position_ += pair ? 2 : 1;
-    } else {
-      ++position_;
-    }
-  }
+  line_ += target < position_ ? -lines : lines;
   position_ = target;
 }
 

@@ -36,7 +36,7 @@ class Scanner {
   }
   /// Returns the whole file, for formats that look ahead.
   [[nodiscard]] std::string_view all() const noexcept { return text_; }
-  /// Moves to that byte. O(bytes moved), backwards O(byte).
+  /// Moves to that byte. O(bytes moved).
   void seek(std::int64_t byte);
 
   /// Throws an Error at the current line.

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
+#include "io/stream/read_limits.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/surface/obj_parts.hpp"
 #include "io/surface/surface_data.hpp"
@@ -365,7 +366,9 @@ class Reader {
       for (const std::string& name : different) of_statement[k + 1].push_back(&members[name]);
     }
     for (Index c = 0; c < index_size(groups_.of_cell); ++c) {
-      for (std::vector<Index>* set : of_statement[groups_.of_cell[c]]) set->push_back(c);
+      const auto& sets = of_statement[groups_.of_cell[c]];
+      if (sets.size() > 1) claim_memory(sets.size() * sizeof(Index), "what belongs to several groups");
+      for (std::vector<Index>* set : sets) set->push_back(c);
     }
     for (auto& [name, cells] : members) mesh_.sets.push_back({name, Association::cells, std::move(cells)});
   }

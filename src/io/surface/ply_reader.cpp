@@ -13,6 +13,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 
 namespace meshorder::ply {
@@ -117,10 +118,9 @@ void check_cells_element(const Scanner& scanner, const Element& element) {
 
 /// Fails if a required property is missing, or an unknown one could refer to vertices or faces.
 void check_element(const Scanner& scanner, const Element& element) {
-  for (std::size_t i = 0; i < element.properties.size(); ++i) {
-    const Property& property = element.properties[i];
-    for (std::size_t j = 0; j < i; ++j) {
-      if (element.properties[j].name != property.name) continue;
+  std::set<std::string_view> names;
+  for (const Property& property : element.properties) {
+    if (!names.insert(property.name).second) {
       scanner.fail("the element " + element.name + " has two properties '" + property.name + "'",
                    "names must differ");
     }

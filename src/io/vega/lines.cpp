@@ -2,6 +2,7 @@
 #include "io/vega/lines.hpp"
 
 #include "base/text.hpp"
+#include "io/stream/read_limits.hpp"
 
 #include <system_error>
 
@@ -36,6 +37,9 @@ void VegaLines::include(const std::string& name) {
   // beside the file that includes it or, as Vega itself looks, beside the main file
   FilePath path = files_.back().path.beside(name);
   if (!path.exists()) path = main_.beside(name);
+  if (!may_include(main_, path)) {
+    at().fail("the included file '" + name + "' is not in the mesh's folder", kIncludeRemedy);
+  }
   if (!path.is_file()) {
     at().fail("the included file '" + name + "' does not exist", "put it beside this file");
   }
@@ -44,6 +48,8 @@ void VegaLines::include(const std::string& name) {
       at().fail("the included file '" + name + "' includes itself", "remove the circle");
     }
   }
+  constexpr std::size_t kMostNested = 16;
+  if (files_.size() > kMostNested) at().fail("files are included more than 16 deep", "join some of them");
   constexpr std::size_t kMost = 10000;
   if (included_.size() == kMost) at().fail("more than 10000 files are included", "join them");
   included_.push_back(name);

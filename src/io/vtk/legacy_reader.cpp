@@ -13,6 +13,8 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -268,10 +270,8 @@ class LegacyReader {
   }
 
   void keep(DataArray array) {
-    for (const DataArray& other : mesh_.data) {
-      if (other.association == array.association && other.name == array.name)
-        in_.fail("the array '" + shown(array.name) + "' is given twice", "names must differ");
-    }
+    if (!names_.emplace(array.association, array.name).second)
+      in_.fail("the array '" + shown(array.name) + "' is given twice", "names must differ");
     add_array(mesh_, std::move(array));
   }
 
@@ -409,6 +409,7 @@ class LegacyReader {
 
   LegacyInput in_;
   Mesh mesh_;
+  std::set<std::pair<Association, std::string>> names_;  // of arrays
   std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   LegacyLayout layout_;
   int version_ = 0;

@@ -59,6 +59,8 @@ class VtuDocument {
   /// Returns a count in an attribute, 0 … kMaxIndex.
   [[nodiscard]] std::int64_t count(const VtuElement& element, std::string_view name) const;
 
+  /// Throws Error if so many bytes for an array are beyond the limit on what the file may claim.
+  void claim(const VtuElement& array, std::uint64_t bytes) const;
   /// Returns the `count` values of an array in its number type. Throws Error if there are more or fewer;
   /// allocates no more than the size of the file allows.
   [[nodiscard]] Values values(const VtuElement& array, std::int64_t count) const;

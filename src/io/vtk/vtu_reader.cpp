@@ -5,6 +5,7 @@
 //
 // VTK's own reader is not used: it trusts the sizes in a header when it allocates, reads past the end of
 // damaged arrays, cannot read the NaN that VTK writes as text, and reports faults on standard error.
+#include "base/memory.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
 
@@ -13,6 +14,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <set>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -224,7 +228,10 @@ class VtuReader {
     for (std::int64_t i = 0; i < components && i < 64; ++i) {
       const std::string* name = element.attribute("ComponentName" + std::to_string(i));
       if (name == nullptr) continue;
-      array.component_names.resize(static_cast<std::size_t>(components));
+      if (array.component_names.empty()) {
+        file_.claim(element, bytes_for(static_cast<std::uint64_t>(components), sizeof(std::string)));
+        array.component_names.resize(static_cast<std::size_t>(components));
+      }
       array.component_names[static_cast<std::size_t>(i)] = *name;
     }
     read_facts(element, association, array);
@@ -266,28 +273,27 @@ class VtuReader {
           [&](const ArrayRole& other) { return other.role == kind && other.association == association; });
       if (!known) metadata_->roles.push_back({kind, association, *name, {}});
     }
-    std::vector<std::string> names;
+    std::set<std::string> names;
     for (const VtuElement& element : section.children) {
       if (!is_array(element)) {
         note_unknown(element);
         continue;
       }
       DataArray array = read_array(element, association, tuples);
-      if (std::find(names.begin(), names.end(), array.name) != names.end())
+      if (!names.insert(array.name).second)
         throw file_.error(element, "the array '" + array.name + "' is given twice", "names must differ");
-      names.push_back(array.name);
-      const auto before = std::find_if(arrays_.begin(), arrays_.end(), [&](const DataArray& other) {
-        return other.association == association && other.name == array.name;
-      });
-      if (before == arrays_.end()) {
+      const auto [known, is_new] = places_.try_emplace({association, array.name}, arrays_.size());
+      if (is_new) {
         arrays_.push_back(std::move(array));
-      } else if (before->components != array.components || before->values.index() != array.values.index()) {
+        continue;
+      }
+      DataArray& before = arrays_[known->second];
+      if (before.components != array.components || before.values.index() != array.values.index()) {
         throw file_.error(element,
                           "the array '" + array.name + "' is of another type than in the piece before",
                           "all pieces have the same arrays");
-      } else {
-        append(before->values, std::move(array.values));
       }
+      append(before.values, std::move(array.values));
     }
   }
 
@@ -317,6 +323,7 @@ class VtuReader {
   Mesh mesh_;
   std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   std::vector<DataArray> arrays_;
+  std::map<std::pair<Association, std::string>, std::size_t> places_;  // of arrays
   FileCells cells_;
   const VtuElement* types_ = nullptr;
 };

@@ -3,6 +3,7 @@
 // Arrays of .vtu files: text, base64 and raw bytes, plain or in compressed blocks.
 #include "base/text.hpp"
 #include "io/stream/base64.hpp"
+#include "io/stream/read_limits.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include "io/vtk/vtu_document.hpp"
@@ -81,6 +82,13 @@ std::uint64_t VtuDocument::header_word(std::string_view bytes, std::size_t index
     value = (value << 8U) | static_cast<unsigned char>(bytes[index * header_size() + place]);
   }
   return value;
+}
+
+void VtuDocument::claim(const VtuElement& array, std::uint64_t bytes) const {
+  const std::string* const name = array.attribute("Name");
+  const std::string fault = refused_claim(
+      bytes, name == nullptr ? "the array" : fmt::format("the array '{}'", name->substr(0, 40)));
+  if (!fault.empty()) throw error(array, fault, kClaimRemedy);
 }
 
 VtuDocument::Stored VtuDocument::locate(const VtuElement& array) const {
@@ -234,6 +242,7 @@ template <class Number>
 std::vector<Number> VtuDocument::numbers(const VtuElement& array, std::int64_t count) const {
   if (mode(array) == VtuEncoding::Mode::ascii) return words<Number>(array, count);
   const Stored stored = locate(array);
+  claim(array, stored.size);
   if (stored.size % sizeof(Number) != 0 || std::cmp_not_equal(stored.size / sizeof(Number), count)) {
     throw error(array, fmt::format("the array has {} bytes", stored.size),
                 fmt::format("{} values of {} bytes are needed", count, sizeof(Number)));
@@ -254,6 +263,7 @@ std::vector<Number> VtuDocument::numbers(const VtuElement& array, std::int64_t c
 std::vector<std::uint8_t> VtuDocument::bits(const VtuElement& array, std::int64_t count) const {
   if (mode(array) == VtuEncoding::Mode::ascii) return words<std::uint8_t>(array, count);
   const std::vector<std::uint8_t> packed = numbers<std::uint8_t>(array, (count + 7) / 8);
+  claim(array, static_cast<std::uint64_t>(count));
   std::vector<std::uint8_t> result(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = (packed[i / 8] >> (7 - i % 8)) & 1U;
   return result;
@@ -276,6 +286,7 @@ std::vector<std::string> VtuDocument::strings(const VtuElement& array, std::int6
     }
   } else {
     const Stored stored = locate(array);
+    claim(array, stored.size);
     bytes.resize(stored.size);
     copy(array, stored, bytes.data());
   }

@@ -2,7 +2,9 @@
 #include "io/xdmf/data_item.hpp"
 
 #include "base/index.hpp"
+#include "base/memory.hpp"
 #include "base/text.hpp"
+#include "io/stream/read_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -180,6 +182,10 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
 
 FilePath DataReader::path_of(pugi::xml_node item, const std::string& name) const {
   FilePath path = path_.beside(name);
+  if (!may_include(path_, path)) {
+    throw document_.error(item, fmt::format("the data file '{}' is not in the mesh's folder", name),
+                          kIncludeRemedy);
+  }
   if (!path.is_file()) {
     throw document_.error(item, fmt::format("the data file '{}' is missing", name),
                           fmt::format("it is looked for at {}", path.string()));
@@ -223,6 +229,11 @@ std::vector<Index> DataReader::read_indices(const DataPlace& place) {
   return indices;
 }
 
+void DataReader::claim(pugi::xml_node item, std::uint64_t bytes) const {
+  const std::string fault = refused_claim(bytes, "the DataItem");
+  if (!fault.empty()) throw document_.error(item, fault, kClaimRemedy);
+}
+
 Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const {
   const ElementText whole_text(item);
   const std::string_view text = whole_text.view();
@@ -230,7 +241,9 @@ Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const 
   return values_as(place.alternative, [&](auto& numbers) {
     using Number = typename std::decay_t<decltype(numbers)>::value_type;
     if constexpr (std::is_arithmetic_v<Number>) {
-      numbers.reserve(std::min<std::uint64_t>(count, text.size() / 2 + 1));
+      const std::uint64_t most = std::min<std::uint64_t>(count, text.size() / 2 + 1);
+      claim(item, bytes_for(most, sizeof(Number)));
+      numbers.reserve(most);
       const char* p = text.data();
       const char* const end = p + text.size();
       while (true) {
@@ -258,8 +271,12 @@ Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const 
   });
 }
 
-Values DataReader::read_binary(const DataPlace& place, pugi::xml_node item) const {
-  const std::string bytes = path_of(item, place.file).read();
+Values DataReader::read_binary(const DataPlace& place, pugi::xml_node item) {
+  auto known = binaries_.find(place.file);
+  if (known == binaries_.end()) {
+    known = binaries_.emplace(place.file, path_of(item, place.file).read()).first;
+  }
+  const std::string& bytes = known->second;
   const std::uint64_t count = product(place.shape);
   const std::size_t size = bytes_of_number(place.alternative);
   if (place.seek > bytes.size() || count > (bytes.size() - place.seek) / size) {
@@ -270,6 +287,7 @@ Values DataReader::read_binary(const DataPlace& place, pugi::xml_node item) cons
   return values_as(place.alternative, [&](auto& numbers) {
     using Number = typename std::decay_t<decltype(numbers)>::value_type;
     if constexpr (std::is_arithmetic_v<Number>) {
+      claim(item, bytes_for(count, sizeof(Number)));
       numbers.resize(count);
       if (count > 0) std::memcpy(numbers.data(), bytes.data() + place.seek, count * sizeof(Number));
       if (place.order != std::endian::native) {

@@ -72,12 +72,15 @@ class DataReader {
  private:
   const hdf5::File& file(pugi::xml_node item, const std::string& name);
   [[nodiscard]] Values read_text(const DataPlace& place, pugi::xml_node item) const;
-  [[nodiscard]] Values read_binary(const DataPlace& place, pugi::xml_node item) const;
+  [[nodiscard]] Values read_binary(const DataPlace& place, pugi::xml_node item);
+  /// Throws for values beyond the limit on what the file may claim.
+  void claim(pugi::xml_node item, std::uint64_t bytes) const;
   [[nodiscard]] FilePath path_of(pugi::xml_node item, const std::string& name) const;
 
   const Document& document_;
   FilePath path_;
   std::map<std::string, hdf5::File> files_;
+  std::map<std::string, std::string> binaries_;  ///< bytes of plain files
 };
 
 }  // namespace meshorder::xdmf

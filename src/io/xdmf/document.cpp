@@ -12,6 +12,7 @@ namespace {
 
 constexpr unsigned kParse = pugi::parse_full | pugi::parse_ws_pcdata;
 constexpr int kMostReferences = 16;
+constexpr std::size_t kMostVisits = 100'000'000;  // of elements, by all XPaths together
 constexpr std::size_t kLongestPath = 1000;
 
 class TextWriter : public pugi::xml_writer {
@@ -32,6 +33,38 @@ std::string trimmed_path(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+/// Returns an XPath without its texts in quotes.
+std::string without_texts(std::string_view path) {
+  std::string result;
+  char quote = '\0';
+  for (const char c : path) {
+    if (quote == '\0') result += c;
+    if (c == quote) {
+      quote = '\0';
+    } else if (quote == '\0' && (c == '"' || c == '\'')) {
+      quote = c;
+    }
+  }
+  return result;
+}
+
+/// Returns whether evaluating an XPath takes time linear in the file: one "//" at most, no axis but "self::",
+/// and no path or predicate within a predicate.
+bool is_linear(std::string_view xpath) {
+  const std::string path = without_texts(xpath);
+  const auto count = [&](std::string_view part) {
+    std::size_t found = 0;
+    for (std::size_t at = path.find(part); at != std::string::npos; at = path.find(part, at + 1)) ++found;
+    return found;
+  };
+  if (count("//") > 1 || count("::") != count("self::") || count("-self::") > 0) return false;
+  for (std::size_t at = path.find('['); at != std::string::npos; at = path.find('[', at + 1)) {
+    const std::size_t next = path.find_first_of("[]/", at + 1);
+    if (next != std::string::npos && path[next] != ']') return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -107,6 +140,14 @@ const std::vector<pugi::xml_node>& Document::selected(pugi::xml_node from, std::
   if (path.starts_with("xpointer(") && path.ends_with(")")) path = path.substr(9, path.size() - 10);
   std::vector<pugi::xml_node>& found = selected_[path];
   if (!found.empty()) return found;
+  if (!is_linear(path)) {
+    throw error(from, fmt::format("the XPath '{}' is too involved", path.substr(0, 100)),
+                "/Xdmf/Domain/Grid[1]/Topology is one that is understood");
+  }
+  if (selected_.size() * numbers_.size() > kMostVisits) {
+    throw error(from, fmt::format("the file has {} different references", selected_.size()),
+                "repeat the same XPath where the same element is meant");
+  }
   try {
     if (!path.empty() && path.size() <= kLongestPath) {
       for (const pugi::xpath_node& node : xml_.select_nodes(path.c_str())) {

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "base/text.hpp"
+#include "io/unused_names.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/xdmf/document.hpp"
 #include "io/xdmf/xdmf.hpp"
@@ -67,6 +68,13 @@ bool is_integral(const Values& values) {
 struct GrowingArray {
   DataArray array;
   std::vector<bool> has_row;  ///< cells: once there are several parts
+};
+
+/// A set of the mesh.
+struct KnownSet {
+  std::size_t place;
+  bool is_grid;         ///< all cells of a Grid
+  std::set<int> parts;  ///< of which it has members
 };
 
 class XdmfReader {
@@ -268,7 +276,7 @@ class XdmfReader {
       throw document_.error(grid.element, "points that move are given axis by axis", "write them as XYZ");
     }
     DataArray array;
-    array.name = unused_name(fmt::format("points step {}", grid.step), Association::vertices);
+    array.name = fmt::format("points step {}", grid.step);
     array.components = dimension;
     std::vector<double> values;
     values.reserve(points.size() * static_cast<std::size_t>(dimension));
@@ -276,8 +284,7 @@ class XdmfReader {
     array.values = std::move(values);
     Field& field = layout_->fields.emplace_back(fields.front());
     field.role = Field::Role::array;
-    field.name = array.name;
-    arrays_.push_back({std::move(array), {}});
+    field.name = add_array(std::move(array));
   }
 
   // ---- cells
@@ -500,8 +507,7 @@ class XdmfReader {
       rows = append(topology, std::move(piece));
     }
     if (number > 0) {
-      part.set = unused_set_name(part.name);
-      mesh_.sets.push_back({part.set, Association::cells, rows});
+      part.set = add_set_of_grid(part.name, rows);
     }
     layout_->parts.push_back(part);
     rows_.push_back(std::move(rows));
@@ -541,30 +547,19 @@ class XdmfReader {
     return all_of(first, count);
   }
 
-  [[nodiscard]] std::string unused_set_name(const std::string& wanted) const {
-    std::string name = wanted;
-    for (int k = 2; std::any_of(
-             mesh_.sets.begin(), mesh_.sets.end(),
-             [&](const EntitySet& set) { return set.association == Association::cells && set.name == name; });
-         ++k) {
-      name = fmt::format("{} ({})", wanted, k);
-    }
-    return name;
-  }
-
   // ---- arrays and sets
 
-  [[nodiscard]] std::string unused_name(const std::string& wanted, Association association) const {
-    std::string name = wanted;
-    for (int k = 2; array_named(name, association) != nullptr; ++k) name = fmt::format("{} ({})", wanted, k);
-    return name;
+  /// Adds an array under its name or, where that is in use, another one; returns the name that it gets.
+  std::string add_array(DataArray array) {
+    array.name = array_names_.use(array.association, array.name);
+    place_of_array_.emplace(std::pair(array.association, array.name), arrays_.size());
+    arrays_.push_back({std::move(array), {}});
+    return arrays_.back().array.name;
   }
 
-  [[nodiscard]] const GrowingArray* array_named(const std::string& name, Association association) const {
-    const auto found = std::find_if(arrays_.begin(), arrays_.end(), [&](const GrowingArray& growing) {
-      return growing.array.association == association && growing.array.name == name;
-    });
-    return found == arrays_.end() ? nullptr : &*found;
+  [[nodiscard]] GrowingArray* array_named(const std::string& name, Association association) {
+    const auto found = place_of_array_.find({association, name});
+    return found == place_of_array_.end() ? nullptr : &arrays_[found->second];
   }
 
   [[nodiscard]] std::string name_of(pugi::xml_node element) const {
@@ -682,26 +677,34 @@ class XdmfReader {
     layout_->fields.push_back(field);
   }
 
+  /// Returns the next name that a set may have: the wanted one, then "NAME (2)", "NAME (3)" …
+  std::string next_set_name(Association association, const std::string& wanted, int part) {
+    const int number = ++set_numbers_[{association, wanted, part}];
+    return number == 1 ? wanted : fmt::format("{} ({})", wanted, number);
+  }
+
+  /// Adds the set of the cells of a Grid; returns its name.
+  std::string add_set_of_grid(const std::string& wanted, const std::vector<Index>& rows) {
+    constexpr int kOfGrid = -1;
+    while (true) {
+      const std::string name = next_set_name(Association::cells, wanted, kOfGrid);
+      if (!known_sets_.try_emplace({Association::cells, name}, KnownSet{mesh_.sets.size(), true, {}}).second)
+        continue;
+      mesh_.sets.push_back({name, Association::cells, rows});
+      return name;
+    }
+  }
+
   /// Returns the set that a field is a part of; renames the field if another one of its part has that name.
   EntitySet& set_of(Field& field) {
     const std::string wanted = field.name;
-    for (int k = 2;; ++k) {
-      const auto found = std::find_if(mesh_.sets.begin(), mesh_.sets.end(), [&](const EntitySet& set) {
-        return set.association == field.association && set.name == field.name;
-      });
-      if (found == mesh_.sets.end()) {
-        return mesh_.sets.emplace_back(EntitySet{field.name, field.association, {}});
-      }
-      const bool is_grid = std::any_of(layout_->parts.begin(), layout_->parts.end(), [&](const Part& part) {
-        return field.association == Association::cells && part.set == field.name;
-      });
-      const bool of_part =
-          std::any_of(layout_->fields.begin(), layout_->fields.end(), [&](const Field& other) {
-            return other.role == Field::Role::set && other.association == field.association &&
-                   other.name == field.name && other.part == field.part;
-          });
-      if (!is_grid && !of_part) return *found;
-      field.name = fmt::format("{} ({})", wanted, k);
+    while (true) {
+      field.name = next_set_name(field.association, wanted, field.part);
+      const auto [found, is_new] =
+          known_sets_.try_emplace({field.association, field.name}, KnownSet{mesh_.sets.size(), false, {}});
+      if (is_new) mesh_.sets.push_back({field.name, field.association, {}});
+      KnownSet& known = found->second;
+      if (!known.is_grid && known.parts.insert(field.part).second) return mesh_.sets[known.place];
     }
   }
 
@@ -747,25 +750,18 @@ class XdmfReader {
   /// Adds an array, or the rows of a part to the array of its name; returns the name that it gets.
   std::string add(DataArray array, int part) {
     if (array.association == Association::vertices) {
-      array.name = unused_name(array.name, array.association);
-      arrays_.push_back({std::move(array), {}});
-      return arrays_.back().array.name;
+      return add_array(std::move(array));
     }
     const std::vector<Index>& rows = rows_[static_cast<std::size_t>(part)];
-    auto found = std::find_if(arrays_.begin(), arrays_.end(), [&](const GrowingArray& growing) {
-      return growing.array.association == Association::cells && growing.array.name == array.name;
-    });
-    if (found != arrays_.end() && array.name == kLabel &&
-        found->array.values.index() != array.values.index()) {
+    GrowingArray* const found = array_named(array.name, Association::cells);
+    if (found != nullptr && array.name == kLabel && found->array.values.index() != array.values.index()) {
       found->array.values = vtk::integers_of<std::int64_t>(found->array.values);
       array.values = vtk::integers_of<std::int64_t>(array.values);
     }
-    if (found == arrays_.end() || !append_rows(*found, array, rows)) {
-      array.name = unused_name(array.name, array.association);
+    if (found == nullptr || !append_rows(*found, array, rows)) {
       if (index_size(rows) != mesh_.cell_count() || !std::is_sorted(rows.begin(), rows.end()))
         array.indices = rows;
-      arrays_.push_back({std::move(array), {}});
-      return arrays_.back().array.name;
+      return add_array(std::move(array));
     }
     return array.name;
   }
@@ -862,6 +858,11 @@ class XdmfReader {
   FileCells cells_;
   std::vector<std::vector<Index>> rows_;  // cells of each part, in the order of the file
   std::vector<GrowingArray> arrays_;
+  std::map<std::pair<Association, std::string>, std::size_t> place_of_array_;
+  UnusedNames array_names_;
+  std::map<std::pair<Association, std::string>, KnownSet> known_sets_;
+  /// By the wanted name and the part, −1 for sets of Grids: the number behind the name that was given last.
+  std::map<std::tuple<Association, std::string, int>, int> set_numbers_;
   std::vector<Pending> pending_;
   std::vector<bool> labelled_;  // of cells
   std::set<std::string> known_geometries_;

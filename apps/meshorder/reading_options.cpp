@@ -1,0 +1,50 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/memory.hpp"
+#include "command.hpp"
+#include "io/stream/read_limits.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace meshorder::command {
+namespace {
+
+/// Returns the bytes of "4G", the most that a limit can be for "none", nothing for other texts.
+std::optional<std::uint64_t> limit_of(const std::string& text) {
+  if (text == "none") return UINT64_MAX;
+  const std::optional<std::uint64_t> size = parse_size(text);
+  return size && *size > 0 ? size : std::nullopt;
+}
+
+}  // namespace
+
+void add_reading_options(CLI::App& subcommand) {
+  subcommand
+      .add_option_function<std::string>(
+          "--limit-memory", [](const std::string& text) { set_memory_limit(*limit_of(text)); },
+          "Memory that a file may take for what it claims rather than holds, such as 4G: compressed or\n"
+          "repeated values, sizes without values; also that of graphs of its cells. `none`: no limit.\n"
+          "Without it 256M and 100 times the file, at most three quarters of the memory")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            return limit_of(text) ? std::string() : "'" + text + "' is no size, such as 4G, and not none";
+          },
+          ""))
+      ->type_name("SIZE");
+  subcommand
+      .add_option_function<std::vector<std::string>>(
+          "--allow-includes-from",
+          [](const std::vector<std::string>& folders) {
+            for (const std::string& folder : folders) allow_includes_from(folder);
+          },
+          "Folder where files may be that the mesh names to be read with it, besides its own; may be\n"
+          "repeated")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("FOLDER")
+      ->allow_extra_args(false);
+}
+
+}  // namespace meshorder::command

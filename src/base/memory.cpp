@@ -1,0 +1,111 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/memory.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string_view>
+
+namespace meshorder {
+namespace {
+
+namespace fs = std::filesystem;
+
+MemoryLimit given_limit;
+
+/// Returns the least limit of a control group and the groups around it, whose folders are below `root`.
+std::uint64_t limit_of_group(const fs::path& root, fs::path group, const char* file) {
+  std::uint64_t least = UINT64_MAX;
+  while (true) {
+    std::uint64_t limit = 0;
+    // "max" is no number, and no limit
+    if (std::ifstream stream(root / group.relative_path() / file); stream >> limit) {
+      least = std::min(least, limit);
+    }
+    if (!group.has_relative_path()) return least;
+    group = group.parent_path();
+  }
+}
+
+/// Returns the least limit of the control groups that this process is in, of version 1 or 2.
+std::uint64_t limit_of_groups() {
+  constexpr const char* kRoot = "/sys/fs/cgroup";
+  std::uint64_t least = UINT64_MAX;
+  std::ifstream groups("/proc/self/cgroup");
+  // "NUMBER:CONTROLLERS:PATH", in version 2 "0::PATH"
+  for (std::string line; std::getline(groups, line);) {
+    const std::size_t first = line.find(':');
+    const std::size_t second = line.find(':', first + 1);
+    if (first == std::string::npos || second == std::string::npos) continue;
+    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
+    const std::string group = line.substr(second + 1);
+    if (controllers == ",,") {
+      least = std::min(least, limit_of_group(kRoot, group, "memory.max"));
+    } else if (controllers.find(",memory,") != std::string::npos) {
+      const fs::path root = fs::path(kRoot) / "memory";
+      least = std::min(least, limit_of_group(root, group, "memory.limit_in_bytes"));
+    }
+  }
+  return least;
+}
+
+std::uint64_t find_usable_memory() {
+  const auto pages = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES));
+  std::uint64_t least = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  rlimit space{};
+  if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY) {
+    least = std::min<std::uint64_t>(least, space.rlim_cur);
+  }
+  return std::min(least, limit_of_groups());
+}
+
+}  // namespace
+
+std::uint64_t usable_memory() {
+  static const std::uint64_t bytes = find_usable_memory();
+  return bytes;
+}
+
+MemoryLimit memory_limit() {
+  return given_limit.is_given ? given_limit : MemoryLimit{usable_memory() / 4 * 3, false};
+}
+
+void set_memory_limit(std::uint64_t bytes) { given_limit = {bytes, true}; }
+
+std::optional<std::uint64_t> parse_size(std::string_view text) {
+  int bits = 0;
+  for (const auto& [letter, bits_of_unit] : kSizeUnits) {
+    const bool upper = !text.empty() && text.back() == letter;
+    const bool lower = !text.empty() && text.back() == letter - 'A' + 'a';
+    if (!upper && !lower) continue;
+    bits = bits_of_unit;
+    text.remove_suffix(1);
+    break;
+  }
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  if (!whole || number < 0 || number > std::numeric_limits<std::int64_t>::max() >> bits) return {};
+  return static_cast<std::uint64_t>(number) << bits;
+}
+
+std::string size_text(std::uint64_t bytes) {
+  constexpr std::array<const char*, 6> kUnits{" KiB", " MiB", " GiB", " TiB", " PiB", " EiB"};
+  if (bytes < 1024) return std::to_string(bytes) + " bytes";
+  double size = static_cast<double>(bytes) / 1024;
+  std::size_t unit = 0;
+  for (; size >= 1024 && unit + 1 < kUnits.size(); ++unit) size /= 1024;
+  constexpr int kDigits = 4;
+  std::array<char, 32> text{};
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), size, std::chars_format::general, kDigits).ptr;
+  return std::string(text.data(), end) + kUnits[unit];
+}
+
+}  // namespace meshorder

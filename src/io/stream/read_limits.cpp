@@ -1,0 +1,117 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/stream/read_limits.hpp"
+
+#include "base/memory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kLeastLimit = std::uint64_t{256} << 20;
+constexpr std::uint64_t kMultiple = 100;  // of the files' size
+
+thread_local ReadScope* current_reading = nullptr;
+
+std::vector<fs::path>& folders_of_process() {
+  static std::vector<fs::path> folders;
+  return folders;
+}
+
+/// Returns whether a path without .. and links is in that folder or below it.
+bool is_below(const fs::path& path, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+bool is_below_on_disk(const fs::path& path, const fs::path& folder) {
+  std::error_code code;
+  const fs::path real_folder = fs::canonical(folder.empty() ? fs::path(".") : folder, code);
+  if (code) return false;
+  const fs::path real_path = fs::weakly_canonical(path, code);
+  return !code && is_below(real_path, real_folder);
+}
+
+bool is_below_by_name(const fs::path& path, const fs::path& folder) {
+  const fs::path rest =
+      path.lexically_normal().lexically_relative(folder.empty() ? fs::path(".") : folder.lexically_normal());
+  return !rest.empty() && *rest.begin() != "..";
+}
+
+}  // namespace
+
+ReadScope::ReadScope(const FilePath& file, std::optional<std::uint64_t> memory,
+                     std::vector<fs::path> include_folders)
+    : file_(file),
+      memory_(memory),
+      include_folders_(std::move(include_folders)),
+      outer_(std::exchange(current_reading, this)) {}
+
+ReadScope::~ReadScope() { current_reading = outer_; }
+
+std::uint64_t ReadScope::limit() const {
+  if (memory_) return *memory_;
+  const MemoryLimit of_process = memory_limit();
+  if (of_process.is_given) return of_process.bytes;
+  const std::uint64_t multiple = bytes_for(stored_, kMultiple);
+  return std::min(of_process.bytes, std::max(multiple, multiple + kLeastLimit));
+}
+
+void count_file(const FilePath& file, std::uint64_t bytes) {
+  ReadScope* const reading = current_reading;
+  if (reading == nullptr) return;
+  if (reading->counted_.insert(file.path().lexically_normal().string()).second) {
+    reading->stored_ += bytes;
+  } else {
+    claim_memory(bytes, "the file, which is read again,", {.file = file.string()});
+  }
+}
+
+std::string refused_claim(std::uint64_t bytes, std::string_view what) {
+  ReadScope* const reading = current_reading;
+  const std::uint64_t limit = reading != nullptr ? reading->limit() : memory_limit().bytes;
+  const std::uint64_t before = reading != nullptr ? reading->claimed_ : 0;
+  if (bytes <= limit && before <= limit - bytes) {
+    if (reading != nullptr) reading->claimed_ += bytes;
+    return {};
+  }
+  return fmt::format("{} would take {}{}, more than the limit of {}", what, size_text(bytes),
+                     before > 0 ? fmt::format(" beside {}", size_text(before)) : "", size_text(limit));
+}
+
+void claim_memory(std::uint64_t bytes, std::string_view what, Location where) {
+  const std::string fault = refused_claim(bytes, what);
+  if (fault.empty()) return;
+  if (where.file.empty() && current_reading != nullptr) where.file = current_reading->file_.string();
+  throw InputError(std::move(where), fault, kClaimRemedy);
+}
+
+std::uint64_t limit_on_unknown_sizes() {
+  const ReadScope* const reading = current_reading;
+  return reading != nullptr && reading->memory_ ? *reading->memory_ : memory_limit().bytes;
+}
+
+void allow_includes_from(fs::path folder) { folders_of_process().push_back(std::move(folder)); }
+
+const std::vector<fs::path>& allowed_include_folders() { return folders_of_process(); }
+
+bool may_include(const FilePath& from, const FilePath& file) {
+  const auto contains = [&](const fs::path& folder) {
+    return file.store() != nullptr ? is_below_by_name(file.path(), folder)
+                                   : is_below_on_disk(file.path(), folder);
+  };
+  if (contains(from.path().parent_path())) return true;
+  const ReadScope* const reading = current_reading;
+  if (reading != nullptr &&
+      std::any_of(reading->include_folders_.begin(), reading->include_folders_.end(), contains)) {
+    return true;
+  }
+  return std::any_of(folders_of_process().begin(), folders_of_process().end(), contains);
+}
+
+}  // namespace meshorder

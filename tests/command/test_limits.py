@@ -1,0 +1,213 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""What a file may take that claims more than it holds, which files it may name, and how long a byte may take."""
+import contextlib
+import gzip
+import os
+import resource
+import struct
+import subprocess
+import threading
+import time
+import zlib
+
+import conftest
+import pytest
+
+REMEDY = "if you trust the file, raise the limit on memory (--limit-memory)"
+TETRAHEDRON = "*VERTICES\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n*ELEMENTS\nTET\n1 4 0\n1 1 2 3 4\n"
+GIGABYTE = 1 << 30
+
+
+def run_within(gigabytes, folder, *arguments):
+    """Runs the command with that much address space, so that what it allocates beyond it fails."""
+    def limit():
+        resource.setrlimit(resource.RLIMIT_AS, (gigabytes * GIGABYTE, gigabytes * GIGABYTE))
+
+    return subprocess.run([conftest.MESHORDER, *map(str, arguments)], cwd=folder, capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, timeout=120, check=False, preexec_fn=limit)
+
+
+def refused(folder, *arguments):
+    """The one line by which a file is refused before what it claims is allocated."""
+    done = run_within(3, folder, *arguments)
+    lines = done.stderr.strip().splitlines()
+    assert done.returncode == 2 and len(lines) == 1 and done.stdout == "", done.stderr
+    return lines[0]
+
+
+def vtu(in_grid="", attributes="", appended=b""):
+    text = ('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64"'
+            f'{attributes}><UnstructuredGrid>\n{in_grid}<Piece NumberOfPoints="3" NumberOfCells="1"><Points>'
+            '<DataArray type="Float32" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0</DataArray></Points>'
+            '<Cells><DataArray type="Int32" Name="connectivity" format="ascii">0 1 2</DataArray>'
+            '<DataArray type="Int32" Name="offsets" format="ascii">3</DataArray>'
+            '<DataArray type="Int32" Name="types" format="ascii">5</DataArray></Cells></Piece></UnstructuredGrid>')
+    if appended:
+        return text.encode() + b'<AppendedData encoding="raw">_' + appended + b"</AppendedData></VTKFile>\n"
+    return (text + "</VTKFile>\n").encode()
+
+
+def test_arrays_that_share_a_compressed_block(command, tmp_path):
+    """28 kB that want 12.8 GB."""
+    size = 64 << 20
+    block = zlib.compress(bytes(size), 9)
+    arrays = "".join(f'<DataArray type="Int8" Name="f{k}" NumberOfTuples="{size}" format="appended" offset="0"/>\n'
+                     for k in range(200))
+    file = vtu(f"<FieldData>{arrays}</FieldData>", ' compressor="vtkZLibDataCompressor"',
+               struct.pack("<4Q", 1, size, 0, len(block)) + block)
+    (tmp_path / "a.vtu").write_bytes(file)
+    assert len(file) < 100_000
+    line = refused(tmp_path, "info", "a.vtu")
+    assert line.startswith("meshorder: a.vtu:") and "would take 64 MiB beside 256 MiB, more than the limit of 26" in line
+    assert line.endswith(REMEDY)
+    done = run_within(1, tmp_path, "info", "a.vtu", "--limit-memory", "none")
+    assert done.returncode == 1 and "out of memory" in done.stderr
+    assert "more than the limit of 100 MiB; " in command.fails("info", "a.vtu", "--limit-memory", "100M")
+    for wrong in ("0", "4X", ""):
+        assert "--limit-memory: " in command.fails("info", "a.vtu", "--limit-memory", wrong)
+
+
+def test_a_gzip_file_of_blanks(tmp_path):
+    packed = gzip.compress(b"OFF\n" + b" " * (300 << 20), 9)
+    (tmp_path / "a.off.gz").write_bytes(packed)
+    line = refused(tmp_path, "info", "a.off.gz")
+    assert line.startswith("meshorder: a.off.gz: what is compressed in it would take 1 MiB beside ")
+    assert line.endswith(REMEDY)
+
+
+XDMF = ('<Xdmf><Domain><Grid><Topology TopologyType="Triangle" NumberOfElements="1"><DataItem Dimensions="1 3" '
+        'NumberType="Int" Format="XML">0 1 2</DataItem></Topology><Geometry GeometryType="XYZ"><DataItem '
+        'Dimensions="{} 3" Precision="8" Format="{}">{}</DataItem></Geometry>{}</Grid></Domain></Xdmf>\n')
+
+
+def test_datasets_of_values_that_are_not_there(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    points = 1 << 20
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.create_dataset("none", shape=(10**12, 3), dtype="f8", chunks=(1 << 16, 3), compression="gzip", fillvalue=1)
+        for name, shape in (("p", (points, 3)), ("u", (points,))):
+            file.create_dataset(name, shape=shape, dtype="f8", chunks=shape, compression="gzip")[...] = 0
+    (tmp_path / "a.xdmf").write_text(XDMF.format(10**12, "HDF", "a.h5:/none", ""))
+    assert "claims 3000000000000 values, but only 0 bytes are there" in refused(tmp_path, "info", "a.xdmf")
+    array = '<Attribute Name="a{}" Center="Node"><DataItem Dimensions="{}" Format="HDF">a.h5:/u</DataItem></Attribute>\n'
+    arrays = "".join(array.format(k, points) for k in range(400))
+    (tmp_path / "b.xdmf").write_text(XDMF.format(points, "HDF", "a.h5:/p", arrays))
+    line = refused(tmp_path, "info", "b.xdmf")
+    assert line.startswith("meshorder: a.h5: the dataset '/u' would take 8 MiB beside ") and line.endswith(REMEDY)
+
+
+def test_dimensions_of_netcdf(tmp_path):
+    netcdf = pytest.importorskip("netCDF4")
+    with netcdf.Dataset(tmp_path / "a.exo", "w") as file:
+        for name, length in (("num_dim", 3), ("num_el_blk", 1), ("num_elem", 1)):
+            file.createDimension(name, length)
+        file.createDimension("num_nodes", 2_000_000_000)
+        file.createVariable("coord", "f8", ("num_dim", "num_nodes"), zlib=True, chunksizes=(1, 1 << 16))
+    assert "coord claims more values than a file of" in refused(tmp_path, "info", "a.exo")
+
+
+def test_polygons_of_many_vertices(tmp_path):
+    """A graph that joins all vertices of a cell is as large as their number squared."""
+    count = 20_000
+    points = "".join(f"{k} {k * k % 7} 0\n" for k in range(count))
+    polygon = f"{count} " + " ".join(map(str, range(count))) + "\n"
+    (tmp_path / "a.off").write_text(f"OFF\n{count} 2 0\n{points}{polygon}{polygon}")
+    line = refused(tmp_path, "order", "a.off", "-o", "b.off", "--vertices", "rcm")
+    assert "the graph of all vertices would have 799960000 entries" in line and "(--limit-memory)" in line
+    assert not (tmp_path / "b.off").exists()
+
+
+def test_pipes_end_at_the_limit(command, tmp_path):
+    """A FIFO is read like a file; one that never ends is left."""
+    pipe = tmp_path / "a.veg"
+    os.mkfifo(pipe)
+
+    def fill(text, times):
+        with contextlib.suppress(BrokenPipeError), open(pipe, "w") as stream:
+            for _ in range(times):
+                stream.write(text)
+
+    for times, limit in ((1, "none"), (10**6, "10M")):
+        writer = threading.Thread(target=fill, args=(TETRAHEDRON if times == 1 else "# endless\n" * 100, times))
+        writer.start()
+        if times == 1:
+            assert command.json("info", pipe, "--limit-memory", limit)["cells"] == {"tetrahedron": 1}
+        else:
+            assert "has no end within 10 MiB" in command.fails("info", pipe, "--limit-memory", limit)
+        writer.join()
+
+
+def test_includes_need_permission(command, tmp_path):
+    (tmp_path / "mesh").mkdir()
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "material.txt").write_text("*MATERIAL soft\nENU, 1000, 1, .4\n")
+    (tmp_path / "mesh" / "a.veg").write_text(TETRAHEDRON + "*INCLUDE ../other/material.txt\n")
+    line = command.fails("order", "mesh/a.veg", "-o", "b.veg")
+    assert line == ("meshorder: mesh/a.veg:11: the included file '../other/material.txt' is not in the mesh's folder; put "
+                    "it below the mesh's folder, or allow its own by --allow-includes-from")
+    assert not (tmp_path / "b.veg").exists()
+    command.ok("order", "mesh/a.veg", "-o", "b.veg", "--allow-includes-from", "mesh", "--allow-includes-from", "other")
+    assert "soft" in (tmp_path / "b.veg").read_text()
+    assert "--allow-includes-from: " in command.fails("info", "mesh/a.veg", "--allow-includes-from", "none")
+
+
+def test_many_nested_includes_take_no_time(command, tmp_path):
+    for k in range(9000):
+        (tmp_path / f"f{k}.txt").write_text(f"*INCLUDE f{k + 1}.txt\n")
+    (tmp_path / "a.veg").write_text(TETRAHEDRON + "*INCLUDE f0.txt\n")
+    start = time.monotonic()
+    assert "f15.txt:1: files are included more than 16 deep" in command.fails("info", "a.veg")
+    assert time.monotonic() - start < 5
+
+
+def test_hdf5_does_not_lead_elsewhere(command, tmp_path):
+    """Datasets whose values are in another file, and data files outside of the mesh's folder."""
+    h5py = pytest.importorskip("h5py")
+    (tmp_path / "mesh").mkdir()
+    secret = tmp_path / "secret"
+    secret.write_bytes(bytes(72))
+    with h5py.File(tmp_path / "mesh" / "a.h5", "w") as file:
+        file.create_dataset("p", shape=(3, 3), dtype="f8", external=[(str(secret), 0, 72)])
+        file["q"] = h5py.ExternalLink(str(tmp_path / "b.h5"), "/p")
+    with h5py.File(tmp_path / "b.h5", "w") as file:
+        file["p"] = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    def line_of(place, kind="HDF"):
+        (tmp_path / "mesh" / "a.xdmf").write_text(XDMF.format(3, kind, place, ""))
+        return command.fails("info", "mesh/a.xdmf")
+
+    assert "has its values in other files" in line_of("a.h5:/p")
+    assert "a link to another file, which is not followed" in line_of("a.h5:/q")
+    for place, kind in (("../b.h5:/p", "HDF"), (f"{tmp_path}/b.h5:/p", "HDF"), ("../secret", "Binary"),
+                        (str(secret), "Binary")):
+        assert "is not in the mesh's folder; put it below" in line_of(place, kind)
+    (tmp_path / "mesh" / "a.xdmf").write_text(XDMF.format(3, "HDF", "../b.h5:/p", ""))
+    command.ok("info", "mesh/a.xdmf", "--allow-includes-from", ".")
+
+
+def repeated(head, unit, tail=""):
+    """A file of about 400 kB."""
+    return head + unit * ((400_000 - len(head)) // len(unit)) + tail
+
+
+GMSH = ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+        "$Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n")
+VIEW = '$NodeData\n1\n"u"\n1\n0\n3\n0\n1\n1\n1 0\n$EndNodeData\n'
+ATTRIBUTE = '<Attribute Name="a" Center="Cell"><DataItem Dimensions="1" Format="XML">1</DataItem></Attribute>\n'
+SET = '<Set Name="a" SetType="Cell"><DataItem Dimensions="1" NumberType="Int" Format="XML">0</DataItem></Set>\n'
+TRIANGLE = XDMF.format(3, "XML", "0 0 0 1 0 0 0 1 0", "|").split("|")
+
+
+@pytest.mark.parametrize(("name", "text"), [
+    ("views.msh", repeated(GMSH, VIEW)),
+    ("attributes.xdmf", repeated(TRIANGLE[0], ATTRIBUTE, TRIANGLE[1])),
+    ("sets.xdmf", repeated(TRIANGLE[0], SET, TRIANGLE[1])),
+    ("ranges.inp", repeated("*NODE\n" + "".join(f"{k},0,0,{k}\n" for k in range(1, 10_000))
+                            + "*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n*NSET,NSET=s,GENERATE\n", "1,1000000000,1\n")),
+], ids=lambda value: value if len(value) < 20 else "")
+def test_repeated_names_take_linear_time(tmp_path, name, text):
+    """Each of these took a minute or more at 1 MB."""
+    (tmp_path / name).write_text(text)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    run_within(8, tmp_path, "info", name)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 5

@@ -1,0 +1,297 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// What a file may take that claims more than it holds, and which files it may name.
+#include "base/memory.hpp"
+#include "io/stream/read_limits.hpp"
+#include "support/files.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/io.hpp>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+namespace meshorder {
+namespace {
+
+using namespace test;
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
+constexpr std::string_view kRemedy = "if you trust the file, raise the limit on memory (--limit-memory)";
+
+constexpr std::string_view kTetrahedron =
+    "*VERTICES\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n*ELEMENTS\nTET\n1 4 0\n1 1 2 3 4\n";
+
+/// A .vtu file of one triangle, with something in its grid and something in its cells' data.
+std::string triangle(std::string_view in_grid, std::string_view cell_data = "") {
+  return fmt::format(
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\"><UnstructuredGrid>\n{}\n<Piece NumberOfPoints=\"3\" NumberOfCells=\"1\">"
+      "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 "
+      "0</DataArray></Points><Cells><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 "
+      "2</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3</DataArray><DataArray "
+      "type=\"Int32\" Name=\"types\" format=\"ascii\">5</DataArray></Cells><CellData>{}</CellData></Piece>"
+      "</UnstructuredGrid>",
+      in_grid, cell_data);
+}
+
+/// The message with which reading a file under these options fails; empty if it is read.
+std::string fault(const std::filesystem::path& path, const ReadOptions& options = {}) {
+  try {
+    (void)read_mesh(path, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Memory, SizesAreReadAndWritten) {
+  EXPECT_EQ(parse_size("4G"), std::uint64_t{4} << 30);
+  EXPECT_EQ(parse_size("48k"), 48U << 10);
+  EXPECT_EQ(parse_size("7"), 7U);
+  for (const char* const text : {"", "G", "4GB", "-1", "1.5G", "99999999999999999999", "99999999999G"}) {
+    EXPECT_FALSE(parse_size(text)) << text;
+  }
+  EXPECT_EQ(size_text(555), "555 bytes");
+  EXPECT_EQ(size_text(3 * kMebibyte / 2), "1.5 MiB");
+  EXPECT_EQ(size_text(UINT64_MAX), "16 EiB");
+  EXPECT_EQ(bytes_for(UINT64_MAX / 2, 4), UINT64_MAX);
+  EXPECT_GT(usable_memory(), kMebibyte);
+  EXPECT_FALSE(memory_limit().is_given);
+  EXPECT_LT(memory_limit().bytes, usable_memory());
+}
+
+TEST(ReadLimits, AddUpClaimsAndGrowWithTheFiles) {
+  const FilePath file("a.msh");
+  const ReadScope scope(file);
+  count_file(file, kMebibyte);
+  EXPECT_EQ(refused_claim(300 * kMebibyte, "a list"), "");
+  EXPECT_EQ(refused_claim(100 * kMebibyte, "a list"),
+            "a list would take 100 MiB beside 300 MiB, more than the limit of 356 MiB");
+  EXPECT_EQ(refused_claim(std::numeric_limits<std::uint64_t>::max(), "a list").substr(0, 17),
+            "a list would take");
+  EXPECT_EQ(refused_claim(56 * kMebibyte, "a list"), "");
+  {
+    const FilePath other("b.msh");
+    const ReadScope inner(other, kMebibyte);
+    EXPECT_EQ(refused_claim(kMebibyte, "a list"), "");
+    EXPECT_NE(refused_claim(1, "a list"), "");
+  }
+  EXPECT_NE(refused_claim(1, "a list"), "");
+}
+
+TEST(ReadLimits, AFileThatIsReadAgainIsAClaim) {
+  const FilePath file("a.msh");
+  const ReadScope scope(file);
+  count_file("b", 2 * kMebibyte);
+  for (int k = 0; k < 228; ++k) count_file("b", 2 * kMebibyte);
+  EXPECT_THROW(count_file("x/../b", 2 * kMebibyte), InputError);
+}
+
+TEST(ReadLimits, ComponentsWithoutValuesAreRefused) {
+  const TemporaryFolder folder;
+  const auto path = folder.file(
+      "a.vtu",
+      triangle("<FieldData><DataArray type=\"Int32\" Name=\"f\" NumberOfTuples=\"0\" "
+               "NumberOfComponents=\"2000000000\" ComponentName0=\"x\" format=\"ascii\"/></FieldData>") +
+          "</VTKFile>");
+  EXPECT_LT(std::filesystem::file_size(path), 1024U);
+  EXPECT_EQ(fault(path),
+            fmt::format("{}:2: the array 'f' would take 59.6 GiB, more than the limit of 256.1 MiB; {}",
+                        path.string(), kRemedy));
+}
+
+TEST(ReadLimits, ArraysThatShareTheirBytesAreAddedUp) {
+  const TemporaryFolder folder;
+  constexpr std::size_t kBytes = std::size_t{1} << 20;
+  std::string arrays;
+  for (int k = 0; k < 400; ++k) {
+    arrays += fmt::format(
+        "<DataArray type=\"Int8\" Name=\"f{}\" NumberOfTuples=\"{}\" format=\"appended\" "
+        "offset=\"0\"/>\n",
+        k, kBytes);
+  }
+  std::string size(8, '\0');
+  size[2] = '\x10';
+  const auto path = folder.file("a.vtu", triangle("<FieldData>" + arrays + "</FieldData>") +
+                                             "<AppendedData encoding=\"raw\">_" + size +
+                                             std::string(kBytes, '\1') + "</AppendedData></VTKFile>");
+  EXPECT_THAT(fault(path), AllOf(HasSubstr("a.vtu:3"), HasSubstr(": the array 'f3"),
+                                 HasSubstr("would take 1 MiB beside 35"), EndsWith(kRemedy)));
+  EXPECT_EQ(fault(path, {.memory_limit = 400 * kMebibyte}), "");
+  EXPECT_NE(fault(path, {.memory_limit = 399 * kMebibyte}), "");
+}
+
+TEST(ReadLimits, SetsOfRangesAreAddedUp) {
+  const TemporaryFolder folder;
+  std::string nodes = "*NODE\n";
+  for (int k = 1; k <= 1000; ++k) nodes += fmt::format("{},0,0,{}\n", k, k);
+  const std::string element = "*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n";
+  std::string ranges = "*NSET,NSET=s,GENERATE\n";
+  for (int k = 0; k < 2000; ++k) ranges += "1,2000000000,1\n";
+  // 1,000 nodes × 2,000 lines × 4 bytes, twice: as they are found and in the set
+  const auto deck = folder.file("a.inp", nodes + element + ranges);
+  EXPECT_EQ(fault(deck), "");
+  EXPECT_THAT(fault(deck, {.memory_limit = 4 * kMebibyte}),
+              HasSubstr("a range of numbers would take 3.906 KiB"));
+  std::string chain = "*NSET,NSET=s0\n1,2,3,4\n";
+  for (int k = 1; k < 40; ++k) chain += fmt::format("*NSET,NSET=s{0}\ns{1},s{1}\n", k, k - 1);
+  EXPECT_THAT(fault(folder.file("b.inp", nodes + element + chain)),
+              AllOf(HasSubstr("b.inp:10"), HasSubstr("the set would take 128 MiB beside 256 MiB")));
+}
+
+TEST(ReadLimits, CellsOfManyGroupsAreAddedUp) {
+  const TemporaryFolder folder;
+  constexpr int kGroups = 300;
+  constexpr int kCells = 1000;
+  std::string names;
+  std::string tags;
+  std::string cells;
+  for (int k = 1; k <= kGroups; ++k) {
+    names += fmt::format("3 {} \"group {}\"\n", k, k);
+    tags += fmt::format(" {}", k);
+  }
+  for (int k = 1; k <= kCells; ++k) cells += fmt::format("{} 1 2 3 4\n", k);
+  const auto path = folder.file(
+      "a.msh",
+      fmt::format("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n{}\n{}$EndPhysicalNames\n"
+                  "$Entities\n0 0 0 1\n1 0 0 0 1 1 1 {}{} 0\n$EndEntities\n$Nodes\n1 4 1 4\n3 1 0 "
+                  "4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n$Elements\n1 {} 1 {}\n3 1 4 "
+                  "{}\n{}$EndElements\n",
+                  kGroups, names, kGroups, tags, kCells, kCells, kCells, cells));
+  EXPECT_EQ(fault(path), "");
+  EXPECT_THAT(fault(path, {.memory_limit = kMebibyte}),
+              HasSubstr("what belongs to several groups would take"));
+}
+
+TEST(ReadLimits, StreamsWithoutAnEndAreLeft) {
+  std::istringstream stream(std::string(3 * kMebibyte, ' '));
+  try {
+    (void)read_mesh(stream, {.format = "off", .memory_limit = 2 * kMebibyte});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "<memory>: has no end within 2 MiB; if it has one, raise the limit on memory (--limit-memory)");
+  }
+}
+
+TEST(ReadLimits, WhatIsNoFileIsRefused) {
+  const TemporaryFolder folder;
+  const auto link = [&](const char* name, const char* target) {
+    std::filesystem::create_symlink(target, folder.path() / name);
+    return folder.path() / name;
+  };
+  EXPECT_THAT(fault(link("a.off", "/dev/zero")), EndsWith("a.off: is a device; give a mesh file"));
+#ifdef MESHORDER_HAS_HDF5
+  EXPECT_THAT(fault(link("a.med", "/dev/zero")), EndsWith("a.med: is a device; give a mesh file"));
+#endif
+  EXPECT_THAT(fault(link("b.off", "/usr")), EndsWith("b.off: is a folder; give a mesh file"));
+  // files of /sys claim a page each
+  constexpr const char* kShort = "/sys/kernel/mm/transparent_hugepage/enabled";
+  if (std::filesystem::exists(kShort)) {
+    EXPECT_THAT(fault(link("c.off", kShort)), HasSubstr("c.off: had 4096 bytes and ended after "));
+  }
+  // a terabyte of zeros without a disk block
+  const auto sparse = folder.file("d.off", "");
+  std::filesystem::resize_file(sparse, std::uintmax_t{1} << 40);
+  EXPECT_THAT(fault(sparse), HasSubstr("d.off: has 1 TiB, more than the limit of "));
+}
+
+// ---- included files
+
+TEST(Includes, StayBelowTheFolderOfTheMesh) {
+  const TemporaryFolder outside;
+  const auto secret = outside.file("secret.txt", "*MATERIAL secret\nENU, 1, 1, .4\n");
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "sub");
+  std::filesystem::create_symlink(secret, folder.path() / "link.txt");
+  (void)folder.file("sub/inner.txt", "*INCLUDE ../beside.txt\n");
+  (void)folder.file("beside.txt", "# here\n");
+  const auto of_vega = [&](const std::string& name, const ReadOptions& options = {}) {
+    return fault(folder.file("a.veg", std::string(kTetrahedron) + "*INCLUDE " + name + "\n"), options);
+  };
+  const auto of_deck = [&](const std::string& name, const ReadOptions& options = {}) {
+    return fault(folder.file("a.inp",
+                             "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4\n"
+                             "1,1,2,3,4\n*INCLUDE,INPUT=" +
+                                 name + "\n"),
+                 options);
+  };
+  const auto of_bulk = [&](const std::string& name, const ReadOptions& options = {}) {
+    return fault(folder.file("a.bdf",
+                             "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\n"
+                             "GRID,4,,0.,0.,1.\nCTETRA,1,1,1,2,3,4\nINCLUDE '" +
+                                 name + "'\nENDDATA\n"),
+                 options);
+  };
+  const std::string remedy = "put it below the mesh's folder, or allow its own by --allow-includes-from";
+  const std::string up = "../" + outside.path().filename().string() + "/secret.txt";
+  for (const std::string& name : {secret.string(), std::string("link.txt"), up, std::string("/etc/passwd"),
+                                  std::string("sub/../../none.txt")}) {
+    EXPECT_THAT(of_vega(name), AllOf(HasSubstr("a.veg:11: the included file '"),
+                                     HasSubstr("is not in the mesh's folder"), EndsWith(remedy)));
+    EXPECT_THAT(of_deck(name), AllOf(HasSubstr("a.inp:8: the included file '"), EndsWith(remedy)));
+    EXPECT_THAT(of_bulk(name), AllOf(HasSubstr("a.bdf:7: the included file '"), EndsWith(remedy)));
+  }
+  EXPECT_EQ(of_vega("sub/inner.txt"), "");
+  EXPECT_EQ(of_vega("sub/../beside.txt"), "");
+  EXPECT_EQ(of_vega((folder.path() / "beside.txt").string()), "");
+  const ReadOptions allowed{.include_folders = {"/none", outside.path()}};
+  for (const std::string& name : {secret.string(), std::string("link.txt"), up})
+    EXPECT_EQ(of_vega(name, allowed), "");
+  EXPECT_THAT(of_vega("/etc/passwd", allowed), EndsWith(remedy));
+}
+
+TEST(Includes, StayBelowTheFolderInMemory) {
+  const auto with = [](std::string_view name) {
+    ReadOptions options{.format = "vega", .name = "meshes/a.veg"};
+    options.companion = [](std::string_view) { return std::string("# found\n"); };
+    const std::string text = std::string(kTetrahedron) + "*INCLUDE " + std::string(name) + "\n";
+    try {
+      (void)read_mesh(std::as_bytes(std::span(text)), options);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(with("b.txt"), "");
+  EXPECT_EQ(with("sub/../b.txt"), "");
+  for (const char* const name : {"../b.txt", "/etc/passwd", "sub/../../b.txt"}) {
+    EXPECT_THAT(with(name), HasSubstr("meshes/a.veg:11: the included file ")) << name;
+  }
+}
+
+TEST(Includes, AreBoundedInDepthAndInAll) {
+  const TemporaryFolder folder;
+  for (int k = 0; k < 40; ++k) {
+    (void)folder.file(fmt::format("f{}.txt", k), fmt::format("# {}\n*INCLUDE f{}.txt\n", k, k + 1));
+  }
+  (void)folder.file("f40.txt", "# end\n");
+  const auto path = [&](int first) {
+    return folder.file("a.veg", std::string(kTetrahedron) + fmt::format("*INCLUDE f{}.txt\n", first));
+  };
+  EXPECT_THAT(fault(path(0)), HasSubstr("f15.txt:2: files are included more than 16 deep"));
+  EXPECT_EQ(fault(path(25)), "");
+  // one file many times
+  (void)folder.file("big.txt", "# " + std::string(100'000, 'x') + "\n");
+  std::string many(kTetrahedron);
+  for (int k = 0; k < 100; ++k) many += "*INCLUDE big.txt\n";
+  EXPECT_EQ(fault(folder.file("b.veg", many)), "");
+  EXPECT_THAT(fault(folder.file("b.veg", many), {.memory_limit = kMebibyte}),
+              AllOf(HasSubstr("big.txt: the file, which is read again, would take"), HasSubstr("1 MiB")));
+}
+
+}  // namespace
+}  // namespace meshorder
