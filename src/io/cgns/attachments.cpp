@@ -71,13 +71,6 @@ class AttachmentReader {
 
   // ---- what is where
 
-  /// Returns what values and lists of a node belong to; cells also for their faces and edges.
-  static Association location_of(const Node& node, Association inherited) {
-    const Node* const location = node.child_of_label("GridLocation_t");
-    if (location == nullptr) return inherited;
-    return is_one_of(location->text(), kVertexLocations) ? Association::vertices : Association::cells;
-  }
-
   /// Returns the cell of an element number in a zone, −1 if there is none.
   [[nodiscard]] Index cell_of(const ZonePlaces& of_zone, std::int64_t number) const {
     const auto after =
@@ -85,10 +78,13 @@ class AttachmentReader {
                          [&](std::int64_t wanted, int s) { return wanted < metadata_.sections[s].first; });
     if (after == of_zone.sections.begin()) return -1;
     const auto k = static_cast<std::size_t>(after - of_zone.sections.begin()) - 1;
-    const std::int64_t place = number - metadata_.sections[of_zone.sections[k]].first;
-    return place < metadata_.sections[of_zone.sections[k]].count
-               ? of_zone.first_cells[k] + static_cast<Index>(place)
-               : -1;
+    const Section& section = metadata_.sections[of_zone.sections[k]];
+    const std::int64_t place = number - section.first;
+    if (place >= section.count) return -1;
+    if (section.type == kPolygons) {
+      return metadata_.cell_of_polygon[section.first_item + static_cast<Index>(place)];
+    }
+    return of_zone.first_cells[k] + static_cast<Index>(place);
   }
 
   [[nodiscard]] Index position_of(const ZonePlaces& of_zone, Association association, std::int64_t number,
@@ -326,7 +322,7 @@ class AttachmentReader {
     for (std::size_t k = 0; k < owner.sections.size(); ++k) {
       const int s = owner.sections[k];
       if (metadata_.sections[s].name != node.name || values.label != "UserDefinedData_t") continue;
-      std::vector<Index> rows(static_cast<std::size_t>(metadata_.sections[s].count));
+      std::vector<Index> rows(static_cast<std::size_t>(owner.cell_counts[k]));
       std::iota(rows.begin(), rows.end(), owner.first_cells[k]);
       const auto shared = std::make_shared<const std::vector<Index>>(std::move(rows));
       for (Node& child : values.children) {
@@ -338,6 +334,31 @@ class AttachmentReader {
     }
   }
 
+  /// Returns what added to the numbers of the parents of polygons gives those of elements: 0, or where they
+  /// count the polyhedra from 1 what the section of these begins with.
+  [[nodiscard]] std::int64_t shift_of_parents(std::span<const std::int64_t> numbers,
+                                              const std::string& path) {
+    const auto wrong = std::find_if(numbers.begin(), numbers.end(), [&](std::int64_t number) {
+      const Index cell = number == 0 ? -1 : cell_of(zone(), number);
+      return number != 0 &&
+             (cell < 0 || dimension(reading_.mesh.cells.shapes[cell]) != metadata_.cell_dimension);
+    });
+    if (wrong == numbers.end()) return 0;
+    std::vector<const Section*> polyhedra;
+    for (const int s : zone().sections) {
+      if (metadata_.sections[s].type == kPolyhedra) polyhedra.push_back(&metadata_.sections[s]);
+    }
+    const bool from_one =
+        polyhedra.size() == 1 && std::all_of(numbers.begin(), numbers.end(), [&](std::int64_t number) {
+          return number >= 0 && number <= polyhedra.front()->count;
+        });
+    if (!from_one) {
+      reading_.fail(path, fmt::format("element {} is no cell of the zone", *wrong),
+                    "the parents of polygons are polyhedra");
+    }
+    return polyhedra.front()->first - 1;
+  }
+
   void read_parents_of(Node& node, int section, Index first, const std::string& path) {
     const std::vector<std::int64_t> values = whole_numbers(reading_, node, path);
     const auto count = static_cast<std::size_t>(metadata_.sections[section].count);
@@ -347,16 +368,20 @@ class AttachmentReader {
                     "the file may be damaged");
     }
     parents.number_type = node.type;
+    parents.of_polygons = metadata_.sections[section].type == kPolygons;
     parents.rows.resize(count);
-    std::iota(parents.rows.begin(), parents.rows.end(), first);
+    std::iota(parents.rows.begin(), parents.rows.end(),
+              parents.of_polygons ? metadata_.sections[section].first_item : first);
     std::size_t column = 0;
     if (node.name != "ParentElementsPosition") {
-      for (; column < 2; ++column) {
-        for (std::size_t e = 0; e < count; ++e) {
-          const std::int64_t number = values[column * count + e];
-          parents.cells.push_back(number == 0 ? Index{-1}
-                                              : position_of(zone(), Association::cells, number, path));
-        }
+      constexpr std::size_t kParents = 2;
+      column = kParents;
+      const std::span<const std::int64_t> numbers = std::span(values).first(kParents * count);
+      const std::int64_t shift = parents.of_polygons ? shift_of_parents(numbers, path) : 0;
+      parents.from_one = shift != 0;
+      for (const std::int64_t number : numbers) {
+        parents.cells.push_back(number == 0 ? Index{-1}
+                                            : position_of(zone(), Association::cells, number + shift, path));
       }
     }
     parents.rest.assign(values.begin() + static_cast<std::ptrdiff_t>(column * count), values.end());
@@ -377,7 +402,7 @@ class AttachmentReader {
       if (section.name != node.name) continue;
       labels_.resize(reading_.mesh.cells.shapes.size(), 0);
       const auto first = labels_.begin() + zone().first_cells[k];
-      std::fill(first, first + section.count, numbers.front());
+      std::fill(first, first + zone().cell_counts[k], numbers.front());
     }
   }
 
@@ -438,6 +463,8 @@ class AttachmentReader {
       for (std::size_t k = 0; k < owner.sections.size(); ++k) {
         const Section& section = metadata_.sections[owner.sections[k]];
         const Index first = owner.first_cells[k];
+        // polygons between cells are no boundary
+        if (owner.cell_counts[k] < section.count) continue;
         if (is_named[first] || dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension)
           continue;
         PointList list{.zone = section.zone, .association = Association::cells};
@@ -600,6 +627,12 @@ class ArrayMaker {
 };
 
 }  // namespace
+
+Association location_of(const Node& node, Association inherited) {
+  const Node* const location = node.child_of_label("GridLocation_t");
+  if (location == nullptr) return inherited;
+  return is_one_of(location->text(), kVertexLocations) ? Association::vertices : Association::cells;
+}
 
 void read_attachments(Reading& reading) { AttachmentReader(reading).read(); }
 

@@ -4,6 +4,7 @@
 #include "base/index.hpp"
 #include "io/all_formats.hpp"
 #include "io/cell_division.hpp"
+#include "io/cgns/polyhedra_order.hpp"
 #include "io/unsupported.hpp"
 
 #include <fmt/format.h>
@@ -42,7 +43,7 @@ std::vector<Index> moved_values(const std::vector<Index>& values, std::span<cons
 }
 
 void move_parents(Parents& parents, std::span<const Index> cells) {
-  move_positions(parents.rows, cells);
+  if (!parents.of_polygons) move_positions(parents.rows, cells);
   move_positions(parents.cells, cells);
 }
 
@@ -70,17 +71,19 @@ bool still_fits(const Mesh& mesh, const Metadata& metadata) {
     const ElementType* const type = element_type(section.type);
     const Shape shape = mesh.cells.shapes[c];
     const int nodes = mesh.cells.vertex_count(c);
-    const bool fits = type != nullptr ? type->shape == shape && type->nodes == nodes
-                                      : element_type_of(shape, nodes) != nullptr;
+    const bool fits = type != nullptr                  ? type->shape == shape && type->nodes == nodes
+                      : section.type == kMixedElements ? element_type_of(shape, nodes) != nullptr
+                                                       : true;
     if (!fits) return false;
   }
-  return true;
+  return polyhedra_fit(mesh, metadata);
 }
 
 /// Gives the nodes of a file their values.
 class Filler {
  public:
-  Filler(const Mesh& mesh, const Metadata& metadata) : mesh_(mesh), metadata_(metadata) {
+  Filler(const Mesh& mesh, const Metadata& metadata)
+      : mesh_(mesh), metadata_(metadata), polyhedra_(metadata) {
     place_vertices();
     place_cells();
   }
@@ -100,7 +103,7 @@ class Filler {
       case Field::Role::range: {
         const std::int64_t first = first_numbers_[field.place];
         return put_whole(node, metadata_.sections[field.place].range_type, {2},
-                         {first, first + index_size(cells_of_section_[field.place]) - 1});
+                         {first, first + element_count(field.place) - 1});
       }
       case Field::Role::connectivity:
         return fill_connectivity(node, field.place);
@@ -119,7 +122,7 @@ class Filler {
   [[nodiscard]] bool is_gone(const Field& field) const {
     switch (field.role) {
       case Field::Role::connectivity:
-        return cells_of_section_[field.place].empty();
+        return element_count(field.place) == 0;
       case Field::Role::values:
         return find_array(mesh_, field.array, field.association) == nullptr;
       case Field::Role::list:
@@ -150,21 +153,30 @@ class Filler {
       rank_of_cell_[c] = index_size(cells);
       cells.push_back(c);
     }
+    for (Index p = 0; p < index_size(metadata_.cell_of_polygon); ++p) {
+      if (const Index c = metadata_.cell_of_polygon[p]; c >= 0) rank_of_cell_[c] = polyhedra_.rank_of(p);
+    }
     bool is_whole = true;
     for (std::size_t s = 0; s < cells_of_section_.size(); ++s) {
-      is_whole = is_whole && index_size(cells_of_section_[s]) == metadata_.sections[s].count;
+      is_whole = is_whole && element_count(static_cast<int>(s)) == metadata_.sections[s].count;
     }
     std::vector<std::int64_t> next(metadata_.zones.size(), 1);
     counts_.resize(metadata_.zones.size());
     for (std::size_t s = 0; s < cells_of_section_.size(); ++s) {
       const Section& section = metadata_.sections[s];
       first_numbers_.push_back(is_whole ? section.first : next[section.zone]);
-      next[section.zone] += index_size(cells_of_section_[s]);
+      next[section.zone] += element_count(static_cast<int>(s));
       for (const Index c : cells_of_section_[s]) {
         if (dimension(mesh_.cells.shapes[c]) == metadata_.cell_dimension) ++counts_[section.zone];
       }
     }
     is_whole_ = is_whole;
+  }
+
+  /// Returns the number of elements that a section has in the file: polygons between cells are no cells.
+  [[nodiscard]] Index element_count(int s) const {
+    return metadata_.sections[s].type == kPolygons ? index_size(polyhedra_.polygons_of(s))
+                                                   : index_size(cells_of_section_[s]);
   }
 
   [[nodiscard]] Index vertex_count(int zone) const {
@@ -253,16 +265,30 @@ class Filler {
   }
 
   void fill_connectivity(Node& node, int s) const {
+    const Section& section = metadata_.sections[s];
+    if (section.type == kPolygons || section.type == kPolyhedra) {
+      const std::vector<std::int64_t> numbers =
+          section.type == kPolygons
+              ? polyhedra_.corner_numbers(s, [&](Index v) { return std::int64_t{number_of_vertex(v)}; })
+              : polyhedra_.face_numbers(s, cells_of_section_[s], first_numbers_);
+      return put_whole(node, section.number_type, {std::ssize(numbers)}, numbers);
+    }
     if (metadata_.sections[s].number_type == "I8") return put_connectivity<std::int64_t>(node, s, "I8");
     put_connectivity<std::int32_t>(node, s, "I4");
   }
 
-  void fill_offsets(Node& node, int s) const {
+  [[nodiscard]] std::vector<std::int64_t> offsets_of(int s) const {
+    if (metadata_.sections[s].type != kMixedElements) return polyhedra_.offsets(s, cells_of_section_[s]);
     std::vector<std::int64_t> offsets{0};
     for (const Index c : cells_of_section_[s]) {
       offsets.push_back(offsets.back() + mesh_.cells.vertex_count(c) + 1);
     }
-    put_whole(node, metadata_.sections[s].offset_type, {static_cast<std::int64_t>(offsets.size())}, offsets);
+    return offsets;
+  }
+
+  void fill_offsets(Node& node, int s) const {
+    const std::vector<std::int64_t> offsets = offsets_of(s);
+    put_whole(node, metadata_.sections[s].offset_type, {std::ssize(offsets)}, offsets);
   }
 
   // ---- what belongs to it
@@ -349,16 +375,23 @@ class Filler {
   }
 
   void fill_parents(Node& node, const Parents& parents) const {
-    std::vector<Index> row_of_rank(cells_of_section_[parents.section].size());
+    std::vector<Index> row_of_rank(static_cast<std::size_t>(element_count(parents.section)));
     for (Index row = 0; row < index_size(parents.rows); ++row) {
-      if (parents.rows[row] >= 0) row_of_rank[rank_of_cell_[parents.rows[row]]] = row;
+      const Index of_row = parents.rows[row];
+      const Index rank = of_row < 0            ? -1
+                         : parents.of_polygons ? polyhedra_.rank_of(of_row)
+                                               : rank_of_cell_[of_row];
+      if (rank >= 0) row_of_rank[rank] = row;
     }
+    const auto number_of_parent = [&](Index cell) -> std::int64_t {
+      if (cell < 0) return 0;
+      return parents.from_one ? rank_of_cell_[cell] + 1 : number_of_cell(cell);
+    };
     std::vector<std::int64_t> numbers;
     const std::size_t rows = parents.rows.size();
     for (std::size_t from = 0; from < parents.cells.size(); from += rows) {
       for (const Index row : row_of_rank) {
-        const Index cell = parents.cells[from + static_cast<std::size_t>(row)];
-        numbers.push_back(cell < 0 ? 0 : number_of_cell(cell));
+        numbers.push_back(number_of_parent(parents.cells[from + static_cast<std::size_t>(row)]));
       }
     }
     for (std::size_t from = 0; from < parents.rest.size(); from += rows) {
@@ -372,6 +405,7 @@ class Filler {
 
   const Mesh& mesh_;
   const Metadata& metadata_;
+  PolyhedraOrder polyhedra_;
   std::vector<std::vector<Index>> vertices_of_zone_;
   std::vector<Index> number_of_vertex_;  ///< in its zone; empty for one zone
   std::vector<std::vector<Index>> cells_of_section_;
@@ -462,8 +496,9 @@ class Pruner {
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
   const ElementType* const type = element_type_of(shape, vertices);
   constexpr int kLastOfSecondOrder = 21;
-  if (type == nullptr) return false;
-  return type->number <= kLastOfSecondOrder || own_metadata(mesh) != nullptr;
+  const Metadata* const own = own_metadata(mesh);
+  if (type == nullptr) return own != nullptr && shape == Shape::polygon && !own->cell_of_polygon.empty();
+  return type->number <= kLastOfSecondOrder || own != nullptr;
 }
 
 /// Cells of lower dimensions, with which sets name boundaries, follow the others.
@@ -488,7 +523,16 @@ std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> ver
   }
   if (!cells.empty()) {
     result->section_of_cell = moved_values(section_of_cell, cells);
+    move_positions(result->cell_of_polygon, cells);
+    move_positions(result->cell_of_polyhedron, cells);
     for (Parents& of_section : result->parents) move_parents(of_section, cells);
+  }
+  if (!vertices.empty() && polyhedra != nullptr) {
+    if (vertex_places.empty()) {
+      result->vertex_places.assign(vertices.begin(), vertices.end());
+    } else {
+      move_positions(result->vertex_places, vertices);
+    }
   }
   if (!vertices.empty() && !zone_of_vertex.empty()) {
     result->zone_of_vertex = moved_values(zone_of_vertex, vertices);
