@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -184,9 +183,7 @@ class AttachmentReader {
       if (association == Association::cells) {
         known = std::make_shared<std::vector<Index>>(zone().centred_cells);
       } else {
-        std::vector<Index> rows(static_cast<std::size_t>(zone().vertices));
-        std::iota(rows.begin(), rows.end(), zone().first_vertex);
-        known = std::make_shared<std::vector<Index>>(std::move(rows));
+        known = std::make_shared<std::vector<Index>>(index_range(zone().first_vertex, zone().vertices));
       }
     }
     return known;
@@ -322,9 +319,8 @@ class AttachmentReader {
     for (std::size_t k = 0; k < owner.sections.size(); ++k) {
       const int s = owner.sections[k];
       if (metadata_.sections[s].name != node.name || values.label != "UserDefinedData_t") continue;
-      std::vector<Index> rows(static_cast<std::size_t>(owner.cell_counts[k]));
-      std::iota(rows.begin(), rows.end(), owner.first_cells[k]);
-      const auto shared = std::make_shared<const std::vector<Index>>(std::move(rows));
+      const auto shared =
+          std::make_shared<const std::vector<Index>>(index_range(owner.first_cells[k], owner.cell_counts[k]));
       for (Node& child : values.children) {
         if (child.label != "DataArray_t") continue;
         const std::size_t before = metadata_.fields.size();
@@ -369,9 +365,8 @@ class AttachmentReader {
     }
     parents.number_type = node.type;
     parents.of_polygons = metadata_.sections[section].type == kPolygons;
-    parents.rows.resize(count);
-    std::iota(parents.rows.begin(), parents.rows.end(),
-              parents.of_polygons ? metadata_.sections[section].first_item : first);
+    parents.rows = index_range(parents.of_polygons ? metadata_.sections[section].first_item : first,
+                               metadata_.sections[section].count);
     std::size_t column = 0;
     if (node.name != "ParentElementsPosition") {
       constexpr std::size_t kParents = 2;
@@ -468,8 +463,7 @@ class AttachmentReader {
         if (is_named[first] || dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension)
           continue;
         PointList list{.zone = section.zone, .association = Association::cells};
-        list.members.resize(static_cast<std::size_t>(section.count));
-        std::iota(list.members.begin(), list.members.end(), first);
+        list.members = index_range(first, section.count);
         add_set(list, section.name, names);
         metadata_.lists.push_back(std::move(list));
       }

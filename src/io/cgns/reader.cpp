@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -74,7 +73,7 @@ class MeshReader {
     }
     for (std::size_t z = 0; z < reading_.zones.size(); ++z) read_points(static_cast<int>(z));
     for (std::size_t z = 0; z < reading_.zones.size(); ++z) read_sections(static_cast<int>(z));
-    reading_.metadata->polyhedra = reading_.polyhedra;
+    if (reading_.polyhedra->polygon_count() > 0) reading_.metadata->polyhedra = reading_.polyhedra;
     Mesh& mesh = reading_.mesh;
     if (mesh.cell_blocks.size() < 2) mesh.cell_blocks.clear();
     mesh.dimension = physical_dimension_ < 3 ? 2 : 3;

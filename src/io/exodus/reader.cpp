@@ -37,23 +37,9 @@ void Reading::require_shape(const Variable& variable, const std::vector<std::siz
             "the file may be damaged");
 }
 
-std::string Reading::add_array(DataArray array) {
-  const std::string name = array.name;
-  for (int k = 2; !arrays_.emplace(array.association, array.name).second; ++k) {
-    array.name = fmt::format("{} ({})", name, k);
-  }
-  mesh.data.push_back(std::move(array));
-  return mesh.data.back().name;
-}
+std::string Reading::add_array(DataArray array) { return add_named(mesh, std::move(array), arrays_); }
 
-std::string Reading::add_set(EntitySet set) {
-  const std::string name = set.name;
-  for (int k = 2; !sets_.emplace(set.association, set.name).second; ++k) {
-    set.name = fmt::format("{} ({})", name, k);
-  }
-  mesh.sets.push_back(std::move(set));
-  return mesh.sets.back().name;
-}
+std::string Reading::add_set(EntitySet set) { return add_named(mesh, std::move(set), sets_); }
 
 std::vector<std::int64_t> read_ids(Reading& reading, const std::string& variable, std::size_t objects) {
   std::vector<std::int64_t> ids(objects);
@@ -264,8 +250,7 @@ void name_blocks(Reading& reading) {
     BlockRecord& block = reading.metadata->blocks[b];
     if (block.name.empty() || block.nodes == 0) continue;
     EntitySet set{block.name, Association::cells, {}};
-    set.members.resize(static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]));
-    std::iota(set.members.begin(), set.members.end(), reading.block_ends[b]);
+    set.members = index_range(reading.block_ends[b], reading.block_ends[b + 1] - reading.block_ends[b]);
     block.in_mesh = reading.add_set(std::move(set));
   }
 }

@@ -26,14 +26,7 @@ void Reading::fail(const std::string& path, const std::string& what, const std::
   throw InputError(file.name(), fmt::format("'{}' {}", path, what), remedy);
 }
 
-std::string Reading::add_array(DataArray array) {
-  const std::string name = array.name;
-  for (int k = 2; !arrays_.emplace(array.association, array.name).second; ++k) {
-    array.name = fmt::format("{} ({})", name, k);
-  }
-  mesh.data.push_back(std::move(array));
-  return mesh.data.back().name;
-}
+std::string Reading::add_array(DataArray array) { return add_named(mesh, std::move(array), arrays_); }
 
 std::pair<Index, Index> Reading::range(const GeometryType* type) const {
   if (type == nullptr) return {0, mesh.vertex_count()};

@@ -1,0 +1,26 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/unique_names.hpp"
+
+namespace meshorder {
+
+std::string UniqueNames::take(Association association, const std::string& wanted) {
+  std::string name = wanted;
+  for (int k = 2; !names_.emplace(association, name).second; ++k) {
+    name = wanted + " (" + std::to_string(k) + ")";
+  }
+  return name;
+}
+
+std::string add_named(Mesh& mesh, DataArray array, UniqueNames& names) {
+  array.name = names.take(array.association, array.name);
+  mesh.data.push_back(std::move(array));
+  return mesh.data.back().name;
+}
+
+std::string add_named(Mesh& mesh, EntitySet set, UniqueNames& names) {
+  set.name = names.take(set.association, set.name);
+  mesh.sets.push_back(std::move(set));
+  return mesh.sets.back().name;
+}
+
+}  // namespace meshorder
