@@ -23,7 +23,7 @@ VTK_TYPES = {10: 4, 14: 5, 13: 6, 12: 8}
 
 
 def mixed(n, seed, at=0.0):
-    """A cube of hexahedra, of which some are cut into wedges, pyramids or tetrahedra; points in an order by chance."""
+    """Hexahedra with pyramids above, and beside them wedges and tetrahedra; points and cells in an order by chance."""
     chance = numpy.random.default_rng(seed)
     points = {}
     cells = []
@@ -31,34 +31,26 @@ def mixed(n, seed, at=0.0):
     def number(point):
         return points.setdefault(point, len(points))
 
+    def cube(x, y, z):
+        steps = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
+        return [number((at + x + i, float(y + j), float(z + k))) for i, j, k in steps]
+
     for x, y, z in itertools.product(range(n), repeat=3):
-        corners = [number((at + x + i, float(y + j), float(z + k)))
-                   for i, j, k in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))]
-        if z == 0:  # columns of wedges meet columns of hexahedra by quadrilaterals
-            cells.append(corners)
-        elif z == n - 1:
-            cells += [[corners[k] for k in kuhn] for kuhn in KUHN] if n == 1 else six_pyramids(
-                corners, number((at + x + 0.5, y + 0.5, z + 0.5)))
+        if z < n - 1:
+            cells.append(cube(x, y, z))
         else:
-            cells.append(corners)
-    # and a layer of wedges, pyramids and tetrahedra of its own, beside
+            centre = number((at + x + 0.5, y + 0.5, z + 0.5))
+            cells += [[cube(x, y, z)[k] for k in face[::-1]] + [centre] for face in FACES[8]]
     for y, z in itertools.product(range(n), repeat=2):
-        c = [number((at - 3.0 + i, float(y + j), float(z + k)))
-             for i, j, k in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))]
-        cells += [[c[0], c[1], c[2], c[4], c[5], c[6]], [c[0], c[2], c[3], c[4], c[6], c[7]]]
+        corners = cube(-4, y, z)
+        cells += [[corners[k] for k in wedge] for wedge in ((0, 1, 2, 4, 5, 6), (0, 2, 3, 4, 6, 7))]
     for y in range(n):
-        c = [number((at - 6.0 + i, float(y + j), float(k)))
-             for i, j, k in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))]
-        cells += [[c[k] for k in kuhn] for kuhn in KUHN]
+        cells += [[cube(-8, y, 0)[k] for k in kuhn] for kuhn in KUHN]
     shuffle = chance.permutation(len(points))
     moved = numpy.empty((len(points), 3))
     moved[shuffle] = list(points)
     cells = [cells[k] for k in chance.permutation(len(cells))]
     return moved, [[int(shuffle[v]) for v in cell] for cell in cells]
-
-
-def six_pyramids(corners, centre):
-    return [[corners[k] for k in face[::-1]] + [centre] for face in FACES[8]]
 
 
 def polyhedra(cells, seed, signs=True):
@@ -131,7 +123,7 @@ def write_zone(base, name, n, seed, offsets=True, whole="int32", at=0.0, signs=1
 
 
 def write_polyhedra(path, n=3, seed=1, offsets=True, **options):
-    with new_file(path, 4.0 if offsets else 3.3) as file:
+    with new_file(path, 3.4 if offsets else 3.3) as file:
         base = put(file, "Base", "CGNSBase_t", numpy.array([3, 3], "int32"))
         return write_zone(base, "A", n, seed, offsets, **options)
 
@@ -452,10 +444,17 @@ def reshape(path, change):
 
 
 def open_cell(file):
-    """The first polyhedron names one of its faces twice, in place of another."""
-    starts = file["Base/A/cells/ElementStartOffset/ data"][...]
-    numbers = file["Base/A/cells/ElementConnectivity/ data"]
-    numbers[int(starts[1]) - 1] = numbers[int(starts[0])]
+    """A polyhedron names a face of the boundary twice, the second time in place of another face."""
+    rows = rows_of(file["Base/A/cells"])[1]
+    used = [abs(number) for row in rows for number in row]
+    cell = next(k for k, row in enumerate(rows) if used.count(abs(row[0])) == 1)
+    at = sum(map(len, rows[:cell]))
+    file["Base/A/cells/ElementConnectivity/ data"][at + 1] = rows[cell][0]
+
+
+def reals(file):
+    reshape("cells/ElementConnectivity", lambda values: values.astype("float32"))(file)
+    file["Base/A/cells/ElementConnectivity"].attrs.create("type", numpy.bytes_("R4"), dtype="S3")
 
 
 FAULTS = {
@@ -476,7 +475,7 @@ FAULTS = {
     "no faces": (lambda file: file["Base/A"].__delitem__("faces"), "does not exist"),
     "no polyhedra": (lambda file: file["Base/A"].__delitem__("cells"), "ParentElements of their faces only"),
     "parents": (lambda file: file["Base/A/faces/ParentElements/ data"].__setitem__((0, 0), 10**6), "is no cell of the zone"),
-    "reals": (reshape("cells/ElementConnectivity", lambda values: values.astype("float32")), "and has others"),
+    "reals": (reals, "does not hold whole numbers"),
 }
 
 

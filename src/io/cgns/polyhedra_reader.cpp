@@ -279,8 +279,8 @@ void PolyhedraReader::append_polyhedra(const FoundSection& found) {
   Mesh& mesh = reading_.mesh;
   const Index first = mesh.cell_count();
   std::vector<PolyhedronFace> faces;
-  std::vector<bool> has_signs;
   WedgeVote vote(mesh.points);
+  Index contradictions = 0;
   Index others = 0;
   std::string first_other;
   for (Index k = 0; k < found.section.count; ++k) {
@@ -302,11 +302,8 @@ void PolyhedraReader::append_polyhedra(const FoundSection& found) {
       }
       continue;
     }
-    if (!cell.signs_agree && volume_at_first_corner(mesh.points, cell.shape, cell.cell()) < 0) {
-      turn_inside_out(cell.shape, {cell.corners.data(), static_cast<std::size_t>(cell.size)});
-    }
-    if (cell.signs_agree) vote.add(cell.shape, cell.cell());
-    has_signs.push_back(cell.signs_agree);
+    if (!cell.signs_agree) ++contradictions;
+    vote.add(cell.shape, cell.cell());
     reading_.metadata->cell_of_polyhedron[polyhedron] = mesh.cell_count();
     mesh.cells.push_back(cell.shape, cell.cell());
   }
@@ -316,21 +313,30 @@ void PolyhedraReader::append_polyhedra(const FoundSection& found) {
                               others, found.section.count, first_other),
                   "cut them into tetrahedra, in ParaView by Tetrahedralize");
   }
-  const bool is_reversed = vote.sign_of_volumes() < 0;
-  if (is_reversed) {
-    reading_.notes.push_back(
-        fmt::format("the signs of the faces in '{}' say that their normals point into the cells, and are "
-                    "taken the other way",
-                    found.path));
-  }
-  for (Index c = first; is_reversed && c < mesh.cell_count(); ++c) {
-    if (has_signs[static_cast<std::size_t>(c - first)]) turn_inside_out(mesh.cells.shapes[c], mesh.cells[c]);
-  }
-  const auto without = std::count(has_signs.begin(), has_signs.end(), false);
-  if (without > 0) {
+  turn_by_volumes(first, found.path, contradictions, vote.sign_of_volumes());
+}
+
+/// Turns the cells from `first` on whose orientation the signs of their faces do not tell.
+void PolyhedraReader::turn_by_volumes(Index first, const std::string& path, Index contradictions, int sign) {
+  Mesh& mesh = reading_.mesh;
+  if (contradictions > 0) {
     reading_.notes.push_back(fmt::format(
-        "{} polyhedra of '{}' are turned by their volumes: the signs of their faces contradict each other",
-        without, found.path));
+        "the cells of '{}' are turned by their volumes: in {} of them the signs of the faces contradict each "
+        "other",
+        path, contradictions));
+  } else if (sign < 0) {
+    reading_.notes.push_back(fmt::format(
+        "the signs of the faces in '{}' say that their normals point into the cells, and are taken the other "
+        "way",
+        path));
+  } else {
+    return;
+  }
+  for (Index c = first; c < mesh.cell_count(); ++c) {
+    const Shape shape = mesh.cells.shapes[c];
+    if (contradictions == 0 || volume_at_first_corner(mesh.points, shape, mesh.cells[c]) < 0) {
+      turn_inside_out(shape, mesh.cells[c]);
+    }
   }
 }
 

@@ -105,6 +105,7 @@ class PolyhedraReader {
   void count_uses();
   void append_polygons(const FoundSection& found);
   void append_polyhedra(const FoundSection& found);
+  void turn_by_volumes(Index first, const std::string& path, Index contradictions, int sign);
 
   Reading& reading_;
   const ZonePlaces& zone_;
