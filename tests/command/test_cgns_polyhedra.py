@@ -339,6 +339,8 @@ def test_parents_may_count_cells_from_one(command, tmp_path):
     before = content(tmp_path / "a.cgns")
     assert any(name.startswith("parents") for name in before["/Base/A"])
     assert content(tmp_path / "b.cgns") == before
+    with h5py.File(tmp_path / "b.cgns") as file:
+        assert file["Base/A/faces/ParentElements/ data"][...].max() == len(rows_of(file["Base/A/cells"])[1])
 
 
 def test_faces_that_a_solution_names_are_cells(command, tmp_path):

@@ -122,6 +122,28 @@ std::int64_t Filler::number_of_cell(Index c) const {
 
 // ---- numbers of a type
 
+namespace {
+
+/// Numbers that become the values of a node, each at its place, 0 until then.
+template <class Number>
+class NodeValues {
+ public:
+  NodeValues(Node& node, std::string type, std::size_t count) : bytes_(node.bytes) {
+    node.type = std::move(type);
+    node.dimensions = {static_cast<std::int64_t>(count)};
+    bytes_.resize(count * sizeof(Number));
+  }
+
+  void put(std::size_t place, Number number) {
+    std::memcpy(bytes_.data() + place * sizeof(Number), &number, sizeof(Number));
+  }
+
+ private:
+  std::string& bytes_;
+};
+
+}  // namespace
+
 template <class Number>
 void Filler::put(Node& node, std::string type, std::vector<std::int64_t> dimensions,
                  const std::vector<Number>& numbers) {
@@ -149,12 +171,12 @@ void Filler::fill_size(Node& node, int z) const {
 template <class Number>
 void Filler::put_coordinate(Node& node, const Field& field) const {
   const Index count = vertex_count(field.place);
-  std::vector<Number> values(static_cast<std::size_t>(count));
+  NodeValues<Number> values(node, field.type, static_cast<std::size_t>(count));
   const auto axis = static_cast<std::size_t>(field.axis);
   for (Index v = 0; v < count; ++v) {
-    values[v] = static_cast<Number>(mesh_.points[vertex_at(field.place, v)][axis]);
+    values.put(static_cast<std::size_t>(v),
+               static_cast<Number>(mesh_.points[vertex_at(field.place, v)][axis]));
   }
-  put(node, field.type, {count}, values);
 }
 
 void Filler::fill_coordinate(Node& node, const Field& field) const {
@@ -165,27 +187,25 @@ void Filler::fill_coordinate(Node& node, const Field& field) const {
 template <class Number>
 void Filler::put_connectivity(Node& node, int s, const std::string& type) const {
   const bool is_mixed = metadata_.sections[s].type == kMixedElements;
-  std::vector<Number> numbers;
   std::size_t size = 0;
   for (const Index c : cells_of_section_[s]) {
     size += static_cast<std::size_t>(mesh_.cells.vertex_count(c)) + (is_mixed ? 1 : 0);
   }
-  numbers.resize(size);
+  NodeValues<Number> numbers(node, type, size);
   std::size_t at = 0;
   for (const Index c : cells_of_section_[s]) {
     const std::span<const Index> cell = mesh_.cells[c];
     const auto nodes = static_cast<int>(cell.size());
     const std::span<const int> order = file_order(mesh_.cells.shapes[c], nodes);
     if (is_mixed) {
-      numbers[at++] = static_cast<Number>(element_type_of(mesh_.cells.shapes[c], nodes)->number);
+      numbers.put(at++, static_cast<Number>(element_type_of(mesh_.cells.shapes[c], nodes)->number));
     }
     for (std::size_t k = 0; k < cell.size(); ++k) {
-      numbers[at + (order.empty() ? k : static_cast<std::size_t>(order[k]))] =
-          static_cast<Number>(number_of_vertex(cell[k]));
+      numbers.put(at + (order.empty() ? k : static_cast<std::size_t>(order[k])),
+                  static_cast<Number>(number_of_vertex(cell[k])));
     }
     at += cell.size();
   }
-  put(node, type, {static_cast<std::int64_t>(size)}, numbers);
 }
 
 void Filler::fill_connectivity(Node& node, int s) const {
@@ -240,19 +260,20 @@ template <class Number, class Old>
 void Filler::put_values(Node& node, const std::string& type, const std::vector<Old>& values,
                         const std::vector<Index>& rows, const std::vector<Index>& table, const Field& field,
                         Index components) {
-  std::vector<Number> numbers(rows.size());
+  NodeValues<Number> numbers(node, type, rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Index row = table.empty() ? rows[i] : table[rows[i]];
     if constexpr (std::is_arithmetic_v<Old>) {
       if (row >= 0) {
-        numbers[i] =
-            static_cast<Number>(values[static_cast<std::size_t>(row) * components + field.component]);
+        numbers.put(
+            i, static_cast<Number>(values[static_cast<std::size_t>(row) * components + field.component]));
         continue;
       }
     }
-    if constexpr (std::is_floating_point_v<Number>) numbers[i] = std::numeric_limits<Number>::quiet_NaN();
+    if constexpr (std::is_floating_point_v<Number>) {
+      numbers.put(i, std::numeric_limits<Number>::quiet_NaN());
+    }
   }
-  put(node, type, {static_cast<std::int64_t>(rows.size())}, numbers);
 }
 
 void Filler::fill_values(Node& node, const Field& field) const {

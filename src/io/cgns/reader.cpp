@@ -21,7 +21,7 @@ void Reading::fail(const std::string& place, const std::string& what, const std:
 
 int Reading::bind(Node& node, Field field) {
   node.field = static_cast<int>(metadata->fields.size());
-  node.bytes = std::string();
+  std::string().swap(node.bytes);  // an assignment would keep the memory
   metadata->fields.push_back(std::move(field));
   return node.field;
 }
