@@ -9,14 +9,14 @@ namespace {
 
 constexpr std::size_t kMostFaces = 6;
 constexpr std::size_t kMostCorners = 4;
-constexpr std::size_t kNone = kMostFaces * kMostCorners;
+constexpr std::size_t kNoTwin = kMostFaces * kMostCorners;
 
 /// An edge of a face, in the direction in which the face gives it.
 struct FaceEdge {
   Index from;
   Index to;
   std::size_t face;
-  std::size_t twin = kNone;  ///< the same edge of another face
+  std::size_t twin = kNoTwin;  ///< the same edge of another face
 };
 
 /// A standard shape by its faces.
@@ -80,11 +80,11 @@ class FewFaces {
         const bool is_same = (edge.from == other.from && edge.to == other.to) ||
                              (edge.from == other.to && edge.to == other.from);
         if (!is_same) continue;
-        if (edge.twin != kNone || other.twin != kNone || other.face == edge.face) return false;
+        if (edge.twin != kNoTwin || other.twin != kNoTwin || other.face == edge.face) return false;
         edge.twin = j;
         other.twin = i;
       }
-      if (edge.twin == kNone) return false;
+      if (edge.twin == kNoTwin) return false;
     }
     return true;
   }

@@ -389,6 +389,22 @@ def test_zones_of_polyhedra_stay_apart(command, tmp_path):
     assert (content(tmp_path / "b.cgns"), joints(tmp_path / "b.cgns")) == before
 
 
+def test_old_places_of_cells_and_faces_are_attached(command, tmp_path):
+    _, cells, faces, inner = write_polyhedra(tmp_path / "a.cgns", n=2)
+    command.ok("order", "a.cgns", "-o", "b.cgns", "--vertices", "rcm", "--elements", "min", "--ids", "attach")
+    keep(command, "b.cgns", "c.vtu")
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(tmp_path / "c.vtu"))
+    reader.Update()
+    original = reader.GetOutput().GetCellData().GetArray("original")
+    count = len(cells) + len(faces) - inner
+    assert sorted(original.GetTuple1(c) for c in range(original.GetNumberOfTuples())) == list(range(count))
+    # values for a part of the polygons have no cells that they belong to
+    with h5py.File(tmp_path / "b.cgns", "r+") as file:
+        reshape("faces/CellValues/original", lambda values: values[1:])(file)
+    assert "is kept as it is" in keep(command, "b.cgns", "d.cgns").stderr
+
+
 def test_polygons_without_polyhedra_become_surfaces(command, tmp_path):
     points = numpy.array([[x, y] for y in range(4) for x in range(4)], float)
     polygons = [[0, 1, 5, 4], [1, 2, 3, 7, 6, 5], [4, 5, 9, 8], [5, 6, 10], [5, 10, 9], [6, 7, 11, 15, 10], [8, 9, 10, 15, 14, 13, 12]]

@@ -323,6 +323,12 @@ class AttachmentReader {
           std::make_shared<const std::vector<Index>>(index_range(owner.first_cells[k], owner.cell_counts[k]));
       for (Node& child : values.children) {
         if (child.label != "DataArray_t") continue;
+        if (metadata_.sections[s].type == kPolygons && child.size() != shared->size()) {
+          reading_.notes.push_back(
+              fmt::format("'{}/{}/{}' is kept as it is: it has {} values for {} polygons of a boundary", path,
+                          values.name, child.name, child.size(), shared->size()));
+          continue;
+        }
         const std::size_t before = metadata_.fields.size();
         read_values(child, node.name, Association::cells, shared, -1, path + "/" + child.name);
         if (metadata_.fields.size() > before) metadata_.fields.back().section = s;

@@ -93,7 +93,7 @@ void PolyhedraReader::read(const NumberRanges& listed) {
   count_uses();
   for (const auto& [first, last] : listed) {
     for (const FoundSection& found : sections_) {
-      if (found.section.type != kPolygons) continue;
+      if (found.section.type != kPolygons || last < found.section.first) continue;
       const Index before = found.section.first_item - first_polygon_;
       const std::int64_t begin = std::max(first, found.section.first) - found.section.first;
       const std::int64_t end = std::min(last, found.last) - found.section.first;
