@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/kept_cells.hpp"
 
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <numeric>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -129,11 +129,7 @@ void keep_blocks(std::vector<Index>& blocks, const std::vector<Index>& kept) {
 
 }  // namespace
 
-std::vector<Index> all_cells(const Mesh& mesh) {
-  std::vector<Index> cells(mesh.cells.shapes.size());
-  std::iota(cells.begin(), cells.end(), Index{0});
-  return cells;
-}
+std::vector<Index> all_cells(const Mesh& mesh) { return index_range(0, mesh.cell_count()); }
 
 std::vector<Index> cells_for(const Mesh& mesh, const Format& format, Notes& notes) {
   const std::vector<TypeCount> left_out = types_left_out(mesh, counted_types(mesh), format);

@@ -21,6 +21,14 @@ constexpr std::array kHandedness{
 
 }  // namespace
 
+double volume_at_first_corner(const std::vector<Point>& points, Shape shape, std::span<const Index> cell) {
+  const auto* const known = std::find_if(kHandedness.begin(), kHandedness.end(),
+                                         [&](const Handedness& of) { return of.shape == shape; });
+  if (known == kHandedness.end() || known->corners != cell.size()) return 0;
+  const auto edge = [&](int k) { return minus(points[cell[known->ends[k]]], points[cell[0]]); };
+  return dot(cross(edge(0), edge(1)), edge(2));
+}
+
 int WedgeVote::Volumes::sign() const {
   constexpr Offset kOneIn = 20;
   if (kOneIn * negative < positive) return 1;
@@ -28,11 +36,7 @@ int WedgeVote::Volumes::sign() const {
 }
 
 void WedgeVote::add(Shape shape, std::span<const Index> cell) {
-  const auto* const known = std::find_if(kHandedness.begin(), kHandedness.end(),
-                                         [&](const Handedness& of) { return of.shape == shape; });
-  if (known == kHandedness.end() || known->corners != cell.size()) return;
-  const auto edge = [&](int k) { return minus(points_[cell[known->ends[k]]], points_[cell[0]]); };
-  const double volume = dot(cross(edge(0), edge(1)), edge(2));
+  const double volume = volume_at_first_corner(points_, shape, cell);
   Volumes& volumes = shape == Shape::wedge ? wedges_ : others_;
   volumes.positive += volume > 0 ? 1 : 0;
   volumes.negative += volume < 0 ? 1 : 0;

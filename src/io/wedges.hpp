@@ -8,6 +8,11 @@
 
 namespace meshorder {
 
+/// Returns the volume that three edges of a cell span at its first corner, which has the sign of the volume
+/// of the cell where it is convex; 0 for other cells than linear tetrahedra, pyramids, wedges and hexahedra.
+/// O(1).
+double volume_at_first_corner(const std::vector<Point>& points, Shape shape, std::span<const Index> cell);
+
 /// Tells from volumes how a file numbers its linear wedges.
 ///
 /// The first triangle of a wedge faces outward in the files of some programs and inward in those of others,

@@ -449,7 +449,7 @@ def broken(name):
         "zero": (lambda f: f["Base/A/front/ElementConnectivity/ data"].__setitem__(0, 0), "vertex 0 does not exist"),
         "range": (lambda f: f["Base/A/front/ElementRange/ data"].__setitem__(1, 90), "numbers"),
         "type": (lambda f: f["Base/A/front/ data"].__setitem__(0, 99), "unknown type 99"),
-        "polyhedra": (lambda f: f["Base/A/front/ data"].__setitem__(0, 22), "NGON_n"),
+        "polyhedra": (lambda f: f["Base/A/front/ data"].__setitem__(0, 22), "front, element 19: is a polygon of 2 vertices"),
         "list": (lambda f: f["Base/A/ZoneBC/corner/PointList/ data"].__setitem__((0, 0), 1000), "vertex 1000 does not exist"),
         "element": (lambda f: f["Base/A/ZoneBC/some/PointList/ data"].__setitem__((0, 0), -4), "element -4 does not exist"),
         "nan": (lambda f: f["Base/A/GridCoordinates/CoordinateX/ data"].__setitem__(0, float("nan")), "finite"),

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -72,13 +71,6 @@ class AttachmentReader {
 
   // ---- what is where
 
-  /// Returns what values and lists of a node belong to; cells also for their faces and edges.
-  static Association location_of(const Node& node, Association inherited) {
-    const Node* const location = node.child_of_label("GridLocation_t");
-    if (location == nullptr) return inherited;
-    return is_one_of(location->text(), kVertexLocations) ? Association::vertices : Association::cells;
-  }
-
   /// Returns the cell of an element number in a zone, −1 if there is none.
   [[nodiscard]] Index cell_of(const ZonePlaces& of_zone, std::int64_t number) const {
     const auto after =
@@ -86,10 +78,13 @@ class AttachmentReader {
                          [&](std::int64_t wanted, int s) { return wanted < metadata_.sections[s].first; });
     if (after == of_zone.sections.begin()) return -1;
     const auto k = static_cast<std::size_t>(after - of_zone.sections.begin()) - 1;
-    const std::int64_t place = number - metadata_.sections[of_zone.sections[k]].first;
-    return place < metadata_.sections[of_zone.sections[k]].count
-               ? of_zone.first_cells[k] + static_cast<Index>(place)
-               : -1;
+    const Section& section = metadata_.sections[of_zone.sections[k]];
+    const std::int64_t place = number - section.first;
+    if (place >= section.count) return -1;
+    if (section.type == kPolygons) {
+      return metadata_.cell_of_polygon[section.first_item + static_cast<Index>(place)];
+    }
+    return of_zone.first_cells[k] + static_cast<Index>(place);
   }
 
   [[nodiscard]] Index position_of(const ZonePlaces& of_zone, Association association, std::int64_t number,
@@ -190,9 +185,7 @@ class AttachmentReader {
       if (association == Association::cells) {
         known = std::make_shared<std::vector<Index>>(zone().centred_cells);
       } else {
-        std::vector<Index> rows(static_cast<std::size_t>(zone().vertices));
-        std::iota(rows.begin(), rows.end(), zone().first_vertex);
-        known = std::make_shared<std::vector<Index>>(std::move(rows));
+        known = std::make_shared<std::vector<Index>>(index_range(zone().first_vertex, zone().vertices));
       }
     }
     return known;
@@ -328,16 +321,46 @@ class AttachmentReader {
     for (std::size_t k = 0; k < owner.sections.size(); ++k) {
       const int s = owner.sections[k];
       if (metadata_.sections[s].name != node.name || values.label != "UserDefinedData_t") continue;
-      std::vector<Index> rows(static_cast<std::size_t>(metadata_.sections[s].count));
-      std::iota(rows.begin(), rows.end(), owner.first_cells[k]);
-      const auto shared = std::make_shared<const std::vector<Index>>(std::move(rows));
+      const auto shared =
+          std::make_shared<const std::vector<Index>>(index_range(owner.first_cells[k], owner.cell_counts[k]));
       for (Node& child : values.children) {
         if (child.label != "DataArray_t") continue;
+        if (metadata_.sections[s].type == kPolygons && child.size() != shared->size()) {
+          reading_.notes.push_back(
+              fmt::format("'{}/{}/{}' is kept as it is: it has {} values for {} polygons of a boundary", path,
+                          values.name, child.name, child.size(), shared->size()));
+          continue;
+        }
         const std::size_t before = metadata_.fields.size();
         read_values(child, node.name, Association::cells, shared, -1, path + "/" + child.name);
         if (metadata_.fields.size() > before) metadata_.fields.back().section = s;
       }
     }
+  }
+
+  /// Returns what added to the numbers of the parents of polygons gives those of elements: 0, or where they
+  /// count the polyhedra from 1 what the section of these begins with.
+  [[nodiscard]] std::int64_t shift_of_parents(std::span<const std::int64_t> numbers,
+                                              const std::string& path) {
+    const auto wrong = std::find_if(numbers.begin(), numbers.end(), [&](std::int64_t number) {
+      const Index cell = number == 0 ? -1 : cell_of(zone(), number);
+      return number != 0 &&
+             (cell < 0 || dimension(reading_.mesh.cells.shapes[cell]) != metadata_.cell_dimension);
+    });
+    if (wrong == numbers.end()) return 0;
+    std::vector<const Section*> polyhedra;
+    for (const int s : zone().sections) {
+      if (metadata_.sections[s].type == kPolyhedra) polyhedra.push_back(&metadata_.sections[s]);
+    }
+    const bool from_one =
+        polyhedra.size() == 1 && std::all_of(numbers.begin(), numbers.end(), [&](std::int64_t number) {
+          return number >= 0 && number <= polyhedra.front()->count;
+        });
+    if (!from_one) {
+      reading_.fail(path, fmt::format("element {} is no cell of the zone", *wrong),
+                    "the parents of polygons are polyhedra");
+    }
+    return polyhedra.front()->first - 1;
   }
 
   void read_parents_of(Node& node, int section, Index first, const std::string& path) {
@@ -349,16 +372,19 @@ class AttachmentReader {
                     "the file may be damaged");
     }
     parents.number_type = node.type;
-    parents.rows.resize(count);
-    std::iota(parents.rows.begin(), parents.rows.end(), first);
+    parents.of_polygons = metadata_.sections[section].type == kPolygons;
+    parents.rows = index_range(parents.of_polygons ? metadata_.sections[section].first_item : first,
+                               metadata_.sections[section].count);
     std::size_t column = 0;
     if (node.name != "ParentElementsPosition") {
-      for (; column < 2; ++column) {
-        for (std::size_t e = 0; e < count; ++e) {
-          const std::int64_t number = values[column * count + e];
-          parents.cells.push_back(number == 0 ? Index{-1}
-                                              : position_of(zone(), Association::cells, number, path));
-        }
+      constexpr std::size_t kParents = 2;
+      column = kParents;
+      const std::span<const std::int64_t> numbers = std::span(values).first(kParents * count);
+      const std::int64_t shift = parents.of_polygons ? shift_of_parents(numbers, path) : 0;
+      parents.from_one = shift != 0;
+      for (const std::int64_t number : numbers) {
+        parents.cells.push_back(number == 0 ? Index{-1}
+                                            : position_of(zone(), Association::cells, number + shift, path));
       }
     }
     parents.rest.assign(values.begin() + static_cast<std::ptrdiff_t>(column * count), values.end());
@@ -379,7 +405,7 @@ class AttachmentReader {
       if (section.name != node.name) continue;
       labels_.resize(reading_.mesh.cells.shapes.size(), 0);
       const auto first = labels_.begin() + zone().first_cells[k];
-      std::fill(first, first + section.count, numbers.front());
+      std::fill(first, first + zone().cell_counts[k], numbers.front());
     }
   }
 
@@ -440,11 +466,12 @@ class AttachmentReader {
       for (std::size_t k = 0; k < owner.sections.size(); ++k) {
         const Section& section = metadata_.sections[owner.sections[k]];
         const Index first = owner.first_cells[k];
+        // polygons between cells are no boundary
+        if (owner.cell_counts[k] < section.count) continue;
         if (is_named[first] || dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension)
           continue;
         PointList list{.zone = section.zone, .association = Association::cells};
-        list.members.resize(static_cast<std::size_t>(section.count));
-        std::iota(list.members.begin(), list.members.end(), first);
+        list.members = index_range(first, section.count);
         add_set(list, section.name, names);
         metadata_.lists.push_back(std::move(list));
       }
@@ -493,118 +520,14 @@ class AttachmentReader {
   std::vector<std::int64_t> labels_;
 };
 
-// ---- arrays
-
-/// Pieces that become one array.
-using Group = std::vector<Piece*>;
-
-/// Returns whether the pieces have values of one type, for different vertices or cells.
-bool fit_together(const Group& group, std::size_t total) {
-  std::vector<bool> taken(total);
-  for (const Piece* const piece : group) {
-    if (piece->values.index() != group.front()->values.index()) return false;
-    for (const Index row : *piece->rows) {
-      if (taken[row]) return false;
-      taken[row] = true;
-    }
-  }
-  return true;
-}
-
-class ArrayMaker {
- public:
-  explicit ArrayMaker(Reading& reading) : reading_(reading) {
-    for (const DataArray& array : reading_.mesh.data) names_.insert({array.association, array.name});
-  }
-
-  void make() {
-    std::map<std::pair<Association, std::string>, std::size_t> places;
-    std::vector<Group> groups;
-    for (Piece& piece : reading_.pieces) {
-      const auto [place, is_new] = places.emplace(std::pair{piece.association, piece.name}, groups.size());
-      if (is_new) groups.emplace_back();
-      groups[place->second].push_back(&piece);
-    }
-    for (const Group& group : groups) make_of(group, 0);
-  }
-
- private:
-  [[nodiscard]] std::size_t total(Association association) const {
-    return association == Association::vertices ? reading_.mesh.points.size()
-                                                : reading_.mesh.cells.shapes.size();
-  }
-
-  /// Makes one array, or one for each solution (level 0) and each zone of it (level 1) where they overlap.
-  void make_of(const Group& group, int level) {
-    const Piece& first = *group.front();
-    if (group.size() == 1 || fit_together(group, total(first.association))) {
-      const std::string before = level == 0 ? ""
-                                 : level == 1
-                                     ? first.solution + "."
-                                     : reading_.metadata->zones[first.zone].name + "." + first.solution + ".";
-      return add(group, before + first.name);
-    }
-    std::map<std::string, Group> parts;
-    std::vector<std::string> order;
-    for (Piece* const piece : group) {
-      const std::string key = level == 0 ? piece->solution : std::to_string(piece->field);
-      if (!parts.contains(key)) order.push_back(key);
-      parts[key].push_back(piece);
-    }
-    for (const std::string& key : order) make_of(parts[key], level + 1);
-  }
-
-  void add(const Group& group, const std::string& wanted) {
-    const Association association = group.front()->association;
-    std::string name = wanted;
-    for (int k = 2; !names_.insert({association, name}).second; ++k) name = fmt::format("{} {}", wanted, k);
-    for (const Piece* const piece : group) reading_.metadata->fields[piece->field].array = name;
-    DataArray array{.name = name, .association = association};
-    for (const Piece* const piece : group) {
-      array.indices.insert(array.indices.end(), piece->rows->begin(), piece->rows->end());
-    }
-    const bool has_duplicates = group.size() == 1 && !fit_together(group, total(association));
-    if (has_duplicates) {
-      reading_.fail("", "the solution '" + group.front()->solution + "' lists a vertex or cell twice",
-                    "each may have one value");
-    }
-    array.values = std::move(group.front()->values);
-    for (std::size_t p = 1; p < group.size(); ++p) {
-      std::visit(
-          [&](auto& all) {
-            auto& more = std::get<std::decay_t<decltype(all)>>(group[p]->values);
-            all.insert(all.end(), more.begin(), more.end());
-            more = {};
-          },
-          array.values);
-    }
-    make_dense(array);
-    reading_.mesh.data.push_back(std::move(array));
-  }
-
-  /// Puts the values of an array that has one for each vertex or cell in the order of these.
-  void make_dense(DataArray& array) const {
-    if (array.indices.size() != total(array.association)) return;
-    if (!std::is_sorted(array.indices.begin(), array.indices.end())) {
-      std::visit(
-          [&](auto& values) {
-            auto sorted = values;
-            for (std::size_t i = 0; i < values.size(); ++i) sorted[array.indices[i]] = values[i];
-            values = std::move(sorted);
-          },
-          array.values);
-    }
-    array.indices.clear();
-  }
-
-  Reading& reading_;
-  std::set<std::pair<Association, std::string>> names_;
-};
-
 }  // namespace
 
-void read_attachments(Reading& reading) { AttachmentReader(reading).read(); }
+Association location_of(const Node& node, Association inherited) {
+  const Node* const location = node.child_of_label("GridLocation_t");
+  if (location == nullptr) return inherited;
+  return is_one_of(location->text(), kVertexLocations) ? Association::vertices : Association::cells;
+}
 
-void add_arrays(Reading& reading) { ArrayMaker(reading).make(); }
+void read_attachments(Reading& reading) { AttachmentReader(reading).read(); }
 
 }  // namespace meshorder::cgns

@@ -11,6 +11,10 @@
 // solution gives arrays of the names that it has, "SOLUTION.NAME" where two have values for the same vertices
 // or cells, and "NAME step K" where the file says that it belongs to one of several times. Arrays at cell
 // centres belong to the cells of the base's dimension. All other nodes are kept as they are.
+//
+// Polyhedra are the cells that their faces make. Of the polygons, those are cells that fewer than two
+// polyhedra have and those that a condition or a solution names; the others lie between two cells and follow
+// these.
 
 #include "io/cgns/tree.hpp"
 #include "io/format.hpp"
@@ -60,12 +64,40 @@ struct Zone {
 struct Section {
   int zone = 0;
   std::string name;
-  int type = 0;            ///< number of the element type, or `kMixedElements`
+  int type = 0;            ///< number of the element type, `kMixedElements`, `kPolygons` or `kPolyhedra`
   std::int64_t first = 1;  ///< number of its first element in the file
   Index count = 0;         ///< of elements in the file
   std::string range_type = "I4";
   std::string number_type = "I4";
-  std::string offset_type = {};  ///< of mixed elements: empty where the file has no offsets
+  std::string offset_type = {};  ///< of elements of several sizes: empty where the file has no offsets
+  Index first_item = 0;          ///< of polygons, polyhedra: place of its first one in `Polyhedra`
+};
+
+/// The polygons and polyhedra of all zones, section after section. Does not change with the order.
+struct Polyhedra {
+  std::vector<Offset> corner_starts{0};  ///< polygons + 1
+  std::vector<Index> corners;            ///< of polygons: vertices by their places in the file
+  std::vector<Offset> face_starts{0};    ///< polyhedra + 1
+  /// Of polyhedra: 1 + the place of a polygon, negative where its normal points into the polyhedron.
+  std::vector<Index> faces;
+
+  [[nodiscard]] Index polygon_count() const { return static_cast<Index>(corner_starts.size() - 1); }
+  [[nodiscard]] Index polyhedron_count() const { return static_cast<Index>(face_starts.size() - 1); }
+  [[nodiscard]] std::span<const Index> corners_of(Index polygon) const {
+    return row(corner_starts, corners, polygon);
+  }
+  [[nodiscard]] std::span<const Index> faces_of(Index polyhedron) const {
+    return row(face_starts, faces, polyhedron);
+  }
+  /// Returns the polygon of an entry of `faces`.
+  static Index polygon_of(Index face) { return (face < 0 ? -face : face) - 1; }
+
+ private:
+  static std::span<const Index> row(const std::vector<Offset>& starts, const std::vector<Index>& entries,
+                                    Index k) {
+    const auto at = static_cast<std::size_t>(k);
+    return {entries.data() + starts[at], entries.data() + starts[at + 1]};
+  }
 };
 
 /// Vertices or cells that a node lists by their numbers in a zone.
@@ -83,10 +115,11 @@ struct PointList {
 struct Parents {
   int section = 0;
   std::size_t columns = 2;              ///< values of an element: 2, or 4 with the numbers of faces
-  std::vector<Index> rows = {};         ///< the cell that each row belongs to
+  std::vector<Index> rows = {};         ///< the cell, of polygons the polygon, that each row belongs to
   std::vector<Index> cells = {};        ///< two for each row; −1 for none
   std::vector<std::int64_t> rest = {};  ///< the values of other columns, column by column
-  bool are_cells = true;                ///< false: all columns are kept as they are
+  bool of_polygons = false;
+  bool from_one = false;  ///< cells have numbers from 1, whatever those of their section
   std::string number_type = "I4";
 };
 
@@ -123,9 +156,18 @@ struct Metadata final : FormatMetadata {
   std::vector<PointList> lists;
   std::vector<Parents> parents;
   std::vector<Field> fields;
-  std::vector<Index> zone_of_vertex;   ///< empty for one zone
-  std::vector<Index> section_of_cell;  ///< empty for one section
-  std::vector<std::string> lost;       ///< see `contents`
+  std::vector<Index> zone_of_vertex;  ///< empty for one zone
+  std::vector<Index> section_of_cell;
+  std::shared_ptr<const Polyhedra> polyhedra;  ///< null if there are none
+  std::vector<Index> cell_of_polygon;          ///< −1: none
+  std::vector<Index> cell_of_polyhedron;       ///< −1: left out
+  std::vector<Index> vertex_places;            ///< of the vertices of the file; empty: where they were
+  std::vector<std::string> lost;               ///< see `contents`
+
+  /// Returns where the vertex of that place in the file is now.
+  [[nodiscard]] Index vertex_at(Index place) const {
+    return vertex_places.empty() ? place : vertex_places[static_cast<std::size_t>(place)];
+  }
 
   [[nodiscard]] std::vector<std::string> contents() const override { return lost; }
   [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,

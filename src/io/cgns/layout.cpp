@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -282,12 +281,6 @@ class Addition {
     return parts;
   }
 
-  static std::vector<Index> all_of(Index count) {
-    std::vector<Index> all(static_cast<std::size_t>(count));
-    std::iota(all.begin(), all.end(), Index{0});
-    return all;
-  }
-
   /// Returns the number of the vertices, or of the cells of the base's dimension, of a zone.
   [[nodiscard]] Index full_count(Association association, int zone) {
     if (full_counts_.empty()) {
@@ -311,9 +304,10 @@ class Addition {
           array.components, suffix_of(array, 0), suffix_of(array, array.components - 1)));
     }
     const bool on_vertices = array.association == Association::vertices;
-    const auto parts = parts_of(
-        array.association,
-        array.is_dense() ? all_of(on_vertices ? mesh_.vertex_count() : mesh_.cell_count()) : array.indices);
+    const auto parts =
+        parts_of(array.association,
+                 array.is_dense() ? index_range(0, on_vertices ? mesh_.vertex_count() : mesh_.cell_count())
+                                  : array.indices);
     for (const auto& [place, members] : parts) {
       const auto [zone, dimension] = place;
       if (!on_vertices && dimension < metadata_.cell_dimension) {

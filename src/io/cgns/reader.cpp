@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -22,7 +21,7 @@ void Reading::fail(const std::string& place, const std::string& what, const std:
 
 int Reading::bind(Node& node, Field field) {
   node.field = static_cast<int>(metadata->fields.size());
-  node.bytes = std::string();
+  std::string().swap(node.bytes);  // an assignment would keep the memory
   metadata->fields.push_back(std::move(field));
   return node.field;
 }
@@ -60,14 +59,6 @@ namespace {
 
 constexpr std::int64_t kMostDimensions = 3;
 
-/// A section before its cells are in the mesh.
-struct FoundSection {
-  Node* node;
-  std::string path;
-  Section section;
-  std::int64_t last = 0;
-};
-
 class MeshReader {
  public:
   explicit MeshReader(Reading& reading) : reading_(reading) {}
@@ -82,6 +73,7 @@ class MeshReader {
     }
     for (std::size_t z = 0; z < reading_.zones.size(); ++z) read_points(static_cast<int>(z));
     for (std::size_t z = 0; z < reading_.zones.size(); ++z) read_sections(static_cast<int>(z));
+    if (reading_.polyhedra->polygon_count() > 0) reading_.metadata->polyhedra = reading_.polyhedra;
     Mesh& mesh = reading_.mesh;
     if (mesh.cell_blocks.size() < 2) mesh.cell_blocks.clear();
     mesh.dimension = physical_dimension_ < 3 ? 2 : 3;
@@ -212,10 +204,6 @@ class MeshReader {
     found.section.first = numbers[0];
     found.section.count = static_cast<Index>(numbers[1] - numbers[0] + 1);
     found.section.range_type = range->type;
-    if (found.section.type == kPolygons || found.section.type == kPolyhedra) {
-      reading_.fail(path, "has polygons or polyhedra (NGON_n, NFACE_n), which have no place in a mesh here",
-                    "save it with tetrahedra, pyramids, prisms and hexahedra");
-    }
     if (type.size() > 1 && type[1] != 0) {
       reading_.notes.push_back(
           fmt::format("the section '{}' has its {} boundary elements first; that they come first is left out",
@@ -242,11 +230,20 @@ class MeshReader {
                                   found[s].last, found[s - 1].section.name),
                       "element numbers are unique in a zone");
       }
-      read_section(zone, found[s]);
     }
+    PolyhedraReader polyhedra(reading_, zone, found);
+    if (std::any_of(found.begin(), found.end(), has_polyhedra)) {
+      if (listed_.empty()) listed_ = listed_elements(reading_);
+      polyhedra.read(listed_[z]);
+    }
+    for (FoundSection& one : found) read_section(zone, one, polyhedra);
   }
 
-  void read_section(ZonePlaces& zone, FoundSection& found) {
+  static bool has_polyhedra(const FoundSection& found) {
+    return found.section.type == kPolygons || found.section.type == kPolyhedra;
+  }
+
+  void read_section(ZonePlaces& zone, FoundSection& found, PolyhedraReader& polyhedra) {
     Mesh& mesh = reading_.mesh;
     Metadata& metadata = *reading_.metadata;
     const auto s = static_cast<int>(metadata.sections.size());
@@ -258,6 +255,33 @@ class MeshReader {
     }
     const Index first = mesh.cell_count();
     found.section.number_type = connectivity->type;
+    if (has_polyhedra(found)) {
+      polyhedra.append_cells(found);
+    } else {
+      read_elements(zone, found, *connectivity);
+    }
+    reading_.bind(*connectivity, {.role = Field::Role::connectivity, .place = s});
+    Node* const range = found.node->child("ElementRange");
+    reading_.bind(*range, {.role = Field::Role::range, .place = s});
+    if (Node* const offsets = found.node->child("ElementStartOffset")) {
+      if (found.section.type == kMixedElements || has_polyhedra(found)) {
+        found.section.offset_type = offsets->type;
+        reading_.bind(*offsets, {.role = Field::Role::offsets, .place = s});
+      }
+    }
+    zone.sections.push_back(s);
+    zone.first_cells.push_back(first);
+    zone.cell_counts.push_back(mesh.cell_count() - first);
+    if (mesh.cell_count() > first) mesh.cell_blocks.push_back(first);
+    metadata.section_of_cell.resize(mesh.cells.shapes.size(), s);
+    for (Index c = first; c < mesh.cell_count(); ++c) {
+      if (dimension(mesh.cells.shapes[c]) == metadata.cell_dimension) zone.centred_cells.push_back(c);
+    }
+    metadata.sections.push_back(std::move(found.section));
+  }
+
+  /// Appends the cells of a section of standard elements.
+  void read_elements(const ZonePlaces& zone, const FoundSection& found, const Node& connectivity) {
     const std::string path = found.path + "/ElementConnectivity";
     std::visit(
         [&](const auto& numbers) {
@@ -272,24 +296,7 @@ class MeshReader {
             reading_.fail(path, "does not hold whole numbers", "I4 or I8 is expected");
           }
         },
-        numbers_of(*connectivity));
-    reading_.bind(*connectivity, {.role = Field::Role::connectivity, .place = s});
-    Node* const range = found.node->child("ElementRange");
-    reading_.bind(*range, {.role = Field::Role::range, .place = s});
-    if (Node* const offsets = found.node->child("ElementStartOffset")) {
-      if (found.section.type == kMixedElements) {
-        found.section.offset_type = offsets->type;
-        reading_.bind(*offsets, {.role = Field::Role::offsets, .place = s});
-      }
-    }
-    mesh.cell_blocks.push_back(first);
-    zone.sections.push_back(s);
-    zone.first_cells.push_back(first);
-    metadata.section_of_cell.resize(mesh.cells.shapes.size(), s);
-    for (Index c = first; c < mesh.cell_count(); ++c) {
-      if (dimension(mesh.cells.shapes[c]) == metadata.cell_dimension) zone.centred_cells.push_back(c);
-    }
-    metadata.sections.push_back(std::move(found.section));
+        numbers_of(connectivity));
   }
 
   /// Appends a cell from numbers in the order of the file.
@@ -343,9 +350,9 @@ class MeshReader {
       }
       const ElementType* const type = element_type(static_cast<std::int64_t>(numbers[at]));
       if (type == nullptr || element_type_of(type->shape, type->nodes) != type) {
-        reading_.fail(fmt::format("{}, element {}", path, e + 1),
-                      fmt::format("has the unknown type {}", numbers[at]),
-                      "polygons and polyhedra are not read; other types are those of ElementType_t");
+        reading_.fail(
+            fmt::format("{}, element {}", path, e + 1), fmt::format("has the unknown type {}", numbers[at]),
+            "the types are those of ElementType_t, polygons and polyhedra in sections of their own");
       }
       if (numbers.size() - at - 1 < static_cast<std::size_t>(type->nodes)) {
         reading_.fail(fmt::format("{}, element {}", path, e + 1), "has too few nodes",
@@ -363,8 +370,25 @@ class MeshReader {
 
   Reading& reading_;
   int physical_dimension_ = 3;
+  std::vector<NumberRanges> listed_;  ///< see `listed_elements`
   std::vector<Index> cell_;
 };
+
+/// Makes blocks of the elements of boundaries that are given as ranges, so that they stay ranges.
+void keep_ranges(Reading& reading) {
+  Mesh& mesh = reading.mesh;
+  std::vector<Index> starts = mesh.cell_blocks;
+  if (starts.empty()) starts.push_back(0);
+  for (const PointList& list : reading.metadata->lists) {
+    if (!list.is_range || list.association == Association::vertices) continue;
+    if (dimension(mesh.cells.shapes[list.members.front()]) == reading.metadata->cell_dimension) continue;
+    starts.push_back(list.members.front());
+    if (list.members.back() + 1 < mesh.cell_count()) starts.push_back(list.members.back() + 1);
+  }
+  std::sort(starts.begin(), starts.end());
+  starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
+  if (starts.size() > 1) mesh.cell_blocks = std::move(starts);
+}
 
 }  // namespace
 
@@ -376,6 +400,7 @@ Mesh read(const FilePath& path, Notes& notes) {
   }
   MeshReader(reading).read();
   read_attachments(reading);
+  keep_ranges(reading);
   add_arrays(reading);
   reading.metadata->tree = std::make_shared<const Tree>(std::move(reading.tree));
   reading.mesh.format_metadata = reading.metadata;

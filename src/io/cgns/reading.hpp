@@ -3,9 +3,12 @@
 
 #include "io/cgns/cgns.hpp"
 
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder::cgns {
@@ -18,6 +21,7 @@ struct ZonePlaces {
   Index vertices = 0;
   std::vector<int> sections = {};       ///< ascending by their numbers
   std::vector<Index> first_cells = {};  ///< of these sections
+  std::vector<Index> cell_counts = {};  ///< likewise: of cells in the mesh
   std::vector<Index> centred_cells =
       {};  ///< those of the base's dimension, which have values at their centres
   std::map<std::string, int> steps = {};  ///< of solutions and coordinates, from 1, where there are several
@@ -49,6 +53,15 @@ struct Reading {
   std::shared_ptr<Metadata> metadata = std::make_shared<Metadata>();
   std::vector<ZonePlaces> zones = {};
   std::vector<Piece> pieces = {};
+  std::shared_ptr<Polyhedra> polyhedra = std::make_shared<Polyhedra>();
+};
+
+/// A section before its cells are in the mesh.
+struct FoundSection {
+  Node* node;
+  std::string path;
+  Section section;
+  std::int64_t last = 0;
 };
 
 /// Returns the values of a node of whole numbers; throws InputError for others.
@@ -56,6 +69,51 @@ std::vector<std::int64_t> whole_numbers(const Reading& reading, const Node& node
 
 /// Returns the numbers of a node in their own type; text, bits and the like give none.
 Values numbers_of(const Node& node);
+
+/// Returns what values and lists of a node belong to; cells also for their faces and edges.
+Association location_of(const Node& node, Association inherited);
+
+/// First and last numbers of elements.
+using NumberRanges = std::vector<std::pair<std::int64_t, std::int64_t>>;
+
+/// Returns the elements of each zone that conditions, solutions and connectivities list by their numbers.
+std::vector<NumberRanges> listed_elements(const Reading& reading);
+
+/// Reads the polygons and polyhedra of a zone. Throws InputError for what is damaged, and for polyhedra that
+/// are no standard cells.
+class PolyhedraReader {
+ public:
+  /// `sections`: those of the zone, ascending by their numbers.
+  PolyhedraReader(Reading& reading, const ZonePlaces& zone, std::vector<FoundSection>& sections)
+      : reading_(reading), zone_(zone), sections_(sections) {}
+
+  /// Reads all sections of polygons and polyhedra into `reading.polyhedra`. `listed`: elements that are cells
+  /// in any case.
+  void read(const NumberRanges& listed);
+  /// Appends the cells of a section to the mesh.
+  void append_cells(const FoundSection& found);
+
+ private:
+  void read_section(FoundSection& found);
+  template <class Number>
+  void read_rows(const FoundSection& found, const std::vector<Number>& numbers);
+  void add_polygon(const FoundSection& found, std::span<const std::int64_t> corners);
+  void add_polyhedron(const FoundSection& found, std::span<const std::int64_t> faces);
+  [[nodiscard]] Index polygon_of(std::uint64_t number) const;
+  [[nodiscard]] std::int64_t number_of(Index polygon) const;
+  void require_cells() const;
+  void count_uses();
+  void append_polygons(const FoundSection& found);
+  void append_polyhedra(const FoundSection& found);
+  void turn_by_volumes(Index first, const std::string& path, Index contradictions, int sign);
+
+  Reading& reading_;
+  const ZonePlaces& zone_;
+  std::vector<FoundSection>& sections_;
+  Index first_polygon_ = 0;
+  Index first_polyhedron_ = 0;
+  std::vector<std::uint8_t> uses_ = {};  ///< of the zone's polygons by its polyhedra; 0 for those listed
+};
 
 /// Reads solutions, boundary conditions and everything else in the zones that names vertices or cells.
 void read_attachments(Reading& reading);

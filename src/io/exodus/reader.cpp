@@ -37,17 +37,9 @@ void Reading::require_shape(const Variable& variable, const std::vector<std::siz
             "the file may be damaged");
 }
 
-std::string Reading::add_array(DataArray array) {
-  array.name = arrays_.use(array.association, array.name);
-  mesh.data.push_back(std::move(array));
-  return mesh.data.back().name;
-}
+std::string Reading::add_array(DataArray array) { return add_named(mesh, std::move(array), arrays_); }
 
-std::string Reading::add_set(EntitySet set) {
-  set.name = sets_.use(set.association, set.name);
-  mesh.sets.push_back(std::move(set));
-  return mesh.sets.back().name;
-}
+std::string Reading::add_set(EntitySet set) { return add_named(mesh, std::move(set), sets_); }
 
 std::vector<std::int64_t> read_ids(Reading& reading, const std::string& variable, std::size_t objects) {
   std::vector<std::int64_t> ids(objects);
@@ -259,9 +251,9 @@ void name_blocks(Reading& reading) {
     BlockRecord& block = reading.metadata->blocks[b];
     if (block.name.empty() || block.nodes == 0) continue;
     EntitySet set{block.name, Association::cells, {}};
-    const auto members = static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]);
-    set.members.resize(reading.file.claimed(block.name, members, sizeof(Index)));
-    std::iota(set.members.begin(), set.members.end(), reading.block_ends[b]);
+    const Index cells = reading.block_ends[b + 1] - reading.block_ends[b];
+    (void)reading.file.claimed(block.name, static_cast<std::size_t>(cells), sizeof(Index));
+    set.members = index_range(reading.block_ends[b], cells);
     block.in_mesh = reading.add_set(std::move(set));
   }
 }

@@ -2,12 +2,11 @@
 #pragma once
 
 #include "io/exodus/exodus.hpp"
-#include "io/unused_names.hpp"
+#include "io/unique_names.hpp"
 
 #include <memory>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace meshorder::exodus {
@@ -37,8 +36,8 @@ struct Reading {
   std::vector<Index> block_ends;  ///< blocks + 1: block b has the cells from entry b to entry b + 1
 
  private:
-  UnusedNames arrays_;
-  UnusedNames sets_;
+  UniqueNames arrays_;
+  UniqueNames sets_;
 };
 
 /// Returns the names of properties besides the ids, and gives each object's values to `put(object, value)`.

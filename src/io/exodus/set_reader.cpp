@@ -168,8 +168,7 @@ class SetReader {
   // ---- nodes and elements
 
   void add_members(std::size_t number, SetRecord& set, const std::vector<std::int32_t>& members) {
-    std::vector<Index> entries(members.size());
-    std::iota(entries.begin(), entries.end(), Index{0});
+    std::vector<Index> entries = index_range(0, index_size(members));
     std::stable_sort(entries.begin(), entries.end(),
                      [&](Index a, Index b) { return members[a] < members[b]; });
     entries.erase(std::unique(entries.begin(), entries.end(),
@@ -221,8 +220,7 @@ class SetReader {
                            "sides are counted from 1");
       }
     }
-    std::vector<Index> entries(count);
-    std::iota(entries.begin(), entries.end(), Index{0});
+    std::vector<Index> entries = index_range(0, static_cast<Index>(count));
     std::sort(entries.begin(), entries.end(), [&](Index a, Index b) {
       return std::tuple(cells[a], sides[a], a) < std::tuple(cells[b], sides[b], b);
     });

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 #include <type_traits>
 #include <variant>
@@ -41,8 +40,7 @@ std::vector<std::string> short_names(const std::string& text, std::size_t count)
 
 /// Puts the rows of an array in the order of the items, whose places are `items`.
 void sort_rows(DataArray& array, std::vector<Index> items, Index count) {
-  std::vector<Index> order(items.size());
-  std::iota(order.begin(), order.end(), Index{0});
+  std::vector<Index> order = index_range(0, index_size(items));
   if (!std::is_sorted(items.begin(), items.end())) {
     std::sort(order.begin(), order.end(), [&](Index a, Index b) {
       return items[static_cast<std::size_t>(a)] < items[static_cast<std::size_t>(b)];
@@ -116,9 +114,7 @@ class FieldReader {
   std::vector<Index> items_of(const Piece& piece) {
     const auto [first, count] = reading_.range(piece.type);
     if (piece.profile == kNoProfile) {
-      std::vector<Index> items(static_cast<std::size_t>(count));
-      std::iota(items.begin(), items.end(), first);
-      return items;
+      return index_range(first, count);
     }
     const std::string path = profile_path(piece.profile);
     reading_.take(path);

@@ -235,8 +235,7 @@ class ItemWriter {
 
 void write_nodes(Writing& writing) {
   write_points(writing);
-  std::vector<Index> all(writing.mesh.points.size());
-  std::iota(all.begin(), all.end(), Index{0});
+  const std::vector<Index> all = index_range(0, writing.mesh.vertex_count());
   ItemWriter(writing, Association::vertices).write(writing.layout.nodes_path(), writing.layout.vertices, all);
 }
 

@@ -13,7 +13,7 @@
 
 #include "io/format.hpp"
 #include "io/hdf5/hdf5_file.hpp"
-#include "io/unused_names.hpp"
+#include "io/unique_names.hpp"
 
 #include <array>
 #include <cstddef>
@@ -153,7 +153,7 @@ struct Reading {
   Notes& notes;
 
  private:
-  UnusedNames arrays_;
+  UniqueNames arrays_;
 };
 
 void read_families(Reading& reading);

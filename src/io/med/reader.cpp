@@ -26,11 +26,7 @@ void Reading::fail(const std::string& path, const std::string& what, const std::
   throw InputError(file.name(), fmt::format("'{}' {}", path, what), remedy);
 }
 
-std::string Reading::add_array(DataArray array) {
-  array.name = arrays_.use(array.association, array.name);
-  mesh.data.push_back(std::move(array));
-  return mesh.data.back().name;
-}
+std::string Reading::add_array(DataArray array) { return add_named(mesh, std::move(array), arrays_); }
 
 std::pair<Index, Index> Reading::range(const GeometryType* type) const {
   if (type == nullptr) return {0, mesh.vertex_count()};

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/tetgen/tetgen.hpp"
 
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/labels.hpp"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <numeric>
 #include <system_error>
 #include <type_traits>
 #include <utility>
@@ -243,8 +243,7 @@ struct WriteContext {
 
 void write_points(OutputFile& out, const WriteContext& from, Notes& notes) {
   const Mesh& mesh = from.mesh;
-  std::vector<Index> all(mesh.vertex_count());
-  std::iota(all.begin(), all.end(), Index{0});
+  const std::vector<Index> all = index_range(0, mesh.vertex_count());
   const auto columns = attribute_columns(mesh, Association::vertices, all, notes);
   note_lost_names(columns, ".node", notes);
   const bool marked = has_markers(from.vertex_labels, all, ".node", notes);

@@ -3,7 +3,7 @@
 #include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
 #include "io/stream/scanner.hpp"
-#include "io/unused_names.hpp"
+#include "io/unique_names.hpp"
 #include "io/unv/results.hpp"
 #include "io/unv/unv.hpp"
 #include <meshorder/error.hpp>
@@ -391,12 +391,12 @@ class UnvReader {
   }
 
   void make_sets() {
-    UnusedNames names;
+    UniqueNames names;
     for (std::size_t g = 0; g < file_->groups.size(); ++g) {
       Group& group = file_->groups[g];
       // one name for its nodes and its elements
-      group.set = names.use(Association::cells,
-                            group.name.empty() ? fmt::format("group {}", group.fields[0]) : group.name);
+      group.set = names.take(Association::cells,
+                             group.name.empty() ? fmt::format("group {}", group.fields[0]) : group.name);
       std::int64_t missing = 0;
       auto vertices = positions(members_[g].nodes, Association::vertices, group, missing);
       auto cells = positions(members_[g].elements, Association::cells, group, missing);

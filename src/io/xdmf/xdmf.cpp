@@ -14,7 +14,6 @@
 #include <array>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -475,10 +474,7 @@ class XdmfWriter {
     const Index count = on_vertices ? mesh_.vertex_count() : mesh_.cell_count();
     std::vector<Index> all;
     if (on_vertices && array.is_dense()) return {};
-    if (on_vertices) {
-      all.resize(static_cast<std::size_t>(count));
-      std::iota(all.begin(), all.end(), Index{0});
-    }
+    if (on_vertices) all = index_range(0, count);
     const std::vector<Index>& rows = on_vertices ? all : rows_[static_cast<std::size_t>(part)];
     if (array.is_dense() && is_identity(rows, count)) return {};
     std::vector<Index> row_of;  // of the array, by vertex or cell

@@ -1,0 +1,46 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/number_view.hpp>
+#include <meshorder/shape.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace meshorder {
+
+/// A face of a polyhedron.
+struct PolyhedronFace {
+  std::span<const Index> corners;  ///< in turn
+  bool is_inward = false;          ///< the corners turn around a normal that points into the polyhedron
+};
+
+/// The cell that a polyhedron is.
+struct CellOfFaces {
+  enum class Kind : std::uint8_t {
+    standard,  ///< a tetrahedron, pyramid, wedge or hexahedron
+    other,     ///< any other pattern of faces
+    open       ///< an edge is not that of exactly two faces
+  };
+  Kind kind = Kind::other;
+  Shape shape = Shape::tetrahedron;  ///< of a standard one
+  std::array<Index, 8> corners{};    ///< likewise, in the order of `Cells`
+  int size = 0;                      ///< number of corners
+  bool signs_agree = false;          ///< whether `is_inward` of all faces fits one orientation
+
+  [[nodiscard]] std::span<const Index> cell() const {
+    return {corners.data(), static_cast<std::size_t>(size)};
+  }
+};
+
+/// Returns the cell that these faces enclose, whatever their order. Its orientation is that of the first
+/// face; the others count by `signs_agree` alone. O(faces² + edges²) for up to six faces of up to four
+/// corners, O(faces) for others, which are `other` without a look at their edges.
+CellOfFaces cell_of_faces(std::span<const PolyhedronFace> faces);
+
+/// Turns a linear tetrahedron, pyramid, wedge or hexahedron inside out.
+void turn_inside_out(Shape shape, std::span<Index> corners);
+
+}  // namespace meshorder

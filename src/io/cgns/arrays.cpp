@@ -1,0 +1,128 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/cgns/reading.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <type_traits>
+#include <utility>
+
+// Makes arrays of the values of nodes, one of those that have one name and belong to different vertices or
+// cells.
+
+namespace meshorder::cgns {
+namespace {
+
+/// Pieces that become one array.
+using Group = std::vector<Piece*>;
+
+/// Returns whether the pieces have values of one type, for different vertices or cells.
+bool fit_together(const Group& group, std::size_t total) {
+  std::vector<bool> taken(total);
+  for (const Piece* const piece : group) {
+    if (piece->values.index() != group.front()->values.index()) return false;
+    for (const Index row : *piece->rows) {
+      if (taken[row]) return false;
+      taken[row] = true;
+    }
+  }
+  return true;
+}
+
+class ArrayMaker {
+ public:
+  explicit ArrayMaker(Reading& reading) : reading_(reading) {
+    for (const DataArray& array : reading_.mesh.data) names_.insert({array.association, array.name});
+  }
+
+  void make() {
+    std::map<std::pair<Association, std::string>, std::size_t> places;
+    std::vector<Group> groups;
+    for (Piece& piece : reading_.pieces) {
+      const auto [place, is_new] = places.emplace(std::pair{piece.association, piece.name}, groups.size());
+      if (is_new) groups.emplace_back();
+      groups[place->second].push_back(&piece);
+    }
+    for (const Group& group : groups) make_of(group, 0);
+  }
+
+ private:
+  [[nodiscard]] std::size_t total(Association association) const {
+    return association == Association::vertices ? reading_.mesh.points.size()
+                                                : reading_.mesh.cells.shapes.size();
+  }
+
+  /// Makes one array, or one for each solution (level 0) and each zone of it (level 1) where they overlap.
+  void make_of(const Group& group, int level) {
+    const Piece& first = *group.front();
+    if (group.size() == 1 || fit_together(group, total(first.association))) {
+      const std::string before = level == 0 ? ""
+                                 : level == 1
+                                     ? first.solution + "."
+                                     : reading_.metadata->zones[first.zone].name + "." + first.solution + ".";
+      return add(group, before + first.name);
+    }
+    std::map<std::string, Group> parts;
+    std::vector<std::string> order;
+    for (Piece* const piece : group) {
+      const std::string key = level == 0 ? piece->solution : std::to_string(piece->field);
+      if (!parts.contains(key)) order.push_back(key);
+      parts[key].push_back(piece);
+    }
+    for (const std::string& key : order) make_of(parts[key], level + 1);
+  }
+
+  void add(const Group& group, const std::string& wanted) {
+    const Association association = group.front()->association;
+    std::string name = wanted;
+    for (int k = 2; !names_.insert({association, name}).second; ++k) name = fmt::format("{} {}", wanted, k);
+    for (const Piece* const piece : group) reading_.metadata->fields[piece->field].array = name;
+    DataArray array{.name = name, .association = association};
+    for (const Piece* const piece : group) {
+      array.indices.insert(array.indices.end(), piece->rows->begin(), piece->rows->end());
+    }
+    const bool has_duplicates = group.size() == 1 && !fit_together(group, total(association));
+    if (has_duplicates) {
+      reading_.fail("", "the solution '" + group.front()->solution + "' lists a vertex or cell twice",
+                    "each may have one value");
+    }
+    array.values = std::move(group.front()->values);
+    for (std::size_t p = 1; p < group.size(); ++p) {
+      std::visit(
+          [&](auto& all) {
+            auto& more = std::get<std::decay_t<decltype(all)>>(group[p]->values);
+            all.insert(all.end(), more.begin(), more.end());
+            more = {};
+          },
+          array.values);
+    }
+    make_dense(array);
+    reading_.mesh.data.push_back(std::move(array));
+  }
+
+  /// Puts the values of an array that has one for each vertex or cell in the order of these.
+  void make_dense(DataArray& array) const {
+    if (array.indices.size() != total(array.association)) return;
+    if (!std::is_sorted(array.indices.begin(), array.indices.end())) {
+      std::visit(
+          [&](auto& values) {
+            auto sorted = values;
+            for (std::size_t i = 0; i < values.size(); ++i) sorted[array.indices[i]] = values[i];
+            values = std::move(sorted);
+          },
+          array.values);
+    }
+    array.indices.clear();
+  }
+
+  Reading& reading_;
+  std::set<std::pair<Association, std::string>> names_;
+};
+
+}  // namespace
+
+void add_arrays(Reading& reading) { ArrayMaker(reading).make(); }
+
+}  // namespace meshorder::cgns

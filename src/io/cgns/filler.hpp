@@ -1,0 +1,72 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/cgns/cgns.hpp"
+#include "io/cgns/polyhedra_order.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace meshorder::cgns {
+
+/// Gives the nodes of a file their values, for the order that the mesh has now.
+class Filler {
+ public:
+  Filler(const Mesh& mesh, const Metadata& metadata);
+  /// Whether the vertices of each zone follow those of the one before.
+  [[nodiscard]] bool has_vertices_in_order() const;
+  void fill(Node& node);
+  /// Returns whether a node has anything to write: sections and lists may have lost all their cells.
+  [[nodiscard]] bool is_gone(const Field& field) const;
+
+ private:
+  void place_vertices();
+  void place_cells();
+  /// Returns the number of elements that a section has in the file: polygons between cells are no cells.
+  [[nodiscard]] Index element_count(int s) const;
+  [[nodiscard]] Index vertex_count(int zone) const;
+  [[nodiscard]] Index vertex_at(int zone, Index number) const;
+  [[nodiscard]] Index number_of_vertex(Index v) const;
+  [[nodiscard]] std::int64_t number_of_cell(Index c) const;
+
+  template <class Number>
+  static void put(Node& node, std::string type, std::vector<std::int64_t> dimensions,
+                  const std::vector<Number>& numbers);
+  /// Puts whole numbers of 32 bits where the type has so many and all fit, else of 64.
+  static void put_whole(Node& node, const std::string& type, std::vector<std::int64_t> dimensions,
+                        const std::vector<std::int64_t>& numbers);
+
+  void fill_size(Node& node, int z) const;
+  template <class Number>
+  void put_coordinate(Node& node, const Field& field) const;
+  void fill_coordinate(Node& node, const Field& field) const;
+  template <class Number>
+  void put_connectivity(Node& node, int s, const std::string& type) const;
+  void fill_connectivity(Node& node, int s) const;
+  [[nodiscard]] std::vector<std::int64_t> offsets_of(int s) const;
+  void fill_offsets(Node& node, int s) const;
+
+  /// Returns the vertices or cells that have values in a node.
+  [[nodiscard]] std::vector<Index> rows_of(const Field& field) const;
+  template <class Number, class Old>
+  static void put_values(Node& node, const std::string& type, const std::vector<Old>& values,
+                         const std::vector<Index>& rows, const std::vector<Index>& table, const Field& field,
+                         Index components);
+  void fill_values(Node& node, const Field& field) const;
+  void fill_list(Node& node, const PointList& list) const;
+  void fill_parents(Node& node, const Parents& parents) const;
+
+  const Mesh& mesh_;
+  const Metadata& metadata_;
+  PolyhedraOrder polyhedra_;
+  std::vector<std::vector<Index>> vertices_of_zone_;
+  std::vector<Index> number_of_vertex_;  ///< in its zone; empty for one zone
+  std::vector<std::vector<Index>> cells_of_section_;
+  std::vector<Index> rank_of_cell_;
+  std::vector<std::int64_t> first_numbers_;
+  std::vector<std::int64_t> counts_;  ///< of cells with values at their centres, by zone
+  bool is_whole_ = true;
+};
+
+}  // namespace meshorder::cgns

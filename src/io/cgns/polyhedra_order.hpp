@@ -1,0 +1,53 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/cgns/cgns.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace meshorder::cgns {
+
+/// Returns whether the polygons and polyhedra of the metadata are cells of the mesh with the same vertices.
+/// O(size of the mesh).
+bool polyhedra_fit(const Mesh& mesh, const Metadata& metadata);
+
+/// The polygons and polyhedra of a file in their new order.
+///
+/// Polygons that are cells have the order of these. The others, between two cells, stay where they are in
+/// their section if no polyhedron moved, else they are sorted by the lower, then by the higher of the two.
+/// Cells keep the places of cells, and the others those of others. Polygons without a cell on either side
+/// are left out.
+class PolyhedraOrder {
+ public:
+  /// `metadata` must outlive this object, and `polyhedra_fit`. O(polygons · log polygons).
+  explicit PolyhedraOrder(const Metadata& metadata);
+
+  /// Returns the polygons of a section.
+  [[nodiscard]] const std::vector<Index>& polygons_of(int section) const { return polygons_[section]; }
+  /// Returns the place of a polygon in its section, −1 for one that is left out.
+  [[nodiscard]] Index rank_of(Index polygon) const { return ranks_[polygon]; }
+
+  /// Returns ElementConnectivity of a section of polygons. `number_of`: the number of a vertex.
+  [[nodiscard]] std::vector<std::int64_t> corner_numbers(
+      int section, const std::function<std::int64_t(Index)>& number_of) const;
+  /// Returns ElementConnectivity of a section of polyhedra, which are these cells. `first_numbers`: of the
+  /// elements of each section.
+  [[nodiscard]] std::vector<std::int64_t> face_numbers(int section, const std::vector<Index>& cells,
+                                                       const std::vector<std::int64_t>& first_numbers) const;
+  /// Returns ElementStartOffset of a section of polygons or polyhedra, of which `cells` are the latter.
+  [[nodiscard]] std::vector<std::int64_t> offsets(int section, const std::vector<Index>& cells) const;
+
+ private:
+  void order_section(int section, const std::vector<std::pair<Index, Index>>& sides, bool are_moved);
+  [[nodiscard]] int section_of(Index polygon) const;
+
+  const Metadata& metadata_;
+  std::vector<std::vector<Index>> polygons_;  ///< by section
+  std::vector<Index> ranks_;                  ///< by polygon
+  std::vector<Index> polyhedron_of_cell_;     ///< −1: none
+};
+
+}  // namespace meshorder::cgns

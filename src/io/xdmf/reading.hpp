@@ -1,0 +1,159 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/unique_names.hpp"
+#include "io/vtk/vtk.hpp"
+#include "io/xdmf/document.hpp"
+#include "io/xdmf/xdmf.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace meshorder::xdmf {
+
+/// A uniform Grid and its place in a series of time steps.
+struct GridElement {
+  pugi::xml_node element;
+  int series = -1;  ///< number of its temporal collection; −1: none
+  int step = 0;
+};
+
+/// A file that is being read, and what has been found so far.
+struct Reading {
+  Reading(const FilePath& path, Notes& warnings) : document(path), data(document, path), notes(warnings) {}
+
+  /// Returns the only DataItem of an element.
+  [[nodiscard]] pugi::xml_node item_of(pugi::xml_node element) const;
+  /// Adds the set of the cells of a Grid; returns the name that it gets.
+  std::string add_set_of_grid(const std::string& wanted, const std::vector<Index>& cells_of_grid);
+  /// Returns the set that a field is a part of; renames the field if another one of its part has that name.
+  EntitySet& set_of(Field& field);
+
+  Document document;
+  DataReader data;
+  Notes& notes;
+  Mesh mesh = {};
+  std::shared_ptr<Layout> layout = std::make_shared<Layout>();
+  vtk::FileCells cells = {};
+  std::vector<std::vector<Index>> rows = {};  ///< cells of each part, in the order of the file
+  pugi::xml_node where_cells_are = {};
+
+ private:
+  struct KnownSet {
+    std::size_t place;    // in the mesh
+    bool is_grid;         // all cells of a Grid
+    std::set<int> parts;  // of which it has members
+  };
+  std::string next_set_name(Association association, const std::string& wanted, int part);
+
+  std::map<std::pair<Association, std::string>, KnownSet> known_sets_;
+  /// By the wanted name and the part, −1 for sets of Grids: the number behind the name that was given last.
+  std::map<std::tuple<Association, std::string, int>, int> set_numbers_;
+};
+
+/// Returns the DataItems of an element.
+std::vector<pugi::xml_node> items_of(pugi::xml_node element);
+/// Returns the beginning of a text of the file, for messages.
+std::string shortened(const std::string& text);
+/// Returns the number of values.
+std::size_t count_of(const Values& values);
+
+/// Reads Topologies: the cells of Grids, each once.
+class TopologyReader {
+ public:
+  explicit TopologyReader(Reading& reading) : reading_(reading) {}
+
+  /// Returns the number of the part that a Topology is.
+  int read(const GridElement& grid, pugi::xml_node topology);
+
+ private:
+  /// The cells of one Topology as the file has them.
+  struct Piece {
+    vtk::FileCells cells;
+    int base = 0;
+  };
+
+  [[nodiscard]] pugi::xml_node item_of_topology(pugi::xml_node topology) const;
+  Piece piece_of(pugi::xml_node topology, pugi::xml_node item, const DataPlace& place, int base);
+  /// Returns the number of cells that a Topology announces, −1 if it does not.
+  [[nodiscard]] std::int64_t claimed_cells(pugi::xml_node topology) const;
+  /// Appends the cells of a mixed Topology; `counted`: points have a count, too. Returns false for a fault,
+  /// at `fault_at_`.
+  bool read_mixed(const std::vector<Index>& numbers, std::int64_t claimed, bool counted,
+                  vtk::FileCells& cells);
+  void check_vertices(pugi::xml_node item, vtk::FileCells& cells, int base) const;
+  /// Returns the cells before that have the same types and vertices as those of a piece; none if one is new.
+  [[nodiscard]] std::optional<std::vector<Index>> known_cells(const Piece& piece) const;
+  /// Adds the cells of a piece as a part, or finds the part that has them; returns its number.
+  int part_of(const GridElement& grid, pugi::xml_node topology, Piece piece);
+  [[nodiscard]] bool is_part(int part, const Piece& piece) const;
+  std::vector<Index> append(pugi::xml_node topology, Piece piece);
+
+  Reading& reading_;
+  std::map<std::string, int> known_topologies_;  ///< parts by key
+  std::map<int, int> series_parts_;
+  std::size_t fault_at_ = 0;
+};
+
+/// Reads Attributes and Sets, and makes arrays of them when all Grids have been read.
+class ArrayReader {
+ public:
+  explicit ArrayReader(Reading& reading) : reading_(reading) {}
+
+  /// Keeps the points of a time step in which they have moved as an array.
+  void add_moved_points(const GridElement& grid, std::vector<Field>& fields, std::vector<Point> points,
+                        int dimension);
+  void read_attribute(const GridElement& grid, int part, pugi::xml_node element);
+  void read_set(int part, pugi::xml_node element);
+  /// Adds the arrays to the mesh.
+  void finish();
+
+ private:
+  /// An array that waits for its name: with the step of its series where there are several.
+  struct Pending {
+    Field field;
+    DataArray array;
+    GridElement grid;
+  };
+
+  /// An array as it is put together from the parts of a mesh.
+  struct GrowingArray {
+    DataArray array;
+    std::vector<bool> has_row;  ///< cells: once there are several parts
+  };
+
+  /// Adds an array under its name or, where that is taken, another one; returns the name that it gets.
+  std::string add_growing(DataArray array);
+  [[nodiscard]] GrowingArray* array_named(const std::string& name, Association association);
+  [[nodiscard]] std::string name_of(pugi::xml_node element) const;
+  void read_of_grid(pugi::xml_node item, const std::string& name);
+  /// Whether an array is the labels of cells: tags of FEniCSx or FEniCS, or an array of that name.
+  [[nodiscard]] bool is_label(const Field& field, const DataArray& array) const;
+  /// Makes an array the labels of its cells, unless one of them has a label.
+  void take_label(const Field& field, DataArray& array);
+  void name_pending();
+  /// Adds an array, or the rows of a part to the array of its name; returns the name that it gets.
+  std::string add(DataArray array, int part);
+  /// Appends the rows of an array of the same type for cells that have none; else returns false.
+  bool append_rows(GrowingArray& growing, DataArray& array, const std::vector<Index>& rows) const;
+  /// Makes an array that has a row for every cell a full one.
+  void finish_array(GrowingArray& growing) const;
+
+  Reading& reading_;
+  std::vector<GrowingArray> arrays_;
+  UniqueNames array_names_;
+  std::map<std::pair<Association, std::string>, std::size_t> place_of_array_;
+  std::vector<Pending> pending_;
+  std::vector<bool> labelled_;  ///< of cells
+  std::set<std::string> known_arrays_;
+};
+
+}  // namespace meshorder::xdmf

@@ -1,0 +1,51 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""The memory that reading and writing a mesh takes, beside the size of its file."""
+import os
+import subprocess
+import sys
+
+import meshio
+import pytest
+from conftest import MESHORDER
+from test_cgns import box
+
+# peak memory over that of a mesh of few cells, in sizes of the file
+MOST = {"cgns": 6.0, "med": 6.0, "xdmf": 5.0, "exo": 5.0, "vtu": 5.0, "su2": 5.0, "inp": 4.0, "bdf": 5.0, "unv": 3.0}
+
+
+# in a small process: the peak that the system gives includes that of the process which started another
+RUNNER = """import os, sys
+_, status, usage = os.wait4(os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ), 0)
+print(status, usage.ru_maxrss)"""
+
+
+def peak(*arguments):
+    """The most memory in bytes that a run of the command has at a time."""
+    done = subprocess.run([sys.executable, "-S", "-c", RUNNER, MESHORDER, *map(str, arguments)],
+                          capture_output=True, text=True, check=True)
+    status, most = map(int, done.stdout.split()[-2:])
+    assert status == 0, done.stderr
+    return most * 1024
+
+
+@pytest.fixture(scope="module")
+def meshes(tmp_path_factory):
+    """A mesh of few cells and one of 162,000."""
+    folder = tmp_path_factory.mktemp("meshes")
+    for name, n in (("few", 2), ("many", 30)):
+        points, tetrahedra, _ = box(n, 1)
+        meshio.write(folder / f"{name}.vtu", meshio.Mesh(points, [("tetra", tetrahedra)]), compression=None)
+    return folder
+
+
+@pytest.mark.skipif("ASAN_OPTIONS" in os.environ, reason="sanitizers take memory of their own")
+@pytest.mark.parametrize("extension", MOST)
+def test_memory_is_proportional_to_the_file(meshes, tmp_path, extension):
+    peaks = []
+    for name in ("few", "many"):
+        keep = ("--vertices", "original", "--elements", "original")
+        peak("order", meshes / f"{name}.vtu", "-o", tmp_path / f"{name}.{extension}", *keep)
+        (tmp_path / "b").mkdir(exist_ok=True)
+        peaks.append(peak("order", tmp_path / f"{name}.{extension}", "-o", tmp_path / f"b/{name}.{extension}", *keep))
+    size = sum(path.stat().st_size for path in tmp_path.glob("many.*"))
+    assert (peaks[1] - peaks[0]) / size < MOST[extension]
