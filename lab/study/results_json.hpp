@@ -13,7 +13,7 @@ namespace meshorder {
 nlohmann::ordered_json to_json(const StudyResults& results);
 
 /// Writes the file, completely or not at all. Throws Error if it cannot be written.
-void write_results(const StudyResults& results, const std::filesystem::path& path);
+void write_results(const StudyResults& results, const FilePath& path);
 
 /// Reads results that write_results wrote, the same bit for bit. Throws Error, which names the path in the
 /// file, for values that are missing, unknown or out of range.

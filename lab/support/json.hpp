@@ -113,6 +113,6 @@ class JsonValue {
 std::string json_text(const nlohmann::ordered_json& json);
 
 /// Writes json_text to a file, completely or not at all. Throws Error if it cannot be written.
-void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
+void write_json(const nlohmann::ordered_json& json, const FilePath& path);
 
 }  // namespace meshorder

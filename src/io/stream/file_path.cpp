@@ -3,6 +3,7 @@
 
 #include "base/text.hpp"
 #include "io/stream/gzip.hpp"
+#include "io/stream/output_set.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -19,6 +20,7 @@ namespace {
 
 /// Returns the bytes of a file, at most `most` of them.
 std::string read_from_disk(const fs::path& path, std::uintmax_t most) {
+  finish_interrupted(path);
   const std::string name = path.string();
   std::error_code code;
   const auto status = fs::status(path, code);

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/tetgen/tetgen.hpp"
 
+#include "base/checksum.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/labels.hpp"
@@ -291,6 +292,26 @@ void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes&
   write_cells(out, file, from, {}, marked);
 }
 
+/// Returns a line that two meshes hardly share.
+std::string mark_of(const Mesh& mesh) {
+  Checksum sum;
+  sum.add_all(mesh.points);
+  sum.add_all(mesh.cells.offsets);
+  sum.add_all(mesh.cells.vertices);
+  sum.add_all(mesh.vertex_ids);
+  sum.add_all(mesh.cell_ids);
+  for (const DataArray& array : mesh.data) {
+    sum.add_all(array.indices);
+    std::visit(
+        [&](const auto& values) {
+          using Value = typename std::decay_t<decltype(values)>::value_type;
+          if constexpr (std::is_arithmetic_v<Value>) sum.add_all(values);
+        },
+        array.values);
+  }
+  return fmt::format("{}{:0{}x}\n", kMarkBefore, sum.value(), kMarkDigits);
+}
+
 }  // namespace
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
@@ -305,6 +326,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   from.layout = layout_of(mesh, from.metadata, own != nullptr);
   refuse_leftovers(from.layout, from.metadata, path);
 
+  const std::string mark = mark_of(mesh);
   std::vector<OutputFile> files;
   files.reserve(kExtensions.size());
   for (const File file : {kNode, kEle, kFace, kEdge}) {
@@ -320,6 +342,8 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
       write_boundary(out, file, from, notes);
     }
     out.write(part.comments_after);
+    if (!part.comments_after.empty() && !part.comments_after.ends_with('\n')) out.write("\n");
+    out.write(mark);
   }
   OutputFile::commit_all(files);
 
