@@ -165,6 +165,15 @@ def test_files_that_do_not_fit_are_refused_where_they_cannot_be_finished(command
     assert "was being replaced together with other files" in line and "owner" in line
 
 
+def test_maps_of_two_runs_are_refused(command, tmp_path, mesh):
+    for prefix, seed in (("m", "3"), ("n", "4")):
+        command.ok("order", mesh, "-o", f"{prefix}.vtu", "--vertices", "scrambled", "--seed", seed, "--maps", prefix)
+    shutil.copy(tmp_path / "n.vertices.old_to_new.npy", tmp_path / "m.vertices.old_to_new.npy")
+    line = command.fails("apply", "m", mesh, "-o", "out.vtu")
+    assert line == "meshorder: m.maps.json: was not written together with these maps; give all files of one run of `order`"
+    assert not (tmp_path / "out.vtu").exists()
+
+
 def test_symbolic_links_are_followed(command, tmp_path, mesh):
     (tmp_path / "store").mkdir()
     (tmp_path / "out.vtu").symlink_to("store/real.vtu")

@@ -246,7 +246,7 @@ void finish_interrupted(const fs::path& path) {
   const fs::path scratch = scratch_in_set(target);
   struct stat status {};
   if (::lstat(scratch.c_str(), &status) != 0) return;
-  constexpr int kAttempts = 300;
+  constexpr int kAttempts = 200;
   constexpr std::chrono::milliseconds kPause{10};
   for (int k = 0; k < kAttempts; ++k) {
     const DeadScratch dead(scratch);

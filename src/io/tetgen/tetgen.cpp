@@ -293,15 +293,15 @@ void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes&
 }
 
 /// Returns a line that two meshes hardly share.
-std::string mark_of(const Mesh& mesh) {
+std::string mark_of(const WriteContext& from) {
+  const Mesh& mesh = from.mesh;
   Checksum sum;
   sum.add_all(mesh.points);
   sum.add_all(mesh.cells.offsets);
   sum.add_all(mesh.cells.vertices);
-  sum.add_all(mesh.vertex_ids);
-  sum.add_all(mesh.cell_ids);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) sum.add(from.vertex_number(v));
+  for (Index c = 0; c < mesh.cell_count(); ++c) sum.add(from.cell_number(c, c));
   for (const DataArray& array : mesh.data) {
-    sum.add_all(array.indices);
     std::visit(
         [&](const auto& values) {
           using Value = typename std::decay_t<decltype(values)>::value_type;
@@ -326,7 +326,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   from.layout = layout_of(mesh, from.metadata, own != nullptr);
   refuse_leftovers(from.layout, from.metadata, path);
 
-  const std::string mark = mark_of(mesh);
+  const std::string mark = mark_of(from);
   std::vector<OutputFile> files;
   files.reserve(kExtensions.size());
   for (const File file : {kNode, kEle, kFace, kEdge}) {
