@@ -33,7 +33,7 @@ constexpr std::array kNoted{SIGINT, SIGTERM};
 
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing else
 volatile std::sig_atomic_t caught = 0;
-std::array<struct sigaction, kNoted.size()> before{};
+std::array<struct sigaction, kNoted.size()> actions_before{};
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 extern "C" void clean_up(int signal) {
@@ -49,7 +49,7 @@ extern "C" void clean_up(int signal) {
 extern "C" void set_flag(int signal) {
   caught = signal;
   for (std::size_t k = 0; k < kNoted.size(); ++k) {
-    if (kNoted[k] == signal) ::sigaction(signal, &before[k], nullptr);
+    if (kNoted[k] == signal) ::sigaction(signal, &actions_before[k], nullptr);
   }
 }
 
@@ -75,11 +75,11 @@ void clean_up_at_signals() {
 Interruption::Interruption() {
   caught = 0;
   const struct sigaction action = action_of(set_flag, SA_RESTART);
-  for (std::size_t k = 0; k < kNoted.size(); ++k) ::sigaction(kNoted[k], &action, &before[k]);
+  for (std::size_t k = 0; k < kNoted.size(); ++k) ::sigaction(kNoted[k], &action, &actions_before[k]);
 }
 
 Interruption::~Interruption() {
-  for (std::size_t k = 0; k < kNoted.size(); ++k) ::sigaction(kNoted[k], &before[k], nullptr);
+  for (std::size_t k = 0; k < kNoted.size(); ++k) ::sigaction(kNoted[k], &actions_before[k], nullptr);
 }
 
 int Interruption::signal() noexcept { return caught; }

@@ -110,7 +110,7 @@ struct MapChecksums {
   bool operator==(const MapChecksums&) const = default;
 };
 
-MapChecksums checksums_of(const Maps& maps) {
+MapChecksums checksums_of_maps(const Maps& maps) {
   Checksum vertices;
   vertices.add_all(maps.vertices.old_to_new());
   Checksum cells;
@@ -193,7 +193,7 @@ std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& befor
   } else {
     files.remove(kept_path(prefix));
   }
-  const MapChecksums of_maps = checksums_of(maps);
+  const MapChecksums of_maps = checksums_of_maps(maps);
   const nlohmann::ordered_json identity{
       {"version", MESHORDER_VERSION},
       {"before", checksums_json(before)},
@@ -230,7 +230,7 @@ Maps read_maps(const std::string& prefix, const Mesh& mesh, const std::string& m
   if (!std::filesystem::exists(path)) return maps;
   const Identity identity = read_identity(path);
   require_order(identity, mesh, mesh_path, path, inverse);
-  if (identity.maps && *identity.maps != checksums_of(maps))
+  if (identity.maps && *identity.maps != checksums_of_maps(maps))
     throw InputError(path, "was not written together with these maps",
                      "give all files of one run of `order`");
   return maps;

@@ -45,6 +45,11 @@ int unlink(const char* path) {
   return ((int (*)(const char*))dlsym(RTLD_NEXT, "unlink"))(path);
 }
 
+int remove(const char* path) {
+  if (faulty("unlink")) return -1;
+  return ((int (*)(const char*))dlsym(RTLD_NEXT, "remove"))(path);
+}
+
 int fsync(int file) {
   if (faulty("fsync")) return -1;
   return ((int (*)(int))dlsym(RTLD_NEXT, "fsync"))(file);
@@ -244,25 +249,25 @@ def test_a_pipe_is_written_through(command, tmp_path, mesh):
     command.ok("order", mesh, "-o", "file.vtu", "-q")
     os.mkfifo(tmp_path / "pipe.vtu")
     read = []
-    reader = threading.Thread(target=lambda: read.append((tmp_path / "pipe.vtu").read_bytes()))
+    reader = threading.Thread(target=lambda: read.append((tmp_path / "pipe.vtu").read_bytes()), daemon=True)
     reader.start()
     command.ok("order", mesh, "-o", "pipe.vtu", "-q")
-    reader.join()
+    reader.join(timeout=30)
     assert read == [(tmp_path / "file.vtu").read_bytes()]
     assert stat.S_ISFIFO((tmp_path / "pipe.vtu").stat().st_mode)
 
 
 def test_standard_output_is_written_through(command, tmp_path, mesh):
-    command.ok("order", mesh, "-o", "file.vtu", "-q")
-    (tmp_path / "out.vtu").symlink_to("/dev/stdout")
-    expected = (tmp_path / "file.vtu").read_text()
-    assert command.ok("order", mesh, "-o", "out.vtu", "-q").stdout == expected
+    command.ok("order", mesh, "-o", "file.mesh", "-q")
+    (tmp_path / "out.mesh").symlink_to("/dev/stdout")
+    expected = (tmp_path / "file.mesh").read_text()
+    assert command.ok("order", mesh, "-o", "out.mesh", "-q").stdout == expected
     with open(tmp_path / "log", "w") as log:
         log.write("before\n")
         log.flush()
-        subprocess.run([conftest.MESHORDER, "order", mesh, "-o", "out.vtu", "-q"], cwd=tmp_path, stdout=log, check=True)
+        subprocess.run([conftest.MESHORDER, "order", mesh, "-o", "out.mesh", "-q"], cwd=tmp_path, stdout=log, check=True)
     assert (tmp_path / "log").read_text() == "before\n" + expected
-    assert (tmp_path / "out.vtu").is_symlink()
+    assert (tmp_path / "out.mesh").is_symlink()
 
 
 @pytest.mark.parametrize("extension", ["med", "cgns", "exo"])
@@ -299,16 +304,18 @@ def test_signals_leave_no_unfinished_files(faulty, tmp_path, mesh, number):
 
 
 def test_the_limit_on_file_sizes_leaves_no_unfinished_files(command, tmp_path):
-    made = command.json("models", "make", "grid", "--size", "12")["models"][0]["path"]
+    points = [f"{number} {number / 7} {number % 3} {number % 5}\n" for number in range(1, 2001)]
+    (tmp_path / "mesh.node").write_text(f"{len(points)} 3 0 0\n" + "".join(points))
+    (tmp_path / "mesh.ele").write_text("1 4 0\n1 1 2 3 5\n")
 
     def small_files_only():
         resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
-    done = command.run("order", made, "-o", "out.msh", preexec_fn=small_files_only)
+    done = command.run("order", "mesh.node", "-o", "out.msh", preexec_fn=small_files_only)
     assert done.returncode == -signal.SIGXFSZ
     assert "SIGXFSZ" in done.stderr and "ulimit -f" in done.stderr
-    assert list(tmp_path.iterdir()) == []
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mesh.ele", "mesh.node"]
 
 
 def test_ignored_signals_stay_ignored(faulty, tmp_path, mesh):

@@ -56,7 +56,7 @@ OutputFile::OutputFile(FilePath target) : target_(std::move(target)), stream_(st
     throw InputError(path.string(), "its folder does not exist", "make " + folder.string() + " first");
   }
   finish_interrupted(place.path);
-  remove_stale_scratches(folder);
+  clean_up_outputs(folder);
   stream_->scratch.emplace(place.path);
   stream_->file = Descriptor(stream_->scratch->file(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW,
                              place.exists ? kPrivateMode : kMode);

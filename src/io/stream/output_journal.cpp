@@ -33,7 +33,8 @@ int unlink_file(const fs::path& path) { return ::unlink(path.c_str()) == 0 || er
 fs::path scratch_in_set(const fs::path& target) {
   Checksum hash;
   hash.add_all(target.filename().string());
-  return folder_of(target) / fmt::format(".meshorder-{:016x}.set", hash.value());
+  return folder_of(target) /
+         fmt::format("{}{:016x}{}", Scratch::kPrefix, hash.value(), Scratch::kSuffixInSet);
 }
 
 int apply(const JournalEntry& entry) {

@@ -241,6 +241,22 @@ void move_into_place(const fs::path& from, const fs::path& to) {
     throw_system_fault(to.string(), "is written, but its folder cannot be synced", error);
 }
 
+void clean_up_outputs(const fs::path& folder) {
+  for (const fs::path& scratch : scratches_not_seen(folder)) {
+    const DeadScratch found(scratch);
+    if (found.state() != DeadScratch::State::dead) continue;
+    try {
+      if (scratch.extension() == Scratch::kSuffix) {
+        found.remove();
+      } else {
+        (void)finish_set_of(scratch, found);
+      }
+    } catch (const InputError&) {  // who reads or writes these files learns of it
+      continue;
+    }
+  }
+}
+
 void finish_interrupted(const fs::path& path) {
   const fs::path target = behind_links(path);
   const fs::path scratch = scratch_in_set(target);

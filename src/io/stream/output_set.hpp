@@ -57,6 +57,10 @@ class OutputSet {
 /// place, and if the rest is another user's or cannot be done: the file may not fit the others.
 void finish_interrupted(const std::filesystem::path& path);
 
+/// Removes what stopped processes of this user left in a folder, and completes sets of files: at the first
+/// call for the folder in a process. What cannot be done stays.
+void clean_up_outputs(const std::filesystem::path& folder);
+
 /// Renames a complete file and syncs the folder. Throws InputError.
 void move_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
 

@@ -29,8 +29,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kLock = "lock";
-constexpr std::string_view kPrefix = ".meshorder-";
-constexpr std::string_view kSuffix = ".new";
 constexpr std::size_t kDigits = 16;
 
 /// Folders that are locked at a time; each takes a descriptor. Further ones are not locked.
@@ -66,12 +64,13 @@ void forget(int slot) noexcept {
 std::string random_name() {
   std::random_device device;
   const std::uint64_t number = (std::uint64_t{device()} << 32U) | device();
-  return fmt::format("{}{:016x}{}", kPrefix, number, kSuffix);
+  return fmt::format("{}{:0{}x}{}", Scratch::kPrefix, number, kDigits, Scratch::kSuffix);
 }
 
 bool is_scratch_name(std::string_view name) {
-  return name.size() == kPrefix.size() + kDigits + kSuffix.size() && name.starts_with(kPrefix) &&
-         name.ends_with(kSuffix);
+  return name.size() == Scratch::kPrefix.size() + kDigits + Scratch::kSuffix.size() &&
+         name.starts_with(Scratch::kPrefix) &&
+         (name.ends_with(Scratch::kSuffix) || name.ends_with(Scratch::kSuffixInSet));
 }
 
 /// Makes `lock` in a folder and locks it. Returns false if a run that cleans up has taken the folder away.
@@ -170,21 +169,20 @@ DeadScratch::DeadScratch(fs::path path) : path_(std::move(path)) {
 
 void DeadScratch::remove() const { remove_all_in(path_); }
 
-void remove_stale_scratches(const fs::path& folder) {
+std::vector<fs::path> scratches_not_seen(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> seen;
+  std::vector<fs::path> found;
+  std::error_code code;
   {
     const std::lock_guard lock(mutex);
-    std::error_code code;
     const fs::path full = fs::absolute(folder, code);
-    if (code || !seen.insert(full).second) return;
+    if (code || !seen.insert(full).second) return found;
   }
-  std::error_code code;
   for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
-    if (!is_scratch_name(entry->path().filename().string())) continue;
-    const DeadScratch found(entry->path());
-    if (found.state() == DeadScratch::State::dead) found.remove();
+    if (is_scratch_name(entry->path().filename().string())) found.push_back(entry->path());
   }
+  return found;
 }
 
 void remove_unfinished_outputs() noexcept {

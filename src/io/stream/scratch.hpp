@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace meshorder {
 
@@ -38,6 +39,10 @@ class Scratch {
   void remove();
 
   static constexpr std::string_view kNew = "new";
+  // of the names of the folders
+  static constexpr std::string_view kPrefix = ".meshorder-";
+  static constexpr std::string_view kSuffix = ".new";
+  static constexpr std::string_view kSuffixInSet = ".set";
 
  private:
   std::filesystem::path path_;
@@ -67,9 +72,8 @@ class DeadScratch {
   State state_ = State::none;
 };
 
-/// Removes scratch folders of dead processes of this user from a folder, at the first call for it in a
-/// process.
-void remove_stale_scratches(const std::filesystem::path& folder);
+/// Returns the paths of all scratch folders in a folder, at the first call for it in a process; later none.
+std::vector<std::filesystem::path> scratches_not_seen(const std::filesystem::path& folder);
 
 /// Removes all scratch folders of this process whose files are not complete; for a signal handler that ends
 /// the process, as it calls nothing but system functions that are safe there.
