@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/file_path.hpp"
 #include "lab/study/results.hpp"
 
 #include <nlohmann/json_fwd.hpp>

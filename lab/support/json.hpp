@@ -4,6 +4,7 @@
 #include "base/index.hpp"
 #include "base/point.hpp"
 #include "base/text.hpp"
+#include "io/stream/file_path.hpp"
 #include <meshorder/error.hpp>
 
 #include <nlohmann/json.hpp>
