@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -31,8 +32,15 @@ namespace {
 constexpr std::string_view kLock = "lock";
 constexpr std::size_t kDigits = 16;
 
-/// Folders that are locked at a time; each takes a descriptor. Further ones are not locked.
-constexpr int kMostLocks = 128;
+/// Returns how many folders are locked at a time, each of which takes a descriptor. Further ones are not
+/// locked, and no other process cleans these up.
+int most_locks() {
+  constexpr rlim_t kMost = 128;
+  struct rlimit files {};
+  return static_cast<int>(::getrlimit(RLIMIT_NOFILE, &files) == 0 ? std::min(files.rlim_cur / 4, kMost)
+                                                                  : kMost);
+}
+
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): descriptors are the process's
 std::atomic<int> locks_held = 0;
 
@@ -103,7 +111,7 @@ Scratch::Scratch(const fs::path& target) {
       throw_system_fault(target.string(), "cannot be written", errno);
     }
     slot_ = remember(path_.string());
-    if (locks_held >= kMostLocks) return;
+    if (locks_held >= most_locks()) return;
     if (lock_new(path_, lock_)) {
       if (lock_.is_open()) ++locks_held;
       return;
