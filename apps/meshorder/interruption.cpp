@@ -1,29 +1,85 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "interruption.hpp"
 
+#include "io/stream/scratch.hpp"
+
+#include <unistd.h>
+
+#include <array>
 #include <csignal>
-#include <initializer_list>
+#include <cstddef>
+#include <string_view>
 
 namespace meshorder::command {
 namespace {
 
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing else
+struct Ending {
+  int signal;
+  std::string_view line;
+};
+
+constexpr std::array kEndings{
+    Ending{SIGINT, "meshorder: stopped by SIGINT; unfinished outputs are removed\n"},
+    Ending{SIGTERM, "meshorder: stopped by SIGTERM; unfinished outputs are removed\n"},
+    Ending{SIGHUP, "meshorder: stopped by SIGHUP; unfinished outputs are removed\n"},
+    Ending{
+        SIGXFSZ,
+        "meshorder: stopped by SIGXFSZ: a file would exceed the limit on the size of files; raise the limit "
+        "(ulimit -f)\n"},
+    Ending{SIGPIPE, ""},
+};
+
+constexpr std::array kNoted{SIGINT, SIGTERM};
+
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing else
 volatile std::sig_atomic_t caught = 0;
+std::array<struct sigaction, kNoted.size()> actions_before{};
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
+
+extern "C" void clean_up(int signal) {
+  remove_unfinished_outputs();
+  for (const Ending& ending : kEndings) {
+    if (ending.signal == signal && !ending.line.empty())
+      (void)!::write(STDERR_FILENO, ending.line.data(), ending.line.size());
+  }
+  // SA_RESETHAND: ends the process as if it had not been caught
+  ::raise(signal);
+}
 
 extern "C" void set_flag(int signal) {
   caught = signal;
-  std::signal(signal, SIG_DFL);
+  for (std::size_t k = 0; k < kNoted.size(); ++k) {
+    if (kNoted[k] == signal) ::sigaction(signal, &actions_before[k], nullptr);
+  }
+}
+
+struct sigaction action_of(void (*handler)(int), int flags) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = flags;
+  ::sigemptyset(&action.sa_mask);
+  return action;
 }
 
 }  // namespace
 
+void clean_up_at_signals() {
+  for (const Ending& ending : kEndings) {
+    struct sigaction now {};
+    if (::sigaction(ending.signal, nullptr, &now) != 0 || now.sa_handler == SIG_IGN) continue;
+    const struct sigaction action = action_of(clean_up, static_cast<int>(SA_RESETHAND));
+    ::sigaction(ending.signal, &action, nullptr);
+  }
+}
+
 Interruption::Interruption() {
   caught = 0;
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, set_flag);
+  const struct sigaction action = action_of(set_flag, SA_RESTART);
+  for (std::size_t k = 0; k < kNoted.size(); ++k) ::sigaction(kNoted[k], &action, &actions_before[k]);
 }
 
 Interruption::~Interruption() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+  for (std::size_t k = 0; k < kNoted.size(); ++k) ::sigaction(kNoted[k], &actions_before[k], nullptr);
 }
 
 int Interruption::signal() noexcept { return caught; }

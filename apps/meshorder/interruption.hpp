@@ -3,7 +3,11 @@
 
 namespace meshorder::command {
 
-/// While alive, the first Ctrl-C (SIGINT) or SIGTERM sets a flag; a second one terminates the process. Only
+/// Has signals that end the process remove unfinished outputs before: SIGINT, SIGTERM, SIGHUP and SIGXFSZ
+/// with a line on stderr, SIGPIPE silently. Those that are ignored stay so.
+void clean_up_at_signals();
+
+/// While alive, the first Ctrl-C (SIGINT) or SIGTERM sets a flag; a second one does what it did before. Only
 /// one object at a time.
 class Interruption {
  public:

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
 #include "help_format.hpp"
+#include "interruption.hpp"
 #include "standard_streams.hpp"
 #include "usage.hpp"
 #include <meshorder/error.hpp>
@@ -70,6 +71,7 @@ int run(CLI::App& app, std::vector<std::string> arguments) {
 // NOLINTNEXTLINE(bugprone-exception-escape): only printing a message could still throw
 int main(int argc, char** argv) {
   meshorder::command::occupy_closed_streams();
+  meshorder::command::clean_up_at_signals();
   CLI::App app{
       "Reorders the vertices and elements of a simulation mesh, with all data in its file, so that\n"
       "physics on it runs faster.\n\n"

@@ -5,7 +5,6 @@
 #include "base/index.hpp"
 #include "io/kept_cells.hpp"
 #include "io/npy.hpp"
-#include "io/stream/output_file.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -40,13 +39,13 @@ std::string kept_path(const std::string& prefix) { return prefix + ".cells.kept.
 constexpr const char* kOldNameOfCells = "elements";
 
 void write_map(const Permutation& map, const std::vector<std::int64_t>& ids, const std::string& prefix,
-               const std::string& what, std::vector<std::string>& written) {
-  write_npy(map.old_to_new(), written.emplace_back(old_to_new_path(prefix, what)));
-  write_npy(map.new_to_old(), written.emplace_back(new_to_old_path(prefix, what)));
+               const std::string& what, OutputSet& files, std::vector<std::string>& written) {
+  write_npy(map.old_to_new(), {written.emplace_back(old_to_new_path(prefix, what)), files});
+  write_npy(map.new_to_old(), {written.emplace_back(new_to_old_path(prefix, what)), files});
   if (!ids.empty()) {
-    write_npy(ids, written.emplace_back(ids_path(prefix, what)));
+    write_npy(ids, {written.emplace_back(ids_path(prefix, what)), files});
   } else {
-    std::filesystem::remove(ids_path(prefix, what));  // an earlier run with this prefix may have left it
+    files.remove(ids_path(prefix, what));
   }
 }
 
@@ -72,12 +71,10 @@ Maps read_permutations(const std::string& prefix, const Mesh& mesh) {
 }
 
 /// Removes maps of cells that an earlier version wrote with this prefix, so that nobody takes them for these.
-void remove_old_maps(const std::string& prefix) {
-  for (const std::string& path :
-       {old_to_new_path(prefix, kOldNameOfCells), new_to_old_path(prefix, kOldNameOfCells),
-        ids_path(prefix, kOldNameOfCells)}) {
-    std::filesystem::remove(path);
-  }
+void remove_old_maps(const std::string& prefix, OutputSet& files) {
+  files.remove(old_to_new_path(prefix, kOldNameOfCells));
+  files.remove(new_to_old_path(prefix, kOldNameOfCells));
+  files.remove(ids_path(prefix, kOldNameOfCells));
 }
 
 /// Throws Error if a file of the maps is named instead of their prefix.
@@ -91,9 +88,10 @@ void require_prefix(const std::string& prefix) {
   }
 }
 
+std::string digits_of(std::uint64_t checksum) { return fmt::format("{:016x}", checksum); }
+
 nlohmann::ordered_json checksums_json(const MeshChecksums& checksums) {
-  return {{"points", fmt::format("{:016x}", checksums.points)},
-          {"cells", fmt::format("{:016x}", checksums.cells)}};
+  return {{"points", digits_of(checksums.points)}, {"cells", digits_of(checksums.cells)}};
 }
 
 std::uint64_t checksum_from(const nlohmann::json& json) {
@@ -104,10 +102,28 @@ std::uint64_t checksum_from(const nlohmann::json& json) {
   return value;
 }
 
-/// The checksums of the mesh before and after; unknown where another program wrote the mesh.
+/// Checksums of the maps themselves.
+struct MapChecksums {
+  std::uint64_t vertices = 0;
+  std::uint64_t cells = 0;
+
+  bool operator==(const MapChecksums&) const = default;
+};
+
+MapChecksums checksums_of_maps(const Maps& maps) {
+  Checksum vertices;
+  vertices.add_all(maps.vertices.old_to_new());
+  Checksum cells;
+  cells.add_all(maps.cells.old_to_new());
+  return {vertices.value(), cells.value()};
+}
+
+/// The checksums of the mesh before and after, unknown where another program wrote the mesh; those of the
+/// maps, unknown where another program wrote these or an earlier version of this one.
 struct Identity {
   std::optional<MeshChecksums> before;
   std::optional<MeshChecksums> after;
+  std::optional<MapChecksums> maps;
 };
 
 std::optional<MeshChecksums> checksums_from(const nlohmann::json& json) {
@@ -119,7 +135,10 @@ Identity read_identity(const std::string& path) {
   std::ifstream file(path);
   try {
     const nlohmann::json json = nlohmann::json::parse(file);
-    return {checksums_from(json.at("before")), checksums_from(json.at("after"))};
+    Identity identity{checksums_from(json.at("before")), checksums_from(json.at("after")), std::nullopt};
+    if (const auto maps = json.find("maps"); maps != json.end())
+      identity.maps = {checksum_from(maps->at("vertices")), checksum_from(maps->at("cells"))};
+    return identity;
   } catch (const std::exception&) {
     throw InputError(path, "is not what `order --maps` wrote",
                      "order again, or remove it: maps are applied without it, unchecked");
@@ -127,8 +146,8 @@ Identity read_identity(const std::string& path) {
 }
 
 /// Throws Error if the mesh is not in the order that the maps start from.
-void require_order(const Mesh& mesh, const std::string& mesh_path, const std::string& path, bool inverse) {
-  const Identity identity = read_identity(path);
+void require_order(const Identity& identity, const Mesh& mesh, const std::string& mesh_path,
+                   const std::string& path, bool inverse) {
   const std::optional<MeshChecksums>& start = inverse ? identity.after : identity.before;
   const std::optional<MeshChecksums>& goal = inverse ? identity.before : identity.after;
   const MeshChecksums found = checksums_of(mesh);
@@ -161,26 +180,33 @@ MeshChecksums checksums_of(const Mesh& mesh) {
   return {points.value(), cells.value()};
 }
 
+void check_can_write_maps(const std::string& prefix) { (void)OutputFile(identity_path(prefix)); }
+
 std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& before, const MeshChecksums& after,
-                                    const std::string& prefix) {
+                                    const std::string& prefix, OutputSet& files) {
   std::vector<std::string> written;
-  write_map(maps.vertices, maps.vertex_ids, prefix, "vertices", written);
-  write_map(maps.cells, maps.cell_ids, prefix, "cells", written);
-  remove_old_maps(prefix);
+  write_map(maps.vertices, maps.vertex_ids, prefix, "vertices", files, written);
+  write_map(maps.cells, maps.cell_ids, prefix, "cells", files, written);
+  remove_old_maps(prefix, files);
   if (!maps.kept.empty()) {
-    write_npy(maps.kept, written.emplace_back(kept_path(prefix)));
+    write_npy(maps.kept, {written.emplace_back(kept_path(prefix)), files});
   } else {
-    std::filesystem::remove(kept_path(prefix));
+    files.remove(kept_path(prefix));
   }
+  const MapChecksums of_maps = checksums_of_maps(maps);
   const nlohmann::ordered_json identity{
-      {"version", MESHORDER_VERSION}, {"before", checksums_json(before)}, {"after", checksums_json(after)}};
-  OutputFile file(written.emplace_back(identity_path(prefix)));
+      {"version", MESHORDER_VERSION},
+      {"before", checksums_json(before)},
+      {"after", checksums_json(after)},
+      {"maps", {{"vertices", digits_of(of_maps.vertices)}, {"cells", digits_of(of_maps.cells)}}}};
+  OutputFile file({written.emplace_back(identity_path(prefix)), files});
   file.write(identity.dump(2) + "\n");
   file.commit();
   return written;
 }
 
 void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes) {
+  finish_interrupted(identity_path(prefix));
   const std::string path = kept_path(prefix);
   if (!std::filesystem::exists(path)) return;
   const std::vector<std::int64_t> positions = read_npy(path);
@@ -198,9 +224,15 @@ void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& note
 
 Maps read_maps(const std::string& prefix, const Mesh& mesh, const std::string& mesh_path, bool inverse) {
   require_prefix(prefix);
+  finish_interrupted(identity_path(prefix));
   Maps maps = read_permutations(prefix, mesh);
   const std::string path = identity_path(prefix);
-  if (std::filesystem::exists(path)) require_order(mesh, mesh_path, path, inverse);
+  if (!std::filesystem::exists(path)) return maps;
+  const Identity identity = read_identity(path);
+  require_order(identity, mesh, mesh_path, path, inverse);
+  if (identity.maps && *identity.maps != checksums_of_maps(maps))
+    throw InputError(path, "was not written together with these maps",
+                     "give all files of one run of `order`");
   return maps;
 }
 

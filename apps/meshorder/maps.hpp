@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/output_set.hpp"
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 #include <meshorder/permutation.hpp>
@@ -36,9 +37,13 @@ struct MeshChecksums {
 /// Returns the checksums of a mesh in its order, the same on any number of threads. O(points + cells).
 MeshChecksums checksums_of(const Mesh& mesh);
 
-/// Writes the maps, and the checksums of the mesh before and after; returns the paths.
+/// Fails, before the work, if maps cannot be written.
+void check_can_write_maps(const std::string& prefix);
+
+/// Writes the maps, and the checksums of the mesh before and after, as files of a set, and has that remove
+/// maps that an earlier run left with this prefix; returns the paths.
 std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& before, const MeshChecksums& after,
-                                    const std::string& prefix);
+                                    const std::string& prefix, OutputSet& files);
 
 /// Leaves those cells out of a mesh that were left out before it was ordered, with the notes of `keep_cells`.
 /// A mesh that has just the cells that were kept stays as it is. Throws Error for positions that do not fit

@@ -264,10 +264,10 @@ class Outputs {
       files.back().close();  // there may be more processors than files that may be open
     }
     if (dictionary_) openfoam::write_dictionary(files.emplace_back(*dictionary_));
-    OutputFile::commit_all(files);
     std::vector<std::string> paths;
     paths.reserve(files.size());
     for (const OutputFile& file : files) paths.push_back(file.target().string());
+    OutputFile::commit_all(files);
     return paths;
   }
 

@@ -4,7 +4,7 @@
 #include "console.hpp"
 #include "io/format.hpp"
 #include "io/kept_cells.hpp"
-#include "io/stream/output_file.hpp"
+#include "io/stream/output_set.hpp"
 #include "maps.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
@@ -91,6 +91,7 @@ void run(const OrderArguments& arguments) {
   const Format& format = format_of(arguments.output);
   options.format = format.key();
   (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
+  if (!arguments.maps.empty()) check_can_write_maps(arguments.maps);
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.4);
@@ -132,9 +133,13 @@ void run(const OrderArguments& arguments) {
 
   progress.stage("writing " + arguments.output, 0.7, 1);
   const Stopwatch writing;
-  write_mesh(mesh, arguments.output, {.strict = arguments.keeping.strict, .notes = &notes});
+  OutputSet files;
+  write_mesh_to(mesh, {arguments.output, files}, {.strict = arguments.keeping.strict, .notes = &notes});
   std::vector<std::string> map_files;
-  if (!arguments.maps.empty()) map_files = write_maps(maps, old_order, checksums_of(mesh), arguments.maps);
+  if (!arguments.maps.empty())
+    map_files = write_maps(maps, old_order, checksums_of(mesh), arguments.maps, files);
+  files.commit();
+  notes.insert(notes.end(), files.notes().begin(), files.notes().end());
   const double write_seconds = writing.seconds();
 
   progress.finish();

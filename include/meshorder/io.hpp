@@ -54,6 +54,9 @@ struct ReadOptions {
 
 /// Reads a mesh from a file.
 ///
+/// If the file is one of several that a process was stopped while putting in place, those are completed
+/// first, or refused where that is impossible.
+///
 /// @param path     the file; for formats of several, any of them
 /// @param options  see `ReadOptions`
 /// @return a mesh with at least one cell that `check_mesh` accepts
@@ -106,7 +109,9 @@ struct WriteOptions {
 /// Cells that the format has no place for are left out, as by `keep_cells`.
 ///
 /// @param mesh   not changed
-/// @param path   replaced when all is written; nothing is left behind after an exception
+/// @param path   replaced when all is written and on the disk; nothing is left behind after an exception.
+///               Symbolic links are followed; owner, mode and ACLs stay as the system allows; further hard
+///               links keep the old content, which `notes` tells; devices and pipes are written directly
 /// @param notes  receives what the format cannot hold; null: dropped
 /// @return the places that the cells have in the file, behind them those of cells that are left out; the
 ///         identity after `reorder` for that format

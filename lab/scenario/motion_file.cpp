@@ -11,7 +11,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <string_view>
@@ -53,11 +52,7 @@ void MotionFile::add(std::span<const Point> positions) {
 }
 
 void MotionFile::commit() {
-  file_.close();
-  std::fstream stream(file_.temporary(), std::ios::binary | std::ios::in | std::ios::out);
-  stream << header_of(frames_, vertices_);
-  stream.close();
-  if (!stream) throw InputError(file_.target().string(), "cannot be written to the end", "is the disk full?");
+  file_.write_over_start(header_of(frames_, vertices_));
   file_.commit();
 }
 

@@ -228,9 +228,7 @@ nlohmann::ordered_json to_json(const StudyResults& results) {
   return json;
 }
 
-void write_results(const StudyResults& results, const std::filesystem::path& path) {
-  write_json(to_json(results), path);
-}
+void write_results(const StudyResults& results, const FilePath& path) { write_json(to_json(results), path); }
 
 StudyResults read_results(const std::filesystem::path& path) {
   const Scanner text(path);

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/file_path.hpp"
 #include "lab/study/results.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -13,7 +14,7 @@ namespace meshorder {
 nlohmann::ordered_json to_json(const StudyResults& results);
 
 /// Writes the file, completely or not at all. Throws Error if it cannot be written.
-void write_results(const StudyResults& results, const std::filesystem::path& path);
+void write_results(const StudyResults& results, const FilePath& path);
 
 /// Reads results that write_results wrote, the same bit for bit. Throws Error, which names the path in the
 /// file, for values that are missing, unknown or out of range.

@@ -2,6 +2,7 @@
 #include "lab/study/study_run.hpp"
 
 #include "io/format.hpp"
+#include "io/stream/output_set.hpp"
 #include "lab/models/catalogue.hpp"
 #include "lab/scenario/motion_metrics.hpp"
 #include "lab/scenario/scenario_obstacles.hpp"
@@ -213,7 +214,7 @@ class Study {
       order.motion = difference_of(read_motion(file), reference, subject.body.longest_side);
       if (file != kept) fs::remove(file);
     }
-    fs::rename(kept, store_.folder().motion(subject.scenario.name));
+    move_into_place(kept, store_.folder().motion(subject.scenario.name));
     if (subject.scenario.is_implicit() || subject.scenario.projective().obstacles.empty()) return;
     write_mesh(surfaces_of(subject.scenario.projective().obstacles, subject.body.longest_side),
                store_.folder().obstacles(subject.scenario.name));

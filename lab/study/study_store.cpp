@@ -3,6 +3,7 @@
 
 #include "io/format.hpp"
 #include "io/npy.hpp"
+#include "io/stream/output_set.hpp"
 #include "lab/study/folder.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/study/statistics.hpp"
@@ -27,11 +28,12 @@ void make_folders(const StudyFolder& folder) {
                      "name a folder for the results");
 }
 
-/// Removes unfinished files of an interrupted study.
+/// Removes unfinished motions of an interrupted study.
 void remove_unfinished(const StudyFolder& folder) {
   std::error_code code;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.data())) {
-    if (entry.path().filename().string().front() == '.') fs::remove(entry.path(), code);
+    if (entry.path().filename().string().front() == '.' && entry.is_regular_file(code))
+      fs::remove(entry.path(), code);
   }
 }
 
@@ -87,7 +89,7 @@ void StudyStore::resume(const StudyPlan& plan, const MachineRecord& machine) {
        "other orderings");
   results_.runs = std::max(results_.runs, plan.runs);
   summarise(results_);
-  save();
+  write_results(results_, folder_.results());
 }
 
 bool StudyStore::has_mesh(std::string_view name) const {
@@ -120,18 +122,21 @@ ScenarioRecord StudyStore::new_record(const Scenario& scenario) const {
 
 void StudyStore::keep(const Mesh& mesh, OrderedMesh studied) {
   const std::string& name = studied.record.name;
+  OutputSet files;
   for (std::size_t i = 0; i < studied.orders.size(); ++i) {
     const std::string& ordering = studied.record.orders[i].ordering;
-    write_npy(studied.orders[i].vertices.permutation.old_to_new(), folder_.vertex_order(name, ordering));
-    write_npy(studied.orders[i].cells.permutation.old_to_new(), folder_.cell_order(name, ordering));
+    write_npy(studied.orders[i].vertices.permutation.old_to_new(),
+              {folder_.vertex_order(name, ordering), files});
+    write_npy(studied.orders[i].cells.permutation.old_to_new(), {folder_.cell_order(name, ordering), files});
   }
   Mesh bare;
   bare.points = mesh.points;
   bare.cells = mesh.cells;
-  write_mesh(bare, folder_.mesh(name));
+  write_mesh_to(bare, {folder_.mesh(name), files}, {});
   studied.record.file = fs::relative(folder_.mesh(name), folder_.root()).string();
   results_.meshes.push_back(std::move(studied.record));
-  save();
+  write_results(results_, {folder_.results(), files});
+  files.commit();
 }
 
 void StudyStore::begin(ScenarioRecord record) {
@@ -147,9 +152,7 @@ void StudyStore::keep(std::string_view scenario, const std::vector<RunRecord>& r
     for (std::size_t i = 0; i < runs.size(); ++i) record.orders[i].runs.push_back(runs[i]);
   }
   summarise(results_);
-  save();
+  write_results(results_, folder_.results());
 }
-
-void StudyStore::save() const { write_results(results_, folder_.results()); }
 
 }  // namespace meshorder

@@ -36,7 +36,6 @@ class StudyStore {
  private:
   void begin(const StudyPlan& plan, MachineRecord machine);
   void resume(const StudyPlan& plan, const MachineRecord& machine);
-  void save() const;
 
   const StudyFolder& folder_;
   StudyResults results_;

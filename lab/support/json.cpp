@@ -192,7 +192,7 @@ std::string json_text(const nlohmann::ordered_json& json) {
   return text + "\n";
 }
 
-void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path) {
+void write_json(const nlohmann::ordered_json& json, const FilePath& path) {
   OutputFile file(path);
   file.write(json_text(json));
   file.commit();

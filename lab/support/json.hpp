@@ -4,6 +4,7 @@
 #include "base/index.hpp"
 #include "base/point.hpp"
 #include "base/text.hpp"
+#include "io/stream/file_path.hpp"
 #include <meshorder/error.hpp>
 
 #include <nlohmann/json.hpp>
@@ -113,6 +114,6 @@ class JsonValue {
 std::string json_text(const nlohmann::ordered_json& json);
 
 /// Writes json_text to a file, completely or not at all. Throws Error if it cannot be written.
-void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
+void write_json(const nlohmann::ordered_json& json, const FilePath& path);
 
 }  // namespace meshorder

@@ -75,6 +75,9 @@ void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices,
 /// are sorted.
 void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells);
 
+/// As the public `write_mesh`; a mesh whose path belongs to a set of outputs is put in place by that.
+Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options);
+
 /// As the public function; `graph` receives the vertex graph of the mesh in its old order.
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, CsrGraph& graph);
 

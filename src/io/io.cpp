@@ -5,6 +5,7 @@
 #include "io/format.hpp"
 #include "io/kept_cells.hpp"
 #include "io/stream/gzip.hpp"
+#include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
 #include "mesh/degenerate.hpp"
 #include "mesh/reorder.hpp"
@@ -54,6 +55,7 @@ Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions&
   Notes& notes = options.notes != nullptr ? *options.notes : ignored;
   return in_arena(options.run, [&] {
     const ReadScope scope(path, options.memory_limit, options.include_folders);
+    if (path.store() == nullptr) finish_interrupted(path.path());
     Mesh mesh = format.read(path, notes);
     mesh.format = format.key();
     if (mesh.cell_count() == 0) throw InputError(path.string(), "has no cells", "a mesh needs at least one");
@@ -132,7 +134,11 @@ Permutation write_checked(const Mesh& mesh, const FilePath& path, const Format& 
   const auto write = [&](const Mesh& written) {
     if (options.strict) refuse_losses(written, path, format);
     notes.insert(notes.end(), left_out.begin(), left_out.end());
-    format.write(written, path, notes);
+    if (path.store() != nullptr || path.set() != nullptr) return format.write(written, path, notes);
+    OutputSet files;
+    format.write(written, {path.path(), files}, notes);
+    files.commit();
+    notes.insert(notes.end(), files.notes().begin(), files.notes().end());
   };
   if (index_size(kept) == mesh.cell_count() && has_places_of(format, mesh)) {
     write(mesh);
@@ -146,6 +152,10 @@ Permutation write_checked(const Mesh& mesh, const FilePath& path, const Format& 
 }
 
 }  // namespace
+
+Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options) {
+  return write_checked(mesh, path, format_of(path.path()), options);
+}
 
 inline namespace v0_2 {
 
@@ -171,7 +181,7 @@ Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path, Note
 }
 
 Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options) {
-  return write_checked(mesh, path, format_of(path), options);
+  return write_mesh_to(mesh, path, options);
 }
 
 Permutation write_mesh(const Mesh& mesh, std::ostream& stream, std::string_view format, Notes* notes) {

@@ -22,7 +22,7 @@ constexpr std::size_t kAlignment = 64;                // of the header, magic in
 constexpr std::size_t kPreamble = 10;                 // magic, versions and the header's length
 
 template <class T>
-void write_array(std::span<const T> values, const std::filesystem::path& path) {
+void write_array(std::span<const T> values, const FilePath& path) {
   OutputFile file(path);
   file.write(
       npy_header(fmt::format("<i{}", sizeof(T)), std::array{static_cast<std::int64_t>(values.size())}));
@@ -45,13 +45,9 @@ std::string_view header_value(const Scanner& at, std::string_view header, std::s
 
 }  // namespace
 
-void write_npy(std::span<const std::int32_t> values, const std::filesystem::path& path) {
-  write_array(values, path);
-}
+void write_npy(std::span<const std::int32_t> values, const FilePath& path) { write_array(values, path); }
 
-void write_npy(std::span<const std::int64_t> values, const std::filesystem::path& path) {
-  write_array(values, path);
-}
+void write_npy(std::span<const std::int64_t> values, const FilePath& path) { write_array(values, path); }
 
 std::string npy_header(std::string_view type, std::span<const std::int64_t> shape) {
   std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}{}), }}", type,

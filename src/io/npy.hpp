@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/file_path.hpp"
 #include <meshorder/permutation.hpp>
 
 #include <cstdint>
@@ -13,8 +14,8 @@ namespace meshorder {
 
 /// Writes a one-dimensional NumPy array (format 1.0, little endian) for `numpy.load`. Throws Error, and
 /// leaves no file, if the target cannot be written.
-void write_npy(std::span<const std::int32_t> values, const std::filesystem::path& path);
-void write_npy(std::span<const std::int64_t> values, const std::filesystem::path& path);
+void write_npy(std::span<const std::int32_t> values, const FilePath& path);
+void write_npy(std::span<const std::int64_t> values, const FilePath& path);
 
 /// Reads a one-dimensional NumPy array of 32- or 64-bit integers, signed or not. Throws Error, with the byte,
 /// for anything else.

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/scanner.hpp"
 
-#include "io/stream/output_file.hpp"
 #include "support/files.hpp"
 
 #include <gtest/gtest.h>
@@ -68,26 +67,6 @@ TEST(Scanner, ReadsBinaryInEitherOrder) {
   EXPECT_EQ(scanner.binary<std::int32_t>("n", std::endian::big), 1);
   EXPECT_EQ(scanner.binary<std::int32_t>("n", std::endian::little), 1);
   EXPECT_THROW(scanner.binary<std::int32_t>("n"), InputError);
-}
-
-TEST(OutputFile, AppearsWholeOrNotAtAll) {
-  const TemporaryFolder folder;
-  {
-    OutputFile abandoned(folder.path() / "a.txt");
-    abandoned.print("{}", 1);
-  }
-  EXPECT_TRUE(folder.names().empty());
-  OutputFile file(folder.path() / "a.txt");
-  file.print("{} {}\n", 0.1, 2);
-  file.commit();
-  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.txt"});
-  EXPECT_EQ(test::content_of(folder.path() / "a.txt"), "0.1 2\n");
-}
-
-TEST(OutputFile, RefusesAFolderAndAMissingFolder) {
-  const TemporaryFolder folder;
-  EXPECT_THROW(OutputFile(folder.path()), InputError);
-  EXPECT_THROW(OutputFile(folder.path() / "none" / "a.txt"), InputError);
 }
 
 }  // namespace

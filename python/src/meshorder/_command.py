@@ -242,10 +242,11 @@ def _reorder_map_of_cells(prefix: str, order: NDArray[np.int64]) -> None:
 
 
 def _forget_mesh_after(prefix: str) -> None:
-    """Removes the checksums of the reordered mesh, whose cells and digits are those that meshio wrote."""
+    """Removes the checksums of the maps and of the reordered mesh, whose cells and digits are those that meshio wrote."""
     file = pathlib.Path(f"{prefix}.maps.json")
     identity = json.loads(file.read_text(encoding="utf-8"))
     identity["after"] = None
+    identity.pop("maps", None)
     file.write_text(json.dumps(identity, indent=2) + "\n", encoding="utf-8")
 
 

@@ -3,16 +3,21 @@
 
 #include "base/run_scope.hpp"
 #include "io/hdf5/session.hpp"
+#include "io/stream/descriptor.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/read_limits.hpp"
+#include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
 
 #include <cgns_io.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is POSIX's
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -46,7 +51,7 @@ class PrivateFolder {
   PrivateFolder() {
     std::string name = (fs::temp_directory_path() / "meshorder-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) {
-      throw Error(Code::io, name + ": the folder cannot be made; check the folder for temporary files");
+      throw_system_fault(name, "the folder for a temporary file cannot be made", errno);
     }
     path_ = name;
   }
@@ -347,10 +352,14 @@ Tree read_tree(const FilePath& path) {
   }
   const std::string bytes = path.read();
   const PrivateFolder folder;
-  std::ofstream stream(folder.file(), std::ios::binary);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  stream.close();
-  if (!stream) throw Error(Code::io, folder.file().string() + ": cannot be written; is the disk full?");
+  Descriptor file(folder.file(), O_WRONLY | O_CREAT | O_EXCL, S_IRUSR | S_IWUSR);
+  int error = file.is_open() ? file.write(bytes) : errno;
+  if (const int closing = file.close(); error == 0) error = closing;
+  if (error != 0) {
+    throw InputError(folder.file().string(),
+                     "a temporary file cannot be written: " + system_fault(error).reason,
+                     "set TMPDIR to a folder with enough space");
+  }
   return read_from_disk(folder.file(), path.string());
 }
 

@@ -4,6 +4,7 @@
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/stream/gzip.hpp"
+#include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
@@ -56,6 +57,7 @@ std::string read_sized(std::istream& stream, const std::string& name, std::uintm
 
 /// Returns the bytes of a file, at most `most` of them; of a pipe all.
 std::string read_from_disk(const fs::path& path, std::uintmax_t most) {
+  finish_interrupted(path);
   const std::string name = path.string();
   std::error_code code;
   const auto status = fs::status(path, code);

@@ -34,6 +34,8 @@ class FileStore {
   virtual void write(const std::filesystem::path& path, std::string bytes) = 0;
 };
 
+class OutputSet;
+
 /// A file on disk or in a store, whether it exists or not.
 class FilePath {
  public:
@@ -45,12 +47,16 @@ class FilePath {
   // NOLINTEND(google-explicit-constructor)
   /// A file in a store, which must outlive this object.
   FilePath(std::filesystem::path path, FileStore& store) : path_(std::move(path)), store_(&store) {}
+  /// A file on disk that, if it is written, is put in place by the set, which must outlive this object.
+  FilePath(std::filesystem::path path, OutputSet& set) : path_(std::move(path)), set_(&set) {}
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   /// Returns the path as text, for messages.
   [[nodiscard]] std::string string() const { return path_.string(); }
   /// Returns the store, null for a file on disk.
   [[nodiscard]] FileStore* store() const noexcept { return store_; }
+  /// Returns the set of outputs that the file belongs to, null if it stands alone.
+  [[nodiscard]] OutputSet* set() const noexcept { return set_; }
 
   /// Returns whether the file exists; false also if the system denies access.
   [[nodiscard]] bool exists() const;
@@ -78,6 +84,7 @@ class FilePath {
 
   std::filesystem::path path_;
   FileStore* store_ = nullptr;
+  OutputSet* set_ = nullptr;
 };
 
 }  // namespace meshorder

@@ -1,13 +1,21 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/output_file.hpp"
 
+#include "io/stream/descriptor.hpp"
+#include "io/stream/output_place.hpp"
+#include "io/stream/output_set.hpp"
+#include "io/stream/scratch.hpp"
+#include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <fstream>
+#include <cerrno>
 #include <iterator>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -16,47 +24,47 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kFlushAt = std::size_t{1} << 20;
+constexpr mode_t kMode = 0666;         // the umask or the folder's default ACL takes from it
+constexpr mode_t kPrivateMode = 0600;  // until it gets the mode of the old file
 
 }  // namespace
 
 struct OutputFile::Stream {
-  std::ofstream file;
   fmt::memory_buffer buffer;
+  OutputPlace place;
+  std::optional<Scratch> scratch;  ///< none: the buffer holds the whole file
+  Descriptor file;
 };
 
 OutputFile::OutputFile(FilePath target) : target_(std::move(target)), stream_(std::make_unique<Stream>()) {
   if (target_.store() != nullptr) return;
   const fs::path& path = target_.path();
-  std::error_code code;
-  if (fs::is_directory(path, code)) {
-    throw InputError(path.string(), "is a folder", "give a file name for the output");
+  stream_->place = output_place(path);
+  const OutputPlace& place = stream_->place;
+  if (place.is_through) {
+    if (place.own_descriptor < 0 && ::access(place.path.c_str(), W_OK) != 0)
+      throw_system_fault(path.string(), "cannot be written", errno);
+    return;
   }
   if (const fs::path plain = without_gz(path); plain != path) {
     throw InputError(path.string(), "would not be compressed",
                      "write " + plain.filename().string() + ", then gzip it");
   }
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code code;
+  const fs::path folder = folder_of(place.path);
   if (!fs::is_directory(folder, code)) {
     throw InputError(path.string(), "its folder does not exist", "make " + folder.string() + " first");
   }
-  // the process id keeps two runs with one target apart
-  temporary_ =
-      folder / ("." + path.stem().string() + ".tmp" + std::to_string(::getpid()) + path.extension().string());
-  stream_->file.open(temporary_, std::ios::binary | std::ios::trunc);
-  if (!stream_->file) throw InputError(path.string(), "cannot be written", "check the folder's permissions");
+  finish_interrupted(place.path);
+  clean_up_outputs(folder);
+  stream_->scratch.emplace(place.path);
+  stream_->file = Descriptor(stream_->scratch->file(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW,
+                             place.exists ? kPrivateMode : kMode);
+  if (!stream_->file.is_open()) throw_system_fault(path.string(), "cannot be written", errno);
 }
 
-OutputFile::OutputFile(OutputFile&& other) noexcept
-    : target_(std::move(other.target_)),
-      temporary_(std::exchange(other.temporary_, {})),
-      stream_(std::move(other.stream_)) {}
-
-OutputFile::~OutputFile() {
-  if (temporary_.empty()) return;
-  stream_->file.close();
-  std::error_code ignored;
-  fs::remove(temporary_, ignored);
-}
+OutputFile::OutputFile(OutputFile&& other) noexcept = default;
+OutputFile::~OutputFile() = default;
 
 void OutputFile::print_all(fmt::string_view format, fmt::format_args args) {
   fmt::vformat_to(std::back_inserter(stream_->buffer), format, args);
@@ -74,34 +82,80 @@ void OutputFile::integer(std::string_view before, std::int64_t value) {
   write({digits.data(), digits.size()});
 }
 
+void OutputFile::write_over_start(std::string_view bytes) {
+  auto& [buffer, place, scratch, file] = *stream_;
+  if (!scratch) {
+    std::copy(bytes.begin(), bytes.end(), buffer.begin());
+    return;
+  }
+  flush();
+  int error = ::lseek(file.get(), 0, SEEK_SET) < 0 ? errno : file.write(bytes);
+  if (error == 0 && ::lseek(file.get(), 0, SEEK_END) < 0) error = errno;
+  if (error != 0) throw_system_fault(target_.string(), "cannot be written to the end", error);
+}
+
 void OutputFile::flush() {
-  if (target_.store() != nullptr) return;  // the buffer holds the whole file
-  auto& [file, buffer] = *stream_;
-  file.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+  auto& [buffer, place, scratch, file] = *stream_;
+  if (!scratch) return;
+  const int error = file.write({buffer.data(), buffer.size()});
   buffer.clear();
-  if (!file) throw InputError(target_.string(), "cannot be written to the end", "is the disk full?");
+  if (error != 0) throw_system_fault(target_.string(), "cannot be written to the end", error);
+}
+
+fs::path OutputFile::temporary() const {
+  if (stream_->scratch) return stream_->scratch->file();
+  throw InputError(target_.string(), "is no ordinary file, and its format is not written from start to end",
+                   "write an ordinary file, then copy it");
 }
 
 void OutputFile::close() {
   if (!stream_->file.is_open()) return;
   flush();
-  stream_->file.close();
-  if (!stream_->file) throw InputError(target_.string(), "cannot be written to the end", "is the disk full?");
+  if (const int error = stream_->file.close(); error != 0)
+    throw_system_fault(target_.string(), "cannot be written to the end", error);
+}
+
+void OutputFile::complete() {
+  auto& [buffer, place, scratch, file] = *stream_;
+  if (!scratch) return;
+  if (file.is_open()) {
+    flush();
+  } else {
+    file = Descriptor(scratch->file(), O_RDONLY | O_NOFOLLOW);
+  }
+  int error = file.is_open() ? 0 : errno;
+  if (error == 0 && place.exists) error = copy_attributes(place.path, file);
+  if (error == 0) error = file.sync();
+  if (const int closing = file.close(); error == 0) error = closing;
+  if (error != 0) throw_system_fault(target_.string(), "cannot be written to the end", error);
+}
+
+void OutputFile::write_directly() {
+  const auto& [buffer, place, scratch, file] = *stream_;
+  if (FileStore* const store = target_.store()) return store->write(target(), fmt::to_string(buffer));
+  if (!place.is_through) return;
+  Descriptor out =
+      place.own_descriptor >= 0 ? Descriptor(::dup(place.own_descriptor)) : Descriptor(place.path, O_WRONLY);
+  int error = out.is_open() ? out.write({buffer.data(), buffer.size()}) : errno;
+  if (const int closing = out.close(); error == 0) error = closing;
+  if (error != 0) throw_system_fault(target_.string(), "cannot be written to the end", error);
+}
+
+const OutputPlace& OutputFile::place() const noexcept { return stream_->place; }
+
+Scratch* OutputFile::scratch() noexcept { return stream_->scratch ? &*stream_->scratch : nullptr; }
+
+unsigned OutputFile::other_names() const noexcept {
+  return stream_->place.is_through ? 0 : stream_->place.other_names;
 }
 
 void OutputFile::commit_all(std::span<OutputFile> files) {
-  for (OutputFile& file : files) file.close();
+  OutputSet own;
   for (OutputFile& file : files) {
-    if (FileStore* const store = file.target_.store()) {
-      store->write(file.target(), fmt::to_string(file.stream_->buffer));
-      continue;
-    }
-    std::error_code code;
-    fs::rename(file.temporary_, file.target(), code);
-    if (code)
-      throw InputError(file.target_.string(), "cannot be replaced: " + code.message(), "check the target");
-    file.temporary_.clear();
+    OutputSet* const set = file.target_.set();
+    (set != nullptr ? *set : own).add(std::move(file));
   }
+  own.commit();
 }
 
 }  // namespace meshorder

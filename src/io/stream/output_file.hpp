@@ -16,12 +16,19 @@
 
 namespace meshorder {
 
-/// A file that appears complete or not at all: written to a temporary file beside its target, which `commit`
-/// renames into place, or to memory, from where `commit` gives it to the target's store. Without a commit the
-/// temporary is removed and the target stays unchanged.
+struct OutputPlace;
+class Scratch;
+
+/// A file that appears complete or not at all: written in a scratch folder beside its target, from where
+/// `commit` renames it into place, or to memory, from where `commit` gives it to the target's store. Without
+/// a commit the target stays unchanged. The protocol is in output_set.hpp.
+///
+/// Symbolic links are followed. The new file gets the owner, the group, the mode and the extended attributes
+/// of the old one as far as the system allows; further hard links of the old one keep the old content. What
+/// cannot be replaced (a device, a pipe, /dev/stdout) is kept in memory and written at `commit`.
 class OutputFile {
  public:
-  /// Throws Error if the folder does not exist or cannot be written, or the target is a folder.
+  /// Throws InputError if the folder does not exist or cannot be written, or the target is a folder.
   explicit OutputFile(FilePath target);
   ~OutputFile();
   OutputFile(OutputFile&& other) noexcept;
@@ -48,26 +55,40 @@ class OutputFile {
     write({raw.data(), raw.size()});
   }
 
-  [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_.path(); }
-  /// Returns the path of the temporary file on disk, for what writes by path (call `close` before).
-  [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
+  /// Writes over the first bytes, of which there must be as many.
+  void write_over_start(std::string_view bytes);
 
-  /// Writes what is buffered and closes the file. Throws Error if the disk is full.
+  [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_.path(); }
+  /// Returns the path of the unfinished file on disk, for libraries that write by path (call `close` before).
+  /// Throws InputError for a target that cannot be replaced.
+  [[nodiscard]] std::filesystem::path temporary() const;
+
+  /// Writes what is buffered and closes the file. Throws InputError if that fails, as on a full disk.
   void close();
 
-  /// Closes the file and renames it into place.
+  /// Completes the file and renames it into place, or adds it to the set of its target.
   void commit() { commit_all(std::span(this, 1)); }
 
-  /// Closes all files, then renames all: for several files that belong together.
+  /// Completes all files and puts them in place together, or adds them to the set of their targets.
   static void commit_all(std::span<OutputFile> files);
 
  private:
   struct Stream;
+  friend class OutputSet;
   void print_all(fmt::string_view format, fmt::format_args args);
   void flush();
 
+  // for the set
+  /// Writes what is buffered, gives the file the attributes of the old one and syncs it.
+  void complete();
+  /// Writes a target that cannot be replaced, or one in a store.
+  void write_directly();
+  [[nodiscard]] const OutputPlace& place() const noexcept;
+  /// Returns null for a target that is written directly.
+  [[nodiscard]] Scratch* scratch() noexcept;
+  [[nodiscard]] unsigned other_names() const noexcept;
+
   FilePath target_;
-  std::filesystem::path temporary_;
   std::unique_ptr<Stream> stream_;
 };
 

@@ -33,6 +33,7 @@ struct ReadContext {
   Mesh mesh;
   IdMap points;
   std::array<Part, 4> parts;
+  std::string mark;  ///< of the file of points
   std::shared_ptr<Metadata> metadata = std::make_shared<Metadata>();
   bool second_order = false;
 };
@@ -111,13 +112,27 @@ void add_number(Scanner& in, IdMap& numbering, std::string_view what) {
     in.fail(fmt::format("{} {} is given twice", what, number), "each must be unique");
 }
 
-/// Keeps the comments at the end of the file; fails for anything else.
-void end_file(Scanner& in, Metadata::Part& part, Notes& notes) {
+/// Takes the mark of the files of a mesh out of the comments at the end of one; returns an empty text if
+/// there is none.
+std::string take_mark(std::string& comments) {
+  const std::size_t at = comments.rfind(kMarkBefore);
+  if (at == std::string::npos || (at > 0 && comments[at - 1] != '\n')) return {};
+  const std::size_t end = std::min(comments.find('\n', at), comments.size());
+  std::string mark = comments.substr(at, end - at);
+  if (mark.ends_with('\r')) mark.pop_back();
+  if (mark.size() != kMarkBefore.size() + kMarkDigits) return {};
+  comments.erase(at, end + 1 - at);
+  return mark;
+}
+
+/// Keeps the comments at the end of the file but for its mark, which is returned; fails for anything else.
+std::string end_file(Scanner& in, Metadata::Part& part, Notes& notes) {
   if (!in.at_end()) in.fail("unexpected text after the last record", "correct the number in the header");
   part.present = true;
   part.comments_before = comments_before(in.all(), kComment);
   part.comments_after = comments_after(in.all(), kComment);
   note_missing_line_end(in, kComment, notes);
+  return take_mark(part.comments_after);
 }
 
 // ---- points
@@ -389,7 +404,14 @@ void read_cell_file(const FilePath& path, File file, ReadContext& to, Notes& not
   } else {
     read_boundary(in, file, to);
   }
-  end_file(in, to.metadata->parts[file], notes);
+  if (end_file(in, to.metadata->parts[file], notes) != to.mark) {
+    throw InputError(
+        path.string(),
+        fmt::format("was not written together with its .node file: the last lines, which begin with "
+                    "'{}', differ",
+                    trimmed(kMarkBefore)),
+        "give the files of one mesh, or remove these lines if they belong together");
+  }
 }
 
 }  // namespace
@@ -406,7 +428,7 @@ Mesh read(const FilePath& path, Notes& notes) {
   {
     Scanner in(node_path, kComment);
     read_points(in, reading);
-    end_file(in, reading.metadata->parts[kNode], notes);
+    reading.mark = end_file(in, reading.metadata->parts[kNode], notes);
   }
   for (const File file : kCellFiles) {
     const FilePath cell_path = path.companion(kExtensions[file]);

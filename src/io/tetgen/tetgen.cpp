@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/tetgen/tetgen.hpp"
 
+#include "base/checksum.hpp"
 #include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
@@ -290,6 +291,26 @@ void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes&
   write_cells(out, file, from, {}, marked);
 }
 
+/// Returns a line that two meshes hardly share.
+std::string mark_of(const WriteContext& from) {
+  const Mesh& mesh = from.mesh;
+  Checksum sum;
+  sum.add_all(mesh.points);
+  sum.add_all(mesh.cells.offsets);
+  sum.add_all(mesh.cells.vertices);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) sum.add(from.vertex_number(v));
+  for (Index c = 0; c < mesh.cell_count(); ++c) sum.add(from.cell_number(c, c));
+  for (const DataArray& array : mesh.data) {
+    std::visit(
+        [&](const auto& values) {
+          using Value = typename std::decay_t<decltype(values)>::value_type;
+          if constexpr (std::is_arithmetic_v<Value>) sum.add_all(values);
+        },
+        array.values);
+  }
+  return fmt::format("{}{:0{}x}\n", kMarkBefore, sum.value(), kMarkDigits);
+}
+
 }  // namespace
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
@@ -304,6 +325,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   from.layout = layout_of(mesh, from.metadata, own != nullptr);
   refuse_leftovers(from.layout, from.metadata, path);
 
+  const std::string mark = mark_of(from);
   std::vector<OutputFile> files;
   files.reserve(kExtensions.size());
   for (const File file : {kNode, kEle, kFace, kEdge}) {
@@ -319,6 +341,8 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
       write_boundary(out, file, from, notes);
     }
     out.write(part.comments_after);
+    if (!part.comments_after.empty() && !part.comments_after.ends_with('\n')) out.write("\n");
+    out.write(mark);
   }
   OutputFile::commit_all(files);
 

@@ -10,6 +10,7 @@
 #include "io/format.hpp"
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -52,6 +53,11 @@ inline std::span<const int> places(File file, int nodes, bool faces_name_opposit
   const bool opposite = file == kEle || (file == kFace && faces_name_opposite_edges);
   return {(opposite ? kTriangleOpposite : kTriangle).data(), static_cast<std::size_t>(nodes)};
 }
+
+/// The last line of each file that was written with others begins so. A mark of 16 digits follows, the same
+/// in all files of the mesh: the reader refuses files of different ones.
+inline constexpr std::string_view kMarkBefore = "# meshorder ";
+inline constexpr std::size_t kMarkDigits = 16;
 
 /// Notes files beside `path` that refer to the points or cells of the mesh but are not rewritten.
 void note_other_companions(const FilePath& path, std::string_view what, Notes& notes);

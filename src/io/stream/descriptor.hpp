@@ -1,0 +1,42 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+namespace meshorder {
+
+/// A file descriptor, closed at the end. The functions return 0 or an `errno`.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  /// Opens a file as `open` does, with O_CLOEXEC; sets errno and is not open if that fails.
+  Descriptor(const std::filesystem::path& path, int flags, unsigned mode = 0);
+  explicit Descriptor(int descriptor) noexcept : descriptor_(descriptor) {}
+  ~Descriptor() { close(); }
+  Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    return *this;
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  [[nodiscard]] bool is_open() const noexcept { return descriptor_ >= 0; }
+  [[nodiscard]] int get() const noexcept { return descriptor_; }
+
+  /// Writes all bytes, also where the system takes a part at a time or is interrupted.
+  [[nodiscard]] int write(std::string_view bytes) const noexcept;
+  /// Waits until all written so far is on the disk; nothing to do where the file system knows no `fsync`.
+  [[nodiscard]] int sync() const noexcept;
+  int close() noexcept;
+
+ private:
+  int descriptor_ = -1;
+};
+
+/// Waits until the names in a folder are on the disk.
+[[nodiscard]] int sync_folder(const std::filesystem::path& folder) noexcept;
+
+}  // namespace meshorder

@@ -1,0 +1,34 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/stream/descriptor.hpp"
+
+#include <filesystem>
+
+namespace meshorder {
+
+/// Where the bytes of an output go.
+struct OutputPlace {
+  std::filesystem::path path;  ///< behind all symbolic links
+  bool exists = false;
+  bool is_through = false;   ///< a device, a pipe or an open file of this process: nothing to replace
+  int own_descriptor = -1;   ///< of an open file of this process, such as /dev/stdout
+  unsigned other_names = 0;  ///< hard links besides this one
+};
+
+/// Returns the folder of a path, "." for a plain name.
+std::filesystem::path folder_of(const std::filesystem::path& path);
+
+/// Returns where a path leads. Throws InputError for a folder, links in a circle, a name that the file system
+/// refuses and a link that another user left in a folder open to all.
+OutputPlace output_place(const std::filesystem::path& path);
+
+/// Returns the path behind all symbolic links, also where there is no file; throws for nothing.
+std::filesystem::path behind_links(const std::filesystem::path& path);
+
+/// Gives an open file the owner, the group, the mode and the extended attributes, ACLs among them, of the
+/// file that it is to replace; what the system does not allow is left out, and so is the access of a group
+/// that could not be kept. Returns 0 or an `errno`.
+[[nodiscard]] int copy_attributes(const std::filesystem::path& from, const Descriptor& to);
+
+}  // namespace meshorder
