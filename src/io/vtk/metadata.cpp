@@ -62,7 +62,8 @@ class Names {
   explicit Names(bool in_xml) : in_xml_(in_xml) {}
 
   std::string unused(const std::string& wanted, Association association, Notes& notes) {
-    const std::string held = wanted.empty() ? "array" : in_xml_ ? xml_text(wanted) : wanted;
+    std::string held = wanted.empty() ? "array" : in_xml_ ? xml_text(wanted) : wanted;
+    if (!in_xml_ && held == "NULL_ARRAY") held += '_';  // readers skip an array of this name
     std::string name = held;
     for (int i = 2; !taken_.emplace(association, name).second; ++i) name = held + "_" + std::to_string(i);
     if (name != wanted)

@@ -579,7 +579,7 @@ class XdmfWriter {
   /// Returns a name that no other attribute has.
   std::string unused_name(const DataArray& array) {
     const std::string wanted = array.name.empty() ? "array" : array.name;
-    const std::string clean = xml_text(wanted);
+    const std::string clean = meshorder::xml_text(wanted);
     std::string name = clean;
     for (int k = 2; !names_.emplace(array.association, name).second; ++k)
       name = fmt::format("{}_{}", clean, k);
