@@ -4,6 +4,8 @@
 #include "lab/scenario/integrator_reader.hpp"
 #include "lab/scenario/scenario.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 

@@ -228,7 +228,9 @@ class Addition {
 
   void add() {
     std::set<std::pair<Association, std::string>> known;
-    for (const Field& field : metadata_.fields) known.insert({field.association, field.array});
+    for (const Field& field : metadata_.fields) {
+      if (!field.array.empty()) known.insert({field.association, field.array});
+    }
     if (metadata_.zones.size() > 1) known.insert({Association::cells, std::string(kZone)});
     if (metadata_.has_labels) known.insert({Association::cells, std::string(kLabel)});
     for (const DataArray& array : mesh_.data) {
@@ -240,7 +242,9 @@ class Addition {
       }
     }
     std::set<std::pair<Association, std::string>> known_sets;
-    for (const PointList& list : metadata_.lists) known_sets.insert({list.association, list.set});
+    for (const PointList& list : metadata_.lists) {
+      if (!list.set.empty()) known_sets.insert({list.association, list.set});
+    }
     for (const EntitySet& set : mesh_.sets) {
       if (!known_sets.contains({set.association, set.name})) add_set(set);
     }

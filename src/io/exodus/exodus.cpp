@@ -26,9 +26,9 @@ namespace {
 
 constexpr std::size_t kLongestName = 255;
 
-/// Returns a name as a table of names can hold it.
+/// Returns a name as a table of names can hold it: readers take blanks at its ends for padding.
 std::string held_name(const std::string& name) {
-  return std::string(utf8_prefix(plain_name(name), kLongestName));
+  return std::string(utf8_prefix(trimmed(plain_name(name)), kLongestName));
 }
 
 }  // namespace
@@ -214,8 +214,8 @@ std::vector<const EntitySet*> name_blocks(Writing& writing) {
       return !set.members.empty() && set.members.front() >= plan.cells.first &&
              set.members.front() < plan.cells.first + plan.cells.count;
     });
-    const bool names_block = !is_element_set && block != writing.blocks.end() && block->name.empty() &&
-                             index_size(set.members) == block->cells.count &&
+    const bool names_block = !is_element_set && !trimmed(set.name).empty() && block != writing.blocks.end() &&
+                             block->name.empty() && index_size(set.members) == block->cells.count &&
                              std::all_of(set.members.begin(), set.members.end(), [&](Index c) {
                                return c >= block->cells.first && c < block->cells.first + block->cells.count;
                              });

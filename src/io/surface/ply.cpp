@@ -286,10 +286,10 @@ class Columns {
   /// Adds any other array: a property of its name, or a list if it has several components or gaps.
   void add_other(const DataArray& array) {
     if (std::holds_alternative<std::vector<std::string>>(array.values)) return;
-    const std::string name = plain_name(array.name, " ");
+    const std::string name = plain_name(array.name.empty() ? "unnamed" : array.name, " ");
     const Property as_scalar = scalar(name, {});
     const bool reserved = is_geometry(as_scalar) || ply::is_corner_list({name, {}, true, {}});
-    if (name.empty() || reserved || is_taken(name)) return;
+    if (reserved || is_taken(name)) return;
     if (name != array.name) note(fmt::format("the array '{}' is written as '{}'", array.name, name));
     Property property = scalar(name, written_type(array.values));
     property.is_list = !covers_table(array);
