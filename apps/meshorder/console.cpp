@@ -8,7 +8,7 @@
 namespace meshorder::command {
 
 void Console::warn(const std::string& sentence) {
-  if (!quiet_) write_stderr("meshorder: warning: " + sentence + "\n");
+  if (!quiet_) write_stderr("meshorder: warning: " + visible(sentence) + "\n");
   notes_.push_back(sentence);
 }
 
@@ -20,7 +20,9 @@ void Console::print_json(nlohmann::ordered_json result) const {
   if (!json_) return;
   result["version"] = MESHORDER_VERSION;
   result["notes"] = notes_;
-  write_stdout(result.dump(2) + "\n");
+  // names are of any bytes; the escapes of `visible` are those of JSON
+  write_stdout(visible(result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace), "\n") +
+               "\n");
 }
 
 }  // namespace meshorder::command

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "command.hpp"
 #include "io/format.hpp"
 #include "payoff/quantities.hpp"
@@ -14,7 +15,8 @@
 
 namespace meshorder::command {
 
-/// Output of a subcommand: results on stdout, as text or as one JSON object; warnings on stderr.
+/// Output of a subcommand: results on stdout, as text or as one JSON object; warnings on stderr. What a
+/// terminal would act on is shown as an escape (see `visible`).
 class Console {
  public:
   explicit Console(const Common& common) : json_(common.json), quiet_(common.quiet) {}
@@ -37,10 +39,11 @@ class Console {
   /// Prints a line of a list, which is all that the subcommand is for, unless JSON is wanted.
   template <class... Args>
   void print_list(fmt::format_string<Args...> format, Args&&... args) const {
-    if (!json_) write_stdout(fmt::format(format, std::forward<Args>(args)...) + "\n");
+    if (!json_) write_stdout(visible(fmt::format(format, std::forward<Args>(args)...), "\n") + "\n");
   }
 
-  /// Prints the result as JSON, with the keys `version` and `notes`, if that is wanted.
+  /// Prints the result as JSON, with the keys `version` and `notes`, if that is wanted. Bytes that are no
+  /// UTF-8 become U+FFFD.
   void print_json(nlohmann::ordered_json result) const;
 
  private:

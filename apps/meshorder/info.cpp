@@ -115,10 +115,10 @@ void print_attachments(const Console& console, const Mesh& mesh) {
   const auto list = [&](Association association) {
     std::vector<std::string> names;
     for (const DataArray& array : mesh.data) {
-      if (array.association == association) names.push_back(array.name);
+      if (array.association == association) names.push_back(visible(array.name));
     }
     for (const EntitySet& set : mesh.sets) {
-      if (set.association == association) names.push_back("set " + set.name);
+      if (set.association == association) names.push_back("set " + visible(set.name));
     }
     return join(names);
   };

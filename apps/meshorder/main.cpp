@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
 #include "command.hpp"
 #include "help_format.hpp"
 #include "interruption.hpp"
@@ -44,7 +45,7 @@ constexpr std::array kSubcommands{
 };
 
 int report(const std::string& message, int status) {
-  meshorder::command::write_stderr("meshorder: " + message + "\n");
+  meshorder::command::write_stderr("meshorder: " + meshorder::visible(message) + "\n");
   return status;
 }
 

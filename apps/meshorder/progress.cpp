@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "progress.hpp"
 
+#include "base/text.hpp"
 #include "console.hpp"
 
 #include <fmt/format.h>
@@ -67,7 +68,7 @@ void Progress::draw(double elapsed) {
     const double expected = stage_began_ / from_ * (to_ - from_);
     share = from_ + (to_ - from_) * (1 - std::exp(-(elapsed - stage_began_) / std::max(expected, 1e-3)));
   }
-  std::string line = what_;
+  std::string line = visible(what_);
   if (share > 0.01) {
     line += fmt::format(", {:.0f} %, about {} left", 100 * share,
                         duration(std::max(1.0, elapsed / share * (1 - share))));

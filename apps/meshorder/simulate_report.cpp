@@ -2,6 +2,7 @@
 #include "simulate_report.hpp"
 
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "lab/scenario/vertex_choice.hpp"
 #include "wording.hpp"
 
@@ -230,7 +231,7 @@ void print_shape(const Console& console, const Simulation& simulation, const Mot
 
 void print_header(const Console& console, const Simulation& simulation, const std::string& mesh) {
   const Scenario& scenario = simulation.scenario;
-  console.print("{}{}{}", scenario.name, scenario.title.empty() ? "" : ": ", scenario.title);
+  console.print("{}{}{}", scenario.name, scenario.title.empty() ? "" : ": ", visible(scenario.title));
   const std::string size = scenario.longest_side > 0
                                ? fmt::format(", scaled to {:g} m", scenario.longest_side)
                            : scenario.height > 0 ? fmt::format(", {:g} m high", scenario.height)

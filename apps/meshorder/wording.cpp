@@ -103,7 +103,7 @@ std::string groups_in_words(const Grouping& grouping) {
                                   count == 1 ? "" : "s", grouping.name, to_string(grouping.association));
   for (std::size_t g = 0; g < std::min(count, kShown); ++g) {
     words += (g == 0 ? " " : ", ") +
-             (grouping.names.empty() ? std::to_string(grouping.values[g]) : grouping.names[g]);
+             (grouping.names.empty() ? std::to_string(grouping.values[g]) : visible(grouping.names[g]));
   }
   return words + (count > kShown ? ", …" : "");
 }

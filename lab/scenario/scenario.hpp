@@ -85,12 +85,15 @@ struct ProjectiveScenario : ProjectiveOptions {
   std::vector<ScenarioObstacle> obstacles;
 };
 
+/// Bytes of the names of scenarios and meshes that become part of file names.
+inline constexpr std::size_t kLongestNameInFiles = 100;
+
 /// A simulation: mesh, material, loads, integrator and solver. Independent of the order of vertices and
 /// elements. docs/simulate.md describes its file.
 struct Scenario {
   std::string file;  ///< the path it was read from
   std::string name;
-  std::string title;
+  std::string title;            ///< may be empty
   std::string mesh;             ///< a model's name, or the path of a file
   double longest_side = 0;      ///< of the bounding box that the mesh is scaled to, m; 0: not scaled
   double height = 0;            ///< the box's side along y instead, m

@@ -1,7 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
 #include "io/stream/scanner.hpp"
 #include "lab/scenario/integrator_reader.hpp"
 #include "lab/scenario/scenario.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
@@ -142,6 +145,10 @@ Scenario parse_scenario(std::string_view text, const std::string& file) {
   if (scenario.name.find_first_of("/\\") != std::string::npos)
     throw root["name"].error("'" + scenario.name + "' contains a slash",
                              "leave it out: the name becomes part of file names");
+  if (scenario.name.size() > kLongestNameInFiles || visible(scenario.name) != scenario.name)
+    throw root["name"].error(
+        fmt::format("'{}' cannot become part of file names", scenario.name.substr(0, kLongestNameInFiles)),
+        fmt::format("give one of at most {} bytes, without control characters", kLongestNameInFiles));
   if (const auto title = root.find("title")) scenario.title = title->text();
   scenario.mesh = root["mesh"].text();
   if (!names_a_model(scenario.mesh)) scenario.mesh = (fs::path(file).parent_path() / scenario.mesh).string();

@@ -123,7 +123,7 @@ struct ScenarioOrderRecord {
 
 struct ScenarioRecord {
   std::string name;
-  std::string title;
+  std::string title;        ///< may be empty
   std::string method;       ///< "backward-euler" or "admm"
   std::string material;     ///< "corotational", "springs"
   std::string mesh;         ///< MeshRecord::name

@@ -125,7 +125,7 @@ inline constexpr auto kFields<ScenarioOrderRecord> =
 template <>
 inline constexpr auto kFields<ScenarioRecord> =
     std::tuple{Field{"name", &ScenarioRecord::name},
-               Field{"title", &ScenarioRecord::title},
+               Field{"title", &ScenarioRecord::title, true},
                Field{"method", &ScenarioRecord::method},
                Field{"material", &ScenarioRecord::material},
                Field{"mesh", &ScenarioRecord::mesh},

@@ -3,6 +3,7 @@
 
 #include "base/memory.hpp"
 #include "base/stopwatch.hpp"
+#include "base/text.hpp"
 #include "io/npy.hpp"
 #include "io/stream/read_limits.hpp"
 #include "lab/scenario/embedded_vertices.hpp"
@@ -110,18 +111,39 @@ class Stepping {
   std::optional<MotionFile> frames_;
 };
 
+/// Returns a text as it is where it is UTF-8, else, as a path may be of any bytes, their numbers.
+nlohmann::json bytes_in_json(const std::string& text) {
+  if (is_utf8(text)) return text;
+  auto numbers = nlohmann::json::array();
+  for (const char c : text) numbers.push_back(static_cast<int>(static_cast<unsigned char>(c)));
+  return numbers;
+}
+
+std::string bytes_of(const nlohmann::json& message) {
+  if (message.is_string()) return message;
+  std::string text;
+  for (const int byte : message.get<std::vector<int>>()) text += static_cast<char>(byte);
+  return text;
+}
+
+/// Returns a message in one line; bytes that are no UTF-8 become U+FFFD.
+std::string line_of(const nlohmann::json& message) {
+  return message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 }  // namespace
 
 nlohmann::json to_json(const StepperTask& task) {
-  return {{"scenario", task.scenario},
-          {"mesh", task.mesh},
-          {"vertex_order", task.vertex_order},
-          {"cell_order", task.cell_order},
+  return {{"scenario", bytes_in_json(task.scenario)},
+          {"mesh", bytes_in_json(task.mesh)},
+          {"vertex_order", bytes_in_json(task.vertex_order)},
+          {"cell_order", bytes_in_json(task.cell_order)},
           {"processors", task.processors}};
 }
 
 StepperTask stepper_task(const nlohmann::json& message) {
-  return {message.at("scenario"), message.at("mesh"), message.at("vertex_order"), message.at("cell_order"),
+  return {bytes_of(message.at("scenario")), bytes_of(message.at("mesh")),
+          bytes_of(message.at("vertex_order")), bytes_of(message.at("cell_order")),
           message.at("processors").get<std::vector<int>>()};
 }
 
@@ -174,7 +196,7 @@ StepperTimes stepper_times(const nlohmann::json& message) {
 }
 
 void serve_steps(std::istream& questions, std::ostream& answers) {
-  const auto answer = [&](const nlohmann::json& message) { answers << message.dump() << std::endl; };
+  const auto answer = [&](const nlohmann::json& message) { answers << line_of(message) << std::endl; };
   try {
     std::optional<Stepping> stepping;
     for (std::string line; std::getline(questions, line);) {
@@ -221,7 +243,7 @@ Stepper::Stepper(const std::filesystem::path& program, int threads, const Steppe
 StepperTimes Stepper::take(const StepperTurn& turn) { return stepper_times(ask(to_json(turn))); }
 
 nlohmann::json Stepper::ask(const nlohmann::json& question) {
-  process_.send(question.dump());
+  process_.send(line_of(question));
   nlohmann::json answer = nlohmann::json::parse(process_.receive());
   if (answer.contains("error"))
     throw InputError(name_ + ", in its own process", answer["error"], "this run is lost");

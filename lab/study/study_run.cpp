@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/study_run.hpp"
 
+#include "base/text.hpp"
 #include "io/format.hpp"
 #include "io/stream/output_set.hpp"
 #include "lab/models/catalogue.hpp"
@@ -88,7 +89,10 @@ class Study {
                                  subject.scenario.name, plan_.size));
       return;
     }
-    subject.mesh = names_a_model(mesh) ? mesh : fs::path(mesh).stem().string();
+    subject.mesh = names_a_model(mesh) ? mesh : visible(fs::path(mesh).stem().string());
+    if (subject.mesh.size() > kLongestNameInFiles)
+      throw InputError(mesh, "its name is too long to become part of file names",
+                       fmt::format("give it one of at most {} bytes", kLongestNameInFiles));
     for (const Subject& other : subjects_) {
       if (other.scenario.name == subject.scenario.name)
         throw InvalidArgument("two scenarios have the name " + other.scenario.name);

@@ -49,6 +49,7 @@ std::ptrdiff_t place_of(const ScenarioRecord& record) {
 
 StudyStore::StudyStore(const StudyPlan& plan, const StudyFolder& folder) : folder_(folder) {
   make_folders(folder);
+  lock_.emplace(folder.root());
   remove_unfinished(folder);
   MachineRecord machine = describe_machine();
   std::error_code code;
@@ -111,7 +112,7 @@ int StudyStore::runs_done(std::string_view scenario) const {
 ScenarioRecord StudyStore::new_record(const Scenario& scenario) const {
   ScenarioRecord record;
   record.name = scenario.name;
-  record.title = scenario.title;
+  record.title = scenario.title.empty() ? scenario.name : scenario.title;
   record.method = scenario.is_implicit() ? "backward-euler" : "admm";
   record.material =
       scenario.is_implicit() ? to_string(scenario.model) : to_string(scenario.projective().model);

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "lab/study/folder.hpp"
+#include "lab/study/folder_lock.hpp"
 #include "lab/study/mesh_study.hpp"
 #include "lab/study/study_plan.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,7 +17,8 @@ namespace meshorder {
 class StudyStore {
  public:
   /// Makes the folder and begins a study in it, or resumes the study in it. Throws Error if the folder cannot
-  /// be made, or if its study is of another machine, build, order, size or number of threads.
+  /// be made, or if its study is of another machine, build, order, size or number of threads, or another
+  /// process is at work on it.
   StudyStore(const StudyPlan& plan, const StudyFolder& folder);
 
   [[nodiscard]] const StudyFolder& folder() const noexcept { return folder_; }
@@ -38,6 +41,7 @@ class StudyStore {
   void resume(const StudyPlan& plan, const MachineRecord& machine);
 
   const StudyFolder& folder_;
+  std::optional<FolderLock> lock_;
   StudyResults results_;
 };
 

@@ -53,8 +53,13 @@ bool is_list_of_plain_values(const nlohmann::ordered_json& json) {
          });
 }
 
+/// Returns a value as JSON in one line; bytes that are no UTF-8 become U+FFFD.
+std::string dumped(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 void append(const nlohmann::ordered_json& json, std::size_t indentation, std::string& text) {
-  std::string in_one_line = json.dump();
+  std::string in_one_line = dumped(json);
   if (!json.is_structured() || in_one_line.size() <= kShort || is_list_of_plain_values(json)) {
     text += in_one_line;
     return;
@@ -65,7 +70,7 @@ void append(const nlohmann::ordered_json& json, std::size_t indentation, std::st
   for (const auto& [key, value] : json.items()) {
     text += first ? "\n" : ",\n";
     text.append(indentation + 1, ' ');
-    if (object) text += nlohmann::ordered_json(key).dump() + ": ";
+    if (object) text += dumped(key) + ": ";
     append(value, indentation + 1, text);
     first = false;
   }

@@ -110,7 +110,8 @@ class JsonValue {
 };
 
 /// Returns JSON for people and version control: short values and lists of numbers take one line, the rest is
-/// indented. Doubles read back to the same bits. Ends with a line break. O(size · depth).
+/// indented. Doubles read back to the same bits; bytes that are no UTF-8 become U+FFFD. Ends with a line
+/// break. O(size · depth).
 std::string json_text(const nlohmann::ordered_json& json);
 
 /// Writes json_text to a file, completely or not at all. Throws Error if it cannot be written.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <concepts>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -59,29 +60,23 @@ inline bool same_but_for_case(std::string_view a, std::string_view b) {
                     [&](char x, char y) { return lower(x) == lower(y); });
 }
 
-/// Returns `text` escaped for an XML attribute between double quotes.
-inline std::string xml_escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
+/// Returns `text` with escapes for all that a terminal would act on and all that is no UTF-8: control
+/// characters other than those in `kept`, and characters that turn the direction of writing. A character
+/// becomes "\u001b", a byte "\xff". O(size).
+std::string visible(std::string_view text, std::string_view kept = {});
+
+/// Returns whether `text` is UTF-8. O(size).
+bool is_utf8(std::string_view text);
+
+/// Returns the front of `text`, at most `most` bytes, without a part of a character of UTF-8 at its end.
+std::string_view utf8_prefix(std::string_view text, std::size_t most);
+
+/// Returns `text` with escapes, as of `visible`, for what XML cannot hold: control characters other than tab
+/// and line ends, and bytes that are no UTF-8. O(size).
+std::string xml_text(std::string_view text);
+
+/// Returns `xml_text(text)` escaped for an XML attribute between double quotes. O(size).
+std::string xml_escaped(std::string_view text);
 
 /// The names of an enumeration's values, the same in the command, in JSON and in messages. A specialisation
 /// lists all values once:

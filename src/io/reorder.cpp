@@ -42,6 +42,21 @@ void write_down_ids(Mesh& mesh, bool of_vertices, bool of_cells) {
   }
 }
 
+/// Moves a sound mesh, and what becomes of its ids.
+void move_with_ids(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
+  const bool has_vertex_ids = !mesh.vertex_ids.empty();
+  const bool has_cell_ids = !mesh.cell_ids.empty();
+  if (ids == Ids::renumber && mesh.format_metadata && mesh.format_metadata->binds_ids()) ids = Ids::keep;
+  if (ids == Ids::keep) write_down_ids(mesh, !vertices.is_identity(), !cells.is_identity());
+  try {
+    move_mesh(mesh, vertices, cells, ids);
+  } catch (...) {
+    if (!has_vertex_ids) mesh.vertex_ids.clear();
+    if (!has_cell_ids) mesh.cell_ids.clear();
+    throw;
+  }
+}
+
 }  // namespace
 
 Permutation arrange_cells(Mesh& mesh, const Format& to) {
@@ -84,7 +99,7 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, CsrGraph& graph) {
     try {
       graph = vertex_graph(mesh);
       MeshOrder order = compute_reordering(mesh, graph, options);
-      apply_reordering(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
+      move_with_ids(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
       order.cells.permutation = arranged.then(order.cells.permutation);
       return order;
     } catch (...) {
@@ -102,17 +117,8 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options) {
 }
 
 void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
-  const bool has_vertex_ids = !mesh.vertex_ids.empty();
-  const bool has_cell_ids = !mesh.cell_ids.empty();
-  if (ids == Ids::renumber && mesh.format_metadata && mesh.format_metadata->binds_ids()) ids = Ids::keep;
-  if (ids == Ids::keep) write_down_ids(mesh, !vertices.is_identity(), !cells.is_identity());
-  try {
-    move_mesh(mesh, vertices, cells, ids);
-  } catch (...) {
-    if (!has_vertex_ids) mesh.vertex_ids.clear();
-    if (!has_cell_ids) mesh.cell_ids.clear();
-    throw;
-  }
+  check_mesh(mesh);
+  move_with_ids(mesh, vertices, cells, ids);
 }
 
 }  // namespace v0_2

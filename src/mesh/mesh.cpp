@@ -32,6 +32,12 @@ void check_cells(const Mesh& mesh) {
       !std::is_sorted(cells.offsets.begin(), cells.offsets.end())) {
     fail("offsets do not fit the cells");
   }
+  const auto unknown = std::find_if(cells.shapes.begin(), cells.shapes.end(),
+                                    [](Shape shape) { return static_cast<int>(shape) >= kShapes; });
+  if (unknown != cells.shapes.end()) {
+    fail("cell " + std::to_string(unknown - cells.shapes.begin()) + " has the shape " +
+         std::to_string(static_cast<int>(*unknown)) + ", which is none of Shape");
+  }
   std::array<int, kShapes> least{};
   for (int shape = 0; shape < kShapes; ++shape)
     least[shape] = std::max(1, corners(static_cast<Shape>(shape), 1));

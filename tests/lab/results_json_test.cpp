@@ -139,6 +139,25 @@ TEST(ResultsJson, AStudyWithoutRunsIsOne) {
   EXPECT_EQ(read_results(folder.path() / "results.json"), results);
 }
 
+TEST(ResultsJson, NeedsNoTitleOfAScenario) {
+  StudyResults results = sample();
+  results.scenarios.front().title.clear();
+  const test::TemporaryFolder folder;
+  write_results(results, folder.path() / "results.json");
+  EXPECT_EQ(read_results(folder.path() / "results.json"), results);
+}
+
+TEST(ResultsJson, KeepsMeasurementsWhereANameIsNoUtf8) {
+  StudyResults results = sample();
+  results.scenarios.front().title =
+      "Stra\xdf"
+      "e";
+  const test::TemporaryFolder folder;
+  write_results(results, folder.path() / "results.json");
+  results.scenarios.front().title = "Stra\ufffde";
+  EXPECT_EQ(read_results(folder.path() / "results.json"), results);
+}
+
 TEST(ResultsJson, KeepsEveryListOfNumbersInOneLine) {
   const Json numbers(std::vector<int>(60, 1));
   const Json objects(std::vector<Json>(2, Json{{"name", std::string(60, 'a')}}));

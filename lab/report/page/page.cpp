@@ -5,6 +5,7 @@
 #include "io/stream/base64.hpp"
 #include "io/stream/output_file.hpp"
 #include "lab/report/page/packed_arrays.hpp"
+#include "lab/report/page/prose.hpp"
 #include "lab/report/page/viewer_sources.hpp"
 #include "lab/study/results_json.hpp"
 #include <meshorder/error.hpp>
@@ -48,7 +49,7 @@ Json describe(const PageMotion& motion, const StudyResults& results, PackedArray
                                    [&](const ScenarioRecord& one) { return one.name == motion.scenario; });
   Json json{{"scenario", motion.scenario}, {"title", motion.scenario}};
   if (record != results.scenarios.end()) {
-    json["title"] = record->title;
+    if (!record->title.empty()) json["title"] = record->title;
     json["mesh"] = record->mesh;
   }
   json["steps"] = motion.steps;
@@ -102,30 +103,9 @@ std::string table_of(const Page& page, std::string_view id) {
   return table == page.tables.end() ? "" : to_html(*table);
 }
 
-/// Returns text as HTML, with text in `backticks` as code and a no-break space before per cent signs.
-std::string prose(std::string text) {
-  constexpr std::string_view kApart = " %", kTogether = "\u00a0%";
-  for (auto at = text.find(kApart); at != std::string::npos; at = text.find(kApart, at))
-    text.replace(at, kApart.size(), kTogether);
-  std::string html;
-  bool in_code = false;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find('`', begin), text.size());
-    html += xml_escaped(std::string_view(text).substr(begin, end - begin));
-    if (end < text.size() && (in_code || text.find('`', end + 1) != std::string_view::npos)) {
-      in_code = !in_code;
-      html += in_code ? "<code>" : "</code>";
-    } else if (end < text.size()) {
-      html += '`';
-    }
-    begin = end + 1;
-  }
-  return html;
-}
-
 std::string findings_in(const Page& page) {
   std::string html;
-  for (const std::string& finding : page.findings) html += "<p>" + prose(finding) + "</p>\n";
+  for (const std::string& finding : page.findings) html += "<p>" + prose_as_html(finding) + "</p>\n";
   return html;
 }
 

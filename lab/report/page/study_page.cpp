@@ -4,6 +4,7 @@
 #include "io/npy.hpp"
 #include "io/stream/output_file.hpp"
 #include "lab/report/findings/findings.hpp"
+#include "lab/report/page/prose.hpp"
 #include "lab/study/results_json.hpp"
 #include <meshorder/error.hpp>
 
@@ -91,8 +92,8 @@ std::string title_of(const StudyResults& results) {
 }
 
 std::string markdown_of(const Page& page) {
-  std::string text = "# " + page.title + "\n\n";
-  for (const std::string& finding : page.findings) text += finding + "\n\n";
+  std::string text = "# " + markdown_escaped(page.title) + "\n\n";
+  for (const std::string& finding : page.findings) text += prose_as_markdown(finding) + "\n\n";
   return text + to_markdown(page.tables);
 }
 

@@ -118,8 +118,8 @@ Table protocol_table(const StudyResults& results) {
   for (const ScenarioRecord& scenario : results.scenarios) {
     const std::string head = "Scenario " + scenario.name;
     add(table, head.c_str(),
-        text_cell(fmt::format("{}: {}, {}, on {}", scenario.title, scenario.method, scenario.material,
-                              scenario.mesh)));
+        text_cell(fmt::format("{}{}{}, {}, on {}", scenario.title, scenario.title.empty() ? "" : ": ",
+                              scenario.method, scenario.material, scenario.mesh)));
   }
   return table;
 }

@@ -11,17 +11,6 @@
 namespace meshorder {
 namespace {
 
-/// As it stands in a line of Markdown: nothing in it is markup, nor ends a cell or the line.
-std::string markdown_escaped(std::string_view text) {
-  constexpr std::string_view kMarkup = "\\`*_[]<>|#~&";
-  std::string result;
-  for (const char c : text) {
-    if (kMarkup.find(c) != std::string_view::npos) result += '\\';
-    result += c == '\n' || c == '\r' || c == '\t' ? ' ' : c;
-  }
-  return result;
-}
-
 /// As a field of a CSV file.
 std::string csv_escaped(std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
@@ -41,6 +30,16 @@ bool has_numbers(const Table& table, std::size_t column) {
 }
 
 }  // namespace
+
+std::string markdown_escaped(std::string_view text) {
+  constexpr std::string_view kMarkup = "\\`*_[]<>|#~&";
+  std::string result;
+  for (const char c : visible(text, "\n\r\t")) {
+    if (kMarkup.find(c) != std::string_view::npos) result += '\\';
+    result += c == '\n' || c == '\r' || c == '\t' ? ' ' : c;
+  }
+  return result;
+}
 
 std::string to_markdown(const std::vector<Table>& tables) {
   std::string text;

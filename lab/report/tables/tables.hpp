@@ -44,6 +44,10 @@ std::vector<Table> tables_of(const StudyResults& results);
 std::string to_markdown(const std::vector<Table>& tables);
 /// Returns the tables as CSV (RFC 4180), a line for each cell: table,row,column,text,value.
 std::string to_csv(const std::vector<Table>& tables);
+/// Returns text for a line of Markdown: nothing in it is markup, nor ends a cell of a table or the line.
+/// Control characters are shown as escapes.
+std::string markdown_escaped(std::string_view text);
+
 /// Returns a table element with data-value attributes; text is escaped.
 std::string to_html(const Table& table);
 

@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/abaqus/output.hpp"
 
+#include "base/text.hpp"
 #include "io/abaqus/cards.hpp"
+#include "io/names.hpp"
 
 #include <fmt/format.h>
 
@@ -65,15 +67,13 @@ struct RealText {
 /// Returns a name that decks can have and that is not taken yet, in any case; takes it.
 std::string name_for(const std::string& given, std::set<std::string>& taken) {
   constexpr std::size_t kLongest = 80;
-  std::string name = given;
-  std::replace_if(
-      name.begin(), name.end(),
-      [](unsigned char c) { return c <= ' ' || c == ',' || c == '"' || c == '=' || c == '*' || c == '.'; },
-      '_');
+  std::string name = plain_name(given, " ,\"=*.");
   if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0) name = "set_" + name;
-  name.resize(std::min(name.size(), kLongest));
-  std::string result = name;
-  for (int k = 2; !taken.insert(capitals(result)).second; ++k) result = fmt::format("{}_{}", name, k);
+  std::string result(utf8_prefix(name, kLongest));
+  for (int k = 2; !taken.insert(capitals(result)).second; ++k) {
+    const std::string end = fmt::format("_{}", k);
+    result = std::string(utf8_prefix(name, kLongest - end.size())) + end;
+  }
   return result;
 }
 
@@ -152,7 +152,7 @@ void write_sets(DeckOutput& out, const std::vector<EntitySet>& sets,
       continue;
     }
     const std::string name = name_for(set.name, taken[of_nodes ? 0 : 1]);
-    if (name != set.name) notes.push_back(fmt::format("the set '{}' is written as '{}'", set.name, name));
+    note_renamed_set(set, name, notes);
     std::vector<std::int64_t> numbers;
     numbers.reserve(set.members.size());
     for (const Index member : set.members) {

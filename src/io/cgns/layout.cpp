@@ -1,8 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
+#include "base/text.hpp"
 #include "io/cell_division.hpp"
 #include "io/cgns/cgns.hpp"
 #include "io/labels.hpp"
+#include "io/names.hpp"
 #include "io/unsupported.hpp"
 
 #include <fmt/format.h>
@@ -33,32 +35,21 @@ class NodeNames {
   }
 
   std::string take(const std::string& wanted, Notes& notes) {
-    std::string name = wanted;
-    std::replace(name.begin(), name.end(), '/', '_');
+    std::string name = plain_name(wanted, "/");
     const std::size_t first = name.find_first_not_of(' ');
     name = first == std::string::npos ? "_" : name.substr(first, name.find_last_not_of(' ') - first + 1);
     if (name == "." || name == "..") name = "_";
-    name = cut(name, kLongestName);
+    name = std::string(utf8_prefix(name, kLongestName));
     const std::string base = name;
     for (int k = 2; !names_.insert(name).second; ++k) {
       const std::string end = fmt::format(" {}", k);
-      name = cut(base, kLongestName - end.size()) + end;
+      name = std::string(utf8_prefix(base, kLongestName - end.size())) + end;
     }
     if (name != wanted) notes.push_back(fmt::format("the name '{}' becomes '{}'", wanted, name));
     return name;
   }
 
  private:
-  /// Returns the first bytes of a text, no part of a character of UTF-8.
-  static std::string cut(const std::string& text, std::size_t most) {
-    std::size_t length = std::min(most, text.size());
-    while (length > 0 && length < text.size() &&
-           (static_cast<unsigned char>(text[length]) & 0xC0U) == 0x80U) {
-      --length;
-    }
-    return text.substr(0, length);
-  }
-
   std::set<std::string> names_;
 };
 
@@ -236,7 +227,9 @@ class Addition {
 
   void add() {
     std::set<std::pair<Association, std::string>> known;
-    for (const Field& field : metadata_.fields) known.insert({field.association, field.array});
+    for (const Field& field : metadata_.fields) {
+      if (!field.array.empty()) known.insert({field.association, field.array});
+    }
     if (metadata_.zones.size() > 1) known.insert({Association::cells, std::string(kZone)});
     if (metadata_.has_labels) known.insert({Association::cells, std::string(kLabel)});
     for (const DataArray& array : mesh_.data) {
@@ -248,7 +241,9 @@ class Addition {
       }
     }
     std::set<std::pair<Association, std::string>> known_sets;
-    for (const PointList& list : metadata_.lists) known_sets.insert({list.association, list.set});
+    for (const PointList& list : metadata_.lists) {
+      if (!list.set.empty()) known_sets.insert({list.association, list.set});
+    }
     for (const EntitySet& set : mesh_.sets) {
       if (!known_sets.contains({set.association, set.name})) add_set(set);
     }

@@ -2,9 +2,11 @@
 #include "io/exodus/exodus.hpp"
 
 #include "base/index.hpp"
+#include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/exodus/writing.hpp"
 #include "io/labels.hpp"
+#include "io/names.hpp"
 #include "io/unsupported.hpp"
 
 #include <fmt/format.h>
@@ -20,6 +22,16 @@
 // Writes a file: points, blocks of elements and their numbers, and all that is kept as it is.
 
 namespace meshorder::exodus {
+namespace {
+
+constexpr std::size_t kLongestName = 255;
+
+/// Returns a name as a table of names can hold it: readers take blanks at its ends for padding.
+std::string held_name(const std::string& name) {
+  return std::string(utf8_prefix(trimmed(plain_name(name)), kLongestName));
+}
+
+}  // namespace
 
 const DataArray* Writing::take(std::string_view name, Association association) {
   const DataArray* const array = name.empty() ? nullptr : find_array(mesh, name, association);
@@ -42,7 +54,8 @@ void Writing::write_names(const std::string& variable, const std::string& count,
   const NcSink sink = declare(variable, kChar, {count, "len_name"});
   const std::size_t length = metadata.name_length;
   std::string table(names.size() * length, '\0');
-  for (std::size_t i = 0; i < names.size(); ++i) names[i].copy(table.data() + i * length, length - 1);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    held_name(names[i]).copy(table.data() + i * length, length - 1);
   file.later([sink, table, rows = names.size(), length] { sink.bytes({rows, length}, table); });
 }
 
@@ -81,8 +94,6 @@ std::vector<std::int64_t> whole_values(const Values& values) {
 }
 
 namespace {
-
-constexpr std::size_t kLongestName = 255;
 
 const Metadata* own_metadata(const Mesh& mesh) {
   return dynamic_cast<const Metadata*>(mesh.format_metadata.get());
@@ -203,8 +214,8 @@ std::vector<const EntitySet*> name_blocks(Writing& writing) {
       return !set.members.empty() && set.members.front() >= plan.cells.first &&
              set.members.front() < plan.cells.first + plan.cells.count;
     });
-    const bool names_block = !is_element_set && block != writing.blocks.end() && block->name.empty() &&
-                             index_size(set.members) == block->cells.count &&
+    const bool names_block = !is_element_set && !trimmed(set.name).empty() && block != writing.blocks.end() &&
+                             block->name.empty() && index_size(set.members) == block->cells.count &&
                              std::all_of(set.members.begin(), set.members.end(), [&](Index c) {
                                return c >= block->cells.first && c < block->cells.first + block->cells.count;
                              });
@@ -542,13 +553,13 @@ void write_plain(Writing& writing) {
 }
 
 /// Returns the length of the names that are written, up to 255, with their zero bytes; at least that of the
-/// file that the mesh came from. Notes names that are cut.
+/// file that the mesh came from. Notes names that are changed.
 std::size_t length_of_names(const Writing& writing, const std::vector<std::string>& names) {
   std::size_t longest = writing.metadata.name_length;
   for (const std::string& name : names) {
     longest = std::max(longest, std::min(name.size(), kLongestName) + 1);
-    if (name.size() > kLongestName) {
-      writing.notes.push_back(fmt::format("the name '{}' is cut to {} characters", name, kLongestName));
+    if (const std::string held = held_name(name); held != name) {
+      writing.notes.push_back(fmt::format("the name '{}' is written as '{}'", name, held));
     }
   }
   return longest;

@@ -137,8 +137,9 @@ class SeriesPlanner {
   }
 
   void add(const DataArray& array, Index component, const std::string& wanted) {
-    std::string name = wanted;
-    for (int k = 2; !names_.insert(name).second; ++k) name = fmt::format("{} ({})", wanted, k);
+    const std::string held = trimmed(wanted).empty() ? "unnamed" : wanted;
+    std::string name = held;
+    for (int k = 2; !names_.insert(name).second; ++k) name = fmt::format("{} ({})", held, k);
     if (name != wanted) {
       writing_.notes.push_back(fmt::format("the array '{}' is written as the variable '{}'", wanted, name));
     }

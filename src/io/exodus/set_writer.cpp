@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
+#include "base/text.hpp"
 #include "io/exodus/writing.hpp"
 #include "io/unsupported.hpp"
 
@@ -121,6 +122,10 @@ class FamilyPlanner {
     }
     const bool has_word = in_mesh.starts_with(kind_.word);
     plan.name = has_word ? in_mesh.substr(kind_.word.size()) : in_mesh;
+    if (trimmed(plan.name).empty()) {
+      plan.name = "unnamed";
+      writing_.notes.push_back(fmt::format("the set '{}' is written as '{}'", in_mesh, plan.name));
+    }
     plan.id = has_word ? number_of(plan.name) : -1;
     if (plan.id >= 0) plan.name.clear();
     return plan;

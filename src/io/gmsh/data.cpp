@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/gmsh/gmsh.hpp"
+#include "io/names.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 
@@ -279,6 +280,12 @@ void name_views(ReadContext& reading) {
   }
 }
 
+std::string name_in_quotes(std::string_view name) {
+  std::string result = plain_name(name);
+  std::replace(result.begin(), result.end(), '"', '\'');
+  return result;
+}
+
 bool add_view(Metadata& layout, const DataArray& array, Notes& notes) {
   const Index components = gmsh_components(array.components);
   if (std::holds_alternative<std::vector<std::string>>(array.values) || components == 0) {
@@ -306,9 +313,9 @@ bool add_view(Metadata& layout, const DataArray& array, Notes& notes) {
   view.section = array.association == Association::vertices ? "NodeData" : "ElementData";
   view.association = array.association;
   view.array = array.name;
-  view.strings = {'"' + array.name + '"'};
-  std::replace(view.strings[0].begin() + 1, view.strings[0].end() - 1, '"', '\'');
-  std::replace(view.strings[0].begin(), view.strings[0].end(), '\n', ' ');
+  const std::string name = name_in_quotes(array.name);
+  note_renamed_array(array, name, notes);
+  view.strings = {'"' + name + '"'};
   view.reals = {0.0};
   view.integers = {0, components, 0};
   layout.sections.push_back({SectionKind::view, view.section, "", layout.views.size()});

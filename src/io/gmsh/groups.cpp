@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/gmsh/gmsh.hpp"
+#include "io/names.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/unsupported.hpp"
 
@@ -208,12 +209,8 @@ std::string entities_text(const std::map<Entity, Group>& entities) {
 
 std::string names_text(const std::vector<PhysicalName>& names) {
   std::string text = fmt::format("{}\n", names.size());
-  for (const PhysicalName& name : names) {
-    std::string shown = name.name;
-    std::replace(shown.begin(), shown.end(), '"', '\'');
-    std::replace(shown.begin(), shown.end(), '\n', ' ');
-    text += fmt::format("{} {} \"{}\"\n", name.dimension, name.tag, shown);
-  }
+  for (const PhysicalName& name : names)
+    text += fmt::format("{} {} \"{}\"\n", name.dimension, name.tag, name.name);
   return text;
 }
 
@@ -276,6 +273,7 @@ std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups,
   const NumbersOfSets numbers(mesh, labels);
   std::int64_t next = labels.empty() ? 1 : std::int64_t{*std::max_element(labels.begin(), labels.end())} + 1;
   std::vector<PhysicalName> names;
+  DistinctNames distinct;
   for (std::size_t s = 0; s < mesh.sets.size(); ++s) {
     const EntitySet& set = mesh.sets[s];
     if (set.association == Association::vertices || set.members.empty() ||
@@ -287,7 +285,9 @@ std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups,
     split_by_set(groups, set, physical);
     std::set<std::int32_t> dimensions;
     for (const Index c : set.members) dimensions.insert(dimension(mesh.cells.shapes[c]));
-    for (const std::int32_t dim : dimensions) names.push_back({dim, physical, set.name});
+    const std::string name = distinct.take(name_in_quotes(set.name));
+    note_renamed_set(set, name, notes);
+    for (const std::int32_t dim : dimensions) names.push_back({dim, physical, name});
   }
   return names;
 }

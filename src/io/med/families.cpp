@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
+#include "base/text.hpp"
 #include "io/labels.hpp"
 #include "io/med/med.hpp"
+#include "io/names.hpp"
 #include "io/stream/read_limits.hpp"
 
 #include <fmt/format.h>
@@ -182,7 +184,7 @@ class FamilyWriter {
   }
 
   void add_sets(Combinations& combinations) {
-    std::set<std::string> names;
+    DistinctNames names(kLongestGroup);
     bool any = false;
     for (const EntitySet& set : writing_.mesh.sets) {
       if (set.association != association_) continue;
@@ -205,12 +207,11 @@ class FamilyWriter {
     }
   }
 
-  std::string unused_name(const std::string& name, std::set<std::string>& names) {
-    std::string result = name.substr(0, kLongestGroup);
-    for (int k = 2; !names.insert(result).second; ++k) {
-      const std::string number = fmt::format("_{}", k);
-      result = name.substr(0, kLongestGroup - number.size()) + number;
-    }
+  /// Returns a name that a group can have: blanks at its end fill up its place in the file.
+  std::string unused_name(const std::string& name, DistinctNames& names) {
+    const std::string plain = plain_name(utf8(name));
+    const std::string_view held = std::string_view(plain).substr(0, plain.find_last_not_of(' ') + 1);
+    std::string result = names.take(held.empty() ? "group" : held);
     if (result != name) {
       writing_.notes.push_back(fmt::format("the set '{}' of {} is written as the group '{}'", name,
                                            to_string(association_), result));

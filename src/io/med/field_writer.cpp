@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
+#include "base/text.hpp"
 #include "io/med/med.hpp"
+#include "io/names.hpp"
 
 #include <fmt/format.h>
 
@@ -27,10 +29,9 @@ bool is_text_array(const DataArray& array) {
 }
 
 /// Returns a name with what HDF5 and MED allow.
-std::string clean_name(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' '; }, '_');
-  name.resize(std::min(name.size(), kLongestName));
+std::string clean_name(const std::string& given) {
+  const std::string plain = plain_name(utf8(given), "/");
+  std::string name(utf8_prefix(plain, kLongestName));
   if (name.empty() || name == "." || name == "..") return "array";
   return name;
 }

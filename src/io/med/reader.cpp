@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "base/resize_in_steps.hpp"
+#include "base/text.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/labels.hpp"
 #include "io/med/med.hpp"
@@ -35,23 +36,10 @@ std::pair<Index, Index> Reading::range(const GeometryType* type) const {
 }
 
 std::string utf8(std::string text) {
-  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
-  const auto is_valid = [&] {
-    for (std::size_t at = 0; at < text.size();) {
-      const unsigned char first = byte(at++);
-      std::size_t more = 0;
-      if (first >= 0x80) more = first >= 0xC2 && first < 0xE0 ? 1 : first >= 0xE1 && first < 0xF0 ? 2 : 4;
-      if (more > 2 || at + more > text.size()) return false;
-      for (; more > 0; --more) {
-        if ((byte(at++) & 0xC0U) != 0x80U) return false;
-      }
-    }
-    return true;
-  };
-  if (is_valid()) return text;
+  if (is_utf8(text)) return text;
   std::string result;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    const unsigned char one = byte(at);
+  for (const char c : text) {
+    const auto one = static_cast<unsigned char>(c);
     if (one < 0x80) {
       result += static_cast<char>(one);
     } else {

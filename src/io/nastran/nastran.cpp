@@ -4,6 +4,7 @@
 #include "io/all_formats.hpp"
 #include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
+#include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
@@ -147,10 +148,8 @@ void append_set(std::string& out, std::int64_t number, const EntitySet& set,
                                 to_string(set.association)));
     return;
   }
-  std::string name = set.name;
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, '_');
-  if (name != set.name) notes.push_back(fmt::format("the set '{}' is written as '{}'", set.name, name));
+  const std::string name = plain_name(set.name);
+  note_renamed_set(set, name, notes);
   std::vector<std::string> texts{std::to_string(number),
                                  set.association == Association::vertices ? "GRID" : "ELEM"};
   for (const std::int64_t member : members) texts.push_back(std::to_string(member));

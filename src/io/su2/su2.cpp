@@ -1,8 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/su2/su2.hpp"
 
+#include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/labels.hpp"
+#include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
@@ -45,6 +47,7 @@ struct Markers {
   int dimension;  ///< of the elements; that of markers is one less
   std::vector<Marker> markers;
   std::map<std::string, std::size_t, std::less<>> places;  ///< of markers, by name
+  DistinctNames names;                                     ///< of the sets' markers
   std::vector<bool> marked;
   Notes notes;
   bool has_lost_labels = false;
@@ -97,12 +100,11 @@ struct Markers {
 
   /// Returns a set's name without what would end it in a file.
   std::string name_of(const EntitySet& set) {
-    std::string name = set.name;
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return c == '%' || c == '\n' || c == '\r' || c == '='; }, '_');
-    name.erase(0, name.find_first_not_of(" \t"));
-    name.erase(name.find_last_not_of(" \t") + 1);
+    const std::string plain = plain_name(set.name, "%=");
+    std::string name(trimmed(plain));
     if (name.empty()) name = kUnmarked;
+    if (name == "SEND_RECEIVE") name += '_';  // SU2's own, of the parts of a mesh
+    name = names.take(name);
     if (name != set.name) notes.push_back(fmt::format("the set '{}' is the marker '{}'", set.name, name));
     if (name.find_first_of(" \t") != std::string::npos) {
       notes.push_back(fmt::format("the marker '{}' has a blank, which SU2 leaves out of the name", name));

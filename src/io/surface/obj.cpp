@@ -4,6 +4,7 @@
 // (https://paulbourke.net/dataformats/obj/): polygons, lines and points with texture coordinates and normals
 // of their corners, groups, materials and other states. Free-form curves and surfaces are not read.
 #include "io/all_formats.hpp"
+#include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/surface/obj_parts.hpp"
 #include "io/surface/surface_data.hpp"
@@ -50,6 +51,7 @@ class ObjWriter {
     find_corner_data();
     find_states();
     find_groups();
+    name_groups();
     if (native_) out_.write(native_->comments + native_->libraries);
     write_vertices();
     write_lists();
@@ -163,13 +165,19 @@ class ObjWriter {
     return {groups_.data() + group_offsets_[cell], groups_.data() + group_offsets_[cell + 1]};
   }
 
-  /// Returns a set's name as one word, as required of a group's name.
-  static std::string group_name(const EntitySet& set) {
-    std::string name = set.name.empty() ? "unnamed" : set.name;
-    std::replace_if(
-        name.begin(), name.end(),
-        [](char c) { return std::string_view(" \t\r\n").find(c) != std::string_view::npos; }, '_');
+  /// Returns a set's name as one word, as required of a group's name. A backslash at its end would join the
+  /// next line to it.
+  static std::string one_word(const EntitySet& set) {
+    std::string name = plain_name(set.name.empty() ? "unnamed" : set.name, " ");
+    for (std::size_t at = name.size(); at > 0 && name[at - 1] == '\\'; --at) name[at - 1] = '_';
     return name;
+  }
+
+  void name_groups() {
+    DistinctNames names;
+    for (const EntitySet& set : mesh_.sets)
+      group_names_.push_back(set.association == Association::cells ? names.take(one_word(set))
+                                                                   : std::string());
   }
 
   void write_vertices() {
@@ -221,9 +229,9 @@ class ObjWriter {
 
   /// Writes names that no cell has once, to preserve them.
   void write_unused_names() {
-    for (const EntitySet& set : mesh_.sets) {
-      if (set.association != Association::cells || !set.members.empty()) continue;
-      out_.print("g {}\n", group_name(set));
+    for (std::size_t s = 0; s < mesh_.sets.size(); ++s) {
+      if (mesh_.sets[s].association != Association::cells || !mesh_.sets[s].members.empty()) continue;
+      out_.print("g {}\n", group_names_[s]);
       in_group_ = true;
     }
     for (std::size_t i = 0; native_ && i < kStates.size(); ++i) {
@@ -243,7 +251,7 @@ class ObjWriter {
       out_.write("g");
       Index previous = -1;  // a set may hold a cell twice
       for (const Index s : groups) {
-        if (s != previous) out_.print(" {}", group_name(mesh_.sets[s]));
+        if (s != previous) out_.print(" {}", group_names_[s]);
         previous = s;
       }
       out_.write("\n");
@@ -280,11 +288,12 @@ class ObjWriter {
     for (const DataArray& array : mesh_.data) {
       if (!written_.contains(&array)) note_array_unsupported(array, "OBJ", notes_);
     }
-    for (const EntitySet& set : mesh_.sets) {
+    for (std::size_t s = 0; s < mesh_.sets.size(); ++s) {
+      const EntitySet& set = mesh_.sets[s];
       if (set.association == Association::vertices) {
         note_set_unsupported(set, "OBJ", notes_);
-      } else if (group_name(set) != set.name) {
-        notes_.push_back(fmt::format("the set '{}' is written as the group '{}'", set.name, group_name(set)));
+      } else if (group_names_[s] != set.name) {
+        notes_.push_back(fmt::format("the set '{}' is written as the group '{}'", set.name, group_names_[s]));
       }
     }
     note_ids_unsupported(mesh_, "OBJ", notes_);
@@ -308,6 +317,7 @@ class ObjWriter {
   std::array<std::string, kStates.size()> current_;
   std::vector<Offset> group_offsets_;
   std::vector<Index> groups_;
+  std::vector<std::string> group_names_;  // of all sets; empty for those of vertices
   bool in_group_ = false;
 };
 

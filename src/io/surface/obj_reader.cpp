@@ -135,7 +135,10 @@ class Reader {
         break;
       }
     }
-    read_line(trimmed(joined));
+    // a backslash that joins nothing has no meaning, and must not end the line when it is written
+    std::string_view line = trimmed(joined);
+    while (line.ends_with('\\')) line = trimmed(line.substr(0, line.size() - 1));
+    read_line(line);
     for (; lines > 0; --lines) (void)scanner_.raw_line();
   }
 

@@ -4,6 +4,7 @@
 // https://paulbourke.net/dataformats/ply/, as text and binary in either byte order. Vertices, faces, edges
 // and tetrahedra are understood with all their properties.
 #include "io/all_formats.hpp"
+#include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/surface/ply_parts.hpp"
 #include "io/surface/surface_data.hpp"
@@ -285,12 +286,10 @@ class Columns {
   /// Adds any other array: a property of its name, or a list if it has several components or gaps.
   void add_other(const DataArray& array) {
     if (std::holds_alternative<std::vector<std::string>>(array.values)) return;
-    std::string name = array.name;
-    std::replace_if(
-        name.begin(), name.end(), [](unsigned char c) { return c <= ' '; }, '_');
+    const std::string name = plain_name(array.name.empty() ? "unnamed" : array.name, " ");
     const Property as_scalar = scalar(name, {});
     const bool reserved = is_geometry(as_scalar) || ply::is_corner_list({name, {}, true, {}});
-    if (name.empty() || reserved || is_taken(name)) return;
+    if (reserved || is_taken(name)) return;
     if (name != array.name) note(fmt::format("the array '{}' is written as '{}'", array.name, name));
     Property property = scalar(name, written_type(array.values));
     property.is_list = !covers_table(array);

@@ -5,6 +5,7 @@
 #include "io/all_formats.hpp"
 #include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
+#include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
@@ -25,6 +26,7 @@ namespace {
 constexpr std::string_view kName = "I-deas";
 constexpr std::size_t kLongestGroup = 40;
 constexpr std::size_t kLongestLine = 80;
+constexpr std::string_view kDelimiter = "-1";         // of datasets
 constexpr int kWidth = 10;                            // of whole numbers
 constexpr std::int64_t kLargestNumber = 999'999'999;  // more digits fill the width
 constexpr int kDigitsOfCoordinates = 16;
@@ -334,28 +336,20 @@ class UnvWriter {
     list(numbers);
   }
 
-  /// Returns a name that groups can have and that is not taken yet; takes it.
-  static std::string name_for(const std::string& given, std::set<std::string>& taken) {
-    std::string name(trimmed(given));
-    // Gmsh reads the first word
-    std::replace_if(
-        name.begin(), name.end(), [](unsigned char c) { return c <= ' '; }, '_');
-    if (name.empty()) name = "group";
-    name.resize(std::min(name.size(), kLongestGroup));
-    std::string result = name;
-    for (int k = 2; !taken.insert(result).second; ++k) {
-      const std::string end = fmt::format("_{}", k);
-      result = name.substr(0, kLongestGroup - end.size()) + end;
-    }
-    return result;
+  /// Returns a name that groups can have and that is not taken yet; takes it. A line that is the delimiter of
+  /// datasets would end the groups.
+  static std::string name_for(const std::string& given, DistinctNames& taken) {
+    const std::string name = plain_name(trimmed(given), " ");  // Gmsh reads the first word
+    if (name.empty()) return taken.take("group");
+    return taken.take(name == kDelimiter ? "_" + name : name);
   }
 
   /// Writes sets that no group of the file is; those of one name become one group.
   void write_new_groups() {
-    std::set<std::string> taken;
+    DistinctNames taken(kLongestGroup);
     std::int64_t last = 0;
     for (const Group& group : file_.groups) {
-      taken.insert(group.name);
+      (void)taken.take(group.name);
       last = std::max(last, group.fields[0]);
     }
     bool begun = false;
@@ -373,7 +367,7 @@ class UnvWriter {
         continue;
       }
       const std::string name = name_for(set.name, taken);
-      if (name != set.name) notes_.push_back(fmt::format("the set '{}' is written as '{}'", set.name, name));
+      note_renamed_set(set, name, notes_);
       if (!begun) lines_.begin_dataset(dataset_of_groups());
       begun = true;
       write_group(dataset_of_groups(), {++last, 0, 0, 0, 0, 0, 0}, name, members);
@@ -490,13 +484,11 @@ class UnvWriter {
       return known.components == array.components;
     });
     const bool is_known = meaning != kMeanings.end();
-    std::string name = array.name;
-    std::replace_if(
-        name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, '_');
-    name = name.empty() ? "results" : name.substr(0, kLongestLine);
-    if (name != array.name) {
-      notes_.push_back(fmt::format("the array '{}' is written as '{}'", array.name, name));
-    }
+    std::string name = plain_name(array.name);
+    if (trimmed(name).empty()) name = "results";
+    if (trimmed(name) == kDelimiter) name = "_" + name;
+    name = std::string(utf8_prefix(name, kLongestLine));
+    note_renamed_array(array, name, notes_);
     lines_.begin_dataset(kResults);
     lines_.integer(label);
     lines_.end_line();

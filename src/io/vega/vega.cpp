@@ -5,6 +5,7 @@
 // come in VTK's order.
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
+#include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include "io/vega/parts.hpp"
@@ -230,9 +231,18 @@ class VegaWriter {
     return fits ? native_->element_word : usual;
   }
 
+  /// Returns a name that a line of Vega can hold.
+  std::string name_of(const EntitySet& set) {
+    const std::string name = plain_name(set.name, "#");
+    const std::string_view words = trimmed(name);
+    std::string result = set_names_.take(words.empty() ? "set" : words);
+    note_renamed_set(set, result, notes_);
+    return result;
+  }
+
   void write_set(const EntitySet& set) {
     constexpr std::size_t kPerLine = 8;
-    out_.print("*SET {}\n", set.name);
+    out_.print("*SET {}\n", name_of(set));
     for (std::size_t i = 0; i < set.members.size(); ++i) {
       const bool last = i + 1 == set.members.size();
       const bool full = (i + 1) % kPerLine == 0;
@@ -247,6 +257,7 @@ class VegaWriter {
   OutputFile out_;
   std::vector<Section> sections_;
   std::vector<EntitySet> label_sets_;
+  DistinctNames set_names_;
 };
 
 std::string vega_conflict(const Mesh& mesh) {

@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
 #include "io/labels.hpp"
 #include "io/unsupported.hpp"
 #include "io/vtk/vtk.hpp"
@@ -57,12 +58,14 @@ std::vector<Number> filled(const DataArray& array, const std::vector<Number>& va
 /// Makes array names distinct, as VTK looks arrays up by name.
 class Names {
  public:
+  /// Names in XML cannot have control characters; in other files they are encoded.
+  explicit Names(bool in_xml) : in_xml_(in_xml) {}
+
   std::string unused(const std::string& wanted, Association association, Notes& notes) {
-    std::string name = wanted.empty() ? "array" : wanted;
-    for (char& c : name) {
-      if (static_cast<unsigned char>(c) < ' ') c = '_';  // not allowed in XML
-    }
-    for (int i = 2; !taken_.emplace(association, name).second; ++i) name = wanted + "_" + std::to_string(i);
+    std::string held = wanted.empty() ? "array" : in_xml_ ? xml_text(wanted) : wanted;
+    if (!in_xml_ && held == "NULL_ARRAY") held += '_';  // readers skip an array of this name
+    std::string name = held;
+    for (int i = 2; !taken_.emplace(association, name).second; ++i) name = held + "_" + std::to_string(i);
     if (name != wanted)
       notes.push_back(
           fmt::format("the array '{}' on {} is written as '{}'", wanted, to_string(association), name));
@@ -70,6 +73,7 @@ class Names {
   }
 
  private:
+  bool in_xml_;
   std::set<std::pair<Association, std::string>> taken_;
 };
 
@@ -156,9 +160,9 @@ bool is_from_vtk(const Mesh& mesh) {
   return dynamic_cast<const Metadata*>(mesh.format_metadata.get()) != nullptr;
 }
 
-WriteContext::WriteContext(const Mesh& written, Notes& warnings)
+WriteContext::WriteContext(const Mesh& written, Notes& warnings, bool in_xml)
     : mesh(written), notes(warnings), metadata(metadata_of(mesh, notes)), types(cell_types(mesh)) {
-  collect_arrays();
+  collect_arrays(in_xml);
 }
 
 void WriteContext::add_made(DataArray array) {
@@ -166,8 +170,8 @@ void WriteContext::add_made(DataArray array) {
   arrays.push_back(made_.back().get());
 }
 
-void WriteContext::collect_arrays() {
-  Names names;
+void WriteContext::collect_arrays(bool in_xml) {
+  Names names(in_xml);
   for (const DataArray& array : mesh.data) {
     // written as the cell types
     if (array.association == Association::cells && array.name == kCellTypes) continue;

@@ -222,7 +222,8 @@ Values marks_of(const EntitySet& set, Index count);
 /// arrays "vertex_id" and "cell_id"; all of it noted. O(size of the arrays that are made).
 struct WriteContext {
   /// Of a mesh whose cells VTK's formats hold.
-  WriteContext(const Mesh& written, Notes& warnings);
+  /// `in_xml`: the names of arrays are written in XML, which cannot hold all characters.
+  WriteContext(const Mesh& written, Notes& warnings, bool in_xml);
 
   /// Returns the cells in VTK's order of vertices; of VTK before version 9 if `old_hexahedra`. The result
   /// belongs to the mesh or to this object.
@@ -238,7 +239,7 @@ struct WriteContext {
   std::vector<const DataArray*> arrays;  ///< full arrays with distinct names, in order
 
  private:
-  void collect_arrays();
+  void collect_arrays(bool in_xml);
   void add_made(DataArray array);
 
   std::vector<std::unique_ptr<DataArray>> made_;  // arrays that are not the mesh's

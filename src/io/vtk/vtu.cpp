@@ -56,7 +56,7 @@ struct Section {
 class VtuWriter {
  public:
   VtuWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
-      : from_(mesh, notes), encoding_(from_.metadata.vtu.value_or(VtuEncoding{})), out_(path) {
+      : from_(mesh, notes, true), encoding_(from_.metadata.vtu.value_or(VtuEncoding{})), out_(path) {
     if (VtuCompressor::available(encoding_.compressor)) return;
     if (encoding_.mode != Mode::ascii)
       notes.push_back(fmt::format("written without compression: this build of meshorder lacks {} ({}=ON)",

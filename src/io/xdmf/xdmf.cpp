@@ -2,6 +2,7 @@
 #include "io/xdmf/xdmf.hpp"
 
 #include "base/index.hpp"
+#include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
@@ -574,9 +575,7 @@ class XdmfWriter {
   /// Returns a name that no other attribute has.
   std::string unused_name(const DataArray& array) {
     const std::string wanted = array.name.empty() ? "array" : array.name;
-    std::string clean = wanted;
-    std::replace_if(
-        clean.begin(), clean.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '_');
+    const std::string clean = meshorder::xml_text(wanted);
     std::string name = clean;
     for (int k = 2; !names_.emplace(array.association, name).second; ++k)
       name = fmt::format("{}_{}", clean, k);

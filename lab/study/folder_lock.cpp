@@ -1,0 +1,56 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/study/folder_lock.hpp"
+
+#include <meshorder/error.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace meshorder {
+namespace {
+
+/// Returns the number of the process that holds a lock on an open file, as Linux lists them; 0 if it is not
+/// found.
+long holder_of(int descriptor) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) return 0;
+  const std::string inode = fmt::format(":{}", status.st_ino);
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    // 1: FLOCK  ADVISORY  WRITE 1234 08:01:5678 0 EOF
+    std::istringstream words(line);
+    std::string number, kind, force, access, place;
+    long process = 0;
+    if (words >> number >> kind >> force >> access >> process >> place && kind == "FLOCK" &&
+        place.ends_with(inode))
+      return process;
+  }
+  return 0;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  const long process = holder_of(descriptor_);
+  ::close(descriptor_);
+  throw InputError(folder.string(),
+                   process > 0 ? fmt::format("process {} is at work on the study in it", process)
+                               : "another process is at work on the study in it",
+                   "wait until it has ended, or name another folder");
+}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+}  // namespace meshorder

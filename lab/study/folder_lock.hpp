@@ -1,0 +1,24 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+
+namespace meshorder {
+
+/// Keeps other processes from working on a study's folder, until it is destroyed or the process ends.
+class FolderLock {
+ public:
+  /// Throws InputError, which names the process, if another one holds the lock. Where the file system has no
+  /// locks, the folder is not locked.
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock(FolderLock&&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  FolderLock& operator=(FolderLock&&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace meshorder

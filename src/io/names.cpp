@@ -1,0 +1,44 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/names.hpp"
+
+#include "base/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace meshorder {
+
+std::string plain_name(std::string_view name, std::string_view forbidden) {
+  constexpr unsigned char kDelete = 0x7F;
+  std::string result(name);
+  std::replace_if(
+      result.begin(), result.end(),
+      [forbidden](char c) {
+        const auto code = static_cast<unsigned char>(c);
+        return code < ' ' || code == kDelete || forbidden.find(c) != std::string_view::npos;
+      },
+      '_');
+  return result;
+}
+
+std::string DistinctNames::take(std::string_view wanted) {
+  std::string name(utf8_prefix(wanted, longest_));
+  for (int k = 2; !taken_.insert(name).second; ++k) {
+    const std::string end = fmt::format("_{}", k);
+    name = std::string(utf8_prefix(wanted, longest_ - end.size())) + end;
+  }
+  return name;
+}
+
+void note_renamed_set(const EntitySet& set, std::string_view name, Notes& notes) {
+  if (name != set.name) notes.push_back(fmt::format("the set '{}' is written as '{}'", set.name, name));
+}
+
+void note_renamed_array(const DataArray& array, std::string_view name, Notes& notes) {
+  if (name == array.name) return;
+  notes.push_back(
+      fmt::format("the array '{}' on {} is written as '{}'", array.name, to_string(array.association), name));
+}
+
+}  // namespace meshorder

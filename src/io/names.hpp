@@ -1,0 +1,38 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/format.hpp"
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <string_view>
+
+namespace meshorder {
+
+// Names of arrays and sets as a format can hold them.
+
+/// Returns the name with "_" in place of control characters and of those in `forbidden`. O(size).
+std::string plain_name(std::string_view name, std::string_view forbidden = {});
+
+/// Names that are unique in a file.
+class DistinctNames {
+ public:
+  /// `longest`: bytes of a name, at least 12; a name that is cut ends with a whole character of UTF-8.
+  explicit DistinctNames(std::size_t longest = std::string::npos) : longest_(longest) {}
+
+  /// Returns the name, cut to the longest size; with a number behind it if it is taken. Takes it.
+  std::string take(std::string_view wanted);
+
+ private:
+  std::size_t longest_;
+  std::set<std::string> taken_;
+};
+
+/// Notes "the set 'a b' is written as 'a_b'" if the names differ.
+void note_renamed_set(const EntitySet& set, std::string_view name, Notes& notes);
+
+/// Notes "the array 'a b' on cells is written as 'a_b'" if the names differ.
+void note_renamed_array(const DataArray& array, std::string_view name, Notes& notes);
+
+}  // namespace meshorder
