@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "base/text.hpp"
+#include "io/hdf5/session.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/xdmf/document.hpp"
 #include "io/xdmf/xdmf.hpp"
@@ -874,6 +875,11 @@ class XdmfReader {
 
 }  // namespace
 
-Mesh read(const FilePath& path, Notes& notes) { return XdmfReader(path, notes).read(); }
+Mesh read(const FilePath& path, Notes& notes) {
+  const hdf5::Session session;
+  Mesh mesh = XdmfReader(path, notes).read();
+  session.require_no_fault(path.string());
+  return mesh;
+}
 
 }  // namespace meshorder::xdmf
