@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <sstream>
@@ -109,13 +110,8 @@ int run(std::vector<std::string> arguments) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  meshorder::command::occupy_closed_streams();
-#ifdef MESHORDER_HAS_HDF5
-  meshorder::hdf5::close_nothing_at_exit();
-#endif
+/// Runs the command; returns the exit status.
+int run_and_report(int argc, char** argv) {
   try {
     return run({argv + std::min(argc, 1), argv + argc});
   } catch (const meshorder::command::CommandError& error) {
@@ -129,4 +125,25 @@ int main(int argc, char** argv) {
   } catch (...) {
     return report("an unknown failure", kOwnFailure);
   }
+}
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): read at the end of the process
+bool has_run = false;
+
+/// At the end of the process: libhdf5 ends it by itself where it has no memory.
+extern "C" void tell_if_a_library_ended_it() {
+  if (!has_run) std::_Exit(report("a library has ended the process; is there enough memory?", kOwnFailure));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  meshorder::command::occupy_closed_streams();
+  (void)std::atexit(tell_if_a_library_ended_it);
+#ifdef MESHORDER_HAS_HDF5
+  meshorder::hdf5::close_nothing_at_exit();
+#endif
+  const int status = run_and_report(argc, argv);
+  has_run = true;
+  return status;
 }

@@ -58,7 +58,10 @@ class Ending:
     log: str
 
     def culprit(self):
-        """The library that raised the signal, by the stack that the interposer wrote."""
+        """The library that could not do without memory: it ended the process, raised a signal, by the stack that the
+        interposer wrote, or prints what happened."""
+        if "a library has ended the process" in self.stderr or "HDF5-DIAG" in self.stderr:
+            return "libhdf5"
         frames = re.findall(r"^(/\S+?)\(", self.log, re.M)
         names = (pathlib.Path(frame).name for frame in frames)
         return next((library for name in names for library in FOREIGN if name.startswith(library)), None)
