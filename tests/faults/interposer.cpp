@@ -161,8 +161,14 @@ void prepare() {
     log_file = fcntl(file, F_DUPFD_CLOEXEC, kAboveAll);
     syscall(SYS_close, file);
     std::array<void*, 1> frame{};
-    backtrace(frame.data(), 1);  // loads what it needs
-    for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, log_stack);
+    backtrace(frame.data(), 1);                         // loads what it needs
+    static std::array<char, 1 << 16> handlers_stack{};  // the process's own may have overflowed
+    const stack_t stack{.ss_sp = handlers_stack.data(), .ss_flags = 0, .ss_size = handlers_stack.size()};
+    sigaltstack(&stack, nullptr);
+    struct sigaction action {};
+    action.sa_handler = log_stack;
+    action.sa_flags = SA_ONSTACK;
+    for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) sigaction(signal, &action, nullptr);
   }
   if (const char* const text = std::getenv("FAULTS_FAIL")) set_fault(text);
   for (const char* const name : {"LD_PRELOAD", "FAULTS_COUNTERS", "FAULTS_LOG", "FAULTS_FAIL"})

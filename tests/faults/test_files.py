@@ -21,12 +21,12 @@ def failures_of(case, most, every_error):
     failed, wrong = 0, {}
     for kind in KINDS:
         errors = itertools.cycle(interposed.ERRORS[kind])
-        for nth in spread(case.clean.calls[kind], most):
+        for nth in spread(case.clean.calls[kind], min(most, case.line.most)):
             for what in interposed.ERRORS[kind] if every_error else [next(errors)]:
                 fault = Fault(kind, nth, what)
                 ending = case.with_fault(fault)
                 failed += ending.failures > 0
-                faults = list(case.faults_of(ending))
+                faults = list(case.faults_of(ending, kind))
                 if what == "short" and ending.status != 0:
                     faults.append(f"does not go on where a part was done: {ending.stderr!r}")
                 if faults:

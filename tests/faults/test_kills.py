@@ -16,13 +16,14 @@ NAMES = ("order with maps", "apply", "openfoam", "simulate", *cases.OVER)
 
 def faults_after(case):
     """What is wrong after a kill, and after the next run, as sentences."""
-    yield from case.faults_of_files(killed=True)
+    yield from case.faults_of_files()
     if case.line.reader and case.without_fault(case.line.reader) == 0:
         yield from case.faults_of_set()
     if (status := case.without_fault()) != 0:
         yield f"the next run ends with status {status}"
     yield from case.faults_of_set("new")
-    yield from case.faults_of_files()
+    if left := case.left_over():
+        yield f"left over after the next run: {left}"
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -14,7 +14,7 @@ SETS = ("order with maps", "openfoam", "node in place", "xdmf in place", "node o
 def faults_of_set(case, kind, nth, what):
     """What is wrong after a fault, as sentences."""
     ending = case.with_fault(Fault(kind, nth, what))
-    yield from case.faults_of(ending)
+    yield from case.faults_of(ending, kind)
     if ending.status != 0:
         yield from case.faults_of_set("old")
 

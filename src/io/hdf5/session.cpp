@@ -9,6 +9,7 @@
 #include <array>
 #include <new>
 #include <string_view>
+#include <utility>
 
 namespace meshorder::hdf5 {
 namespace {
@@ -23,6 +24,10 @@ struct Faults {
 /// Guarded by the library's mutex.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): libhdf5 has one state, too
 Faults faults;
+
+/// Set before the first call of the library.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process, as the library's own
+bool closes_nothing_at_exit = false;
 
 /// Returns the system's words for a failed call, which the library gives among other things in several lines;
 /// otherwise an empty text.
@@ -50,6 +55,7 @@ herr_t note_failure(hid_t stack, void* /*data*/) {
 }  // namespace
 
 Session::Session() : lock_(library_mutex()) {
+  if (std::exchange(closes_nothing_at_exit, false)) H5dont_atexit();
   if (faults.sessions++ == 0) faults = {.sessions = 1};
   H5Eget_auto2(H5E_DEFAULT, &handler_, &data_);
   watch();
@@ -84,9 +90,10 @@ std::string last_cause() {
   // from the function that was called to the one that failed
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, take, &cause);
   const std::string_view words = system_words(cause);
-  return words.empty() ? cause.substr(0, cause.find('\n')) : std::string(words);
+  if (!words.empty()) return std::string(words);
+  return cause.empty() ? "it gives no cause" : cause.substr(0, cause.find('\n'));
 }
 
-void close_nothing_at_exit() { H5dont_atexit(); }
+void close_nothing_at_exit() { closes_nothing_at_exit = true; }
 
 }  // namespace meshorder::hdf5

@@ -32,8 +32,7 @@ class Session {
   void* data_ = nullptr;
 };
 
-/// Returns what the library says of the last failure, its first cause, in one line; an empty text if there is
-/// none.
+/// Returns what the library says of the last failure, its first cause, in one line.
 std::string last_cause();
 
 }  // namespace meshorder::hdf5
