@@ -66,6 +66,7 @@ Session::~Session() {
   --faults.sessions;
 }
 
+// NOLINTBEGIN(readability-convert-member-functions-to-static): without a session they mean nothing
 void Session::watch() const { H5Eset_auto2(H5E_DEFAULT, note_failure, nullptr); }
 
 void Session::require_no_fault(const std::string& file) const {
@@ -76,6 +77,7 @@ void Session::require_no_fault(const std::string& file) const {
   }
   if (faults.memory) throw InputError(file, "HDF5 had no memory for a part of it", "the file may be damaged");
 }
+// NOLINTEND(readability-convert-member-functions-to-static)
 
 std::string last_cause() {
   std::string cause;
