@@ -3,6 +3,9 @@
 #include "command.hpp"
 #include "help_format.hpp"
 #include "interruption.hpp"
+#ifdef MESHORDER_HAS_HDF5
+#include "io/hdf5/process_end.hpp"
+#endif
 #include "standard_streams.hpp"
 #include "usage.hpp"
 #include <meshorder/error.hpp>
@@ -12,10 +15,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -44,13 +49,61 @@ constexpr std::array kSubcommands{
     Subcommand{"serve-steps", meshorder::command::add_serve_steps},
 };
 
-int report(const std::string& message, int status) {
-  meshorder::command::write_stderr("meshorder: " + meshorder::visible(message) + "\n");
+/// Prints why the command fails, with characters that a terminal acts on escaped as long as there is memory,
+/// and returns the status.
+int report(std::string_view message, int status) noexcept {
+  std::string escaped;
+  try {
+    escaped = meshorder::visible(message);
+    message = escaped;
+  } catch (const std::bad_alloc&) {
+    // as it is
+  }
+  for (const std::string_view part : {std::string_view("meshorder: "), message, std::string_view("\n")})
+    meshorder::command::write_stderr(part);
   return status;
 }
 
+/// Gives the command its options and subcommands.
+void describe(CLI::App& app) {
+  app.description(
+      "Reorders the vertices and elements of a simulation mesh, with all data in its file, so that\n"
+      "physics on it runs faster.\n\n"
+      "  meshorder order  dragon.veg -o ordered.veg   order by the method chosen for the mesh\n"
+      "  meshorder info   dragon.veg                  counts and spans; is it in a good order?\n"
+      "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
+      "  meshorder openfoam cavity                    order the cells of an OpenFOAM case\n"
+#ifdef MESHORDER_HAS_LAB
+      "  meshorder simulate falling --mesh dragon.veg simulate an elastic body and time it\n"
+      "  meshorder reproduce -o results               the paper's study on this machine, as a page\n"
+      "  meshorder report dragon.veg                  all of it as a page for the browser\n"
+#endif
+  );
+  app.name("meshorder");
+  app.set_version_flag("-V,--version", MESHORDER_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();  // subcommands take --plugin, too
+  app.add_option_function<std::vector<std::string>>(
+         "--plugin",
+         [](const std::vector<std::string>& files) {
+           for (const std::string& file : files) meshorder::load_methods(file);
+         },
+         "Shared library with methods of your own (see examples/own_method.cpp); may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->trigger_on_parse();
+  app.formatter(meshorder::command::help_format());
+  for (const auto& [name, add] : kSubcommands) add(*app.add_subcommand(name));
+}
+
 /// Runs what the arguments ask for; returns the exit status.
-int run(CLI::App& app, std::vector<std::string> arguments) {
+int run(std::vector<std::string> arguments) {
+  CLI::App app;
+  describe(app);
+  if (arguments.empty()) {
+    meshorder::command::write_stderr(app.help());
+    return kBadInput;
+  }
   arguments = meshorder::command::with_words_as_options(std::move(arguments));
   std::reverse(arguments.begin(), arguments.end());  // as the parser takes them
   try {
@@ -67,46 +120,10 @@ int run(CLI::App& app, std::vector<std::string> arguments) {
   return 0;
 }
 
-}  // namespace
-
-// NOLINTNEXTLINE(bugprone-exception-escape): only printing a message could still throw
-int main(int argc, char** argv) {
-  meshorder::command::occupy_closed_streams();
-  meshorder::command::clean_up_at_signals();
-  CLI::App app{
-      "Reorders the vertices and elements of a simulation mesh, with all data in its file, so that\n"
-      "physics on it runs faster.\n\n"
-      "  meshorder order  dragon.veg -o ordered.veg   order by the method chosen for the mesh\n"
-      "  meshorder info   dragon.veg                  counts and spans; is it in a good order?\n"
-      "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
-      "  meshorder openfoam cavity                    order the cells of an OpenFOAM case\n"
-#ifdef MESHORDER_HAS_LAB
-      "  meshorder simulate falling --mesh dragon.veg simulate an elastic body and time it\n"
-      "  meshorder reproduce -o results               the paper's study on this machine, as a page\n"
-      "  meshorder report dragon.veg                  all of it as a page for the browser\n"
-#endif
-      ,
-      "meshorder"};
-  app.set_version_flag("-V,--version", MESHORDER_VERSION);
-  app.require_subcommand(1);
-  app.fallthrough();  // subcommands take --plugin, too
-  app.add_option_function<std::vector<std::string>>(
-         "--plugin",
-         [](const std::vector<std::string>& files) {
-           for (const std::string& file : files) meshorder::load_methods(file);
-         },
-         "Shared library with methods of your own (see examples/own_method.cpp); may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false)
-      ->trigger_on_parse();
-  app.formatter(meshorder::command::help_format());
-  for (const auto& [name, add] : kSubcommands) add(*app.add_subcommand(name));
+/// Runs the command; returns the exit status.
+int run_and_report(int argc, char** argv) {
   try {
-    if (argc < 2) {
-      meshorder::command::write_stderr(app.help());
-      return kBadInput;
-    }
-    return run(app, {argv + 1, argv + argc});
+    return run({argv + std::min(argc, 1), argv + argc});
   } catch (const meshorder::command::CommandError& error) {
     return report(error.what(), error.status);
   } catch (const meshorder::Error& error) {
@@ -115,5 +132,29 @@ int main(int argc, char** argv) {
     return report("out of memory", kOwnFailure);
   } catch (const std::exception& error) {
     return report(error.what(), kOwnFailure);
+  } catch (...) {
+    return report("an unknown failure", kOwnFailure);
   }
+}
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): read at the end of the process
+bool has_run = false;
+
+/// At the end of the process: libhdf5 ends it by itself where it has no memory.
+extern "C" void tell_if_a_library_ended_it() {
+  if (!has_run) std::_Exit(report("a library has ended the process; is there enough memory?", kOwnFailure));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  meshorder::command::occupy_closed_streams();
+  meshorder::command::clean_up_at_signals();
+  (void)std::atexit(tell_if_a_library_ended_it);
+#ifdef MESHORDER_HAS_HDF5
+  meshorder::hdf5::close_nothing_at_exit();
+#endif
+  const int status = run_and_report(argc, argv);
+  has_run = true;
+  return status;
 }

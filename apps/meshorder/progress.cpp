@@ -3,6 +3,7 @@
 
 #include "base/text.hpp"
 #include "console.hpp"
+#include "standard_streams.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -10,7 +11,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
+#include <new>
+#include <system_error>
 
 namespace meshorder::command {
 namespace {
@@ -25,7 +27,12 @@ double now() {
 }  // namespace
 
 Progress::Progress(bool enabled) : began_(now()) {
-  if (enabled && ::isatty(STDERR_FILENO) == 1) drawer_ = std::thread([this] { draw_until_done(); });
+  if (!enabled || ::isatty(STDERR_FILENO) != 1) return;
+  try {
+    drawer_ = std::thread([this] { draw_until_done(); });
+  } catch (const std::system_error&) {
+    // no thread to be had: the work goes on without a line
+  }
 }
 
 Progress::~Progress() { finish(); }
@@ -52,13 +59,18 @@ void Progress::at(double share) {
   share_ = std::max(share_, share);
 }
 
-void Progress::draw_until_done() {
+void Progress::draw_until_done() noexcept {
   std::unique_lock lock(mutex_);
   while (!done_.wait_for(lock, kRedraw, [this] { return finished_; })) {
     const double elapsed = now() - began_;
-    if (elapsed > kSilentSeconds) draw(elapsed);
+    if (elapsed <= kSilentSeconds) continue;
+    try {
+      draw(elapsed);
+    } catch (const std::bad_alloc&) {
+      // the line stays as it is
+    }
   }
-  if (drawn_) fmt::print(stderr, "\r\x1b[K");
+  if (drawn_) write_stderr("\r\x1b[K");
 }
 
 void Progress::draw(double elapsed) {
@@ -75,8 +87,7 @@ void Progress::draw(double elapsed) {
   } else {
     line += fmt::format(", {} so far", duration(elapsed));
   }
-  fmt::print(stderr, "\r{}\x1b[K", line);
-  std::fflush(stderr);
+  write_stderr(fmt::format("\r{}\x1b[K", line));
   drawn_ = true;
 }
 

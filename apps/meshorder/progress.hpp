@@ -31,7 +31,7 @@ class Progress {
   void finish();
 
  private:
-  void draw_until_done();
+  void draw_until_done() noexcept;
   void draw(double elapsed);
 
   std::mutex mutex_;

@@ -18,6 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -34,6 +35,8 @@ namespace {
   struct sigaction ignore {};
   ignore.sa_handler = SIG_IGN;
   ::sigaction(SIGINT, &ignore, nullptr);
+  // where standard streams are closed the socket may have one of their numbers, and would be closed by exec
+  if (socket <= STDERR_FILENO) socket = ::fcntl(socket, F_DUPFD, STDERR_FILENO + 1);
   ::dup2(socket, STDIN_FILENO);
   ::dup2(socket, STDOUT_FILENO);
   if (fixed_addresses) ::personality(ADDR_NO_RANDOMIZE);
@@ -122,7 +125,7 @@ ChildProcess::ChildProcess(std::filesystem::path program, const std::vector<std:
   if (id_ == 0) become(words.front().c_str(), argv.data(), sockets[1], fixed_addresses, parent);
   ::close(sockets[1]);
   socket_ = sockets[0];
-  if (id_ > 0) replies_ = ::fdopen(::dup(socket_), "r");
+  if (id_ > 0) replies_ = ::fdopen(::fcntl(socket_, F_DUPFD_CLOEXEC, 0), "r");
   if (replies_ != nullptr) return;
   ::close(socket_);
   throw InputError(program_.string(), std::string("cannot be started: ") + std::strerror(errno), "try again");
@@ -157,14 +160,17 @@ std::string ChildProcess::receive() {
     errno = 0;
     length = ::getline(&buffer, &capacity, replies_);
   } while (length < 0 && errno == EINTR);
+  const int error = errno;
   std::string line = length > 0 ? std::string(buffer, static_cast<std::size_t>(length)) : std::string();
   std::free(buffer);  // NOLINT(cppcoreguidelines-no-malloc): getline's
+  if (line.empty() && error == ENOMEM) throw std::bad_alloc();
   if (line.empty()) throw_ended();
   if (line.back() == '\n') line.pop_back();
   return line;
 }
 
 void ChildProcess::throw_ended() {
+  ::shutdown(socket_, SHUT_RDWR);  // ends a child that still waits for a line
   int status = 0;
   wait_for(std::exchange(id_, -1), status);
   std::string how = "ended";

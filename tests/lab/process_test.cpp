@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 #include <sys/personality.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <string>
 
 namespace meshorder {
@@ -46,6 +48,17 @@ TEST(ChildProcess, RefusesAProgramThatIsNotThere) {
 TEST(ChildProcess, IsNotReachedByCtrlC) {
   ChildProcess shell("/bin/sh", {"-c", "kill -INT $$; echo alive"});
   EXPECT_EQ(shell.receive(), "alive");
+}
+
+TEST(ChildProcess, AnswersWhereStandardStreamsAreClosed) {
+  const auto ask = [] {
+    ::close(STDIN_FILENO);
+    ::close(STDOUT_FILENO);
+    ChildProcess cat("/bin/cat", {});
+    cat.send("first");
+    std::exit(cat.receive() == "first" ? 0 : 1);
+  };
+  EXPECT_EXIT(ask(), testing::ExitedWithCode(0), "");
 }
 
 TEST(ChildProcess, EndsWithItsOwner) {

@@ -2,6 +2,7 @@
 #include "io/cgns/tree.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/session.hpp"
+#include "io/hdf5/visitor.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -74,12 +75,11 @@ class Hdf5Check {
 
   [[nodiscard]] std::vector<std::string> names_in(hid_t group) const {
     std::vector<std::string> names;
-    const auto visit = [](hid_t /*group*/, const char* name, const H5L_info_t* /*info*/,
-                          void* data) -> herr_t {
-      static_cast<std::vector<std::string>*>(data)->emplace_back(name);
-      return 0;
-    };
-    if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &names) < 0) {
+    hdf5::Visitor<H5L_info_t> visitor(
+        [&](hid_t /*group*/, const char* name, const H5L_info_t& /*info*/) { names.emplace_back(name); });
+    const herr_t status = H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, &visitor.visit, &visitor);
+    visitor.rethrow();
+    if (status < 0) {
       fail(fmt::format("a group cannot be read ({})", hdf5::last_cause()));
     }
     return names;

@@ -255,11 +255,13 @@ Tree read_from_disk(const fs::path& path, const std::string& name) {
   tree.storage = type == CGIO_FILE_HDF5 ? Storage::hdf5 : Storage::adf;
   if (tree.storage == Storage::hdf5) check_hdf5(path, name);
   const CgioFile file(path, name, CGIO_MODE_READ, type);
+  session.watch();
   std::error_code code;
   const std::uintmax_t bytes = fs::file_size(path, code);
   count_file(path, code ? 0 : bytes);
   TreeReader reader(file, code ? 0 : bytes, tree.storage == Storage::hdf5);
   tree.root = reader.read(file.root(), "", 0);
+  session.require_no_fault(name);
   return tree;
 }
 
@@ -268,11 +270,13 @@ void write_to_disk(const Tree& tree, const fs::path& path, const std::string& na
   const hdf5::Session session;
   const int type = tree.storage == Storage::hdf5 ? CGIO_FILE_HDF5 : CGIO_FILE_ADF;
   CgioFile file(path, name, CGIO_MODE_WRITE, type);
+  session.watch();
   file.is_written();
   const TreeWriter writer(file, fill);
   const double root = file.root();
   for (const Node& node : tree.root.children) writer.write(node, root, "");
   file.close();
+  session.require_no_fault(name);  // the library does not look at all of its results
 }
 
 std::string bytes_of(const fs::path& path) {

@@ -4,6 +4,7 @@
 #include "base/memory.hpp"
 #include "base/resize_in_steps.hpp"
 #include "io/hdf5/session.hpp"
+#include "io/hdf5/visitor.hpp"
 #include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
@@ -137,27 +138,22 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
 /// does not survive to iterate over such.
 bool copy_attributes(hid_t from, hid_t to) {
   if (H5Aexists(from, "\x01") < 0) return false;
-  struct Both {
-    hid_t from;
-    hid_t to;
-  } both{from, to};
-  const auto visit = [](hid_t object, const char* name, const H5A_info_t* /*info*/, void* data) -> herr_t {
-    const auto* pair = static_cast<const Both*>(data);
-    copy_attribute(object, name, pair->to);
-    return 0;
-  };
-  return H5Aiterate2(both.from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit, &both) >= 0;
+  Visitor<H5A_info_t> visitor(
+      [&](hid_t object, const char* name, const H5A_info_t& /*info*/) { copy_attribute(object, name, to); });
+  const herr_t status = H5Aiterate2(from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, &visitor.visit, &visitor);
+  visitor.rethrow();
+  return status >= 0;
 }
 
 /// Returns the names in a group, in the order of the names or of the creation of links. The library's own
 /// sorting trusts what a damaged group says of its size.
 std::vector<std::string> names_in(hid_t group, H5_index_t index = H5_INDEX_NAME) {
   std::vector<std::pair<std::int64_t, std::string>> links;
-  const auto visit = [](hid_t /*group*/, const char* name, const H5L_info_t* info, void* data) -> herr_t {
-    static_cast<decltype(links)*>(data)->emplace_back(info->corder, name);
-    return 0;
-  };
-  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit, &links);
+  Visitor<H5L_info_t> visitor([&](hid_t /*group*/, const char* name, const H5L_info_t& info) {
+    links.emplace_back(info.corder, name);
+  });
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, &visitor.visit, &visitor);
+  visitor.rethrow();
   if (index == H5_INDEX_NAME) {
     for (auto& [order, name] : links) order = 0;
   }
@@ -300,10 +296,12 @@ class CopyWithoutValues {
 
 }  // namespace
 
-Handle::~Handle() {
-  if (id_ < 0) return;
+Handle::~Handle() { (void)close(); }
+
+herr_t Handle::close() {
+  if (id_ < 0) return 0;
   const Session session;
-  close_(id_);
+  return close_(std::exchange(id_, -1));
 }
 
 std::uint64_t DatasetInfo::size() const {
@@ -480,18 +478,18 @@ std::vector<Index> File::read_indices(const std::string& path) const {
 std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
   const Session session;
   std::vector<std::pair<std::string, std::uint64_t>> result;
-  const auto visit = [](hid_t file, const char* name, const H5O_info_t* object, void* data) -> herr_t {
-    if (object->type != H5O_TYPE_DATASET) return 0;
+  Visitor<H5O_info_t> visitor([&](hid_t file, const char* name, const H5O_info_t& object) {
+    if (object.type != H5O_TYPE_DATASET) return;
     const Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
     const Handle space(dataset.is_open() ? H5Dget_space(dataset.id()) : -1, H5Sclose);
     const int rank = space.is_open() ? H5Sget_simple_extent_ndims(space.id()) : 0;
-    if (rank <= 0) return 0;
+    if (rank <= 0) return;
     std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
     H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr);
-    static_cast<decltype(result)*>(data)->emplace_back(normal_path(name), shape.front());
-    return 0;
-  };
-  H5Ovisit2(file_.id(), H5_INDEX_NAME, H5_ITER_NATIVE, visit, &result, H5O_INFO_BASIC);
+    result.emplace_back(normal_path(name), shape.front());
+  });
+  H5Ovisit2(file_.id(), H5_INDEX_NAME, H5_ITER_NATIVE, &visitor.visit, &visitor, H5O_INFO_BASIC);
+  visitor.rethrow();
   std::sort(result.begin(), result.end());
   return result;
 }
@@ -533,8 +531,11 @@ void File::write(const std::string& path, hid_t type, const void* values, std::u
       dataset = std::move(copy);
     }
   }
-  const bool written = dataset.is_open() && (count == 0 || H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL,
-                                                                    H5P_DEFAULT, values) >= 0);
+  // what the library buffers of the values is written when the dataset is closed
+  const bool written =
+      dataset.is_open() &&
+      (count == 0 || H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0) &&
+      dataset.close() >= 0;
   if (!written) fail(path, fmt::format("cannot be written ({})", last_cause()), "is the disk full?");
 }
 
@@ -725,6 +726,15 @@ void File::flush() const {
   if (H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) < 0) {
     fail("", fmt::format("cannot be written to the end ({})", last_cause()), "is the disk full?");
   }
+}
+
+void File::close() {
+  const Session session;
+  flush();
+  if (file_.close() < 0) {
+    fail("", fmt::format("cannot be written to the end ({})", last_cause()), "is the disk full?");
+  }
+  session.require_no_fault(name_);
 }
 
 }  // namespace meshorder::hdf5

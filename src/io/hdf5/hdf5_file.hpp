@@ -30,7 +30,7 @@ class Handle {
   using Close = herr_t (*)(hid_t);
 
   Handle() = default;
-  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Handle(hid_t id, Close closing) : id_(id), close_(closing) {}
   ~Handle();
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Handle& operator=(Handle&& other) noexcept {
@@ -43,6 +43,9 @@ class Handle {
 
   [[nodiscard]] hid_t id() const noexcept { return id_; }
   [[nodiscard]] bool is_open() const noexcept { return id_ >= 0; }
+
+  /// Closes it now. Returns a negative number if that fails; then nothing closes it any more.
+  [[nodiscard]] herr_t close();
 
  private:
   hid_t id_ = -1;
@@ -127,8 +130,8 @@ class File {
   [[nodiscard]] std::string without_values(const std::set<std::string>& paths) const;
   /// Returns the bytes of a file in memory.
   [[nodiscard]] std::string bytes() const;
-  /// Writes what is buffered; throws if that fails.
-  void flush() const;
+  /// Writes what is buffered and closes the file. Throws InputError if that fails.
+  void close();
 
  private:
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
@@ -137,6 +140,7 @@ class File {
   [[nodiscard]] Handle open_attribute(const std::string& path, const std::string& name) const;
   void put_attribute(const std::string& path, const std::string& name, hid_t type, hid_t memory,
                      const void* value);
+  void flush() const;
   void read(const std::string& path, hid_t type, void* values) const;
   void claim(const std::string& path, std::uint64_t bytes) const;
   void write(const std::string& path, hid_t type, const void* values, std::uint64_t count,

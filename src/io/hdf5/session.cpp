@@ -2,25 +2,100 @@
 #include "io/hdf5/session.hpp"
 
 #include "io/hdf5/mutex.hpp"
+#include "io/hdf5/process_end.hpp"
+#include <meshorder/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <string_view>
+#include <utility>
 
 namespace meshorder::hdf5 {
+namespace {
 
-Session::Session() : lock_(library_mutex()) {
-  H5Eget_auto2(H5E_DEFAULT, &handler_, &data_);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+/// What the system refused since the outermost session began; kept without memory.
+struct Faults {
+  int sessions = 0;
+  bool memory = false;
+  std::array<char, 64> words{};  ///< the system's, of a failed read or write; empty if there was none
+};
+
+/// Guarded by the library's mutex.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): libhdf5 has one state, too
+Faults faults;
+
+/// Set before the first call of the library.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process, as the library's own
+bool closes_nothing_at_exit = false;
+
+/// Returns the system's words for a failed call, which the library gives among other things in several lines;
+/// otherwise an empty text.
+std::string_view system_words(std::string_view cause) {
+  constexpr std::string_view kBefore = "error message = '";
+  const std::size_t at = cause.find(kBefore);
+  if (at == std::string_view::npos) return {};
+  cause.remove_prefix(at + kBefore.size());
+  return cause.substr(0, cause.find('\''));
 }
 
-Session::~Session() { H5Eset_auto2(H5E_DEFAULT, handler_, data_); }
+herr_t note_cause(unsigned /*depth*/, const H5E_error2_t* error, void* /*data*/) {
+  const std::string_view cause = error->desc != nullptr ? error->desc : "";
+  if (cause.starts_with("memory allocation failed")) faults.memory = true;
+  const std::string_view words = system_words(cause);
+  if (faults.words.front() == '\0')
+    std::copy_n(words.begin(), std::min(words.size(), faults.words.size() - 1), faults.words.begin());
+  return 0;
+}
+
+herr_t note_failure(hid_t stack, void* /*data*/) {
+  return H5Ewalk2(stack, H5E_WALK_DOWNWARD, note_cause, nullptr);
+}
+
+}  // namespace
+
+Session::Session() : lock_(library_mutex()) {
+  if (std::exchange(closes_nothing_at_exit, false)) H5dont_atexit();
+  if (faults.sessions++ == 0) faults = {.sessions = 1};
+  H5Eget_auto2(H5E_DEFAULT, &handler_, &data_);
+  watch();
+}
+
+Session::~Session() {
+  H5Eset_auto2(H5E_DEFAULT, handler_, data_);
+  --faults.sessions;
+}
+
+// NOLINTBEGIN(readability-convert-member-functions-to-static): without a session they mean nothing
+void Session::watch() const { H5Eset_auto2(H5E_DEFAULT, note_failure, nullptr); }
+
+void Session::require_no_fault(const std::string& file) const {
+  if (faults.words.front() != '\0') {
+    throw InputError(file,
+                     std::string("HDF5 could not read or write all of it (") + faults.words.data() + ")",
+                     "is the disk full, or does it fail?");
+  }
+  if (faults.memory) throw InputError(file, "HDF5 had no memory for a part of it", "the file may be damaged");
+}
+// NOLINTEND(readability-convert-member-functions-to-static)
 
 std::string last_cause() {
   std::string cause;
   const auto take = [](unsigned /*depth*/, const H5E_error2_t* error, void* into) -> herr_t {
-    if (error->desc != nullptr) *static_cast<std::string*>(into) = error->desc;
-    return 0;
+    try {
+      if (error->desc != nullptr) *static_cast<std::string*>(into) = error->desc;
+      return 0;
+    } catch (const std::bad_alloc&) {
+      return -1;  // an earlier cause has to do
+    }
   };
   // from the function that was called to the one that failed
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, take, &cause);
-  return cause;
+  const std::string_view words = system_words(cause);
+  if (!words.empty()) return std::string(words);
+  return cause.empty() ? "it gives no cause" : cause.substr(0, cause.find('\n'));
 }
+
+void close_nothing_at_exit() { closes_nothing_at_exit = true; }
 
 }  // namespace meshorder::hdf5

@@ -8,7 +8,9 @@
 
 namespace meshorder::hdf5 {
 
-/// Keeps other threads out of libhdf5 and the library quiet as long as it lives. May be nested.
+/// Keeps other threads out of libhdf5 and the library quiet as long as it lives. May be nested. Takes note of
+/// calls for which the system had no memory or could not read or write, also where nobody looks at their
+/// result.
 class Session {
  public:
   Session();
@@ -18,13 +20,19 @@ class Session {
   Session& operator=(const Session&) = delete;
   Session& operator=(Session&&) = delete;
 
+  /// Takes note of failures again after a library on top of libhdf5 has turned that off.
+  void watch() const;
+
+  /// Throws InputError if such a call has failed since the outermost session began.
+  void require_no_fault(const std::string& file) const;
+
  private:
   std::unique_lock<std::recursive_mutex> lock_;
   H5E_auto2_t handler_ = nullptr;
   void* data_ = nullptr;
 };
 
-/// Returns what the library says of the last failure, its first cause; an empty text if there is none.
+/// Returns what the library says of the last failure, its first cause, in one line.
 std::string last_cause();
 
 }  // namespace meshorder::hdf5

@@ -416,7 +416,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   if (path.store() != nullptr) {
     out.write(file->bytes());
   } else {
-    file->flush();
+    file->close();
   }
   file.reset();
   out.commit();

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "base/text.hpp"
+#include "io/hdf5/session.hpp"
 #include "io/xdmf/reading.hpp"
 
 #include <fmt/format.h>
@@ -309,6 +310,11 @@ class XdmfReader {
 
 }  // namespace
 
-Mesh read(const FilePath& path, Notes& notes) { return XdmfReader(path, notes).read(); }
+Mesh read(const FilePath& path, Notes& notes) {
+  const hdf5::Session session;
+  Mesh mesh = XdmfReader(path, notes).read();
+  session.require_no_fault(path.string());
+  return mesh;
+}
 
 }  // namespace meshorder::xdmf

@@ -4,6 +4,7 @@
 #include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
+#include "io/hdf5/session.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include "io/vtk/vtk.hpp"
@@ -165,7 +166,7 @@ class XdmfWriter {
     if (path_.store() != nullptr) {
       output.out->write(output.file->bytes());
     } else {
-      output.file->flush();
+      output.file->close();
     }
     output.file.reset();
   }
@@ -672,6 +673,7 @@ class XdmfWriter {
 }  // namespace
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
+  const hdf5::Session session;  // for all of it: failures in between count at the end
   if (const auto* const own = dynamic_cast<const Layout*>(mesh.format_metadata.get())) {
     std::vector<std::vector<Index>> rows = cells_of_parts(mesh, *own);
     if (!rows.front().empty()) return XdmfWriter(mesh, *own, std::move(rows), path, notes).write();

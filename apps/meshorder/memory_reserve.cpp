@@ -1,0 +1,74 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Replaces operator new by one that, where the system has no memory, serves small blocks from a reserve, so
+// that the command ends with a message. Destructors that ask for memory would otherwise terminate it:
+// nlohmann::json moves its values into a vector before it destroys them.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <new>
+
+namespace meshorder::command {
+namespace {
+
+/// Blocks cut one after another from an array. All of it is free again once all blocks are.
+class MemoryReserve {
+ public:
+  /// Returns a block aligned for any type, or nullptr where there is none. Takes no more than three quarters
+  /// unless an exception is on its way: the rest is for destructors that it runs.
+  void* take(std::size_t size) noexcept {
+    const bool unwinding = std::uncaught_exceptions() > 0;
+    const std::size_t limit = unwinding ? bytes_.size() : bytes_.size() / 4 * 3;
+    if (size > (unwinding ? bytes_.size() : kLargest)) return nullptr;
+    constexpr std::size_t kAlignment = alignof(std::max_align_t);
+    const std::size_t rounded = (std::max<std::size_t>(size, 1) + kAlignment - 1) / kAlignment * kAlignment;
+    const std::lock_guard lock(mutex_);
+    if (rounded > limit - std::min(limit, used_)) return nullptr;
+    ++blocks_;
+    used_ += rounded;
+    return bytes_.data() + (used_ - rounded);
+  }
+
+  /// Takes a block back. Returns false if it is none of the reserve's.
+  bool give_back(void* block) noexcept {
+    auto* const byte = static_cast<std::byte*>(block);
+    const std::less<> before;  // of any two addresses
+    if (before(byte, bytes_.data()) || !before(byte, bytes_.data() + bytes_.size())) return false;
+    const std::lock_guard lock(mutex_);
+    if (--blocks_ == 0) used_ = 0;
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t kLargest =
+      1024;  // of a block outside of unwinding: a mesh's arrays are larger
+
+  std::mutex mutex_;
+  std::size_t used_ = 0;
+  std::size_t blocks_ = 0;
+  alignas(std::max_align_t) std::array<std::byte, std::size_t{1} << 20> bytes_{};
+};
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): operator new has no other state
+constinit MemoryReserve reserve;
+
+}  // namespace
+}  // namespace meshorder::command
+
+// NOLINTBEGIN(cppcoreguidelines-no-malloc): this is what operator new is made of
+void* operator new(std::size_t size) {
+  if (void* const block = std::malloc(std::max<std::size_t>(size, 1))) return block;
+  if (void* const block = meshorder::command::reserve.take(size)) return block;
+  throw std::bad_alloc();
+}
+
+void operator delete(void* block) noexcept {
+  if (!meshorder::command::reserve.give_back(block)) std::free(block);
+}
+
+void operator delete(void* block, std::size_t /*size*/) noexcept { operator delete(block); }
+// NOLINTEND(cppcoreguidelines-no-malloc)

@@ -1,0 +1,133 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Calls that read and write files fail one after another: the command says so, and leaves the old files or the new ones."""
+import errno
+import itertools
+import os
+import resource
+import signal
+import subprocess
+
+import pytest
+
+import cases
+import interposed
+from interposed import Fault, spread
+
+KINDS = ("open", "read", "write", "sync", "close", "rename", "thread")
+
+
+def failures_of(case, most, every_error):
+    """Lets calls of each kind fail, `most` of a kind. Returns how many failed, and what was wrong, by the fault."""
+    failed, wrong = 0, {}
+    for kind in KINDS:
+        errors = itertools.cycle(interposed.ERRORS[kind])
+        for nth in spread(case.clean.calls[kind], min(most, case.line.most)):
+            for what in interposed.ERRORS[kind] if every_error else [next(errors)]:
+                fault = Fault(kind, nth, what)
+                ending = case.with_fault(fault)
+                failed += ending.failures > 0
+                faults = list(case.faults_of(ending, kind))
+                if what == "short" and ending.status != 0:
+                    faults.append(f"does not go on where a part was done: {ending.stderr!r}")
+                if faults:
+                    wrong[str(fault)] = faults
+    return failed, wrong
+
+
+def shown(name, failed, wrong):
+    line = f"{name}: {failed} calls failed, {len(wrong)} ended badly"
+    return "\n".join([line, *(f"  {fault}: {'; '.join(faults)}" for fault, faults in list(wrong.items())[:8])])
+
+
+@pytest.mark.parametrize("name", cases.COMMANDS)
+def test_a_call_that_fails_is_told(tmp_path, name):
+    case = cases.case(name, tmp_path)
+    failed, wrong = failures_of(case, 5, every_error=False)
+    assert failed or name == "methods"
+    assert not wrong, shown(name, failed, wrong)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", cases.COMMANDS)
+def test_every_call_that_fails_is_told(tmp_path, name):
+    case = cases.case(name, tmp_path)
+    failed, wrong = failures_of(case, 60, every_error=True)
+    print(shown(name, failed, wrong))
+    assert not wrong, shown(name, failed, wrong)
+
+
+@pytest.mark.parametrize("name", ["node in place", "vtu in place", "med in place", "order with maps"])
+def test_a_call_that_a_signal_interrupts_is_repeated(tmp_path, name):
+    case = cases.case(name, tmp_path)
+    for kind in ("read", "write"):
+        for nth in spread(case.clean.calls[kind], 4):
+            ending = case.with_fault(Fault(kind, nth, errno.EINTR))
+            assert ending.status == 0, (kind, nth, ending.stderr)
+            assert not list(case.faults_of(ending))
+
+
+@pytest.mark.parametrize("name", ["order with maps", "vtu in place", "cgns in place", "med in place", "exo in place"])
+def test_what_a_failing_disk_leaves_unread_is_no_mesh(tmp_path, name):
+    """Every read fails, from one on: the mesh must not be taken for one that ends there."""
+    case = cases.case(name, tmp_path)
+    for nth in spread(case.clean.calls["read"], 6):
+        ending = case.with_fault(Fault("read", nth, errno.EIO, later=True))
+        assert not list(case.faults_of(ending))
+        if ending.status == 0:  # what failed was of the system's description, which is done without
+            assert not list(case.faults_of_set("new"))
+
+
+@pytest.mark.parametrize("name", ("order with maps", "node in place", "xdmf in place", "simulate", "openfoam"))
+@pytest.mark.parametrize("bytes_", [0, 1, 100, 1000])
+@pytest.mark.parametrize("ignored", [False, True], ids=["SIGXFSZ", "EFBIG"])
+def test_a_limit_on_file_sizes_is_told(tmp_path, name, bytes_, ignored):
+    case = cases.case(name, tmp_path)
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_, bytes_))
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN if ignored else signal.SIG_DFL)
+
+    case.restore()
+    # without the interposer, whose log has the limit, too
+    done = subprocess.run([interposed.MESHORDER, *map(str, case.arguments)], cwd=case.folder, preexec_fn=limit, text=True,
+                          capture_output=True, stdin=subprocess.DEVNULL, timeout=interposed.SECONDS, check=False)
+    ending = interposed.Ending(done.returncode, "", done.stderr, {}, 0, "")
+    assert not list(case.faults_of(ending))
+    assert done.returncode == 2 or not list(case.faults_of_set("new"))
+
+
+def mounted(folder, size):
+    """Whether a small file system could be mounted there."""
+    folder.mkdir()
+    return subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "none", folder], check=False,
+                          capture_output=True).returncode == 0
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A file system of few pages; the test is skipped where none can be mounted."""
+    folder = tmp_path / "disk"
+    if not mounted(folder, "64k"):
+        pytest.skip("needs the right to mount a file system")
+    yield folder
+    subprocess.run(["umount", folder], check=True)
+
+
+@pytest.mark.parametrize("name", ("order with maps", "node in place", "xdmf in place", "simulate", "openfoam"))
+def test_a_full_disk_is_told(tmp_path, small_disk, name):
+    """Each number of free pages from none up: the disk is full at other files."""
+    case = cases.case(name, tmp_path)
+    case.folder = small_disk / "work"
+    statuses = []
+    page = os.sysconf("SC_PAGE_SIZE")
+    for free in range(12):
+        filling = small_disk / "filling"
+        filling.unlink(missing_ok=True)
+        case.restore()
+        space = os.statvfs(small_disk).f_bavail * page
+        filling.write_bytes(bytes(max(0, space - free * page)))
+        ending = interposed.run(case.arguments, case.folder, log=tmp_path / "log")
+        statuses.append(ending.status)
+        assert not list(case.faults_of(ending)), (free, list(case.faults_of(ending)))
+        assert ending.status in (0, 2) and (ending.status == 0 or "full" in ending.stderr), ending.stderr
+    assert statuses[0] == 2

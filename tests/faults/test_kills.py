@@ -1,0 +1,75 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""The command is killed: each file is the old or the new one, no mixture is taken for good, and the next run ends well."""
+import random
+import signal
+import subprocess
+import time
+
+import pytest
+
+import cases
+import interposed
+from interposed import Fault, spread
+
+NAMES = ("order with maps", "apply", "openfoam", "simulate", *cases.OVER)
+
+
+def faults_after(case):
+    """What is wrong after a kill, and after the next run, as sentences."""
+    yield from case.faults_of_files()
+    if case.line.reader and case.without_fault(case.line.reader) == 0:
+        yield from case.faults_of_set()
+    if (status := case.without_fault()) != 0:
+        yield f"the next run ends with status {status}"
+    yield from case.faults_of_set("new")
+    if left := case.left_over():
+        yield f"left over after the next run: {left}"
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("what", ["kill", "torn"])
+def test_a_kill_within_a_call_loses_nothing(tmp_path, name, what):
+    case = cases.case(name, tmp_path)
+    for kind in ("open", "write", "sync", "close", "rename"):
+        for nth in spread(case.clean.calls[kind], 3 if what == "kill" else 2):
+            case.with_fault(Fault(kind, nth, what))
+            faults = list(faults_after(case))
+            assert not faults, (kind, nth, what, faults)
+
+
+def killed_at(case, seconds):
+    """Runs the case and kills it after that time. Returns whether it was alive."""
+    case.restore()
+    with subprocess.Popen([interposed.MESHORDER, *map(str, case.arguments)], cwd=case.folder, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as child:
+        time.sleep(seconds)
+        child.send_signal(signal.SIGKILL)
+    return child.returncode == -signal.SIGKILL
+
+
+def kill_at_random(case, times, seed):
+    """Kills the case so many times, at instants of the time that it takes. Returns how often it was alive."""
+    began = time.monotonic()
+    case.restore()
+    case.without_fault()
+    length = time.monotonic() - began
+    instants = random.Random(seed)
+    alive = 0
+    for turn in range(times):
+        alive += killed_at(case, instants.uniform(0, 1.1 * length))
+        faults = list(faults_after(case))
+        assert not faults, (turn, faults)
+    return alive
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_kill_at_any_instant_loses_nothing(tmp_path, name):
+    assert kill_at_random(cases.case(name, tmp_path), 6, seed=1) > 0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", NAMES)
+def test_kills_at_many_instants_lose_nothing(tmp_path, name):
+    alive = kill_at_random(cases.case(name, tmp_path), 100, seed=2)
+    print(f"{name}: {alive} kills")
+    assert alive > 50
