@@ -8,6 +8,7 @@
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/order.hpp>
+#include <meshorder/registry.hpp>
 
 #include <gtest/gtest.h>
 
@@ -41,9 +42,8 @@ struct Sample {
 
 /// The mesh with its vertices in random order.
 Mesh scattered(Mesh mesh) {
-  const Permutation vertices =
-      order_vertices(vertex_graph(view(mesh).cells, mesh.points.size()), "scrambled", {.seed = 3})
-          .permutation;
+  const Graph graph = vertex_graph(view(mesh).cells, mesh.points.size());
+  const Permutation vertices = order_vertices(graph, "scrambled", {.seed = 3}).permutation;
   apply_reordering(mesh, vertices, Permutation::identity(mesh.cell_count()));
   return mesh;
 }
