@@ -45,8 +45,9 @@ def same_numbers(old, new):
         return False
     if old.dtype.kind in "iu" and new.dtype.kind in "iu":
         return [int(x) for x in old.ravel()] == [int(x) for x in new.ravel()]
-    if old.dtype.kind in "iu":  # whole numbers that a float holds exactly
-        return all(np.isfinite(y) and int(x) == int(y) and y == int(y) for x, y in zip(old.ravel(), new.ravel()))
+    if old.dtype.kind in "iu" or new.dtype.kind in "iu":  # whole numbers that a float holds exactly
+        pairs = zip(old.ravel().tolist(), new.ravel().tolist())
+        return all(np.isfinite(x) and np.isfinite(y) and int(x) == int(y) and x == y for x, y in pairs)
     with np.errstate(invalid="ignore"):
         return new.dtype.kind == "f" and bool(
             np.all((np.isnan(old) & np.isnan(new)) | ((old == new) & (np.signbit(old) == np.signbit(new))))
@@ -99,13 +100,15 @@ def compare(before, after, notes):
 def compare_arrays(before, after, cells, changes):
     new_arrays = arrays_of(after)
     for (name, of_vertices), (values, rows) in arrays_of(before).items():
-        if name == "label" and not np.any(values):
-            continue  # 0 is no label
+        if name == "label" and (not np.any(values) or np.all(values == 1)):
+            continue  # 0 is no label, 1 that of all in formats that want one
         what = f"the array {name!r} on {'vertices' if of_vertices else 'cells'} ({values.dtype}, {values.shape})"
         new, new_rows = new_arrays.get((name, of_vertices), (None, ()))
         if new is not None and len(rows) == len(new_rows) == 0:
             old = values if of_vertices else values[cells[0]]
             fresh = new if of_vertices else new[cells[1]]
+            if name == "label":  # cells without one may get that of their set
+                old, fresh = (numbers[np.atleast_1d(old != 0)] for numbers in (old, fresh))
             if same_numbers(old, fresh):
                 continue
             what += f" changed from {old.ravel()[:9].tolist()} to {fresh.ravel()[:9].tolist()}"

@@ -2,6 +2,7 @@
 #include "base/index.hpp"
 #include "io/labels.hpp"
 #include "io/med/med.hpp"
+#include "io/unsupported.hpp"
 
 #include <fmt/format.h>
 
@@ -184,6 +185,10 @@ class FamilyWriter {
     bool any = false;
     for (const EntitySet& set : writing_.mesh.sets) {
       if (set.association != association_) continue;
+      if (set.members.empty()) {
+        note_set_empty(set, writing_.notes);
+        continue;
+      }
       combinations.add(unused_name(set.name, names), set.members);
       any = true;
     }
