@@ -232,13 +232,12 @@ void parallel_for(const blocked_range<Number>& range, const Body& body, task_gro
   const auto n = static_cast<std::ptrdiff_t>(range.end() - range.begin());
   if (n <= 0 || context.is_group_execution_cancelled()) return;
   detail::Team team(context, n);
+  // Dealt out in turn, not taken: each thread has its share also where the machine runs one of them at a
+  // time.
   const std::ptrdiff_t piece = std::max<std::ptrdiff_t>(1, n / (8 * team.size()));
-  std::atomic<std::ptrdiff_t> next = 0;
-  team.run([&](int) {
-    for (;;) {
-      // relaxed: taking a piece must not order the work of one thread before that of another
-      const std::ptrdiff_t from = next.fetch_add(piece, std::memory_order_relaxed);
-      if (from >= n || context.is_group_execution_cancelled()) return;
+  team.run([&](std::ptrdiff_t t) {
+    for (std::ptrdiff_t from = t * piece; from < n; from += team.size() * piece) {
+      if (context.is_group_execution_cancelled()) return;
       body(blocked_range<Number>(static_cast<Number>(range.begin() + from),
                                  static_cast<Number>(range.begin() + std::min(n, from + piece))));
     }
