@@ -2,13 +2,14 @@
 """Random meshes with arrays, labels, sets, names and numbers, as hypothesis draws them."""
 
 import unicodedata
+from typing import Any
 
 import meshorder
 import numpy as np
 from hypothesis import strategies as st
 
 #: corners of the reference cells, in VTK's order but for wedges, whose first triangle faces inward
-CORNERS = {
+CORNERS: dict[str, list[Any]] = {
     "vertex": [(0, 0, 0)],
     "line": [(0, 0, 0), (1, 0, 0)],
     "triangle": [(0, 0, 0), (1, 0, 0), (0, 1, 0)],
@@ -23,7 +24,7 @@ CORNERS = {
 _QUAD_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0)]
 _HEXAHEDRON_EDGES = [*_QUAD_EDGES, (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
 _WEDGE_EDGES = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)]
-MIDDLES = {
+MIDDLES: dict[tuple[str, int], list[Any]] = {
     ("line", 3): [(0, 1)],
     ("triangle", 6): [(0, 1), (1, 2), (2, 0)],
     ("quad", 8): _QUAD_EDGES,
@@ -66,8 +67,6 @@ odd_names = st.one_of(
     st.text(st.characters(codec="utf-8"), max_size=80),
     plain_names.map(lambda name: name + "\\"),
 )
-real_numbers = st.floats(allow_subnormal=True, width=64)
-coordinates = st.floats(-1e9, 1e9, allow_subnormal=True)
 
 
 @st.composite
@@ -103,18 +102,19 @@ def gmsh_file(points, cells, vertex_ids, cell_ids, partial):
 def cells_and_points(draw, types):
     """Disjoint cells of some of these types, perhaps with lines and triangles on the corners of volumes."""
     kinds = draw(st.lists(st.sampled_from(types), min_size=1, max_size=3, unique=True))
-    points, cells = [], []
+    nodes: list[Any] = []
+    cells: list[Any] = []
     for kind in kinds:
         shape, width = kind
         for _ in range(draw(st.integers(1, 3))):
-            first = sum(map(len, points))
-            points.append(reference(shape, width) + (2.0 * len(points), 0, 0))
+            first = sum(len(of_cell) for of_cell in nodes)
+            nodes.append(reference(shape, width) + (2.0 * len(nodes), 0, 0))
             cells.append((shape, list(range(first, first + width))))
     if draw(st.booleans()):
         for shape, row in list(cells):
             if len(CORNERS[shape]) >= 4 and (shape, 3) not in kinds and draw(st.booleans()):
                 cells.append(("triangle", row[:3]))
-    points = np.concatenate(points)
+    points = np.concatenate(nodes)
     if draw(st.booleans()):
         shift = draw(st.lists(st.floats(0, 0.125), min_size=6, max_size=6))
         points = points + np.resize(shift, points.shape)

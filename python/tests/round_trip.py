@@ -2,6 +2,7 @@
 """What became of a mesh that was written and read back, and whether the writer said so."""
 
 import dataclasses
+from typing import Any
 
 import meshorder
 import numpy as np
@@ -30,7 +31,8 @@ class Changes:
 
 def cell_keys(mesh):
     """A key of each cell that no other has: its shape, its vertices, and how many such cells came before it."""
-    seen, keys = {}, []
+    seen: dict[Any, int] = {}
+    keys = []
     for shape, rows in mesh.cells:
         for row in rows:
             key = (shape, tuple(sorted(row.tolist())))
