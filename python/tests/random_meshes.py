@@ -57,7 +57,7 @@ LINEAR = [(shape, len(corners)) for shape, corners in CORNERS.items()]
 TYPES = [*LINEAR, *MIDDLES]
 
 plain_names = st.from_regex(r"[A-Za-z][A-Za-z0-9_]{0,11}", fullmatch=True)
-_categories = sorted({unicodedata.category(chr(code)) for code in range(0x3000)} - {"Cs"})
+_categories: Any = sorted({unicodedata.category(chr(code)) for code in range(0x3000)} - {"Cs"})
 odd_names = st.one_of(
     st.text(st.sampled_from(SEPARATORS), max_size=4),
     st.text(st.one_of(st.sampled_from(SEPARATORS), st.characters(codec="ascii")), max_size=12),

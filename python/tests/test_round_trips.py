@@ -70,6 +70,27 @@ def test_pairs_of_formats(source, mesh):
             through(first, target, source)
 
 
+def two_tetrahedra():
+    points = np.arange(24).reshape(8, 3) + np.eye(8, 3)
+    return meshorder.make_mesh(points, {"tetrahedron": np.arange(8).reshape(2, 4)})
+
+
+def test_med_names_the_sets_without_members(tmp_path):
+    mesh = two_tetrahedra()
+    mesh._handle.add_set("nothing", False, np.array([], dtype="i4"))
+    notes = meshorder.write(mesh, tmp_path / "mesh.med")
+    assert notes == ["the set 'nothing' of cells is not written: it has no members"]
+
+
+def test_gmsh_says_when_an_entity_is_parted(tmp_path):
+    mesh = two_tetrahedra()
+    mesh._handle.add_data("gmsh:geometrical", False, np.array([5, 5], dtype="i4"))
+    assert meshorder.write(mesh, tmp_path / "whole.msh") == []
+    mesh._handle.add_set("one", False, np.array([1], dtype="i4"))
+    notes = meshorder.write(mesh, tmp_path / "parted.msh")
+    assert len(notes) == 1 and "'gmsh:geometrical' is written with new numbers" in notes[0]
+
+
 def written(mesh, path):
     """The notes of the writer, or None where it refuses the mesh."""
     try:
