@@ -27,7 +27,8 @@ SUFFIXES = {name: extensions[0] for name, extensions, _ in meshorder._core.forma
 #: STL keeps no vertices, the two others no coordinates
 ALMOST_EMPTY = {"stl", "matrixmarket", "metis"}
 FORMATS = [name for name in SUFFIXES if name not in ALMOST_EMPTY]
-quickly = settings(deadline=None, max_examples=20, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+unwatched = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.function_scoped_fixture]
+quickly = settings(deadline=None, max_examples=20, suppress_health_check=unwatched)
 thoroughly = settings(quickly, max_examples=1000)
 
 
@@ -60,14 +61,14 @@ def test_names_come_back_or_are_announced(name, mesh):
 
 
 @pytest.mark.parametrize("source", FORMATS)
-@settings(quickly, max_examples=4)
+@settings(quickly, max_examples=3)
 @given(mesh=meshes())
 def test_pairs_of_formats(source, mesh):
     first = through(mesh, source)
     if first is not None:
         for target in FORMATS:
             note(target)
-            through(first, target, source)
+            through(first, target)
 
 
 def two_tetrahedra():
@@ -149,7 +150,7 @@ def test_gmsh_reads_the_same(model, mesh):
     assert sum(map(len, elements)) == len(mesh.shapes)
 
 
-@pytest.mark.parametrize("suffix", [".mesh", ".su2", ".inp", ".xdmf", ".off", ".obj", ".ply"])
+@pytest.mark.parametrize("suffix", [".mesh", ".su2", ".inp", ".obj"])
 @settings(quickly, max_examples=10)
 @given(mesh=meshes(types=[("triangle", 3), ("tetrahedron", 4), ("hexahedron", 8), ("quad", 4)], finite=True))
 def test_meshio_finds_the_same_cells(suffix, mesh):
