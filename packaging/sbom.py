@@ -72,8 +72,10 @@ LIBRARIES = [
             "https://github.com/zeux/meshoptimizer"),
     Library("CHOLMOD", "/cholmod.h", "cholmod_core.h", numbers("CHOLMOD_", "MAIN_VERSION", "SUB_VERSION", "SUBSUB_VERSION"),
             "LGPL-2.1-or-later", "https://github.com/DrTimothyAldenDavis/SuiteSparse"),
-    Library("nanobind", "/nanobind/", "nanobind/nanobind.h", numbers("NB_VERSION_", *VERSION), "BSD-3-Clause",
+    Library("nanobind", "/include/nanobind/", "include/nanobind/nanobind.h", numbers("NB_VERSION_", *VERSION), "BSD-3-Clause",
             "https://github.com/wjakob/nanobind"),
+    Library("robin-map", "/tsl/", "tsl/robin_growth_policy.h", numbers("TSL_RH_VERSION_", *VERSION), "MIT",
+            "https://github.com/Tessil/robin-map"),
 ]  # fmt: skip
 
 
