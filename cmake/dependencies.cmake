@@ -26,7 +26,16 @@ macro(meshorder_require library debian)
   endif()
 endmacro()
 
-meshorder_require(TBB libtbb-dev)                      # threads
+if(MESHORDER_SANITIZER STREQUAL "thread")
+  # ThreadSanitizer must see how threads wait for each other: headers on std::thread in place of oneTBB's library
+  find_package(Threads REQUIRED)
+  add_library(TBB::tbb INTERFACE IMPORTED)
+  target_include_directories(TBB::tbb INTERFACE ${PROJECT_SOURCE_DIR}/tests/threads)
+  target_link_libraries(TBB::tbb INTERFACE Threads::Threads)
+endif()
+if(NOT TARGET TBB::tbb)
+  meshorder_require(TBB libtbb-dev)                    # threads
+endif()
 meshorder_require(Eigen3 libeigen3-dev 3.4 NO_MODULE)  # small dense eigenproblems; needed to build only
 if(NOT MESHORDER_METIS STREQUAL "OFF")
   meshorder_find_library(metis::metis metis.h metis)

@@ -84,4 +84,16 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
           DESTINATION ${folder} COMPONENT ${component} EXCLUDE_FROM_ALL)
 endforeach()
 
+# what is in the program besides
+include(cmake/sbom.cmake)
+set(three "")
+if(MESHORDER_THREE_JS)
+  set(three --three ${MESHORDER_THREE_JS})
+endif()
+meshorder_sbom(${generated}/meshorder.cdx.json TARGETS meshorder ARGUMENTS ${three})
+if(TARGET meshorder_sbom)
+  install(FILES ${generated}/meshorder.cdx.json DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_COMMAND_PACKAGE_NAME}
+          COMPONENT command EXCLUDE_FROM_ALL)
+endif()
+
 include(CPack)

@@ -11,16 +11,27 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   target_compile_options(meshorder_warnings INTERFACE -Wno-restrict -Wno-stringop-overflow)
 endif()
 target_compile_features(meshorder_warnings INTERFACE cxx_std_20)
-if(MESHORDER_SANITIZE)
-  target_compile_options(meshorder_warnings INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
-                                                     -fno-omit-frame-pointer)
-  target_link_options(meshorder_warnings INTERFACE -fsanitize=address,undefined)
+set(sanitizers "")
+if(MESHORDER_SANITIZER STREQUAL "thread")
+  set(sanitizers -fsanitize=thread)
+elseif(MESHORDER_SANITIZER STREQUAL "address" OR MESHORDER_SANITIZE)
+  set(sanitizers -fsanitize=address,undefined)
+elseif(MESHORDER_SANITIZER)
+  message(FATAL_ERROR "MESHORDER_SANITIZER: unknown sanitizer '${MESHORDER_SANITIZER}'; known are address and thread")
+endif()
+if(sanitizers)
+  target_compile_options(meshorder_warnings INTERFACE ${sanitizers} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(meshorder_warnings INTERFACE ${sanitizers})
+endif()
+
+if(MESHORDER_HARDENED AND NOT sanitizers)
+  include(${CMAKE_CURRENT_LIST_DIR}/hardening.cmake)
 endif()
 
 # Instruction sets that Highway does not compile the kernels for. SSSE3 gains nothing for doubles over SSE4; vectors of
 # unknown length (SVE, RISC-V) cannot be members of structs, as the kernels' values are.
 set(MESHORDER_SIMD_TARGETS HWY_DISABLED_TARGETS=\(HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV\))
-if(MESHORDER_SANITIZE)
+if(sanitizers)
   # two of them, which halves the time that the kernels take to compile
   set(MESHORDER_SIMD_TARGETS
       HWY_DISABLED_TARGETS=\(HWY_AVX3_DL|HWY_AVX3|HWY_SSE4|HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV\))

@@ -57,6 +57,8 @@ packages_to_test=(
   libpetsc-real-dev    "the plugin for PETSc"
   calculix-ccx         "solves decks before and after they are ordered"
   python3-jsonschema   "checks JSON against its schemas"
+  locales              "a locale with decimal commas"
+  valgrind             "finds reads of what was never written"
   doxygen              "reads the public headers for the manual"
   abigail-tools        "compares the binary interface for C with the recorded one"
   chromium             "the report page, as its reader sees it"

@@ -1,6 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """What is given to others: the source distribution, and the wheel that ./test made."""
 
+import json
 import pathlib
 import re
 import shutil
@@ -47,7 +48,7 @@ def test_sdist_holds_what_the_wheel_is_made_of(sdist):
     with tarfile.open(sdist) as archive:
         found = {name.partition("/")[2] for name in archive.getnames()}
     listed = ["CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "LICENSE", "README.md", "pyproject.toml"]
-    listed += ["apps/meshorder", "cmake", "include", "python", "src", "viewer"]
+    listed += ["apps/meshorder", "cmake", "include", "packaging/sbom.py", "python", "src", "viewer"]
     tracked = subprocess.run(["git", "ls-files", *listed], cwd=ROOT, capture_output=True, text=True, check=True)
     assert set(tracked.stdout.split()) <= found
     # what is not tracked yet may be in it, build products may not
@@ -66,15 +67,37 @@ def test_wheel_is_complete():
     assert wheel().stat().st_size <= 6 * MEBIBYTE
 
 
-def test_notice_names_every_library():
+def test_list_of_what_is_inside_names_every_library():
+    """The wheel's SBOM: valid, with a version for each library that its binaries need, and none that the notice lacks."""
+    validation = pytest.importorskip("cyclonedx.validation.json")
+    schema = pytest.importorskip("cyclonedx.schema")
+    with zipfile.ZipFile(wheel()) as archive:
+        [name] = [name for name in archive.namelist() if name.endswith(".dist-info/sboms/meshorder.cdx.json")]
+        text = archive.read(name).decode()
+    assert validation.JsonStrictValidator(schema.SchemaVersion.V1_5).validate_str(text) is None
+    made_of = {component["name"]: component["version"] for component in json.loads(text)["components"]}
+    assert {"nanobind", "Eigen", "CLI11", "JSON for Modern C++"} <= made_of.keys()
+    assert all(re.match(r"r?\d", version) for version in made_of.values()), made_of
+    notice = (ROOT / "python" / "licenses" / "THIRD_PARTY.md").read_text()
+    assert not [name for name in made_of if f"| {name} |" not in notice and name != "three.js"]
+    for file in (_core.__file__, _command.program()):
+        for library in needed_by(file):
+            assert any(name.startswith(NAMES[library]) for name in made_of), library
+
+
+def needed_by(file):
+    """The shared libraries that a binary needs, but for the system's."""
     if not shutil.which("readelf"):
         pytest.skip("there is no readelf")
+    text = subprocess.run(["readelf", "-d", file], capture_output=True, text=True, check=True).stdout
+    # those that auditwheel brought along have a part of their hash in their name
+    return {re.sub(r"-[0-9a-f]{8}$", "", name) for name in re.findall(r"NEEDED.*\[([^\].]+)", text)} - SYSTEMS
+
+
+def test_notice_names_every_library():
     notice = (ROOT / "python" / "licenses" / "THIRD_PARTY.md").read_text()
     for file in (_core.__file__, _command.program()):
-        text = subprocess.run(["readelf", "-d", file], capture_output=True, text=True, check=True).stdout
-        # those that auditwheel brought along have a part of their hash in their name
-        needed = {re.sub(r"-[0-9a-f]{8}$", "", name) for name in re.findall(r"NEEDED.*\[([^\].]+)", text)}
-        for name in needed - SYSTEMS:
+        for name in needed_by(file):
             assert f"| {NAMES[name]}" in notice
 
 

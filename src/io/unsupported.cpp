@@ -17,6 +17,11 @@ void note_set_unsupported(const EntitySet& set, std::string_view format, Notes& 
                               to_string(set.association), format));
 }
 
+void note_set_empty(const EntitySet& set, Notes& notes) {
+  notes.push_back(fmt::format("the set '{}' of {} is not written: it has no members", set.name,
+                              to_string(set.association)));
+}
+
 void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& notes) {
   for (const Association association : {Association::vertices, Association::cells}) {
     const auto& ids = association == Association::vertices ? mesh.vertex_ids : mesh.cell_ids;

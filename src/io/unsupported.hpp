@@ -15,6 +15,9 @@ void note_array_unsupported(const DataArray& array, std::string_view format, Not
 /// Notes "the set 'fixed' of vertices is not written: OFF has no place for it".
 void note_set_unsupported(const EntitySet& set, std::string_view format, Notes& notes);
 
+/// Notes "the set 'fixed' of vertices is not written: it has no members".
+void note_set_empty(const EntitySet& set, Notes& notes);
+
 /// Notes the ids of vertices and cells, if there are any.
 void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& notes);
 

@@ -9,8 +9,8 @@
 
 namespace meshorder::test {
 
-/// Whether AddressSanitizer watches this build, which makes everything about ten times slower.
-#if defined(__SANITIZE_ADDRESS__)
+/// Whether a sanitizer watches this build, which makes everything about ten times slower.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;

@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "io/abaqus/cards.hpp"
 #include "io/names.hpp"
+#include "io/unsupported.hpp"
 
 #include <fmt/format.h>
 
@@ -147,8 +148,7 @@ void write_sets(DeckOutput& out, const std::vector<EntitySet>& sets,
   for (const EntitySet& set : sets) {
     const bool of_nodes = set.association == Association::vertices;
     if (set.members.empty()) {
-      notes.push_back(fmt::format("the set '{}' of {} is not written: it has no members", set.name,
-                                  to_string(set.association)));
+      note_set_empty(set, notes);
       continue;
     }
     const std::string name = name_for(set.name, taken[of_nodes ? 0 : 1]);

@@ -362,6 +362,12 @@ void classify(Metadata& layout, WriteContext& output, Notes& notes) {
     output.cell_dimensions.push_back(group.dimension);
     output.cell_tags.push_back(group.tag);
   }
+  if (!kept.empty() && output.cell_tags != kept) {
+    notes.push_back(
+        fmt::format("the array '{}' is written with new numbers where the cells of an entity of Gmsh "
+                    "belong to different groups",
+                    kCellEntity));
+  }
   std::map<Entity, Group> entities;
   for (const Group& group : groups.groups) {
     if (group.tag > 0) entities.try_emplace({group.dimension, group.tag}, group);

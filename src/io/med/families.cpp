@@ -5,6 +5,7 @@
 #include "io/med/med.hpp"
 #include "io/names.hpp"
 #include "io/stream/read_limits.hpp"
+#include "io/unsupported.hpp"
 
 #include <fmt/format.h>
 
@@ -188,6 +189,10 @@ class FamilyWriter {
     bool any = false;
     for (const EntitySet& set : writing_.mesh.sets) {
       if (set.association != association_) continue;
+      if (set.members.empty()) {
+        note_set_empty(set, writing_.notes);
+        continue;
+      }
       combinations.add(unused_name(set.name, names), set.members);
       any = true;
     }

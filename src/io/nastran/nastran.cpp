@@ -144,8 +144,7 @@ std::string rounded_note(std::int64_t coordinates) {
 void append_set(std::string& out, std::int64_t number, const EntitySet& set,
                 const std::vector<std::int64_t>& members, std::string_view line_end, Notes& notes) {
   if (members.empty()) {
-    notes.push_back(fmt::format("the set '{}' of {} is not written: it has no members", set.name,
-                                to_string(set.association)));
+    note_set_empty(set, notes);
     return;
   }
   const std::string name = plain_name(set.name);

@@ -362,8 +362,7 @@ class UnvWriter {
       if (elements != nullptr && !written_.contains(elements)) add_members(elements, members);
       if (!written_.contains(&set)) add_members(&set, members);  // another set of that name
       if (members.empty()) {
-        notes_.push_back(fmt::format("the set '{}' of {} is not written: it has no members", set.name,
-                                     to_string(set.association)));
+        note_set_empty(set, notes_);
         continue;
       }
       const std::string name = name_for(set.name, taken);
