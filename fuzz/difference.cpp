@@ -1,0 +1,103 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "fuzz/difference.hpp"
+
+#include "support/sample_meshes.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+
+namespace meshorder::fuzz {
+namespace {
+
+template <class T>
+bool same(const T& a, const T& b) {
+  if constexpr (std::is_same_v<T, double>) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) ||
+           (std::isnan(a) && std::isnan(b));
+  } else if constexpr (std::is_same_v<T, float>) {
+    return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) ||
+           (std::isnan(a) && std::isnan(b));
+  } else {
+    return a == b;
+  }
+}
+
+bool same_values(const Values& a, const Values& b) {
+  if (a.index() != b.index()) return false;
+  return std::visit(
+      [&](const auto& values) {
+        const auto& others = std::get<std::decay_t<decltype(values)>>(b);
+        return std::equal(values.begin(), values.end(), others.begin(), others.end(),
+                          [](const auto& x, const auto& y) { return same(x, y); });
+      },
+      a);
+}
+
+bool same_points(const std::vector<Point>& a, const std::vector<Point>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Point& p, const Point& q) {
+    return same(p[0], q[0]) && same(p[1], q[1]) && same(p[2], q[2]);
+  });
+}
+
+std::string difference_of_arrays(const DataArray& a, const DataArray& b) {
+  const std::string name = "the array '" + b.name + "' on " + std::string(to_string(b.association));
+  if (a.name != b.name || a.association != b.association) return name + " is gone";
+  if (a.components != b.components) return name + " has another number of components";
+  if (a.indices != b.indices) return name + " has rows of other vertices or cells";
+  if (a.component_names != b.component_names) return name + " has other names of components";
+  if (!same_values(a.values, b.values)) return name + " has other values";
+  return {};
+}
+
+std::string difference_of_data(const Mesh& a, const Mesh& b) {
+  if (a.data.size() != b.data.size()) {
+    return std::to_string(a.data.size()) + " arrays for " + std::to_string(b.data.size());
+  }
+  for (std::size_t i = 0; i < b.data.size(); ++i) {
+    const std::string found = difference_of_arrays(a.data[i], b.data[i]);
+    if (!found.empty()) return found;
+  }
+  if (a.sets.size() != b.sets.size()) {
+    return std::to_string(a.sets.size()) + " sets for " + std::to_string(b.sets.size());
+  }
+  for (std::size_t i = 0; i < b.sets.size(); ++i) {
+    if (!(a.sets[i] == b.sets[i])) return "the set '" + b.sets[i].name + "' differs";
+  }
+  if (a.vertex_ids != b.vertex_ids) return "ids of vertices differ";
+  if (a.cell_ids != b.cell_ids) return "ids of cells differ";
+  if (a.cell_blocks != b.cell_blocks) return "blocks of cells differ";
+  return {};
+}
+
+}  // namespace
+
+std::string difference(const Mesh& found, const Mesh& expected, Extent extent) {
+  if (!same_points(found.points, expected.points)) return "points differ";
+  if (found.cells.size() != expected.cells.size()) {
+    return std::to_string(found.cells.size()) + " cells for " + std::to_string(expected.cells.size());
+  }
+  if (!(found.cells == expected.cells)) return "cells differ";
+  if (extent == Extent::points_and_cells) return {};
+  return difference_of_data(test::sorted_members(found), test::sorted_members(expected));
+}
+
+std::string difference_of_cells(const Cells& found, const Cells& expected, const Permutation& places) {
+  if (found.size() != expected.size()) {
+    return std::to_string(found.size()) + " cells for " + std::to_string(expected.size());
+  }
+  for (Index c = 0; c < expected.size(); ++c) {
+    const Index place = places.old_to_new()[static_cast<std::size_t>(c)];
+    const auto a = found[place];
+    const auto b = expected[c];
+    if (found.shapes[static_cast<std::size_t>(place)] != expected.shapes[static_cast<std::size_t>(c)] ||
+        !std::equal(a.begin(), a.end(), b.begin(), b.end())) {
+      return "cell " + std::to_string(c) + " differs";
+    }
+  }
+  return {};
+}
+
+}  // namespace meshorder::fuzz
