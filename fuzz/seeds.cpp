@@ -5,6 +5,9 @@
 //   meshorder_fuzz_seeds FOLDER
 #include "fuzz/families/mesh_files.hpp"
 #include "fuzz/input_files.hpp"
+#ifdef MESHORDER_HAS_CGNS
+#include "io/cgns/tree.hpp"
+#endif
 #include "io/format.hpp"
 #include "io/gmsh_files.hpp"
 #include "io/npy.hpp"
@@ -115,6 +118,19 @@ void add_encodings(Seeds& seeds) {
   seeds.add("gmsh", test::kGmsh22);
 }
 
+#ifdef MESHORDER_HAS_CGNS
+/// CGNS's older kind of file, which is read and kept, but not made of other formats.
+void add_adf(Seeds& seeds) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder.path() / "mesh.cgns";
+  write_mesh(test::tetrahedral_bar(1), path);
+  cgns::Tree tree = cgns::read_tree(path);
+  tree.storage = cgns::Storage::adf;
+  cgns::write_tree(tree, path, [](cgns::Node& /*node*/) {});
+  seeds.add("cgns", test::content_of(path));
+}
+#endif
+
 void add_laboratory(Seeds& seeds) {
   for (const char* name : {"falling", "constrained", "stretch", "unsquash", "bowl", "bounce"}) {
     seeds.add("scenario", test::content_of(fs::path(MESHORDER_SCENARIOS) / (std::string(name) + ".json")));
@@ -215,6 +231,9 @@ int main(int argc, char** argv) {
     Seeds seeds(argv[1]);
     add_meshes(seeds);
     add_encodings(seeds);
+#ifdef MESHORDER_HAS_CGNS
+    add_adf(seeds);
+#endif
     add_laboratory(seeds);
     add_maps(seeds);
     add_openfoam(seeds);
