@@ -129,6 +129,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   LLVMFuzzerInitialize(&argc, &argv);
+  meshorder::fuzz::keep_files_whole();
   if (__sanitizer_set_death_callback != nullptr) __sanitizer_set_death_callback(meshorder::fuzz::keep_input);
   std::signal(SIGABRT, [](int /*signal*/) { meshorder::fuzz::keep_input(); });
   return meshorder::fuzz::run(argv[2], std::strtol(argv[1], nullptr, 10));

@@ -17,6 +17,7 @@ namespace meshorder::fuzz {
 namespace {
 
 const Family* chosen = nullptr;
+bool keeps_files_whole = false;
 
 void choose_family(const std::filesystem::path& program) {
   const std::string name = program.filename().string();
@@ -32,6 +33,8 @@ void fail(const std::string& what) {
   std::fprintf(stderr, "fuzz: %s\n", what.c_str());
   std::abort();
 }
+
+void keep_files_whole() { keeps_files_whole = chosen->by_library; }
 
 std::string mutated_bytes(std::string text, std::size_t most) {
   const std::size_t size = std::min(text.size(), most);
@@ -59,12 +62,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
                                                unsigned seed) {
   constexpr unsigned kOneIn = 2;  // mutations that know the structure
-  if (chosen->mutate != nullptr && seed % kOneIn == 0) {
+  if (chosen->mutate != nullptr && (seed % kOneIn == 0 || keeps_files_whole)) {
     const std::string changed = chosen->mutate({data, data + size}, std::minstd_rand(seed)());
     if (!changed.empty() && changed.size() <= most) {
       std::copy(changed.begin(), changed.end(), data);
       return changed.size();
     }
   }
+  if (keeps_files_whole) return size;
   return LLVMFuzzerMutate(data, size, most);
 }

@@ -20,6 +20,9 @@ struct Family {
   /// Changes an input knowing its structure, with `seed` for all choices. Returns an empty text where the
   /// input has no such structure. Null: bytes are changed without knowledge of what they mean.
   std::string (*mutate)(std::string input, std::uint32_t seed) = nullptr;
+  /// Whether a library reads the bytes, which crashes on some damaged files: where a crash ends the run, as
+  /// in tests, inputs are changed by `mutate` alone, which leaves whole files.
+  bool by_library = false;
 };
 
 /// Returns all families, those of the formats that this build has among them.
@@ -30,6 +33,9 @@ const Family* find_family(std::string_view name);
 
 /// Writes a sentence to standard error and aborts.
 [[noreturn]] void fail(const std::string& what);
+
+/// Lets LLVMFuzzerCustomMutator leave files whole that a library reads; after LLVMFuzzerInitialize.
+void keep_files_whole();
 
 /// Changes `text` as the fuzzing engine does where it knows nothing of its meaning.
 std::string mutated_bytes(std::string text, std::size_t most);

@@ -22,7 +22,7 @@ std::span<const Family> families() {
         {"planted", check_planted},
     };
     for (const MeshFamily& family : mesh_families()) {
-      list.push_back({family.name, check_mesh_family, family.mutate});
+      list.push_back({family.name, check_mesh_family, family.mutate, family.by_library});
     }
     return list;
   }();

@@ -31,10 +31,10 @@ constexpr std::array kAll{
     MeshFamily{"unv", "mesh.unv"},
     MeshFamily{"matrix", "matrix.mtx"},
     MeshFamily{"graph", "graph.graph"},
-    MeshFamily{"exodus", "mesh.exo", mutate_hdf5},
-    MeshFamily{"xdmf", "mesh.xdmf", mutate_hdf5},
-    MeshFamily{"cgns", "mesh.cgns", mutate_hdf5},
-    MeshFamily{"med", "mesh.med", mutate_hdf5},
+    MeshFamily{"exodus", "mesh.exo", mutate_hdf5, true},
+    MeshFamily{"xdmf", "mesh.xdmf", mutate_hdf5, true},
+    MeshFamily{"cgns", "mesh.cgns", mutate_hdf5, true},
+    MeshFamily{"med", "mesh.med", mutate_hdf5, true},
 };
 
 bool is_built_in(const MeshFamily& family) {

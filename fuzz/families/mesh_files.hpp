@@ -14,6 +14,7 @@ struct MeshFamily {
   std::string_view name;
   std::string_view file;  ///< name of the first file; its extension is that of the format
   std::string (*mutate)(std::string input, std::uint32_t seed) = nullptr;
+  bool by_library = false;  ///< see Family::by_library
 };
 
 /// Returns the families of the formats that this build has.

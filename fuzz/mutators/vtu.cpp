@@ -117,18 +117,18 @@ std::optional<std::string> uncompressed_values(std::string_view text, const Stor
 
 /// Returns an array with some of its values changed, encoded as it was.
 std::string changed_array(std::string_view text, const Storage& storage, Choice& choice) {
-  constexpr std::size_t kRoom = 64;
+  constexpr std::size_t kGrowth = 64;
   const bool lies = choice.below(8) == 0;  // about its size
   const std::uint64_t beyond = lies ? choice.below(1024) : 0;
   if (storage.compressor == VtuEncoding::Compressor::none) {
     const std::string bytes = decoded(text);
     const std::string values =
-        mutated_bytes(bytes.substr(std::min(storage.word, bytes.size())), bytes.size() + kRoom);
+        mutated_bytes(bytes.substr(std::min(storage.word, bytes.size())), bytes.size() + kGrowth);
     return to_base64(storage.header({values.size() + beyond}) + values);
   }
   std::optional<std::string> values = uncompressed_values(text, storage);
   if (!values) return {};
-  const std::size_t most = values->size() + kRoom;
+  const std::size_t most = values->size() + kGrowth;
   values = mutated_bytes(*std::move(values), most);
   const std::string block = vtk::VtuCompressor(storage.compressor).compress(*values);
   return to_base64(storage.header({1, values->size() + beyond, 0, block.size()})) + to_base64(block);
