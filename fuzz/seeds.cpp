@@ -105,7 +105,9 @@ void add_encodings(Seeds& seeds) {
       Mesh mesh = test::tetrahedral_bar(1);
       mesh.format = "vtk";
       vtk::Metadata metadata;
-      metadata.legacy = vtk::LegacyLayout{.version = version, .binary = binary};
+      vtk::LegacyLayout& layout = metadata.legacy.emplace();
+      layout.version = version;
+      layout.binary = binary;
       mesh.format_metadata = std::make_shared<vtk::Metadata>(metadata);
       seeds.add("vtk", write_mesh_to_memory(mesh, "vtk", "mesh.vtk").files.front().bytes);
     }
