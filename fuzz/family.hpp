@@ -28,9 +28,6 @@ struct Family {
 /// Returns all families, those of the formats that this build has among them.
 std::span<const Family> families();
 
-/// Returns the family of that name; null if there is none.
-const Family* find_family(std::string_view name);
-
 /// Writes a sentence to standard error and aborts.
 [[noreturn]] void fail(const std::string& what);
 

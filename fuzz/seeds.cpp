@@ -3,7 +3,7 @@
 // Writes the first inputs of all families, one folder for each:
 //
 //   meshorder_fuzz_seeds FOLDER
-#include "fuzz/families/mesh_files.hpp"
+#include "fuzz/families/mesh_formats.hpp"
 #include "fuzz/input_files.hpp"
 #ifdef MESHORDER_HAS_CGNS
 #include "io/cgns/tree.hpp"

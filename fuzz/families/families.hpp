@@ -5,8 +5,10 @@
 
 namespace meshorder::fuzz {
 
-// The checks of the families that are no formats of meshes; each is in the file of its subject.
+// The checks of families; each is in the file of its subject.
 
+/// The files of a mesh (see `input_files` and `check_mesh_files`).
+void check_mesh_family(std::string_view family, Family::Bytes input);
 /// A folder `polyMesh`: `owner`, `neighbour`, `points` and `faces`, read as an order of cells needs them.
 void check_openfoam(std::string_view family, Family::Bytes input);
 /// An array of NumPy as `--maps` reads it: a permutation, written and read again.
