@@ -34,7 +34,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 namespace meshorder::fuzz {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 16U;
+constexpr std::size_t kMostOfInput = std::size_t{1} << 16U;
 constexpr std::array<std::string_view, 10> kNumbers{
     "0", "1", "-1", "2147483647", "2147483648", "4294967296", "1e400", "nan", "-0", "99999999999999999999"};
 
@@ -100,10 +100,10 @@ int run(const std::filesystem::path& seed_folder, long executions) {
   for (const std::string& seed : seeds) run_one(seed);
   for (long k = 0; k < executions; ++k) {
     std::string input = seeds[static_cast<std::size_t>(k) % seeds.size()];
-    std::size_t size = std::min(input.size(), kMostBytes);
-    input.resize(kMostBytes);
+    std::size_t size = std::min(input.size(), kMostOfInput);
+    input.resize(kMostOfInput);
     for (std::size_t changes = 1 + below(3); changes > 0; --changes) {
-      size = LLVMFuzzerCustomMutator(reinterpret_cast<std::uint8_t*>(input.data()), size, kMostBytes,
+      size = LLVMFuzzerCustomMutator(reinterpret_cast<std::uint8_t*>(input.data()), size, kMostOfInput,
                                      static_cast<unsigned>(random_numbers()));
     }
     input.resize(size);

@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = 8192;  // of a seed; small ones are quick
+constexpr std::size_t kMostOfSeed = 8192;  // of a seed; small ones are quick
 
 class Seeds {
  public:
@@ -71,7 +71,7 @@ void add_meshes(Seeds& seeds) {
       try {
         const std::string input = input_of(write_mesh_to_memory(mesh, format, family.file).files);
         const bool binary = format == "exodus" || format == "xdmf" || format == "cgns" || format == "med";
-        if (binary || input.size() <= kMostBytes) seeds.add(family.name, input);
+        if (binary || input.size() <= kMostOfSeed) seeds.add(family.name, input);
       } catch (const InputError&) {  // the format does not hold such cells
       }
     }

@@ -14,7 +14,7 @@
 namespace meshorder::fuzz {
 namespace {
 
-constexpr std::uint64_t kMostBytes = 1U << 20U;  // of an array
+constexpr std::uint64_t kMostOfArray = 1U << 20U;  // of an array
 
 struct Span {
   std::size_t begin = 0;
@@ -99,14 +99,15 @@ std::optional<std::string> uncompressed_values(std::string_view text, const Stor
   const std::uint64_t blocks = storage.number(header, 0);
   const std::uint64_t size = storage.number(header, 1);
   const std::uint64_t last = storage.number(header, 2);
-  if (blocks == 0 || blocks > kMostBytes || header.size() < (3 + blocks) * storage.word) return {};
+  if (blocks == 0 || blocks > kMostOfArray || header.size() < (3 + blocks) * storage.word) return {};
   const std::string bytes = decoded(text);
   std::string values;
   std::size_t at = 0;
   for (std::uint64_t b = 0; b < blocks; ++b) {
     const std::uint64_t compressed = storage.number(header, 3 + b);
     const std::uint64_t plain = b + 1 == blocks && last != 0 ? last : size;
-    if (compressed > bytes.size() - at || values.size() + plain > kMostBytes || plain > kMostBytes) return {};
+    if (compressed > bytes.size() - at || values.size() + plain > kMostOfArray || plain > kMostOfArray)
+      return {};
     std::string block(plain, '\0');
     if (!vtk::VtuCompressor(storage.compressor).uncompress({bytes.data() + at, compressed}, block)) return {};
     values += block;
