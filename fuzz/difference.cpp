@@ -42,6 +42,34 @@ bool same_points(const std::vector<Point>& a, const std::vector<Point>& b) {
   });
 }
 
+bool near_points(const std::vector<Point>& a, const std::vector<Point>& b) {
+  constexpr double kRounding = 1e-6;
+  const auto near = [&](double x, double y) {
+    return std::abs(x - y) <= kRounding * std::max({std::abs(x), std::abs(y), kRounding});
+  };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const Point& p, const Point& q) {
+    return near(p[0], q[0]) && near(p[1], q[1]) && near(p[2], q[2]);
+  });
+}
+
+/// Returns the points of the vertices of all cells, one after another.
+std::vector<Point> corners_of(const Mesh& mesh) {
+  std::vector<Point> result;
+  for (const Index v : mesh.cells.vertices) result.push_back(mesh.points[static_cast<std::size_t>(v)]);
+  return result;
+}
+
+/// Returns the vertices of each cell, ascending; the cells in ascending order.
+std::vector<std::vector<Index>> sorted_cells(const Cells& cells) {
+  std::vector<std::vector<Index>> result;
+  for (Index c = 0; c < cells.size(); ++c) {
+    result.emplace_back(cells[c].begin(), cells[c].end());
+    std::sort(result.back().begin(), result.back().end());
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 std::string difference_of_arrays(const DataArray& a, const DataArray& b) {
   const std::string name = "the array '" + b.name + "' on " + std::string(to_string(b.association));
   if (a.name != b.name || a.association != b.association) return name + " is gone";
@@ -75,12 +103,21 @@ std::string difference_of_data(const Mesh& a, const Mesh& b) {
 }  // namespace
 
 std::string difference(const Mesh& found, const Mesh& expected, Extent extent) {
-  if (!same_points(found.points, expected.points)) return "points differ";
   if (found.cells.size() != expected.cells.size()) {
     return std::to_string(found.cells.size()) + " cells for " + std::to_string(expected.cells.size());
   }
-  if (!(found.cells == expected.cells)) return "cells differ";
-  if (extent == Extent::points_and_cells) return {};
+  switch (extent) {
+    case Extent::corners:
+      return corners_of(found) == corners_of(expected) ? "" : "corners of cells differ";
+    case Extent::pairs:
+      return sorted_cells(found.cells) == sorted_cells(expected.cells) ? "" : "entries differ";
+    case Extent::points_and_cells:
+      if (!near_points(found.points, expected.points)) return "points differ by more than rounding";
+      return found.cells == expected.cells ? "" : "cells differ";
+    case Extent::all:
+      if (!same_points(found.points, expected.points)) return "points differ";
+      if (!(found.cells == expected.cells)) return "cells differ";
+  }
   return difference_of_data(test::sorted_members(found), test::sorted_members(expected));
 }
 

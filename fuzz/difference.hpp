@@ -4,12 +4,18 @@
 #include <meshorder/mesh.hpp>
 #include <meshorder/permutation.hpp>
 
+#include <cstdint>
 #include <string>
 
 namespace meshorder::fuzz {
 
 /// What of two meshes is compared.
-enum class Extent : std::uint8_t { all, points_and_cells };
+enum class Extent : std::uint8_t {
+  all,
+  points_and_cells,  ///< points up to 10⁻⁶ of their size, as some formats round them
+  corners,           ///< cells by the points of their vertices
+  pairs,             ///< the number of cells with the same vertices, in any order
+};
 
 /// Returns the first difference between two meshes in words, an empty text if there is none. Numbers are the
 /// same if their bits are, or if neither is a number; rows of partial arrays and members of sets may have any

@@ -63,7 +63,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
                                                unsigned seed) {
   constexpr unsigned kOneIn = 2;  // mutations that know the structure
   if (chosen->mutate != nullptr && (seed % kOneIn == 0 || keeps_files_whole)) {
-    const std::string changed = chosen->mutate({data, data + size}, static_cast<std::uint32_t>(std::mt19937(seed)()));
+    const std::string changed =
+        chosen->mutate({data, data + size}, static_cast<std::uint32_t>(std::mt19937(seed)()));
     if (!changed.empty() && changed.size() <= most) {
       std::copy(changed.begin(), changed.end(), data);
       return changed.size();

@@ -40,9 +40,7 @@ std::optional<Mesh> read_any(std::string_view format, const std::vector<MemoryFi
   } catch (const Unavailable& error) {
     message = error.what();
   }
-  const bool has_controls =
-      std::any_of(message.begin(), message.end(), [](unsigned char c) { return c < ' ' || c == '\x7f'; });
-  if (has_controls || message.size() > 2000) fail("the message is not one line of text: " + message);
+  if (message.find('\n') != std::string::npos) fail("the message is not one line: " + message);
   return {};
 }
 
@@ -71,12 +69,20 @@ void move(Mesh& mesh) {
   check_mesh(mesh);
 }
 
+/// Returns what a format promises to keep: STL has triangles without numbers of vertices, matrices and graphs
+/// have entries whose order and direction are theirs.
+Extent extent_of(std::string_view format, bool is_whole) {
+  if (format == "stl") return Extent::corners;
+  if (format == "matrixmarket" || format == "metis") return Extent::pairs;
+  return is_whole ? Extent::all : Extent::points_and_cells;
+}
+
 void check_same_format(const Mesh& mesh, std::string_view format, const std::string& name) {
   Notes notes;
   const std::optional<MemoryFiles> files = written(mesh, format, name, notes);
   if (!files) return;
   const Mesh again = read_back(format, files->files);
-  const std::string found = difference(again, mesh, notes.empty() ? Extent::all : Extent::points_and_cells);
+  const std::string found = difference(again, mesh, extent_of(format, notes.empty()));
   if (!found.empty()) fail("written and read as " + std::string(format) + ": " + found);
 }
 
