@@ -28,6 +28,17 @@ std::string adf_file() {
   return test::content_of(path);
 }
 
+TEST(Cgns, MakesTheSameSetsOfSectionsInAnyOrder) {
+  const TemporaryFolder folder;
+  // sections of which a set has one cell: the first in the file, or another
+  write_mesh(test::mixed_mesh(), folder.path() / "a.cgns");
+  Mesh mesh = read_mesh(folder.path() / "a.cgns");
+  const std::size_t sets = mesh.sets.size();
+  apply_reordering(mesh, test::shuffled(mesh.vertex_count(), 1), test::shuffled_cells(mesh, 2));
+  write_mesh(mesh, folder.path() / "b.cgns");
+  EXPECT_EQ(read_mesh(folder.path() / "b.cgns").sets.size(), sets);
+}
+
 TEST(Cgns, ReadsFilesOfAdf) {
   const TemporaryFolder folder;
   const Mesh mesh = read_mesh(folder.file("a.cgns", adf_file()));

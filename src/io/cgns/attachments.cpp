@@ -425,7 +425,7 @@ class AttachmentReader {
     reading_.mesh.sets.push_back(std::move(set));
   }
 
-  /// Makes sets of the sections of boundaries that no set has all cells of: some programs name boundaries so.
+  /// Makes sets of the sections of boundaries unless all cells are in sets: some programs name boundaries so.
   void add_section_sets() {
     std::vector<bool> is_named(reading_.mesh.cells.shapes.size());
     std::set<std::string> names;
@@ -438,8 +438,11 @@ class AttachmentReader {
       for (std::size_t k = 0; k < owner.sections.size(); ++k) {
         const Section& section = metadata_.sections[owner.sections[k]];
         const Index first = owner.first_cells[k];
-        if (is_named[first] || dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension)
+        const auto begin = is_named.begin() + first;
+        if (std::all_of(begin, begin + section.count, [](bool named) { return named; }) ||
+            dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension) {
           continue;
+        }
         PointList list{.zone = section.zone, .association = Association::cells};
         list.members.resize(static_cast<std::size_t>(section.count));
         std::iota(list.members.begin(), list.members.end(), first);
