@@ -159,3 +159,10 @@ def test_refuses_faulty_points(mesh):
         meshorder.order_mesh(None, [[0, 1, 2, 3]])
     with pytest.raises(InvalidArgument):
         meshorder.reorder("mesh.msh")
+
+
+def test_bytes_that_are_no_text_become_escapes():
+    with pytest.raises(InputError, match=r"\\x8f"):
+        meshorder.read(b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$\x8f\n", format="gmsh")
+    mesh = meshorder.read(b"v 0 0 0\nv 1 0 0\nv 0 1 0\ng a\xff\nf 1 2 3\n", format="obj")
+    assert list(mesh.sets) == [r"a\xff"]
