@@ -82,7 +82,7 @@ endif()
 if("payoff" IN_LIST components)
   meshorder_require(hwy libhwy-dev)                    # SIMD chosen at run time
 endif()
-if(MESHORDER_CLI OR build_lab)
+if(MESHORDER_CLI OR MESHORDER_FUZZ OR build_lab)
   meshorder_require(nlohmann_json nlohmann-json3-dev)  # results
 endif()
 if(build_lab)

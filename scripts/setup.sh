@@ -68,6 +68,12 @@ packages_to_test=(
   clang-format         "checks the layout of the sources"
   clang-tidy           "looks for mistakes in the sources"
 )
+# shellcheck disable=SC2034  # for fuzz/run
+packages_to_fuzz=(
+  clang-14             "compiler with coverage and sanitizers"
+  libclang-rt-14-dev   "libFuzzer and the sanitizers' libraries"
+  llvm-14              "names of functions in what the sanitizers report"
+)
 # ./test does the same without them, in more time
 # shellcheck disable=SC2034  # for ./test
 packages_for_speed=(

@@ -6,10 +6,6 @@
 
 namespace meshorder {
 
-bool names_a_model(std::string_view mesh) {
-  return mesh.find('/') == std::string_view::npos && std::filesystem::path(mesh).extension().empty();
-}
-
 Scenario find_scenario(const std::string& name_or_file) {
   for (const BuiltInScenario& scenario : built_in_scenarios()) {
     if (scenario.name == name_or_file)

@@ -133,6 +133,10 @@ std::vector<std::string> read_paths(const JsonValue& root, const JsonValue& list
 
 }  // namespace
 
+bool names_a_model(std::string_view mesh) {
+  return mesh.find('/') == std::string_view::npos && std::filesystem::path(mesh).extension().empty();
+}
+
 Scenario parse_scenario(std::string_view text, const std::string& file) {
   const nlohmann::json json = parse_json(text, file);
   const JsonValue root(json, file);

@@ -20,10 +20,10 @@ void translate(const std::exception_ptr& thrown, void* /*unused*/) {
   } catch (const Error& error) {
     const nb::object kind =
         nb::module_::import_("meshorder._errors").attr(kClasses[static_cast<std::size_t>(error.code())]);
-    nb::object value = kind(error.what());
+    nb::object value = kind(text(error.what()));
     if (const auto* input = dynamic_cast<const InputError*>(&error)) {
       const Location& location = input->location();
-      value.attr("file") = nb::str(location.file.c_str());
+      value.attr("file") = text(location.file);
       if (location.line > 0) value.attr("line") = nb::int_(location.line);
       if (location.byte >= 0) value.attr("byte") = nb::int_(location.byte);
     }
@@ -32,6 +32,17 @@ void translate(const std::exception_ptr& thrown, void* /*unused*/) {
 }
 
 }  // namespace
+
+nb::str text(std::string_view bytes) {
+  return nb::steal<nb::str>(
+      PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "backslashreplace"));
+}
+
+nb::list texts(const std::vector<std::string>& list) {
+  nb::list result;
+  for (const std::string& entry : list) result.append(text(entry));
+  return result;
+}
 
 void add_errors(nb::module_& /*module*/) { nb::register_exception_translator(translate); }
 

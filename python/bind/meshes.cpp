@@ -79,8 +79,6 @@ nb::tuple order_of_mesh(const GivenPoints& points, const GivenCells& cells, std:
   return described(unlocked([&] { return order_mesh(mesh, methods, given_options.order()); }));
 }
 
-nb::str text(std::string_view name) { return nb::str(name.data(), name.size()); }
-
 nb::object milliseconds(const std::optional<KernelMilliseconds>& times) {
   if (!times) return nb::none();
   nb::dict result;
@@ -164,7 +162,7 @@ nb::object values_of(nb::handle mesh, const DataArray& array) {
   return std::visit(
       [&]<class T>(const std::vector<T>& values) -> nb::object {
         if constexpr (std::is_same_v<T, std::string>) {
-          return nb::cast(values);
+          return texts(values);
         } else {
           const auto width = static_cast<std::size_t>(array.components);
           if (width == 1) return nb::cast(viewed(mesh, values));
@@ -232,20 +230,21 @@ void add_mesh_class(nb::module_& module) {
                    })
       .def_prop_ro("vertex_ids", [of](Self self) { return viewed(self, of(self).vertex_ids); })
       .def_prop_ro("cell_ids", [of](Self self) { return viewed(self, of(self).cell_ids); })
-      .def_prop_ro("data",
-                   [of](Self self) {
-                     nb::list list;
-                     for (const DataArray& array : of(self).data) {
-                       list.append(nb::make_tuple(array.name, array.association == Association::vertices,
-                                                  values_of(self, array), viewed(self, array.indices)));
-                     }
-                     return list;
-                   })
+      .def_prop_ro(
+          "data",
+          [of](Self self) {
+            nb::list list;
+            for (const DataArray& array : of(self).data) {
+              list.append(nb::make_tuple(text(array.name), array.association == Association::vertices,
+                                         values_of(self, array), viewed(self, array.indices)));
+            }
+            return list;
+          })
       .def_prop_ro("sets",
                    [of](Self self) {
                      nb::list list;
                      for (const EntitySet& set : of(self).sets) {
-                       list.append(nb::make_tuple(set.name, set.association == Association::vertices,
+                       list.append(nb::make_tuple(text(set.name), set.association == Association::vertices,
                                                   viewed(self, set.members)));
                      }
                      return list;
@@ -253,8 +252,8 @@ void add_mesh_class(nb::module_& module) {
       .def_prop_ro("block_starts", [of](Self self) { return viewed(self, of(self).cell_blocks); })
       .def_prop_ro("format_contents",
                    [](const Mesh& self) {
-                     return self.format_metadata ? self.format_metadata->contents()
-                                                 : std::vector<std::string>();
+                     return texts(self.format_metadata ? self.format_metadata->contents()
+                                                       : std::vector<std::string>());
                    })
       .def("add_data", [](Mesh& self, const std::string& name, bool of_vertices,
                           const Array& values) { self.data.push_back(array_of(name, of_vertices, values)); })
@@ -291,7 +290,7 @@ void add_mesh_class(nb::module_& module) {
            [](const Mesh& self, const std::filesystem::path& path) {
              Notes notes;
              (void)unlocked([&] { return write_mesh(self, path, &notes); });
-             return notes;
+             return texts(notes);
            })
       .def("to_bytes", [](const Mesh& self, const std::string& format, const std::string& name) {
         MemoryFiles files = unlocked([&] { return write_mesh_to_memory(self, format, name); });
@@ -338,7 +337,7 @@ void add_meshes(nb::module_& module) {
                                   .memory_limit = memory_limit,
                                   .include_folders = std::move(include_folders)};
         Mesh mesh = unlocked([&] { return read_mesh(path, options); });
-        return nb::make_tuple(nb::cast(std::move(mesh)), notes);
+        return nb::make_tuple(nb::cast(std::move(mesh)), texts(notes));
       },
       nb::arg(), nb::arg(), nb::arg().none(), nb::arg());
   module.def(
@@ -349,7 +348,7 @@ void add_meshes(nb::module_& module) {
         const ReadOptions options{
             .format = format, .name = "bytes", .notes = &notes, .memory_limit = memory_limit};
         Mesh mesh = unlocked([&] { return read_mesh(data, options); });
-        return nb::make_tuple(nb::cast(std::move(mesh)), notes);
+        return nb::make_tuple(nb::cast(std::move(mesh)), texts(notes));
       },
       nb::arg(), nb::arg(), nb::arg().none());
   module.def("formats", [] {

@@ -3,7 +3,16 @@
 
 #include <nanobind/nanobind.h>
 
+#include <string>
+#include <string_view>
+#include <vector>
+
 namespace meshorder::python {
+
+/// Returns a text of the library as Python's. Names in files are of any bytes: those that are no UTF-8 become
+/// escapes, `\xff`.
+nanobind::str text(std::string_view bytes);
+nanobind::list texts(const std::vector<std::string>& list);
 
 /// Each adds its subject to the module `meshorder._core`.
 void add_errors(nanobind::module_& module);

@@ -176,3 +176,10 @@ def test_files_take_no_more_than_the_limit(tmp_path):
     with pytest.raises(InputError, match="is not in the mesh's folder"):
         meshorder.read(mesh)
     assert len(meshorder.read(mesh, include_folders=[tmp_path]).shapes) == 1
+
+
+def test_bytes_that_are_no_text_become_escapes():
+    with pytest.raises(InputError, match=r"\\x8f"):
+        meshorder.read(b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$\x8f\n", format="gmsh")
+    mesh = meshorder.read(b"v 0 0 0\nv 1 0 0\nv 0 1 0\ng a\xff\nf 1 2 3\n", format="obj")
+    assert list(mesh.sets) == [r"a\xff"]

@@ -25,8 +25,6 @@ void check_kernels_run(const Mesh& mesh) {
 
 }  // namespace
 
-std::string_view to_string(Kernel kernel) { return to_string<Kernel>(kernel); }
-
 Advice advise(const MeshView& mesh, const PayoffOptions& options) {
   return in_call(options.order.run, [&] {
     if (!(options.budget_seconds >= 0)) {

@@ -453,7 +453,7 @@ class AttachmentReader {
     reading_.mesh.sets.push_back(std::move(set));
   }
 
-  /// Makes sets of the sections of boundaries that no set has all cells of: some programs name boundaries so.
+  /// Makes sets of the sections of boundaries unless all cells are in sets: some programs name boundaries so.
   void add_section_sets() {
     std::vector<bool> is_named(reading_.mesh.cells.shapes.size());
     std::set<std::string> names;
@@ -468,8 +468,11 @@ class AttachmentReader {
         const Index first = owner.first_cells[k];
         // polygons between cells are no boundary
         if (owner.cell_counts[k] < section.count) continue;
-        if (is_named[first] || dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension)
+        const auto begin = is_named.begin() + first;
+        if (std::all_of(begin, begin + section.count, [](bool named) { return named; }) ||
+            dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension) {
           continue;
+        }
         PointList list{.zone = section.zone, .association = Association::cells};
         list.members = index_range(first, section.count);
         add_set(list, section.name, names);

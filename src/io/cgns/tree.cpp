@@ -253,7 +253,11 @@ Tree read_from_disk(const fs::path& path, const std::string& name) {
   }
   Tree tree;
   tree.storage = type == CGIO_FILE_HDF5 ? Storage::hdf5 : Storage::adf;
-  if (tree.storage == Storage::hdf5) check_hdf5(path, name);
+  if (tree.storage == Storage::hdf5) {
+    check_hdf5(path, name);
+  } else {
+    check_adf(path, name);
+  }
   const CgioFile file(path, name, CGIO_MODE_READ, type);
   session.watch();
   std::error_code code;

@@ -67,4 +67,8 @@ void write_tree(const Tree& tree, const FilePath& path, const std::function<void
 /// the lengths that it expects, and data that are there. `path` is on disk, `name` stands in messages.
 void check_hdf5(const std::filesystem::path& path, const std::string& name);
 
+/// Throws InputError unless libcgns can read a file of ADF safely: nodes, their lists of children and values
+/// are where it is told that they are, each node once. O(nodes · log nodes).
+void check_adf(const std::filesystem::path& path, const std::string& name);
+
 }  // namespace meshorder::cgns

@@ -1,0 +1,28 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/mesh.hpp>
+#include <meshorder/permutation.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace meshorder::fuzz {
+
+/// What of two meshes is compared.
+enum class Extent : std::uint8_t {
+  all,
+  points_and_cells,  ///< points up to 10⁻⁶ of their size, as some formats round them
+  corners,           ///< cells by the points of their vertices
+  pairs,             ///< the number of cells with the same vertices, in any order
+};
+
+/// Returns the first difference between two meshes in words, an empty text if there is none. Numbers are the
+/// same if their bits are, or if neither is a number; rows of partial arrays and members of sets may have any
+/// order. O(size of the meshes · log members).
+std::string difference(const Mesh& found, const Mesh& expected, Extent extent);
+
+/// The same for cells of which cell c of `expected` is at `places.old_to_new()[c]` of `found`.
+std::string difference_of_cells(const Cells& found, const Cells& expected, const Permutation& places);
+
+}  // namespace meshorder::fuzz

@@ -1,0 +1,75 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// What a fuzzing engine calls. One program serves all families: its name ends in that of the family.
+#include "fuzz/family.hpp"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+
+namespace meshorder::fuzz {
+namespace {
+
+const Family* chosen = nullptr;
+bool keeps_files_whole = false;
+
+void choose_family(const std::filesystem::path& program) {
+  const std::string name = program.filename().string();
+  const auto names_it = [&](const Family& family) { return name.ends_with("_" + std::string(family.name)); };
+  const auto found = std::find_if(families().begin(), families().end(), names_it);
+  if (found == families().end()) fail(name + ": no family has the name behind the last '_'");
+  chosen = &*found;
+}
+
+}  // namespace
+
+void fail(const std::string& what) {
+  std::fprintf(stderr, "fuzz: %s\n", what.c_str());
+  std::abort();
+}
+
+void keep_files_whole() { keeps_files_whole = chosen->by_library; }
+
+std::string mutated_bytes(std::string text, std::size_t most) {
+  const std::size_t size = std::min(text.size(), most);
+  text.resize(most);
+  text.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(text.data()), size, most));
+  return text;
+}
+
+}  // namespace meshorder::fuzz
+
+using namespace meshorder::fuzz;
+
+extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** argv) {
+  // one thread: what an input does must not depend on when threads run
+  static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  choose_family((*argv)[0]);
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  chosen->check(chosen->name, {data, size});
+  return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
+                                               unsigned seed) {
+  constexpr unsigned kOneIn = 2;  // mutations that know the structure
+  if (chosen->mutate != nullptr && (seed % kOneIn == 0 || keeps_files_whole)) {
+    const std::string changed =
+        chosen->mutate({data, data + size}, static_cast<std::uint32_t>(std::mt19937(seed)()));
+    if (!changed.empty() && changed.size() <= most) {
+      std::copy(changed.begin(), changed.end(), data);
+      return changed.size();
+    }
+  }
+  if (keeps_files_whole) return size;
+  return LLVMFuzzerMutate(data, size, most);
+}

@@ -1,0 +1,118 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "fuzz/round_trip.hpp"
+
+#include "fuzz/difference.hpp"
+#include "fuzz/family.hpp"
+#include "fuzz/input_files.hpp"
+#include "io/format.hpp"
+#include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+
+namespace meshorder::fuzz {
+namespace {
+
+/// What it takes to hold a mesh of another format: neither a library that keeps files on disk nor one point
+/// for all vertices.
+constexpr std::array<std::string_view, 13> kOtherFormats{
+    "gmsh", "vtu", "vtk", "medit", "tetgen", "vega", "off", "ply", "obj", "su2", "abaqus", "nastran", "unv"};
+
+Mesh read(std::string_view format, const std::vector<MemoryFile>& files) {
+  const MemoryFile& first = files.front();
+  return read_mesh(std::as_bytes(std::span(first.bytes)),
+                   {.format = std::string(format),
+                    .name = first.name,
+                    .companion = [&](std::string_view name) { return bytes_of(files, name); }});
+}
+
+/// Returns the mesh of files that may be faulty; nothing if they are refused.
+std::optional<Mesh> read_any(std::string_view format, const std::vector<MemoryFile>& files) {
+  std::string message;
+  try {
+    return read(format, files);
+  } catch (const InputError& error) {
+    message = error.what();
+  } catch (const Unavailable& error) {
+    message = error.what();
+  }
+  if (message.find('\n') != std::string::npos) fail("the message is not one line: " + message);
+  return {};
+}
+
+/// Reads files that were written just now.
+Mesh read_back(std::string_view format, const std::vector<MemoryFile>& files) {
+  try {
+    return read(format, files);
+  } catch (const InputError& error) {
+    fail("what was written as " + std::string(format) + " is refused: " + error.what());
+  }
+}
+
+/// Returns what `write_mesh` makes of a mesh; nothing if it says that the format cannot hold it.
+std::optional<MemoryFiles> written(const Mesh& mesh, std::string_view format, const std::string& name,
+                                   Notes& notes) {
+  try {
+    return write_mesh_to_memory(mesh, format, name, &notes);
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+void move(Mesh& mesh) {
+  const auto seed = static_cast<std::uint64_t>(mesh.vertex_count()) * 7 + 1;
+  apply_reordering(mesh, test::shuffled(mesh.vertex_count(), seed), test::shuffled_cells(mesh, seed + 1));
+  check_mesh(mesh);
+}
+
+/// Returns what a format promises to keep: STL has triangles without numbers of vertices, matrices and graphs
+/// have entries whose order and direction are theirs.
+Extent extent_of(std::string_view format, bool is_whole) {
+  if (format == "stl") return Extent::corners;
+  if (format == "matrixmarket" || format == "metis") return Extent::pairs;
+  return is_whole ? Extent::all : Extent::points_and_cells;
+}
+
+void check_same_format(const Mesh& mesh, std::string_view format, const std::string& name) {
+  Notes notes;
+  const std::optional<MemoryFiles> files = written(mesh, format, name, notes);
+  if (!files) return;
+  const Mesh again = read_back(format, files->files);
+  const std::string found = difference(again, mesh, extent_of(format, notes.empty()));
+  if (!found.empty()) fail("written and read as " + std::string(format) + ": " + found);
+}
+
+/// Checks a mesh that was written in another format: cells only, as what a format says of arrays and sets
+/// differs.
+void check_other_format(Mesh mesh, std::string_view format) {
+  Notes notes;
+  keep_cells(mesh, {.format = std::string(format)});
+  if (mesh.cell_count() == 0) return;
+  const std::string name = "other" + std::string(format_named(format).extensions.front());
+  const std::optional<MemoryFiles> files = written(mesh, format, name, notes);
+  if (!files) return;
+  const Mesh again = read_back(format, files->files);
+  apply_reordering(mesh, Permutation::identity(mesh.vertex_count()),
+                   Permutation::identity(mesh.cell_count()));
+  const std::string found = difference_of_cells(again.cells, mesh.cells, files->cells);
+  if (!found.empty()) fail("written as " + std::string(format) + " and read: " + found);
+}
+
+}  // namespace
+
+void check_mesh_files(std::string_view format, const std::vector<MemoryFile>& files) {
+  std::optional<Mesh> mesh = read_any(format, files);
+  if (!mesh) return;
+  check_mesh(*mesh);
+  move(*mesh);
+  check_same_format(*mesh, format, files.front().name);
+  // one of four: what another format makes of a mesh says little of the reader of this one
+  const std::size_t choice = std::hash<std::string>()(files.front().bytes);
+  if (choice % 4 == 0) check_other_format(*std::move(mesh), kOtherFormats[choice / 4 % kOtherFormats.size()]);
+}
+
+}  // namespace meshorder::fuzz

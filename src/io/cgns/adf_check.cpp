@@ -1,0 +1,154 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/run_scope.hpp"
+#include "io/cgns/tree.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <fstream>
+#include <set>
+#include <system_error>
+#include <utility>
+
+// Checks a file of ADF before libcgns reads it, which follows the pointers in it. The layout: Advanced Data
+// Format software library, "ADF file layout" (NASA, https://cgns.github.io/CGNS_docs_current/adf/). Numbers
+// are hexadecimal digits; a pointer is 8 digits of a block of 4,096 bytes and 4 of a byte in it.
+
+namespace meshorder::cgns {
+namespace {
+
+constexpr int kMostLevels = 64;
+constexpr std::uint64_t kBlock = 4096;
+constexpr std::size_t kTag = 4;
+constexpr std::size_t kPointer = 12;
+constexpr std::size_t kName = 32;
+constexpr std::size_t kMostDimensions = 12;
+constexpr std::size_t kDigits = 8;  // of a count and a dimension
+constexpr std::uint64_t kRootPointerAt = 0x86;
+
+// offsets in a node
+constexpr std::size_t kChildrenAt = kTag + 2 * kName;
+constexpr std::size_t kTypeAt = kChildrenAt + 2 * kDigits + kPointer;
+constexpr std::size_t kRankAt = kTypeAt + kName;
+constexpr std::size_t kChunksAt = kRankAt + 2 + kMostDimensions * kDigits;
+constexpr std::size_t kNode = kChunksAt + 4 + kPointer + kTag;
+
+class AdfCheck {
+ public:
+  AdfCheck(const std::filesystem::path& path, std::string name)
+      : name_(std::move(name)), stream_(path, std::ios::binary) {
+    std::error_code code;
+    size_ = std::filesystem::file_size(path, code);
+    if (code) size_ = 0;
+  }
+
+  void run() { check_node(pointer(kRootPointerAt), 0); }
+
+ private:
+  [[noreturn]] void fail(std::uint64_t at, std::string_view what) const {
+    throw InputError(Location{name_, 0, static_cast<std::int64_t>(at)}, std::string(what),
+                     "the file may be damaged");
+  }
+
+  std::string bytes(std::uint64_t at, std::size_t count) {
+    if (at > size_ || count > size_ - at) fail(at, "a part of a node lies beyond the end of the file");
+    std::string result(count, '\0');
+    stream_.seekg(static_cast<std::streamoff>(at));
+    stream_.read(result.data(), static_cast<std::streamsize>(count));
+    if (!stream_) fail(at, "cannot be read");
+    return result;
+  }
+
+  std::uint64_t number(std::uint64_t at, std::size_t digits) {
+    const std::string text = bytes(at, digits);
+    std::uint64_t value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + digits, value, 16);
+    if (code != std::errc{} || end != text.data() + digits) fail(at, "a number is not hexadecimal");
+    return value;
+  }
+
+  std::uint64_t pointer(std::uint64_t at) {
+    return number(at, kDigits) * kBlock + number(at + kDigits, kPointer - kDigits);
+  }
+
+  void expect_tag(std::uint64_t at, std::string_view tag) {
+    if (bytes(at, kTag) != tag) fail(at, fmt::format("'{}' is missing", tag));
+  }
+
+  void check_node(std::uint64_t at, int level) {
+    poll();
+    if (level > kMostLevels) fail(at, "nodes lie too deep");
+    if (!seen_.insert(at).second) fail(at, "a node has two parents");
+    expect_tag(at, "NoDe");
+    expect_tag(at + kNode - kTag, "TaiL");
+    const std::uint64_t children = number(at + kChildrenAt, kDigits);
+    const std::uint64_t entries = number(at + kChildrenAt + kDigits, kDigits);
+    if (children > entries) fail(at, "a node has more children than places for them");
+    if (children > 0) check_children(pointer(at + kChildrenAt + 2 * kDigits), children, entries, level);
+    check_data(at);
+  }
+
+  void check_children(std::uint64_t table, std::uint64_t children, std::uint64_t entries, int level) {
+    constexpr std::size_t kEntry = kName + kPointer;
+    expect_tag(table, "SNTb");
+    const std::uint64_t first = table + kTag + kPointer;
+    if (entries > size_ / kEntry) fail(table, "a node has more children than the file can hold");
+    const std::uint64_t end = first + entries * kEntry;
+    if (pointer(table + kTag) != end) fail(table, "the end of the children is somewhere else");
+    expect_tag(end, "snTE");
+    for (std::uint64_t c = 0; c < children; ++c) {
+      check_node(pointer(first + c * kEntry + kName), level + 1);
+    }
+  }
+
+  void check_data(std::uint64_t node) {
+    const std::string type = bytes(node + kTypeAt, kName);
+    const std::size_t width = size_of_type(type.substr(0, type.find(' ')));
+    const std::uint64_t rank = number(node + kRankAt, 2);
+    if (rank > kMostDimensions) fail(node, fmt::format("a node has {} dimensions", rank));
+    std::uint64_t wanted = width;
+    for (std::uint64_t k = 0; k < rank; ++k) {
+      const std::uint64_t length = number(node + kRankAt + 2 + k * kDigits, kDigits);
+      if (wanted > 0 && length > size_ / wanted)
+        fail(node, "a node claims more values than the file can hold");
+      wanted *= length;
+    }
+    const std::uint64_t chunks = number(node + kChunksAt, 4);
+    if (chunks == 0) return;
+    const std::uint64_t at = pointer(node + kChunksAt + 4);
+    const std::uint64_t found = chunks == 1 ? bytes_of_chunk(at) : bytes_of_chunks(at, chunks);
+    if (rank > 0 && found < wanted) fail(node, "the values of a node end early");
+  }
+
+  /// Returns the number of bytes in a chunk of values.
+  std::uint64_t bytes_of_chunk(std::uint64_t at) {
+    expect_tag(at, "DaTa");
+    const std::uint64_t end = pointer(at + kTag);
+    if (end < at + kTag + kPointer) fail(at, "values end before they begin");
+    expect_tag(end, "dEnD");
+    return end - at - kTag - kPointer;
+  }
+
+  std::uint64_t bytes_of_chunks(std::uint64_t table, std::uint64_t chunks) {
+    expect_tag(table, "DCtb");
+    const std::uint64_t first = table + kTag + kPointer;
+    const std::uint64_t end = first + chunks * 2 * kPointer;
+    if (pointer(table + kTag) != end) fail(table, "the end of the chunks of values is somewhere else");
+    expect_tag(end, "dcTE");
+    std::uint64_t sum = 0;
+    for (std::uint64_t at = first; at < end; at += 2 * kPointer) sum += bytes_of_chunk(pointer(at));
+    return sum;
+  }
+
+  std::string name_;
+  std::ifstream stream_;
+  std::uint64_t size_ = 0;
+  std::set<std::uint64_t> seen_;  // nodes
+};
+
+}  // namespace
+
+void check_adf(const std::filesystem::path& path, const std::string& name) { AdfCheck(path, name).run(); }
+
+}  // namespace meshorder::cgns

@@ -1,0 +1,92 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/cgns/tree.hpp"
+#include "support/files.hpp"
+#include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/io.hpp>
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+using test::TemporaryFolder;
+
+/// The bytes of an ADF file, the older kind of CGNS's files.
+std::string adf_file() {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "a.cgns";
+  write_mesh(test::tetrahedral_bar(1), path);
+  cgns::Tree tree = cgns::read_tree(path);
+  tree.storage = cgns::Storage::adf;
+  cgns::write_tree(tree, path, [](cgns::Node& /*node*/) {});
+  return test::content_of(path);
+}
+
+TEST(Cgns, MakesTheSameSetsOfSectionsInAnyOrder) {
+  const TemporaryFolder folder;
+  // sections of which a set has one cell: the first in the file, or another
+  write_mesh(test::mixed_mesh(), folder.path() / "a.cgns");
+  Mesh mesh = read_mesh(folder.path() / "a.cgns");
+  const std::size_t sets = mesh.sets.size();
+  apply_reordering(mesh, test::shuffled(mesh.vertex_count(), 1), test::shuffled_cells(mesh, 2));
+  write_mesh(mesh, folder.path() / "b.cgns");
+  EXPECT_EQ(read_mesh(folder.path() / "b.cgns").sets.size(), sets);
+}
+
+TEST(Cgns, ReadsFilesOfAdf) {
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(folder.file("a.cgns", adf_file()));
+  EXPECT_EQ(mesh.cells, test::tetrahedral_bar(1).cells);
+}
+
+TEST(Cgns, RefusesNodesOfAdfThatPointElsewhere) {
+  const std::string file = adf_file();
+  const TemporaryFolder folder;
+  for (const auto& [what, at, fresh, expected] :
+       std::vector<std::tuple<std::string, std::size_t, std::string, std::string>>{
+           {"the root", 0x86, "7FFFFFFF", "lies beyond the end of the file"},
+           {"a tag", file.find("TaiL"), "Tail", "'TaiL' is missing"},
+           {"a pointer", file.find("SNTb") + 4, "0000000G", "is not hexadecimal"},
+           {"the end of children", file.find("SNTb") + 4, "00000001",
+            "the end of the children is somewhere else"},
+           {"the end of values", file.find("DaTa") + 4, "000000000000", "values end before they begin"}}) {
+    std::string broken = file;
+    broken.replace(at, fresh.size(), fresh);
+    const std::string message = test::read_error(folder.file("b.cgns", broken));
+    EXPECT_NE(message.find(expected), std::string::npos) << what << ": " << message;
+  }
+}
+
+TEST(Cgns, RefusesAnAdfFileInWhichANodeIsItsOwnChild) {
+  std::string file = adf_file();
+  // the first child of the root is the root: block 0, byte 266
+  file.replace(file.find("SNTb") + 48, 12, "00000000010A");
+  const TemporaryFolder folder;
+  const std::string message = test::read_error(folder.file("a.cgns", file));
+  EXPECT_NE(message.find("a node has two parents"), std::string::npos) << message;
+}
+
+TEST(Cgns, ReadsOrRefusesDamagedFilesOfAdf) {
+  const std::string file = adf_file();
+  const TemporaryFolder folder;
+  std::mt19937 random(3);
+  for (int k = 0; k < 300; ++k) {
+    std::string broken = k % 8 == 0 ? file.substr(0, random() % file.size()) : file;
+    for (std::size_t changes = random() % 4; changes > 0; --changes) {
+      if (!broken.empty()) broken[random() % broken.size()] = static_cast<char>(random() % 256);
+    }
+    try {
+      (void)read_mesh(folder.file("a.cgns", broken));
+    } catch (const InputError&) {  // which is as good
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshorder
