@@ -4,8 +4,8 @@
 
 Usage: output_sync.py FOLDER [--rounds N] [--largest BYTES]
 
-Each round replaces a file in FOLDER as meshorder does (write a new one, rename it), once without waiting for the disk and
-once with fsync of the file before and of the folder after. Prints medians in milliseconds, and the share of the
+Each round replaces a file in FOLDER as meshorder does (write a new one, rename it), once without waiting for the disk
+and once with fsync of the file before and of the folder after. Prints medians in milliseconds, and the share of the
 processor's time, which the disk has no part in.
 """
 import argparse

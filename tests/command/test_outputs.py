@@ -175,7 +175,8 @@ def test_maps_of_two_runs_are_refused(command, tmp_path, mesh):
         command.ok("order", mesh, "-o", f"{prefix}.vtu", "--vertices", "scrambled", "--seed", seed, "--maps", prefix)
     shutil.copy(tmp_path / "n.vertices.old_to_new.npy", tmp_path / "m.vertices.old_to_new.npy")
     line = command.fails("apply", "m", mesh, "-o", "out.vtu")
-    assert line == "meshorder: m.maps.json: was not written together with these maps; give all files of one run of `order`"
+    assert line == ("meshorder: m.maps.json: was not written together with these maps; give all files of one run of "
+                    "`order`")
     assert not (tmp_path / "out.vtu").exists()
 
 
@@ -275,7 +276,8 @@ def test_standard_output_is_written_through(command, tmp_path, mesh):
     with open(tmp_path / "log", "w") as log:
         log.write("before\n")
         log.flush()
-        subprocess.run([conftest.MESHORDER, "order", mesh, "-o", "out.mesh", "-q"], cwd=tmp_path, stdout=log, check=True)
+        order = [conftest.MESHORDER, "order", mesh, "-o", "out.mesh", "-q"]
+        subprocess.run(order, cwd=tmp_path, stdout=log, check=True)
     assert (tmp_path / "log").read_text() == "before\n" + expected
     assert (tmp_path / "out.mesh").is_symlink()
 

@@ -665,7 +665,8 @@ TEST(VtkLegacy, FullDiskIsAnErrorAndLeavesNothing) {
   }
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old_limit), 0);
   (void)std::signal(SIGXFSZ, old_handler);
-  EXPECT_NE(message.find("bar.vtk: cannot be written to the end: it would exceed the limit"), std::string::npos)
+  EXPECT_NE(message.find("bar.vtk: cannot be written to the end: it would exceed the limit"),
+            std::string::npos)
       << message;
   EXPECT_TRUE(folder.names().empty());
 }

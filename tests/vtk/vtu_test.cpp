@@ -628,7 +628,8 @@ TEST(Vtu, FullDiskIsAnErrorAndLeavesNothing) {
       message = error.what();
     }
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old_limit), 0);
-    EXPECT_NE(message.find("bar.vtu: cannot be written to the end: it would exceed the limit"), std::string::npos)
+    EXPECT_NE(message.find("bar.vtu: cannot be written to the end: it would exceed the limit"),
+              std::string::npos)
         << message;
     EXPECT_TRUE(folder.names().empty());
   }
