@@ -24,7 +24,7 @@ for name, _, single in meshorder._core.formats():
     except meshorder.Error as refused:
         print(name, refused)
         continue
-    if name != "cgns":  # which holds the time
+    if name not in ("cgns", "med"):  # which hold the time
         print(name, hashlib.sha256(made).hexdigest())
     again = meshorder.read(made, name)
     print(name, again.points.tolist(), {key: value.tolist() for key, value in again.point_data.items()})

@@ -67,6 +67,6 @@ def test_flags_are_those_of_every_source():
     if platform.machine() == "x86_64":
         wanted.append("-fcf-protection")
     commands = (BUILD / "compile_commands.json").read_text().splitlines()
-    ours = [line for line in commands if '"command"' in line and re.search(r"-c \S*/(src|lab|apps)/", line)]
+    ours = [line for line in commands if '"command"' in line and re.search(r" -c \S*/Unity/unity_", line)]
     assert ours
     assert not [line for line in ours if not all(flag in line for flag in wanted)]
