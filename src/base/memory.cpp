@@ -17,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process
 MemoryLimit given_limit;
 
 /// Returns the least limit of a control group and the groups around it, whose folders are below `root`.

@@ -352,5 +352,7 @@ def test_data_in_another_folder_are_read(command, tmp_path):
     write_fenicsx(tmp_path, points, tetrahedra, triangles, numpy.arange(5), numpy.arange(5))
     text = (tmp_path / "a.xdmf").read_text().replace("a.h5:", "../a.h5:")
     (tmp_path / "in" / "a.xdmf").write_text(text)
-    order(command, tmp_path / "in" / "a.xdmf", tmp_path / "in" / "b.xdmf")
+    line = command.fails("info", tmp_path / "in" / "a.xdmf")
+    assert "the data file '../a.h5' is not in the mesh's folder" in line
+    order(command, tmp_path / "in" / "a.xdmf", tmp_path / "in" / "b.xdmf", "--allow-includes-from", tmp_path)
     assert (tmp_path / "in" / "b.xdmf").read_text() == text.replace("../a.h5:", "b.h5:")

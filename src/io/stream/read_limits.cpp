@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kLeastLimit = std::uint64_t{256} << 20;
 constexpr std::uint64_t kMultiple = 100;  // of the files' size
 
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of each thread
 thread_local ReadScope* current_reading = nullptr;
 
 std::vector<fs::path>& folders_of_process() {
