@@ -69,9 +69,10 @@ class Ending:
 
 def run(arguments, folder, fault=None, log=None, **options):
     """Runs `meshorder …` in a folder to its end, with a fault."""
-    counters = folder.parent / f"{folder.name}.counters"
+    beside = log.parent if log else folder.parent
+    counters = beside / f"{folder.name}.counters"
     counters.write_bytes(bytes(8 * (len(KINDS) + 1)))
-    stack = log or folder.parent / f"{folder.name}.log"
+    stack = log or beside / f"{folder.name}.log"
     stack.unlink(missing_ok=True)
     environment = {**os.environ, "LD_PRELOAD": str(INTERPOSER), "FAULTS_COUNTERS": str(counters), "FAULTS_LOG": str(stack),
                    **(fault.environment() if fault else {})}
