@@ -6,6 +6,7 @@
 #ifdef MESHORDER_HAS_HDF5
 #include "io/hdf5/process_end.hpp"
 #endif
+#include "io/stream/scratch.hpp"
 #include "standard_streams.hpp"
 #include "usage.hpp"
 #include <meshorder/error.hpp>
@@ -142,7 +143,9 @@ bool has_run = false;
 
 /// At the end of the process: libhdf5 ends it by itself where it has no memory.
 extern "C" void tell_if_a_library_ended_it() {
-  if (!has_run) std::_Exit(report("a library has ended the process; is there enough memory?", kOwnFailure));
+  if (has_run) return;
+  meshorder::remove_unfinished_outputs();
+  std::_Exit(report("a library has ended the process; is there enough memory?", kOwnFailure));
 }
 
 }  // namespace
