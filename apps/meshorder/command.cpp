@@ -25,6 +25,9 @@
 namespace meshorder::command {
 namespace {
 
+/// TBB allocates room for each thread that it may start.
+constexpr int kMostThreads = 1024;
+
 const std::map<std::string, int> kDimensionsByName{{"volume", 3}, {"surface", 2}, {"curve", 1}, {"point", 0}};
 
 /// Returns "-1 is not allowed, must be 0 or more".
@@ -147,8 +150,8 @@ void with_threads(int threads, const std::function<void()>& work) {
   if (threads > 0) {
     // leaked on purpose: destroying global_control wakes a TBB worker at exit
     alignas(tbb::global_control) static std::array<std::byte, sizeof(tbb::global_control)> limit;
-    new (limit.data())
-        tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    new (limit.data()) tbb::global_control(tbb::global_control::max_allowed_parallelism,
+                                           static_cast<std::size_t>(std::min(threads, kMostThreads)));
   }
   work();
 }

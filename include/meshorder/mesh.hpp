@@ -223,14 +223,13 @@ MESHORDER_API MeshOrder reorder(Mesh& mesh, const ReorderOptions& options = {});
 /// Moves the vertices and cells of a mesh to given places, together with all that belongs to them: cells name
 /// the renumbered vertices, arrays and sets follow their vertices and cells.
 ///
-/// @param mesh      a mesh that `check_mesh` accepts, changed in place; unchanged after an exception other
-///                  than std::bad_alloc
+/// @param mesh      changed in place; unchanged after an exception other than std::bad_alloc
 /// @param vertices  vertex_count() places
 /// @param cells     cell_count() places; keeps each cell in its block and at the place of a cell of its
 ///                  dimension
 /// @param ids       what becomes of ids
-/// @throws InvalidArgument if a size does not match, if `cells` breaks that rule, and for `Ids::attach` if
-///         the mesh has an array "original" already
+/// @throws InvalidArgument for a mesh that `check_mesh` refuses, if a size does not match, if `cells` breaks
+///         that rule, and for `Ids::attach` if the mesh has an array "original" already
 /// @note O(size of the mesh); a copy of its largest part at a time.
 MESHORDER_API void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells,
                                     Ids ids = Ids::renumber);

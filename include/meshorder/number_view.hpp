@@ -34,24 +34,23 @@ class IndexView {
 
   /// @param data   `count` integers; may be null if there are none
   /// @param count  number of integers; a negative one counts as 0
+  /// @throws InvalidArgument if there are integers and `data` is null
   template <IndexType T, CountType N>
-  constexpr IndexView(const T* data MESHORDER_LIFETIMEBOUND, N count) noexcept
-      : data_(data),
-        size_(detail::checked_count(count)),
-        bytes_(sizeof(T)),
-        is_signed_(std::is_signed_v<T>) {}
+  constexpr IndexView(const T* data MESHORDER_LIFETIMEBOUND, N count)
+      : data_(data), size_(detail::checked_count(count)), bytes_(sizeof(T)), is_signed_(std::is_signed_v<T>) {
+    detail::check_data(data_, size_);
+  }
 
   /// A view of a container's integers.
   template <class R>
   requires(detail::IndexRange<const R&> && !detail::Borrowed<R>)
-      IndexView(const R& numbers MESHORDER_LIFETIMEBOUND)
-  noexcept  // NOLINT(google-explicit-constructor)
+      IndexView(const R& numbers MESHORDER_LIFETIMEBOUND)  // NOLINT(google-explicit-constructor)
       : IndexView(detail::first_number(numbers), detail::number_count(numbers)) {}
 
   /// A view of the integers that a span or another view refers to.
   template <class R>
-  requires(detail::IndexRange<const R&>&& detail::Borrowed<R>) IndexView(const R& numbers)
-  noexcept  // NOLINT(google-explicit-constructor)
+  requires(detail::IndexRange<const R&>&& detail::Borrowed<R>)
+      IndexView(const R& numbers)  // NOLINT(google-explicit-constructor)
       : IndexView(detail::first_number(numbers), detail::number_count(numbers)) {}
 
   [[nodiscard]] constexpr std::size_t size() const noexcept { return size_; }
@@ -93,18 +92,18 @@ class IndexSpan {
 
   /// @param data   `count` integers; may be null if there are none
   /// @param count  number of integers; a negative one counts as 0
+  /// @throws InvalidArgument if there are integers and `data` is null
   template <IndexType T, CountType N>
-  constexpr IndexSpan(T* data MESHORDER_LIFETIMEBOUND, N count) noexcept
-      : data_(data),
-        size_(detail::checked_count(count)),
-        bytes_(sizeof(T)),
-        is_signed_(std::is_signed_v<T>) {}
+  constexpr IndexSpan(T* data MESHORDER_LIFETIMEBOUND, N count)
+      : data_(data), size_(detail::checked_count(count)), bytes_(sizeof(T)), is_signed_(std::is_signed_v<T>) {
+    detail::check_data(data_, size_);
+  }
 
   /// A view of a container's or a span's integers.
   template <class R>
   requires(detail::IndexRange<R>&& detail::Writable<R>)
-      IndexSpan(R&& numbers)  // NOLINT(bugprone-forwarding-reference-overload)
-  noexcept                    // NOLINT(google-explicit-constructor)
+      // NOLINTNEXTLINE(bugprone-forwarding-reference-overload,google-explicit-constructor)
+      IndexSpan(R&& numbers)
       : IndexSpan(detail::first_number(numbers), detail::number_count(numbers)) {}
 
   [[nodiscard]] constexpr std::size_t size() const noexcept { return size_; }
@@ -135,21 +134,23 @@ class RealView {
 
   /// @param data   `count` numbers; may be null if there are none
   /// @param count  number of numbers; a negative one counts as 0
+  /// @throws InvalidArgument if there are numbers and `data` is null
   template <RealType T, CountType N>
-  constexpr RealView(const T* data MESHORDER_LIFETIMEBOUND, N count) noexcept
-      : data_(data), size_(detail::checked_count(count)), bytes_(sizeof(T)) {}
+  constexpr RealView(const T* data MESHORDER_LIFETIMEBOUND, N count)
+      : data_(data), size_(detail::checked_count(count)), bytes_(sizeof(T)) {
+    detail::check_data(data_, size_);
+  }
 
   /// A view of a container's numbers.
   template <class R>
   requires(detail::RealRange<const R&> && !detail::Borrowed<R>)
-      RealView(const R& numbers MESHORDER_LIFETIMEBOUND)
-  noexcept  // NOLINT(google-explicit-constructor)
+      RealView(const R& numbers MESHORDER_LIFETIMEBOUND)  // NOLINT(google-explicit-constructor)
       : RealView(std::ranges::data(numbers), std::ranges::size(numbers)) {}
 
   /// A view of the numbers that a span or another view refers to.
   template <class R>
-  requires(detail::RealRange<const R&>&& detail::Borrowed<R>) RealView(const R& numbers)
-  noexcept  // NOLINT(google-explicit-constructor)
+  requires(detail::RealRange<const R&>&& detail::Borrowed<R>)
+      RealView(const R& numbers)  // NOLINT(google-explicit-constructor)
       : RealView(std::ranges::data(numbers), std::ranges::size(numbers)) {}
 
   [[nodiscard]] constexpr std::size_t size() const noexcept { return size_; }

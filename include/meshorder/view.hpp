@@ -53,7 +53,7 @@ class PointsView {
   /// @param data       dimension · count numbers
   /// @param count      number of points; a negative one counts as 0
   /// @param dimension  1, 2 or 3
-  /// @throws InvalidArgument if the dimension is none of these
+  /// @throws InvalidArgument if the dimension is none of these, or there are points and `data` is null
   template <RealType T, CountType N>
   PointsView(const T* data MESHORDER_LIFETIMEBOUND, N count, int dimension = 3)
       : PointsView(data, count, dimension, Offset{sizeof(T)} * dimension, Offset{sizeof(T)}) {}
@@ -65,7 +65,7 @@ class PointsView {
   /// @param dimension     1, 2 or 3
   /// @param point_stride  bytes from a point to the next; may be negative
   /// @param axis_stride   bytes from an axis to the next; may be negative
-  /// @throws InvalidArgument if the dimension is none of these
+  /// @throws InvalidArgument as above
   template <RealType T, CountType N>
   PointsView(const T* data MESHORDER_LIFETIMEBOUND, N count, int dimension, Offset point_stride,
              Offset axis_stride)
@@ -76,6 +76,7 @@ class PointsView {
         point_stride_(point_stride),
         axis_stride_(axis_stride) {
     check_dimension(dimension);
+    detail::check_data(data_, size_);
   }
 
   /// A container of std::array<float or double, 1 to 3>; the array's size is the dimension.

@@ -7,6 +7,10 @@
 
 namespace meshorder {
 
+void detail::refuse_null(std::size_t count) {
+  throw InvalidArgument("an array of " + std::to_string(count) + " numbers is null");
+}
+
 void PointsView::check_dimension(int dimension) {
   if (dimension < 1 || dimension > 3) {
     throw InvalidArgument("points: the dimension is " + std::to_string(dimension) + ", must be 1, 2 or 3");

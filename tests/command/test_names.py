@@ -182,8 +182,8 @@ def test_two_studies_do_not_share_a_folder(tmp_path, command):
     (["--threads", "\x1b[2J"], "--threads: '\\u001b[2J' is not a whole number"),
     (["--group-by", "g" * 250], "g" * 250),
     (["--vertices", "m" * 250], "m" * 250),
-    (["--maps", "x" * 250], "too long"),
-    (["-o", "o" * 250 + ".vtu"], "too long"),
+    (["--maps", "x" * 250], "cannot be written"),
+    (["-o", "o" * 250 + ".vtu"], "cannot be written"),
 ])
 def test_one_line_says_what_is_wrong(command, mesh, arguments, words):
     output = [] if arguments[0] == "-o" else ["-o", "a.vtu"]

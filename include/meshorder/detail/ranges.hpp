@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <meshorder/export.hpp>
+
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -90,6 +92,14 @@ auto first_number(R&& range) noexcept {
 template <class R>
 std::size_t number_count(R&& range) noexcept {
   return static_cast<std::size_t>(std::ranges::size(range)) * RowOf<R>::width;
+}
+
+/// Throws InvalidArgument for an array of `count` numbers without data.
+[[noreturn]] MESHORDER_API void refuse_null(std::size_t count);
+
+/// Throws InvalidArgument if there are numbers and `data` is null.
+constexpr void check_data(const void* data, std::size_t count) {
+  if (data == nullptr && count > 0) refuse_null(count);
 }
 
 /// Returns a count as std::size_t, 0 for a negative one: whoever reads the array then finds its size wrong.
