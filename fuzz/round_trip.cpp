@@ -77,12 +77,21 @@ Extent extent_of(std::string_view format, bool is_whole) {
   return is_whole ? Extent::all : Extent::points_and_cells;
 }
 
+/// Returns the mesh without MED's numbers of families: those of vertices that a file counts as cells' change.
+Mesh without_families(Mesh mesh) {
+  std::erase_if(mesh.data, [](const DataArray& array) { return array.name == "family"; });
+  return mesh;
+}
+
 void check_same_format(const Mesh& mesh, std::string_view format, const std::string& name) {
   Notes notes;
   const std::optional<MemoryFiles> files = written(mesh, format, name, notes);
   if (!files) return;
   const Mesh again = read_back(format, files->files);
-  const std::string found = difference(again, mesh, extent_of(format, notes.empty()));
+  const Extent extent = extent_of(format, notes.empty());
+  const std::string found = format == "med"
+                                ? difference(without_families(again), without_families(mesh), extent)
+                                : difference(again, mesh, extent);
   if (!found.empty()) fail("written and read as " + std::string(format) + ": " + found);
 }
 
