@@ -186,6 +186,11 @@ TEST(Su2, LeavesOutWhatStandsBehindCoordinates) {
   EXPECT_EQ(mesh.points[4], (Point{0, 2.5, 0}));
 }
 
+TEST(Su2, AMarkerThatIsRenamedKeepsItsPlace) {
+  const std::string file = with(std::string(kPlane), "TAG= lower", "TAG= a=lower");
+  EXPECT_EQ(su2_of(read_su2(file)), with(file, "TAG= a=lower", "TAG= a_lower"));
+}
+
 TEST(Su2, NotesNumbersThatAreNotPlaces) {
   Notes notes;
   (void)read_su2(with(std::string(kPlane), "1 1 2\n", "1 1 3\n"), &notes);

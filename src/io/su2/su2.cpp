@@ -72,6 +72,7 @@ struct Markers {
   void add_set(const EntitySet& set) {
     if (!has_place(set)) return note_set_unsupported(set, "SU2", notes);
     Marker& into = marker(name_of(set));
+    places.try_emplace(set.name, static_cast<std::size_t>(&into - markers.data()));  // as the file has it
     std::int64_t others = 0;
     std::int64_t repeated = 0;
     for (const Index c : set.members) {
