@@ -195,7 +195,7 @@ TEST_F(Names, AreKeptOrNotedAndChangeNothingElse) {
       EXPECT_EQ(found.cells, plain.cells);
       EXPECT_EQ(found.data.size(), plain.data.size());
       EXPECT_EQ(members_of(found), members_of(plain));
-      if (!names_it(written.notes, name)) EXPECT_EQ(count(found, name), count(plain, "plain"));
+      EXPECT_TRUE(names_it(written.notes, name) || count(found, name) == count(plain, "plain"));
     }
   }
 }
@@ -224,7 +224,7 @@ TEST_F(Names, ThatBecomeAlikeStayApart) {
       const auto at = static_cast<Index>(i);
       mesh.sets.push_back({alike[i], Association::cells, {at % 3, 3}});
       mesh.sets.back().members.resize(1 + i % 2);
-      numbered.sets.push_back({"s" + std::to_string(i), Association::cells, mesh.sets.back().members});
+      numbered.sets.push_back({std::string(i + 1, 's'), Association::cells, mesh.sets.back().members});
     }
     EXPECT_EQ(members_of(read_back(written_as(mesh, *format), *format)),
               members_of(read_back(written_as(numbered, *format), *format)));
