@@ -23,8 +23,8 @@
 namespace meshorder {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr Offset kHuge = std::numeric_limits<Offset>::max();
 
 using Numbers = std::vector<std::int64_t>;
@@ -96,8 +96,8 @@ std::vector<std::pair<std::string, Square>> wrong_graphs() {
       {"weights too long", broken([](Square& g) { g.weights.assign(9, 1.0); })},
       {"a weight of 0", broken([](Square& g) { g.weights = {1, 1, 1, 1, 1, 0, 1, 1}; })},
       {"a negative weight", broken([](Square& g) { g.weights = {1, 1, 1, 1, 1, -1, 1, 1}; })},
-      {"a weight that is NaN", broken([](Square& g) { g.weights = {1, 1, 1, 1, 1, kNan, 1, 1}; })},
-      {"an infinite weight", broken([](Square& g) { g.weights = {1, 1, 1, 1, 1, kInfinity, 1, 1}; })},
+      {"a weight that is NaN", broken([](Square& g) { g.weights = {1, 1, 1, 1, 1, kNotANumber, 1, 1}; })},
+      {"an infinite weight", broken([](Square& g) { g.weights = {1, 1, 1, 1, 1, kInfinite, 1, 1}; })},
       {"different weights of one edge", broken([](Square& g) { g.weights = {1, 1, 1, 1, 1, 2, 1, 1}; })},
       {"an entry without its counterpart", broken([](Square& g) {
          g.offsets = {0, 1, 3, 5, 7};
@@ -186,22 +186,22 @@ TEST(Misuse, OfOptionsIsRefused) {
   const auto place = [&](const std::string& method, const PointsView& view) {
     return [&square, method, view] { (void)order_vertices(square.view(), method, {}, view); };
   };
-  const std::vector<double> three(3, 0.5), five(5, 0.5), with_nan{0, kNan, 0, 1},
-      with_infinity{0, kInfinity, 0, 1};
+  const std::vector<double> three(3, 0.5), five(5, 0.5), with_nan{0, kNotANumber, 0, 1},
+      with_infinity{0, kInfinite, 0, 1};
   const Numbers groups(3), more_groups(5);
   const std::vector<Point> few(3), many(5);
   std::vector<Point> nan_points = points;
-  nan_points[2][1] = kNan;
+  nan_points[2][1] = kNotANumber;
   std::vector<Point> infinite_points = points;
-  infinite_points[2][1] = -kInfinity;
+  infinite_points[2][1] = -kInfinite;
   expect_refused({
       {"an unknown method", order("best", {})},
       {"no method", order("", {})},
       {"a tolerance of 0", order("fiedler", {.tolerance = 0})},
-      {"a tolerance that is NaN", order("fiedler", {.tolerance = kNan})},
+      {"a tolerance that is NaN", order("fiedler", {.tolerance = kNotANumber})},
       {"no iterations", order("fiedler", {.max_iterations = 0})},
       {"negative threads", order("fiedler", {.run = {.threads = -1}})},
-      {"a time limit that is NaN", order("fiedler", {.run = {.time_limit = kNan}})},
+      {"a time limit that is NaN", order("fiedler", {.run = {.time_limit = kNotANumber}})},
       {"start too short", order("fiedler", {.start = three})},
       {"start too long", order("fiedler", {.start = five})},
       {"start with NaN", order("fiedler", {.start = with_nan})},

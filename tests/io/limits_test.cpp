@@ -30,7 +30,7 @@ using ::testing::StartsWith;
 constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 constexpr std::string_view kRemedy = "if you trust the file, raise the limit on memory (--limit-memory)";
 
-constexpr std::string_view kTetrahedron =
+constexpr std::string_view kOneTetrahedron =
     "*VERTICES\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n*ELEMENTS\nTET\n1 4 0\n1 1 2 3 4\n";
 
 /// A .vtu file of one triangle, with something in its grid and something in its cells' data.
@@ -220,7 +220,7 @@ TEST(Includes, StayBelowTheFolderOfTheMesh) {
   (void)folder.file("sub/inner.txt", "*INCLUDE ../beside.txt\n");
   (void)folder.file("beside.txt", "# here\n");
   const auto of_vega = [&](const std::string& name, const ReadOptions& options = {}) {
-    return fault(folder.file("a.veg", std::string(kTetrahedron) + "*INCLUDE " + name + "\n"), options);
+    return fault(folder.file("a.veg", std::string(kOneTetrahedron) + "*INCLUDE " + name + "\n"), options);
   };
   const auto of_deck = [&](const std::string& name, const ReadOptions& options = {}) {
     return fault(folder.file("a.inp",
@@ -258,7 +258,7 @@ TEST(Includes, StayBelowTheFolderInMemory) {
   const auto with = [](std::string_view name) {
     ReadOptions options{.format = "vega", .name = "meshes/a.veg"};
     options.companion = [](std::string_view) { return std::string("# found\n"); };
-    const std::string text = std::string(kTetrahedron) + "*INCLUDE " + std::string(name) + "\n";
+    const std::string text = std::string(kOneTetrahedron) + "*INCLUDE " + std::string(name) + "\n";
     try {
       (void)read_mesh(std::as_bytes(std::span(text)), options);
     } catch (const InputError& error) {
@@ -280,13 +280,13 @@ TEST(Includes, AreBoundedInDepthAndInAll) {
   }
   (void)folder.file("f40.txt", "# end\n");
   const auto path = [&](int first) {
-    return folder.file("a.veg", std::string(kTetrahedron) + fmt::format("*INCLUDE f{}.txt\n", first));
+    return folder.file("a.veg", std::string(kOneTetrahedron) + fmt::format("*INCLUDE f{}.txt\n", first));
   };
   EXPECT_THAT(fault(path(0)), HasSubstr("f15.txt:2: files are included more than 16 deep"));
   EXPECT_EQ(fault(path(25)), "");
   // one file many times
   (void)folder.file("big.txt", "# " + std::string(100'000, 'x') + "\n");
-  std::string many(kTetrahedron);
+  std::string many(kOneTetrahedron);
   for (int k = 0; k < 100; ++k) many += "*INCLUDE big.txt\n";
   EXPECT_EQ(fault(folder.file("b.veg", many)), "");
   EXPECT_THAT(fault(folder.file("b.veg", many), {.memory_limit = kMebibyte}),

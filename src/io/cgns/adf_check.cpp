@@ -18,12 +18,12 @@
 namespace meshorder::cgns {
 namespace {
 
-constexpr int kMostLevels = 64;
+constexpr int kDeepestNode = 64;
 constexpr std::uint64_t kBlock = 4096;
 constexpr std::size_t kTag = 4;
 constexpr std::size_t kPointer = 12;
 constexpr std::size_t kName = 32;
-constexpr std::size_t kMostDimensions = 12;
+constexpr std::size_t kMostLengths = 12;
 constexpr std::size_t kDigits = 8;  // of a count and a dimension
 constexpr std::uint64_t kRootPointerAt = 0x86;
 
@@ -31,7 +31,7 @@ constexpr std::uint64_t kRootPointerAt = 0x86;
 constexpr std::size_t kChildrenAt = kTag + 2 * kName;
 constexpr std::size_t kTypeAt = kChildrenAt + 2 * kDigits + kPointer;
 constexpr std::size_t kRankAt = kTypeAt + kName;
-constexpr std::size_t kChunksAt = kRankAt + 2 + kMostDimensions * kDigits;
+constexpr std::size_t kChunksAt = kRankAt + 2 + kMostLengths * kDigits;
 constexpr std::size_t kNode = kChunksAt + 4 + kPointer + kTag;
 
 class AdfCheck {
@@ -78,7 +78,7 @@ class AdfCheck {
 
   void check_node(std::uint64_t at, int level) {
     poll();
-    if (level > kMostLevels) fail(at, "nodes lie too deep");
+    if (level > kDeepestNode) fail(at, "nodes lie too deep");
     if (!seen_.insert(at).second) fail(at, "a node has two parents");
     expect_tag(at, "NoDe");
     expect_tag(at + kNode - kTag, "TaiL");
@@ -106,7 +106,7 @@ class AdfCheck {
     const std::string type = bytes(node + kTypeAt, kName);
     const std::size_t width = size_of_type(type.substr(0, type.find(' ')));
     const std::uint64_t rank = number(node + kRankAt, 2);
-    if (rank > kMostDimensions) fail(node, fmt::format("a node has {} dimensions", rank));
+    if (rank > kMostLengths) fail(node, fmt::format("a node has {} dimensions", rank));
     std::uint64_t wanted = width;
     for (std::uint64_t k = 0; k < rank; ++k) {
       const std::uint64_t length = number(node + kRankAt + 2 + k * kDigits, kDigits);

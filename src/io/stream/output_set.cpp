@@ -21,6 +21,7 @@
 #include <set>
 #include <system_error>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 namespace meshorder {
@@ -76,7 +77,8 @@ class Commit {
     Scratch& scratch = *scratches_[k];
     const fs::path folder = folder_of(entry.target);
     // without hard links, `apply` renames the old file
-    if (entry.step != Step::create) (void)::link(entry.target.c_str(), scratch.file(kOldFile).c_str());
+    if (entry.step != Step::create)
+      std::ignore = ::link(entry.target.c_str(), scratch.file(kOldFile).c_str());
     write_small(scratch.file(kSetFile), stored_path(scratch_in_set(entries_.front().target), folder),
                 entry.target);
     require(sync_folder(scratch.path()), entry.target);
