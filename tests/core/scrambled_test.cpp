@@ -11,7 +11,7 @@
 namespace meshorder {
 namespace {
 
-Permutation scrambled(const CsrGraph& graph, std::uint64_t seed) {
+Permutation order_scrambled(const CsrGraph& graph, std::uint64_t seed) {
   OrderOptions options;
   options.seed = seed;
   return order_graph("scrambled", {graph, {}}, options).permutation;
@@ -19,15 +19,15 @@ Permutation scrambled(const CsrGraph& graph, std::uint64_t seed) {
 
 TEST(Scrambled, IsSeeded) {
   const CsrGraph graph = test::cycle(200);
-  EXPECT_EQ(scrambled(graph, 5), scrambled(graph, 5));
-  EXPECT_NE(scrambled(graph, 5), scrambled(graph, 6));
-  EXPECT_FALSE(scrambled(graph, 0).is_identity());
+  EXPECT_EQ(order_scrambled(graph, 5), order_scrambled(graph, 5));
+  EXPECT_NE(order_scrambled(graph, 5), order_scrambled(graph, 6));
+  EXPECT_FALSE(order_scrambled(graph, 0).is_identity());
 }
 
 TEST(Scrambled, HasAMeanSpanOfAThird) {
   const CsrGraph graph = test::grid(100, 100);
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    EXPECT_NEAR(edge_span(graph, scrambled(graph, seed)).mean, 1e4 / 3, 0.02 * 1e4);
+    EXPECT_NEAR(edge_span(graph, order_scrambled(graph, seed)).mean, 1e4 / 3, 0.02 * 1e4);
   }
 }
 
@@ -36,7 +36,7 @@ TEST(Scrambled, TakesEachOrderEquallyOften) {
   std::map<std::vector<Index>, int> counts;
   const int trials = 24000;
   for (int seed = 0; seed < trials; ++seed) {
-    ++counts[scrambled(graph, static_cast<std::uint64_t>(seed)).new_to_old()];
+    ++counts[order_scrambled(graph, static_cast<std::uint64_t>(seed)).new_to_old()];
   }
   ASSERT_EQ(counts.size(), 24U);
   double chi_squared = 0;
