@@ -220,7 +220,7 @@ TEST(Includes, StayBelowTheFolderOfTheMesh) {
   (void)folder.file("sub/inner.txt", "*INCLUDE ../beside.txt\n");
   (void)folder.file("beside.txt", "# here\n");
   const auto of_vega = [&](const std::string& name, const ReadOptions& options = {}) {
-    return fault(folder.file("a.veg", std::string(kOneTetrahedron) + "*INCLUDE " + name + "\n"), options);
+    return fault(folder.file("a.veg", fmt::format("{}*INCLUDE {}\n", kOneTetrahedron, name)), options);
   };
   const auto of_deck = [&](const std::string& name, const ReadOptions& options = {}) {
     return fault(folder.file("a.inp",
@@ -248,7 +248,8 @@ TEST(Includes, StayBelowTheFolderOfTheMesh) {
   EXPECT_EQ(of_vega("sub/inner.txt"), "");
   EXPECT_EQ(of_vega("sub/../beside.txt"), "");
   EXPECT_EQ(of_vega((folder.path() / "beside.txt").string()), "");
-  const ReadOptions allowed{.include_folders = {"/none", outside.path()}};
+  ReadOptions allowed;
+  allowed.include_folders = {"/none", outside.path()};
   for (const std::string& name : {secret.string(), std::string("link.txt"), up})
     EXPECT_EQ(of_vega(name, allowed), "");
   EXPECT_THAT(of_vega("/etc/passwd", allowed), EndsWith(remedy));
