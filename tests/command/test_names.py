@@ -183,7 +183,7 @@ def test_two_studies_do_not_share_a_folder(tmp_path, command):
     (["--group-by", "g" * 250], "g" * 250),
     (["--vertices", "m" * 250], "m" * 250),
     (["--maps", "x" * 250], "cannot be written"),
-    (["-o", "o" * 250 + ".vtu"], "cannot be written"),
+    (["-o", "o" * 252 + ".vtu"], "its name is too long"),
 ])
 def test_one_line_says_what_is_wrong(command, mesh, arguments, words):
     output = [] if arguments[0] == "-o" else ["-o", "a.vtu"]

@@ -510,6 +510,7 @@ TEST(Gmsh, WritesAMeshFromElsewhereInVersion41) {
       "$NodeData\n1\n\"uv\"\n1\n0\n3\n0\n3\n5\n1 1 2 0\n2 3 4 0\n3 5 6 0\n4 7 8 0\n5 9 10.5 "
       "0\n$EndNodeData\n");
   EXPECT_THAT(notes, ElementsAre("the vertices are renumbered: Gmsh's numbers are positive and distinct",
+                                 "the set 'a \"set\"' is written as 'a 'set''",
                                  HasSubstr("'uv' is filled up with zeros")));
 }
 

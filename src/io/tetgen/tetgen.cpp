@@ -291,22 +291,16 @@ void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes&
   write_cells(out, file, from, {}, marked);
 }
 
-/// Returns a line that two meshes hardly share.
+/// Returns a line that two meshes, or one in two orders, hardly share.
 std::string mark_of(const WriteContext& from) {
-  const Mesh& mesh = from.mesh;
   Checksum sum;
-  sum.add_all(mesh.points);
-  sum.add_all(mesh.cells.offsets);
-  sum.add_all(mesh.cells.vertices);
-  for (Index v = 0; v < mesh.vertex_count(); ++v) sum.add(from.vertex_number(v));
-  for (Index c = 0; c < mesh.cell_count(); ++c) sum.add(from.cell_number(c, c));
-  for (const DataArray& array : mesh.data) {
-    std::visit(
-        [&](const auto& values) {
-          using Value = typename std::decay_t<decltype(values)>::value_type;
-          if constexpr (std::is_arithmetic_v<Value>) sum.add_all(values);
-        },
-        array.values);
+  sum.add_all(from.mesh.points);
+  for (Index v = 0; v < from.mesh.vertex_count(); ++v) sum.add(from.vertex_number(v));
+  for (const std::vector<Index>& cells : from.layout.cells) {
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      sum.add(from.cell_number(cells[k], static_cast<Index>(k)));
+      for (const Index v : from.mesh.cells[cells[k]]) sum.add(v);
+    }
   }
   return fmt::format("{}{:0{}x}\n", kMarkBefore, sum.value(), kMarkDigits);
 }
