@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
 #include "io/abaqus/abaqus.hpp"
 #include "io/abaqus/cards.hpp"
 #include "io/abaqus/output.hpp"

@@ -77,7 +77,8 @@ class Hdf5Check {
     std::vector<std::string> names;
     hdf5::Visitor<H5L_info_t> visitor(
         [&](hid_t /*group*/, const char* name, const H5L_info_t& /*info*/) { names.emplace_back(name); });
-    const herr_t status = H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, &visitor.visit, &visitor);
+    const herr_t status =
+        H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, decltype(visitor)::visit, &visitor);
     visitor.rethrow();
     if (status < 0) {
       fail(fmt::format("a group cannot be read ({})", hdf5::last_cause()));

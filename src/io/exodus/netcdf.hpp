@@ -99,7 +99,7 @@ class NcInput {
   [[nodiscard]] std::size_t size(const Variable& variable) const;
   /// Returns `count`. Throws InputError if as many values, of so many bytes each, are beyond the limit on
   /// what the file may claim.
-  std::size_t claimed(std::string_view what, std::size_t count, std::size_t bytes_each) const;
+  [[nodiscard]] std::size_t claimed(std::string_view what, std::size_t count, std::size_t bytes_each) const;
 
   /// Returns the attributes of a variable, of the file where it is null. Those of types that a file defines
   /// are left out, and named in `lost`.

@@ -140,7 +140,8 @@ bool copy_attributes(hid_t from, hid_t to) {
   if (H5Aexists(from, "\x01") < 0) return false;
   Visitor<H5A_info_t> visitor(
       [&](hid_t object, const char* name, const H5A_info_t& /*info*/) { copy_attribute(object, name, to); });
-  const herr_t status = H5Aiterate2(from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, &visitor.visit, &visitor);
+  const herr_t status =
+      H5Aiterate2(from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, decltype(visitor)::visit, &visitor);
   visitor.rethrow();
   return status >= 0;
 }
@@ -152,7 +153,7 @@ std::vector<std::string> names_in(hid_t group, H5_index_t index = H5_INDEX_NAME)
   Visitor<H5L_info_t> visitor([&](hid_t /*group*/, const char* name, const H5L_info_t& info) {
     links.emplace_back(info.corder, name);
   });
-  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, &visitor.visit, &visitor);
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, decltype(visitor)::visit, &visitor);
   visitor.rethrow();
   if (index == H5_INDEX_NAME) {
     for (auto& [order, name] : links) order = 0;
@@ -488,7 +489,7 @@ std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
     H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr);
     result.emplace_back(normal_path(name), shape.front());
   });
-  H5Ovisit2(file_.id(), H5_INDEX_NAME, H5_ITER_NATIVE, &visitor.visit, &visitor, H5O_INFO_BASIC);
+  H5Ovisit2(file_.id(), H5_INDEX_NAME, H5_ITER_NATIVE, decltype(visitor)::visit, &visitor, H5O_INFO_BASIC);
   visitor.rethrow();
   std::sort(result.begin(), result.end());
   return result;

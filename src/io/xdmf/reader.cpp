@@ -46,7 +46,7 @@ std::string Reading::next_set_name(Association association, const std::string& w
 std::string Reading::add_set_of_grid(const std::string& wanted, const std::vector<Index>& cells_of_grid) {
   constexpr int kOfGrid = -1;
   while (true) {
-    const std::string name = next_set_name(Association::cells, wanted, kOfGrid);
+    std::string name = next_set_name(Association::cells, wanted, kOfGrid);
     const bool is_new =
         known_sets_.try_emplace({Association::cells, name}, KnownSet{mesh.sets.size(), true, {}}).second;
     if (!is_new) continue;
