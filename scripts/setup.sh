@@ -40,6 +40,7 @@ packages_to_test=(
   libgmock-dev         "matchers of the unit tests"
   python3              "end-to-end tests"
   python3-pytest       "end-to-end tests"
+  python3-pytest-timeout "ends a test that hangs"
   python3-dev          "compiles the Python package"
   python3-venv         "tests the Python package apart from the system's own"
   python3-numpy        "independent answers for the end-to-end tests"

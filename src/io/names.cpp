@@ -24,10 +24,12 @@ std::string plain_name(std::string_view name, std::string_view forbidden) {
 
 std::string DistinctNames::take(std::string_view wanted) {
   std::string name(utf8_prefix(wanted, longest_));
-  for (int k = 2; !taken_.insert(name).second; ++k) {
-    const std::string end = fmt::format("_{}", k);
+  if (taken_.insert(name).second) return name;
+  int& last = last_numbers_.try_emplace(std::string(wanted), 1).first->second;
+  do {
+    const std::string end = fmt::format("_{}", ++last);
     name = std::string(utf8_prefix(wanted, longest_ - end.size())) + end;
-  }
+  } while (!taken_.insert(name).second);
   return name;
 }
 

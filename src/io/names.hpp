@@ -4,6 +4,7 @@
 #include "io/format.hpp"
 
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -21,12 +22,14 @@ class DistinctNames {
   /// `longest`: bytes of a name, at least 12; a name that is cut ends with a whole character of UTF-8.
   explicit DistinctNames(std::size_t longest = std::string::npos) : longest_(longest) {}
 
-  /// Returns the name, cut to the longest size; with a number behind it if it is taken. Takes it.
+  /// Returns the name, cut to the longest size; with a number behind it if it is taken. Takes it. O(log
+  /// names), also where all want the same name.
   std::string take(std::string_view wanted);
 
  private:
   std::size_t longest_;
   std::set<std::string> taken_;
+  std::map<std::string, int> last_numbers_;  // by the wanted name
 };
 
 /// Notes "the set 'a b' is written as 'a_b'" if the names differ.

@@ -13,7 +13,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <iterator>
 #include <optional>
 #include <system_error>
@@ -77,9 +79,15 @@ void OutputFile::write(std::string_view bytes) {
 }
 
 void OutputFile::integer(std::string_view before, std::int64_t value) {
-  const fmt::format_int digits(value);
-  stream_->buffer.append(before.data(), before.data() + before.size());
-  write({digits.data(), digits.size()});
+  // straight into the buffer: text formats write millions of these
+  constexpr std::size_t kMostDigits = 20;
+  fmt::memory_buffer& buffer = stream_->buffer;
+  const std::size_t size = buffer.size();
+  buffer.resize(size + before.size() + kMostDigits);
+  char* const digits = std::copy(before.begin(), before.end(), buffer.data() + size);
+  buffer.resize(
+      static_cast<std::size_t>(std::to_chars(digits, digits + kMostDigits, value).ptr - buffer.data()));
+  if (buffer.size() > kFlushAt) flush();
 }
 
 void OutputFile::write_over_start(std::string_view bytes) {
