@@ -1,6 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Calls that read and write files fail one after another: the command says so, and leaves the old files or the new ones."""
 import errno
+import gzip
 import itertools
 import os
 import resource
@@ -135,3 +136,25 @@ def test_a_full_disk_is_told(tmp_path, small_disk, name):
         assert not list(case.faults_of(ending)), (free, list(case.faults_of(ending)))
         assert ending.status in (0, 2) and (ending.status == 0 or "full" in ending.stderr), ending.stderr
     assert statuses[0] == 2
+
+
+def test_a_full_folder_for_temporary_files_is_told(tmp_path, small_disk, monkeypatch):
+    """CGNS files that are compressed are unpacked there for libcgns."""
+    work = tmp_path / "work"
+    work.mkdir()
+    cases.write_cube(work, 8)
+    made = interposed.run(["order", "mesh.node", "-o", "mesh.cgns"], work)
+    assert made.status == 0, made.stderr
+    (work / "mesh.cgns.gz").write_bytes(gzip.compress((work / "mesh.cgns").read_bytes()))
+    line = ["order", "mesh.cgns.gz", "-o", "new.cgns"]
+    monkeypatch.setenv("TMPDIR", str(small_disk))
+    assert (work / "mesh.cgns").stat().st_size < os.statvfs(small_disk).f_bavail * os.statvfs(small_disk).f_frsize
+    assert interposed.run(line, work).status == 0
+    (work / "new.cgns").unlink()
+    before = interposed.contents(work)
+    filling = small_disk / "filling"
+    filling.write_bytes(bytes(os.statvfs(small_disk).f_bavail * os.statvfs(small_disk).f_frsize - os.sysconf("SC_PAGE_SIZE")))
+    ending = interposed.run(line, work, log=tmp_path / "log")
+    assert ending.status == 2 and "TMPDIR" in ending.stderr and ending.stderr.count("\n") == 1, ending.stderr
+    assert interposed.contents(work) == before
+    assert list(small_disk.iterdir()) == [filling]
