@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -80,9 +81,9 @@ LIBRARIES = [
 
 
 def headers_of(build: pathlib.Path) -> set[str]:
-    """The headers outside of the sources that Ninja knows of; `-n`, as Ninja may be running this."""
+    """The headers that Ninja knows of, some of which ccache names from the build; `-n`, as Ninja may be running this."""
     told = subprocess.run(["ninja", "-n", "-C", build, "-t", "deps"], capture_output=True, text=True, check=True).stdout
-    return {line.strip() for line in told.splitlines() if line.startswith("    /")}
+    return {os.path.normpath(build / line.strip()) for line in told.splitlines() if line.startswith("    ")}
 
 
 def version_in(text: str, macros: tuple[str, ...]) -> str:

@@ -4,9 +4,12 @@
 #include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/personality.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <string>
@@ -68,6 +71,23 @@ TEST(ChildProcess, EndsWithItsOwner) {
     id = shell.receive();
   }
   EXPECT_NE(::kill(std::stoi(id), 0), 0);
+}
+
+TEST(ChildProcess, EndsWhereItsOwnerIsKilled) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  const pid_t owner = ::fork();
+  if (owner == 0) {
+    ChildProcess shell("/bin/sh", {"-c", "echo alive; exec sleep 1000"});
+    shell.receive();
+    ::kill(::getpid(), SIGKILL);
+  }
+  ::close(ends[1]);
+  ASSERT_EQ(::waitpid(owner, nullptr, 0), owner);
+  // the child has the pipe's other end as long as it lives
+  pollfd ended{.fd = ends[0], .events = POLLIN, .revents = 0};
+  EXPECT_EQ(::poll(&ended, 1, 60'000), 1);
+  ::close(ends[0]);
 }
 
 /// Containers may forbid it.

@@ -1,0 +1,34 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/hdf5/hdf5_file.hpp"
+#include "io/hdf5/session.hpp"
+#include "io/hdf5/visitor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace meshorder::hdf5 {
+namespace {
+
+TEST(Hdf5Visitor, BringsWhatTheWorkThrowsThroughTheLibrary) {
+  const Session session;
+  const File file = File::in_memory("", "new.h5");
+  for (const char* name : {"a", "b", "c"}) {
+    const Handle group(H5Gcreate2(file.id(), name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+    ASSERT_TRUE(group.is_open());
+  }
+  std::vector<std::string> seen;
+  Visitor<H5L_info_t> visitor([&](hid_t /*group*/, const char* name, const H5L_info_t& /*info*/) {
+    seen.emplace_back(name);
+    if (seen.size() == 2) throw std::length_error("two are enough");
+  });
+  EXPECT_LT(H5Literate(file.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, decltype(visitor)::visit, &visitor),
+            0);
+  EXPECT_THROW(visitor.rethrow(), std::length_error);
+  EXPECT_EQ(seen, (std::vector<std::string>{"a", "b"}));
+}
+
+}  // namespace
+}  // namespace meshorder::hdf5
