@@ -18,6 +18,9 @@ import subprocess
 import uuid
 from typing import Any, NamedTuple
 
+SOURCES = pathlib.Path(__file__).resolve().parents[1]
+OWN = [SOURCES / folder for folder in ("apps", "include", "lab", "plugins", "python", "src")]
+
 
 class Library(NamedTuple):
     """A library of others.
@@ -81,9 +84,11 @@ LIBRARIES = [
 
 
 def headers_of(build: pathlib.Path) -> set[str]:
-    """The headers that Ninja knows of, some of which ccache names from the build; `-n`, as Ninja may be running this."""
+    """The headers of others that Ninja knows of, some of them as ccache names them, from the build; `-n`, as Ninja may be
+    running this."""
     told = subprocess.run(["ninja", "-n", "-C", build, "-t", "deps"], capture_output=True, text=True, check=True).stdout
-    return {os.path.normpath(build / line.strip()) for line in told.splitlines() if line.startswith("    ")}
+    paths = {pathlib.Path(os.path.normpath(build / line.strip())) for line in told.splitlines() if line.startswith("    ")}
+    return {str(path) for path in paths if not any(path.is_relative_to(folder) for folder in OWN)}
 
 
 def version_in(text: str, macros: tuple[str, ...]) -> str:
