@@ -3,7 +3,6 @@
 
 #include "base/point.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace meshorder {
@@ -11,21 +10,26 @@ namespace {
 
 /// Three edges out of the first corner that are right-handed in a cell of positive volume.
 struct Handedness {
-  Shape shape;
-  std::size_t corners;
+  std::size_t corners;  ///< 0 for a shape that is no volume
   std::array<std::size_t, 3> ends;
 };
-constexpr std::array kHandedness{
-    Handedness{Shape::tetrahedron, 4, {1, 2, 3}}, Handedness{Shape::hexahedron, 8, {1, 3, 4}},
-    Handedness{Shape::pyramid, 5, {1, 3, 4}}, Handedness{Shape::wedge, 6, {1, 2, 3}}};
+
+/// By shape.
+constexpr std::array<Handedness, kShapes> kHandedness = [] {
+  std::array<Handedness, kShapes> all{};
+  all[static_cast<std::size_t>(Shape::tetrahedron)] = {4, {1, 2, 3}};
+  all[static_cast<std::size_t>(Shape::hexahedron)] = {8, {1, 3, 4}};
+  all[static_cast<std::size_t>(Shape::pyramid)] = {5, {1, 3, 4}};
+  all[static_cast<std::size_t>(Shape::wedge)] = {6, {1, 2, 3}};
+  return all;
+}();
 
 }  // namespace
 
 double volume_at_first_corner(const std::vector<Point>& points, Shape shape, std::span<const Index> cell) {
-  const auto* const known = std::find_if(kHandedness.begin(), kHandedness.end(),
-                                         [&](const Handedness& of) { return of.shape == shape; });
-  if (known == kHandedness.end() || known->corners != cell.size()) return 0;
-  const auto edge = [&](int k) { return minus(points[cell[known->ends[k]]], points[cell[0]]); };
+  const Handedness& known = kHandedness[static_cast<std::size_t>(shape)];
+  if (known.corners != cell.size() || cell.empty()) return 0;
+  const auto edge = [&](int k) { return minus(points[cell[known.ends[k]]], points[cell[0]]); };
   return dot(cross(edge(0), edge(1)), edge(2));
 }
 

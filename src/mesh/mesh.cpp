@@ -1,5 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/all_below.hpp"
 #include "base/index.hpp"
+#include "base/large_pages.hpp"
 #include "base/point.hpp"
 #include "cells/cell_arrays.hpp"
 #include <meshorder/error.hpp>
@@ -16,10 +18,7 @@ namespace {
 [[noreturn]] void fail(const std::string& what) { throw InvalidArgument("mesh: " + what); }
 
 void check_members(const std::vector<Index>& members, Index count, const std::string& owner) {
-  // without a jump out of the loop, which would keep it from being vectorised
-  bool all_exist = true;
-  for (const Index member : members) all_exist &= (member >= 0) & (member < count);
-  if (all_exist) return;
+  if (all_below(members, count)) return;
   const auto wrong = std::find_if(members.begin(), members.end(),
                                   [&](Index member) { return member < 0 || member >= count; });
   fail(owner + " names " + std::to_string(*wrong) + ", outside 0 … " + std::to_string(count - 1));
@@ -96,9 +95,9 @@ void Cells::push_back(Shape shape, std::span<const Index> cell_vertices) {
 }
 
 void Cells::reserve(Offset cells, Offset vertex_entries) {
-  shapes.reserve(cells);
-  offsets.reserve(cells + 1);
-  vertices.reserve(vertex_entries);
+  reserve_large(shapes, static_cast<std::size_t>(cells));
+  reserve_large(offsets, static_cast<std::size_t>(cells) + 1);
+  reserve_large(vertices, static_cast<std::size_t>(vertex_entries));
 }
 
 int Cells::highest_dimension() const {

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace meshorder {
 namespace {
 
@@ -28,6 +32,25 @@ TEST(Base64, DoesNotDependOnHowTheBytesCome) {
   std::string text;
   for (const char byte : bytes) text += encoder.put({&byte, 1});
   EXPECT_EQ(text + encoder.finish(), to_base64(bytes));
+}
+
+TEST(Base64, DecodesWhatItEncodes) {
+  std::string bytes;
+  for (int k = 0; k < 1000; ++k) bytes += static_cast<char>(k * k % 251 - 100);
+  for (std::size_t size = 0; size < 60; ++size) {
+    const std::string part = bytes.substr(size * 7, size);
+    std::string decoded(size, '?');
+    EXPECT_TRUE(from_base64(to_base64(part) + "trailing", decoded));
+    EXPECT_EQ(decoded, part);
+  }
+}
+
+TEST(Base64, RefusesWhatIsNone) {
+  std::string bytes(4, '?');
+  EXPECT_TRUE(from_base64("Zm9vYg==", bytes));
+  EXPECT_EQ(bytes, "foob");
+  for (const std::string text : {"Zm9vY", "Zm 9vYg=", "Zm=vYg==", "Zm9vY===", "Zm9v\xffg==", "Zm9vYg=\n"})
+    EXPECT_FALSE(from_base64(text, bytes)) << text;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 //
 // Every function that takes a mesh with every kind of wrong member: each is refused by an Error, and the mesh
 // stays as it was.
+#include "base/all_below.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
@@ -158,6 +159,24 @@ TEST(MeshMisuse, OfOrdersAndViewsIsRefused) {
   const CellsView beyond = CellsView::uniform(Shape::tetrahedron, 4, vertices);
   EXPECT_THROW((void)make_mesh({.points = points, .cells = beyond}), InvalidArgument);
   EXPECT_THROW((void)make_mesh({.points = points, .cells = beyond, .vertex_count = 5}), InvalidArgument);
+}
+
+TEST(AllBelow, SeesEveryNumberOutOfRangeAtEveryPlace) {
+  constexpr Index kLeast = std::numeric_limits<Index>::min();
+  constexpr Index kMost = std::numeric_limits<Index>::max();
+  const auto is_below = [](Index number, Index limit) { return number >= 0 && number < limit; };
+  for (const Index limit : {0, 1, 2, 100, 1 << 30, kMost - 1, kMost}) {
+    EXPECT_TRUE(all_below({}, limit));
+    for (const Index number :
+         {kLeast, kLeast + 1, -limit, -1, 0, 1, 99, limit - 1, limit, 1 << 30, kMost - 1, kMost}) {
+      for (std::size_t place = 0; place < 37; ++place) {
+        std::vector<Index> numbers(37, 0);
+        numbers[place] = number;
+        EXPECT_EQ(all_below(numbers, limit), limit > 0 && is_below(number, limit))
+            << number << " below " << limit;
+      }
+    }
+  }
 }
 
 }  // namespace

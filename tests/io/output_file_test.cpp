@@ -9,12 +9,17 @@
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <bit>
 #include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <string>
 #include <thread>
 
 namespace meshorder {
@@ -60,6 +65,41 @@ TEST(OutputFile, AppearsWholeOrNotAtAll) {
   file.commit();
   EXPECT_EQ(folder.names(), std::vector<std::string>{"a.txt"});
   EXPECT_EQ(content_of(folder.path() / "a.txt"), "0.1 2\n");
+}
+
+TEST(OutputFile, WritesNumbersAsFmtDoes) {
+  const TemporaryFolder folder;
+  const std::vector<double> numbers{0.0,     -0.0,    1.0,        1e15,     1e16, 1e-4, 1e-5,
+                                    0.1,     1.0 / 3, 123456.789, -2.5e8,   1e22, 1e23, 5e-324,
+                                    1.8e308, -1e-10,  1e-100,     INFINITY, -NAN};
+  std::string expected;
+  OutputFile file(folder.path() / "a.txt");
+  // more than the buffer holds
+  for (int k = 0; k < 10'000; ++k) {
+    for (const double number : numbers) {
+      file.real(" ", number / (k + 1));
+      expected += fmt::format(" {}", number / (k + 1));
+    }
+    file.integer("\n", k);
+    expected += fmt::format("\n{}", k);
+  }
+  file.commit();
+  EXPECT_EQ(content_of(folder.path() / "a.txt"), expected);
+}
+
+TEST(OutputFile, HasRoomForRows) {
+  const TemporaryFolder folder;
+  OutputFile file(folder.path() / "a.bin");
+  std::string expected;
+  for (int k = 0; k < 100'000; ++k) {
+    char* const at = file.room(30);
+    file.written(put_number(put_number(at, k, std::endian::big), 0.5 * k, std::endian::little));
+    for (int shift = 24; shift >= 0; shift -= 8) expected += static_cast<char>((k >> shift) & 255);
+    const auto bits = std::bit_cast<std::uint64_t>(0.5 * k);
+    for (int shift = 0; shift < 64; shift += 8) expected += static_cast<char>((bits >> shift) & 255U);
+  }
+  file.commit();
+  EXPECT_EQ(content_of(folder.path() / "a.bin"), expected);
 }
 
 TEST(OutputFile, RefusesAFolderAndAMissingFolder) {

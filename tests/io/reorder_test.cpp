@@ -121,6 +121,16 @@ TEST(DegenerateCells, AreThoseThatNameAVertexTwice) {
   EXPECT_EQ(degenerate_cells(mesh.cells), std::vector<Index>{2});
 }
 
+TEST(DegenerateCells, AreFoundByAnyTwoOfTheirVertices) {
+  for (std::size_t first = 0; first < 4; ++first) {
+    for (std::size_t second = first + 1; second < 4; ++second) {
+      Mesh mesh = test::tetrahedral_bar(1);
+      mesh.cells[1][first] = mesh.cells[1][second];
+      EXPECT_EQ(degenerate_cells(mesh.cells), std::vector<Index>{1});
+    }
+  }
+}
+
 TEST(DegenerateCells, RiseWhenSeveralThreadsFindThem) {
   Mesh mesh = test::tetrahedral_bar(30000);
   const std::vector<Index> wanted{0, 65535, 65536, 150000};

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -30,6 +33,36 @@ TEST(Scanner, ReadsNumbersAsPeopleWriteThem) {
   EXPECT_EQ(scanner.real("x"), 100.0);
   EXPECT_EQ(scanner.real("x"), 0.0);
   EXPECT_TRUE(std::isnan(scanner.real("x")));
+}
+
+TEST(Digits, AreReadAllAtOnce) {
+  for (const std::string number : {"0", "7", "42", "007", "1234", "98765", "999999", "1234567", "0000001"}) {
+    for (const char behind : {' ', '\n', '\r', '\0', '/', ':', '.', '-', '\x7f', '\x80', '\xb0', '\xff'}) {
+      const Digits digits = leading_digits((number + behind + "12345678").c_str());
+      EXPECT_EQ(digits.count, static_cast<int>(number.size()));
+      EXPECT_EQ(digits.number, static_cast<std::uint32_t>(std::stoul(number)));
+    }
+  }
+  EXPECT_EQ(leading_digits("12345678").count, 8);
+  EXPECT_EQ(leading_digits("-1234567").count, 0);
+}
+
+TEST(Scanner, ReadsWholeNumbersOfAnyLength) {
+  const TemporaryFolder folder;
+  std::string text;
+  std::vector<std::int64_t> numbers;
+  for (std::int64_t number = 1; number < 4'000'000'000'000'000'000; number = 7 * number / 3 + 1) {
+    numbers.push_back(number);
+    text += std::to_string(number) + (numbers.size() % 5 == 0   ? "\r\n"
+                                      : numbers.size() % 3 == 0 ? "\t"
+                                                                : " ");
+  }
+  Scanner scanner(folder.file("a.txt", text + "12345"));
+  for (const std::int64_t number : numbers) EXPECT_EQ(scanner.integer<std::int64_t>("n"), number);
+  EXPECT_EQ(scanner.integer<std::int64_t>("n"), 12345);
+  EXPECT_THROW(scanner.integer<std::int64_t>("n"), InputError);
+  EXPECT_THROW(Scanner(folder.file("b.txt", "123x567 890")).integer<std::int64_t>("n"), InputError);
+  EXPECT_THROW(Scanner(folder.file("c.txt", "99999999999 1")).integer<std::int32_t>("n"), InputError);
 }
 
 TEST(Scanner, ErrorsNameFileLineAndRemedy) {

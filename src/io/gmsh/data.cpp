@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/large_pages.hpp"
 #include "io/gmsh/gmsh.hpp"
 #include "io/names.hpp"
 #include "io/unsupported.hpp"
@@ -108,7 +109,8 @@ Entries read_entries(ReadContext& reading, const View& view) {
                                                          : 2 * (fields + (per_node ? 0 : components)));
   const IdMap& places = view.association == Association::vertices ? reading.nodes : reading.elements;
   Entries entries;
-  entries.rows.reserve(count);
+  reserve_large(entries.rows, static_cast<std::size_t>(count));
+  if (!per_node) reserve_large(entries.values, static_cast<std::size_t>(count * components));
   for (Index i = 0; i < count; ++i) {
     const std::int64_t id = source.binary ? source.int32("the number of an entry") : source.int64("an entry");
     const Index place = places.find(id);
@@ -160,6 +162,8 @@ std::vector<double> even_rows(const ReadContext& reading, Entries& entries, cons
 /// Sorts rows that cover all vertices or cells into the order of the mesh.
 void sort_full(DataArray& array, std::vector<double>& values, Index count) {
   if (index_size(array.indices) != count) return;
+  // distinct, so that rows that ascend are where they belong
+  if (std::is_sorted(array.indices.begin(), array.indices.end())) return array.indices.clear();
   std::vector<double> sorted(values.size());
   const auto width = static_cast<std::size_t>(array.components);
   for (std::size_t i = 0; i < array.indices.size(); ++i) {
@@ -231,6 +235,9 @@ double as_double(const Number& value) {
 }  // namespace
 
 void check_distinct(const NumberReader& source, std::vector<Index> rows, std::string_view section) {
+  // most files give them in order
+  const auto descends = [](Index row, Index next) { return row >= next; };
+  if (std::adjacent_find(rows.begin(), rows.end(), descends) == rows.end()) return;
   std::sort(rows.begin(), rows.end());
   if (std::adjacent_find(rows.begin(), rows.end()) != rows.end()) {
     source.fail("$" + std::string(section) + " gives the same node or element twice",
@@ -344,6 +351,15 @@ void write_view(NumberWriter& sink, const WriteContext& output, const View& view
           const Index place = array->is_dense() ? row : array->indices[row];
           const std::int64_t id =
               view.association == Association::vertices ? output.node_id(place) : output.cell_id(place);
+          if (sink.binary && view.per == PerElement::one && static_cast<std::size_t>(components) == width &&
+              std::in_range<std::int32_t>(id)) {
+            char* at = sink.out.room(sizeof(std::int32_t) + width * sizeof(double));
+            at = put_number(at, static_cast<std::int32_t>(id), sink.order);
+            for (std::size_t k = 0; k < width; ++k)
+              at = put_number(at, as_double(values[row * width + k]), sink.order);
+            sink.out.written(at);
+            continue;
+          }
           sink.int32(id);
           int nodes = 1;
           if (view.per != PerElement::one) {

@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <set>
+#include <span>
 
 // Specification: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format. This file walks the
 // sections; v2.cpp and v4.cpp read and write nodes and elements, data.cpp and links.cpp their data and links,
@@ -350,7 +352,11 @@ void take_layout(const Metadata& layout, WriteContext& output) {
   output.cell_tags = integers_of(mesh, kCellEntity, Association::cells);
   output.cell_dimensions = integers_of(mesh, kCellDimension, Association::cells);
   if (output.cell_dimensions.empty()) {
-    for (const Shape shape : mesh.cells.shapes) output.cell_dimensions.push_back(dimension(shape));
+    std::array<std::int32_t, kShapes> dimensions{};
+    for (int s = 0; s < kShapes; ++s) dimensions[s] = dimension(static_cast<Shape>(s));
+    output.cell_dimensions.resize(mesh.cells.shapes.size());
+    std::transform(mesh.cells.shapes.begin(), mesh.cells.shapes.end(), output.cell_dimensions.begin(),
+                   [&](Shape shape) { return dimensions[static_cast<std::size_t>(shape)]; });
   }
   output.node_entities = integers_of(mesh, kNodeEntity, Association::vertices);
   place(kCellDimension, Association::cells);
@@ -495,22 +501,23 @@ void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes)
 void write_cell_nodes(NumberWriter& sink, const WriteContext& output, Index c, bool wide) {
   const auto nodes = output.mesh.cells[c];
   const std::span<const int> order = vtk_order(output.types[c]->shape, output.types[c]->nodes);
+  const auto put = [&](Index vertex) {
+    const std::int64_t id = output.node_id(vertex);
+    wide ? sink.size(id) : sink.int32(id);
+  };
+  if (order.empty()) {
+    for (const Index vertex : nodes) put(vertex);
+    return;
+  }
   std::array<Index, 27> sorted{};
   for (std::size_t k = 0; k < order.size(); ++k) sorted[order[k]] = nodes[k];
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const std::int64_t id = output.node_id(order.empty() ? nodes[k] : sorted[k]);
-    wide ? sink.size(id) : sink.int32(id);
-  }
+  for (const Index vertex : std::span(sorted).first(order.size())) put(vertex);
 }
 
-Index place_of_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
-                    std::int64_t owner_id) {
-  const Index place = reading.nodes.find(id);
-  if (place < 0) {
-    reading.source.fail(fmt::format("{} {} names node {}, which $Nodes does not have", owner, owner_id, id),
-                        "name nodes that exist");
-  }
-  return place;
+void fail_unknown_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
+                       std::int64_t owner_id) {
+  reading.source.fail(fmt::format("{} {} names node {}, which $Nodes does not have", owner, owner_id, id),
+                      "name nodes that exist");
 }
 
 void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers) {
@@ -547,7 +554,9 @@ std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, A
       [](const auto& values) {
         using T = typename std::decay_t<decltype(values)>::value_type;
         std::vector<std::int32_t> result;
-        if constexpr (std::is_integral_v<T>) {
+        if constexpr (std::is_same_v<T, std::int32_t>) {
+          result = values;
+        } else if constexpr (std::is_integral_v<T>) {
           result.reserve(values.size());
           for (const T value : values) {
             if (!std::in_range<std::int32_t>(value)) return std::vector<std::int32_t>{};

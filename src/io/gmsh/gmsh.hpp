@@ -148,9 +148,16 @@ const ElementType& known_type(const NumberReader& source, std::int64_t number);
 /// Adds a cell with these vertices, in Gmsh's order.
 void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes);
 
+[[noreturn]] void fail_unknown_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
+                                    std::int64_t owner_id);
+
 /// Returns the vertex with the number `id`; fails, naming its owner, if there is none.
-Index place_of_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
-                    std::int64_t owner_id);
+inline Index place_of_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
+                           std::int64_t owner_id) {
+  const Index place = reading.nodes.find(id);
+  if (place < 0) fail_unknown_node(reading, id, owner, owner_id);
+  return place;
+}
 
 /// Adds the array kCellType if shape and count do not determine the type of every cell.
 void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers);
@@ -196,9 +203,6 @@ struct NumberWriter {
   bool binary = false;
   std::endian order = std::endian::native;
   bool at_line_start = true;
-
- private:
-  void separate();
 };
 
 /// The input of the writer: a mesh and its layout, read with it or made for a mesh of another format.

@@ -304,6 +304,7 @@ std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata)
     if (is_new) sets.push_back({name.name, Association::cells, {}});
     sets_of_group[{name.dimension, name.tag}].push_back(found->second);
   }
+  if (sets.empty()) return sets;
 
   // in version 2 the cells have groups, in version 4 their entities
   std::map<Entity, std::vector<Index>> sets_of_entity;
@@ -332,6 +333,7 @@ std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata)
 }
 
 std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const Metadata& metadata) {
+  if (metadata.physicals.empty()) return {};
   const CellEntities entities(mesh);
   EntityTable<std::vector<std::int32_t>> table(metadata.physicals);
   std::vector<std::int32_t> labels(mesh.cells.shapes.size(), 0);

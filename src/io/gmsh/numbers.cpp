@@ -34,11 +34,6 @@ void expect_end(NumberReader& source, std::string_view section) {
 
 // ---- writing
 
-void NumberWriter::separate() {
-  if (!at_line_start) out.write(" ");
-  at_line_start = false;
-}
-
 void NumberWriter::int32(std::int64_t value) {
   if (binary) {
     if (value > std::numeric_limits<std::int32_t>::max() ||
@@ -65,8 +60,8 @@ void NumberWriter::real(double value) {
   if (binary) {
     out.binary(value, order);
   } else {
-    separate();
-    out.print("{}", value);
+    out.real(at_line_start ? "" : " ", value);
+    at_line_start = false;
   }
 }
 

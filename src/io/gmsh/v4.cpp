@@ -1,9 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/large_pages.hpp"
 #include "io/gmsh/gmsh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <set>
+#include <span>
 
 // Version 4.1: nodes and elements are in blocks, each of which belongs to an entity of the geometry;
 // entities have physical groups. An entity may have several blocks.
@@ -36,16 +39,48 @@ void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
   NumberReader& source = reading.source;
   const bool parametric = head[2] == 1;
   for (Index i = 0; i < count; ++i) ids.push_back(source.int64("the number of a node"));
+  if (!parametric) {
+    const std::size_t first = reading.mesh.points.size();
+    reading.mesh.points.resize(first + static_cast<std::size_t>(count));
+    for (Point& point : std::span(reading.mesh.points).subspan(first)) {
+      for (double& x : point) x = source.finite("a coordinate");
+    }
+    return;
+  }
   for (Index i = 0; i < count; ++i) {
     Point& point = reading.mesh.points.emplace_back();
     for (double& x : point) x = source.finite("a coordinate");
-    if (!parametric) continue;
     // nodes before, of which none had any
     parameters.resize(4 * (reading.mesh.points.size() - 1), 0.0);
     parameters.push_back(1);
     for (int k = 0; k < 3; ++k) {
       parameters.push_back(k < head[0] ? source.real("a parametric coordinate") : 0.0);
     }
+  }
+}
+
+/// Reads the elements of one block behind its head.
+void read_element_block(ReadContext& reading, const ElementType& type, Index count,
+                        std::vector<std::int64_t>& ids) {
+  NumberReader& source = reading.source;
+  Cells& cells = reading.mesh.cells;
+  const std::span<const int> order = vtk_order(type.shape, type.nodes);
+  const auto nodes = static_cast<std::size_t>(type.nodes);
+  const auto rows = static_cast<std::size_t>(count);
+  const std::size_t first = cells.vertices.size();
+  cells.shapes.insert(cells.shapes.end(), rows, type.shape);
+  resize_large(cells.vertices, first + rows * nodes);
+  reserve_large(cells.offsets, cells.offsets.size() + rows);
+  Index* target = cells.vertices.data() + first;
+  std::array<Index, 27> of_file{};  // only cells of second order are sorted
+  for (std::size_t c = 0; c < rows; ++c, target += nodes) {
+    const std::int64_t id = source.int64("the number of an element");
+    ids.push_back(id);
+    Index* const read = order.empty() ? target : of_file.data();
+    for (std::size_t k = 0; k < nodes; ++k)
+      read[k] = place_of_node(reading, source.int64("a node of an element"), "element", id);
+    for (std::size_t k = 0; k < order.size(); ++k) target[k] = of_file[static_cast<std::size_t>(order[k])];
+    cells.offsets.push_back(cells.offsets.back() + type.nodes);
   }
 }
 
@@ -94,6 +129,30 @@ void write_block_head(NumberWriter& sink, const EmptyBlock& head, Index count) {
   for (const std::int32_t number : head) sink.int32(number);
   sink.size(count);
   sink.end_line();
+}
+
+/// Writes the elements of one block, all of one type.
+void write_rows(NumberWriter& sink, const WriteContext& output, Index begin, Index end) {
+  const ElementType& type = *output.types[begin];
+  if (!sink.binary || !vtk_order(type.shape, type.nodes).empty()) {
+    for (Index c = begin; c < end; ++c) {
+      sink.size(output.cell_id(c));
+      write_cell_nodes(sink, output, c, true);
+      sink.end_line();
+    }
+    return;
+  }
+  constexpr Index kAtOnce = 256;
+  const std::size_t bytes = (1 + static_cast<std::size_t>(type.nodes)) * sizeof(std::int64_t);
+  for (Index first = begin; first < end;) {
+    const Index last = std::min(end - first, kAtOnce) + first;
+    char* at = sink.out.room(static_cast<std::size_t>(last - first) * bytes);
+    for (; first < last; ++first) {
+      at = put_number(at, output.cell_id(first), sink.order);
+      for (const Index v : output.mesh.cells[first]) at = put_number(at, output.node_id(v), sink.order);
+    }
+    sink.out.written(at);
+  }
 }
 
 /// Returns the beginnings of runs of equal heads, and the end of the last.
@@ -148,9 +207,9 @@ void read_nodes_4(ReadContext& reading) {
   std::vector<std::int64_t> ids;
   std::vector<std::int32_t> entities;
   std::vector<double> parameters;
-  ids.reserve(head.count);
-  mesh.points.reserve(head.count);
-  entities.reserve(2 * static_cast<std::size_t>(head.count));
+  reserve_large(ids, static_cast<std::size_t>(head.count));
+  reserve_large(mesh.points, static_cast<std::size_t>(head.count));
+  reserve_large(entities, 2 * static_cast<std::size_t>(head.count));
   for (Index b = 0; b < head.blocks; ++b) {
     EmptyBlock block{};
     block[0] = read_dimension(source);
@@ -184,10 +243,9 @@ void read_elements_4(ReadContext& reading) {
   std::vector<std::int32_t> dimensions;
   std::vector<std::int32_t> types;
   std::vector<Index> starts;
-  std::vector<Index> nodes;
   std::set<EmptyBlock> kinds;
   bool repeated = false;
-  ids.reserve(head.count);
+  reserve_large(ids, static_cast<std::size_t>(head.count));
   for (Index b = 0; b < head.blocks; ++b) {
     const std::int32_t dimension = read_dimension(source);
     const std::int32_t tag = source.int32("an entity's tag");
@@ -203,15 +261,7 @@ void read_elements_4(ReadContext& reading) {
     }
     starts.push_back(index_size(ids));
     repeated = !kinds.insert({dimension, tag, type.number}).second || repeated;
-    for (Index i = 0; i < count; ++i) {
-      const std::int64_t id = source.int64("the number of an element");
-      nodes.clear();
-      for (int k = 0; k < type.nodes; ++k) {
-        nodes.push_back(place_of_node(reading, source.int64("a node of an element"), "element", id));
-      }
-      add_cell(mesh, type, nodes);
-      ids.push_back(id);
-    }
+    read_element_block(reading, type, count, ids);
     tags.insert(tags.end(), count, tag);
     dimensions.insert(dimensions.end(), count, dimension);
     types.insert(types.end(), count, type.number);
@@ -252,6 +302,15 @@ void write_nodes_4(NumberWriter& sink, const WriteContext& output) {
       sink.size(output.node_id(v));
       sink.end_line();
     }
+    if (sink.binary && block[2] == 0) {
+      const std::span<const Point> points(mesh.points.data() + starts[b], mesh.points.data() + starts[b + 1]);
+      for (const Point& point : points) {
+        char* at = sink.out.room(sizeof(Point));
+        for (const double x : point) at = put_number(at, x, sink.order);
+        sink.out.written(at);
+      }
+      continue;
+    }
     for (Index v = starts[b]; v < starts[b + 1]; ++v) {
       for (const double x : mesh.points[v]) sink.real(x);
       for (int k = 0; block[2] == 1 && k < block[0]; ++k) {
@@ -276,11 +335,7 @@ void write_elements_4(NumberWriter& sink, const WriteContext& output) {
   for (const EmptyBlock& block : empty) write_block_head(sink, block, 0);
   for (std::size_t b = 0; b + 1 < starts.size(); ++b) {
     write_block_head(sink, head(starts[b]), starts[b + 1] - starts[b]);
-    for (Index c = starts[b]; c < starts[b + 1]; ++c) {
-      sink.size(output.cell_id(c));
-      write_cell_nodes(sink, output, c, true);
-      sink.end_line();
-    }
+    write_rows(sink, output, starts[b], starts[b + 1]);
   }
 }
 

@@ -119,10 +119,14 @@ class Combinations {
   explicit Combinations(const std::vector<std::int64_t>& families) {
     of_item_.reserve(families.size());
     std::unordered_map<std::int64_t, std::size_t> known;
+    std::size_t last = 0;  // neighbours are mostly of one family
     for (const std::int64_t family : families) {
-      const auto [found, is_new] = known.emplace(family, all_.size());
-      if (is_new) all_.push_back({family});
-      of_item_.push_back(found->second);
+      if (all_.empty() || all_[last].number != family) {
+        const auto [found, is_new] = known.try_emplace(family, all_.size());
+        if (is_new) all_.push_back({family});
+        last = found->second;
+      }
+      of_item_.push_back(last);
     }
   }
 
@@ -131,7 +135,7 @@ class Combinations {
     std::unordered_map<std::size_t, std::size_t> with_group;
     for (const Index member : members) {
       std::size_t& own = of_item_[static_cast<std::size_t>(member)];
-      const auto [found, is_new] = with_group.emplace(own, all_.size());
+      const auto [found, is_new] = with_group.try_emplace(own, all_.size());
       if (is_new) {
         all_.push_back(all_[own]);
         all_.back().groups.push_back(group);

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
+#include "base/large_pages.hpp"
 #include "io/med/med.hpp"
 
 #include <fmt/format.h>
@@ -40,8 +41,8 @@ std::vector<std::string> short_names(const std::string& text, std::size_t count)
 
 /// Puts the rows of an array in the order of the items, whose places are `items`.
 void sort_rows(DataArray& array, std::vector<Index> items, Index count) {
-  std::vector<Index> order = index_range(0, index_size(items));
   if (!std::is_sorted(items.begin(), items.end())) {
+    std::vector<Index> order = index_range(0, index_size(items));
     std::sort(order.begin(), order.end(), [&](Index a, Index b) {
       return items[static_cast<std::size_t>(a)] < items[static_cast<std::size_t>(b)];
     });
@@ -136,7 +137,7 @@ class FieldReader {
   void read_piece(Piece piece, bool is_other_profile) {
     const std::string group = piece.support + "/" + piece.profile;
     const std::string path = group + "/CO";
-    const std::vector<Index> items = items_of(piece);
+    std::vector<Index> items = items_of(piece);
     if (items.empty()) return;
     const std::uint64_t size = reading_.file.info(path).size();
     const auto points = reading_.file.integer_attribute(group, "NGA").value_or(1);
@@ -163,8 +164,12 @@ class FieldReader {
     reading_.take(path);
     Values values = reading_.file.read(path);
     Gathered& gathered = array_for(name + suffix_, piece, values);
-    append(gathered.array, values, piece, items.size());
-    gathered.items.insert(gathered.items.end(), items.begin(), items.end());
+    append(gathered.array, std::move(values), piece, items.size());
+    if (gathered.items.empty()) {
+      gathered.items = std::move(items);
+    } else {
+      gathered.items.insert(gathered.items.end(), items.begin(), items.end());
+    }
     gathered.pieces.push_back(reading_.layout->pieces.size());
     reading_.layout->pieces.push_back(std::move(piece));
   }
@@ -186,15 +191,25 @@ class FieldReader {
   }
 
   /// Appends the values of a piece as rows.
-  void append(DataArray& array, const Values& values, const Piece& piece, std::size_t rows) const {
+  void append(DataArray& array, Values values, const Piece& piece, std::size_t rows) const {
     const std::span<const int> order = order_of_points(piece);
     std::visit(
-        [&](const auto& numbers) {
+        [&](auto& numbers) {
           auto& target = std::get<std::decay_t<decltype(numbers)>>(array.values);
           const std::size_t begin = target.size();
           const std::size_t width = piece.points * piece.components;
-          target.resize(begin + numbers.size());
+          if (begin == 0 && width == 1) {
+            target = std::move(numbers);
+            return;
+          }
+          resize_large(target, begin + numbers.size());
           std::size_t from = 0;
+          if (piece.points == 1) {
+            for (std::size_t c = 0; c < width; ++c) {
+              for (std::size_t r = 0; r < rows; ++r) target[begin + r * width + c] = numbers[from++];
+            }
+            return;
+          }
           for (std::size_t c = 0; c < piece.components; ++c) {
             for (std::size_t r = 0; r < rows; ++r) {
               for (std::size_t p = 0; p < piece.points; ++p) {

@@ -138,8 +138,10 @@ class FieldWriter {
     const std::size_t count = items_of(type);
     result.places.reserve(count);
     result.rows.reserve(count);
+    const std::vector<Index>* const cells =
+        type == nullptr || count == 0 ? nullptr : &writing_.cells.at(type);
     for (std::size_t i = 0; i < count; ++i) {
-      const Index item = type == nullptr ? static_cast<Index>(i) : writing_.cells.at(type)[i];
+      const Index item = cells == nullptr ? static_cast<Index>(i) : (*cells)[i];
       const Index row = table_.empty() ? item : table_[static_cast<std::size_t>(item)];
       if (row < 0) continue;
       result.places.push_back(static_cast<Index>(i));
@@ -168,6 +170,11 @@ class FieldWriter {
           using Value = typename std::decay_t<decltype(values)>::value_type;
           if constexpr (std::is_arithmetic_v<Value>) {
             for (std::size_t c = 0; c < piece.components; ++c) {
+              if (piece.points == 1 && order.empty()) {
+                for (const Index row : rows.rows)
+                  result.push_back(static_cast<Number>(values[static_cast<std::size_t>(row) * width + c]));
+                continue;
+              }
               for (const Index row : rows.rows) {
                 for (std::size_t p = 0; p < piece.points; ++p) {
                   const std::size_t place = order.empty() ? p : static_cast<std::size_t>(order[p]);

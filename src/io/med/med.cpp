@@ -89,6 +89,11 @@ void write_points(Writing& writing) {
   if (!file.text_attribute(group, "PFL")) mark_whole(file, group);
 }
 
+/// Whether these cells, which ascend, are all from the first of them to the last.
+bool follow_each_other(const std::vector<Index>& cells) {
+  return cells.empty() || cells.back() - cells.front() + 1 == index_size(cells);
+}
+
 /// Returns the nodes of cells of a type, first nodes first, counted from 1.
 std::vector<Index> node_columns(const Writing& writing, const GeometryType& type,
                                 const std::vector<Index>& cells) {
@@ -98,6 +103,13 @@ std::vector<Index> node_columns(const Writing& writing, const GeometryType& type
   for (std::size_t k = 0; k < nodes; ++k) {
     const std::size_t place = order.empty() ? k : static_cast<std::size_t>(order[k]);
     Index* const column = columns.data() + k * cells.size();
+    const auto first =
+        static_cast<std::size_t>(cells.empty() ? 0 : writing.mesh.cells.offsets[cells.front()]);
+    if (follow_each_other(cells)) {
+      const Index* const rows = writing.mesh.cells.vertices.data() + first;
+      for (std::size_t c = 0; c < cells.size(); ++c) column[c] = rows[c * nodes + place] + 1;
+      continue;
+    }
     for (std::size_t c = 0; c < cells.size(); ++c) column[c] = writing.mesh.cells[cells[c]][place] + 1;
   }
   return columns;
@@ -160,13 +172,15 @@ class ItemWriter {
   void write_numbers(const std::string& path, const Items& of_file, const std::vector<Index>& items) {
     const bool on_vertices = association_ == Association::vertices;
     const std::vector<std::int64_t>& ids = on_vertices ? writing_.mesh.vertex_ids : writing_.mesh.cell_ids;
+    // the vertices of a file that gives them the usual numbers have no ids
+    if (ids.empty() && !(of_file.has_numbers && on_vertices)) return writing_.file.remove(path);
     std::vector<std::int64_t> numbers(items.size());
     std::iota(numbers.begin(), numbers.end(), std::int64_t{1});
-    const std::vector<std::int64_t> usual = numbers;
-    if (!ids.empty()) numbers = *rows_for<std::int64_t>(ids, {}, items);
-    // the vertices of a file that gives them the usual numbers have no ids
-    const bool wanted = of_file.has_numbers ? on_vertices || !ids.empty() : numbers != usual;
-    if (!wanted) return writing_.file.remove(path);
+    if (!ids.empty()) {
+      const std::vector<std::int64_t> usual = std::move(numbers);
+      numbers = *rows_for<std::int64_t>(ids, {}, items);
+      if (!of_file.has_numbers && numbers == usual) return writing_.file.remove(path);
+    }
     writing_.put_integers(path, numbers, items.size());
   }
 
@@ -404,8 +418,13 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   };
   std::optional<hdf5::File> file(open());
   Writing writing{mesh, layout, *file, notes, {}, {}};
+  std::vector<Index>* of_type = nullptr;  // neighbours are mostly of one type
   for (Index c = 0; c < mesh.cell_count(); ++c) {
-    writing.cells[geometry_type(mesh.cells.shapes[c], mesh.cells.vertex_count(c))].push_back(c);
+    if (c == 0 || mesh.cells.shapes[c] != mesh.cells.shapes[c - 1] ||
+        mesh.cells.vertex_count(c) != mesh.cells.vertex_count(c - 1)) {
+      of_type = &writing.cells[geometry_type(mesh.cells.shapes[c], mesh.cells.vertex_count(c))];
+    }
+    of_type->push_back(c);
   }
   write_nodes(writing);
   write_cells(writing);

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
+#include "base/large_pages.hpp"
 #include "base/resize_in_steps.hpp"
 #include "base/text.hpp"
 #include "io/hdf5/session.hpp"
@@ -216,8 +217,11 @@ void read_cells(Reading& reading, const GeometryType& type) {
     }
   }
   cells.shapes.insert(cells.shapes.end(), rows, type.shape);
-  cells.offsets.reserve(cells.offsets.size() + rows);
-  for (std::size_t c = 0; c < rows; ++c) cells.offsets.push_back(cells.offsets.back() + type.nodes);
+  reserve_large(cells.offsets, cells.offsets.size() + rows);
+  for (Offset end = cells.offsets.back() + type.nodes; cells.offsets.size() <= cells.shapes.size();
+       end += type.nodes) {
+    cells.offsets.push_back(end);
+  }
   if (count > 0) reading.mesh.cell_blocks.push_back(first);
   reading.ranges[&type] = {first, count};
 }
@@ -234,9 +238,10 @@ void turn(std::span<Index> cell, std::span<const int> order) {
 void turn_cells(Reading& reading) {
   Mesh& mesh = reading.mesh;
   WedgeVote vote(mesh.points);
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const auto known = static_cast<std::size_t>(corners(mesh.cells.shapes[c], mesh.cells.vertex_count(c)));
-    vote.add(mesh.cells.shapes[c], std::as_const(mesh.cells)[c].first(known));
+  for (const auto& [type, range] : reading.ranges) {
+    const auto known = static_cast<std::size_t>(corners(type->shape, type->nodes));
+    for (Index c = range.first; c < range.first + range.second; ++c)
+      vote.add(type->shape, std::as_const(mesh.cells)[c].first(known));
   }
   reading.layout->in_mesh_order = vote.sign_of_volumes() > 0;
   if (reading.layout->in_mesh_order) {
@@ -270,10 +275,7 @@ std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& path
   std::visit(
       [&](const auto& numbers) {
         using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_integral_v<Number>) {
-          result.reserve(numbers.size());
-          for (const Number number : numbers) result.push_back(static_cast<std::int64_t>(number));
-        }
+        if constexpr (std::is_integral_v<Number>) result.assign(numbers.begin(), numbers.end());
       },
       values);
   if (index_size(result) != rows) {
@@ -284,6 +286,9 @@ std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& path
 }
 
 bool are_unique(std::vector<std::int64_t> numbers) {
+  // most files give them in order
+  const auto descends = [](std::int64_t number, std::int64_t next) { return number >= next; };
+  if (std::adjacent_find(numbers.begin(), numbers.end(), descends) == numbers.end()) return true;
   std::sort(numbers.begin(), numbers.end());
   return std::adjacent_find(numbers.begin(), numbers.end()) == numbers.end();
 }
@@ -295,7 +300,12 @@ struct Collected {
   std::vector<Index> indices;
 
   void add(std::vector<Value> more, Index first) {
+    indices.reserve(indices.size() + more.size());
     for (std::size_t i = 0; i < more.size(); ++i) indices.push_back(first + static_cast<Index>(i));
+    if (values.empty()) {
+      values = std::move(more);
+      return;
+    }
     values.insert(values.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   }
 };

@@ -76,8 +76,9 @@ void write_vertices(OutputFile& out, const WriteContext& from) {
   const Mesh& mesh = from.mesh;
   out.print("\nVertices\n{}\n", mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    for (int k = 0; k < mesh.dimension; ++k) out.print("{} ", mesh.points[v][k]);
-    out.print("{}\n", from.vertex_labels.any() ? from.vertex_labels.values[v] : 0);
+    for (int k = 0; k < mesh.dimension; ++k) out.real(k == 0 ? "" : " ", mesh.points[v][k]);
+    out.integer(" ", from.vertex_labels.any() ? from.vertex_labels.values[v] : 0);
+    out.write("\n");
   }
 }
 
@@ -96,8 +97,10 @@ void write_cells(OutputFile& out, const WriteContext& from, std::size_t kind) {
   for (const Index c : cells) {
     const auto cell = from.mesh.cells[c];
     for (std::size_t k = 0; k < cell.size(); ++k) as_given[order.empty() ? k : order[k]] = cell[k];
-    for (std::size_t k = 0; k < cell.size(); ++k) out.print("{} ", as_given[k] + 1);
-    out.print("{}\n", from.cell_labels.any() ? from.cell_labels.values[c] : 0);
+    for (std::size_t k = 0; k < cell.size(); ++k)
+      out.integer(k == 0 ? "" : " ", std::int64_t{as_given[k]} + 1);
+    out.integer(cell.empty() ? "" : " ", from.cell_labels.any() ? from.cell_labels.values[c] : 0);
+    out.write("\n");
   }
 }
 

@@ -23,13 +23,15 @@ class Base64Encoder {
   [[nodiscard]] std::string finish();
 
  private:
-  void flush(std::string& text);
-
   std::uint32_t packed_ = 0;
   unsigned held_ = 0;
 };
 
 /// All at once.
 std::string to_base64(std::span<const char> bytes);
+
+/// Decodes as many bytes as there is place for from the beginning of a text. Returns false if the text is
+/// shorter than they need or has other characters; the bytes are then of no use.
+[[nodiscard]] bool from_base64(std::string_view text, std::span<char> bytes);
 
 }  // namespace meshorder

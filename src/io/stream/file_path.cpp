@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/file_path.hpp"
 
+#include "base/large_pages.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/stream/gzip.hpp"
@@ -41,7 +42,8 @@ std::string read_sized(std::istream& stream, const std::string& name, std::uintm
     throw InputError(name, fmt::format("has {}, more than the limit of {}", size_text(size), size_text(most)),
                      "raise the limit on memory (--limit-memory) if it fits");
   }
-  std::string bytes(wanted, '\0');
+  std::string bytes;
+  resize_large(bytes, wanted);
   stream.read(bytes.data(), static_cast<std::streamsize>(wanted));
   const auto got = static_cast<std::uintmax_t>(stream.gcount());
   if (got < wanted) {

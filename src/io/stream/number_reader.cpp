@@ -21,18 +21,6 @@ void NumberReader::fail(const std::string& what, const std::string& remedy) cons
   scanner.fail(what, remedy);
 }
 
-std::int32_t NumberReader::int32(std::string_view what) {
-  return binary ? scanner.binary<std::int32_t>(what, order) : scanner.integer<std::int32_t>(what);
-}
-
-std::int64_t NumberReader::int64(std::string_view what) {
-  return binary ? scanner.binary<std::int64_t>(what, order) : scanner.integer<std::int64_t>(what);
-}
-
-double NumberReader::real(std::string_view what) {
-  return binary ? scanner.binary<double>(what, order) : scanner.real(what);
-}
-
 double NumberReader::finite(std::string_view what) {
   if (!binary) return scanner.finite(what);
   const auto value = scanner.binary<double>(what, order);

@@ -20,9 +20,15 @@ struct NumberReader {
   /// Throws an Error at the current line or byte.
   [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
 
-  std::int32_t int32(std::string_view what);
-  std::int64_t int64(std::string_view what);
-  double real(std::string_view what);
+  std::int32_t int32(std::string_view what) {
+    return binary ? scanner.binary<std::int32_t>(what, order) : scanner.integer<std::int32_t>(what);
+  }
+  std::int64_t int64(std::string_view what) {
+    return binary ? scanner.binary<std::int64_t>(what, order) : scanner.integer<std::int64_t>(what);
+  }
+  double real(std::string_view what) {
+    return binary ? scanner.binary<double>(what, order) : scanner.real(what);
+  }
   double finite(std::string_view what);
 
   /// Reads a count of items that take at least that many bytes each (see Scanner::count).

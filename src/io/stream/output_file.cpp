@@ -9,6 +9,7 @@
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>
+#include <fmt/compile.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kFlushAt = std::size_t{1} << 20;
+constexpr std::size_t kMostDigits = 20;
 constexpr mode_t kMode = 0666;         // the umask or the folder's default ACL takes from it
 constexpr mode_t kPrivateMode = 0600;  // until it gets the mode of the old file
 
@@ -80,13 +82,25 @@ void OutputFile::write(std::string_view bytes) {
 
 void OutputFile::integer(std::string_view before, std::int64_t value) {
   // straight into the buffer: text formats write millions of these
-  constexpr std::size_t kMostDigits = 20;
+  char* const digits = std::copy(before.begin(), before.end(), room(before.size() + kMostDigits));
+  written(std::to_chars(digits, digits + kMostDigits, value).ptr);
+}
+
+void OutputFile::real(std::string_view before, double value) {
+  constexpr std::size_t kMostCharacters = 32;
+  char* const at = std::copy(before.begin(), before.end(), room(before.size() + kMostCharacters));
+  written(fmt::format_to(at, FMT_COMPILE("{}"), value));
+}
+
+char* OutputFile::room(std::size_t bytes) {
   fmt::memory_buffer& buffer = stream_->buffer;
-  const std::size_t size = buffer.size();
-  buffer.resize(size + before.size() + kMostDigits);
-  char* const digits = std::copy(before.begin(), before.end(), buffer.data() + size);
-  buffer.resize(
-      static_cast<std::size_t>(std::to_chars(digits, digits + kMostDigits, value).ptr - buffer.data()));
+  buffer.reserve(buffer.size() + bytes);
+  return buffer.data() + buffer.size();
+}
+
+void OutputFile::written(const char* end) {
+  fmt::memory_buffer& buffer = stream_->buffer;
+  buffer.resize(static_cast<std::size_t>(end - buffer.data()));
   if (buffer.size() > kFlushAt) flush();
 }
 

@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/byte_order.hpp"
 #include "io/stream/file_path.hpp"
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -47,12 +47,18 @@ class OutputFile {
   /// Writes `before` and the digits of `value`; faster than `print`.
   void integer(std::string_view before, std::int64_t value);
 
+  /// Writes `before` and the number as `print` would as `{}`; faster.
+  void real(std::string_view before, double value);
+
+  /// Returns room for so many bytes more, for rows that are put together in place. The caller then calls
+  /// `written` with the end of what it put there, before anything else.
+  [[nodiscard]] char* room(std::size_t bytes);
+  void written(const char* end);
+
   /// Writes the number's bytes in the given order.
   template <class T>
   void binary(T value, std::endian order = std::endian::native) {
-    auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
-    if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
-    write({raw.data(), raw.size()});
+    written(put_number(room(sizeof(T)), value, order));
   }
 
   /// Writes over the first bytes, of which there must be as many.

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "base/index.hpp"
+#include "io/stream/byte_order.hpp"
+#include "io/stream/digits.hpp"
 #include "io/stream/file_path.hpp"
 #include <meshorder/error.hpp>
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdint>
 #include <filesystem>
@@ -140,6 +140,15 @@ template <class T>
 bool Scanner::take_digits(T& value) {
   if (!skip_to_word()) return false;
   const char* const begin = text_.data() + position_;
+  if (text_.size() - position_ >= 8) {
+    const Digits digits = leading_digits(begin);
+    if (digits.count > 0 && digits.count < 8 && digits.count <= std::numeric_limits<T>::digits10 &&
+        (begin[digits.count] == ' ' || begin[digits.count] == '\n')) {
+      position_ += static_cast<std::size_t>(digits.count);
+      value = static_cast<T>(digits.number);
+      return true;
+    }
+  }
   const char* at = begin;
   T number = 0;
   for (; *at >= '0' && *at <= '9'; ++at) {
@@ -169,11 +178,10 @@ T Scanner::integer(std::string_view what) {
 template <class T>
 T Scanner::binary(std::string_view what, std::endian order) {
   static_assert(std::is_arithmetic_v<T>);
-  const std::string_view bytes = binary_block(sizeof(T), what);
-  std::array<char, sizeof(T)> raw{};
-  std::copy(bytes.begin(), bytes.end(), raw.begin());
-  if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
-  return std::bit_cast<T>(raw);
+  if (text_.size() - position_ < sizeof(T)) (void)binary_block(sizeof(T), what);  // throws
+  const char* const bytes = text_.data() + position_;
+  position_ += sizeof(T);
+  return number_at<T>(bytes, order);
 }
 
 }  // namespace meshorder

@@ -229,6 +229,10 @@ class Su2Writer {
     }
   }
 
+  void put_reals(std::span<const double> numbers) {
+    for (std::size_t k = 0; k < numbers.size(); ++k) out_.real(k == 0 ? "" : " ", numbers[k]);
+  }
+
   void write_points() {
     const bool twice = own_ != nullptr && own_->counts_physical_points;
     out_.print("NPOIN= {}", mesh_.vertex_count());
@@ -238,9 +242,9 @@ class Su2Writer {
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       const Point& point = mesh_.points[v];
       if (dimension_ == 3) {
-        out_.print("{} {} {}", point[0], point[1], point[2]);
+        put_reals(point);
       } else {
-        out_.print("{} {}", point[0], point[1]);
+        put_reals(std::span(point).first(2));
       }
       if (numbered) out_.integer(" ", v);
       out_.write("\n");

@@ -185,11 +185,13 @@ class ObjWriter {
     const double scale = colors_.integers ? 255 : 1;
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       const Point& p = mesh_.points[v];
-      out_.print("v {} {} {}", p[0], p[1], p[2]);
+      out_.real("v ", p[0]);
+      out_.real(" ", p[1]);
+      out_.real(" ", p[2]);
       const Index color = color_rows_.empty() ? v : color_rows_[v];
       const Index weight = weight_rows_.empty() ? v : weight_rows_[v];
       if (colors_.width > 0 && color >= 0) {
-        for (const double x : colors_[color].first(3)) out_.print(" {}", x / scale);
+        for (const double x : colors_[color].first(3)) out_.real(" ", x / scale);
       } else if (weights_ && weight >= 0) {
         out_.print(" {}", (*weights_)[weight]);
       }
@@ -273,13 +275,13 @@ class ObjWriter {
       Index normal = normals_[cell] ? normals_[cell][k] : -1;
       if (vertex_texture_.width > 0 && dimensions > 0) texture = vertices[k];
       if (vertex_normals_.width > 0 && dimensions == 2) normal = vertices[k];
-      out_.print(" {}", vertices[k] + 1);
+      out_.integer(" ", std::int64_t{vertices[k]} + 1);
       if (texture >= 0) {
-        out_.print("/{}", texture + 1);
+        out_.integer("/", std::int64_t{texture} + 1);
       } else if (normal >= 0) {
         out_.write("/");
       }
-      if (normal >= 0) out_.print("/{}", normal + 1);
+      if (normal >= 0) out_.integer("/", std::int64_t{normal} + 1);
     }
     out_.write("\n");
   }

@@ -191,7 +191,7 @@ class VegaWriter {
     if (!array) return;
     const auto& values = std::get<std::vector<double>>(array->values);
     for (Index k = 0; k < array->components; ++k) {
-      out_.print(" {}", values[static_cast<Offset>(row) * array->components + k]);
+      out_.real(" ", values[static_cast<Offset>(row) * array->components + k]);
     }
   }
 
@@ -202,9 +202,10 @@ class VegaWriter {
                marker ? 1 : 0);
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       const Point& p = mesh_.points[v];
-      out_.print("{} {} {} {}", vertex_number(v), p[0], p[1], p[2]);
+      out_.integer("", vertex_number(v));
+      for (const double x : p) out_.real(" ", x);
       write_row(extra, v);
-      if (marker) out_.print(" {}", std::get<std::vector<std::int32_t>>(marker->values)[v]);
+      if (marker) out_.integer(" ", std::get<std::vector<std::int32_t>>(marker->values)[v]);
       out_.write("\n");
     }
     out_.write("\n");

@@ -129,22 +129,30 @@ class LegacyWriter {
       const auto part = numbers.subspan(begin, std::min(kAtOnce, numbers.size() - begin));
       bytes.resize(part.size() * sizeof(Stored));
       char* place = bytes.data();
-      for (const Number number : part) {
-        const auto stored = static_cast<Stored>(number);
-        std::memcpy(place, &stored, sizeof(Stored));
-        if constexpr (std::endian::native != std::endian::big) std::reverse(place, place + sizeof(Stored));
-        place += sizeof(Stored);
-      }
+      for (const Number number : part)
+        place = put_number(place, static_cast<Stored>(number), std::endian::big);
       out_.write(bytes);
     }
     out_.write("\n");
   }
 
   template <class Number>
+  void put_text(std::string_view before, Number number) {
+    if constexpr (std::is_same_v<Number, double>) {
+      out_.real(before, number);
+    } else if constexpr (std::is_integral_v<Number> && (sizeof(Number) < 8 || std::is_signed_v<Number>)) {
+      out_.integer(before, number);
+    } else {
+      out_.print("{}{}", before, number);
+    }
+  }
+
+  template <class Number>
   void write_text(std::span<const Number> numbers, std::size_t in_line) {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      out_.print("{}{}", numbers[i], (i + 1) % in_line == 0 || i + 1 == numbers.size() ? '\n' : ' ');
+      put_text(i == 0 ? "" : i % in_line == 0 ? "\n" : " ", numbers[i]);
     }
+    if (!numbers.empty()) out_.write("\n");
   }
 
   template <class Stored, class Number>
@@ -298,8 +306,11 @@ class LegacyWriter {
       return;
     }
     for (Index c = begin; c < end; ++c) {
-      out_.binary<std::int32_t>(cells.vertex_count(c), std::endian::big);
-      for (const Index v : cells[c]) out_.binary<std::int32_t>(v, std::endian::big);
+      const std::span<const Index> cell = cells[c];
+      char* at = out_.room((1 + cell.size()) * sizeof(std::int32_t));
+      at = put_number(at, cells.vertex_count(c), std::endian::big);
+      for (const Index v : cell) at = put_number(at, v, std::endian::big);
+      out_.written(at);
     }
     out_.write("\n");
   }

@@ -1,17 +1,17 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/vtk/legacy_input.hpp"
 
+#include "base/large_pages.hpp"
 #include "base/text.hpp"
+#include "io/stream/byte_order.hpp"
 #include "io/vtk/vtk.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -113,7 +113,7 @@ Number LegacyInput::number(const std::string& what) {
 template <class Number, class Stored>
 void LegacyInput::numbers(std::vector<Number>& values, std::int64_t count, const std::string& what) {
   check_room(count, sizeof(Stored), what);
-  values.resize(static_cast<std::size_t>(count));
+  resize_large(values, static_cast<std::size_t>(count));
   if (!binary) {
     for (Number& value : values) value = static_cast<Number>(number<Stored>(what));
     return;
@@ -121,11 +121,10 @@ void LegacyInput::numbers(std::vector<Number>& values, std::int64_t count, const
   if (count == 0) return;
   const std::string_view bytes =
       scanner.binary_block(count * static_cast<std::int64_t>(sizeof(Stored)), what);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    std::array<char, sizeof(Stored)> raw{};
-    std::memcpy(raw.data(), bytes.data() + i * sizeof(Stored), sizeof(Stored));
-    if constexpr (std::endian::native != std::endian::big) std::reverse(raw.begin(), raw.end());
-    values[i] = static_cast<Number>(std::bit_cast<Stored>(raw));
+  const char* at = bytes.data();
+  for (Number& value : values) {
+    value = static_cast<Number>(number_at<Stored>(at, std::endian::big));
+    at += sizeof(Stored);
   }
 }
 

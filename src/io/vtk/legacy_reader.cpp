@@ -5,6 +5,7 @@
 //
 // VTK's own reader is not used: it reads past the end of damaged cell lists, trusts the sizes in a header
 // when it allocates, cannot read `nan`, and changes the locale of the whole program.
+#include "base/large_pages.hpp"
 #include "base/text.hpp"
 #include "io/vtk/legacy_input.hpp"
 #include "io/vtk/vtk.hpp"
@@ -120,23 +121,27 @@ class LegacyReader {
     if (!metadata_->float_points && !std::holds_alternative<std::vector<double>>(array.values)) {
       in_.notes.push_back("the points are of type " + type + " and are stored as double");
     }
-    mesh_.points.resize(static_cast<std::size_t>(count));
+    resize_large(mesh_.points, static_cast<std::size_t>(count));
     std::visit(
         [&](const auto& values) {
           using Number = typename std::decay_t<decltype(values)>::value_type;
           if constexpr (!std::is_same_v<Number, std::string>) {
-            for (std::size_t i = 0; i < values.size(); ++i) {
-              const auto x = static_cast<double>(values[i]);
-              if (!std::isfinite(x))
-                throw in_.section_error(start,
-                                        "point " + std::to_string(i / 3) +
-                                            " (counted from 0) has a coordinate that is not finite",
-                                        "finite numbers are needed");
-              mesh_.points[i / 3][i % 3] = x;
+            const Number* value = values.data();
+            for (std::size_t p = 0; p < mesh_.points.size(); ++p) {
+              for (double& x : mesh_.points[p]) {
+                x = static_cast<double>(*value++);
+                if (!std::isfinite(x)) throw not_finite(start, p);
+              }
             }
           }
         },
         array.values);
+  }
+
+  [[nodiscard]] InputError not_finite(std::int64_t line, std::size_t point) const {
+    return in_.section_error(
+        line, "point " + std::to_string(point) + " (counted from 0) has a coordinate that is not finite",
+        "finite numbers are needed");
   }
 
   // ---- cells
@@ -162,8 +167,8 @@ class LegacyReader {
       in_.fail(key + " has " + std::to_string(count) + " cells in " + std::to_string(size) + " numbers",
                "each cell takes 2 at least");
     if (size > 0) in_.begin_binary();
-    cells.offsets.reserve(static_cast<std::size_t>(count) + 1);
-    cells.vertices.reserve(static_cast<std::size_t>(size - count));
+    reserve_large(cells.offsets, static_cast<std::size_t>(count) + 1);
+    reserve_large(cells.vertices, static_cast<std::size_t>(size - count));
     std::int64_t left = size;
     for (std::int64_t c = 0; c < count; ++c) {
       const std::int32_t vertices = left > 0 ? in_.int32(key) : 0;
@@ -182,13 +187,19 @@ class LegacyReader {
                "its size counts all numbers that follow");
   }
 
+  /// One more than the last point that a cell may name, as far as that is known.
+  [[nodiscard]] std::int64_t point_limit() const {
+    return has_points_ ? mesh_.vertex_count() : std::int64_t{kMaxIndex};
+  }
+
   [[nodiscard]] Index checked_vertex(std::int64_t vertex, std::int64_t cell) const {
-    const std::int64_t points = has_points_ ? mesh_.vertex_count() : std::int64_t{kMaxIndex};
-    if (vertex < 0 || vertex >= points) {
-      in_.fail("cell " + std::to_string(cell) + " (counted from 0) names the point " + std::to_string(vertex),
-               "points run from 0 to " + std::to_string(points - 1));
-    }
+    if (vertex < 0 || vertex >= point_limit()) fail_at_vertex(vertex, cell);
     return static_cast<Index>(vertex);
+  }
+
+  [[noreturn]] void fail_at_vertex(std::int64_t vertex, std::int64_t cell) const {
+    in_.fail("cell " + std::to_string(cell) + " (counted from 0) names the point " + std::to_string(vertex),
+             "points run from 0 to " + std::to_string(point_limit() - 1));
   }
 
   /// Reads cells as from version 5 on: offsets, then vertices.
@@ -205,7 +216,12 @@ class LegacyReader {
       return part;
     };
     in_.check_room(count, 1, key);
-    cells.offsets = integers_of<Offset>(read_part("OFFSETS", count).values);
+    DataArray offsets = read_part("OFFSETS", count);
+    if (auto* const same = std::get_if<std::vector<Offset>>(&offsets.values)) {
+      cells.offsets = std::move(*same);
+    } else {
+      cells.offsets = integers_of<Offset>(offsets.values);
+    }
     if (cells.offsets.empty() || cells.offsets.front() != 0 || cells.offsets.back() != size ||
         !std::is_sorted(cells.offsets.begin(), cells.offsets.end())) {
       throw in_.section_error(cells_line_,
@@ -217,15 +233,22 @@ class LegacyReader {
         [&](const auto& numbers) {
           using Number = typename std::decay_t<decltype(numbers)>::value_type;
           if constexpr (std::is_integral_v<Number>) {
-            cells.vertices.reserve(numbers.size());
-            for (std::size_t c = 0; c + 1 < cells.offsets.size(); ++c) {
-              for (Offset i = cells.offsets[c]; i < cells.offsets[c + 1]; ++i) {
-                const Number vertex = numbers[i];
-                cells.vertices.push_back(
-                    checked_vertex(std::in_range<Index>(vertex) ? static_cast<Index>(vertex) : -1,
-                                   static_cast<std::int64_t>(c)));
-              }
+            // without a jump out of the loop, which would keep it from being vectorised
+            resize_large(cells.vertices, numbers.size());
+            const std::int64_t limit = point_limit();
+            bool all_exist = true;
+            for (std::size_t i = 0; i < numbers.size(); ++i) {
+              all_exist &= std::cmp_greater_equal(numbers[i], 0) & std::cmp_less(numbers[i], limit);
+              cells.vertices[i] = static_cast<Index>(numbers[i]);
             }
+            if (all_exist) return;
+            const auto wrong = std::find_if(numbers.begin(), numbers.end(), [&](Number vertex) {
+              return std::cmp_less(vertex, 0) || std::cmp_greater_equal(vertex, limit);
+            });
+            const auto cell = std::upper_bound(cells.offsets.begin(), cells.offsets.end(),
+                                               static_cast<Offset>(wrong - numbers.begin())) -
+                              cells.offsets.begin() - 1;
+            fail_at_vertex(std::in_range<Index>(*wrong) ? static_cast<std::int64_t>(*wrong) : -1, cell);
           } else {
             throw in_.section_error(cells_line_, "the CONNECTIVITY of " + key + " is not a list of integers",
                                     "an integer type is needed");
@@ -241,7 +264,7 @@ class LegacyReader {
     if (count > 0) in_.begin_binary();
     std::vector<std::uint8_t>& types = sections_[0].types;
     types.clear();
-    types.reserve(static_cast<std::size_t>(count));
+    reserve_large(types, static_cast<std::size_t>(count));
     for (std::int64_t c = 0; c < count; ++c) {
       const std::int32_t type = in_.int32("CELL_TYPES");
       if (type < 0 || type > 255)

@@ -230,10 +230,9 @@ class VtuWriter {
             const auto part = numbers.subspan(begin, std::min(kAtOnce, numbers.size() - begin));
             const auto* bytes = reinterpret_cast<const char*>(part.data());
             if (encoding_.order != std::endian::native && sizeof(Number) > 1) {
-              swapped.assign(bytes, bytes + part.size_bytes());
-              for (std::size_t i = 0; i < swapped.size(); i += sizeof(Number))
-                std::reverse(swapped.begin() + static_cast<Offset>(i),
-                             swapped.begin() + static_cast<Offset>(i + sizeof(Number)));
+              swapped.resize(part.size_bytes());
+              char* at = swapped.data();
+              for (const Number number : part) at = put_number(at, number, encoding_.order);
               bytes = swapped.data();
             }
             take(std::span<const char>(bytes, part.size_bytes()));
@@ -301,13 +300,19 @@ class VtuWriter {
     std::visit(
         [&](const auto& numbers) {
           for (std::size_t i = 0; i < numbers.size(); ++i) {
-            if constexpr (std::is_same_v<std::decay_t<decltype(numbers)>, std::span<const char>>) {
-              out_.print("{}", static_cast<unsigned char>(numbers[i]));
+            const std::string_view before = i == 0 ? "" : i % 6 == 0 ? "\n" : " ";
+            using Number = std::decay_t<decltype(numbers[i])>;
+            if constexpr (std::is_same_v<Number, char>) {
+              out_.integer(before, static_cast<unsigned char>(numbers[i]));
+            } else if constexpr (std::is_same_v<Number, double>) {
+              out_.real(before, numbers[i]);
+            } else if constexpr (std::is_integral_v<Number> && !std::is_same_v<Number, std::uint64_t>) {
+              out_.integer(before, numbers[i]);
             } else {
-              out_.print("{}", numbers[i]);
+              out_.print("{}{}", before, numbers[i]);
             }
-            out_.write((i + 1) % 6 == 0 || i + 1 == numbers.size() ? "\n" : " ");
           }
+          if (!numbers.empty()) out_.write("\n");
         },
         array.numbers);
   }

@@ -5,6 +5,7 @@
 //
 // VTK's own reader is not used: it trusts the sizes in a header when it allocates, reads past the end of
 // damaged arrays, cannot read the NaN that VTK writes as text, and reports faults on standard error.
+#include "base/large_pages.hpp"
 #include "base/memory.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
@@ -197,9 +198,11 @@ class VtuReader {
         [&](const auto& numbers) {
           using Stored = typename std::decay_t<decltype(numbers)>::value_type;
           if constexpr (std::is_integral_v<Stored>) {
-            target.reserve(target.size() + numbers.size());
+            const std::size_t first = target.size();
+            resize_large(target, first + numbers.size());
             std::int64_t i = 0;
-            for (const Stored number : numbers) target.push_back(checked(i++, number));
+            Number* place = target.data() + first;
+            for (const Stored number : numbers) *place++ = checked(i++, number);
           } else {
             throw file_.error(array, "the array does not hold integers", "Int32 or Int64 is usual");
           }

@@ -1,8 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Arrays of .vtu files: text, base64 and raw bytes, plain or in compressed blocks.
+#include "base/large_pages.hpp"
 #include "base/text.hpp"
 #include "io/stream/base64.hpp"
+#include "io/stream/byte_order.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
@@ -11,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <charconv>
 #include <cstring>
@@ -19,18 +20,6 @@
 #include <type_traits>
 
 namespace meshorder::vtk {
-namespace {
-
-/// The value of a character of base64; 64 for all others.
-constexpr std::array<std::uint8_t, 256> kBase64 = [] {
-  std::array<std::uint8_t, 256> values{};
-  values.fill(64);
-  for (std::size_t i = 0; i < kBase64Alphabet.size(); ++i)
-    values[static_cast<unsigned char>(kBase64Alphabet[i])] = static_cast<std::uint8_t>(i);
-  return values;
-}();
-
-}  // namespace
 
 /// Location of the bytes of an array.
 struct VtuDocument::Stored {
@@ -57,21 +46,10 @@ VtuEncoding::Mode VtuDocument::mode(const VtuElement& array) const {
 std::string VtuDocument::base64(const VtuElement& array, std::string_view text, std::uint64_t bytes) const {
   if (base64_length(bytes) > text.size())
     throw error(array, "the array's bytes end early", "the file may be cut short");
-  std::string result(bytes, '\0');
-  for (std::size_t group = 0; 3 * group < bytes; ++group) {
-    std::uint32_t packed = 0;
-    const std::size_t used = std::min<std::size_t>(3, bytes - 3 * group);
-    for (std::size_t i = 0; i < 4; ++i) {
-      const char c = text[4 * group + i];
-      const std::uint32_t value = kBase64[static_cast<unsigned char>(c)];
-      // padding fills the last group alone
-      if (value == 64 && (c != '=' || i <= used))
-        throw error(array, "the array is not base64", "letters, digits, + and / are needed");
-      packed = (packed << 6U) | (value & 63U);
-    }
-    for (std::size_t i = 0; i < used; ++i)
-      result[3 * group + i] = static_cast<char>((packed >> (16U - 8U * i)) & 0xFFU);
-  }
+  std::string result;
+  resize_large(result, bytes);
+  if (!from_base64(text, result))
+    throw error(array, "the array is not base64", "letters, digits, + and / are needed");
   return result;
 }
 
@@ -207,7 +185,7 @@ template <class Number>
 std::vector<Number> VtuDocument::words(const VtuElement& array, std::int64_t count) const {
   std::string_view text = array.text;
   std::vector<Number> result;
-  result.reserve(std::min<std::size_t>(static_cast<std::size_t>(count), text.size() / 2 + 1));
+  reserve_large(result, std::min<std::size_t>(static_cast<std::size_t>(count), text.size() / 2 + 1));
   while (true) {
     std::string_view word = next_word(text, kXmlBlanks);
     if (word.empty()) break;
@@ -247,14 +225,11 @@ std::vector<Number> VtuDocument::numbers(const VtuElement& array, std::int64_t c
     throw error(array, fmt::format("the array has {} bytes", stored.size),
                 fmt::format("{} values of {} bytes are needed", count, sizeof(Number)));
   }
-  std::vector<Number> result(static_cast<std::size_t>(count));
+  std::vector<Number> result;
+  resize_large(result, static_cast<std::size_t>(count));
   copy(array, stored, reinterpret_cast<char*>(result.data()));
   if (encoding_.order != std::endian::native) {
-    for (Number& number : result) {
-      auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
-      std::reverse(raw.begin(), raw.end());
-      number = std::bit_cast<Number>(raw);
-    }
+    for (Number& number : result) number = swapped_bytes(number);
   }
   return result;
 }

@@ -2,8 +2,10 @@
 #include "io/xdmf/data_item.hpp"
 
 #include "base/index.hpp"
+#include "base/large_pages.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
+#include "io/stream/digits.hpp"
 #include "io/stream/read_limits.hpp"
 
 #include <fmt/format.h>
@@ -69,6 +71,25 @@ class ElementText {
   std::string joined_;  // of several pieces
 };
 
+/// Reads the number at the beginning of a text, up to a blank or the end; returns where it ends, null if it
+/// is none of the type.
+template <class Number>
+const char* number_in(const char* p, const char* end, Number& number) {
+  if constexpr (std::is_integral_v<Number>) {
+    if (end - p > 8) {
+      const Digits digits = leading_digits(p);
+      const char* const behind = p + digits.count;
+      if (digits.count > 0 && digits.count < 8 && is_blank(*behind) && std::in_range<Number>(digits.number)) {
+        number = static_cast<Number>(digits.number);
+        return behind;
+      }
+    }
+  }
+  const char* const begin = *p == '+' ? p + 1 : p;
+  const auto [next, code] = std::from_chars(begin, end, number);
+  return code == std::errc{} && (next == end || is_blank(*next)) ? next : nullptr;
+}
+
 std::size_t bytes_of_number(std::size_t alternative) {
   constexpr std::array<std::size_t, 10> kBytes{8, 4, 1, 1, 2, 2, 4, 4, 8, 8};
   return kBytes[alternative];
@@ -123,11 +144,11 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
   }
 
   const std::string format = attribute(item, "Format");
-  const ElementText whole_text(item);
-  const std::string_view text = whole_text.view();
   if (same_but_for_case(format, "HDF") || same_but_for_case(format, "HDF5") ||
       same_but_for_case(format, "H5")) {
     place.format = Format::hdf;
+    const ElementText whole_text(item);
+    const std::string_view text = whole_text.view();
     if (text.find('|') != std::string_view::npos) {
       throw document_.error(item, "the DataItem selects a part of a dataset",
                             "only whole arrays can be reordered: write the values as an array of their own");
@@ -167,7 +188,7 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
   place.alternative = found->alternative;
   if (place.format == Format::xml) return place;
 
-  place.file = trimmed_blanks(text);
+  place.file = trimmed_blanks(ElementText(item).view());
   const std::string order = attribute(item, "Endian");
   if (same_but_for_case(order, "Big")) place.order = std::endian::big;
   if (same_but_for_case(order, "Little")) place.order = std::endian::little;
@@ -218,7 +239,7 @@ std::vector<Index> DataReader::read_indices(const DataPlace& place) {
       [&](const auto& numbers) {
         using Number = typename std::decay_t<decltype(numbers)>::value_type;
         if constexpr (std::is_integral_v<Number>) {
-          indices.reserve(numbers.size());
+          reserve_large(indices, numbers.size());
           for (const Number number : numbers) {
             const Index limit = std::cmp_less(number, 0) ? std::numeric_limits<Index>::min() : kMaxIndex;
             indices.push_back(std::in_range<Index>(number) ? static_cast<Index>(number) : limit);
@@ -243,16 +264,15 @@ Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const 
     if constexpr (std::is_arithmetic_v<Number>) {
       const std::uint64_t most = std::min<std::uint64_t>(count, text.size() / 2 + 1);
       claim(item, bytes_for(most, sizeof(Number)));
-      numbers.reserve(most);
+      reserve_large(numbers, most);
       const char* p = text.data();
       const char* const end = p + text.size();
       while (true) {
         while (p != end && is_blank(*p)) ++p;
         if (p == end) break;
         Number number{};
-        const char* const begin = *p == '+' ? p + 1 : p;
-        const auto [next, code] = std::from_chars(begin, end, number);
-        if (code != std::errc{} || (next != end && !is_blank(*next))) {
+        const char* const next = number_in(p, end, number);
+        if (next == nullptr) {
           const std::string_view word(p, static_cast<std::size_t>(end - p));
           throw document_.error(
               item,

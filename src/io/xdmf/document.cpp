@@ -1,11 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/xdmf/document.hpp"
 
+#include "base/large_pages.hpp"
 #include "base/text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <new>
 
 namespace meshorder::xdmf {
 namespace {
@@ -17,10 +20,11 @@ constexpr std::size_t kLongestPath = 1000;
 
 class TextWriter : public pugi::xml_writer {
  public:
-  void write(const void* data, std::size_t size) override {
-    text.append(static_cast<const char*>(data), size);
-  }
-  std::string text;
+  explicit TextWriter(const TakeText& take) : take_(take) {}
+  void write(const void* data, std::size_t size) override { take_({static_cast<const char*>(data), size}); }
+
+ private:
+  const TakeText& take_;
 };
 
 bool is_include(pugi::xml_node element) {
@@ -93,21 +97,25 @@ void parse(pugi::xml_document& xml, const std::string& text) {
   xml.load_buffer(text.data(), text.size(), kParse);
 }
 
-std::string text_of(const pugi::xml_document& xml, std::string_view prolog) {
-  TextWriter writer;
-  writer.text = prolog;
+void print(const pugi::xml_document& xml, std::string_view prolog, const TakeText& take) {
+  TextWriter writer(take);
+  take(prolog);
   xml.document_element().print(writer, "", pugi::format_raw, pugi::encoding_utf8);
-  return std::move(writer.text) + "\n";
+  take("\n");
 }
 
-std::string indented_text_of(const pugi::xml_document& xml) {
-  TextWriter writer;
+void print_indented(const pugi::xml_document& xml, const TakeText& take) {
+  TextWriter writer(take);
   xml.save(writer, "  ", pugi::format_indent, pugi::encoding_utf8);
-  return std::move(writer.text);
 }
 
 Document::Document(const FilePath& path) : file_(path.string()), source_(path.read()) {
-  const pugi::xml_parse_result result = xml_.load_buffer(source_.data(), source_.size(), kParse);
+  // parsed in a copy on large pages, as `source_` tells the lines of errors
+  auto* const text = static_cast<char*>(pugi::get_memory_allocation_function()(source_.size()));
+  if (text == nullptr) throw std::bad_alloc();
+  ask_for_large_pages(text, source_.size());
+  source_.copy(text, source_.size());
+  const pugi::xml_parse_result result = xml_.load_buffer_inplace_own(text, source_.size(), kParse);
   const auto line_of = [&](std::ptrdiff_t byte) {
     const auto end = source_.begin() + std::min<std::ptrdiff_t>(byte, std::ssize(source_));
     return 1 + std::count(source_.begin(), end, '\n');
@@ -200,15 +208,13 @@ std::vector<pugi::xml_node> Document::children(pugi::xml_node grid) const {
   return result;
 }
 
-std::string Document::without_values(const std::vector<std::size_t>& items) const {
-  pugi::xml_document copy;
-  copy.reset(xml_);
-  const std::vector<pugi::xml_node> all = elements_named(copy, "DataItem");
-  for (const std::size_t item : items) {
-    pugi::xml_node node = all[item];
-    while (node.first_child()) node.remove_child(node.first_child());
-  }
-  return text_of(copy, prolog());
+std::string Document::take_values_out(std::vector<std::size_t> items) {
+  // those within an element before it
+  std::sort(items.begin(), items.end(), std::greater());
+  for (const std::size_t item : items) items_[item].remove_children();
+  std::string text;
+  print(xml_, prolog(), [&](std::string_view part) { text += part; });
+  return text;
 }
 
 std::string_view Document::prolog() const {

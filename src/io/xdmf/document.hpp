@@ -37,8 +37,8 @@ class Document {
   /// Returns the DataItem of that number.
   [[nodiscard]] pugi::xml_node item(std::size_t number) const { return items_[number]; }
 
-  /// Returns the XML in which the given DataItems have no values.
-  [[nodiscard]] std::string without_values(const std::vector<std::size_t>& items) const;
+  /// Takes the values out of the given DataItems, which must not be read after that, and returns the XML.
+  [[nodiscard]] std::string take_values_out(std::vector<std::size_t> items);
 
  private:
   /// Returns what stands before the root element: the declaration, which pugixml has, and the blanks.
@@ -57,12 +57,16 @@ class Document {
 /// Returns all elements of a name in the order of the file.
 std::vector<pugi::xml_node> elements_named(const pugi::xml_document& xml, std::string_view name);
 
-/// Parses XML that `Document::without_values` made.
+/// Parses XML that `Document::take_values_out` made.
 void parse(pugi::xml_document& xml, const std::string& text);
 
-/// Returns XML as text: as it was parsed, after what stands before its root, or with a line for each element.
-std::string text_of(const pugi::xml_document& xml, std::string_view prolog);
-std::string indented_text_of(const pugi::xml_document& xml);
+/// Takes the next part of a text.
+using TakeText = std::function<void(std::string_view part)>;
+
+/// Puts XML out as text: as it was parsed, after what stands before its root, or with a line for each
+/// element.
+void print(const pugi::xml_document& xml, std::string_view prolog, const TakeText& take);
+void print_indented(const pugi::xml_document& xml, const TakeText& take);
 
 /// Returns the first of two attributes that is there; an empty text without.
 std::string attribute(pugi::xml_node element, const char* name, const char* other_name = "");

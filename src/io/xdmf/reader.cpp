@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
+#include "base/large_pages.hpp"
 #include "base/text.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/xdmf/reading.hpp"
@@ -200,7 +201,7 @@ class XdmfReader {
         throw reading_.document.error(items[i], "the Grid has too many points",
                                       "at most 2147483647 are possible");
       }
-      points.resize(count);
+      resize_large(points, count);
       std::visit(
           [&](const auto& numbers) {
             using Number = typename std::decay_t<decltype(numbers)>::value_type;
@@ -273,7 +274,7 @@ class XdmfReader {
         items.push_back(field.place.item);
       }
     }
-    reading_.layout->xml = reading_.document.without_values(items);
+    reading_.layout->xml = reading_.document.take_values_out(std::move(items));
     for (const auto& [name, file] : reading_.data.files()) {
       note_other_datasets(name, file, datasets[name]);
       reading_.layout->hdf5[name] = file.without_values(datasets[name]);

@@ -1,5 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/all_below.hpp"
 #include "base/index.hpp"
+#include "base/large_pages.hpp"
 #include "base/text.hpp"
 #include "io/xdmf/reading.hpp"
 
@@ -115,7 +117,7 @@ TopologyReader::Piece TopologyReader::piece_of(pugi::xml_node topology, pugi::xm
   }
   piece.cells.types.assign(static_cast<std::size_t>(cells),
                            static_cast<std::uint8_t>(vtk_type(known, nodes)));
-  piece.cells.offsets.resize(static_cast<std::size_t>(cells) + 1);
+  resize_large(piece.cells.offsets, static_cast<std::size_t>(cells) + 1);
   for (std::int64_t c = 0; c <= cells; ++c) piece.cells.offsets[static_cast<std::size_t>(c)] = c * nodes;
   piece.cells.vertices = std::move(numbers);
   check_vertices(item, piece.cells, base);
@@ -164,6 +166,7 @@ bool TopologyReader::read_mixed(const std::vector<Index>& numbers, std::int64_t 
 
 void TopologyReader::check_vertices(pugi::xml_node item, FileCells& cells, int base) const {
   const Index count = reading_.mesh.vertex_count();
+  if (base == 0 && all_below(cells.vertices, count)) return;
   for (std::size_t i = 0; i < cells.vertices.size(); ++i) {
     const std::int64_t vertex = std::int64_t{cells.vertices[i]} - base;
     if (vertex < 0 || vertex >= count) {

@@ -2,6 +2,7 @@
 #include "io/xdmf/xdmf.hpp"
 
 #include "base/index.hpp"
+#include "base/large_pages.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/hdf5/session.hpp"
@@ -10,10 +11,12 @@
 #include "io/vtk/vtk.hpp"
 #include "io/xdmf/document.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -110,7 +113,7 @@ class XdmfWriter {
     rename_files();
     for (auto& [name, output] : files_) finish(output);
 
-    xml.write(xml_text());
+    put_xml([&](std::string_view part) { xml.write(part); });
     std::vector<OutputFile> all;
     all.reserve(1 + files_.size() + binaries_.size());
     all.push_back(std::move(xml));
@@ -184,9 +187,9 @@ class XdmfWriter {
     }
   }
 
-  [[nodiscard]] std::string xml_text() const {
-    if (!layout_.is_made) return text_of(xml_, layout_.xml.substr(0, layout_.xml.find("<Xdmf")));
-    return indented_text_of(xml_);
+  void put_xml(const TakeText& take) const {
+    if (layout_.is_made) return print_indented(xml_, take);
+    print(xml_, std::string_view(layout_.xml).substr(0, layout_.xml.find("<Xdmf")), take);
   }
 
   // ---- values of one DataItem
@@ -273,24 +276,37 @@ class XdmfWriter {
   }
 
   static std::string text_of_values(const Values& values, std::size_t components) {
-    fmt::memory_buffer text;
+    constexpr std::size_t kMostCharacters = 32;  // of a number and what follows it
+    constexpr std::size_t kUsualCharacters = 20;
+    std::string text;
     std::visit(
         [&](const auto& numbers) {
           using Number = typename std::decay_t<decltype(numbers)>::value_type;
           if constexpr (std::is_arithmetic_v<Number>) {
-            text.push_back('\n');
-            for (std::size_t i = 0; i < numbers.size(); ++i) {
-              if constexpr (sizeof(Number) == 1) {
-                fmt::format_to(std::back_inserter(text), "{}", static_cast<int>(numbers[i]));
-              } else {
-                fmt::format_to(std::back_inserter(text), "{}", numbers[i]);
+            resize_large(text, kUsualCharacters * numbers.size() + kMostCharacters);
+            char* at = text.data();
+            *at++ = '\n';
+            std::size_t in_row = 0;
+            for (const Number number : numbers) {
+              const auto used = static_cast<std::size_t>(at - text.data());
+              if (text.size() - used < kMostCharacters) {
+                text.resize(text.size() + text.size() / 4 + kMostCharacters);
+                at = text.data() + used;
               }
-              text.push_back((i + 1) % components == 0 ? '\n' : ' ');
+              if constexpr (std::is_integral_v<Number>) {
+                at = std::to_chars(at, at + kMostCharacters, number).ptr;
+              } else {
+                at = fmt::format_to(at, FMT_COMPILE("{}"), number);
+              }
+              const bool ends_row = ++in_row == components;
+              *at++ = ends_row ? '\n' : ' ';
+              if (ends_row) in_row = 0;
             }
+            text.resize(static_cast<std::size_t>(at - text.data()));
           }
         },
         values);
-    return fmt::to_string(text);
+    return text;
   }
 
   // ---- fields of the layout
@@ -450,7 +466,7 @@ class XdmfWriter {
 
   /// Removes what the mesh has no longer, also where several time steps name one dataset.
   void remove_gone() {
-    for (const pugi::xml_node item : items_) {
+    for (const pugi::xml_node item : gone_datasets_.empty() ? std::vector<pugi::xml_node>() : items_) {
       const auto [file, dataset] = split_hdf5_name(item.text().get());
       if (gone_datasets_.contains(fmt::format("{}:{}", file, dataset))) gone_.push_back(item.parent());
     }

@@ -1,0 +1,23 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/number_view.hpp>
+
+#include <cstdint>
+#include <span>
+
+namespace meshorder {
+
+/// Returns whether all numbers are 0 … limit − 1, limit ≥ 0. O(numbers), in vectors of any width: it neither
+/// branches nor compares, but gathers the sign bits of each number and of its distance to the last one.
+inline bool all_below(std::span<const Index> numbers, Index limit) noexcept {
+  const std::uint32_t last = static_cast<std::uint32_t>(limit) - 1;
+  std::uint32_t signs = 0;
+  for (const Index number : numbers) {
+    const auto bits = static_cast<std::uint32_t>(number);
+    signs |= bits | (last - bits);
+  }
+  return limit > 0 ? signs >> 31U == 0 : numbers.empty();
+}
+
+}  // namespace meshorder
