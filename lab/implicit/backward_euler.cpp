@@ -90,7 +90,9 @@ MotionState BackwardEuler::state() const {
 void BackwardEuler::set_state(const MotionState& state) {
   check_state(state, system_.vertex_count());
   steps_ = state.step;
-  positions_ = padded_positions(state.positions);
+  // in place, where they are apart from the forces (see kApart)
+  const AlignedVector<double> positions = padded_positions(state.positions);
+  std::copy(positions.begin(), positions.end(), positions_.begin());
   for (Index v = 0; v < system_.vertex_count(); ++v)
     std::copy_n(state.velocities[v].begin(), 3, velocities_.begin() + Offset{3} * v);
 }
