@@ -1,12 +1,17 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// cg [--solve] [--rounds N] [--orders a,b,…] FILE…: conjugate gradients on the system of an implicit time
-// step of each mesh, (1 + h α) M + h² K at rest, in several orders: best ms of an iteration in interleaved
-// rounds, with the matrix in double and in float, on one and two threads, and how many per cent of the
-// measured bandwidth that is (over 100: caches hold something from pass to pass). "band" is the ideal order
-// (see ideal_band). With --solve: iterations and seconds to 1e-6 with each preconditioner.
+// cg [--solve | --half] [--rounds N] [--orders a,b,…] FILE…: conjugate gradients on the system of an implicit
+// time step of each mesh, (1 + h α) M + h² K at rest, in several orders: best ms of an iteration in
+// interleaved rounds, with the matrix in double and in float, on one and two threads, and how many per cent
+// of the measured bandwidth that is (over 100: caches hold something from pass to pass). "band" is the ideal
+// order (see ideal_band). With --solve: iterations and seconds to 1e-6 with each preconditioner. With --half:
+// the product and the iteration with the matrix stored once and by half (see HalfBlockCsr), in turns; on one
+// thread processor time.
+#include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"
+#include "kernels/half_block_csr.hpp"
+#include "kernels/owned_batches.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/spmv.hpp"
 #include "lab/implicit/elastic_system.hpp"
@@ -16,6 +21,7 @@
 #include "mesh/reorder.hpp"
 #include "payoff/band.hpp"
 #include "payoff/bandwidth.hpp"
+#include "payoff/steadiness.hpp"
 
 #include <fmt/core.h>
 #include <tbb/global_control.h>
@@ -37,6 +43,7 @@ constexpr int kIterations = 24;
 
 struct Settings {
   bool solve = false;
+  bool half = false;
   int rounds = 9;
   std::string orders = "scrambled,original,fiedler,spectral,hilbert,rcm,band";
   std::vector<std::string> files;
@@ -47,6 +54,7 @@ struct System {
   std::string order;
   mo::BlockCsr matrix;
   mo::BlockCsrOf<float> rounded;
+  mo::HalfBlockCsr half;
   std::vector<double> b, x;
   std::vector<mo::Point> points;
   std::unique_ptr<mo::Preconditioner> jacobi;
@@ -82,6 +90,7 @@ System make_system(const std::string& order, const mo::Mesh& mesh) {
   system.points = mesh.points;
   system.matrix = std::move(elastic.matrix());
   mo::round_to_single(system.matrix, system.rounded);
+  mo::store_half(system.matrix, system.half);
   system.b.assign(3 * mesh.points.size(), kStep * kForce);
   system.x.assign(system.b.size(), 0.0);
   system.jacobi = mo::make_preconditioner(mo::PreconditionerKind::jacobi, system.matrix, mesh.points);
@@ -125,6 +134,63 @@ double product_ms(System& system) {
   const mo::Stopwatch stopwatch;
   for (int i = 0; i < kRepeats; ++i) mo::multiply(system.matrix, system.b, y);
   return 1e3 * stopwatch.seconds() / kRepeats;
+}
+
+/// Best milliseconds of processor time on one thread, of wall-clock time on several.
+template <class Work>
+void take_best(double& best, int threads, int repeats, Work work) {
+  const mo::ThreadStopwatch thread;
+  const mo::Stopwatch wall;
+  work();
+  best = std::min(best, 1e3 * (threads == 1 ? thread.seconds() : wall.seconds()) / repeats);
+}
+
+void print_halves(std::vector<System>& systems, const Settings& settings) {
+  constexpr int kRepeats = 10;
+  constexpr std::size_t kColumns = 4;  // product, half; iteration, half
+  fmt::print("{:<11}{:>8}{:>9}{:>9}{:>9}{:>8}{:>11}{:>9}{:>8}\n", "order", "threads", "twice %", "product",
+             "half", "", "iteration", "half", "");
+  for (const int threads : kThreads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    std::vector<std::array<double, kColumns>> best(systems.size());
+    for (auto& row : best) row.fill(std::numeric_limits<double>::infinity());
+    for (int round = 0; round < settings.rounds; ++round) {
+      for (std::size_t i = 0; i < systems.size(); ++i) {
+        System& system = systems[i];
+        const mo::BlockCsr& matrix = system.matrix;
+        std::vector<double> y(system.x.size());
+        const std::vector<mo::Index> parts = mo::balanced_ranges(matrix.offsets, threads);
+        const auto whole = [&] {
+          mo::for_each_part(threads, [&](mo::Index part) {
+            mo::multiply_rows(matrix, system.b, y, parts[part], parts[part + 1]);
+          });
+        };
+        const auto repeated = [&](auto product) {
+          product();
+          return [product] {
+            for (int k = 0; k < kRepeats; ++k) product();
+          };
+        };
+        take_best(best[i][0], threads, kRepeats, repeated(whole));
+        take_best(best[i][1], threads, kRepeats, repeated([&] { mo::multiply(system.half, system.b, y); }));
+        const auto iterations = [&](const auto& of) {
+          return [&] {
+            std::fill(system.x.begin(), system.x.end(), 0.0);
+            (void)mo::conjugate_gradients(of, *system.jacobi, system.b, system.x,
+                                          {.tolerance = 0.0, .max_iterations = kIterations});
+          };
+        };
+        // the residual at the start takes another product
+        take_best(best[i][2], threads, kIterations + 1, iterations(system.matrix));
+        take_best(best[i][3], threads, kIterations + 1, iterations(system.half));
+      }
+    }
+    for (std::size_t i = 0; i < systems.size(); ++i) {
+      fmt::print("{:<11}{:>8}{:>9.1f}{:>9.3f}{:>9.3f}{:>7.2f}x{:>11.3f}{:>9.3f}{:>7.2f}x\n", systems[i].order,
+                 threads, 100 * mo::share_between_slabs(systems[i].matrix), best[i][0], best[i][1],
+                 best[i][0] / best[i][1], best[i][2], best[i][3], best[i][2] / best[i][3]);
+    }
+  }
 }
 
 /// The bytes that an iteration moves when nothing stays in caches.
@@ -208,6 +274,8 @@ int main(int argc, char** argv) try {
     const std::string argument = argv[i];
     if (argument == "--solve") {
       settings.solve = true;
+    } else if (argument == "--half") {
+      settings.half = true;
     } else if (argument == "--rounds" && i + 1 < argc) {
       settings.rounds = std::atoi(argv[++i]);
     } else if (argument == "--orders" && i + 1 < argc) {
@@ -220,7 +288,9 @@ int main(int argc, char** argv) try {
     std::vector<System> systems = make_systems(file, settings.orders);
     fmt::print("{}: {} vertices, {:.1f} MB of matrix in double\n", file, systems.front().matrix.size(),
                76e-6 * static_cast<double>(systems.front().matrix.block_count()));
-    if (settings.solve) {
+    if (settings.half) {
+      print_halves(systems, settings);
+    } else if (settings.solve) {
       print_solves(systems);
     } else {
       print_iterations(systems, settings);

@@ -6,6 +6,7 @@
 #include "kernels/positions.hpp"
 #include "kernels/spmv.hpp"
 #include "lab/linear/cg/solve.hpp"
+#include "payoff/half_storage.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -62,6 +63,7 @@ BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, Im
       scratch_(velocities_.size()) {
   check_options(options_, index_size(points));
   preconditioner_ = make_preconditioner(options_.preconditioner, system_.matrix(), points);
+  stores_half_ = options_.precision == MatrixPrecision::double_ && half_storage_pays(system_.matrix());
   const bool moves = std::any_of(options_.prescribed.begin(), options_.prescribed.end(),
                                  [](const PrescribedMotion& p) { return p.velocity != Point{}; });
   if (options_.stiffness_damping > 0.0 && (options_.newton_iterations > 1 || moves)) {
@@ -90,7 +92,9 @@ MotionState BackwardEuler::state() const {
 void BackwardEuler::set_state(const MotionState& state) {
   check_state(state, system_.vertex_count());
   steps_ = state.step;
-  positions_ = padded_positions(state.positions);
+  // in place, where they are apart from the forces (see kApart)
+  const AlignedVector<double> positions = padded_positions(state.positions);
+  std::copy(positions.begin(), positions.end(), positions_.begin());
   for (Index v = 0; v < system_.vertex_count(); ++v)
     std::copy_n(state.velocities[v].begin(), 3, velocities_.begin() + Offset{3} * v);
 }
@@ -224,6 +228,9 @@ SolveReport BackwardEuler::solve_once(Iterate& iterate, StepReport& report) {
     round_to_single(system_.matrix(), rounded_);
     solved = refined_conjugate_gradients(system_.matrix(), rounded_, *preconditioner_, iterate.right_side,
                                          iterate.step, options_.solve);
+  } else if (stores_half_) {
+    store_half(system_.matrix(), half_);
+    solved = conjugate_gradients(half_, *preconditioner_, iterate.right_side, iterate.step, options_.solve);
   } else {
     solved = conjugate_gradients(system_.matrix(), *preconditioner_, iterate.right_side, iterate.step,
                                  options_.solve);
@@ -298,12 +305,17 @@ Balance BackwardEuler::balance() const {
   return balance;
 }
 
+Offset BackwardEuler::blocks_read() const noexcept {
+  return half_.block_count() > 0 ? half_.block_count() : system_.matrix().block_count();
+}
+
 std::size_t BackwardEuler::bytes() const {
   const auto of = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
   // CG keeps three vectors, a step four more
   return system_.bytes() + preconditioner_->bytes() + of(damping_.values) + of(damping_.columns) +
-         of(rounded_.values) + of(rounded_.columns) + of(damping_.offsets) + of(positions_) + of(moved_) +
-         of(velocities_) + of(loads_) + of(scratch_) + 7 * of(velocities_);
+         of(rounded_.values) + of(rounded_.columns) + of(half_.values) + of(half_.columns) +
+         of(half_.offsets) + of(damping_.offsets) + of(positions_) + of(moved_) + of(velocities_) +
+         of(loads_) + of(scratch_) + 7 * of(velocities_);
 }
 
 }  // namespace meshorder

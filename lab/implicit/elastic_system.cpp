@@ -59,8 +59,9 @@ ElasticSystem::ElasticSystem(std::span<const Point> points, const Body& body, Ma
     OwnedBlocks blocks = owned_blocks(rest_, map_, matrix_, batches[part], part);
     shares_.push_back({std::move(batches[part]), std::move(blocks)});
   }
-  forces_ = padded_zeros(shares_.back().batches.room);
   matrix_.values.resize(9 * static_cast<std::size_t>(shares_.back().blocks.room), 0.0);
+  // last, so that positions made next are apart from them (see kApart)
+  forces_ = padded_zeros(shares_.back().batches.room);
 }
 
 void ElasticSystem::assemble(std::span<const double> positions, Tangent tangent, double mass_factor,

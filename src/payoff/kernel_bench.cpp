@@ -2,6 +2,7 @@
 #include "payoff/kernel_bench.hpp"
 
 #include "base/parallel.hpp"
+#include "kernels/apart.hpp"
 #include "kernels/elasticity.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/spmv.hpp"
@@ -86,7 +87,9 @@ void KernelBench::share_out(int threads) {
     OwnedBlocks blocks = owned_blocks(rest_, map_, matrix_, of_elements[part], part);
     shares_.push_back({std::move(of_elements[part]), std::move(blocks), std::move(of_springs[part])});
   }
-  forces_ = padded_zeros(std::max(shares_.back().elements.room, shares_.back().springs.room));
+  const Index room = std::max(shares_.back().elements.room, shares_.back().springs.room);
+  forces_ = reserved_apart<double>(Offset{kPaddedStride} * room, {positions_.data()});
+  forces_.assign(Offset{kPaddedStride} * room, 0.0);
   matrix_.values.resize(9 * static_cast<std::size_t>(shares_.back().blocks.room), 0.0);
 }
 

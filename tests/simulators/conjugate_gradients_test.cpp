@@ -60,23 +60,37 @@ TEST_P(ConjugateGradients, SolveAsADenseFactorisationDoes) {
     EXPECT_EQ(report.vertex, -1);
     const Eigen::VectorXd expected = test::dense(matrix).ldlt().solve(test::as_eigen(b));
     EXPECT_LT((test::as_eigen(x) - expected).norm(), 1e-9 * expected.norm());
+
+    HalfBlockCsr half;
+    store_half(matrix, half);
+    std::vector<double> by_half = test::random_vector(matrix.size(), 2);
+    const SolveReport with_half =
+        conjugate_gradients(half, *updated(GetParam(), matrix), b, by_half, {.tolerance = 1e-12});
+    EXPECT_EQ(with_half.status, SolveStatus::converged);
+    EXPECT_NEAR(with_half.iterations, report.iterations, 2);
+    EXPECT_LT((test::as_eigen(by_half) - expected).norm(), 1e-9 * expected.norm());
   }
 }
 
 TEST_P(ConjugateGradients, GiveTheSameBitsOnAnyNumberOfThreads) {
   const BlockCsr matrix = test::elastic_system(make_grid({.size = 22}), 1.0);
+  HalfBlockCsr half;
+  store_half(matrix, half);
   const std::vector<double> b = test::random_vector(matrix.size(), 3);
   const auto preconditioner = updated(GetParam(), matrix);
-  const auto solution = [&](int threads) {
+  const auto solution = [&](const auto& of, int threads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     std::vector<double> x(b.size());
     tbb::task_arena(threads).execute(
-        [&] { conjugate_gradients(matrix, *preconditioner, b, x, {.max_iterations = 20}); });
+        [&] { conjugate_gradients(of, *preconditioner, b, x, {.max_iterations = 20}); });
     return x;
   };
-  const std::vector<double> one = solution(1);
-  EXPECT_EQ(solution(2), one);
-  EXPECT_EQ(solution(3), one);
+  const std::vector<double> one = solution(matrix, 1);
+  const std::vector<double> one_by_half = solution(half, 1);
+  for (const int threads : {2, 3, 8}) {
+    EXPECT_EQ(solution(matrix, threads), one);
+    EXPECT_EQ(solution(half, threads), one_by_half);
+  }
 }
 
 TEST(ConjugateGradients, EndAfterAsManyIterationsAsThereAreDifferentEigenvalues) {

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
@@ -25,9 +26,7 @@ namespace {
 /// in the caches.
 class RowSweeps {
  public:
-  /// `offsets` are those of the matrix's compressed rows. O(chunks · log rows).
-  explicit RowSweeps(std::span<const Offset> offsets)
-      : bounds_(balanced_ranges(offsets, static_cast<Index>(1 + offsets.back() / kChunkBlocks))) {}
+  explicit RowSweeps(std::vector<Index> bounds) : bounds_(std::move(bounds)) {}
 
   /// Calls `work(begin, end)` for the rows of each chunk, on all threads.
   template <class Work>
@@ -38,17 +37,23 @@ class RowSweeps {
   /// Returns the sum of `part(begin, end)` over the chunks, in their order.
   template <class Sum, class Part>
   Sum sum(Part part) {
+    return sum_over<Sum>([&](Index chunk) { return part(bounds_[chunk], bounds_[chunk + 1]); });
+  }
+
+  /// The same of `part(chunk)`.
+  template <class Sum, class Part>
+  Sum sum_over(Part part) {
     std::vector<Sum> parts(bounds_.size() - 1);
-    run_chunks([&](Index chunk) { parts[chunk] = part(bounds_[chunk], bounds_[chunk + 1]); });
+    run_chunks([&](Index chunk) { parts[chunk] = part(chunk); });
     Sum sum{};
     for (const Sum& p : parts) sum += p;
     return sum;
   }
 
- private:
-  // 0.6 MB of a matrix in double: few enough chunks to cost nothing, many enough for any number of threads
-  static constexpr Offset kChunkBlocks = 8192;
+  [[nodiscard]] Index begin(Index chunk) const { return bounds_[chunk]; }
+  [[nodiscard]] Index end(Index chunk) const { return bounds_[chunk + 1]; }
 
+ private:
   template <class Work>
   void run_chunks(Work work) {
     const bool backwards = backwards_;
@@ -67,6 +72,28 @@ class RowSweeps {
   std::vector<Index> bounds_;
   bool backwards_ = false;
 };
+
+/// The chunks of a matrix's rows. O(chunks · log rows).
+template <class Value>
+std::vector<Index> chunks_of(const BlockCsrOf<Value>& matrix) {
+  // 0.6 MB of a matrix in double: few enough chunks to cost nothing, many enough for any number of threads
+  constexpr Offset kChunkBlocks = 8192;
+  return balanced_ranges(matrix.offsets, static_cast<Index>(1 + matrix.block_count() / kChunkBlocks));
+}
+
+std::vector<Index> chunks_of(const HalfBlockCsr& matrix) { return matrix.slabs; }
+
+/// q = A p in the rows of a chunk; returns their part of pᵀA p.
+template <class Value>
+double multiply_chunk(const BlockCsrOf<Value>& matrix, const RowSweeps& rows, Index chunk,
+                      std::span<const double> p, std::span<double> q) {
+  return multiply_rows_dot(matrix, p, q, rows.begin(chunk), rows.end(chunk));
+}
+
+double multiply_chunk(const HalfBlockCsr& matrix, const RowSweeps& /*rows*/, Index chunk,
+                      std::span<const double> p, std::span<double> q) {
+  return multiply_slab_dot(matrix, p, q, chunk);
+}
 
 /// rᵀr and rᵀz of a residual r.
 struct Norms {
@@ -96,18 +123,18 @@ Index first_not_finite(std::span<const double> vector) {
   return found == vector.end() ? -1 : static_cast<Index>((found - vector.begin()) / 3);
 }
 
-template <class Value>
+template <class Matrix>
 class ConjugateGradients {
  public:
-  ConjugateGradients(const BlockCsrOf<Value>& matrix, const Preconditioner& preconditioner,
-                     std::span<const double> b, std::span<double> x, const SolveOptions& options)
+  ConjugateGradients(const Matrix& matrix, const Preconditioner& preconditioner, std::span<const double> b,
+                     std::span<double> x, const SolveOptions& options)
       : matrix_(matrix),
         preconditioner_(preconditioner),
         local_(dynamic_cast<const LocalPreconditioner*>(&preconditioner)),
         b_(b),
         x_(x),
         options_(options),
-        rows_(matrix.offsets),
+        rows_(chunks_of(matrix)),
         v_(x.size()) {}
 
   SolveReport run() {
@@ -148,9 +175,9 @@ class ConjugateGradients {
 
   /// r = b − A x.
   void start() {
-    norms_.rr = rows_.template sum<double>([&](Index begin, Index end) {
-      multiply_rows(matrix_, x_, v_.r, begin, end);
-      return passes::subtract_from(b_, v_.r, begin, end);
+    norms_.rr = rows_.sum_over<double>([&](Index chunk) {
+      (void)multiply_chunk(matrix_, rows_, chunk, x_, v_.r);
+      return passes::subtract_from(b_, v_.r, rows_.begin(chunk), rows_.end(chunk));
     });
     first_rr_ = norms_.rr;
   }
@@ -158,25 +185,25 @@ class ConjugateGradients {
   /// z = M⁻¹ r.
   void precondition() {
     preconditioner_.apply(v_.r, v_.z);
-    norms_.rz = rows_.template sum<double>(
-        [&](Index begin, Index end) { return passes::dot(v_.r, v_.z, begin, end); });
+    norms_.rz =
+        rows_.sum<double>([&](Index begin, Index end) { return passes::dot(v_.r, v_.z, begin, end); });
   }
 
   /// q = A p; returns pᵀq.
   double multiply_direction() {
-    return rows_.template sum<double>(
-        [&](Index begin, Index end) { return multiply_rows_dot(matrix_, v_.p, v_.q, begin, end); });
+    return rows_.sum_over<double>(
+        [&](Index chunk) { return multiply_chunk(matrix_, rows_, chunk, v_.p, v_.q); });
   }
 
   /// r −= α q, z = M⁻¹ r.
   void reduce_residual(double alpha) {
     if (local_ == nullptr) {
-      norms_.rr = rows_.template sum<double>(
+      norms_.rr = rows_.sum<double>(
           [&](Index begin, Index end) { return passes::subtract(alpha, v_.q, v_.r, begin, end); });
       precondition();
       return;
     }
-    norms_ = rows_.template sum<Norms>([&](Index begin, Index end) {
+    norms_ = rows_.sum<Norms>([&](Index begin, Index end) {
       Norms norms;
       for (Index first = begin; first < end; first += kTile) {
         const Index last = std::min(first + kTile, end);
@@ -210,7 +237,7 @@ class ConjugateGradients {
     return {SolveStatus::not_finite, iterations_, residual(), vertex};
   }
 
-  const BlockCsrOf<Value>& matrix_;
+  const Matrix& matrix_;
   const Preconditioner& preconditioner_;
   const LocalPreconditioner* local_;
   std::span<const double> b_;
@@ -223,8 +250,8 @@ class ConjugateGradients {
   int iterations_ = 0;
 };
 
-template <class Value>
-SolveReport checked_solve(const BlockCsrOf<Value>& matrix, const Preconditioner& preconditioner,
+template <class Matrix>
+SolveReport checked_solve(const Matrix& matrix, const Preconditioner& preconditioner,
                           std::span<const double> b, std::span<double> x, const SolveOptions& options) {
   const auto entries = 3 * static_cast<std::size_t>(matrix.size());
   if (b.size() != entries || x.size() != entries) {
@@ -263,6 +290,11 @@ Index largest_vertex(std::span<const double> vector) {
 }
 
 SolveReport conjugate_gradients(const BlockCsr& matrix, const Preconditioner& preconditioner,
+                                std::span<const double> b, std::span<double> x, const SolveOptions& options) {
+  return checked_solve(matrix, preconditioner, b, x, options);
+}
+
+SolveReport conjugate_gradients(const HalfBlockCsr& matrix, const Preconditioner& preconditioner,
                                 std::span<const double> b, std::span<double> x, const SolveOptions& options) {
   return checked_solve(matrix, preconditioner, b, x, options);
 }

@@ -1,0 +1,273 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "kernels/half_block_csr.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/half_block_csr.cpp"
+#include <hwy/foreach_target.h>
+// from here on once for each instruction set
+#include "kernels/positions.hpp"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace meshorder::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// doubles from a prefetch of a block to its use; hardware prefetches less far ahead
+constexpr Offset kDoublesAhead = 384;
+
+#if HWY_MAX_BYTES >= 32
+/// A row of a slab: its sums, and what it adds to other rows. Each row of a block is loaded with the number
+/// that follows it, whose products are in lane 3 and never used.
+class HalfRow {
+ public:
+  HWY_INLINE explicit HalfRow(const double* p)
+      : p0_(hn::Set(Tag(), p[0])), p1_(hn::Set(Tag(), p[1])), p2_(hn::Set(Tag(), p[2])) {}
+
+  /// Adds a block that counts in this row.
+  HWY_INLINE void add(const double* block, const double* p) {
+    const auto factors = load_three(p);
+    row0_ = hn::MulAdd(hn::LoadU(Tag(), block), factors, row0_);
+    row1_ = hn::MulAdd(hn::LoadU(Tag(), block + 3), factors, row1_);
+    row2_ = hn::MulAdd(hn::LoadU(Tag(), block + 6), factors, row2_);
+  }
+
+  /// Adds a block that counts in this row and in that of its column, whose sum is padded.
+  HWY_INLINE void add_both(const double* block, const double* p, double* column_sum) {
+    const Tag d;
+    const auto factors = load_three(p);
+    const auto block0 = hn::LoadU(d, block);
+    const auto block1 = hn::LoadU(d, block + 3);
+    const auto block2 = hn::LoadU(d, block + 6);
+    row0_ = hn::MulAdd(block0, factors, row0_);
+    row1_ = hn::MulAdd(block1, factors, row1_);
+    row2_ = hn::MulAdd(block2, factors, row2_);
+    // by itself first: a sum just stored by the row before is waited for only once
+    const auto column = hn::MulAdd(block2, p2_, hn::MulAdd(block1, p1_, hn::Mul(block0, p0_)));
+    hn::Store(hn::Add(hn::Load(d, column_sum), column), d, column_sum);
+  }
+
+  /// q = the sums of this row and what other rows added to it, which is set to 0.
+  HWY_INLINE void finish(double* column_sum, double* q) const {
+    const Tag d;
+    const hn::Half<Tag> two;
+    const auto even01 = hn::InterleaveLower(d, row0_, row1_);
+    const auto odd01 = hn::InterleaveUpper(d, row0_, row1_);
+    const auto even2 = hn::InterleaveLower(d, row2_, hn::Zero(d));
+    const auto odd2 = hn::InterleaveUpper(d, row2_, hn::Zero(d));
+    const auto added = hn::Load(d, column_sum);
+    hn::Store(hn::Zero(d), d, column_sum);
+    const auto sum01 =
+        hn::Add(hn::Add(hn::LowerHalf(two, even01), hn::LowerHalf(two, odd01)), hn::UpperHalf(two, even01));
+    const auto sum2 =
+        hn::Add(hn::Add(hn::LowerHalf(two, even2), hn::LowerHalf(two, odd2)), hn::UpperHalf(two, even2));
+    hn::StoreU(hn::Add(sum01, hn::LowerHalf(two, added)), two, q);
+    q[2] = hn::GetLane(hn::Add(sum2, hn::UpperHalf(two, added)));
+  }
+
+ private:
+  using Tag = hn::FixedTag<double, 4>;
+  static HWY_INLINE hn::Vec<Tag> load_three(const double* p) {
+    return hn::MaskedLoad(hn::FirstN(Tag(), 3), Tag(), p);
+  }
+
+  hn::Vec<Tag> p0_, p1_, p2_;
+  hn::Vec<Tag> row0_ = hn::Zero(Tag());
+  hn::Vec<Tag> row1_ = hn::Zero(Tag());
+  hn::Vec<Tag> row2_ = hn::Zero(Tag());
+};
+#else
+/// The same one number at a time: two lanes gain nothing.
+class HalfRow {
+ public:
+  HWY_INLINE explicit HalfRow(const double* p) : p_(p) {}
+
+  HWY_INLINE void add(const double* block, const double* p) {
+    for (int i = 0; i < 3; ++i) {
+      sums_[i] += block[3 * i] * p[0] + block[3 * i + 1] * p[1] + block[3 * i + 2] * p[2];
+    }
+  }
+  HWY_INLINE void add_both(const double* block, const double* p, double* column_sum) {
+    add(block, p);
+    for (int i = 0; i < 3; ++i) {
+      column_sum[i] += block[i] * p_[0] + block[3 + i] * p_[1] + block[6 + i] * p_[2];
+    }
+  }
+  HWY_INLINE void finish(double* column_sum, double* q) const {
+    for (int i = 0; i < 3; ++i) {
+      q[i] = sums_[i] + column_sum[i];
+      column_sum[i] = 0.0;
+    }
+  }
+
+ private:
+  const double* p_;
+  double sums_[3] = {};
+};
+#endif
+
+/// `sums` has kPaddedStride zeros for each row of the slab, before and afterwards. With `Gather` the entries
+/// of x are prefetched too.
+template <bool Gather>
+double half_product_rows(const HalfBlockCsr& matrix, const double* x, double* sums, double* y, Index begin,
+                         Index end) {
+  const double* const values = matrix.values.data();
+  const Index* const columns = matrix.columns.data();
+  const Offset* const offsets = matrix.offsets.data();
+  const auto sum_of = [&](Offset row) { return sums + kPaddedStride * (row - begin); };
+  const auto ask_for = [&](Offset k) {
+    __builtin_prefetch(values + 9 * k + kDoublesAhead);
+    if constexpr (Gather) __builtin_prefetch(x + Offset{3} * columns[k + HalfBlockCsr::kSpareColumns]);
+  };
+  double dot = 0.0;
+  Offset k = offsets[Offset{2} * begin];
+  for (Offset v = begin; v < end; ++v) {
+    const double* const p = x + 3 * v;
+    double* const q = y + 3 * v;
+    HalfRow row(p);
+    for (const Offset alone_end = offsets[2 * v + 1]; k < alone_end; ++k) {
+      ask_for(k);
+      row.add(values + 9 * k, x + Offset{3} * columns[k]);
+    }
+    for (const Offset row_end = offsets[2 * v + 2]; k < row_end; ++k) {
+      ask_for(k);
+      row.add_both(values + 9 * k, x + Offset{3} * columns[k], sum_of(columns[k]));
+    }
+    row.finish(sum_of(v), q);
+    dot += p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+  }
+  return dot;
+}
+
+double half_product(const HalfBlockCsr& matrix, const double* x, double* sums, double* y, Index begin,
+                    Index end) {
+  // a vector that fits into the second-level cache needs no prefetch
+  constexpr Index kNearVertices = (Index{3} << 20) / (2 * 3 * sizeof(double));
+  return matrix.size() <= kNearVertices ? half_product_rows<false>(matrix, x, sums, y, begin, end)
+                                        : half_product_rows<true>(matrix, x, sums, y, begin, end);
+}
+
+}  // namespace
+}  // namespace meshorder::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "base/parallel.hpp"
+#include "kernels/owned_batches.hpp"
+#include <meshorder/error.hpp>
+
+namespace meshorder {
+namespace {
+
+HWY_EXPORT(half_product);
+
+constexpr Index kSlabs = 16;
+
+/// Zeros for the rows of a slab, one such array for each thread.
+double* sums_of_thread(std::size_t rows) {
+  thread_local AlignedVector<double> sums;
+  const std::size_t needed = kPaddedStride * rows;
+  if (sums.size() < needed) sums.assign(needed, 0.0);
+  return sums.data();
+}
+
+/// The blocks of the rows begin … end − 1 in other columns than these.
+Offset blocks_between(const BlockCsr& matrix, Index begin, Index end) {
+  Offset count = 0;
+  for (Offset k = matrix.offsets[begin]; k < matrix.offsets[end]; ++k) {
+    const Index column = matrix.columns[k];
+    count += column < begin || column >= end ? 1 : 0;
+  }
+  return count;
+}
+
+/// The stored blocks of a row that count in it alone, and those that count in two.
+struct RowCounts {
+  Offset alone = 0, both = 0;
+};
+
+RowCounts counts_of(const BlockCsr& matrix, Index row, Index begin, Index end) {
+  RowCounts counts;
+  for (Offset k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k) {
+    const Index column = matrix.columns[k];
+    if (column > row && column < end) {
+      ++counts.both;
+    } else if (column == row || column < begin || column >= end) {
+      ++counts.alone;
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
+std::vector<Index> slabs_of(const BlockCsr& matrix) {
+  return balanced_ranges(matrix.offsets, std::clamp<Index>(matrix.size(), 1, kSlabs));
+}
+
+double share_between_slabs(const BlockCsr& matrix) {
+  if (matrix.block_count() == 0) return 0.0;
+  const std::vector<Index> slabs = slabs_of(matrix);
+  const Offset between = sum_over_chunks<Offset>(index_size(slabs) - 1, 1, [&](Index slab, Index) {
+    return blocks_between(matrix, slabs[slab], slabs[slab + 1]);
+  });
+  return static_cast<double>(between) / static_cast<double>(matrix.block_count());
+}
+
+void store_half(const BlockCsr& matrix, HalfBlockCsr& result) {
+  result.slabs = slabs_of(matrix);
+  const Index n = matrix.size();
+  result.offsets.resize(2 * static_cast<std::size_t>(n) + 1);
+  for_each_part(result.slab_count(), [&](Index slab) {
+    const Index begin = result.slabs[slab];
+    const Index end = result.slabs[slab + 1];
+    for (Index v = begin; v < end; ++v) {
+      const RowCounts counts = counts_of(matrix, v, begin, end);
+      result.offsets[2 * Offset{v} + 1] = counts.alone;
+      result.offsets[2 * Offset{v} + 2] = counts.both;
+    }
+  });
+  for (std::size_t i = 1; i < result.offsets.size(); ++i) result.offsets[i] += result.offsets[i - 1];
+  const auto blocks = static_cast<std::size_t>(result.block_count());
+  result.columns.resize(blocks + HalfBlockCsr::kSpareColumns);
+  std::fill(result.columns.begin() + result.block_count(), result.columns.end(), 0);
+  result.values.resize(9 * blocks + 1);
+  result.values.back() = 0.0;
+  for_each_part(result.slab_count(), [&](Index slab) {
+    const Index begin = result.slabs[slab];
+    const Index end = result.slabs[slab + 1];
+    for (Index v = begin; v < end; ++v) {
+      Offset alone = result.offsets[2 * Offset{v}];
+      Offset both = result.offsets[2 * Offset{v} + 1];
+      for (Offset k = matrix.offsets[v]; k < matrix.offsets[v + 1]; ++k) {
+        const Index column = matrix.columns[k];
+        if (column >= begin && column < v) continue;
+        const Offset to = column > v && column < end ? both++ : alone++;
+        result.columns[to] = column;
+        std::copy_n(matrix.values.begin() + 9 * k, 9, result.values.begin() + 9 * to);
+      }
+    }
+  });
+}
+
+double multiply_slab_dot(const HalfBlockCsr& matrix, std::span<const double> x, std::span<double> y,
+                         Index slab) {
+  const auto entries = 3 * static_cast<std::size_t>(matrix.size());
+  if (x.size() != entries || y.size() != entries) {
+    throw InvalidArgument("multiply: x and y must hold 3 doubles for each row of blocks");
+  }
+  const Index begin = matrix.slabs[slab];
+  const Index end = matrix.slabs[slab + 1];
+  if (begin == end) return 0.0;
+  double* const sums = sums_of_thread(static_cast<std::size_t>(end - begin));
+  return HWY_DYNAMIC_DISPATCH(half_product)(matrix, x.data(), sums, y.data(), begin, end);
+}
+
+void multiply(const HalfBlockCsr& matrix, std::span<const double> x, std::span<double> y) {
+  for_each_part(matrix.slab_count(), [&](Index slab) { (void)multiply_slab_dot(matrix, x, y, slab); });
+}
+
+}  // namespace meshorder
+#endif

@@ -1,0 +1,55 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/block_csr.hpp"
+
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// A symmetric matrix of 3×3 blocks of which most blocks are stored once. The rows are cut into slabs of
+/// about equal numbers of blocks. A block on the diagonal, and one whose row and column are in different
+/// slabs, is stored in its row; of two blocks that mirror each other within a slab only the upper one is
+/// stored, and counts in both rows. So a slab writes to its own rows alone: threads take slabs, without
+/// atomics or a second pass, and every sum has its terms in the same order for any number of threads. In a
+/// poor order most blocks are between slabs, and what is stored is the full matrix.
+///
+/// Block k holds `values[9 k] … values[9 k + 8]`, row by row. Of row v, blocks `offsets[2 v] … offsets[2 v +
+/// 1] − 1` count in this row, blocks `offsets[2 v + 1] … offsets[2 v + 2] − 1` also in that of their column.
+/// Columns ascend in both parts.
+struct HalfBlockCsr {
+  std::vector<Index> slabs{0};     ///< bounds of the slabs
+  std::vector<Offset> offsets{0};  ///< 2 n + 1
+  std::vector<Index> columns;      ///< and kSpareColumns zeros, which are asked for early
+  AlignedVector<double> values;    ///< and one more number, since vector loads read past the end
+
+  static constexpr Offset kSpareColumns = 64;
+
+  [[nodiscard]] Index size() const noexcept { return slabs.back(); }
+  [[nodiscard]] Index slab_count() const noexcept { return static_cast<Index>(slabs.size()) - 1; }
+  /// Blocks that are stored.
+  [[nodiscard]] Offset block_count() const noexcept { return offsets.back(); }
+};
+
+/// Returns the bounds of the slabs of a matrix, by its pattern alone: 16 of them, or as many as it has rows.
+std::vector<Index> slabs_of(const BlockCsr& matrix);
+
+/// Returns the share of a matrix's blocks whose row and column are in different slabs, 0 … 1: these are
+/// stored twice. O(blocks), of which only the columns are read.
+double share_between_slabs(const BlockCsr& matrix);
+
+/// Copies a matrix that is symmetric to the last bit, its pattern too, to `result`, reusing the memory of
+/// `result`. Blocks below the diagonal within a slab are not read. On all threads. O(blocks).
+void store_half(const BlockCsr& matrix, HalfBlockCsr& result);
+
+/// y = A x for the rows of one slab; returns their part of xᵀA x. x and y hold 3 doubles for each vertex and
+/// must not overlap; x is read everywhere. Each product by a block is rounded as that by the full matrix, the
+/// sums in another order. Throws InvalidArgument if a size differs. O(blocks).
+double multiply_slab_dot(const HalfBlockCsr& matrix, std::span<const double> x, std::span<double> y,
+                         Index slab);
+
+/// y = A x on all threads, with the same bits for any number of them.
+void multiply(const HalfBlockCsr& matrix, std::span<const double> x, std::span<double> y);
+
+}  // namespace meshorder
