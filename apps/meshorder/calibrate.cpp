@@ -52,20 +52,22 @@ void print_calibration(const Console& console, const Calibration& calibration) {
   const std::vector<Offset>& used = calibration.model.caches.level_bytes;
   const std::vector<FoundCache>& found = calibration.found.levels;
   for (std::size_t i = 0; i < std::max({reported.size(), used.size(), found.size()}); ++i) {
-    console.print("{:<10} {:>10} {:>10} {:>10} {:>12}", fmt::format("cache {}", i + 1), cell(reported, i, in_bytes),
-                  cell(found, i, [](const FoundCache& level) { return in_bytes(level.bytes); }),
-                  cell(used, i, in_bytes), cell(found, i, [](const FoundCache& level) {
-                    return fmt::format("{:.1f} ns", level.nanoseconds);
-                  }));
+    console.print(
+        "{:<10} {:>10} {:>10} {:>10} {:>12}", fmt::format("cache {}", i + 1), cell(reported, i, in_bytes),
+        cell(found, i, [](const FoundCache& level) { return in_bytes(level.bytes); }),
+        cell(used, i, in_bytes),
+        cell(found, i, [](const FoundCache& level) { return fmt::format("{:.1f} ns", level.nanoseconds); }));
   }
   console.print("{:<10} {:>10} {:>10} {:>10} {:>12}", "memory", "", "", "",
                 fmt::format("{:.0f} ns", calibration.found.memory_nanoseconds));
   console.print("read       {:.1f} GB/s on one thread, {:.1f} GB/s on {}", calibration.read_bandwidth,
                 calibration.read_bandwidth_all, calibration.threads);
-  console.print("\nWhat a kernel pays, in ns: an access, a miss and in addition a jump of the first cache, the second,\n"
-                "half of the last and all of it");
-  console.print("{:<14}{:>7}{:>28}{:>28}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps", "condition", "error",
-                "floor");
+  console.print(
+      "\nWhat a kernel pays, in ns: an access, a miss and in addition a jump of the first cache, the "
+      "second,\n"
+      "half of the last and all of it");
+  console.print("{:<14}{:>7}{:>28}{:>28}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps", "condition",
+                "error", "floor");
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     const KernelCosts& costs = calibration.model.kernels[k];
     std::string misses;
@@ -74,19 +76,21 @@ void print_calibration(const Console& console, const Calibration& calibration) {
       misses += fmt::format("{:>7.3g}", costs.miss[i]);
       jumps += fmt::format("{:>7.3g}", costs.jump[i]);
     }
-    console.print("{:<14}{:>7.3g}{}{}{:>10.0f}{:>6.1f}%{:>6.1f}%", kKernelTitles[k], costs.access, misses, jumps,
-                  calibration.condition[k], 100 * calibration.error[k], 100 * calibration.floor[k]);
+    console.print("{:<14}{:>7.3g}{}{}{:>10.0f}{:>6.1f}%{:>6.1f}%", kKernelTitles[k], costs.access, misses,
+                  jumps, calibration.condition[k], 100 * calibration.error[k], 100 * calibration.floor[k]);
   }
-  console.print("condition: how many times errors of measured times can grow in these numbers; error: of the times\n"
-                "that they predict for what they were fitted to, the median; floor: by how much two timings of the\n"
-                "same at other addresses differ");
+  console.print(
+      "condition: how many times errors of measured times can grow in these numbers; error: of the times\n"
+      "that they predict for what they were fitted to, the median; floor: by how much two timings of the\n"
+      "same at other addresses differ");
 }
 
 void list_machines(const Console& console) {
   auto list = Json::array();
   const StoredCalibration stored = load_calibration(key_of_this_machine());
   const std::string date = stored.calibration ? stored.calibration->date : "";
-  console.print_list("  {:<8} {}", "this", date.empty() ? "this machine, not calibrated" : "this machine, calibrated " + date);
+  console.print_list("  {:<8} {}", "this",
+                     date.empty() ? "this machine, not calibrated" : "this machine, calibrated " + date);
   list.push_back({{"name", "this"},
                   {"machine", processor_of_this_machine()},
                   {"calibrated", date.empty() ? Json(nullptr) : Json(date)}});
@@ -114,7 +118,8 @@ void recheck_machine(const CalibrateArguments& arguments, Console& console) {
     ratios[std::string(to_string(kKernels[k]))] = found.ratio[k];
   }
   console.print("{}", found.moved.empty() ? "as it was" : found.moved);
-  console.print_json({{"calibrated", stored.calibration->date}, {"ratio", ratios}, {"moved", !found.moved.empty()}});
+  console.print_json(
+      {{"calibrated", stored.calibration->date}, {"ratio", ratios}, {"moved", !found.moved.empty()}});
 }
 
 void run(const CalibrateArguments& arguments) {
@@ -151,13 +156,16 @@ void add_calibrate(CLI::App& subcommand) {
       "  meshorder calibrate\n"
       "  meshorder calibrate --recheck");
   const auto arguments = std::make_shared<CalibrateArguments>();
-  CLI::Option* const list = subcommand.add_flag("--list", arguments->list, "List the machines that --machine takes, and do nothing else");
+  CLI::Option* const list = subcommand.add_flag(
+      "--list", arguments->list, "List the machines that --machine takes, and do nothing else");
   subcommand
       .add_flag("--recheck", arguments->recheck,
                 "Run the kernels for some seconds, and say whether the machine is as it was when it was\n"
                 "calibrated")
       ->excludes(list);
-  subcommand.add_option("--budget", arguments->seconds, "Seconds to spend")->check(positive())->capture_default_str();
+  subcommand.add_option("--budget", arguments->seconds, "Seconds to spend")
+      ->check(positive())
+      ->capture_default_str();
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

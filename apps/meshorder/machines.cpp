@@ -22,8 +22,7 @@ MachineChoice calibrated(MachineChoice choice, Progress& progress, bool quiet, N
   if (!choice.stands_in) return choice;
   if (!choice.fault.empty()) notes.push_back(choice.fault + "; this machine is measured anew");
   if (!quiet) {
-    write_stderr(
-        "meshorder: measuring this machine once, some 20 s; `--machine zen5` predicts without\n");
+    write_stderr("meshorder: measuring this machine once, some 20 s; `--machine zen5` predicts without\n");
   }
   progress.stage("measuring this machine", 0, 0.9);
   Run run;
@@ -33,7 +32,8 @@ MachineChoice calibrated(MachineChoice choice, Progress& progress, bool quiet, N
   };
   const Calibration calibration = in_call(run, [] { return measure_machine({}); });
   if (const std::string doubt = reason_to_doubt(calibration.steadiness); !doubt.empty()) {
-    notes.push_back("this machine was calibrated while it was busy; `meshorder calibrate` does it again: " + doubt);
+    notes.push_back("this machine was calibrated while it was busy; `meshorder calibrate` does it again: " +
+                    doubt);
   }
   try {
     (void)save_calibration(calibration);

@@ -94,7 +94,7 @@ struct Advice {
 struct PayoffOptions {
   /// The candidates; empty: what `auto` takes for all kernels, and for springs where that differs.
   std::vector<MeshMethods> methods = {};
-  bool predict = true;   ///< gives the same times on every run
+  bool predict = true;  ///< gives the same times on every run
   /// What to predict for: a machine whose costs ship with the library ("zen5"), or "this": this machine as
   /// `calibrate` measured it, else its caches with the costs of the first of those. Empty: what the
   /// environment variable MESHORDER_MACHINE says, else "this".
@@ -112,7 +112,8 @@ struct PayoffOptions {
 /// @return the kernels' times as the mesh is and in every candidate, and the best candidate for each kernel.
 ///         Times that differ by less than 5 % (measured), 10 % (predicted) or 25 % (predicted products), or
 ///         less than `Advice::floor`, count as equal
-/// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for types and machines that are
+/// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for types and machines that
+/// are
 ///         not known, and where neither prediction nor measurement is asked for
 /// @note Orders and, to predict, about a second for a million tetrahedra and candidate; to measure, the
 ///       budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex of a
@@ -146,7 +147,8 @@ struct CalibrationReport {
 /// $XDG_CACHE_HOME/meshorder, else ~/.cache/meshorder) for this processor and this build of the library.
 ///
 /// @param options  see `CalibrationOptions`
-/// @throws InvalidArgument for a time that is not above 0; Error with Code::io if it cannot be stored; Stopped
+/// @throws InvalidArgument for a time that is not above 0; Error with Code::io if it cannot be stored;
+/// Stopped
 /// @note Runs for `options.seconds` and some more where the machine is slow, in about 1 GB of memory. Other
 ///       work on the machine spoils it. Stages of progress: "caches", "bandwidths", "lattices".
 MESHORDER_API CalibrationReport calibrate(const CalibrationOptions& options = {});

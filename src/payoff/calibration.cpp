@@ -114,8 +114,8 @@ void measure_memory(const CalibrationEffort& effort, Calibration& calibration) {
   const auto most = static_cast<Offset>(std::min<std::uint64_t>(usable_memory() / 8, UINT64_C(1) << 40));
   const std::vector<Offset> sizes = probe_sizes(std::min(effort.probed, most));
   constexpr int kRounds = 8;
-  calibration.found = find_caches(
-      probe_latencies(sizes, kRounds, [](double share) { report("caches", 0.2 * share); }));
+  calibration.found =
+      find_caches(probe_latencies(sizes, kRounds, [](double share) { report("caches", 0.2 * share); }));
   report("bandwidths", 0.2);
   const auto bytes = static_cast<std::size_t>(std::min(effort.probed, most));
   constexpr int kPasses = 4;
@@ -209,15 +209,27 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   constexpr Offset kBytesOfVertex = 4096;
   const Offset fitting = static_cast<Offset>(usable_memory() / 4) / kBytesOfVertex;
   const auto largest = static_cast<Index>(std::clamp<Offset>(fitting, 1000, effort.vertices));
-  /// Shares of the time.
+  // Rows of matrices that fill parts of the second cache and of the last, so that what streams misses one
+  // cache and not the next; vertices that fill them take the large ones.
+  constexpr Offset kRowBytes = 1140;
+  const auto rows_in = [&](Offset bytes, double part) {
+    const auto rows = static_cast<Offset>(part * static_cast<double>(bytes) / kRowBytes);
+    return static_cast<Index>(std::clamp<Offset>(rows, 300, largest / 4));
+  };
+  const std::array<Offset, 4> sizes = sizes_that_cost(model.caches);
+  /// A lattice, and its share of the time.
   struct Step {
     Index vertices;
     bool flat;
     std::size_t orders;
     double share;
   };
-  const std::array steps{Step{largest / 64, false, 6, 0.07}, Step{largest / 8, false, 8, 0.2},
-                         Step{largest / 8, true, 5, 0.08}, Step{largest / 3, false, 4, 0.12}};
+  const std::array steps{Step{rows_in(sizes[1], 0.6), false, 3, 0.03},
+                         Step{rows_in(sizes[3], 0.35), false, 5, 0.06},
+                         Step{rows_in(sizes[3], 0.75), false, 5, 0.06},
+                         Step{largest / 8, false, 7, 0.15},
+                         Step{largest / 8, true, 4, 0.06},
+                         Step{largest / 3, false, 3, 0.1}};
   double done = 0.25;
   for (const Step& step : steps) {
     report("lattices", done);
@@ -261,7 +273,8 @@ Recheck recheck(const Calibration& calibration) {
     result.ratio[k] = middle_of(std::move(ratios));
     const double most = std::max(0.15, 3 * (calibration.error[k] + calibration.floor[k]));
     if (std::abs(std::log(result.ratio[k])) <= std::log(1 + most)) continue;
-    moved.push_back(fmt::format("{} takes {:.2f} times as long as it did", kKernelTitles[k], result.ratio[k]));
+    moved.push_back(
+        fmt::format("{} takes {:.2f} times as long as it did", kKernelTitles[k], result.ratio[k]));
   }
   if (!moved.empty()) {
     result.moved = "this machine has changed since it was calibrated (" + join(moved) +

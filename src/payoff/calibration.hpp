@@ -40,7 +40,7 @@ struct Calibration {
 struct CalibrationEffort {
   double seconds = 16;  ///< no measurement begins that is expected to end later, but each is made once
   Offset probed = Offset{256} << 20;  ///< largest buffer of loads, bytes
-  Index vertices = 240'000;           ///< of the largest lattice
+  Index vertices = 200'000;           ///< of the largest lattice
 };
 
 /// Measures this machine: its caches, latencies and bandwidths, and the kernels themselves on small lattices

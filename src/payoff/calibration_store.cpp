@@ -110,7 +110,8 @@ std::string to_json_text(const Calibration& calibration) {
         {"used", calibration.model.caches.level_bytes}}},
       {"memory_nanoseconds", calibration.found.memory_nanoseconds},
       {"threads", calibration.threads},
-      {"read_bandwidth", {{"one_thread", calibration.read_bandwidth}, {"all", calibration.read_bandwidth_all}}},
+      {"read_bandwidth",
+       {{"one_thread", calibration.read_bandwidth}, {"all", calibration.read_bandwidth_all}}},
       {"kernels", kernels},
       {"steadiness",
        {{"waiting", steadiness.waiting}, {"pace", steadiness.pace}, {"repeat", steadiness.repeat}}},
@@ -185,8 +186,10 @@ fs::path save_calibration(const Calibration& calibration) {
   fs::path file = calibration_file(key_of(calibration));
   constexpr const char* kRemedy = "set MESHORDER_CACHE to a folder that can be written";
   if (file.empty()) {
-    throw Error(Code::io, std::string("calibration: neither HOME nor XDG_CACHE_HOME is set, so there is no folder "
-                                      "to keep it in; ") + kRemedy);
+    throw Error(Code::io,
+                std::string("calibration: neither HOME nor XDG_CACHE_HOME is set, so there is no folder "
+                            "to keep it in; ") +
+                    kRemedy);
   }
   std::error_code code;
   fs::create_directories(file.parent_path(), code);

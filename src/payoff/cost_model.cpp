@@ -16,7 +16,7 @@ const CostModel& zen5_costs() {
       .kernels = {{
           {.access = 0.1618, .miss = {0.206, 0.2589, 0.07844, 0.4239}, .jump = {0, 0, 2.657, 0}},   // spmv
           {.access = 0.5038, .miss = {0, 0.01054, 1.415, 0}, .jump = {0.06757, 0.8356, 7.661, 0}},  // element
-          {.access = 0.7606, .miss = {0, 0, 0, 1.038}, .jump = {1.024, 0.6349, 2.869, 0}},  // assembly
+          {.access = 0.7606, .miss = {0, 0, 0, 1.038}, .jump = {1.024, 0.6349, 2.869, 0}},        // assembly
           {.access = 0.4856, .miss = {0, 0, 0.5409, 0}, .jump = {0.03403, 0.298, 7.274, 6.446}},  // springs
       }}};
   return model;

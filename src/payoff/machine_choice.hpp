@@ -22,7 +22,7 @@ std::span<const ShippedMachine> shipped_machines();
 
 /// The machine that times are predicted for.
 struct MachineChoice {
-  std::string name;        ///< a shipped machine's, or "this"
+  std::string name;  ///< a shipped machine's, or "this"
   CostModel model;
   std::string calibrated;  ///< the date if the costs were measured here; empty if they are shipped ones
   /// Shipped costs are used with the caches that this machine reports, because it is not calibrated.

@@ -72,8 +72,8 @@ TEST(CacheProbe, FindsTwoCachesWhereThereAreTwo) {
 }
 
 TEST(CacheProbe, TablesOfPagesAreNoCaches) {
-  const FoundCaches found =
-      find_caches(latencies(1, {{32 << 10, 3}, {1 << 20, 10}, {24 << 20, 90}, {Offset{150} << 20, 15}}, 0.02));
+  const FoundCaches found = find_caches(
+      latencies(1, {{32 << 10, 3}, {1 << 20, 10}, {24 << 20, 90}, {Offset{150} << 20, 15}}, 0.02));
   ASSERT_EQ(found.levels.size(), 3U);
   expect_near(found.levels[2].bytes, 24 << 20);
 }

@@ -231,7 +231,8 @@ TEST(CalibrationStore, NoDamagedFileIsTaken) {
   EXPECT_THAT(fault_of(test::with(text, "\"access\": ", "\"access\": -")), HasSubstr("negative"));
   EXPECT_THAT(fault_of(test::with(text, "20971520", "1")), HasSubstr("is damaged") /* or no cache */)
       << "sizes must rise";
-  for (std::size_t size = 0; size + 2 < text.size(); size += 37) EXPECT_NE(fault_of(text.substr(0, size)), "");
+  for (std::size_t size = 0; size + 2 < text.size(); size += 37)
+    EXPECT_NE(fault_of(text.substr(0, size)), "");
 }
 
 TEST(CalibrationStore, AFolderThatCannotBeMadeIsAnErrorWithARemedy) {

@@ -24,7 +24,8 @@ Eigen::MatrixXd dense(const Rows& rows) {
 }
 
 double squares_left(const Rows& rows, const std::vector<double>& right, const std::vector<double>& x) {
-  const Eigen::VectorXd given = Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+  const Eigen::VectorXd given =
+      Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
   const Eigen::VectorXd wanted =
       Eigen::Map<const Eigen::VectorXd>(right.data(), static_cast<Eigen::Index>(right.size()));
   return (dense(rows) * given - wanted).squaredNorm();
@@ -59,7 +60,8 @@ TEST(LeastSquares, NoChoiceOfUnknownsLeavesLess) {
       std::vector<double> row;
       // positive ones depend on each other more; sizes differ as those of counts do
       for (std::size_t j = 0; j < rows.columns; ++j)
-        row.push_back((random.unit() - (round % 2 == 0 ? 0.5 : 0)) * std::pow(10, static_cast<double>(j % 4)));
+        row.push_back((random.unit() - (round % 2 == 0 ? 0.5 : 0)) *
+                      std::pow(10, static_cast<double>(j % 4)));
       rows.push_back(row);
       right.push_back(random.unit() - 0.3);
     }
@@ -103,7 +105,8 @@ TEST(ConditionNumber, IsThatOfTheScaledColumns) {
 TEST(ConditionNumber, ZerosDoNotCountAndCopiesAreInfinite) {
   EXPECT_DOUBLE_EQ(condition_number({.columns = 2, .values = {1, 0, 2, 0}}), 1);
   EXPECT_DOUBLE_EQ(condition_number({.columns = 1, .values = {0}}), 1);
-  EXPECT_EQ(condition_number({.columns = 2, .values = {1, 10, 2, 20}}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(condition_number({.columns = 2, .values = {1, 10, 2, 20}}),
+            std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
