@@ -127,7 +127,7 @@ void run(const CalibrateArguments& arguments) {
   if (arguments.list) return list_machines(console);
   if (arguments.recheck) return recheck_machine(arguments, console);
   const Calibration calibration = watched(arguments, "measuring this machine",
-                                          [&] { return measure_machine({.seconds = arguments.seconds}); });
+                                          [&] { return measure_machine(effort_of(arguments.seconds)); });
   if (const std::string doubt = reason_to_doubt(calibration.steadiness); !doubt.empty()) console.warn(doubt);
   std::string file;
   try {

@@ -8,6 +8,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdlib>
+
 namespace meshorder::command {
 
 void add_machine_option(CLI::App& subcommand, std::string& machine) {
@@ -17,6 +19,17 @@ void add_machine_option(CLI::App& subcommand, std::string& machine) {
                   "(default: $MESHORDER_MACHINE, else this)")
       ->type_name("NAME");
 }
+
+namespace {
+
+/// What MESHORDER_CALIBRATION_SECONDS says, else what `meshorder calibrate` takes.
+double seconds_to_calibrate() {
+  const char* const variable = std::getenv("MESHORDER_CALIBRATION_SECONDS");
+  const double seconds = variable == nullptr ? 0 : std::strtod(variable, nullptr);
+  return seconds > 0 ? seconds : CalibrationEffort{}.seconds;
+}
+
+}  // namespace
 
 MachineChoice calibrated(MachineChoice choice, Progress& progress, bool quiet, Notes& notes) {
   if (!choice.stands_in) return choice;
@@ -30,7 +43,8 @@ MachineChoice calibrated(MachineChoice choice, Progress& progress, bool quiet, N
     progress.at(0.9 * now.fraction);
     return true;
   };
-  const Calibration calibration = in_call(run, [] { return measure_machine({}); });
+  const Calibration calibration =
+      in_call(run, [] { return measure_machine(effort_of(seconds_to_calibrate())); });
   if (const std::string doubt = reason_to_doubt(calibration.steadiness); !doubt.empty()) {
     notes.push_back("this machine was calibrated while it was busy; `meshorder calibrate` does it again: " +
                     doubt);

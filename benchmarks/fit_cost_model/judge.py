@@ -2,12 +2,13 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """How well times are predicted on this machine: by the costs that ship, and by its own calibration.
 
-    judge.py MEASURE [--budget SECONDS] [--table TABLE.csv] [MESH …]
+    judge.py MEASURE [--budget SECONDS] [--table TABLE.csv] [--calibrations FILE FILE] [MESH …]
 
 MEASURE is the program build/bin/measure. Each mesh is timed in some orders and predicted for each of MACHINES (see
 measure.cpp); the tables that docs/prediction.md holds are printed. Both halves of each measurement are compared, too:
 nothing can be predicted better than it repeats. With --table, lines of MEASURE are kept there, and meshes that it holds
-are not measured again.
+are not measured again. With --calibrations, two files of `meshorder calibrate` take the place of the one that is stored,
+and what they predict is compared.
 """
 import argparse
 import itertools
@@ -17,7 +18,8 @@ import statistics
 import subprocess
 
 KERNELS = {"spmv": "SpMV", "element": "element force", "assembly": "assembly", "springs": "springs"}
-MACHINES = {"zen5": "zen5", "prior": "zen5, caches of this machine", "this": "calibrated here"}
+MACHINES = {"zen5": "zen5", "prior": "zen5, caches of this machine"}
+CALIBRATED = ("calibrated here", "calibrated here again")
 MESHES = ["grid-17", "ball-24", "torus-12", "grid-32", "torus-20", "ball-45", "grid-64"]
 ORDERS = ["scrambled/scrambled", "original/original", "hilbert/lexmax", "fiedler/lexmax", "bfs/lexmax", "spectral/lexmax"]
 DIFFERENT = 0.1
@@ -29,7 +31,7 @@ def measured(arguments):
     for mesh in arguments.meshes:
         if any(line.startswith(f"{mesh},") for line in lines):
             continue
-        command = [arguments.measure, "judge", mesh, str(arguments.budget), ",".join(MACHINES), *ORDERS]
+        command = [arguments.measure, "judge", mesh, str(arguments.budget), ",".join([*MACHINES, *arguments.calibrations]), *ORDERS]
         lines += subprocess.check_output(command, text=True).split()
         if arguments.table:
             arguments.table.write_text("\n".join(lines) + "\n")
@@ -54,8 +56,8 @@ def errors(meshes, column):
     return f"{100 * statistics.median(off):.0f} % | {100 * off[int(0.9 * len(off))]:.0f} % | {right} of {len(far)}"
 
 
-def repeated(meshes):
-    off = sorted(math.exp(abs(math.log(a[0] / b[0]) - math.log(a[1] / b[1]))) - 1
+def repeated(meshes, one, other):
+    off = sorted(math.exp(abs(math.log(a[one] / b[one]) - math.log(a[other] / b[other]))) - 1
                  for _, orders in meshes.values() for a, b in itertools.combinations(orders.values(), 2))
     return f"{100 * statistics.median(off):.0f} % | {100 * off[int(0.9 * len(off))]:.0f} % |"
 
@@ -66,13 +68,18 @@ def main():
     parser.add_argument("meshes", nargs="*", default=MESHES)
     parser.add_argument("--budget", type=float, default=20, help="seconds a mesh, preparation not counted")
     parser.add_argument("--table", type=pathlib.Path)
-    results = measured(parser.parse_args())
+    parser.add_argument("--calibrations", nargs=2, default=["this"])
+    arguments = parser.parse_args()
+    results = measured(arguments)
+    machines = [*MACHINES.values(), *CALIBRATED[:len(arguments.calibrations)]]
     print("| kernel | predicted by | ratio of two times off by: median | 90 % | pairs > 10 % apart told right |")
     print("| --- | --- | ---: | ---: | ---: |")
     for kernel, title in KERNELS.items():
-        for place, machine in enumerate(MACHINES.values()):
+        for place, machine in enumerate(machines):
             print(f"| {title} | {machine} | {errors(results[kernel], 2 + place)} |")
-        print(f"| {title} | the measurement itself, once more | {repeated(results[kernel])} |")
+        print(f"| {title} | the measurement itself, once more | {repeated(results[kernel], 0, 1)} |")
+        if len(arguments.calibrations) == 2:
+            print(f"| {title} | one calibration by the other | {repeated(results[kernel], -2, -1)} |")
     print("\nScrambled over hilbert/lexmax, predicted by zen5 / calibrated here / measured:\n")
     print("| mesh | vertices | " + " | ".join(KERNELS.values()) + " |")
     print("| --- | ---: |" + " ---: |" * len(KERNELS))
@@ -80,7 +87,7 @@ def main():
         cells = []
         for kernel in KERNELS:
             slow, fast = (results[kernel][mesh][1][order] for order in ("scrambled/scrambled", "hilbert/lexmax"))
-            cells.append(f"{slow[2] / fast[2]:.2f} / {slow[-1] / fast[-1]:.2f} / {min(slow[:2]) / min(fast[:2]):.2f}")
+            cells.append(f"{slow[2] / fast[2]:.2f} / {slow[4] / fast[4]:.2f} / {min(slow[:2]) / min(fast[:2]):.2f}")
         print(f"| {mesh} | {vertices:,} | " + " | ".join(cells) + " |")
 
 

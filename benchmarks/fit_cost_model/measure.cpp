@@ -7,8 +7,9 @@
 //
 // measure judge MESH BUDGET MACHINES VERTICES/ELEMENTS…: times the kernels in these orders twice over, in
 // interleaved rounds, and predicts them for machines whose names are separated by commas ("zen5", "this";
-// "prior": zen5 with the caches of this machine). Prints mesh, vertices, order, kernel, the best milliseconds
-// of each half, then the milliseconds predicted for each machine.
+// "prior": zen5 with the caches of this machine; with a slash: the file of a calibration). Prints mesh,
+// vertices, order, kernel, the best milliseconds of each half, then the milliseconds predicted for each
+// machine.
 //
 // MESH is the name of a model, "grid-20", "dragon", or a file; with "-skin" behind it, the triangles on its
 // surface. benchmarks/fit_cost_model/collect.py calls this for all of them.
@@ -18,6 +19,7 @@
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
 #include "payoff/access_stream.hpp"
+#include "payoff/calibration_store.hpp"
 #include "payoff/kernel_timing.hpp"
 #include "payoff/machine.hpp"
 #include "payoff/machine_choice.hpp"
@@ -29,6 +31,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <sstream>
 #include <string>
@@ -147,6 +151,11 @@ void time(const std::string& name, double budget, const std::string& folder,
 
 /// What a name of `judge` stands for.
 mo::CostModel machine_named(const std::string& name) {
+  if (name.find('/') != std::string::npos) {
+    std::ifstream in(name);
+    return mo::parse_calibration({std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()})
+        .model;
+  }
   if (name != "prior") return mo::choose_machine(name).model;
   mo::CostModel model = mo::zen5_costs();
   model.caches = mo::caches_of_this_machine();

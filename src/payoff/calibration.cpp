@@ -27,8 +27,12 @@ namespace {
 
 constexpr std::size_t kCosts = 9;  ///< of a kernel
 
-/// By kernel.
-using Runs = std::array<std::vector<TimedReuse>, kKernels.size()>;
+/// What kernels took, by kernel.
+struct Runs {
+  std::array<std::vector<TimedReuse>, kKernels.size()> timed;
+  /// By what share two timings of the same problem differ.
+  std::array<std::vector<double>, kKernels.size()> apart;
+};
 
 /// What the costs are multiplied by, in milliseconds a nanosecond.
 std::array<double, kCosts> counts_of(const Reuse& reuse, const std::array<Offset, 4>& sizes) {
@@ -75,7 +79,7 @@ struct Prepared {
 void add_runs(const Prepared& prepared, const Timings& timings, Runs& runs) {
   for (std::size_t i = 0; i < prepared.reuse.size(); ++i) {
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
-      runs[k].push_back({prepared.reuse[i][k], timings.orders[i][kKernels[k]].best_ms});
+      runs.timed[k].push_back({prepared.reuse[i][k], timings.orders[i][kKernels[k]].best_ms});
     }
   }
 }
@@ -137,8 +141,7 @@ void time_small(const CalibrationLattice& lattice, double seconds, Calibration& 
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     const double one = timings.orders[twice][kKernels[k]].best_ms;
     const double other = timings.orders.back()[kKernels[k]].best_ms;
-    const double apart = std::max(one, other) / std::min(one, other) - 1;
-    calibration.floor[k] = std::max(calibration.floor[k], apart);
+    runs.apart[k].push_back(std::max(one, other) / std::min(one, other) - 1);
   }
   calibration.steadiness = worse(calibration.steadiness, timings.steadiness);
 }
@@ -192,6 +195,17 @@ FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches) {
   return result;
 }
 
+CalibrationEffort effort_of(double seconds) {
+  CalibrationEffort effort;
+  const double share = std::min(1.0, seconds / (0.5 * effort.seconds));
+  effort.seconds = seconds;
+  constexpr Offset kLeastProbed = Offset{8} << 20;
+  constexpr Index kLeastVertices = 4000;
+  effort.probed = std::max(kLeastProbed, static_cast<Offset>(share * static_cast<double>(effort.probed)));
+  effort.vertices = std::max(kLeastVertices, static_cast<Index>(share * effort.vertices));
+  return effort;
+}
+
 Calibration measure_machine(const CalibrationEffort& effort) {
   const Stopwatch since_start;
   Calibration calibration;
@@ -242,10 +256,11 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   time_large(make_calibration_lattice(largest, false, model.caches, 6), since_start, effort.seconds,
              calibration, runs);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const FittedCosts fitted = fit_costs(runs[k], model.caches);
+    const FittedCosts fitted = fit_costs(runs.timed[k], model.caches);
     model.kernels[k] = fitted.costs;
     calibration.condition[k] = fitted.condition;
     calibration.error[k] = fitted.error;
+    calibration.floor[k] = middle_of(runs.apart[k]);
   }
   calibration.seconds = since_start.seconds();
   return calibration;

@@ -25,7 +25,7 @@ struct Calibration {
   double read_bandwidth_all = 0;
   /// By kernel, as kKernels lists them: of the fit's equations, see condition_number; by what share predicted
   /// times of the problems differ from measured ones, the median; and by what share two timings of the same
-  /// problem at other addresses differ, the largest of some. The last is the floor below which no difference
+  /// problem at other addresses differ, the median of some. The last is the floor below which no difference
   /// of two times tells anything.
   std::array<double, kKernels.size()> condition{};
   std::array<double, kKernels.size()> error{};
@@ -42,6 +42,10 @@ struct CalibrationEffort {
   Offset probed = Offset{256} << 20;  ///< largest buffer of loads, bytes
   Index vertices = 200'000;           ///< of the largest lattice
 };
+
+/// Returns the effort for so many seconds: with less than half of the usual time, smaller lattices and
+/// buffers, which tell less of the last cache and the memory.
+CalibrationEffort effort_of(double seconds);
 
 /// Measures this machine: its caches, latencies and bandwidths, and the kernels themselves on small lattices
 /// whose vertices are scrambled within windows of half of each cache, so that each level's misses vary on

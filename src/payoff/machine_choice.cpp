@@ -58,7 +58,9 @@ MachineChoice choose_machine(std::string_view name) {
 }
 
 MachineChoice chosen(const Calibration& calibration) {
-  return {std::string(kThis), calibration.model, calibration.date, false, calibration.floor, {}};
+  const bool steady = reason_to_doubt(calibration.steadiness).empty();
+  const std::string calibrated = calibration.date + (steady ? "" : " while it was busy");
+  return {std::string(kThis), calibration.model, calibrated, false, calibration.floor, {}};
 }
 
 }  // namespace meshorder

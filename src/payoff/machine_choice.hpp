@@ -24,15 +24,15 @@ std::span<const ShippedMachine> shipped_machines();
 struct MachineChoice {
   std::string name;  ///< a shipped machine's, or "this"
   CostModel model;
-  std::string calibrated;  ///< the date if the costs were measured here; empty if they are shipped ones
+  std::string calibrated;  ///< "2026-11-22" if the costs were measured here; empty if they are shipped ones
   /// Shipped costs are used with the caches that this machine reports, because it is not calibrated.
   bool stands_in = false;
   /// By kernel, the share by which two times of one problem differ; 0 where not known.
   std::array<double, kKernels.size()> floor{};
   std::string fault;  ///< see StoredCalibration
 
-  /// Returns what times are predicted for: "this machine, calibrated 2026-11-22", "zen5" or "this machine's
-  /// caches at the costs of zen5".
+  /// Returns what times are predicted for: "this machine, calibrated 2026-11-22" (perhaps "while it was
+  /// busy"), "zen5" or "this machine's caches at the costs of zen5".
   [[nodiscard]] std::string in_words() const;
 };
 

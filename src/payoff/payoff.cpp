@@ -63,7 +63,7 @@ CalibrationReport calibrate(const CalibrationOptions& options) {
     if (!(options.seconds > 0)) {
       throw InvalidArgument("calibrate: " + std::to_string(options.seconds) + " s; it takes some");
     }
-    const Calibration calibration = measure_machine({.seconds = options.seconds});
+    const Calibration calibration = measure_machine(effort_of(options.seconds));
     CalibrationReport result{.machine = chosen(calibration).in_words(),
                              .json = to_json_text(calibration),
                              .file = {},

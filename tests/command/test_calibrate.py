@@ -15,6 +15,7 @@ def here(command, monkeypatch):
     """The command without a machine that it is told to predict for, and with a cache folder of its own."""
     monkeypatch.delenv("MESHORDER_MACHINE")
     monkeypatch.setenv("MESHORDER_CACHE", str(command.folder / "cache"))
+    monkeypatch.setenv("MESHORDER_CALIBRATION_SECONDS", "0.1")
     mesh = command.folder / "mesh.node"
     mesh.write_text("5 3 0 0\n" + "".join(f"{i} {i % 3} {i % 2} {i // 2}\n" for i in range(5)))
     mesh.with_suffix(".ele").write_text("2 4 0\n0 0 1 2 3\n1 1 2 3 4\n")
@@ -28,7 +29,7 @@ def measured(tmp_path_factory):
     environment = {**os.environ, "MESHORDER_CACHE": str(folder)}
     from conftest import Command
 
-    done = Command(folder).run("calibrate", "--budget", "0.5", "--json", "--quiet", env=environment)
+    done = Command(folder).run("calibrate", "--budget", "0.1", "--json", "--quiet", env=environment)
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
     return json.loads(done.stdout)
@@ -40,7 +41,7 @@ def stored(here, measured):
     file = here.folder / "cache" / "calibrations" / os.path.basename(measured["file"])
     file.parent.mkdir(parents=True)
     content = {key: value for key, value in measured.items() if key not in ("file", "version", "notes")}
-    file.write_text(json.dumps({**content, "date": "2026-01-02"}))
+    file.write_text(json.dumps({**content, "date": "2026-01-02", "steadiness": {"waiting": 0, "pace": 0, "repeat": 0}}))
     return file
 
 

@@ -76,7 +76,7 @@ Calibration made_up() {
   for (auto* array : {&calibration.condition, &calibration.error, &calibration.floor}) {
     for (double& value : *array) value = next() / 100;
   }
-  calibration.steadiness = {next(), next(), next()};
+  calibration.steadiness = {0.01, 0.02, 0.03};
   calibration.seconds = next();
   return calibration;
 }
@@ -129,7 +129,9 @@ TEST(Calibration, LatticesAreScrambledWithinWindowsOnly) {
       EXPECT_EQ(before / order.window, v / order.window);
       moved += before != v ? 1 : 0;
     }
-    if (order.window > 1) EXPECT_GT(moved, mesh.vertex_count() / 2);
+    if (order.window > 1) {
+      EXPECT_GT(moved, mesh.vertex_count() / 2);
+    }
     EXPECT_EQ(vertex_graph(mesh).edge_count(), lattice.graph.edge_count());
   }
 }
@@ -265,6 +267,9 @@ TEST(MachineChoice, IsTheOneNamedThenTheVariableThenThisMachine) {
   EXPECT_EQ(calibrated.in_words(), "this machine, calibrated 2026-01-02");
   EXPECT_EQ(calibrated.model, made_up().model);
   EXPECT_EQ(calibrated.floor, made_up().floor);
+  Calibration busy = made_up();
+  busy.steadiness.waiting = 0.5;
+  EXPECT_EQ(chosen(busy).in_words(), "this machine, calibrated 2026-01-02 while it was busy");
 }
 
 TEST(MachineChoice, UnknownNamesGetTheNearest) {
