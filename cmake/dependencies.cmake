@@ -82,8 +82,8 @@ endif()
 if("payoff" IN_LIST components)
   meshorder_require(hwy libhwy-dev)                    # SIMD chosen at run time
 endif()
-if(MESHORDER_CLI OR MESHORDER_FUZZ OR build_lab)
-  meshorder_require(nlohmann_json nlohmann-json3-dev)  # results
+if("payoff" IN_LIST components OR MESHORDER_CLI OR MESHORDER_FUZZ OR build_lab)
+  meshorder_require(nlohmann_json nlohmann-json3-dev)  # results, calibrations
 endif()
 if(build_lab)
   meshorder_require(meshoptimizer libmeshoptimizer-dev)  # fewer triangles for what is only looked at

@@ -36,3 +36,11 @@ if(sanitizers)
   set(MESHORDER_SIMD_TARGETS
       HWY_DISABLED_TARGETS=\(HWY_AVX3_DL|HWY_AVX3|HWY_SSE4|HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV\))
 endif()
+
+# what a program says it was made with
+string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}} -std=c++20" flags)
+string(REGEX REPLACE "-f[a-z]+-prefix-map=[^ ]* ?" "" flags "${flags}")  # paths of the machine that builds
+string(JOIN " " flags ${flags} ${sanitizers})
+set(build_definitions MESHORDER_COMPILER="${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}"
+                      MESHORDER_FLAGS="${flags}")

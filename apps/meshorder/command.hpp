@@ -47,6 +47,7 @@ void add_apply(CLI::App& subcommand);
 void add_info(CLI::App& subcommand);
 void add_compare(CLI::App& subcommand);
 void add_openfoam(CLI::App& subcommand);
+void add_calibrate(CLI::App& subcommand);
 void add_methods(CLI::App& subcommand);
 // of the laboratory; without it they are refused
 void add_models(CLI::App& subcommand);

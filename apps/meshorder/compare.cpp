@@ -4,6 +4,7 @@
 #include "compare_report.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
+#include "machines.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
@@ -32,7 +33,8 @@ struct CompareArguments : Common {
   std::vector<std::string> methods;  ///< empty: all
   OrderOptions ordering;
   double budget_seconds = TimingOptions{}.budget_seconds;
-  std::string caches;  ///< empty: this machine's, unless that takes long
+  std::string caches;  ///< empty: the machine's, unless that takes long
+  std::string machine;
 };
 
 std::vector<std::string> default_methods() {
@@ -89,7 +91,8 @@ KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<Com
 void run(const CompareArguments& arguments) {
   Console console(arguments);
   Comparison comparison;
-  comparison.caches = parse_caches(arguments.caches);
+  comparison.caches = arguments.caches.empty() ? choose_machine(arguments.machine).model.caches
+                                               : parse_caches(arguments.caches);
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.05);
   Notes notes;
@@ -163,6 +166,7 @@ void add_compare(CLI::App& subcommand) {
       ->check(positive())
       ->capture_default_str();
   add_cache_option(subcommand, arguments->caches);
+  add_machine_option(subcommand, arguments->machine);
   add_ordering_options(subcommand, arguments->ordering);
   add_reading_options(subcommand);
   add_common(subcommand, *arguments);

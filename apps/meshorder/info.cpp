@@ -5,6 +5,7 @@
 #include "console.hpp"
 #include "graph/traversal.hpp"
 #include "io/format.hpp"
+#include "machines.hpp"
 #include "mesh/degenerate.hpp"
 #include "mesh/graphs.hpp"
 #include "metrics/edge_span.hpp"
@@ -25,6 +26,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder::command {
@@ -32,7 +34,8 @@ namespace {
 
 struct InfoArguments : Common {
   std::string input;
-  std::string caches;  ///< empty: this machine's, unless that takes long
+  std::string caches;  ///< empty: the machine's, unless that takes long
+  std::string machine;
   bool measure = false;
 };
 
@@ -41,13 +44,21 @@ constexpr double kMeasureWithin = 3.8;
 /// Simplices above which there is no time to measure a second order.
 constexpr Offset kMaxOfTwoOrders = 500'000;
 
+/// Whether the mesh has elements, so few that times are predicted without being asked.
+bool is_predicted(const InfoArguments& arguments, const Mesh& mesh) {
+  const Offset simplices = mesh.cells.highest_dimension() < 1 ? 0 : cut_into_simplices(mesh).size();
+  return simplices > 0 && (simplices <= kMaxPredicted || !arguments.caches.empty());
+}
+
 /// Returns what reordering is worth; nothing for a mesh without elements, nor for a large one unless --cache
 /// or --measure is given.
 std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph,
-                                double graph_seconds, const Stopwatch& since_start) {
+                                double graph_seconds, const MachineChoice& machine,
+                                const Stopwatch& since_start) {
   const Offset simplices = mesh.cells.highest_dimension() < 1 ? 0 : cut_into_simplices(mesh).size();
   AdviceOptions options;
-  options.caches = parse_caches(arguments.caches);
+  options.machine = machine;
+  if (!arguments.caches.empty()) options.caches = parse_caches(arguments.caches);
   options.graph_seconds = graph_seconds;
   options.predict = simplices <= kMaxPredicted || !arguments.caches.empty();
   if (simplices == 0 || !(options.predict || arguments.measure)) return std::nullopt;
@@ -130,14 +141,21 @@ void print_attachments(const Console& console, const Mesh& mesh) {
 }
 
 void run(const InfoArguments& arguments) {
-  const Stopwatch since_start;
   Console console(arguments);
-  const Caches caches = parse_caches(arguments.caches);
+  Notes notes;
+  const Stopwatch since_start;
+  // refused before anything takes time
+  if (!arguments.caches.empty()) (void)parse_caches(arguments.caches);
+  MachineChoice machine = choose_machine(arguments.machine);
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.3);
-  Notes notes;
   const Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
 
+  // who asks for measured times does not wait for what they would be predicted by
+  if (!arguments.measure && is_predicted(arguments, mesh)) {
+    machine = calibrated(std::move(machine), progress, console.quiet(), notes);
+  }
+  const Caches caches = arguments.caches.empty() ? machine.model.caches : parse_caches(arguments.caches);
   progress.stage("measuring", 0.3, 0.6);
   const Stopwatch building_graph;
   const CsrGraph graph = vertex_graph(mesh);
@@ -153,7 +171,7 @@ void run(const InfoArguments& arguments) {
   const auto connected = static_cast<long long>(components.size()) - isolated;
   const auto degenerate = static_cast<long long>(degenerate_cells(mesh.cells).size());
   progress.stage(arguments.measure ? "running kernels" : "predicting", 0.6, 1);
-  const std::optional<Advice> advice = advice_on(arguments, mesh, graph, graph_seconds, since_start);
+  const std::optional<Advice> advice = advice_on(arguments, mesh, graph, graph_seconds, machine, since_start);
 
   progress.finish();
   if (advice && !advice->doubt.empty()) notes.push_back(advice->doubt);
@@ -221,6 +239,7 @@ void add_info(CLI::App& subcommand) {
   const auto arguments = std::make_shared<InfoArguments>();
   subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
   add_cache_option(subcommand, arguments->caches);
+  add_machine_option(subcommand, arguments->machine);
   subcommand.add_flag(
       "--measure", arguments->measure,
       "Run the kernels for a few seconds, in the mesh's order and in a better one, instead of\n"

@@ -42,6 +42,7 @@ constexpr std::array kSubcommands{
     Subcommand{"info", meshorder::command::add_info},
     Subcommand{"compare", meshorder::command::add_compare},
     Subcommand{"openfoam", meshorder::command::add_openfoam},
+    Subcommand{"calibrate", meshorder::command::add_calibrate},
     Subcommand{"simulate", meshorder::command::add_simulate},
     Subcommand{"reproduce", meshorder::command::add_reproduce},
     Subcommand{"report", meshorder::command::add_report},
@@ -74,6 +75,7 @@ void describe(CLI::App& app) {
       "  meshorder info   dragon.veg                  counts and spans; is it in a good order?\n"
       "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
       "  meshorder openfoam cavity                    order the cells of an OpenFOAM case\n"
+      "  meshorder calibrate                          measure this machine, for what info predicts\n"
 #ifdef MESHORDER_HAS_LAB
       "  meshorder simulate falling --mesh dragon.veg simulate an elastic body and time it\n"
       "  meshorder reproduce -o results               the paper's study on this machine, as a page\n"

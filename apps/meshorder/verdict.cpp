@@ -2,7 +2,6 @@
 #include "verdict.hpp"
 
 #include "payoff/advice.hpp"
-#include "payoff/cost_model.hpp"
 #include "payoff/kernel_bench.hpp"
 
 #include <fmt/format.h>
@@ -46,7 +45,7 @@ void print_verdict(const Console& console, const Advice& advice) {
   console.print("\nKernels: time in the mesh's order, and how many times faster they run in another,\n{}",
                 predicted && measured ? "measured here (predicted)"
                 : measured            ? "measured here"
-                                      : fmt::format("predicted for a {}", zen5_costs().machine));
+                                      : "predicted for " + advice.machine);
   std::string header = fmt::format("{:<14}{:>10}", "", "as it is");
   for (const Candidate& candidate : advice.candidates) header += fmt::format("{:>18}", methods_of(candidate));
   console.print("{}", header);
@@ -102,6 +101,8 @@ nlohmann::ordered_json to_json(const Advice& advice) {
   }
   return {{"sentence", to_string(advice)},
           {"by", advice.as_is.costs.measured ? "measurement" : "prediction"},
+          {"machine",
+           advice.machine.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(advice.machine)},
           {"kernels", kernels},
           {"as_it_is", costs_json(advice.as_is.costs)},
           {"orders", orders},

@@ -5,6 +5,12 @@
 // measure time MESH BUDGET FOLDER VERTICES/ELEMENTS…: times the kernels in the orders that FOLDER keeps, and
 // prints order, kernel, best and median milliseconds, samples. The first order is the one to compare with.
 //
+// measure judge MESH BUDGET MACHINES VERTICES/ELEMENTS…: times the kernels in these orders twice over, in
+// interleaved rounds, and predicts them for machines whose names are separated by commas ("zen5", "this";
+// "prior": zen5 with the caches of this machine; with a slash: the file of a calibration). Prints mesh,
+// vertices, order, kernel, the best milliseconds of each half, then the milliseconds predicted for each
+// machine.
+//
 // MESH is the name of a model, "grid-20", "dragon", or a file; with "-skin" behind it, the triangles on its
 // surface. benchmarks/fit_cost_model/collect.py calls this for all of them.
 #include "io/format.hpp"
@@ -13,8 +19,10 @@
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
 #include "payoff/access_stream.hpp"
+#include "payoff/calibration_store.hpp"
 #include "payoff/kernel_timing.hpp"
 #include "payoff/machine.hpp"
+#include "payoff/machine_choice.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +31,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -138,6 +149,62 @@ void time(const std::string& name, double budget, const std::string& folder,
   }
 }
 
+/// What a name of `judge` stands for.
+mo::CostModel machine_named(const std::string& name) {
+  if (name.find('/') != std::string::npos) {
+    std::ifstream in(name);
+    return mo::parse_calibration({std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()})
+        .model;
+  }
+  if (name != "prior") return mo::choose_machine(name).model;
+  mo::CostModel model = mo::zen5_costs();
+  model.caches = mo::caches_of_this_machine();
+  return model;
+}
+
+void judge(const std::string& name, double budget, const std::string& machines,
+           const std::vector<std::string>& orders) {
+  std::vector<mo::CostModel> models;
+  std::istringstream words(machines);
+  for (std::string word; std::getline(words, word, ',');) models.push_back(machine_named(word));
+  const mo::Mesh mesh = mesh_of(name);
+  const mo::CsrGraph graph = mo::vertex_graph(mesh);
+  std::vector<mo::KernelReuse> reuse;
+  std::vector<mo::KernelBench> benches;
+  for (const std::string& order : orders) {
+    const auto slash = order.find('/');
+    const mo::MeshOrder r =
+        mo::compute_reordering(mesh, graph, {.methods = {order.substr(0, slash), order.substr(slash + 1)}});
+    mo::Mesh ordered = mesh;
+    mo::apply_reordering(ordered, r);
+    const mo::CsrGraph of_order = mo::renumbered(graph, r.vertices.permutation.old_to_new());
+    const mo::Simplices simplices = mo::cut_into_simplices(ordered);
+    reuse.push_back(mo::reuse_of_kernels(of_order, simplices, simplices.size() < 50'000 ? 0 : kHalvings));
+    benches.emplace_back(ordered, of_order);
+  }
+  std::vector<mo::KernelBench*> pointers;
+  for (mo::KernelBench& bench : benches) pointers.push_back(&bench);
+  std::array<mo::Timings, 2> timings;
+  for (mo::Timings& half : timings) {
+    half = mo::time_interleaved(pointers, {.budget_seconds = budget / 2,
+                                           .min_rounds = 3,
+                                           .max_rounds = 200,
+                                           .sample_seconds = 0.005,
+                                           .processor_time = true});
+  }
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
+      fmt::print("{},{},{},{},{:.6f},{:.6f}", name, mesh.vertex_count(), orders[i],
+                 mo::to_string(mo::kKernels[k]), timings[0].orders[i][mo::kKernels[k]].best_ms,
+                 timings[1].orders[i][mo::kKernels[k]].best_ms);
+      for (const mo::CostModel& model : models) {
+        fmt::print(",{:.6f}", mo::predicted_ms(mo::kKernels[k], reuse[i][k], model.caches, model));
+      }
+      fmt::print("\n");
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -146,8 +213,12 @@ int main(int argc, char** argv) try {
     predict(words[1], mo::parse_caches(words[2]), words[3], {words.begin() + 4, words.end()});
   } else if (words.size() >= 5 && words[0] == "time") {
     time(words[1], std::atof(words[2].c_str()), words[3], {words.begin() + 4, words.end()});
+  } else if (words.size() >= 5 && words[0] == "judge") {
+    judge(words[1], std::atof(words[2].c_str()), words[3], {words.begin() + 4, words.end()});
   } else {
-    fmt::print(stderr, "measure predict MESH CACHES FOLDER ORDER…; measure time MESH BUDGET FOLDER ORDER…\n");
+    fmt::print(stderr,
+               "measure predict MESH CACHES FOLDER ORDER…; measure time MESH BUDGET FOLDER ORDER…; "
+               "measure judge MESH BUDGET MACHINES ORDER…\n");
     return 2;
   }
   return 0;

@@ -41,7 +41,7 @@ using KernelMilliseconds = std::array<double, kKernels.size()>;
 /// Times of the kernels in one order.
 struct OrderCosts {
   /// By reuse distances and a cost model (docs/prediction.md). Compare them with each other only: they are
-  /// those of the machine that the model was fitted on, with the caches of this one.
+  /// those of `Advice::machine`.
   std::optional<KernelMilliseconds> predicted = {};
   std::optional<KernelMilliseconds> measured = {};  ///< the best of interleaved rounds
 
@@ -78,6 +78,12 @@ struct Advice {
   /// Why measured times are not to be trusted, a sentence: the machine was busy or throttled. Empty where
   /// they are, and where nothing was measured.
   std::string doubt = {};
+  /// What the predicted times are those of: "this machine, calibrated 2026-11-22", a machine's name, or "this
+  /// machine's caches at the costs of zen5"; empty where nothing was predicted.
+  std::string machine = {};
+  /// By kernel, the share by which two times of the same problem differ on that machine, below which no
+  /// difference counts; 0 where that is not known.
+  std::array<double, kKernels.size()> floor = {};
 };
 
 /// Returns the verdict in one English sentence: which kernel loses most as the mesh is, which order mends it
@@ -88,7 +94,11 @@ struct Advice {
 struct PayoffOptions {
   /// The candidates; empty: what `auto` takes for all kernels, and for springs where that differs.
   std::vector<MeshMethods> methods = {};
-  bool predict = true;   ///< gives the same times on every run
+  bool predict = true;  ///< gives the same times on every run
+  /// What to predict for: a machine whose costs ship with the library ("zen5"), or "this": this machine as
+  /// `calibrate` measured it, else its caches with the costs of the first of those. Empty: what the
+  /// environment variable MESHORDER_MACHINE says, else "this".
+  std::string machine = {};
   bool measure = false;  ///< runs the kernels here, on one thread
   /// Seconds after the call, ≥ 0: no round of measurements begins that would end later, but two are run.
   double budget_seconds = 10;
@@ -100,10 +110,11 @@ struct PayoffOptions {
 /// @param mesh     n vertices with points, m cells with types, at least one of them a line, surface or volume
 /// @param options  see `PayoffOptions`
 /// @return the kernels' times as the mesh is and in every candidate, and the best candidate for each kernel.
-///         Times that differ by less than 5 % (measured), 10 % (predicted) or 25 % (predicted products) count
-///         as equal
-/// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for types that are not known,
-///         and where neither prediction nor measurement is asked for
+///         Times that differ by less than 5 % (measured), 10 % (predicted) or 25 % (predicted products), or
+///         less than `Advice::floor`, count as equal
+/// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for types and machines that
+/// are
+///         not known, and where neither prediction nor measurement is asked for
 /// @note Orders and, to predict, about a second for a million tetrahedra and candidate; to measure, the
 ///       budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex of a
 ///       tetrahedral mesh, and while it is measured 2.5 KB a vertex more. Stages of progress: those of
@@ -114,6 +125,33 @@ struct PayoffOptions {
 /// of `advise`.
 [[nodiscard]] MESHORDER_API std::vector<Candidate> compare(const MeshView& mesh,
                                                            const PayoffOptions& options = {});
+
+/// How `calibrate` measures.
+struct CalibrationOptions {
+  double seconds = 16;  ///< > 0: no measurement begins that would end later, but each is made once
+  bool keep = true;     ///< store it, so that `advise` predicts for this machine from now on
+  Run run = {};
+};
+
+/// What `calibrate` found.
+struct CalibrationReport {
+  std::string machine = {};  ///< what `Advice::machine` calls it
+  std::string json = {};     ///< all that was measured, see docs/json.md
+  std::string file = {};     ///< where it is stored; empty if it is not kept
+  /// Why it is not to be trusted, a sentence: the machine was busy or throttled. Empty where it is.
+  std::string doubt = {};
+};
+
+/// Measures this machine: what a thread gets of the caches, latencies, bandwidths, and what misses cost each
+/// kernel, on lattices made for that. Stored in the user's cache folder ($MESHORDER_CACHE, else
+/// $XDG_CACHE_HOME/meshorder, else ~/.cache/meshorder) for this processor and this build of the library.
+///
+/// @param options  see `CalibrationOptions`
+/// @throws InvalidArgument for a time that is not above 0; Error with Code::io if it cannot be stored;
+/// Stopped
+/// @note Runs for `options.seconds` and some more where the machine is slow, in about 1 GB of memory. Other
+///       work on the machine spoils it. Stages of progress: "caches", "bandwidths", "lattices".
+MESHORDER_API CalibrationReport calibrate(const CalibrationOptions& options = {});
 
 }  // namespace v0_2
 }  // namespace meshorder

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/models/cache.hpp"
 
+#include "base/user_folder.hpp"
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>
@@ -8,7 +9,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -23,14 +23,6 @@ constexpr const char* kElsewhere = "set MESHORDER_CACHE to a folder that can be 
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& what) {
   throw InputError(path.string(), what, kElsewhere);
-}
-
-/// Returns the folder in an environment variable; empty if unset or relative, which the XDG standard calls
-/// invalid.
-fs::path folder_in(const char* variable) {
-  const char* const value = std::getenv(variable);
-  fs::path folder = value != nullptr ? value : "";
-  return folder.is_absolute() ? folder : fs::path();
 }
 
 /// Returns the first number of a file outside its comments; 0 if there is none.
@@ -50,10 +42,7 @@ Index first_number(const fs::path& path) {
 }  // namespace
 
 fs::path cache_folder() {
-  const char* const own = std::getenv("MESHORDER_CACHE");
-  if (own != nullptr && *own != '\0') return fs::absolute(own);
-  if (const fs::path folder = folder_in("XDG_CACHE_HOME"); !folder.empty()) return folder / "meshorder";
-  if (const fs::path home = folder_in("HOME"); !home.empty()) return home / ".cache/meshorder";
+  if (fs::path folder = user_cache_folder(); !folder.empty()) return folder;
   refuse("models", "neither HOME nor XDG_CACHE_HOME is set, so there is no folder to store them");
 }
 

@@ -12,8 +12,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
-#include <map>
 
 namespace meshorder {
 namespace {
@@ -30,28 +28,11 @@ std::size_t buffer_bytes(const MachineRecord& machine) {
 
 }  // namespace
 
-std::string processor_name(std::istream& cpuinfo, const std::string& architecture) {
-  std::map<std::string, std::string> first_values;
-  for (std::string line; std::getline(cpuinfo, line);) {
-    const std::size_t colon = line.find(':');
-    if (colon != std::string::npos)
-      first_values.emplace(trimmed(std::string_view(line).substr(0, colon)),
-                           trimmed(std::string_view(line).substr(colon + 1)));
-  }
-  if (!first_values["model name"].empty()) return first_values["model name"];
-  std::string result = architecture + " processor";
-  const std::string maker = first_values["CPU implementer"];
-  const std::string part = first_values["CPU part"];
-  if (!maker.empty() && !part.empty()) result += ", implementer " + maker + ", part " + part;
-  return result;
-}
-
 MachineRecord describe_machine() {
   MachineRecord machine;
   utsname system{};
   uname(&system);
-  std::ifstream cpuinfo("/proc/cpuinfo");
-  machine.processor = processor_name(cpuinfo, system.machine);
+  machine.processor = processor_of_this_machine();
   machine.cores = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
   machine.system = std::string(system.sysname) + " " + system.release + " " + system.machine;
   machine.caches = caches_of_this_machine();

@@ -4,7 +4,6 @@
 #include "metrics/cache.hpp"
 
 #include <cstdint>
-#include <istream>
 #include <string>
 
 namespace meshorder {
@@ -29,9 +28,5 @@ struct MachineRecord {
 /// Describes this machine and this program's build. Measures the bandwidths, which takes about a second; "all
 /// threads" are `thread_count()` threads.
 MachineRecord describe_machine();
-
-/// Returns the name of the first processor in Linux's /proc/cpuinfo. ARM processors have only numbers there:
-/// "aarch64 processor, implementer 0x41, part 0xd0c". Without either, "`architecture` processor".
-std::string processor_name(std::istream& cpuinfo, const std::string& architecture);
 
 }  // namespace meshorder

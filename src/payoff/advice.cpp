@@ -33,6 +33,7 @@ std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
   std::vector<Simplices> simplices;
   simplices.reserve(orders.size());
   for (const Ordered& order : orders) simplices.push_back(cut_into_simplices(order.mesh));
+  const Caches& caches = options.caches.level_bytes.empty() ? options.machine.model.caches : options.caches;
   const int halvings = simplices.front().size() < options.sample_from ? 0 : options.halvings;
   std::vector<KernelMilliseconds> result(orders.size());
   const Index kernels = index_size(kKernels);
@@ -40,7 +41,7 @@ std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
     const Index i = task % index_size(orders);
     const Index k = task / index_size(orders);
     const Reuse reuse = reuse_of(kKernels[k], orders[i].graph, simplices[i], halvings);
-    result[i][k] = predicted_ms(kKernels[k], reuse, options.caches);
+    result[i][k] = predicted_ms(kKernels[k], reuse, caches, options.machine.model);
   });
   return result;
 }
@@ -126,6 +127,7 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
     candidate(i).pattern = pattern_of(orders[i].graph, as_ordered, kPatternSide);
   }
   if (options.predict) {
+    advice.machine = options.machine.in_words();
     const std::vector<KernelMilliseconds> predicted = predictions(orders, options);
     for (std::size_t i = 0; i < orders.size(); ++i) candidate(i).costs.predicted = predicted[i];
   }
@@ -134,13 +136,15 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
         measurements(orders, since_call, *options.measure_within, advice.doubt);
     for (std::size_t i = 0; i < orders.size(); ++i) candidate(i).costs.measured = measured[i];
   }
+  advice.floor = options.machine.floor;
   advice.kernels = kernel_advice(advice);
   return advice;
 }
 
-double same_time(Kernel kernel, bool predicted) {
-  if (!predicted) return 1.05;
-  return kernel == Kernel::spmv ? 1.25 : 1.1;
+double same_time(const Advice& advice, Kernel kernel) {
+  const double predicted = kernel == Kernel::spmv ? 1.25 : 1.1;
+  return std::max(advice.as_is.costs.measured ? 1.05 : predicted,
+                  1 + advice.floor[static_cast<std::size_t>(kernel)]);
 }
 
 std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice) {
@@ -155,7 +159,7 @@ std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice) {
       best = ms;
       of_kernel.candidate = i;
     }
-    if (best <= 0.0 || as_is < same_time(kKernels[k], !advice.as_is.costs.measured) * best) continue;
+    if (best <= 0.0 || as_is < same_time(advice, kKernels[k]) * best) continue;
     of_kernel.factor = as_is / best;
     of_kernel.runs_to_pay =
         std::ceil(1e3 * advice.candidates[of_kernel.candidate].order_seconds / (as_is - best));
@@ -168,7 +172,7 @@ double saved_in_time_step(const Advice& advice, std::size_t candidate) {
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     const double as_is = advice.as_is.costs.best_known()[k];
     const double ordered = advice.candidates[candidate].costs.best_known()[k];
-    const double same = same_time(kKernels[k], !advice.as_is.costs.measured);
+    const double same = same_time(advice, kKernels[k]);
     if (std::max(as_is, ordered) < same * std::min(as_is, ordered)) continue;
     saved += kRunsInTimeStep[k] * (as_is - ordered);
   }

@@ -3,7 +3,7 @@
 
 #include "graph/csr_graph.hpp"
 #include "metrics/cache.hpp"
-#include "payoff/machine.hpp"
+#include "payoff/machine_choice.hpp"
 #include <meshorder/mesh.hpp>
 #include <meshorder/payoff.hpp>
 
@@ -20,7 +20,8 @@ inline constexpr std::array<int, kKernels.size()> kRunsInTimeStep{100, 1, 1, 0};
 
 struct AdviceOptions {
   std::vector<MeshMethods> methods = {};  ///< as in `PayoffOptions`
-  Caches caches = caches_of_this_machine();
+  MachineChoice machine = choose_machine();
+  Caches caches = {};  ///< to predict for; empty: the machine's
   OrderOptions ordering = {};
   double graph_seconds = 0;  ///< time that the vertex graph took
   bool predict = true;
@@ -39,8 +40,8 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
 
 /// Returns the factor up to which two times of a kernel count as equal: 1.05 for measured times; 1.1 for
 /// predicted ones and 1.25 for SpMV, where smaller predicted differences were not confirmed by measurement
-/// (docs/prediction.md).
-double same_time(Kernel kernel, bool predicted);
+/// (docs/prediction.md); and more where the machine's own timings of one problem differ by more.
+double same_time(const Advice& advice, Kernel kernel);
 
 /// Returns the best candidate for each kernel, as kKernels lists them. Meshes without cells have nothing to
 /// gain.

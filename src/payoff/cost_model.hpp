@@ -7,7 +7,7 @@
 #include "payoff/kernel_bench.hpp"
 
 #include <array>
-#include <string_view>
+#include <string>
 
 namespace meshorder {
 
@@ -18,22 +18,35 @@ struct KernelCosts {
   double access = 0.0;
   std::array<double, 4> miss{};
   std::array<double, 4> jump{};
+
+  bool operator==(const KernelCosts&) const = default;
 };
 
-/// Costs of the kernels on a class of machines, with one thread.
+/// Costs of the kernels on a machine, with one thread.
 struct CostModel {
-  std::string_view machine;
+  std::string machine;  ///< in words, "2-core Zen 5, 48 KB L1, 1 MB L2, 32 MB L3"
+  Caches caches;        ///< what the costs belong to
   std::array<KernelCosts, kKernels.size()> kernels;
+
+  bool operator==(const CostModel&) const = default;
 };
+
+/// Returns the sizes of the four caches that costs are of: with one or two levels the last one also counts as
+/// the second; with four or more only the first two and the last count. Throws InvalidArgument without
+/// caches.
+std::array<Offset, 4> sizes_that_cost(const Caches& caches);
 
 /// Returns costs that benchmarks/fit_cost_model fitted to measurements on a 2-core Zen 5 server processor (48
 /// KB L1, 1 MB L2, 32 MB L3). docs/prediction.md shows how well they predict other meshes.
 const CostModel& zen5_costs();
 
-/// Predicts the milliseconds of each run of a repeated kernel on a processor with these caches. Use the ratio
-/// of two orders of one mesh: the milliseconds are those of the model's machine. With one or two levels the
-/// last one also counts as the second; with four or more only the first two and the last count. O(levels ·
-/// bins of the histograms). Throws InvalidArgument without caches.
+/// Returns costs that `meshorder calibrate` measured on a 2-core Zen 4 server processor (32 KB L1, 1 MB L2,
+/// 13 MB to be had of L3).
+const CostModel& zen4_costs();
+
+/// Predicts the milliseconds of each run of a repeated kernel on a processor with these caches (see
+/// sizes_that_cost). Use the ratio of two orders of one mesh: the milliseconds are those of the model's
+/// machine. O(levels · bins of the histograms). Throws InvalidArgument without caches.
 double predicted_ms(Kernel kernel, const Reuse& reuse, const Caches& caches,
                     const CostModel& model = zen5_costs());
 

@@ -31,12 +31,14 @@ struct Plan {
 };
 
 /// Returns the seconds of a run.
-double sample(KernelBench& bench, Kernel kernel, const Plan& plan, SteadinessWatch& watch) {
+double sample(KernelBench& bench, Kernel kernel, const Plan& plan, bool processor_time,
+              SteadinessWatch& watch) {
   if (plan.warm) bench.run(kernel);
   const ThreadStopwatch thread;
   const double seconds = seconds_of_runs(bench, kernel, plan.repeats);
-  watch.add_sample(seconds, thread.seconds());
-  return seconds / plan.repeats;
+  const double thread_seconds = thread.seconds();
+  watch.add_sample(seconds, thread_seconds);
+  return (processor_time ? thread_seconds : seconds) / plan.repeats;
 }
 
 Plan plan_samples(KernelBench& bench, Kernel kernel, double sample_seconds) {
@@ -69,7 +71,8 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
       for (std::size_t i = 0; i < orders; ++i) {
         const std::size_t order = (i + static_cast<std::size_t>(round)) % orders;
         poll();
-        samples[order][k].push_back(sample(*benches[order], kKernels[k], plans[order][k], watch));
+        samples[order][k].push_back(
+            sample(*benches[order], kKernels[k], plans[order][k], options.processor_time, watch));
       }
     }
   }

@@ -19,6 +19,9 @@ struct TimingOptions {
   /// A faster kernel is repeated until one sample takes this long: solvers repeat it too, and find the data
   /// of the last run in the caches.
   double sample_seconds = 0.02;
+  /// Count the time in which the calling thread ran, not that in which other programs had its processor: for
+  /// kernels on one thread.
+  bool processor_time = false;
   /// For time_orders: memory for all prepared orders together; 0: half of the machine's.
   std::size_t memory_bytes = 0;
 };

@@ -1,7 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/machine.hpp"
 
+#include "base/text.hpp"
+#include "kernels/simd_target.hpp"
+
 #include <sched.h>
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -64,9 +68,13 @@ std::string core_of(int processor) {
 
 }  // namespace
 
+Caches reported_caches() {
+  const Caches caches = caches_in_sysfs();
+  return caches.level_bytes.empty() ? caches_in_sysconf() : caches;
+}
+
 Caches caches_of_this_machine() {
-  Caches caches = caches_in_sysfs();
-  if (caches.level_bytes.empty()) caches = caches_in_sysconf();
+  Caches caches = reported_caches();
   if (caches.level_bytes.empty()) caches = parse_cache_sizes("32K,512K,16M");
   return caches;
 }
@@ -76,6 +84,34 @@ Caches caches_of_the_paper() { return parse_cache_sizes("32K,256K,10M"); }
 Caches parse_caches(std::string_view text) {
   if (text.empty() || text == "this") return caches_of_this_machine();
   return text == "paper" ? caches_of_the_paper() : parse_cache_sizes(text);
+}
+
+std::string processor_name(std::istream& cpuinfo, const std::string& architecture) {
+  std::map<std::string, std::string> first_values;
+  for (std::string line; std::getline(cpuinfo, line);) {
+    const std::size_t colon = line.find(':');
+    if (colon != std::string::npos)
+      first_values.emplace(trimmed(std::string_view(line).substr(0, colon)),
+                           trimmed(std::string_view(line).substr(colon + 1)));
+  }
+  if (!first_values["model name"].empty()) return first_values["model name"];
+  std::string result = architecture + " processor";
+  const std::string maker = first_values["CPU implementer"];
+  const std::string part = first_values["CPU part"];
+  if (!maker.empty() && !part.empty()) result += ", implementer " + maker + ", part " + part;
+  return result;
+}
+
+std::string processor_of_this_machine() {
+  utsname system{};
+  uname(&system);
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  return processor_name(cpuinfo, system.machine);
+}
+
+std::string build_of_this_program() {
+  return std::string(MESHORDER_VERSION_TEXT) + ", " + MESHORDER_COMPILER + ", " +
+         std::string(trimmed(MESHORDER_FLAGS)) + ", " + simd_target();
 }
 
 std::vector<int> choose_processors(int threads) {

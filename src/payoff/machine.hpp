@@ -3,14 +3,18 @@
 
 #include "metrics/cache.hpp"
 
-#include <cstddef>
+#include <istream>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace meshorder {
 
-/// Returns the data caches of this machine's first processor, as Linux or the C library reports them; 32K,
-/// 512K and 16M if neither does.
+/// Returns the data caches of this machine's first processor, as Linux or the C library reports them; none if
+/// neither does.
+Caches reported_caches();
+
+/// Returns reported_caches(); 32K, 512K and 16M where there are none.
 Caches caches_of_this_machine();
 
 /// Returns the caches of the Intel Xeon E5-1620 v4, on which the paper measured: 32 KB, 256 KB and 10 MB.
@@ -19,6 +23,17 @@ Caches caches_of_the_paper();
 /// Returns this machine's caches for "this" or "", the paper's for "paper", else those that parse_cache_sizes
 /// reads. Throws InvalidArgument as that does.
 Caches parse_caches(std::string_view text);
+
+/// Returns the name of the first processor in Linux's /proc/cpuinfo. ARM processors have only numbers there:
+/// "aarch64 processor, implementer 0x41, part 0xd0c". Without either, "`architecture` processor".
+std::string processor_name(std::istream& cpuinfo, const std::string& architecture);
+
+/// Returns the name of this machine's processor, as processor_name.
+std::string processor_of_this_machine();
+
+/// Returns the version of this program, its compiler with the options, and the instruction set that its
+/// kernels chose here: times of another build are other times.
+std::string build_of_this_program();
 
 /// Returns processors to bind `threads` threads to, ascending: the last ones that this process may use, one a
 /// core as long as there are enough cores; systems tend to serve interrupts on the first. Empty if the system

@@ -4,6 +4,7 @@
 #include "kernels/simplices.hpp"
 #include "mesh/graphs.hpp"
 #include "payoff/advice.hpp"
+#include "payoff/calibration_store.hpp"
 #include "payoff/kernel_bench.hpp"
 #include <meshorder/error.hpp>
 
@@ -30,6 +31,7 @@ Advice advise(const MeshView& mesh, const PayoffOptions& options) {
     if (!(options.budget_seconds >= 0)) {
       throw InvalidArgument("advise: a budget of " + std::to_string(options.budget_seconds) + " s");
     }
+    const MachineChoice machine = choose_machine(options.machine);
     report("check");
     const Mesh copy = make_mesh(mesh);
     if (options.order.check != Check::none) check_mesh(copy);
@@ -38,6 +40,7 @@ Advice advise(const MeshView& mesh, const PayoffOptions& options) {
     const Stopwatch stopwatch;
     const CsrGraph graph = vertex_graph(copy);
     AdviceOptions inside{.methods = options.methods,
+                         .machine = machine,
                          .ordering = options.order,
                          .graph_seconds = stopwatch.seconds(),
                          .predict = options.predict};
@@ -53,6 +56,21 @@ std::vector<Candidate> compare(const MeshView& mesh, const PayoffOptions& option
   candidates.push_back(std::move(advice.as_is));
   for (Candidate& candidate : advice.candidates) candidates.push_back(std::move(candidate));
   return candidates;
+}
+
+CalibrationReport calibrate(const CalibrationOptions& options) {
+  return in_call(options.run, [&] {
+    if (!(options.seconds > 0)) {
+      throw InvalidArgument("calibrate: " + std::to_string(options.seconds) + " s; it takes some");
+    }
+    const Calibration calibration = measure_machine(effort_of(options.seconds));
+    CalibrationReport result{.machine = chosen(calibration).in_words(),
+                             .json = to_json_text(calibration),
+                             .file = {},
+                             .doubt = reason_to_doubt(calibration.steadiness)};
+    if (options.keep) result.file = save_calibration(calibration).string();
+    return result;
+  });
 }
 
 }  // namespace v0_2

@@ -11,6 +11,8 @@ struct Steadiness {
   double waiting = 0;  ///< share of the time in which the thread that was timed did not run
   double pace = 0;     ///< by what share a fixed piece of arithmetic took longer in the median than at best
   double repeat = 0;   ///< by what share two timings of one kernel in one order differ, the median of all
+
+  bool operator==(const Steadiness&) const = default;
 };
 
 /// Returns why times that were taken so tell little, a sentence; empty if they can be trusted: if no thread

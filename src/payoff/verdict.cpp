@@ -39,7 +39,7 @@ std::string losses(const Advice& advice, std::size_t candidate) {
   const KernelMilliseconds& ordered = advice.candidates[candidate].costs.best_known();
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     const double as_is = advice.as_is.costs.best_known()[k];
-    if (as_is <= 0 || ordered[k] < same_time(kKernels[k], !advice.as_is.costs.measured) * as_is) continue;
+    if (as_is <= 0 || ordered[k] < same_time(advice, kKernels[k]) * as_is) continue;
     words += fmt::format("{} the {} kernel {:.2g}× slower", words.empty() ? "; it makes" : " and",
                          kKernelTitles[k], ordered[k] / as_is);
   }
@@ -52,17 +52,18 @@ inline namespace v0_2 {
 
 std::string to_string(const Advice& advice) {
   const bool measured = advice.as_is.costs.measured.has_value();
+  const std::string of_machine = advice.machine.empty() ? "" : " for " + advice.machine;
   const auto& kernels = advice.kernels;
   const std::size_t k = worst(kernels);
   if (kernels[k].factor <= 1) {
     return fmt::format(
         "nothing to gain: no kernel runs faster in another order, beyond the uncertainty of {}",
-        measured ? "the measurement" : "the prediction");
+        measured ? "the measurement" : "the prediction" + of_machine);
   }
   // the order for all kernels, unless only another one makes this kernel faster
   const double with_first =
       advice.as_is.costs.best_known()[k] / advice.candidates.front().costs.best_known()[k];
-  const std::size_t taken = with_first >= same_time(kKernels[k], !measured) ? 0 : kernels[k].candidate;
+  const std::size_t taken = with_first >= same_time(advice, kKernels[k]) ? 0 : kernels[k].candidate;
   const Candidate& candidate = advice.candidates[taken];
   const double steps = steps_to_pay(advice, taken);
   const double factor = advice.as_is.costs.best_known()[k] / candidate.costs.best_known()[k];
@@ -76,7 +77,7 @@ std::string to_string(const Advice& advice) {
                       kKernelTitles[k]);
   return fmt::format(
       "as it is, the {} kernel runs {:.1f}× slower than it could{}; `{}` takes {} and pays for itself {}{}",
-      kKernelTitles[k], factor, measured ? "" : " (predicted)", command_for(candidate),
+      kKernelTitles[k], factor, measured ? "" : " (predicted" + of_machine + ")", command_for(candidate),
       duration(candidate.order_seconds), pays, losses(advice, taken));
 }
 

@@ -11,7 +11,7 @@ import meshes
 
 
 def test_help_teaches(command):
-    for words in ([], ["order"], ["apply"], ["info"], ["compare"], ["openfoam"], ["simulate"], ["reproduce"], ["report"],
+    for words in ([], ["order"], ["apply"], ["info"], ["compare"], ["openfoam"], ["calibrate"], ["simulate"], ["reproduce"], ["report"],
                   ["models"], ["models", "make"], ["methods"]):
         text = command.ok(*words, "--help").stdout
         assert "Usage" in text and len(text.splitlines()) > 5

@@ -30,6 +30,7 @@ LIBRARIES = {
     "metis.h": {"base", "ordering"},
     "fmt": {"mesh", "io", "kernels", "payoff"},
     "hwy": {"kernels", "payoff"},
+    "nlohmann": {"payoff"},
     "lz4.h": {"io"},
     "lzma.h": {"io"},
     "netcdf.h": {"io"},

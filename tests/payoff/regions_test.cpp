@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 constexpr Material kRubber{1e6, 0.45, 1000};
-constexpr Material kSteel{2e11, 0.3, 7850};
+constexpr Material kSteelRegion{2e11, 0.3, 7850};
 
 /// Two cubes of region 7, two of region −2 and one of none, with faces of region 5; sets likewise.
 Mesh bar_of_regions() {
@@ -63,7 +63,7 @@ TEST(MaterialsByRegion, FollowValues) {
   const Simplices simplices = cut_into_simplices(mesh);
   const Material soft{1e6, 0.45, 500};
   expect_materials(simplices, materials_by_region(simplices, grouping_by(mesh, "region"), soft,
-                                                  {{"7", kSteel}, {"-2", kRubber}}));
+                                                  {{"7", kSteelRegion}, {"-2", kRubber}}));
 }
 
 TEST(MaterialsByRegion, FollowSets) {
@@ -71,7 +71,7 @@ TEST(MaterialsByRegion, FollowSets) {
   const Simplices simplices = cut_into_simplices(mesh);
   const Material soft{1e6, 0.45, 500};
   expect_materials(simplices, materials_by_region(simplices, grouping_by(mesh, "sets"), soft,
-                                                  {{"tyre", kRubber}, {"axle", kSteel}}));
+                                                  {{"tyre", kRubber}, {"axle", kSteelRegion}}));
 }
 
 /// The energy of the simplices first … last − 1 alone.
@@ -92,7 +92,7 @@ TEST(MaterialsByRegion, GiveEachElementItsEnergy) {
   AlignedVector<double> x = padded_positions(mesh.points);
   for (std::size_t i = 0; i < x.size(); i += kPaddedStride) x[i] *= 1.1;
   const SimplexMaterials materials =
-      materials_by_region(simplices, grouping_by(mesh, "region"), kRubber, {{"7", kSteel}});
+      materials_by_region(simplices, grouping_by(mesh, "region"), kRubber, {{"7", kSteelRegion}});
   for (const MaterialModel model :
        {MaterialModel::corotational, MaterialModel::stvk, MaterialModel::neo_hookean}) {
     const double of_steel = energy_of_some(rest, model, Lame::from_young(2e11, 0.3), 0, 12, x);
@@ -118,7 +118,7 @@ TEST(MaterialsByRegion, ListTheRegionsThatThereAre) {
   const Simplices simplices = cut_into_simplices(mesh);
   const auto materials = [&](const char* by, const char* region) {
     return [&, by, region] {
-      return materials_by_region(simplices, grouping_by(mesh, by), kRubber, {{region, kSteel}});
+      return materials_by_region(simplices, grouping_by(mesh, by), kRubber, {{region, kSteelRegion}});
     };
   };
   EXPECT_THAT(materials("region", "8"), ThrowsMessage<InvalidArgument>(HasSubstr(
@@ -134,7 +134,7 @@ TEST(MaterialsByRegion, RefuseWhatMakesNoSense) {
   const Grouping grouping = grouping_by(mesh, "region");
   EXPECT_THAT(
       [&] {
-        return materials_by_region(simplices, grouping, kRubber, {{"7", kSteel}, {"7", kRubber}});
+        return materials_by_region(simplices, grouping, kRubber, {{"7", kSteelRegion}, {"7", kRubber}});
       },
       ThrowsMessage<InvalidArgument>(HasSubstr("given twice")));
   EXPECT_THAT(

@@ -1,0 +1,21 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "command.hpp"
+#include "payoff/machine_choice.hpp"
+#include "progress.hpp"
+#include <meshorder/io.hpp>
+
+#include <string>
+
+namespace meshorder::command {
+
+/// Adds --machine, whose value choose_machine reads.
+void add_machine_option(CLI::App& subcommand, std::string& machine);
+
+/// Returns the machine to predict for. Where it only stands in for this machine, which is not calibrated,
+/// this machine is calibrated and the result is kept for the next time. A line on stderr says so, unless
+/// quiet; `notes` receives a sentence where something went wrong.
+MachineChoice calibrated(MachineChoice choice, Progress& progress, bool quiet, Notes& notes);
+
+}  // namespace meshorder::command

@@ -1,0 +1,302 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/calibration.hpp"
+
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
+#include "base/run_scope.hpp"
+#include "base/stopwatch.hpp"
+#include "kernels/simplices.hpp"
+#include "mesh/graphs.hpp"
+#include "payoff/bandwidth.hpp"
+#include "payoff/calibration_lattices.hpp"
+#include "payoff/calibration_store.hpp"
+#include "payoff/kernel_timing.hpp"
+#include "payoff/least_squares.hpp"
+#include "payoff/machine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+constexpr std::size_t kCosts = 9;  ///< of a kernel
+
+/// What kernels took, by kernel.
+struct Runs {
+  std::array<std::vector<TimedReuse>, kKernels.size()> timed;
+  /// By what share two timings of the same problem differ.
+  std::array<std::vector<double>, kKernels.size()> apart;
+};
+
+/// What the costs are multiplied by, in milliseconds a nanosecond.
+std::array<double, kCosts> counts_of(const Reuse& reuse, const std::array<Offset, 4>& sizes) {
+  std::array<double, kCosts> counts{1e-6 * static_cast<double>(reuse.all.accesses())};
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    counts[1 + i] = 1e-6 * static_cast<double>(reuse.all.misses(sizes[i] / kLineBytes));
+    counts[5 + i] = 1e-6 * static_cast<double>(reuse.jumps.misses(sizes[i] / kLineBytes));
+  }
+  return counts;
+}
+
+double middle_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
+}
+
+/// What `advise` estimates from a sample of the lines is estimated here.
+int halvings_for(const Mesh& mesh) { return mesh.cell_count() < 50'000 ? 0 : 3; }
+
+/// Orders of a lattice, prepared to be timed.
+struct Prepared {
+  std::vector<KernelReuse> reuse;
+  std::vector<KernelBench> benches;
+
+  void add(const Mesh& mesh) {
+    const CsrGraph graph = vertex_graph(mesh);
+    reuse.push_back(reuse_of_kernels(graph, cut_into_simplices(mesh), halvings_for(mesh)));
+    benches.emplace_back(mesh, graph);
+  }
+
+  /// Times all in interleaved rounds.
+  [[nodiscard]] Timings timed(double seconds) {
+    std::vector<KernelBench*> pointers;
+    for (KernelBench& bench : benches) pointers.push_back(&bench);
+    return time_interleaved(pointers, {.budget_seconds = seconds,
+                                       .min_rounds = 3,
+                                       .max_rounds = 40,
+                                       .sample_seconds = 0.003,
+                                       .processor_time = true});
+  }
+};
+
+void add_runs(const Prepared& prepared, const Timings& timings, Runs& runs) {
+  for (std::size_t i = 0; i < prepared.reuse.size(); ++i) {
+    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+      runs.timed[k].push_back({prepared.reuse[i][k], timings.orders[i][kKernels[k]].best_ms});
+    }
+  }
+}
+
+/// The worst of what disturbed several measurements.
+Steadiness worse(const Steadiness& a, const Steadiness& b) {
+  return {std::max(a.waiting, b.waiting), std::max(a.pace, b.pace), std::max(a.repeat, b.repeat)};
+}
+
+/// The caches that costs belong to. A found one that is within a factor of 1.6 of a reported one is that one,
+/// but for the last, of which a thread has what others leave.
+Caches effective_caches(const FoundCaches& found, const Caches& reported) {
+  Caches caches;
+  for (std::size_t i = 0; i < found.levels.size(); ++i) {
+    Offset bytes = found.levels[i].bytes / kLineBytes * kLineBytes;
+    for (const Offset level : reported.level_bytes) {
+      const double ratio = static_cast<double>(level) / static_cast<double>(bytes);
+      const bool shared = i + 1 == found.levels.size() && level == reported.level_bytes.back();
+      if (!shared && ratio < 1.6 && ratio > 1 / 1.6) bytes = level;
+    }
+    if (caches.level_bytes.empty() || bytes > caches.level_bytes.back()) caches.level_bytes.push_back(bytes);
+  }
+  return caches;
+}
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  (void)gmtime_r(&now, &parts);
+  return fmt::format("{:04}-{:02}-{:02}", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday);
+}
+
+/// Measures what depends on no mesh.
+void measure_memory(const CalibrationEffort& effort, Calibration& calibration) {
+  // a small machine must not swap
+  const auto most = static_cast<Offset>(std::min<std::uint64_t>(usable_memory() / 8, UINT64_C(1) << 40));
+  const std::vector<Offset> sizes = probe_sizes(std::min(effort.probed, most));
+  constexpr int kRounds = 8;
+  calibration.found =
+      find_caches(probe_latencies(sizes, kRounds, [](double share) { report("caches", 0.2 * share); }));
+  report("bandwidths", 0.2);
+  const auto bytes = static_cast<std::size_t>(std::min(effort.probed, most));
+  constexpr int kPasses = 4;
+  calibration.read_bandwidth = read_bandwidth(bytes, kPasses);
+  calibration.threads = thread_count();
+  calibration.read_bandwidth_all = calibration.threads > 1
+                                       ? read_bandwidth(bytes, kPasses, calibration.threads)
+                                       : calibration.read_bandwidth;
+}
+
+/// Times all orders of a lattice side by side, the last but one of them twice, at other addresses.
+void time_small(const CalibrationLattice& lattice, double seconds, Calibration& calibration, Runs& runs) {
+  Prepared prepared;
+  for (const LatticeOrder& order : lattice.orders) prepared.add(in_order(lattice, order));
+  const std::size_t twice = lattice.orders.size() - 2;
+  prepared.add(in_order(lattice, lattice.orders[twice]));
+  const Timings timings = prepared.timed(seconds);
+  add_runs(prepared, timings, runs);
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    const double one = timings.orders[twice][kKernels[k]].best_ms;
+    const double other = timings.orders.back()[kKernels[k]].best_ms;
+    runs.apart[k].push_back(std::max(one, other) / std::min(one, other) - 1);
+  }
+  calibration.steadiness = worse(calibration.steadiness, timings.steadiness);
+}
+
+/// Times the orders of a lattice one after another, as long as there is time, but at least the best and the
+/// worst.
+void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double seconds,
+                Calibration& calibration, Runs& runs) {
+  std::vector<LatticeOrder>& orders = lattice.orders;
+  std::swap(orders[1], orders[orders.size() - 2]);
+  double longest = 0;
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    const double begin = since_start.seconds();
+    if (i >= 2 && begin + longest > seconds) break;
+    report("lattices", std::min(0.98, 0.6 + 0.4 * (begin / seconds - 0.5)));
+    Prepared prepared;
+    prepared.add(in_order(lattice, orders[i]));
+    const Timings timings = prepared.timed(0.3);
+    add_runs(prepared, timings, runs);
+    calibration.steadiness = worse(calibration.steadiness, timings.steadiness);
+    longest = std::max(longest, since_start.seconds() - begin);
+  }
+}
+
+}  // namespace
+
+FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches) {
+  const std::array<Offset, 4> sizes = sizes_that_cost(caches);
+  Rows rows{.columns = kCosts};
+  for (const TimedReuse& run : runs) {
+    std::array<double, kCosts> row = counts_of(run.reuse, sizes);
+    for (double& count : row) count /= run.milliseconds;
+    rows.push_back(row);
+  }
+  const std::vector<double> ones(runs.size(), 1.0);
+  const std::vector<double> costs = non_negative_least_squares(rows, ones);
+  FittedCosts result;
+  result.costs.access = costs[0];
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    result.costs.miss[i] = costs[1 + i];
+    result.costs.jump[i] = costs[5 + i];
+  }
+  result.condition = condition_number(rows);
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double predicted = 0;
+    for (std::size_t j = 0; j < kCosts; ++j) predicted += rows[i][j] * costs[j];
+    errors.push_back(std::abs(predicted - 1));
+  }
+  result.error = middle_of(std::move(errors));
+  return result;
+}
+
+CalibrationEffort effort_of(double seconds) {
+  CalibrationEffort effort;
+  const double share = std::min(1.0, seconds / (0.5 * effort.seconds));
+  effort.seconds = seconds;
+  constexpr Offset kLeastProbed = Offset{8} << 20;
+  constexpr Index kLeastVertices = 4000;
+  effort.probed = std::max(kLeastProbed, static_cast<Offset>(share * static_cast<double>(effort.probed)));
+  effort.vertices = std::max(kLeastVertices, static_cast<Index>(share * effort.vertices));
+  return effort;
+}
+
+Calibration measure_machine(const CalibrationEffort& effort) {
+  const Stopwatch since_start;
+  Calibration calibration;
+  calibration.processor = processor_of_this_machine();
+  calibration.build = build_of_this_program();
+  calibration.date = today();
+  calibration.reported = reported_caches();
+  report("caches", 0);
+  measure_memory(effort, calibration);
+  CostModel& model = calibration.model;
+  model.caches = effective_caches(calibration.found, calibration.reported);
+  model.machine = fmt::format("{} ({})", calibration.processor, to_string(model.caches));
+
+  Runs runs;
+  constexpr Offset kBytesOfVertex = 4096;
+  const Offset fitting = static_cast<Offset>(usable_memory() / 4) / kBytesOfVertex;
+  const auto largest = static_cast<Index>(std::clamp<Offset>(fitting, 1000, effort.vertices));
+  // Rows of matrices that fill parts of the second cache and of the last, so that what streams misses one
+  // cache and not the next; vertices that fill them take the large ones.
+  constexpr Offset kRowBytes = 1140;
+  const auto rows_in = [&](Offset bytes, double part) {
+    const auto rows = static_cast<Offset>(part * static_cast<double>(bytes) / kRowBytes);
+    return static_cast<Index>(std::clamp<Offset>(rows, 300, largest / 4));
+  };
+  const std::array<Offset, 4> sizes = sizes_that_cost(model.caches);
+  /// A lattice, and its share of the time.
+  struct Step {
+    Index vertices;
+    bool flat;
+    std::size_t orders;
+    double share;
+  };
+  const std::array steps{Step{rows_in(sizes[1], 0.6), false, 3, 0.03},
+                         Step{rows_in(sizes[3], 0.35), false, 5, 0.06},
+                         Step{rows_in(sizes[3], 0.75), false, 5, 0.06},
+                         Step{largest / 8, false, 7, 0.15},
+                         Step{largest / 8, true, 4, 0.06},
+                         Step{largest / 3, false, 3, 0.1}};
+  double done = 0.25;
+  for (const Step& step : steps) {
+    report("lattices", done);
+    const Stopwatch stopwatch;
+    const CalibrationLattice lattice =
+        make_calibration_lattice(step.vertices, step.flat, model.caches, step.orders);
+    time_small(lattice, step.share * effort.seconds, calibration, runs);
+    done += step.share;
+  }
+  time_large(make_calibration_lattice(largest, false, model.caches, 6), since_start, effort.seconds,
+             calibration, runs);
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    const FittedCosts fitted = fit_costs(runs.timed[k], model.caches);
+    model.kernels[k] = fitted.costs;
+    calibration.condition[k] = fitted.condition;
+    calibration.error[k] = fitted.error;
+    calibration.floor[k] = middle_of(runs.apart[k]);
+  }
+  calibration.seconds = since_start.seconds();
+  return calibration;
+}
+
+Recheck recheck(const Calibration& calibration) {
+  const Caches& caches = calibration.model.caches;
+  Prepared prepared;
+  for (const Index vertices : {Index{4000}, Index{30'000}}) {
+    report("recheck", vertices < 30'000 ? 0 : 0.3);
+    const CalibrationLattice lattice = make_calibration_lattice(vertices, false, caches, 3);
+    prepared.add(in_order(lattice, lattice.orders.front()));
+    prepared.add(in_order(lattice, lattice.orders[lattice.orders.size() - 2]));
+  }
+  report("recheck", 0.5);
+  const Timings timings = prepared.timed(1.0);
+  Recheck result;
+  std::vector<std::string> moved;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < prepared.reuse.size(); ++i) {
+      const double predicted = predicted_ms(kKernels[k], prepared.reuse[i][k], caches, calibration.model);
+      ratios.push_back(timings.orders[i][kKernels[k]].best_ms / std::max(predicted, 1e-9));
+    }
+    result.ratio[k] = middle_of(std::move(ratios));
+    const double most = std::max(0.15, 3 * (calibration.error[k] + calibration.floor[k]));
+    if (std::abs(std::log(result.ratio[k])) <= std::log(1 + most)) continue;
+    moved.push_back(
+        fmt::format("{} takes {:.2f} times as long as it did", kKernelTitles[k], result.ratio[k]));
+  }
+  if (!moved.empty()) {
+    result.moved = "this machine has changed since it was calibrated (" + join(moved) +
+                   "); `meshorder calibrate` measures it anew";
+  }
+  result.doubt = reason_to_doubt(timings.steadiness);
+  return result;
+}
+
+}  // namespace meshorder

@@ -1,0 +1,84 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "payoff/cache_probe.hpp"
+#include "payoff/cost_model.hpp"
+#include "payoff/steadiness.hpp"
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+
+/// What was measured of a machine, so that times can be predicted for it.
+struct Calibration {
+  CostModel model;  ///< its caches are those found, the first ones as reported where they agree
+  std::string processor;
+  std::string build;  ///< version, compiler and options of the program
+  std::string date;   ///< "2026-11-22", in UTC
+  Caches reported;    ///< by the system; empty where it reports none
+  FoundCaches found;
+  int threads = 1;            ///< "all threads"
+  double read_bandwidth = 0;  ///< GB/s, one thread
+  double read_bandwidth_all = 0;
+  /// By kernel, as kKernels lists them: of the fit's equations, see condition_number; by what share predicted
+  /// times of the problems differ from measured ones, the median; and by what share two timings of the same
+  /// problem at other addresses differ, the median of some. The last is the floor below which no difference
+  /// of two times tells anything.
+  std::array<double, kKernels.size()> condition{};
+  std::array<double, kKernels.size()> error{};
+  std::array<double, kKernels.size()> floor{};
+  Steadiness steadiness;
+  double seconds = 0;  ///< that it took
+
+  bool operator==(const Calibration&) const = default;
+};
+
+/// How thoroughly a machine is measured.
+struct CalibrationEffort {
+  double seconds = 16;  ///< no measurement begins that is expected to end later, but each is made once
+  Offset probed = Offset{256} << 20;  ///< largest buffer of loads, bytes
+  Index vertices = 200'000;           ///< of the largest lattice
+};
+
+/// Returns the effort for so many seconds: with less than half of the usual time, smaller lattices and
+/// buffers, which tell less of the last cache and the memory.
+CalibrationEffort effort_of(double seconds);
+
+/// Measures this machine: its caches, latencies and bandwidths, and the kernels themselves on small lattices
+/// whose vertices are scrambled within windows of half of each cache, so that each level's misses vary on
+/// their own. Kernels run on the calling thread, and are timed by its processor time, the least of several
+/// rounds. Costs are the non-negative least squares of relative errors. Reports its progress and polls.
+Calibration measure_machine(const CalibrationEffort& effort = {});
+
+/// A run of a kernel: the levels of reuse, and what it took.
+struct TimedReuse {
+  Reuse reuse;
+  double milliseconds = 0;
+};
+
+/// The costs of a kernel that fit its runs best.
+struct FittedCosts {
+  KernelCosts costs;
+  double condition = 1;
+  double error = 0;  ///< see Calibration::error
+};
+
+/// Fits the costs of a kernel on a machine with such caches.
+FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches);
+
+/// What a quick look at a machine finds changed since it was calibrated.
+struct Recheck {
+  std::array<double, kKernels.size()> ratio{};  ///< time now / predicted time, by kernel
+  std::string moved;                            ///< why the calibration should be done anew, or empty
+  std::string doubt;                            ///< as of reason_to_doubt
+};
+
+/// Runs the kernels on one small and one larger lattice, in some two seconds, and compares their times with
+/// those that the calibration predicts. The machine has moved where a kernel's times differ by more than 15 %
+/// and three times the calibration's own error and floor.
+Recheck recheck(const Calibration& calibration);
+
+}  // namespace meshorder

@@ -1,0 +1,210 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/calibration_store.hpp"
+
+#include "base/user_folder.hpp"
+#include "payoff/machine.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kSchema = "meshorder calibration 1";
+
+/// FNV-1a.
+std::uint64_t hash_of(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037U;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  return hash;
+}
+
+std::string sizes_text(const Caches& caches) { return caches.level_bytes.empty() ? "" : to_string(caches); }
+
+/// Caches of the sizes in an array.
+Caches caches_from(const Json& sizes) {
+  Caches caches;
+  for (const Json& size : sizes) {
+    const auto bytes = size.get<Offset>();
+    const Offset before = caches.level_bytes.empty() ? 0 : caches.level_bytes.back();
+    if (bytes <= before || bytes % kLineBytes != 0) throw InvalidArgument("has sizes of no caches");
+    caches.level_bytes.push_back(bytes);
+  }
+  return caches;
+}
+
+/// A finite number that is not negative.
+double number_from(const Json& json) {
+  const auto number = json.get<double>();
+  if (!(number >= 0) || !std::isfinite(number)) throw InvalidArgument("has a negative or infinite number");
+  return number;
+}
+
+/// Infinite conditions have no place in JSON.
+Json finite_json(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+
+double condition_from(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::infinity() : number_from(json);
+}
+
+}  // namespace
+
+CalibrationKey key_of_this_machine() {
+  return {processor_of_this_machine(), sizes_text(reported_caches()), build_of_this_program()};
+}
+
+CalibrationKey key_of(const Calibration& calibration) {
+  return {calibration.processor, sizes_text(calibration.reported), calibration.build};
+}
+
+fs::path calibration_file(const CalibrationKey& key) {
+  const fs::path folder = user_cache_folder();
+  if (folder.empty()) return {};
+  std::string name;
+  for (const char c : key.processor.substr(0, 60)) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (plain || (!name.empty() && name.back() != '-')) name += plain ? c : '-';
+  }
+  const std::uint64_t hash = hash_of(key.processor + '\n' + key.caches + '\n' + key.build);
+  return folder / "calibrations" / fmt::format("{}-{:016x}.json", name, hash);
+}
+
+std::string to_json_text(const Calibration& calibration) {
+  Json kernels;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    const KernelCosts& costs = calibration.model.kernels[k];
+    kernels[std::string(to_string(kKernels[k]))] = {{"access", costs.access},
+                                                    {"miss", costs.miss},
+                                                    {"jump", costs.jump},
+                                                    {"condition", finite_json(calibration.condition[k])},
+                                                    {"error", calibration.error[k]},
+                                                    {"floor", calibration.floor[k]}};
+  }
+  auto found = Json::array();
+  for (const FoundCache& level : calibration.found.levels) {
+    found.push_back({{"bytes", level.bytes}, {"nanoseconds", level.nanoseconds}});
+  }
+  const Steadiness& steadiness = calibration.steadiness;
+  const Json json{
+      {"schema", kSchema},
+      {"processor", calibration.processor},
+      {"build", calibration.build},
+      {"date", calibration.date},
+      {"machine", calibration.model.machine},
+      {"caches",
+       {{"reported", calibration.reported.level_bytes},
+        {"found", found},
+        {"used", calibration.model.caches.level_bytes}}},
+      {"memory_nanoseconds", calibration.found.memory_nanoseconds},
+      {"threads", calibration.threads},
+      {"read_bandwidth",
+       {{"one_thread", calibration.read_bandwidth}, {"all", calibration.read_bandwidth_all}}},
+      {"kernels", kernels},
+      {"steadiness",
+       {{"waiting", steadiness.waiting}, {"pace", steadiness.pace}, {"repeat", steadiness.repeat}}},
+      {"seconds", calibration.seconds}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Calibration parse_calibration(const std::string& text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw InvalidArgument("is no JSON");
+  if (!json.is_object() || json.value("schema", "") != kSchema) throw InvalidArgument("is no calibration");
+  try {
+    Calibration calibration;
+    calibration.processor = json.at("processor").get<std::string>();
+    calibration.build = json.at("build").get<std::string>();
+    calibration.date = json.at("date").get<std::string>();
+    calibration.model.machine = json.at("machine").get<std::string>();
+    calibration.reported = caches_from(json.at("caches").at("reported"));
+    calibration.model.caches = caches_from(json.at("caches").at("used"));
+    if (calibration.model.caches.level_bytes.empty()) throw InvalidArgument("has no caches");
+    for (const Json& level : json.at("caches").at("found")) {
+      calibration.found.levels.push_back(
+          {level.at("bytes").get<Offset>(), number_from(level.at("nanoseconds"))});
+    }
+    calibration.found.memory_nanoseconds = number_from(json.at("memory_nanoseconds"));
+    calibration.threads = json.at("threads").get<int>();
+    calibration.read_bandwidth = number_from(json.at("read_bandwidth").at("one_thread"));
+    calibration.read_bandwidth_all = number_from(json.at("read_bandwidth").at("all"));
+    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+      const Json& kernel = json.at("kernels").at(std::string(to_string(kKernels[k])));
+      KernelCosts& costs = calibration.model.kernels[k];
+      double sum = costs.access = number_from(kernel.at("access"));
+      for (std::size_t i = 0; i < costs.miss.size(); ++i) {
+        sum += costs.miss[i] = number_from(kernel.at("miss").at(i));
+        sum += costs.jump[i] = number_from(kernel.at("jump").at(i));
+      }
+      if (!(sum > 0)) throw InvalidArgument("has a kernel that costs nothing");
+      calibration.condition[k] = condition_from(kernel.at("condition"));
+      calibration.error[k] = number_from(kernel.at("error"));
+      calibration.floor[k] = number_from(kernel.at("floor"));
+    }
+    const Json& steadiness = json.at("steadiness");
+    calibration.steadiness = {number_from(steadiness.at("waiting")), number_from(steadiness.at("pace")),
+                              number_from(steadiness.at("repeat"))};
+    calibration.seconds = number_from(json.at("seconds"));
+    return calibration;
+  } catch (const Json::exception& error) {
+    throw InvalidArgument(std::string("is damaged: ") + error.what());
+  }
+}
+
+StoredCalibration load_calibration(const CalibrationKey& key) {
+  const fs::path file = calibration_file(key);
+  std::error_code code;
+  if (file.empty() || !fs::exists(file, code)) return {};
+  const auto refused = [&](const std::string& why) {
+    return StoredCalibration{{}, "the calibration in " + file.string() + " is not used: it " + why};
+  };
+  std::ifstream in(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (!in || text.empty()) return refused("cannot be read or is empty");
+  try {
+    Calibration calibration = parse_calibration(text);
+    if (key_of(calibration) != key) return refused("is of another machine or build");
+    return {std::move(calibration), {}};
+  } catch (const InvalidArgument& error) {
+    return refused(error.what());
+  }
+}
+
+fs::path save_calibration(const Calibration& calibration) {
+  fs::path file = calibration_file(key_of(calibration));
+  constexpr const char* kRemedy = "set MESHORDER_CACHE to a folder that can be written";
+  if (file.empty()) {
+    throw Error(Code::io,
+                std::string("calibration: neither HOME nor XDG_CACHE_HOME is set, so there is no folder "
+                            "to keep it in; ") +
+                    kRemedy);
+  }
+  std::error_code code;
+  fs::create_directories(file.parent_path(), code);
+  fs::path beside = file;
+  beside += fmt::format(".{}.unfinished", ::getpid());
+  std::ofstream out(beside, std::ios::binary);
+  out << to_json_text(calibration);
+  out.close();
+  if (out) {
+    fs::rename(beside, file, code);
+    if (!code) return file;
+  }
+  std::error_code ignored;
+  fs::remove(beside, ignored);
+  throw Error(Code::io, "calibration: " + file.string() + " cannot be written; " + kRemedy);
+}
+
+}  // namespace meshorder

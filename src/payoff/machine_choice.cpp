@@ -1,0 +1,66 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/machine_choice.hpp"
+
+#include "base/suggestion.hpp"
+#include "base/text.hpp"
+#include "payoff/calibration_store.hpp"
+#include "payoff/machine.hpp"
+#include <meshorder/error.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+constexpr std::array kShipped{ShippedMachine{"zen5", zen5_costs}, ShippedMachine{"zen4", zen4_costs}};
+constexpr std::string_view kThis = "this";
+
+/// The name itself, or what stands for an empty one.
+std::string asked_name(std::string_view name) {
+  if (!name.empty()) return std::string(name);
+  const char* const variable = std::getenv("MESHORDER_MACHINE");
+  return variable == nullptr || *variable == '\0' ? std::string(kThis) : variable;
+}
+
+}  // namespace
+
+std::span<const ShippedMachine> shipped_machines() { return kShipped; }
+
+std::string MachineChoice::in_words() const {
+  if (!calibrated.empty()) return "this machine, calibrated " + calibrated;
+  return stands_in ? "this machine's caches at the costs of " + name : name;
+}
+
+MachineChoice choose_machine(std::string_view name) {
+  const std::string asked = asked_name(name);
+  MachineChoice choice;
+  if (asked == kThis) {
+    StoredCalibration stored = load_calibration(key_of_this_machine());
+    if (stored.calibration) return chosen(*stored.calibration);
+    choice = {std::string(kShipped.front().name), kShipped.front().costs(), {}, true, {}, stored.fault};
+    choice.model.caches = caches_of_this_machine();
+    return choice;
+  }
+  for (const ShippedMachine& machine : kShipped) {
+    if (machine.name != asked) continue;
+    choice.name = asked;
+    choice.model = machine.costs();
+    return choice;
+  }
+  std::vector<std::string> names{std::string(kThis)};
+  for (const ShippedMachine& machine : kShipped) names.emplace_back(machine.name);
+  const std::string nearest = suggestion(asked, names);
+  throw InvalidArgument("unknown machine '" + asked + "'" +
+                        (nearest.empty() ? "; known are " + join(names) : nearest));
+}
+
+MachineChoice chosen(const Calibration& calibration) {
+  const bool steady = reason_to_doubt(calibration.steadiness).empty();
+  const std::string calibrated = calibration.date + (steady ? "" : " while it was busy");
+  return {std::string(kThis), calibration.model, calibrated, false, calibration.floor, {}};
+}
+
+}  // namespace meshorder

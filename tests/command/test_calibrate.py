@@ -1,0 +1,146 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""`meshorder calibrate`, and what commands do with the machine that it has measured."""
+import json
+import os
+
+import pytest
+
+KERNELS = ["spmv", "element", "assembly", "springs"]
+KEYS = ["schema", "processor", "build", "date", "machine", "caches", "memory_nanoseconds", "threads", "read_bandwidth",
+        "kernels", "steadiness", "seconds", "file", "version", "notes"]
+
+
+@pytest.fixture
+def here(command, monkeypatch):
+    """The command without a machine that it is told to predict for, and with a cache folder of its own."""
+    monkeypatch.delenv("MESHORDER_MACHINE")
+    monkeypatch.setenv("MESHORDER_CACHE", str(command.folder / "cache"))
+    monkeypatch.setenv("MESHORDER_CALIBRATION_SECONDS", "0.1")
+    mesh = command.folder / "mesh.node"
+    mesh.write_text("5 3 0 0\n" + "".join(f"{i} {i % 3} {i % 2} {i // 2}\n" for i in range(5)))
+    mesh.with_suffix(".ele").write_text("2 4 0\n0 0 1 2 3\n1 1 2 3 4\n")
+    return command
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory):
+    """A calibration of this machine, made once: what `calibrate --json` printed, and its file's name."""
+    folder = tmp_path_factory.mktemp("calibration")
+    environment = {**os.environ, "MESHORDER_CACHE": str(folder)}
+    from conftest import Command
+
+    done = Command(folder).run("calibrate", "--budget", "0.1", "--json", "--quiet", env=environment)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    return json.loads(done.stdout)
+
+
+@pytest.fixture
+def stored(here, measured):
+    """The file of a calibration that is there already, dated to tell it from one made now."""
+    file = here.folder / "cache" / "calibrations" / os.path.basename(measured["file"])
+    file.parent.mkdir(parents=True)
+    content = {key: value for key, value in measured.items() if key not in ("file", "version", "notes")}
+    file.write_text(json.dumps({**content, "date": "2026-01-02", "steadiness": {"waiting": 0, "pace": 0, "repeat": 0}}))
+    return file
+
+
+def test_a_calibration_says_what_it_measured(measured):
+    assert list(measured) == KEYS
+    caches = measured["caches"]
+    assert list(caches) == ["reported", "found", "used"]
+    assert caches["used"] and caches["used"] == sorted(caches["used"])
+    latencies = [level["nanoseconds"] for level in caches["found"]] + [measured["memory_nanoseconds"]]
+    assert latencies == sorted(latencies) and latencies[0] > 0
+    assert list(measured["kernels"]) == KERNELS
+    for kernel in measured["kernels"].values():
+        assert list(kernel) == ["access", "miss", "jump", "condition", "error", "floor"]
+        assert len(kernel["miss"]) == len(kernel["jump"]) == 4
+        assert min([kernel["access"], *kernel["miss"], *kernel["jump"]]) >= 0
+    assert all(rate > 0 for rate in measured["read_bandwidth"].values())
+    assert os.path.dirname(measured["file"]).endswith("calibrations") and os.path.exists(measured["file"])
+    assert os.listdir(os.path.dirname(measured["file"])) == [os.path.basename(measured["file"])]
+
+
+def test_predictions_are_of_the_machine_that_was_calibrated(here, stored, measured):
+    result = here.json("info", "mesh.node")
+    assert result["verdict"]["machine"] == "this machine, calibrated 2026-01-02"
+    assert result["caches"] == measured["caches"]["used"]
+    assert "predicted for this machine, calibrated 2026-01-02" in here.ok("info", "mesh.node").stdout
+    text = here.ok("calibrate", "--list").stdout
+    assert text.splitlines()[0].split() == ["this", "this", "machine,", "calibrated", "2026-01-02"]
+    listed = here.json("calibrate", "--list")["machines"]
+    assert [machine["name"] for machine in listed] == ["this", "zen5", "zen4"]
+    assert listed[0]["calibrated"] == "2026-01-02"
+
+
+@pytest.mark.parametrize("by", ["option", "variable"])
+def test_another_machine_is_predicted_for_by_its_name(here, stored, monkeypatch, by):
+    words = ["--machine", "zen5"] if by == "option" else []
+    if by == "variable":
+        monkeypatch.setenv("MESHORDER_MACHINE", "zen5")
+    result = here.json("info", "mesh.node", *words)
+    assert result["verdict"]["machine"] == "zen5" and result["caches"] == [48 << 10, 1 << 20, 32 << 20]
+    assert here.json("compare", "mesh.node", "--budget", "0.01", "--methods", "rcm", *words)["caches"] == result["caches"]
+    assert here.json("info", "mesh.node", "--machine", "this")["verdict"]["machine"].startswith("this machine")
+
+
+def test_an_unknown_machine_gets_the_nearest_name(here, monkeypatch):
+    for command in "info", "compare":
+        assert "unknown machine 'zen6'; did you mean 'zen5'?" in here.fails(command, "mesh.node", "--machine", "zen6")
+    monkeypatch.setenv("MESHORDER_MACHINE", "cray")
+    assert "unknown machine 'cray'; known are this, zen5, zen4" in here.fails("info", "mesh.node")
+
+
+def test_the_first_prediction_calibrates_and_the_next_one_does_not(here):
+    first = here.run("info", "mesh.node")
+    assert first.returncode == 0 and "measuring this machine once" in first.stderr
+    assert "predicted for this machine, calibrated 20" in first.stdout
+    second = here.run("info", "mesh.node")
+    assert second.returncode == 0 and second.stderr == ""
+    assert "predicted for this machine, calibrated 20" in second.stdout
+
+
+def test_measuring_does_not_wait_for_a_calibration(here):
+    result = here.json("info", "mesh.node", "--measure")
+    assert result["verdict"]["machine"] == "this machine's caches at the costs of zen5"
+    assert not (here.folder / "cache").exists()
+
+
+@pytest.mark.parametrize("content", ["", "{", "[]", '{"schema": "another"}'])
+def test_a_damaged_calibration_is_measured_anew_with_one_warning(here, stored, content):
+    stored.write_text(content)
+    done = here.run("info", "mesh.node", "--json")
+    assert done.returncode == 0
+    notes = [note for note in json.loads(done.stdout)["notes"] if "is not used" in note]
+    assert len(notes) == 1 and str(stored) in notes[0] and "measured anew" in notes[0]
+    assert json.loads(stored.read_text())["date"] != "2026-01-02"
+    assert "is not used" not in here.ok("info", "mesh.node").stderr
+
+
+def test_a_folder_that_cannot_be_written_is_one_warning(here, monkeypatch):
+    blocked = here.folder / "file"
+    blocked.write_text("")
+    monkeypatch.setenv("MESHORDER_CACHE", str(blocked / "cache"))
+    done = here.run("info", "mesh.node", "--json")
+    assert done.returncode == 0
+    result = json.loads(done.stdout)
+    assert len([note for note in result["notes"] if "cannot be written" in note]) == 1
+    assert result["verdict"]["machine"].startswith("this machine, calibrated ")
+
+
+def test_a_machine_that_moved_is_noticed(here, stored):
+    content = json.loads(stored.read_text())
+    for kernel in content["kernels"].values():
+        kernel.update(error=0.01, floor=0.01)
+        for costs in "miss", "jump":
+            kernel[costs] = [10 * cost for cost in kernel[costs]]
+        kernel["access"] *= 10
+    stored.write_text(json.dumps(content))
+    result = here.json("calibrate", "--recheck")
+    assert result["moved"] and all(ratio < 0.5 for ratio in result["ratio"].values())
+    assert "has changed since it was calibrated" in here.ok("calibrate", "--recheck").stdout
+
+
+def test_nothing_to_recheck_is_said(here):
+    assert "is not calibrated; `meshorder calibrate` does it" in here.fails("calibrate", "--recheck")

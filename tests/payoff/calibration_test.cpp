@@ -1,0 +1,299 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/calibration.hpp"
+
+#include "base/random.hpp"
+#include "mesh/graphs.hpp"
+#include "payoff/calibration_lattices.hpp"
+#include "payoff/calibration_store.hpp"
+#include "payoff/machine.hpp"
+#include "payoff/machine_choice.hpp"
+#include "support/files.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/payoff.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+using testing::HasSubstr;
+
+/// Sets an environment variable as long as it lives.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    if (const char* const before = std::getenv(name)) before_ = before;
+    ::setenv(name, value.c_str(), 1);
+  }
+  ~Variable() {
+    if (before_.empty()) {
+      ::unsetenv(name_);
+    } else {
+      ::setenv(name_, before_.c_str(), 1);
+    }
+  }
+  Variable(const Variable&) = delete;
+  Variable(Variable&&) = delete;
+  Variable& operator=(const Variable&) = delete;
+  Variable& operator=(Variable&&) = delete;
+
+ private:
+  const char* name_;
+  std::string before_;
+};
+
+/// A calibration of this machine and build, with a number of its own in every place.
+Calibration made_up() {
+  Calibration calibration;
+  calibration.model.machine = "a machine";
+  calibration.model.caches = parse_cache_sizes("48K,1M,20M");
+  double number = 0.25;
+  const auto next = [&] { return number += 0.125; };
+  for (KernelCosts& costs : calibration.model.kernels) {
+    costs.access = next();
+    for (double& cost : costs.miss) cost = next();
+    for (double& cost : costs.jump) cost = next();
+  }
+  calibration.processor = processor_of_this_machine();
+  calibration.build = build_of_this_program();
+  calibration.reported = reported_caches();
+  calibration.date = "2026-01-02";
+  calibration.found = {{{48 << 10, next()}, {20 << 20, next()}}, next()};
+  calibration.threads = 7;
+  calibration.read_bandwidth = next();
+  calibration.read_bandwidth_all = next();
+  for (auto* array : {&calibration.condition, &calibration.error, &calibration.floor}) {
+    for (double& value : *array) value = next() / 100;
+  }
+  calibration.steadiness = {0.01, 0.02, 0.03};
+  calibration.seconds = next();
+  return calibration;
+}
+
+TEST(Calibration, CostsThatMadeTheTimesAreFound) {
+  const Caches caches = parse_cache_sizes("32K,1M,16M");
+  CostModel model;
+  model.kernels[0] = {.access = 0.5, .miss = {0.25, 0, 1, 2}, .jump = {0, 3, 0, 20}};
+  Random random(2);
+  std::vector<TimedReuse> runs;
+  for (int i = 0; i < 20; ++i) {
+    TimedReuse run;
+    for (const Index distance : {100, 1000, 30'000, 200'000, 300'000}) {
+      const auto count = 10'000 + random.below(100'000);
+      for (std::uint64_t j = 0; j < count; ++j) {
+        run.reuse.all.add(distance);
+        if (random.unit() < 0.1 * (i % 7)) run.reuse.jumps.add(distance);
+      }
+    }
+    run.milliseconds = predicted_ms(Kernel::spmv, run.reuse, caches, model);
+    runs.push_back(std::move(run));
+  }
+  const FittedCosts fitted = fit_costs(runs, caches);
+  const KernelCosts& expected = model.kernels[0];
+  EXPECT_NEAR(fitted.costs.access, expected.access, 1e-6);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(fitted.costs.miss[i], expected.miss[i], 1e-6) << i;
+    EXPECT_NEAR(fitted.costs.jump[i], expected.jump[i], 1e-6) << i;
+  }
+  EXPECT_LT(fitted.error, 1e-9);
+  EXPECT_GT(fitted.condition, 1);
+  EXPECT_LT(fitted.condition, 1e4);
+}
+
+TEST(Calibration, LatticesAreScrambledWithinWindowsOnly) {
+  const Caches caches = parse_cache_sizes("32K,1M,16M");
+  const CalibrationLattice lattice = make_calibration_lattice(5000, false, caches, 8);
+  EXPECT_NEAR(lattice.mesh.vertex_count(), 5000, 700);
+  EXPECT_EQ(lattice.orders.front(), (LatticeOrder{1, false}));
+  EXPECT_EQ(lattice.orders.back(), (LatticeOrder{lattice.mesh.vertex_count(), true}));
+  ASSERT_GE(lattice.orders.size(), 5U);
+  EXPECT_LE(lattice.orders.size(), 8U);
+  std::map<Point, Index> places;
+  for (Index v = 0; v < lattice.mesh.vertex_count(); ++v) places[lattice.mesh.points[v]] = v;
+  for (const LatticeOrder& order : lattice.orders) {
+    const Mesh mesh = in_order(lattice, order);
+    Index moved = 0;
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+      const Index before = places.at(mesh.points[v]);
+      EXPECT_EQ(before / order.window, v / order.window);
+      moved += before != v ? 1 : 0;
+    }
+    if (order.window > 1) {
+      EXPECT_GT(moved, mesh.vertex_count() / 2);
+    }
+    EXPECT_EQ(vertex_graph(mesh).edge_count(), lattice.graph.edge_count());
+  }
+}
+
+TEST(Calibration, SheetsAreOfTriangles) {
+  const CalibrationLattice sheet = make_calibration_lattice(900, true, parse_cache_sizes("32K,1M"), 4);
+  EXPECT_EQ(sheet.mesh.vertex_count(), 900);
+  EXPECT_EQ(sheet.mesh.cell_count(), 2 * 29 * 29);
+  EXPECT_EQ(sheet.mesh.cells.highest_dimension(), 2);
+  EXPECT_LE(sheet.orders.size(), 4U);
+}
+
+TEST(Calibration, MeasuresThisMachineInSmall) {
+  const Calibration calibration =
+      measure_machine({.seconds = 0.1, .probed = Offset{4} << 20, .vertices = 4000});
+  EXPECT_FALSE(calibration.model.caches.level_bytes.empty());
+  EXPECT_EQ(key_of(calibration), key_of_this_machine());
+  EXPECT_GT(calibration.read_bandwidth, 0);
+  EXPECT_GT(calibration.read_bandwidth_all, 0);
+  EXPECT_EQ(calibration.date.size(), 10U);
+  EXPECT_GT(calibration.seconds, 0);
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    const KernelCosts& costs = calibration.model.kernels[k];
+    double sum = costs.access;
+    for (std::size_t i = 0; i < 4; ++i) sum += costs.miss[i] + costs.jump[i];
+    EXPECT_GT(sum, 0);
+    EXPECT_GE(calibration.condition[k], 1);
+    EXPECT_LT(calibration.error[k], 1);
+  }
+  EXPECT_EQ(parse_calibration(to_json_text(calibration)), calibration);
+}
+
+TEST(CalibrationStore, GivesBackWhatItWasGiven) {
+  const test::TemporaryFolder folder;
+  const Variable variable("MESHORDER_CACHE", (folder.path() / "deep").string());
+  const Calibration calibration = made_up();
+  EXPECT_FALSE(load_calibration(key_of_this_machine()).calibration);
+  EXPECT_EQ(load_calibration(key_of_this_machine()).fault, "");
+  const std::filesystem::path file = save_calibration(calibration);
+  EXPECT_EQ(file, calibration_file(key_of_this_machine()));
+  const StoredCalibration stored = load_calibration(key_of_this_machine());
+  ASSERT_TRUE(stored.calibration);
+  EXPECT_EQ(*stored.calibration, calibration);
+  EXPECT_EQ(stored.fault, "");
+  // nothing unfinished is left beside it
+  const std::filesystem::directory_iterator files(file.parent_path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+TEST(CalibrationStore, KeepsInfiniteConditions) {
+  Calibration calibration = made_up();
+  calibration.condition[2] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(parse_calibration(to_json_text(calibration)), calibration);
+}
+
+TEST(CalibrationStore, EveryProcessorCacheAndBuildHasAFileOfItsOwn) {
+  const test::TemporaryFolder folder;
+  const Variable variable("MESHORDER_CACHE", folder.path().string());
+  const CalibrationKey key{"AMD EPYC  9R45 / x", "48K,1M,32M", "0.2.0, GNU 12"};
+  const std::filesystem::path file = calibration_file(key);
+  EXPECT_THAT(file.filename().string(), testing::StartsWith("AMD-EPYC-9R45-x-"));
+  for (const CalibrationKey& other : {CalibrationKey{"AMD EPYC 9R45 / x", key.caches, key.build},
+                                      CalibrationKey{key.processor, "48K,1M,16M", key.build},
+                                      CalibrationKey{key.processor, key.caches, "0.2.0, GNU 13"}}) {
+    EXPECT_NE(calibration_file(other), file);
+    EXPECT_FALSE(load_calibration(other).calibration);
+  }
+}
+
+TEST(CalibrationStore, AnotherMachinesFileIsNotTaken) {
+  const test::TemporaryFolder folder;
+  const Variable variable("MESHORDER_CACHE", folder.path().string());
+  Calibration other = made_up();
+  const std::filesystem::path file = save_calibration(other);
+  other.processor = "another";
+  std::ofstream(file) << to_json_text(other);
+  const StoredCalibration stored = load_calibration(key_of_this_machine());
+  EXPECT_FALSE(stored.calibration);
+  EXPECT_THAT(stored.fault, HasSubstr("is of another machine or build"));
+}
+
+TEST(CalibrationStore, NoDamagedFileIsTaken) {
+  const test::TemporaryFolder folder;
+  const Variable variable("MESHORDER_CACHE", folder.path().string());
+  const std::string text = to_json_text(made_up());
+  const std::filesystem::path file = save_calibration(made_up());
+  const auto fault_of = [&](const std::string& content) {
+    std::ofstream(file, std::ios::binary | std::ios::trunc) << content;
+    const StoredCalibration stored = load_calibration(key_of_this_machine());
+    EXPECT_FALSE(stored.calibration) << content;
+    return stored.fault;
+  };
+  EXPECT_THAT(fault_of(""), HasSubstr("is empty"));
+  EXPECT_THAT(fault_of("{}"), HasSubstr("is no calibration"));
+  EXPECT_THAT(fault_of("[1]"), HasSubstr("is no calibration"));
+  EXPECT_THAT(fault_of(test::with(text, "calibration 1", "calibration 0")), HasSubstr("is no calibration"));
+  EXPECT_THAT(fault_of(test::with(text, "\"spmv\"", "\"smpv\"")), HasSubstr("is damaged"));
+  EXPECT_THAT(fault_of(test::with(text, "\"date\": \"2026-01-02\"", "\"date\": 7")), HasSubstr("is damaged"));
+  EXPECT_THAT(fault_of(test::with(text, "\"access\": ", "\"access\": -")), HasSubstr("negative"));
+  EXPECT_THAT(fault_of(test::with(text, "20971520", "1")), HasSubstr("is damaged") /* or no cache */)
+      << "sizes must rise";
+  for (std::size_t size = 0; size + 2 < text.size(); size += 37)
+    EXPECT_NE(fault_of(text.substr(0, size)), "");
+}
+
+TEST(CalibrationStore, AFolderThatCannotBeMadeIsAnErrorWithARemedy) {
+  const test::TemporaryFolder folder;
+  const Variable variable("MESHORDER_CACHE", folder.file("file", "").string());
+  try {
+    (void)save_calibration(made_up());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("cannot be written; set MESHORDER_CACHE"));
+    EXPECT_EQ(error.code(), Code::io);
+  }
+}
+
+TEST(MachineChoice, IsTheOneNamedThenTheVariableThenThisMachine) {
+  const test::TemporaryFolder folder;
+  const Variable cache("MESHORDER_CACHE", folder.path().string());
+  const Variable machine("MESHORDER_MACHINE", "zen4");
+  EXPECT_EQ(choose_machine("zen5").model, zen5_costs());
+  EXPECT_EQ(choose_machine("zen5").in_words(), "zen5");
+  EXPECT_EQ(choose_machine().name, "zen4");
+  EXPECT_FALSE(choose_machine().stands_in);
+  const MachineChoice prior = choose_machine("this");
+  EXPECT_TRUE(prior.stands_in);
+  EXPECT_EQ(prior.in_words(), "this machine's caches at the costs of zen5");
+  EXPECT_EQ(prior.model.caches, caches_of_this_machine());
+  EXPECT_EQ(prior.model.kernels, zen5_costs().kernels);
+  (void)save_calibration(made_up());
+  const MachineChoice calibrated = choose_machine("this");
+  EXPECT_EQ(calibrated.in_words(), "this machine, calibrated 2026-01-02");
+  EXPECT_EQ(calibrated.model, made_up().model);
+  EXPECT_EQ(calibrated.floor, made_up().floor);
+  Calibration busy = made_up();
+  busy.steadiness.waiting = 0.5;
+  EXPECT_EQ(chosen(busy).in_words(), "this machine, calibrated 2026-01-02 while it was busy");
+}
+
+TEST(MachineChoice, UnknownNamesGetTheNearest) {
+  const auto fault = [](const std::string& name) {
+    try {
+      (void)choose_machine(name);
+    } catch (const InvalidArgument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(fault("zen6"), "unknown machine 'zen6'; did you mean 'zen5'?");
+  EXPECT_EQ(fault("cray"), "unknown machine 'cray'; known are this, zen5, zen4");
+  const Variable machine("MESHORDER_MACHINE", "cray");
+  EXPECT_THAT(fault(""), HasSubstr("unknown machine 'cray'"));
+}
+
+TEST(PublicCalibrate, IsStoppedAndRefusesNoTime) {
+  EXPECT_THROW((void)calibrate({.seconds = 0}), InvalidArgument);
+  CalibrationOptions options;
+  options.keep = false;
+  options.run.progress = [](const Progress&) { return false; };
+  EXPECT_THROW((void)calibrate(options), Stopped);
+}
+
+}  // namespace
+}  // namespace meshorder
