@@ -188,6 +188,12 @@ def test_without_a_revision_the_version_counts(begun):
         path.write_bytes(before)
 
 
+def test_it_prints_what_the_orders_save(begun):
+    command, arguments = begun
+    shown = command.ok(*arguments, "--steps", 8).stdout
+    assert "Speedup, %" in shown and "bounce, VF Fiedler" in shown
+
+
 def test_it_stops_in_good_order_and_goes_on(tmp_path):
     command = conftest.Command(tmp_path)
     arguments = ["reproduce", "-o", "study", "--scenario", "bounce", "--scenario", "falling", "--mesh", "ball-5",
