@@ -3,6 +3,7 @@
 #include "console.hpp"
 #include "io/format.hpp"
 #include "io/stream/output_file.hpp"
+#include "lab/report/comparison/comparison_page.hpp"
 #include "lab/report/page/study_page.hpp"
 #include "lab/study/folder.hpp"
 #include "lab/study/mesh_study.hpp"
@@ -29,7 +30,7 @@ namespace fs = std::filesystem;
 
 struct ReportArguments : Common {
   std::vector<std::string> inputs;
-  std::string output;  ///< empty: report.html, or report.html in the study's folder
+  std::string output;  ///< empty: report.html, report.html in the study's folder, or comparison.html
   double budget_seconds = TimingOptions{}.budget_seconds;
   OrderOptions ordering;
 };
@@ -163,14 +164,32 @@ void report_on_meshes(Console& console, const ReportArguments& arguments) {
   console.print_json({{"page", output}, {"results", to_json(page.results)}});
 }
 
+/// Whether an argument names a study: its folder, or its results.json.
+bool is_study(const std::string& input) {
+  return fs::is_directory(input) || fs::path(input).extension() == ".json";
+}
+
+/// Returns the results.json that an argument of a study names.
+fs::path results_of(const std::string& input) {
+  if (!fs::is_directory(input)) return input;
+  const StudyFolder folder(input);
+  if (!fs::exists(folder.results()))
+    throw InputError(input, "holds no results.json",
+                     "name the folder of a study that `meshorder reproduce` made, or mesh files");
+  return folder.results();
+}
+
 void report_on_study(Console& console, const ReportArguments& arguments) {
   if (!arguments.output.empty())
     throw InvalidArgument(
-        "-o is for a report on meshes; a study's report is written into the study's folder");
-  const StudyFolder folder(arguments.inputs.front());
-  if (!fs::exists(folder.results()))
-    throw InputError(folder.root().string(), "holds no results.json",
-                     "name the folder of a study that `meshorder reproduce` made, or mesh files");
+        "-o is for a report on meshes or two studies; a study's report is written into the study's folder");
+  const std::string& input = arguments.inputs.front();
+  const fs::path results = results_of(input);
+  const StudyFolder folder(fs::is_directory(input)     ? fs::path(input)
+                           : results.has_parent_path() ? results.parent_path()
+                                                       : fs::path("."));
+  if (folder.results().filename() != results.filename())
+    throw InputError(input, "is not called results.json", "name the folder of the study");
   Progress progress(!console.quiet());
   const WrittenReport report = write_report(folder, [&](std::string_view what, double fraction) {
     progress.stage(std::string(what), fraction, std::min(1.0, fraction + 0.1));
@@ -185,14 +204,62 @@ void report_on_study(Console& console, const ReportArguments& arguments) {
   console.print_json({{"page", folder.page().string()}, {"files", files}});
 }
 
+nlohmann::ordered_json saving_json(const Speedup& speedup) {
+  return {{"percent", speedup.percent},
+          {"low", speedup.low},
+          {"high", speedup.high},
+          {"beyond_noise", speedup.beyond_noise}};
+}
+
+nlohmann::ordered_json savings_json(const ComparedStudy& a, const ComparedStudy& b) {
+  auto savings = nlohmann::ordered_json::array();
+  for (const ComparedOrder& order : compared_orders(a.results, b.results)) {
+    nlohmann::ordered_json difference;
+    if (order.difference) {
+      difference = {{"points", order.difference->points},
+                    {"low", order.difference->low},
+                    {"high", order.difference->high},
+                    {"beyond_noise", order.difference->beyond_noise}};
+    }
+    savings.push_back({{"scenario", order.scenario},
+                       {"ordering", order.ordering},
+                       {"a", saving_json(order.a)},
+                       {"b", saving_json(order.b)},
+                       {"difference", difference}});
+  }
+  return savings;
+}
+
+void compare_studies(Console& console, const ReportArguments& arguments) {
+  const fs::path page = arguments.output.empty() ? "comparison.html" : arguments.output;
+  if (page.extension() != ".html" && page.extension() != ".htm")
+    throw InvalidArgument("-o " + page.string() +
+                          " names the page on two studies: give a name that ends in .html");
+  const auto read = [](const std::string& input) {
+    const fs::path file = results_of(input);
+    return ComparedStudy{file.string(), read_results(file)};
+  };
+  const ComparedStudy a = read(arguments.inputs.front());
+  const ComparedStudy b = read(arguments.inputs.back());
+  const WrittenComparison written = write_comparison(a, b, page);
+  console.print("{}", to_text(written.tables.front()));
+  for (const std::string& finding : written.findings) console.print("{}\n", finding);
+  auto files = nlohmann::ordered_json::array();
+  for (const fs::path& file : written.files) {
+    files.push_back(file.string());
+    console.print("wrote {}", file.string());
+  }
+  console.print_json({{"page", page.string()}, {"files", files}, {"savings", savings_json(a, b)}});
+}
+
 void run(const ReportArguments& arguments) {
   Console console(arguments);
-  const auto is_folder = [](const std::string& input) { return fs::is_directory(input); };
-  const auto folder = std::find_if(arguments.inputs.begin(), arguments.inputs.end(), is_folder);
-  if (folder == arguments.inputs.end()) return report_on_meshes(console, arguments);
-  if (arguments.inputs.size() > 1)
-    throw InvalidArgument(*folder +
-                          " is a folder: report on a study by itself, without meshes or other studies");
+  const auto study = std::find_if(arguments.inputs.begin(), arguments.inputs.end(), is_study);
+  if (study == arguments.inputs.end()) return report_on_meshes(console, arguments);
+  const bool all = std::all_of(arguments.inputs.begin(), arguments.inputs.end(), is_study);
+  if (!all || arguments.inputs.size() > 2)
+    throw InvalidArgument(*study + " is a study: report on one by itself, or compare two");
+  if (arguments.inputs.size() == 2) return compare_studies(console, arguments);
   report_on_study(console, arguments);
 }
 
@@ -206,13 +273,17 @@ void add_report(CLI::App& subcommand) {
       "Examples:\n"
       "  meshorder report dragon.veg -o dragon.html   your mesh as it is and in other orders, and what\n"
       "                                               each is worth; takes about half a minute\n"
-      "  meshorder report results/                    a study: writes its tables, figures and page again");
+      "  meshorder report results/                    a study: writes its tables, figures and page again\n"
+      "  meshorder report mine/ theirs/results.json   two studies: what orders save on both machines");
   const auto arguments = std::make_shared<ReportArguments>();
-  subcommand.add_option("INPUT", arguments->inputs, "Mesh files, or the folder of one study")
+  subcommand
+      .add_option("INPUT", arguments->inputs,
+                  "Mesh files; or the folder or results.json of one study, or of two to compare")
       ->required()
-      ->type_name("MESH… | DIR");
-  subcommand.add_option("-o,--output", arguments->output,
-                        "File for the page on meshes (default: report.html)");
+      ->type_name("MESH… | STUDY [STUDY]");
+  subcommand.add_option(
+      "-o,--output", arguments->output,
+      "File for the page on meshes (default: report.html), or on two studies (comparison.html)");
   subcommand
       .add_option("--budget", arguments->budget_seconds,
                   "Seconds to spend on running the kernels, for each mesh")

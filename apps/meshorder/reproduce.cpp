@@ -4,6 +4,7 @@
 #include "console.hpp"
 #include "interruption.hpp"
 #include "lab/report/page/study_page.hpp"
+#include "lab/report/tables/paper_tables.hpp"
 #include "lab/scenario/scenario.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/study/study_run.hpp"
@@ -62,6 +63,9 @@ void report(Console& console, const StudyFolder& folder, Progress& progress) {
   const WrittenReport written = write_report(folder);
   progress.finish();
   console.warn_of(written.notes);
+  // a row for each order: the table of the page is too wide for a terminal
+  const Table speedups = speedup_table(written.results);
+  if (!speedups.rows.empty()) console.print("{}", to_text(speedups));
   for (const std::string& finding : written.findings) console.print("{}\n", finding);
   for (const std::filesystem::path& file : written.files) {
     if (file.extension() != ".svg") console.print("wrote {}", file.string());

@@ -126,6 +126,7 @@ struct ScenarioRecord {
   std::string title;        ///< may be empty
   std::string method;       ///< "backward-euler" or "admm"
   std::string material;     ///< "corotational", "springs"
+  std::string precision;    ///< "double" or "single"; empty in results of earlier versions
   std::string mesh;         ///< MeshRecord::name
   std::string fingerprint;  ///< of the mesh, and of the parameters in the first order
   Index steps = 0;

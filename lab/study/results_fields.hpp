@@ -10,17 +10,21 @@
 namespace meshorder {
 
 /// A key of results.json and its member. Unless `free`, a text must not be empty and a number not negative.
+/// An `optional` key was not written by earlier versions: where it is missing, the member keeps its value.
 template <class Record, class Value>
 struct Field {
   std::string_view key;
   Value Record::*member;
   bool free = false;
+  bool optional = false;
 };
 // clang 14 deduces no aggregates by itself
 template <class Record, class Value>
 Field(std::string_view, Value Record::*) -> Field<Record, Value>;
 template <class Record, class Value>
 Field(std::string_view, Value Record::*, bool) -> Field<Record, Value>;
+template <class Record, class Value>
+Field(std::string_view, Value Record::*, bool, bool) -> Field<Record, Value>;
 
 /// The keys of a record's JSON object in their order, for reading and writing.
 template <class Record>
@@ -41,6 +45,7 @@ inline constexpr auto kFields<MachineRecord> =
                Field{"read_bandwidth", &MachineRecord::read_bandwidth},
                Field{"read_bandwidth_all", &MachineRecord::read_bandwidth_all},
                Field{"program", &MachineRecord::program},
+               Field{"revision", &MachineRecord::revision, true, true},
                Field{"compiler", &MachineRecord::compiler},
                Field{"flags", &MachineRecord::flags, true},
                Field{"simd", &MachineRecord::simd}};
@@ -128,6 +133,7 @@ inline constexpr auto kFields<ScenarioRecord> =
                Field{"title", &ScenarioRecord::title, true},
                Field{"method", &ScenarioRecord::method},
                Field{"material", &ScenarioRecord::material},
+               Field{"precision", &ScenarioRecord::precision, true, true},
                Field{"mesh", &ScenarioRecord::mesh},
                Field{"fingerprint", &ScenarioRecord::fingerprint},
                Field{"steps", &ScenarioRecord::steps},

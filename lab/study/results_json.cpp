@@ -2,6 +2,7 @@
 #include "lab/study/results_json.hpp"
 
 #include "io/stream/scanner.hpp"
+#include "lab/implicit/backward_euler.hpp"
 #include "lab/study/results_fields.hpp"
 #include "lab/support/json.hpp"
 #include <meshorder/error.hpp>
@@ -136,6 +137,7 @@ void check_record(const MeshRecord& mesh, const JsonValue& value) {
 void check_record(const ScenarioRecord& scenario, const JsonValue& value) {
   expect_positive(scenario.steps, value, "steps");
   expect_positive(scenario.turn, value, "turn");
+  if (!scenario.precision.empty()) (void)value["precision"].one_of<MatrixPrecision>();
   unique_names(scenario.orders, &ScenarioOrderRecord::ordering, value, "orders", "ordering");
   for (const JsonValue& order : value["orders"].items()) {
     for (const JsonValue& run : order["runs"].items())
@@ -178,14 +180,16 @@ class Reader {
     const auto known = [&](const auto&... field) { (also.push_back(field.key), ...); };
     std::apply(known, kFields<Record>);
     value.expect_keys(also);
-    const auto take = [&](const auto&... field) {
-      (read(value[field.key], record.*field.member, field.free), ...);
-    };
+    const auto take = [&](const auto&... field) { (read_field(value, field, record), ...); };
     std::apply(take, kFields<Record>);
     check_record(record, value);
   }
 
  private:
+  template <class Record, class Value>
+  static void read_field(const JsonValue& value, const Field<Record, Value>& field, Record& record) {
+    if (!field.optional || value.has(field.key)) read(value[field.key], record.*field.member, field.free);
+  }
   static void read(const JsonValue& value, double& number, bool free) {
     number = free ? value.number() : value.number({.min = 0});
   }

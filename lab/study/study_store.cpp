@@ -79,9 +79,9 @@ void StudyStore::resume(const StudyPlan& plan, const MachineRecord& machine) {
   };
   const MachineRecord& before = results_.machine;
   same(before.processor == machine.processor, "another processor: " + before.processor);
-  same(before.program == machine.program && before.compiler == machine.compiler &&
-           before.flags == machine.flags,
-       "another build of meshorder");
+  same(before.program == machine.program && before.revision == machine.revision,
+       program_in_words(before) + ", where this is " + program_in_words(machine));
+  same(before.compiler == machine.compiler && before.flags == machine.flags, "another build of meshorder");
   same(results_.size == plan.size, "meshes of size " + results_.size);
   same(results_.threads == plan.threads, fmt::format("{} threads", results_.threads));
   same(results_.reference == plan.reference, "another reference: " + results_.reference);
@@ -116,6 +116,8 @@ ScenarioRecord StudyStore::new_record(const Scenario& scenario) const {
   record.method = scenario.is_implicit() ? "backward-euler" : "admm";
   record.material =
       scenario.is_implicit() ? to_string(scenario.model) : to_string(scenario.projective().model);
+  record.precision =
+      to_string(std::visit([](const auto& options) { return options.precision; }, scenario.integrator));
   for (const OrderingSpec& ordering : results_.orderings)
     record.orders.emplace_back().ordering = ordering.name;
   return record;

@@ -5,6 +5,7 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "kernels/simd_target.hpp"
+#include "lab/support/revision.hpp"
 #include "payoff/bandwidth.hpp"
 #include "payoff/machine.hpp"
 
@@ -28,6 +29,18 @@ std::size_t buffer_bytes(const MachineRecord& machine) {
 
 }  // namespace
 
+std::string program_in_words(const MachineRecord& machine) {
+  std::string words = "meshorder ";
+  words += machine.program;
+  if (machine.revision.empty()) return words;
+  const std::size_t plus = machine.revision.find('+');
+  words += ", revision ";
+  words += machine.revision.substr(0, std::min<std::size_t>(plus, 12));
+  if (plus == std::string::npos) return words;
+  words += " with changes ";
+  return words + machine.revision.substr(plus + 1);
+}
+
 MachineRecord describe_machine() {
   MachineRecord machine;
   utsname system{};
@@ -42,6 +55,7 @@ MachineRecord describe_machine() {
   const int threads = thread_count();
   machine.read_bandwidth_all = threads > 1 ? read_bandwidth(bytes, kPasses, threads) : machine.read_bandwidth;
   machine.program = MESHORDER_VERSION;
+  machine.revision = build_revision();
   machine.compiler = MESHORDER_COMPILER;
   machine.flags = trimmed(MESHORDER_FLAGS);
   machine.simd = simd_target();

@@ -18,6 +18,7 @@ struct MachineRecord {
   double read_bandwidth = 0;      ///< GB/s, one thread
   double read_bandwidth_all = 0;  ///< GB/s, all threads
   std::string program;            ///< meshorder's version
+  std::string revision;           ///< of git, see build_revision; may be empty
   std::string compiler;           ///< "GNU 12.2.0"
   std::string flags;              ///< its options
   std::string simd;               ///< the target that the kernels chose at run time: "AVX3"
@@ -28,5 +29,9 @@ struct MachineRecord {
 /// Describes this machine and this program's build. Measures the bandwidths, which takes about a second; "all
 /// threads" are `thread_count()` threads.
 MachineRecord describe_machine();
+
+/// Returns the version and, if it is known, the revision of a study's program: "meshorder 0.2.0, revision
+/// 5eed5eed5eed", "… with changes 0123abcd".
+std::string program_in_words(const MachineRecord& machine);
 
 }  // namespace meshorder

@@ -4,11 +4,13 @@ import base64
 import html.parser
 import json
 import pathlib
+import re
 import zlib
 
 import numpy
 import pytest
 
+from conftest import ROOT
 from meshes import read_tetgen, write_tetgen
 
 
@@ -183,5 +185,109 @@ def test_broken_studies_are_named_and_nothing_is_written(command, study):
 
 
 def test_a_study_is_reported_by_itself_and_in_its_folder(command, study):
-    assert "by itself" in command.fails("report", study, study)
+    mesh = command.folder / "ball.node"
+    for inputs in ((study, mesh), (mesh, study / "results.json"), (study, study, study)):
+        assert "report on one by itself, or compare two" in command.fails("report", *inputs)
     assert "-o" in command.fails("report", study, "-o", "a.html")
+    (study / "mine.json").write_bytes((study / "results.json").read_bytes())
+    assert "not called results.json" in command.fails("report", study / "mine.json")
+
+
+def test_a_study_is_found_by_its_results(command, study):
+    once = command.json("report", study)["files"]
+    assert command.json("report", study / "results.json")["files"] == once
+
+
+def reproduction():
+    """The committed results of six scenarios."""
+    return json.loads((ROOT / "docs" / "reproduction" / "results.json").read_text())
+
+
+def shifted(results, points):
+    """What another machine might have measured: every order saves so many more points."""
+    results["machine"].update(processor="Another 1", compiler="Clang 19", revision="5eed")
+    results["began"] = "2027-01-02T03:04:05Z"
+    for scenario in results["scenarios"]:
+        for order in scenario["orders"]:
+            if order["ordering"] != results["reference"]:
+                speedup = order["speedup"]
+                for key in ("percent", "low", "high"):
+                    speedup[key] += points
+                speedup["beyond_noise"] = not speedup["low"] <= 0 <= speedup["high"]
+    return results
+
+
+@pytest.fixture
+def two(command):
+    """The committed study, and another one 3 points above it."""
+    for name, results in (("a", reproduction()), ("b", shifted(reproduction(), 3))):
+        (command.folder / name).mkdir()
+        (command.folder / name / "results.json").write_text(json.dumps(results))
+    return command
+
+
+def test_two_studies_are_compared(two):
+    said = two.json("report", "a/results.json", "b")
+    assert said["page"] == "comparison.html"
+    assert said["files"] == ["comparison.md", "comparison.csv", "comparison.html"]
+    savings = said["savings"]
+    assert len(savings) == 24
+    for saving in savings:
+        a, b, difference = saving["a"], saving["b"], saving["difference"]
+        assert difference["points"] == pytest.approx(3)
+        # both intervals are the same and even: √2 times as wide
+        half = 2**0.5 * (a["high"] - a["low"]) / 2
+        assert difference["low"] == pytest.approx(3 - half) and difference["high"] == pytest.approx(3 + half)
+        assert difference["beyond_noise"] == (half < 3)
+        assert b["percent"] == pytest.approx(a["percent"] + 3)
+    assert {saving["difference"]["beyond_noise"] for saving in savings} == {True, False}
+
+    text = (two.folder / "comparison.md").read_text()
+    rows = re.findall(r"^\| (\w+), ([\w ]+) \| .*?, (saves|costs|not told apart) \| .* \| (B saves more|A saves more|not told apart) \|",
+                      text, flags=re.MULTILINE)
+    assert len(rows) == 24
+    for (scenario, _, words, which), saving in zip(rows, savings):
+        assert scenario == saving["scenario"]
+        assert (which == "B saves more") == saving["difference"]["beyond_noise"]
+        assert (words == "not told apart") == (not saving["a"]["beyond_noise"])
+    for row in ("| Processor | AMD EPYC | Another 1 | differs |", "| Compiler | GNU 12.2.0 | Clang 19 | differs |",
+                "| Began | 2026-11-20T", "| Results | a/results.json | b/results.json |"):
+        assert row in text, row
+    assert re.search(r"\| Program \| meshorder 0.1.0 \| meshorder 0.1.0, revision 5eed \| differs \|", text)
+    page = (two.folder / "comparison.html").read_text()
+    assert page.count('class="number saves"') + page.count('class="number costs"') + page.count('class="number open"') == 48
+    assert not re.findall(r'(?:src|href)="(?!data:)', page)
+    shown = two.ok("report", "a", "b", "-o", "two.html").stdout
+    assert "falling, Fiedler" in shown and shown.endswith("wrote two.html\n")
+    assert (two.folder / "two.html").read_text() == page
+
+
+@pytest.mark.parametrize("change, words", [
+    (lambda b: b["meshes"][0].update(vertices=46317), "has a mesh dragon of 46,317 vertices"),
+    (lambda b: b.update(size="300k"), "has meshes of size 300k, where a/results.json has paper"),
+    (lambda b: b["scenarios"].pop(2), "has no scenario stretch"),
+    (lambda b: b["scenarios"][0].update(name="mine"), "has no scenario falling"),
+    (lambda b: b["scenarios"][0].update(precision="single"), "has falling in the precision single"),
+    (lambda b: b["scenarios"][3].update(fingerprint="56ae5f550aa3fbf9" + 16 * "0"), "has another unsquash"),
+    (lambda b: b["scenarios"][3].update(fingerprint=32 * "0"), "has unsquash on another mesh of the name armadillo"),
+    (lambda b: b["scenarios"].clear(), "has no scenario that was run"),
+])
+def test_studies_of_other_things_are_not_compared(two, change, words):
+    other = shifted(reproduction(), 3)
+    change(other)
+    (two.folder / "b" / "results.json").write_text(json.dumps(other))
+    first = reproduction()
+    for scenario in first["scenarios"]:
+        scenario["precision"] = "double"
+    (two.folder / "a" / "results.json").write_text(json.dumps(first))
+    line = two.fails("report", "a/results.json", "b/results.json")
+    assert line.startswith("meshorder: b/results.json: ") and words in line, line
+    assert not list(two.folder.glob("comparison.*"))
+
+
+def test_a_comparison_is_not_written_over_something_else(two):
+    assert "ends in .html" in two.fails("report", "a", "b", "-o", "a/results.json")
+    assert "none/two" in two.fails("report", "a", "b", "-o", "none/two.html")
+    assert "c/results.json" in two.fails("report", "a", "c/results.json")
+    (two.folder / "c").mkdir()
+    assert "c: holds no results.json" in two.fails("report", "a", "c")

@@ -20,14 +20,14 @@ DESKTOP = (1280, 900)
 PHONE = (390, 844)
 # what each part must show
 PARTS = {
-    "findings": [".findings p", "#hero canvas", "figure img", "#table-4"],
-    "times": ["#table-2", "#table-3"],
+    "findings": ["#summary", ".findings p", "#hero canvas", "figure img", "#break-even"],
+    "times": ["#table-2", "#table-3", "#table-4"],
     "meshes": ["#mesh-view canvas", "#mesh-view .legend"],
     "spans": ["#table-1", "figure img", "#pattern-view canvas"],
     "caches": ["figure img", "#misses-1"],
     "motion": ["canvas.film", "#motion-view input[type=range]", "#motions"],
     "by-phase": ["figure img", "#phases"],
-    "prediction": ["figure img", "#kernels"],
+    "prediction": ["figure img", "#prediction-error", "#kernels"],
     "measured-on": ["#machine", "#protocol"],
 }
 
@@ -174,6 +174,76 @@ def test_tables_hold_what_the_results_say(page):
     for scenario in results["scenarios"]:
         for order in scenario.get("orders", []):
             assert order["time"]["mean"] in cells["table-2"]
+
+
+def summary_cells(page, table="summary"):
+    """Texts, colours and edges of the cells that say what an order saves."""
+    return page.run("""return [...document.querySelectorAll(`#${arguments[0]} td:has(.verdict)`)].map((cell) => {
+        const style = getComputedStyle(cell);
+        return {value: Number(cell.dataset.value), words: cell.querySelector(".verdict").textContent,
+                interval: (cell.querySelector(".interval") || {}).textContent || "", back: style.backgroundColor,
+                ink: style.color, edge: style.borderLeftStyle};
+      })""", table)
+
+
+def luminance(colour):
+    channels = [int(number) / 255 for number in re.findall(r"\d+", colour)[:3]]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
+    return numpy.dot([0.2126, 0.7152, 0.0722], linear)
+
+
+def contrast(one, other):
+    bright, dark = sorted((luminance(one), luminance(other)), reverse=True)
+    return (bright + 0.05) / (dark + 0.05)
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_the_first_table_says_what_orders_save_in_words_edges_and_colours(page, path, dark):
+    results = json.loads(page.run("return document.getElementById('results').textContent"))
+    page.dark(dark)
+    try:
+        page.open(path)
+        first = page.run("""const all = [...document.querySelectorAll('#findings table, #findings .findings p')];
+            return all[0].id""")
+        assert first == "summary"
+        cells = summary_cells(page)
+    finally:
+        page.dark(False)
+    wanted = []
+    for scenario in results["scenarios"]:
+        for ordering in results["orderings"]:
+            speedup = next(order["speedup"] for order in scenario["orders"] if order["ordering"] == ordering["name"])
+            if ordering["name"] != results["reference"]:
+                certain = "saves" if speedup["percent"] > 0 else "costs"
+                wanted.append((speedup["percent"], certain if speedup["beyond_noise"] else "not told apart"))
+    assert [(cell["value"], cell["words"]) for cell in cells] == wanted
+    edges = {"saves": "solid", "costs": "double", "not told apart": "dotted"}
+    for cell in cells:
+        assert cell["edge"] == edges[cell["words"]]
+        assert (cell["back"] == "rgba(0, 0, 0, 0)") == (cell["words"] == "not told apart")
+        if cell["words"] != "not told apart":
+            assert contrast(cell["back"], cell["ink"]) >= 7
+    heads = page.run("return [...document.querySelectorAll('#summary th')].map((head) => head.scope)")
+    assert set(heads) == {"row", "col"}
+
+
+def test_saving_and_costing_look_different_in_grey_and_without_colour(page):
+    """The colours of one table made of all three kinds, and what paper leaves of them."""
+    page.run("""const row = make("tr", {}, make("th", {}, "s"));
+        for (const kind of ["saves", "open", "costs"])
+          row.append(make("td", {className: `number ${kind}`}, "1", make("span", {className: "verdict"}, kind)));
+        document.querySelector("#summary tbody").append(row);""")
+    edges = {cell["words"]: cell["edge"] for cell in summary_cells(page) if cell["words"] in ("saves", "open", "costs")}
+    assert len(set(edges.values())) == 3
+    page.media("print")
+    backs = {cell["back"] for cell in summary_cells(page)}
+    assert backs == {"rgba(0, 0, 0, 0)"}
+
+
+def test_the_first_table_fits_on_paper(page):
+    page.media("print")
+    page.resize(718, 1000)  # A4 less margins of a centimetre
+    assert page.run("return document.getElementById('summary').offsetWidth") <= 718
 
 
 def test_arrays_are_unpacked_as_they_were_packed(page, path):
@@ -416,6 +486,38 @@ def test_without_webgl_it_says_so(page, path):
         assert shown(page, "#pattern-view canvas")
     finally:
         page.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", hidden)
+
+
+@pytest.fixture(scope="module")
+def two_studies(tmp_path_factory):
+    """A page on the committed study and one that stands for another machine's."""
+    command = conftest.Command(tmp_path_factory.mktemp("two"))
+    results = json.loads((conftest.ROOT / "docs" / "reproduction" / "results.json").read_text())
+    for name, points in (("a", 0), ("b", -9)):
+        (command.folder / name).mkdir()
+        for scenario in results["scenarios"]:
+            for order in scenario["orders"]:
+                speedup = order["speedup"]
+                for key in ("percent", "low", "high"):
+                    speedup[key] += points
+                speedup["beyond_noise"] = not speedup["low"] <= 0 <= speedup["high"]
+        (command.folder / name / "results.json").write_text(json.dumps(results))
+    command.ok("report", "a", "b")
+    return command.folder / "comparison.html"
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE])
+def test_two_studies_stand_side_by_side(page, two_studies, size):
+    page.resize(*size, phone=size == PHONE)
+    page.open(two_studies)
+    assert page.requests()[-1] == two_studies.resolve().as_uri()
+    for table in ("comparison", "comparison-machines", "comparison-seconds", "comparison-kernels"):
+        assert shown(page, f"#{table}"), table
+    assert {cell["words"] for cell in summary_cells(page, "comparison")} == {"saves", "costs", "not told apart"}
+    assert page.run("return document.documentElement.scrollWidth") <= size[0]
+    before = column(page, "#comparison", 1)
+    page.run("document.querySelectorAll('#comparison thead button')[1].click()")
+    assert column(page, "#comparison", 1) == sorted(before)
 
 
 def test_pictures(page, path, tmp_path):

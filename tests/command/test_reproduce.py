@@ -150,6 +150,50 @@ def test_another_study_is_not_mixed_in(begun, change, words):
     assert (command.folder / "study" / "results.json").read_bytes() == before
 
 
+@pytest.mark.parametrize("change", [
+    lambda machine: machine.update(revision="0123456789abcdef0123456789abcdef01234567"),
+    lambda machine: machine.update(revision=machine["revision"] + "+5eed5eed"),
+    lambda machine: machine.update(program="0.0.9"),
+])
+def test_results_of_another_revision_are_not_gone_on_with(begun, change):
+    command, arguments = begun
+    path = command.folder / "study" / "results.json"
+    before = path.read_bytes()
+    try:
+        results = json.loads(before)
+        change(results["machine"])
+        path.write_text(json.dumps(results))
+        line = command.fails(*arguments, "--steps", 8)
+        assert "is of a study with meshorder 0." in line and ", where this is meshorder 0." in line
+        assert json.loads(path.read_text()) == results
+    finally:
+        path.write_bytes(before)
+
+
+def test_without_a_revision_the_version_counts(begun):
+    """A build from a tarball records none, and results that record none are of such a build or an earlier one."""
+    command, arguments = begun
+    path = command.folder / "study" / "results.json"
+    before = path.read_bytes()
+    recorded = json.loads(before)["machine"]["revision"]
+    try:
+        results = json.loads(before)
+        del results["machine"]["revision"]
+        path.write_text(json.dumps(results))
+        if recorded:
+            assert "where this is meshorder" in command.fails(*arguments, "--steps", 8)
+        else:
+            command.ok(*arguments, "--steps", 8)
+    finally:
+        path.write_bytes(before)
+
+
+def test_it_prints_what_the_orders_save(begun):
+    command, arguments = begun
+    shown = command.ok(*arguments, "--steps", 8).stdout
+    assert "Speedup, %" in shown and "bounce, VF Fiedler" in shown
+
+
 def test_it_stops_in_good_order_and_goes_on(tmp_path):
     command = conftest.Command(tmp_path)
     arguments = ["reproduce", "-o", "study", "--scenario", "bounce", "--scenario", "falling", "--mesh", "ball-5",

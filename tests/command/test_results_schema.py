@@ -8,6 +8,8 @@ import pytest
 import conftest
 import schemas
 
+# what earlier versions did not write; it may be missing
+ADDED = {"revision", "precision"}
 SCHEMA = schemas.read_schema(conftest.ROOT / "docs" / "results.schema.json")
 
 
@@ -31,7 +33,7 @@ def test_every_key_is_described():
     described = list(objects_of(SCHEMA))
     assert len(described) > 10
     for part in described:
-        assert part["additionalProperties"] is False and set(part["required"]) == set(part["properties"])
+        assert part["additionalProperties"] is False and set(part["required"]) == set(part["properties"]) - ADDED
         for key, value in part["properties"].items():
             target = SCHEMA["$defs"][value["$ref"].removeprefix("#/$defs/")] if "$ref" in value else {}
             assert value.get("description") or target.get("description"), key
@@ -41,6 +43,15 @@ def test_schema_takes_what_the_command_writes(study):
     results = json.loads((study / "results.json").read_text())
     assert schemas.faults(results, SCHEMA) == []
     assert results["scenarios"][0]["orders"][0]["runs"] and results["meshes"][0]["orders"]
+
+
+def test_schema_and_command_take_what_earlier_versions_wrote(study, command):
+    results = json.loads((study / "results.json").read_text())
+    assert results["machine"].pop("revision") is not None
+    assert results["scenarios"][0].pop("precision") == "double"
+    assert schemas.faults(results, SCHEMA) == []
+    (command.folder / "results.json").write_text(json.dumps(results))
+    command.ok("report", ".")
 
 
 @pytest.mark.parametrize("break_it", [
@@ -54,6 +65,7 @@ def test_schema_takes_what_the_command_writes(study):
     lambda study: study["meshes"][0].update(vertices=1.5),
     lambda study: study["meshes"][0]["orders"][0]["kernels"].pop("spmv"),
     lambda study: study["scenarios"][0].update(turn=0),
+    lambda study: study["scenarios"][0].update(precision="half"),
     lambda study: study["scenarios"][0].update(interleaved=1),
     lambda study: study["scenarios"][0]["orders"][0]["runs"][0]["step_seconds"].__setitem__(0, None),
     lambda study: study["scenarios"][0]["orders"][0]["speedup"].update(break_even_step=0),

@@ -21,36 +21,52 @@ std::string finding(const StudyResults& results, const std::string& beginning) {
   return {};
 }
 
-TEST(Findings, TellGainsAndHowTheyCompareWithThePaper) {
-  EXPECT_EQ(
-      finding(sample_results(), "Against “Scrambled”, Fiedler"),
-      "Against “Scrambled”, Fiedler saves time in both scenarios: 12.0 % (stretch) to 25.0 % (falling). "
-      "The paper reports 12.1 to 26.7 % in these scenarios; this study finds less in falling, the same, "
-      "within "
-      "its interval, in stretch. Where it saves time, computing the order pays off after 2 steps.");
+TEST(Findings, LeaveToTheTableWhatItTells) {
+  for (const std::string& sentence : findings_of(sample_results())) {
+    EXPECT_EQ(sentence.find("Against"), std::string::npos) << sentence;
+    EXPECT_EQ(sentence.find("The paper reports"), std::string::npos) << sentence;
+  }
 }
 
-TEST(Findings, DoNotCallNoiseAGain) {
-  EXPECT_EQ(
-      finding(sample_results(), "Against “Scrambled”, Original"),
-      "Against “Scrambled”, Original saves time in 1 of 2 scenarios: 10.0 % (falling); it differs by no "
-      "more than the noise in stretch. The paper reports 4.66 to 14.8 % in these scenarios; this study finds "
-      "less in all of them.");
+TEST(Findings, TellWhenOrdersArePaid) {
+  const std::string beginning = "Where an order saves time";
+  EXPECT_EQ(finding(sample_results(), beginning),
+            "Where an order saves time, computing it pays off after 2 (Fiedler in falling) to 3 steps (VF "
+            "Fiedler in falling), but not within the measured steps for VF Fiedler in stretch.");
   StudyResults results = sample_results();
-  for (ScenarioRecord& scenario : results.scenarios) scenario.orders[1].speedup.beyond_noise = false;
-  const std::string fiedler = finding(results, "Against “Scrambled”, Fiedler");
-  EXPECT_TRUE(fiedler.starts_with(
-      "Against “Scrambled”, Fiedler differs by no more than the noise in falling and stretch."));
-  EXPECT_EQ(fiedler.find("saves time"), std::string::npos);
+  for (ScenarioRecord& scenario : results.scenarios) {
+    for (ScenarioOrderRecord& order : scenario.orders) order.speedup.break_even_step = 1;
+  }
+  EXPECT_EQ(finding(results, beginning), "Where an order saves time, computing it pays off after 1 step.");
+  for (ScenarioRecord& scenario : results.scenarios) {
+    for (ScenarioOrderRecord& order : scenario.orders) order.speedup.break_even_step.reset();
+  }
+  EXPECT_EQ(finding(results, beginning),
+            "Where an order saves time, computing it does not pay off within the measured steps: Fiedler in "
+            "falling, Fiedler in stretch, VF Fiedler in falling and VF Fiedler in stretch.");
+  // what the noise swallows, or what costs time, is never paid
+  for (ScenarioRecord& scenario : results.scenarios) {
+    for (ScenarioOrderRecord& order : scenario.orders) order.speedup.beyond_noise = order.speedup.percent < 0;
+  }
+  EXPECT_EQ(finding(results, beginning), "");
 }
 
-TEST(Findings, TellLossesAndCostsThatAreNeverPaid) {
-  EXPECT_EQ(finding(sample_results(), "Against “Scrambled”, VF scrambled"),
-            "Against “Scrambled”, VF scrambled loses time in both scenarios: 2.0 % (falling) to 6.0 % "
-            "(stretch).");
-  const std::string paid = finding(sample_results(), "Against “Scrambled”, VF Fiedler");
-  EXPECT_TRUE(paid.ends_with("pays off after 3 steps, and does not pay off within the steps of stretch."))
-      << paid;
+TEST(Findings, TellHowFarPredictionsAreOff) {
+  StudyResults results = sample_results();
+  const std::string beginning = "Predicted speedups";
+  EXPECT_TRUE(finding(results, beginning)
+                  .ends_with("36 pairs of orders that are more than 10 % apart, all are predicted "
+                             "the right way round."))
+      << finding(results, beginning);
+  // SpMV: predicted as twice as fast as it is, in all orders but the reference
+  for (MeshOrderRecord& order : results.meshes[0].orders) {
+    if (order.ordering != "scrambled") order.kernels[0].predicted_ms /= 2;
+  }
+  EXPECT_TRUE(
+      finding(results, beginning)
+          .starts_with("Predicted speedups of the kernels are off by 100 % for SpMV, 0 % for element force"));
+  for (KernelRecord& kernel : results.meshes[0].orders[3].kernels) kernel.measured_ms = 0;
+  EXPECT_EQ(finding(results, beginning), "");
 }
 
 TEST(Findings, CautionAgainstAShortStudy) {
@@ -60,25 +76,6 @@ TEST(Findings, CautionAgainstAShortStudy) {
   EXPECT_EQ(finding(results, "This is a first look"), "");
   results.runs = 1;
   EXPECT_NE(finding(results, "This is a first look"), "");
-}
-
-TEST(Findings, BeginWithWhatThePapersOrdersSave) {
-  StudyResults results = sample_results();
-  const auto set = [&](std::size_t scenario, const std::string& ordering, double percent) {
-    for (ScenarioOrderRecord& order : results.scenarios[scenario].orders) {
-      if (order.ordering == ordering) order.speedup.percent = percent;
-    }
-  };
-  set(0, "fiedler", 3.25);
-  set(1, "fiedler", -2);
-  set(0, "vf-fiedler", 10);
-  set(1, "vf-fiedler", 20);
-  const std::string first = findings_of(results).front();
-  EXPECT_NE(first.find("saves -2.0 to 3.2 %, and ordering elements as well 10.0 to 20.0 %, of the time"),
-            std::string::npos)
-      << first;
-  results.reference = "original";
-  EXPECT_EQ(findings_of(results).front().find("Ordering vertices"), std::string::npos);
 }
 
 TEST(Findings, CompareWithElementsScrambledToo) {
@@ -144,7 +141,7 @@ TEST(Findings, OfMeshesAloneAreVerdictsAndKernels) {
   results.scenarios.clear();
   results.meshes[0].verdict = "as it is, SpMV runs twice as fast as I could";
   const auto findings = findings_of(results);
-  ASSERT_EQ(findings.size(), 4);
+  ASSERT_EQ(findings.size(), 5);
   EXPECT_EQ(findings[0], "dragon: as it is, SpMV runs twice as fast as I could.");
   EXPECT_EQ(findings[1],
             "Measured kernels on dragon, compared with “Scrambled”: SpMV runs 5.00 times faster in VF "

@@ -31,6 +31,16 @@ TEST(Machine, ProcessorsWithoutANameAreCalledByTheirNumbers) {
   EXPECT_EQ(name_in(""), "aarch64 processor");
 }
 
+TEST(Machine, ProgramsAreCalledByVersionAndRevision) {
+  MachineRecord machine;
+  machine.program = "0.2.0";
+  EXPECT_EQ(program_in_words(machine), "meshorder 0.2.0");
+  machine.revision = "0123456789abcdef0123456789abcdef01234567";
+  EXPECT_EQ(program_in_words(machine), "meshorder 0.2.0, revision 0123456789ab");
+  machine.revision += "+5eed5eed";
+  EXPECT_EQ(program_in_words(machine), "meshorder 0.2.0, revision 0123456789ab with changes 5eed5eed");
+}
+
 TEST(Machine, IsDescribedInFull) {
   const MachineRecord machine = describe_machine();
   EXPECT_EQ(machine.cores, static_cast<int>(std::thread::hardware_concurrency()));

@@ -140,6 +140,7 @@ TEST(Page, HoldsTheViewerAndThreeWithItsLicence) {
 TEST(ViewerSources, AreTheFilesToTheByte) {
   const std::string page = test::content_of(MESHORDER_VIEWER "/page.html");
   EXPECT_EQ(viewer_sources().page, page);
+  EXPECT_EQ(viewer_sources().comparison, test::content_of(MESHORDER_VIEWER "/comparison.html"));
   const std::string three = test::content_of(MESHORDER_THREE_JS);
   EXPECT_TRUE(viewer_sources().three.ends_with(three));
 }

@@ -76,6 +76,7 @@ StudyResults sample() {
                      .read_bandwidth = 35.5,
                      .read_bandwidth_all = 52,
                      .program = "0.1.0",
+                     .revision = "5eed5eed",
                      .compiler = "GNU 12.2.0",
                      .flags = "-O3",
                      .simd = "AVX3"};
@@ -93,6 +94,7 @@ StudyResults sample() {
                         .title = "A grid falls",
                         .method = "backward-euler",
                         .material = "corotational",
+                        .precision = "single",
                         .mesh = "grid",
                         .fingerprint = "5eed",
                         .steps = 3,
@@ -147,6 +149,17 @@ TEST(ResultsJson, NeedsNoTitleOfAScenario) {
   EXPECT_EQ(read_results(folder.path() / "results.json"), results);
 }
 
+TEST(ResultsJson, ReadsResultsOfEarlierVersionsWithoutRevisionAndPrecision) {
+  Json json = to_json(sample());
+  json["machine"].erase("revision");
+  json["scenarios"][0].erase("precision");
+  const test::TemporaryFolder folder;
+  StudyResults expected = sample();
+  expected.machine.revision.clear();
+  expected.scenarios.front().precision.clear();
+  EXPECT_EQ(read_results(folder.file("results.json", json.dump())), expected);
+}
+
 TEST(ResultsJson, KeepsMeasurementsWhereANameIsNoUtf8) {
   StudyResults results = sample();
   results.scenarios.front().title =
@@ -199,6 +212,8 @@ TEST(ResultsJson, RefusesNumbersOutOfRange) {
       "machine.cache_bytes: 32768 is not a cache size after 65536; sizes are ascending multiples of 64");
   EXPECT_EQ(complaint([](Json& json) { json["machine"]["processor"] = ""; }),
             "machine.processor: is an empty text; give one");
+  EXPECT_EQ(complaint([](Json& json) { json["scenarios"][0]["precision"] = "half"; }),
+            "scenarios[0].precision: 'half' is unknown; known are double, single");
 }
 
 TEST(ResultsJson, RefusesListsThatDoNotFitEachOther) {

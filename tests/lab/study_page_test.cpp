@@ -177,6 +177,28 @@ TEST_F(StudyPage, IsWrittenWithItsTables) {
   EXPECT_TRUE(test::content_of(folder.tables(".md")).starts_with("# What the order of a mesh is worth"));
 }
 
+TEST_F(StudyPage, BeginsWithTheTableOfWhatOrdersSave) {
+  for (const char* const name : {"original", "scrambled"}) {
+    ScenarioOrderRecord record;
+    record.ordering = name;
+    RunRecord run;
+    run.began = "2026-11-20T17:30:00Z";
+    run.step_seconds.assign(20, 1);
+    record.runs = {run};
+    results.scenarios[0].orders.push_back(record);
+  }
+  write_results(results, folder.results());
+  (void)write_report(folder);
+  const std::string tables = test::content_of(folder.tables(".md"));
+  const std::size_t title = tables.find("\n\n");
+  EXPECT_EQ(tables.substr(title, 25), "\n\n## What the orders save");
+  const std::size_t sentence = tables.find("This is a first look");
+  EXPECT_GT(sentence, tables.find("| falling |"));
+  EXPECT_LT(sentence, tables.find("## Table 2"));
+  const std::string html = test::content_of(folder.page());
+  EXPECT_LT(html.find("<table id=\"summary\">"), html.find("This is a first look"));
+}
+
 TEST_F(StudyPage, IsWrittenWholeOrNotAtAll) {
   write_results(results, folder.results());
   std::filesystem::create_directory(folder.page());

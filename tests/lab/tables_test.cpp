@@ -133,21 +133,104 @@ TEST(Tables, SayWhereTheNoiseSwallowsADifference) {
   EXPECT_EQ(cell(tables, "break-even", "stretch, VF Fiedler", "Pays off at step").text, "never");
 }
 
+TEST(Tables, BeginWithWhatEachOrderSavesInEachScenario) {
+  const auto tables = tables_of(sample_results());
+  const Table& summary = tables.front();
+  ASSERT_EQ(summary.id, "summary");
+  EXPECT_EQ(summary.columns,
+            (std::vector<std::string>{"Scenario", "Original", "Original, paper", "Fiedler", "Fiedler, paper",
+                                      "VF Fiedler", "VF Fiedler, paper", "VF scrambled"}));
+  ASSERT_EQ(summary.rows.size(), 2);
+  const auto at = [&](const char* row, const char* column) { return cell(tables, "summary", row, column); };
+  const TableCell saves = at("falling", "Fiedler");
+  EXPECT_EQ(saves.text, "+25.0");
+  EXPECT_EQ(saves.value, 25);
+  EXPECT_EQ(saves.interval, "+24.0 … +26.0");
+  EXPECT_EQ(saves.certainty, Certainty::saves);
+  EXPECT_EQ(at("falling", "Fiedler, paper").text, "+26.7");
+  EXPECT_EQ(at("stretch", "Original").interval, "−0.5 … +1.5");
+  EXPECT_EQ(at("stretch", "Original").certainty, Certainty::open);
+  EXPECT_EQ(at("stretch", "VF scrambled").interval, "−7.0 … −5.0");
+  EXPECT_EQ(at("stretch", "VF scrambled").certainty, Certainty::costs);
+  EXPECT_EQ(at("stretch", "VF scrambled").text, "−6.0");
+}
+
+TEST(Tables, SayWhatIsCertainInEveryFormat) {
+  Table table{"t", "T", "", {"Scenario", "Order"}, {}};
+  const TableCell saves{"+3.0", 3, false, "+2.0 … +4.0", Certainty::saves};
+  const TableCell open{"+1.0", 1, false, "−1.0 … +3.0", Certainty::open};
+  const TableCell costs{"−3.0", -3, false, "", Certainty::costs};
+  for (const TableCell& each : {saves, open, costs}) table.rows.push_back({{"s", {}, false}, each});
+  EXPECT_EQ(to_markdown({table}),
+            "## T\n\n| Scenario | Order |\n| --- | ---: |\n| s | +3.0 (+2.0 … +4.0), saves |\n"
+            "| s | +1.0 (−1.0 … +3.0), not told apart |\n| s | −3.0, costs |\n");
+  EXPECT_NE(to_csv({table}).find("t,s,Order,\"+1.0 (−1.0 … +3.0), not told apart\",1\r\n"),
+            std::string::npos);
+  const std::string html = to_html(table);
+  EXPECT_NE(
+      html.find("<th scope=\"row\">s</th><td class=\"number saves\" data-value=\"3\">+3.0 "
+                "<span class=\"interval\">(+2.0 … +4.0)</span> <span class=\"verdict\">saves</span></td>"),
+      std::string::npos)
+      << html;
+  EXPECT_NE(html.find("class=\"number open\""), std::string::npos);
+  EXPECT_NE(
+      html.find(
+          "<td class=\"number costs\" data-value=\"-3\">−3.0 <span class=\"verdict\">costs</span></td>"),
+      std::string::npos);
+  EXPECT_EQ(to_text(table),
+            "T\n"
+            "Scenario                               Order\n"
+            "s                  +3.0 (+2.0 … +4.0), saves\n"
+            "s         +1.0 (−1.0 … +3.0), not told apart\n"
+            "s                                −3.0, costs\n");
+}
+
+TEST(Tables, StateTheErrorOfPredictions) {
+  StudyResults results = sample_results();
+  // element force; measured 1 ms scrambled and 0.5, 0.25, 0.2, 1.1 in the others, predicted twice as much
+  const auto predict = [&](std::size_t order, double ms) {
+    results.meshes[0].orders[order].kernels[1].predicted_ms = ms;
+  };
+  predict(0, 0.8);   // 2.5 times faster for 2: +25 %
+  predict(1, 1);     // twice for 4 times: −50 %
+  predict(2, 0.4);   // 5 times for 5 times
+  predict(4, 1.98);  // 1/0.99 for 1/1.1: +11.1 %, and the wrong way round
+  const auto tables = tables_of(results);
+  const auto value = [&](const char* column) {
+    return *cell(tables, "prediction-error", "element force", column).value;
+  };
+  EXPECT_EQ(value("Speedups"), 4);
+  EXPECT_NEAR(value("Median error, %"), (11.1111 + 25) / 2, 1e-3);
+  EXPECT_NEAR(value("90 % within, %"), 50, 1e-9);
+  EXPECT_NEAR(value("Largest, %"), 50, 1e-9);
+  // of ten pairs only scrambled and VF scrambled are not more than 10 % apart, and of the others
+  // original (0.5, predicted 0.8) and Fiedler (0.25, predicted 1) are told wrong
+  EXPECT_EQ(value("Of pairs"), 9);
+  EXPECT_EQ(value("Told right"), 8);
+  EXPECT_EQ(cell(tables, "kernels", "dragon, element force, Original", "Error, %").text, "+25.0");
+  EXPECT_EQ(cell(tables, "kernels", "dragon, element force, Fiedler", "Error, %").text, "−50.0");
+  EXPECT_EQ(cell(tables, "kernels", "dragon, element force, Scrambled", "Error, %").text, "–");
+  EXPECT_EQ(cell(tables, "prediction-error", "SpMV", "Largest, %").value, 0);
+}
+
 TEST(Tables, LeaveOutWhatTheResultsDoNotHold) {
   EXPECT_TRUE(tables_of({}).empty());
   StudyResults results = sample_results();
   EXPECT_EQ(ids(tables_of(results)),
-            (std::vector<std::string>{"table-1", "table-2", "table-3", "table-4", "break-even", "phases",
-                                      "motions", "misses-1", "misses-2", "kernels", "machine", "protocol"}));
+            (std::vector<std::string>{"summary", "table-1", "table-2", "table-3", "table-4", "break-even",
+                                      "phases", "motions", "misses-1", "misses-2", "prediction-error",
+                                      "kernels", "machine", "protocol"}));
   // a study of meshes alone
   results.scenarios.clear();
   EXPECT_EQ(ids(tables_of(results)),
-            (std::vector<std::string>{"table-1", "misses-1", "misses-2", "kernels", "machine", "protocol"}));
+            (std::vector<std::string>{"table-1", "misses-1", "misses-2", "prediction-error", "kernels",
+                                      "machine", "protocol"}));
   // the reference has not run
   results = sample_results();
   for (ScenarioRecord& scenario : results.scenarios) scenario.orders[3].runs.clear();
   const auto tables = tables_of(results);
   EXPECT_EQ(find_table(tables, "table-2")->rows.size(), 8);
+  EXPECT_EQ(find_table(tables, "summary"), nullptr);
   EXPECT_EQ(find_table(tables, "table-3"), nullptr);
   EXPECT_EQ(find_table(tables, "table-4"), nullptr);
 }
@@ -164,6 +247,7 @@ TEST(Tables, TakeMoreOrdersThanThePapers) {
   const auto tables = tables_of(results);
   EXPECT_EQ(cell(tables, "table-4", "falling, hilbert", "Speedup, %").text, "+25.0");
   EXPECT_EQ(cell(tables, "table-4", "falling, hilbert", "Paper, %").text, "–");
+  EXPECT_EQ(cell(tables, "summary", "falling", "hilbert").text, "+25.0");
   EXPECT_EQ(cell(tables, "kernels", "dragon, SpMV, hilbert", "Measured").text, "4.00×");
 }
 

@@ -75,6 +75,7 @@ inline std::vector<RunRecord> sample_runs(const ScenarioRecord& scenario, double
 /// Fills the orders of a scenario of 4 steps, and all that a study computes from their runs.
 inline void add_sample_orders(ScenarioRecord& scenario, const std::vector<OrderingSpec>& orderings,
                               const std::vector<SampleTimes>& times) {
+  scenario.precision = "double";
   scenario.fingerprint = "5eed";
   scenario.steps = 4;
   scenario.turn = 2;
@@ -121,6 +122,7 @@ inline StudyResults sample_results() {
                      .read_bandwidth = 12.5,
                      .read_bandwidth_all = 20,
                      .program = "0.1.0",
+                     .revision = "",
                      .compiler = "GNU 12.2.0",
                      .flags = "-O3 -DNDEBUG",
                      .simd = "AVX3"};

@@ -8,9 +8,9 @@
 
 namespace meshorder {
 
-/// Returns what the results show, in a few sentences for the top of the page and of tables.md: where an order
-/// saves time and how much, where the difference is within the noise, where it loses time, and how that
-/// compares with the paper. Made from the numbers alone.
+/// Returns what the results show beyond the table of what the orders save, in a few sentences to stand below
+/// it: how far the study goes, when orders pay off, whether all did the same work, and what spans, simulated
+/// caches and predictions say. Made from the numbers alone.
 std::vector<std::string> findings_of(const StudyResults& results);
 
 }  // namespace meshorder

@@ -3,6 +3,7 @@
 
 #include "lab/report/findings/lookup.hpp"
 #include "lab/report/findings/numbers_in_words.hpp"
+#include "lab/report/findings/prediction_error.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -111,6 +112,30 @@ std::string kernels_of(const StudyResults& results, const MeshRecord& mesh) {
                      title_of(results, results.reference), fmt::join(parts, "; "));
 }
 
+/// Returns how far the predicted speedups of all kernels together are off.
+std::string predictions_in_words(const StudyResults& results) {
+  std::vector<std::string> parts;
+  int pairs = 0;
+  int told_right = 0;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    const PredictionError error = prediction_error(results, k);
+    pairs += error.pairs;
+    told_right += error.pairs_told_right;
+    if (error.speedups > 0)
+      parts.push_back(fmt::format("{:.0f} % for {}", 100 * error.median, kKernelTitles[k]));
+  }
+  if (parts.empty()) return {};
+  std::string words =
+      fmt::format("Predicted speedups of the kernels are off by {} in the median", in_words(parts));
+  if (pairs > 0) {
+    words += fmt::format(
+        "; of {} pairs of orders that are more than 10 % apart, {} are predicted the right way "
+        "round",
+        pairs, told_right == pairs ? "all" : std::to_string(told_right));
+  }
+  return words + ".";
+}
+
 }  // namespace
 
 std::vector<std::string> mesh_findings(const StudyResults& results) {
@@ -121,6 +146,7 @@ std::vector<std::string> mesh_findings(const StudyResults& results) {
   }
   findings.push_back(spans_in_words(results));
   findings.push_back(misses_in_words(results));
+  findings.push_back(predictions_in_words(results));
   std::erase(findings, "");
   return findings;
 }

@@ -22,6 +22,7 @@ endfunction()
 set(viewer ${PROJECT_SOURCE_DIR}/viewer)
 file(GLOB scripts CONFIGURE_DEPENDS ${viewer}/*.js) # by name
 meshorder_read(MESHORDER_VIEWER_PAGE ${viewer}/page.html)
+meshorder_read(MESHORDER_VIEWER_COMPARISON ${viewer}/comparison.html)
 meshorder_read(MESHORDER_VIEWER_STYLE ${viewer}/style.css)
 meshorder_read(MESHORDER_VIEWER_SCRIPTS ${scripts})
 meshorder_read(MESHORDER_VIEWER_THREE ${viewer}/three_licence.txt ${MESHORDER_THREE_JS})

@@ -93,8 +93,10 @@ std::string title_of(const StudyResults& results) {
 
 std::string markdown_of(const Page& page) {
   std::string text = "# " + markdown_escaped(page.title) + "\n\n";
+  auto rest = page.tables.begin();
+  if (rest != page.tables.end() && rest->id == "summary") text += to_markdown({*rest++}) + "\n";
   for (const std::string& finding : page.findings) text += prose_as_markdown(finding) + "\n\n";
-  return text + to_markdown(page.tables);
+  return text + to_markdown({rest, page.tables.end()});
 }
 
 }  // namespace

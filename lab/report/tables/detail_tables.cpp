@@ -3,6 +3,7 @@
 
 #include "lab/report/findings/lookup.hpp"
 #include "lab/report/findings/numbers_in_words.hpp"
+#include "lab/report/findings/prediction_error.hpp"
 
 #include <fmt/format.h>
 
@@ -54,6 +55,11 @@ TableCell factor_cell(double milliseconds, double reference) {
   if (milliseconds <= 0 || reference <= 0) return unknown_cell();
   const double factor = reference / milliseconds;
   return {fmt::format("{:.2f}×", factor), factor, false};
+}
+
+TableCell error_cell(const KernelRecord& kernel, const KernelRecord& reference, bool is_reference) {
+  if (is_reference || !has_both(kernel) || !has_both(reference)) return unknown_cell();
+  return percent_cell(100 * signed_error(kernel, reference));
 }
 
 /// Returns the index of a hierarchy in a mesh's list.
@@ -155,9 +161,10 @@ Table kernels_table(const StudyResults& results) {
       "Kernels: predicted and measured",
       fmt::format("How many times faster than in the order “{}” a kernel runs: predicted from simulated "
                   "misses with the costs of the model's machine, and measured on one thread of this "
-                  "machine, best of interleaved rounds.",
+                  "machine, best of interleaved rounds. Error: predicted divided by measured, less 1; "
+                  "negative where the order is better than predicted.",
                   title_of(results, results.reference)),
-      {"Mesh, kernel and order", "Predicted", "Measured", "Measured, ms"},
+      {"Mesh, kernel and order", "Predicted", "Measured", "Error, %", "Measured, ms"},
       {}};
   for_each_kernel(results, [&](const MeshRecord& mesh, std::size_t k, const MeshOrderRecord& order,
                                const MeshOrderRecord* reference) {
@@ -167,6 +174,7 @@ Table kernels_table(const StudyResults& results) {
     table.rows.push_back({kernel_head(results, mesh, k, order),
                           factor_cell(kernel.predicted_ms, compared.predicted_ms),
                           factor_cell(kernel.measured_ms, compared.measured_ms),
+                          error_cell(kernel, compared, &order == reference),
                           kernel.measured_ms > 0 ? number_cell(kernel.measured_ms, 3) : unknown_cell()});
   });
   return table;

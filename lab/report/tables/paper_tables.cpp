@@ -17,7 +17,24 @@ namespace {
 
 constexpr const char* kHead = "Scenario and order";
 
-/// Returns whether the paper has numbers for a scenario of the study, with the same reference.
+/// Returns a cell rounded to the accuracy of a number that is derived from rounded ones.
+TableCell derived_cell(const std::optional<double>& seconds) {
+  if (!seconds) return unknown_cell();
+  const double unit = *seconds < 1000 ? 1 : 10;
+  return {fmt::format("≈ {}", with_commas(std::llround(*seconds / unit) * static_cast<long long>(unit))),
+          seconds, false};
+}
+
+/// Returns seconds that are a part of `whole`, with as many decimals.
+TableCell part_cell(double seconds, double whole) {
+  return {with_digits_of(seconds, whole, 4), seconds, false};
+}
+
+/// Returns a number as the paper prints it.
+TableCell printed_cell(double number) { return {fmt::format("{}", number), number, false}; }
+
+}  // namespace
+
 bool has_paper(const StudyResults& results) {
   return results.reference == "scrambled" &&
          std::any_of(results.scenarios.begin(), results.scenarios.end(), [](const ScenarioRecord& scenario) {
@@ -25,8 +42,7 @@ bool has_paper(const StudyResults& results) {
          });
 }
 
-/// Returns how these runs differ from the paper's, for captions: " Not as in the paper: falling, 20 steps."
-std::string differences(const StudyResults& results) {
+std::string differences_from_paper(const StudyResults& results) {
   std::string words;
   for (const ScenarioRecord& scenario : results.scenarios) {
     const PaperScenario* const paper = find_paper_scenario(scenario.name);
@@ -39,27 +55,6 @@ std::string differences(const StudyResults& results) {
   }
   return words + (words.empty() ? "" : ".");
 }
-
-/// Returns a cell rounded to the accuracy of a number that is derived from rounded ones.
-TableCell derived_cell(const std::optional<double>& seconds) {
-  if (!seconds) return unknown_cell();
-  const double unit = *seconds < 1000 ? 1 : 10;
-  return {fmt::format("≈ {}", with_commas(std::llround(*seconds / unit) * static_cast<long long>(unit))),
-          seconds, false};
-}
-
-constexpr const char* kNotTold =
-    " –: the paper's text gives no number; only the captions of its Figures 4 to 9 do.";
-
-/// Returns seconds that are a part of `whole`, with as many decimals.
-TableCell part_cell(double seconds, double whole) {
-  return {with_digits_of(seconds, whole, 4), seconds, false};
-}
-
-/// Returns a number as the paper prints it.
-TableCell printed_cell(double number) { return {fmt::format("{}", number), number, false}; }
-
-}  // namespace
 
 Table edge_span_table(const StudyResults& results) {
   Table table{
@@ -98,7 +93,7 @@ Table seconds_table(const StudyResults& results) {
     table.caption += fmt::format(
         " The paper's are derived: seconds saved divided by the per cent saved give those of its scrambled "
         "order, good to half a per cent, for {} steps (three runs, or five: it says both).{}{}",
-        kPaperSteps, differences(results), kNotTold);
+        kPaperSteps, differences_from_paper(results), kNotTold);
   }
   for_each_order(results, false, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
     table.rows.push_back({head_of(results, scenario, order), number_cell(order.time.mean),
@@ -119,8 +114,8 @@ Table saved_table(const StudyResults& results) {
       {}};
   if (paper) {
     table.columns.emplace_back("Paper, s");
-    table.caption +=
-        fmt::format(" The paper's {} steps on its Xeon.{}{}", kPaperSteps, differences(results), kNotTold);
+    table.caption += fmt::format(" The paper's {} steps on its Xeon.{}{}", kPaperSteps,
+                                 differences_from_paper(results), kNotTold);
   }
   for_each_order(results, true, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
     table.rows.push_back(
@@ -145,7 +140,7 @@ Table speedup_table(const StudyResults& results) {
               {}};
   if (paper) {
     table.columns.insert(table.columns.begin() + 2, "Paper, %");
-    table.caption += differences(results) + kNotTold;
+    table.caption += differences_from_paper(results) + kNotTold;
   }
   for_each_order(results, true, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
     const Speedup& s = order.speedup;

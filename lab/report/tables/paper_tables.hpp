@@ -3,11 +3,21 @@
 
 #include "lab/report/tables/tables.hpp"
 
+#include <string>
+
 namespace meshorder {
 
 // The paper's tables with its numbers next to ours, a row for each mesh or scenario and order. A table
 // without data has no rows. The paper's column is omitted in a study without its scenarios or with another
 // reference.
+
+/// Returns whether the paper has numbers for a scenario of the study, with the same reference.
+bool has_paper(const StudyResults& results);
+/// Returns how these runs differ from the paper's, for captions: " Not as in the paper: falling, 20 steps."
+std::string differences_from_paper(const StudyResults& results);
+/// What captions say of a dash in the paper's column.
+inline constexpr const char* kNotTold =
+    " –: the paper's text gives no number; only the captions of its Figures 4 to 9 do.";
 
 Table edge_span_table(const StudyResults& results);   ///< Table 1
 Table seconds_table(const StudyResults& results);     ///< Table 2

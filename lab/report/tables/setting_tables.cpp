@@ -74,7 +74,7 @@ Table machine_table(const StudyResults& results) {
   add(table, "Read bandwidth, one thread", with_unit(machine.read_bandwidth, "GB/s"));
   add(table, "Read bandwidth, all threads", with_unit(machine.read_bandwidth_all, "GB/s"));
   add(table, "System", text_cell(machine.system));
-  if (!machine.program.empty()) add(table, "Program", text_cell("meshorder " + machine.program));
+  if (!machine.program.empty()) add(table, "Program", text_cell(program_in_words(machine)));
   add(table, "Compiler", text_cell(machine.compiler));
   add(table, "Its options", text_cell(machine.flags));
   add(table, "SIMD of the kernels", text_cell(machine.simd));

@@ -29,6 +29,54 @@ bool has_numbers(const Table& table, std::size_t column) {
   });
 }
 
+std::string_view words_of(Certainty certainty) {
+  switch (certainty) {
+    case Certainty::saves:
+      return "saves";
+    case Certainty::open:
+      return "not told apart";
+    case Certainty::costs:
+      return "costs";
+    case Certainty::unsaid:
+      break;
+  }
+  return {};
+}
+
+/// Returns what the page's style sheet calls it.
+std::string_view class_of(Certainty certainty) {
+  return certainty == Certainty::open ? std::string_view("open") : words_of(certainty);
+}
+
+/// Returns all that a cell says in one line: "+11.9 (+10.2 … +13.5), saves".
+std::string line_of(const TableCell& cell) {
+  std::string line = cell.text;
+  if (!cell.interval.empty()) line += fmt::format(" ({})", cell.interval);
+  if (cell.certainty != Certainty::unsaid) line += fmt::format(", {}", words_of(cell.certainty));
+  return line;
+}
+
+/// Returns the content of a cell as HTML, its parts in elements of their own.
+std::string cell_html(const TableCell& cell) {
+  std::string html = xml_escaped(cell.text);
+  if (!cell.interval.empty())
+    html += fmt::format(" <span class=\"interval\">({})</span>", xml_escaped(cell.interval));
+  if (cell.certainty != Certainty::unsaid)
+    html += fmt::format(" <span class=\"verdict\">{}</span>", words_of(cell.certainty));
+  return html;
+}
+
+/// Returns the number of characters of UTF-8, which is what a terminal takes for the texts of tables.
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::string padded(const std::string& text, std::size_t width, bool right) {
+  const std::string blanks(width - std::min(width, width_of(text)), ' ');
+  return right ? blanks + text : text + blanks;
+}
+
 }  // namespace
 
 std::string markdown_escaped(std::string_view text) {
@@ -53,7 +101,7 @@ std::string to_markdown(const std::vector<Table>& tables) {
       text += has_numbers(table, c) ? "| ---: " : "| --- ";
     text += "|\n";
     for (const auto& row : table.rows) {
-      for (const TableCell& cell : row) fmt::format_to(out, "| {} ", markdown_escaped(cell.text));
+      for (const TableCell& cell : row) fmt::format_to(out, "| {} ", markdown_escaped(line_of(cell)));
       text += "|\n";
     }
   }
@@ -67,7 +115,7 @@ std::string to_csv(const std::vector<Table>& tables) {
     for (const auto& row : table.rows) {
       for (std::size_t c = 1; c < row.size(); ++c) {
         fmt::format_to(out, "{},{},{},{},{}\r\n", csv_escaped(table.id), csv_escaped(row.front().text),
-                       csv_escaped(table.columns[c]), csv_escaped(row[c].text),
+                       csv_escaped(table.columns[c]), csv_escaped(line_of(row[c])),
                        row[c].value ? fmt::format("{}", *row[c].value) : "");
       }
     }
@@ -91,15 +139,40 @@ std::string to_html(const Table& table) {
       const TableCell& cell = row[c];
       const std::string_view element = c == 0 ? "th" : "td";
       std::string classes = has_numbers(table, c) ? "number" : "";
-      if (cell.weak) classes += classes.empty() ? "weak" : " weak";
+      const auto add_class = [&](std::string_view name) {
+        if (!classes.empty()) classes += ' ';
+        classes += name;
+      };
+      if (cell.weak) add_class("weak");
+      if (cell.certainty != Certainty::unsaid) add_class(class_of(cell.certainty));
       fmt::format_to(out, "<{}{}", element, c == 0 ? " scope=\"row\"" : "");
       if (!classes.empty()) fmt::format_to(out, " class=\"{}\"", classes);
       if (cell.value) fmt::format_to(out, " data-value=\"{}\"", *cell.value);
-      fmt::format_to(out, ">{}</{}>", xml_escaped(cell.text), element);
+      fmt::format_to(out, ">{}</{}>", cell_html(cell), element);
     }
     text += "</tr>\n";
   }
   return text + "</tbody>\n</table>\n";
+}
+
+std::string to_text(const Table& table) {
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    widths.push_back(width_of(table.columns[c]));
+    for (const auto& row : table.rows) widths[c] = std::max(widths[c], width_of(line_of(row[c])));
+  }
+  std::string text = table.title + "\n";
+  const auto add_line = [&](const auto& cell_at) {
+    std::string line;
+    for (std::size_t c = 0; c < widths.size(); ++c)
+      line += (c == 0 ? "" : "  ") + padded(cell_at(c), widths[c], has_numbers(table, c));
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  };
+  add_line([&](std::size_t c) { return table.columns[c]; });
+  for (const auto& row : table.rows) add_line([&](std::size_t c) { return line_of(row[c]); });
+  if (!table.caption.empty()) text += table.caption + "\n";
+  return text;
 }
 
 }  // namespace meshorder

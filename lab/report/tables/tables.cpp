@@ -3,6 +3,7 @@
 
 #include "lab/report/tables/detail_tables.hpp"
 #include "lab/report/tables/paper_tables.hpp"
+#include "lab/report/tables/summary_table.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -10,10 +11,11 @@
 namespace meshorder {
 
 std::vector<Table> tables_of(const StudyResults& results) {
-  std::vector<Table> tables{edge_span_table(results), seconds_table(results),    saved_table(results),
-                            speedup_table(results),   break_even_table(results), phases_table(results),
-                            motions_table(results)};
+  std::vector<Table> tables{summary_table(results), edge_span_table(results), seconds_table(results),
+                            saved_table(results),   speedup_table(results),   break_even_table(results),
+                            phases_table(results),  motions_table(results)};
   std::ranges::move(misses_tables(results), std::back_inserter(tables));
+  tables.push_back(prediction_table(results));
   tables.push_back(kernels_table(results));
   tables.push_back(machine_table(results));
   tables.push_back(protocol_table(results));

@@ -9,11 +9,21 @@
 
 namespace meshorder {
 
+/// Whether an order saves or costs time for certain, by the confidence interval of what it saves.
+enum class Certainty {
+  unsaid,  ///< the cell is of something else
+  saves,   ///< the interval lies above 0
+  open,    ///< it holds 0, or there is none: not told apart
+  costs    ///< it lies below 0
+};
+
 /// A cell of a table: its text, and the number behind it, by which a column is sorted.
 struct TableCell {
   std::string text;
   std::optional<double> value;
-  bool weak = false;  ///< within the noise, or unknown: shown paler
+  bool weak = false;                        ///< within the noise, or unknown: shown paler
+  std::string interval = {};                ///< "+10.2 … +13.5", shown with the text
+  Certainty certainty = Certainty::unsaid;  ///< shown in words, on the page in colour as well
 };
 
 /// A table as Markdown, CSV and the page show it.
@@ -26,6 +36,7 @@ struct Table {
 };
 
 /// Returns the paper's tables, with its numbers next to ours, and further tables. Their ids:
+/// - summary: what the orders save, a row for each scenario and a column for each order
 /// - table-1: edge spans, by mesh and order
 /// - table-2: seconds, by scenario and order, as the following
 /// - table-3: seconds saved over the reference
@@ -34,6 +45,7 @@ struct Table {
 /// - phases: seconds of the parts of a step
 /// - motions: distance between the motion in an order and in the first order
 /// - misses-1, misses-2, …: simulated misses, one table for each cache hierarchy
+/// - prediction-error: how far predicted speedups of the kernels are from measured ones, by kernel
 /// - kernels: predicted and measured speedups of the kernels, by mesh, kernel and order
 /// - machine, protocol: the machine, and how it was measured
 /// Tables for which the results hold no data are omitted. A cell's value is a number of the results or
@@ -50,5 +62,8 @@ std::string markdown_escaped(std::string_view text);
 
 /// Returns a table element with data-value attributes; text is escaped.
 std::string to_html(const Table& table);
+
+/// Returns the title, the columns aligned by blanks, and the caption, as lines for a terminal.
+std::string to_text(const Table& table);
 
 }  // namespace meshorder

@@ -1,0 +1,61 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/report/tables/tables.hpp"
+#include "lab/study/results.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshorder {
+
+/// A study that is compared with another one.
+struct ComparedStudy {
+  std::string file;  ///< its results.json, for errors and tables
+  StudyResults results;
+};
+
+/// Throws InputError, which names both files and the difference, unless both studies ran the same scenarios
+/// on the same meshes in the same precision, with the same reference. They may differ in machine, program,
+/// threads, steps, runs and further orders.
+void check_comparable(const ComparedStudy& a, const ComparedStudy& b);
+
+/// How much more of the reference's time an order saves in a study B than in a study A, in percentage points.
+struct SavingDifference {
+  double points = 0;          ///< B's per cent less A's
+  double low = 0, high = 0;   ///< 95 % confidence interval of `points`
+  bool beyond_noise = false;  ///< the interval does not contain 0
+
+  bool operator==(const SavingDifference&) const = default;
+};
+
+/// Returns the difference of two independent studies, from the intervals of both: its lower end lies below it
+/// by √((b − b's low)² + (a's high − a)²), its upper end above it likewise (Zou and Donner 2008, Construction
+/// of confidence limits about effect measures: a general approach, Statistics in Medicine 27). Nothing where
+/// one of them has no interval.
+std::optional<SavingDifference> difference_of(const Speedup& a, const Speedup& b);
+
+/// An order in a scenario that both studies have run, and its reference.
+struct ComparedOrder {
+  std::string scenario;
+  std::string ordering;
+  Speedup a, b;
+  std::optional<SavingDifference> difference;
+};
+
+/// Returns the orders of the studies' scenarios that both have run, as the first study lists them.
+std::vector<ComparedOrder> compared_orders(const StudyResults& a, const StudyResults& b);
+
+/// Returns the tables of a comparison. Their ids:
+/// - comparison: what the orders save in both studies, and the difference
+/// - comparison-seconds: seconds of the reference
+/// - comparison-kernels: measured speedups of the kernels
+/// - comparison-machines: machines, programs and dates
+std::vector<Table> comparison_tables(const ComparedStudy& a, const ComparedStudy& b);
+
+/// Returns what the tables do not say, in sentences.
+std::vector<std::string> comparison_findings(const ComparedStudy& a, const ComparedStudy& b);
+
+}  // namespace meshorder

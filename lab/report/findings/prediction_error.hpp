@@ -1,0 +1,30 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/study/results.hpp"
+
+#include <cstddef>
+
+namespace meshorder {
+
+/// How far the predicted speedups of a kernel over the study's reference are from the measured ones, over all
+/// meshes and orders that have both. An error is |predicted / measured − 1|.
+struct PredictionError {
+  int speedups = 0;           ///< number of errors; 0: the others say nothing
+  double median = 0;          ///< the middle error; of an even number the mean of the two
+  double of_nine_tenths = 0;  ///< the smallest that nine tenths of the errors do not exceed
+  double largest = 0;
+  int pairs = 0;             ///< of orders of a mesh whose measured times differ by more than 10 %
+  int pairs_told_right = 0;  ///< of these, with the order predicted that was measured
+};
+
+/// Returns the error of the predictions of `kKernels[kernel]`. O(orders² · meshes).
+PredictionError prediction_error(const StudyResults& results, std::size_t kernel);
+
+/// Returns predicted / measured − 1 of an order's speedup; negative: the order is better than predicted. Both
+/// records must have both times, see has_both.
+double signed_error(const KernelRecord& order, const KernelRecord& reference);
+
+inline bool has_both(const KernelRecord& kernel) { return kernel.predicted_ms > 0 && kernel.measured_ms > 0; }
+
+}  // namespace meshorder

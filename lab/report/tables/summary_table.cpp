@@ -1,0 +1,86 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/report/tables/summary_table.hpp"
+
+#include "lab/report/findings/lookup.hpp"
+#include "lab/report/findings/numbers_in_words.hpp"
+#include "lab/report/findings/paper.hpp"
+#include "lab/report/tables/paper_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// Returns whether one of the scenarios was run in an order that is not the reference, and in the reference.
+bool is_compared(const StudyResults& results, const std::string& ordering) {
+  return ordering != results.reference &&
+         std::any_of(results.scenarios.begin(), results.scenarios.end(), [&](const ScenarioRecord& scenario) {
+           return find_order(scenario, ordering) != nullptr &&
+                  find_order(scenario, results.reference) != nullptr;
+         });
+}
+
+/// Returns whether the paper has a number for an order in one of the scenarios.
+bool has_paper_of(const StudyResults& results, const std::string& ordering) {
+  return has_paper(results) &&
+         std::any_of(results.scenarios.begin(), results.scenarios.end(), [&](const ScenarioRecord& scenario) {
+           return paper_saving(scenario.name, ordering).has_value();
+         });
+}
+
+TableCell paper_cell(const ScenarioRecord& scenario, const std::string& ordering) {
+  const auto saving = paper_saving(scenario.name, ordering);
+  if (!saving) return unknown_cell();
+  return {fmt::format("+{}", saving->percent), saving->percent, false};
+}
+
+}  // namespace
+
+TableCell saving_cell(const Speedup& speedup) {
+  TableCell cell = percent_cell(speedup.percent);
+  if (speedup.low < speedup.high)
+    cell.interval = fmt::format("{} … {}", signed_percent(speedup.low), signed_percent(speedup.high));
+  cell.certainty = !speedup.beyond_noise ? Certainty::open
+                   : speedup.percent > 0 ? Certainty::saves
+                                         : Certainty::costs;
+  return cell;
+}
+
+Table summary_table(const StudyResults& results) {
+  Table table{"summary",
+              "What the orders save",
+              fmt::format("Per cent of the time that the same steps take in the order “{}”, with the 95 % "
+                          "confidence interval. Saves, costs: the interval lies on one side of 0. Not told "
+                          "apart: it holds 0, or one run was too short for an interval.",
+                          title_of(results, results.reference)),
+              {"Scenario"},
+              {}};
+  std::vector<const OrderingSpec*> orderings;
+  for (const OrderingSpec& ordering : results.orderings) {
+    if (!is_compared(results, ordering.name)) continue;
+    orderings.push_back(&ordering);
+    table.columns.push_back(title_of(results, ordering.name));
+    if (has_paper_of(results, ordering.name)) table.columns.push_back(table.columns.back() + ", paper");
+  }
+  if (orderings.empty()) return table;
+  if (has_paper(results)) {
+    table.caption +=
+        " Paper: other simulators on a Xeon with 10 MB of cache." + differences_from_paper(results);
+  }
+  for (const ScenarioRecord& scenario : results.scenarios) {
+    if (find_order(scenario, results.reference) == nullptr) continue;
+    std::vector<TableCell> row{text_cell(scenario.name)};
+    for (const OrderingSpec* const ordering : orderings) {
+      const ScenarioOrderRecord* const order = find_order(scenario, ordering->name);
+      row.push_back(order == nullptr ? unknown_cell() : saving_cell(order->speedup));
+      if (has_paper_of(results, ordering->name)) row.push_back(paper_cell(scenario, ordering->name));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace meshorder
