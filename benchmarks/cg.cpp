@@ -250,13 +250,13 @@ void print_solves(std::vector<System>& systems) {
         mo::Stopwatch stopwatch;
         preconditioner->update(system.matrix);
         const double update = stopwatch.seconds();
-        fmt::print("{:<11}{:<21}{:>8}{:>9.4f}", system.order, mo::name(kind), threads, update);
+        fmt::print("{:<11}{:<21}{:>8}{:>9.4f}", system.order, mo::to_string(kind), threads, update);
         const auto solve = [&](const auto& matrix) {
           std::fill(system.x.begin(), system.x.end(), 0.0);
           const mo::Stopwatch clock;
           const mo::SolveReport report = mo::conjugate_gradients(matrix, *preconditioner, system.b, system.x);
           fmt::print("{:>11}{:>10.4f}", report.iterations, clock.seconds());
-          if (report.status != mo::SolveStatus::converged) fmt::print(" {}", mo::name(report.status));
+          if (report.status != mo::SolveStatus::converged) fmt::print(" {}", mo::to_string(report.status));
         };
         solve(system.matrix);
         solve(system.rounded);

@@ -56,6 +56,7 @@ struct BackwardEuler::Iterate {
 BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, ImplicitOptions options)
     : options_(std::move(options)),
       system_(points, body, options_.mass),
+      stores_half_(options_.precision == MatrixPrecision::double_ && half_storage_pays(system_.matrix())),
       positions_(padded_positions(points)),
       velocities_(3 * points.size()),
       loads_(velocities_.size()),
@@ -63,7 +64,6 @@ BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, Im
       scratch_(velocities_.size()) {
   check_options(options_, index_size(points));
   preconditioner_ = make_preconditioner(options_.preconditioner, system_.matrix(), points);
-  stores_half_ = options_.precision == MatrixPrecision::double_ && half_storage_pays(system_.matrix());
   const bool moves = std::any_of(options_.prescribed.begin(), options_.prescribed.end(),
                                  [](const PrescribedMotion& p) { return p.velocity != Point{}; });
   if (options_.stiffness_damping > 0.0 && (options_.newton_iterations > 1 || moves)) {

@@ -13,12 +13,12 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 // doubles from a prefetch of a block to its use; hardware prefetches less far ahead
 constexpr Offset kDoublesAhead = 384;
 
 #if HWY_MAX_BYTES >= 32
+namespace hn = hwy::HWY_NAMESPACE;
+
 /// A row of a slab: its sums, and what it adds to other rows. Each row of a block is loaded with the number
 /// that follows it, whose products are in lane 3 and never used.
 class HalfRow {
@@ -210,7 +210,7 @@ std::vector<Index> slabs_of(const BlockCsr& matrix) {
 double share_between_slabs(const BlockCsr& matrix) {
   if (matrix.block_count() == 0) return 0.0;
   const std::vector<Index> slabs = slabs_of(matrix);
-  const Offset between = sum_over_chunks<Offset>(index_size(slabs) - 1, 1, [&](Index slab, Index) {
+  const auto between = sum_over_chunks<Offset>(index_size(slabs) - 1, 1, [&](Index slab, Index) {
     return blocks_between(matrix, slabs[slab], slabs[slab + 1]);
   });
   return static_cast<double>(between) / static_cast<double>(matrix.block_count());
