@@ -28,6 +28,12 @@ if(MESHORDER_HARDENED AND NOT sanitizers)
   include(${CMAKE_CURRENT_LIST_DIR}/hardening.cmake)
 endif()
 
+# Programs and shared libraries leave out what nothing in them calls.
+if(UNIX AND NOT APPLE AND NOT sanitizers)
+  target_compile_options(meshorder_warnings INTERFACE "$<$<NOT:$<CONFIG:Debug>>:-ffunction-sections;-fdata-sections>")
+  target_link_options(meshorder_warnings INTERFACE LINKER:--gc-sections)
+endif()
+
 # Instruction sets that Highway does not compile the kernels for. SSSE3 gains nothing for doubles over SSE4; vectors of
 # unknown length (SVE, RISC-V) cannot be members of structs, as the kernels' values are.
 set(MESHORDER_SIMD_TARGETS HWY_DISABLED_TARGETS=\(HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV\))

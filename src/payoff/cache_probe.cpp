@@ -22,24 +22,24 @@ constexpr Offset kSmallest = 8 * kKilobyte;
 constexpr std::uint64_t kLineWords = kLineBytes / sizeof(std::uint64_t);
 
 /// Follows `steps` loads, each of which waits for the one before, at random lines of the first `lines` ones
-/// of a buffer of zeros. Without `load` only the arithmetic between them.
-template <bool load>
+/// of a buffer of zeros. Without `Load` only the arithmetic between them.
+template <bool Load>
 std::uint64_t follow(const std::uint64_t* buffer, std::uint64_t lines, int steps, std::uint64_t state) {
   for (int step = 0; step < steps; ++step) {
     state = state * 6364136223846793005U + 1442695040888963407U;
     const std::uint64_t line = ((state >> 32) * lines) >> 32;
     std::uint64_t value = line >> 63;  // 0, which the compiler cannot know
-    if constexpr (load) value = buffer[line * kLineWords];
+    if constexpr (Load) value = buffer[line * kLineWords];
     asm volatile("" : "+r"(value));
     state += value;
   }
   return state;
 }
 
-template <bool load>
+template <bool Load>
 double seconds_of(const std::uint64_t* buffer, std::uint64_t lines, int steps, std::uint64_t seed) {
   const ThreadStopwatch stopwatch;
-  std::uint64_t state = follow<load>(buffer, lines, steps, seed);
+  std::uint64_t state = follow<Load>(buffer, lines, steps, seed);
   asm volatile("" : "+r"(state));
   return stopwatch.seconds() / steps;
 }

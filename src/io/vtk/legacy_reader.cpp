@@ -236,12 +236,13 @@ class LegacyReader {
             // without a jump out of the loop, which would keep it from being vectorised
             resize_large(cells.vertices, numbers.size());
             const std::int64_t limit = point_limit();
-            bool all_exist = true;
+            std::size_t missing = 0;
             for (std::size_t i = 0; i < numbers.size(); ++i) {
-              all_exist &= std::cmp_greater_equal(numbers[i], 0) & std::cmp_less(numbers[i], limit);
+              missing += static_cast<std::size_t>(std::cmp_less(numbers[i], 0)) +
+                         static_cast<std::size_t>(std::cmp_greater_equal(numbers[i], limit));
               cells.vertices[i] = static_cast<Index>(numbers[i]);
             }
-            if (all_exist) return;
+            if (missing == 0) return;
             const auto wrong = std::find_if(numbers.begin(), numbers.end(), [&](Number vertex) {
               return std::cmp_less(vertex, 0) || std::cmp_greater_equal(vertex, limit);
             });
