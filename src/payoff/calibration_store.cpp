@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/calibration_store.hpp"
 
+#include "base/checksum.hpp"
 #include "base/user_folder.hpp"
 #include "payoff/machine.hpp"
 #include <meshorder/error.hpp>
@@ -11,7 +12,6 @@
 
 #include <cctype>
 #include <cmath>
-#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -24,13 +24,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "meshorder calibration 1";
-
-/// FNV-1a.
-std::uint64_t hash_of(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037U;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
-  return hash;
-}
 
 std::string sizes_text(const Caches& caches) { return caches.level_bytes.empty() ? "" : to_string(caches); }
 
@@ -78,8 +71,9 @@ fs::path calibration_file(const CalibrationKey& key) {
     const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
     if (plain || (!name.empty() && name.back() != '-')) name += plain ? c : '-';
   }
-  const std::uint64_t hash = hash_of(key.processor + '\n' + key.caches + '\n' + key.build);
-  return folder / "calibrations" / fmt::format("{}-{:016x}.json", name, hash);
+  Checksum checksum;
+  for (const std::string* const part : {&key.processor, &key.caches, &key.build}) checksum.add_all(*part);
+  return folder / "calibrations" / fmt::format("{}-{:016x}.json", name, checksum.value());
 }
 
 std::string to_json_text(const Calibration& calibration) {

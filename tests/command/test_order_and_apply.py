@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import subprocess
+import time
 
 import meshio
 import numpy
@@ -124,6 +125,20 @@ def write_boxes(folder):
     meshio.write(folder / "moved.vtu", meshio.Mesh(points + 0.1 * points[:, ::-1] ** 2, [("tetra", cells)]))
     other = numpy.array([[c, c + 16, c + 20, c + 21] for c in corner[::-1]])
     meshio.write(folder / "other.vtu", meshio.Mesh(points, [("tetra", other)]))
+
+
+def test_files_do_not_hold_when_they_were_written(command, tmp_path):
+    """CGNS alone does: its library puts the time into every node."""
+    write_boxes(tmp_path)
+    extensions = ["vtu", "vtk", "msh", "node", "mesh", "veg", "su2", "xdmf", "med", "e", "bdf", "inp"]
+    written = []
+    for wait in (0, 1.1):  # HDF5 counts whole seconds
+        time.sleep(wait)
+        for extension in extensions:
+            command.ok("order", "a.vtu", "-o", f"c.{extension}")
+        written.append({path.name: path.read_bytes() for path in tmp_path.glob("c.*")})
+    assert len(written[0]) == len(extensions) + 2  # the .ele of TetGen and the .h5 of XDMF
+    assert [name for name in written[0] if written[1][name] != written[0][name]] == []
 
 
 @pytest.mark.parametrize("extension", ["vtu", "vtk", "msh", "node", "mesh", "veg", "su2", "xdmf", "cgns", "med"])

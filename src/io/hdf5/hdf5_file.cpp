@@ -213,6 +213,9 @@ std::string without_padding(std::string_view text) {
   return std::string(text.substr(0, text.find_last_not_of(' ') + 1));
 }
 
+/// Sets that a dataset does not hold when it was last changed: the same mesh is the same bytes at any time.
+void forget_times(const Handle& creation) { H5Pset_obj_track_times(creation.id(), false); }
+
 /// Makes a dataset of the type, the attributes, chunks and filters of another one.
 Handle empty_copy(hid_t dataset, hid_t target, const char* name, hid_t space) {
   const Handle type(H5Dget_type(dataset), H5Tclose);
@@ -221,6 +224,7 @@ Handle empty_copy(hid_t dataset, hid_t target, const char* name, hid_t space) {
   if (H5Pget_layout(creation.id()) != H5D_COMPACT) {
     H5Pset_alloc_time(creation.id(), chunked ? H5D_ALLOC_TIME_INCR : H5D_ALLOC_TIME_LATE);
   }
+  forget_times(creation);
   Handle copy(H5Dcreate2(target, name, type.id(), space, H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
   if (copy.is_open()) (void)copy_attributes(dataset, copy.id());
   return copy;
@@ -518,8 +522,10 @@ void File::write(const std::string& path, hid_t type, const void* values, std::u
   if (!dataset.is_open()) {
     const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links.id(), 1);
+    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    forget_times(creation);
     dataset =
-        Handle(H5Dcreate2(file_.id(), path.c_str(), type, space.id(), links.id(), H5P_DEFAULT, H5P_DEFAULT),
+        Handle(H5Dcreate2(file_.id(), path.c_str(), type, space.id(), links.id(), creation.id(), H5P_DEFAULT),
                H5Dclose);
   } else {
     const Handle old_space(H5Dget_space(dataset.id()), H5Sclose);

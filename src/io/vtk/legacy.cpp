@@ -137,20 +137,9 @@ class LegacyWriter {
   }
 
   template <class Number>
-  void put_text(std::string_view before, Number number) {
-    if constexpr (std::is_same_v<Number, double>) {
-      out_.real(before, number);
-    } else if constexpr (std::is_integral_v<Number> && (sizeof(Number) < 8 || std::is_signed_v<Number>)) {
-      out_.integer(before, number);
-    } else {
-      out_.print("{}{}", before, number);
-    }
-  }
-
-  template <class Number>
   void write_text(std::span<const Number> numbers, std::size_t in_line) {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      put_text(i == 0 ? "" : i % in_line == 0 ? "\n" : " ", numbers[i]);
+      out_.number(i == 0 ? "" : i % in_line == 0 ? "\n" : " ", numbers[i]);
     }
     if (!numbers.empty()) out_.write("\n");
   }

@@ -304,12 +304,8 @@ class VtuWriter {
             using Number = std::decay_t<decltype(numbers[i])>;
             if constexpr (std::is_same_v<Number, char>) {
               out_.integer(before, static_cast<unsigned char>(numbers[i]));
-            } else if constexpr (std::is_same_v<Number, double>) {
-              out_.real(before, numbers[i]);
-            } else if constexpr (std::is_integral_v<Number> && !std::is_same_v<Number, std::uint64_t>) {
-              out_.integer(before, numbers[i]);
             } else {
-              out_.print("{}{}", before, numbers[i]);
+              out_.number(before, numbers[i]);
             }
           }
           if (!numbers.empty()) out_.write("\n");
