@@ -11,11 +11,14 @@
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/judgement.hpp"
+#include "payoff/advice.hpp"
 #include "progress.hpp"
+#include "verdict.hpp"
 #include "wording.hpp"
 #include <meshorder/io.hpp>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -34,7 +37,72 @@ struct OrderArguments : Common {
   ReorderOptions reordering;
   std::string ids = "renumber";
   Keeping keeping;
+  bool measure = false;
 };
+
+/// Orders that are timed against the file's own.
+constexpr std::size_t kInRace = 3;
+
+/// Throws InvalidArgument unless the arguments leave a race anything to decide.
+void check_race(const ReorderOptions& options) {
+  const Workload use = options.order.workload;
+  if (use == Workload::bandwidth || use == Workload::fill) {
+    throw InvalidArgument(
+        fmt::format("--measure times kernels, which tell nothing of --for {}", to_string(use)));
+  }
+  if (options.methods != MeshMethods{} || !options.group_by.empty()) {
+    throw InvalidArgument(
+        "--measure chooses the methods: leave out --vertices, --elements and --group-by, or see meshorder "
+        "compare");
+  }
+}
+
+/// What a race told.
+struct Race {
+  Advice advice;
+  std::optional<std::size_t> winner;
+  std::string reason;  ///< a sentence
+};
+
+/// Times what may be the best orders of a mesh, beside its own.
+Race race(const Mesh& mesh, const OrderOptions& options) {
+  const Stopwatch stopwatch;
+  const CsrGraph graph = vertex_graph(mesh);
+  Race result;
+  result.advice = advise(mesh, graph,
+                         {.methods = contenders(),
+                          .ordering = options,
+                          .graph_seconds = stopwatch.seconds(),
+                          .race_of = kInRace});
+  result.winner = winner_for(options.workload, result.advice);
+  const std::size_t timed = result.advice.candidates.size();
+  result.reason =
+      result.winner
+          ? fmt::format(
+                "none of {} orders timed here is faster by more than times vary; {:.2f} times as fast "
+                "as the file's",
+                timed, factor_for(options.workload, result.advice, *result.winner))
+          : fmt::format("none of {} orders timed here is faster than the file's by more than times vary",
+                        timed);
+  return result;
+}
+
+MeshMethods methods_of(const Race& race) {
+  if (!race.winner) return {"original", "original"};
+  const Candidate& winner = race.advice.candidates[*race.winner];
+  return {winner.vertices.name, winner.elements.name};
+}
+
+/// "hilbert/lexmax 2.31, spectral/lexmax 2.29 times as fast as the file's"
+std::string in_words(const Race& race, Workload workload) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < race.advice.candidates.size(); ++i) {
+    const Candidate& candidate = race.advice.candidates[i];
+    words.push_back(fmt::format("{}/{} {:.2f}", candidate.vertices.name, candidate.elements.name,
+                                factor_for(workload, race.advice, i)));
+  }
+  return join(words) + " times as fast as the file's order";
+}
 
 void print_result(const Console& console, const MeshOrder& order, const std::optional<Grouping>& groups,
                   const EdgeSpan& before, const EdgeSpan& after) {
@@ -90,6 +158,7 @@ void run(const OrderArguments& arguments) {
   options.ids = parse<Ids>(arguments.ids);
   const Format& format = format_of(arguments.output);
   options.format = format.key();
+  if (arguments.measure) check_race(options);
   (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
   if (!arguments.maps.empty()) check_can_write_maps(arguments.maps);
 
@@ -119,15 +188,27 @@ void run(const OrderArguments& arguments) {
   if (!arguments.maps.empty()) old_order = checksums_of(mesh);
   std::optional<Grouping> groups;
   if (!options.group_by.empty()) groups = grouping_by(mesh, options.group_by);
+  std::optional<Race> measured;
+  if (arguments.measure) {
+    measured = race(mesh, options.order);
+    options.methods = methods_of(*measured);
+    if (!measured->advice.doubt.empty()) notes.push_back(measured->advice.doubt);
+  }
   CsrGraph graph;
-  const MeshOrder order = reorder(mesh, options, graph);
+  MeshOrder order = reorder(mesh, options, graph);
+  if (measured) {
+    order.vertices.method.reason = measured->reason;
+    order.cells.method.reason = "timed together with the order of the vertices";
+  }
   const double order_seconds = ordering.seconds();
   maps.vertices = order.vertices.permutation;
   maps.cells = order.cells.permutation;
   const EdgeSpan before = edge_span(graph, Permutation::identity(mesh.vertex_count()));
   const EdgeSpan after = edge_span(graph, maps.vertices);
-  note_no_better(graph, options, maps.vertices, notes);
-  note_no_better(mesh, options, maps.cells, notes);
+  if (!measured) {
+    note_no_better(graph, options, maps.vertices, notes);
+    note_no_better(mesh, options, maps.cells, notes);
+  }
   note_convergence(order.vertices.fiedler, "the vertices", notes);
   note_convergence(order.cells.fiedler, "the elements", notes);
 
@@ -144,6 +225,7 @@ void run(const OrderArguments& arguments) {
 
   progress.finish();
   console.warn_of(notes);
+  if (measured) console.print("{:<10} {}", "race", in_words(*measured, options.order.workload));
   print_result(console, order, groups, before, after);
   console.print("{:<10} {}", "wrote", arguments.output);
   for (const std::string& file : map_files) console.print("{:<10} {}", "", file);
@@ -153,6 +235,7 @@ void run(const OrderArguments& arguments) {
       {"vertices", half_json(mesh.vertex_count(), order.vertices)},
       {"cells", half_json(mesh.cell_count(), order.cells)},
       {"for", to_string(options.order.workload)},
+      {"race", measured ? to_json(measured->advice) : nullptr},
       {"group_by", groups ? to_json(*groups) : nullptr},
       {"edge_span", {{"before", to_json(before)}, {"after", to_json(after)}}},
       {"fiedler", to_json(order.vertices.fiedler)},
@@ -170,7 +253,8 @@ void add_order(CLI::App& subcommand) {
   subcommand.footer(
       "Examples:\n"
       "  meshorder order dragon.veg -o ordered.veg\n"
-      "  meshorder order part.msh -o part.vtu --for spmv --maps part");
+      "  meshorder order part.msh -o part.vtu --for spmv --maps part\n"
+      "  meshorder order dragon.veg -o ordered.veg --measure");
   const auto arguments = std::make_shared<OrderArguments>();
   subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
   subcommand.add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
@@ -193,6 +277,11 @@ void add_order(CLI::App& subcommand) {
           "the vertices. Write cells:NAME or vertices:NAME if both have that array (default: cells).\n"
           "Cells and vertices without a value come last")
       ->type_name("NAME");
+  subcommand.add_flag(
+      "--measure", arguments->measure,
+      "For meshes that live long: run the kernels for about two seconds, in the file's order, in\n"
+      "the one that `auto` takes and in the two predicted to be the best of five others; take\n"
+      "the fastest. The result may differ from run to run, and between machines");
   add_ids_option(subcommand, arguments->ids);
   add_keeping_options(subcommand, arguments->keeping);
   subcommand.add_option(

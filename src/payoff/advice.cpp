@@ -13,8 +13,11 @@
 #include "payoff/kernel_timing.hpp"
 #include <meshorder/error.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace meshorder {
@@ -46,21 +49,13 @@ std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
   return result;
 }
 
-/// In rounds that end by `seconds` on the stopwatch. `doubt` receives why they are not to be trusted.
-std::vector<KernelMilliseconds> measurements(const std::vector<Ordered>& orders, const Stopwatch& stopwatch,
-                                             double seconds, std::string& doubt) {
+/// For so many seconds. `doubt` receives why the times are not to be trusted.
+std::vector<KernelMilliseconds> measurements(const std::vector<Ordered>& orders, double seconds,
+                                             std::string& doubt) {
   report("measure");
-  std::vector<std::optional<KernelBench>> benches(orders.size());
-  for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
-    benches[i].emplace(orders[i].mesh, orders[i].graph);
-  });
-  std::vector<KernelBench*> pointers;
-  pointers.reserve(benches.size());
-  for (std::optional<KernelBench>& bench : benches) pointers.push_back(&bench.value());
   const Timings timings =
-      time_interleaved(pointers, {.budget_seconds = std::max(0.0, seconds - stopwatch.seconds()),
-                                  .min_rounds = 2,
-                                  .sample_seconds = 0.01});
+      time_orders(index_size(orders), [&](Index i) { return KernelBench(orders[i].mesh, orders[i].graph); },
+                  {.budget_seconds = std::max(0.0, seconds), .min_rounds = 2, .sample_seconds = 0.01});
   doubt = reason_to_doubt(timings.steadiness);
   std::vector<KernelMilliseconds> result(orders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
@@ -87,12 +82,83 @@ bool are_one(const Candidate& a, const Candidate& b) {
   return a.vertices.name == b.vertices.name && a.elements.name == b.elements.name;
 }
 
+/// Returns how much longer the kernels of a workload take than in the mesh's own order: the logarithm of the
+/// ratio, in the mean of the kernels.
+double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs) {
+  double sum = 0;
+  int kernels = 0;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    if (workload != Workload::all && to_string(workload) != to_string(kKernels[k])) continue;
+    // a mesh of points has no work to do
+    const double as_is = advice.as_is.costs.best_known()[k];
+    if (as_is > 0) sum += std::log(costs.best_known()[k] / as_is);
+    ++kernels;
+  }
+  if (kernels == 0) {
+    throw InvalidArgument(fmt::format("advice: no kernel tells what is best for {}", to_string(workload)));
+  }
+  return sum / kernels;
+}
+
+/// Leaves the first candidate and the best others, `most` in all, in their order.
+void keep_best(Advice& advice, std::vector<Ordered>& orders, Workload workload, std::size_t most) {
+  std::vector<std::size_t> places(advice.candidates.size());
+  std::iota(places.begin(), places.end(), 0);
+  if (places.size() <= most) return;
+  std::stable_sort(places.begin() + 1, places.end(), [&](std::size_t a, std::size_t b) {
+    return cost_for(workload, advice, advice.candidates[a].costs) <
+           cost_for(workload, advice, advice.candidates[b].costs);
+  });
+  places.resize(most);
+  std::sort(places.begin(), places.end());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i] == i) continue;
+    advice.candidates[i] = std::move(advice.candidates[places[i]]);
+    orders[1 + i] = std::move(orders[1 + places[i]]);
+  }
+  advice.candidates.resize(most);
+  orders.erase(orders.begin() + 1 + static_cast<std::ptrdiff_t>(most), orders.end());
+}
+
 }  // namespace
+
+std::vector<MeshMethods> contenders() {
+  return {{},
+          {"hilbert", "lexmax"},
+          {"spectral", "lexmax"},
+          {"rcm", "lexmax"},
+          {"bfs", "lexmax"},
+          {"fiedler", "lexmax"}};
+}
+
+double factor_for(Workload workload, const Advice& advice, std::size_t candidate) {
+  return std::exp(-cost_for(workload, advice, advice.candidates[candidate].costs));
+}
+
+std::optional<std::size_t> winner_for(Workload workload, const Advice& advice) {
+  double best = 0;
+  double same = 1;
+  for (const Candidate& candidate : advice.candidates) {
+    best = std::min(best, cost_for(workload, advice, candidate.costs));
+  }
+  for (const Kernel kernel : kKernels) {
+    if (workload == Workload::all || to_string(workload) == to_string(kernel)) {
+      same = std::max(same, same_time(advice, kernel));
+    }
+  }
+  const double nearly_best = best + std::log(same);
+  if (nearly_best >= 0) return std::nullopt;
+  for (std::size_t i = 0;; ++i) {
+    const double cost = cost_for(workload, advice, advice.candidates[i].costs);
+    if (cost == best || (i == 0 && cost <= nearly_best)) return i;
+  }
+}
 
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options) {
   if (!options.predict && !options.measure_within) {
     throw InvalidArgument("advice: neither predicted nor measured");
   }
+  if (options.race_of > 0 && !options.predict) throw InvalidArgument("advice: a race without predictions");
   const Stopwatch since_call;
   Advice advice;
   advice.as_is.vertices.name = advice.as_is.elements.name = "original";
@@ -110,10 +176,9 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
                         .workload = reordering.order.workload};
     const bool moves_nothing = are_one(candidate, advice.as_is);
     if (!moves_nothing) candidate.order_seconds = options.graph_seconds + stopwatch.seconds();
-    if (options.methods.empty() && !advice.candidates.empty() &&
-        are_one(advice.candidates.front(), candidate)) {
-      continue;
-    }
+    const bool is_known = std::any_of(advice.candidates.begin(), advice.candidates.end(),
+                                      [&](const Candidate& other) { return are_one(other, candidate); });
+    if (is_known && (options.methods.empty() || options.race_of > 0)) continue;
     ordered.graph = renumbered(graph, order.vertices.permutation.old_to_new());
     orders.push_back(std::move(ordered));
     advice.candidates.push_back(std::move(candidate));
@@ -131,9 +196,16 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
     const std::vector<KernelMilliseconds> predicted = predictions(orders, options);
     for (std::size_t i = 0; i < orders.size(); ++i) candidate(i).costs.predicted = predicted[i];
   }
-  if (options.measure_within) {
-    const std::vector<KernelMilliseconds> measured =
-        measurements(orders, since_call, *options.measure_within, advice.doubt);
+  std::optional<double> seconds;  // to measure for
+  if (options.race_of > 0) {
+    keep_best(advice, orders, options.ordering.workload, options.race_of);
+    constexpr double kSecondsInRace = 0.5;
+    seconds = kSecondsInRace * static_cast<double>(orders.size());
+  } else if (options.measure_within) {
+    seconds = *options.measure_within - since_call.seconds();
+  }
+  if (seconds) {
+    const std::vector<KernelMilliseconds> measured = measurements(orders, *seconds, advice.doubt);
     for (std::size_t i = 0; i < orders.size(); ++i) candidate(i).costs.measured = measured[i];
   }
   advice.floor = options.machine.floor;

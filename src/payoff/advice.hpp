@@ -32,7 +32,14 @@ struct AdviceOptions {
   /// Time the kernels, in the mesh's order and in every candidate, in as many rounds as end within this
   /// number of seconds after the call, at least two; unset: do not time them.
   std::optional<double> measure_within = {};
+  /// If above 0, only so many candidates stay: the first, and those predicted to be best for
+  /// `ordering.workload`. They are timed for half a second each, as long as memory allows them beside the
+  /// mesh's own order, whatever `measure_within` says.
+  std::size_t race_of = 0;
 };
+
+/// Returns the methods that may beat what `auto` takes, `auto` first: what a race begins with.
+std::vector<MeshMethods> contenders();
 
 /// Computes the candidates and the times of the kernels in them and in the mesh's own order. `graph` is the
 /// vertex graph of `mesh`. Throws InvalidArgument if neither prediction nor measurement is wanted.
@@ -46,6 +53,16 @@ double same_time(const Advice& advice, Kernel kernel);
 /// Returns the best candidate for each kernel, as kKernels lists them. Meshes without cells have nothing to
 /// gain.
 std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice);
+
+/// Returns how many times faster than in the mesh's own order the kernels of a workload run in a candidate:
+/// that of one kernel, or the geometric mean of all.
+double factor_for(Workload workload, const Advice& advice, std::size_t candidate);
+
+/// Returns the place of the candidate in which the kernels of a workload run fastest, all of them or one; the
+/// mesh's own order, and after it the first candidate, wins where no other is faster than that by more than
+/// same_time. Nothing if the mesh's own order wins. Throws InvalidArgument for `bandwidth` and `fill`, which
+/// no kernel tells.
+std::optional<std::size_t> winner_for(Workload workload, const Advice& advice);
 
 /// Returns the milliseconds that a candidate saves in each time step (see kRunsInTimeStep), negative if it is
 /// slower. Differences within same_time do not count.

@@ -117,3 +117,22 @@ def test_elements_by_a_method_asked_for_by_name_give_a_warning(command, lattice,
     assert "--elements original keeps the order" in done.stderr
     done = command.run("order", "random.vtu", "-o", "out.vtu", "--vertices", "original", "--elements", "lexmax")
     assert "no better" not in done.stderr
+
+
+def test_a_race_takes_what_it_timed_as_the_fastest(command, model, tmp_path):
+    command.ok("order", model("grid", "--size", "24"), "-o", "random.vtu", "--vertices", "scrambled", "--elements", "scrambled")
+    result = command.json("order", "random.vtu", "-o", "out.vtu", "--measure", "--for", "assembly")
+    race = result["race"]
+    assert 1 <= len(race["orders"]) <= 3
+    milliseconds = {(order["vertices"], order["elements"]): order["measured_milliseconds"]["assembly"] for order in race["orders"]}
+    taken = milliseconds[result["vertices"]["method"], result["cells"]["method"]]
+    assert taken <= 1.5 * min(milliseconds.values())  # within what times vary
+    assert taken < race["as_it_is"]["measured_milliseconds"]["assembly"]
+    assert result["vertices"]["chosen_by"] == "auto"
+    assert spans(graph_of(tmp_path / "out.vtu")).mean() < 0.6 * spans(graph_of(tmp_path / "random.vtu")).mean()
+
+
+@pytest.mark.parametrize("arguments", [["--for", "fill"], ["--vertices", "rcm"], ["--group-by", "label"]])
+def test_a_race_needs_something_to_decide(command, lattice, tmp_path, arguments):
+    assert "--measure" in command.fails("order", "random.vtu", "-o", "out.vtu", "--measure", *arguments)
+    assert not (tmp_path / "out.vtu").exists()

@@ -8,6 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <optional>
+
 namespace meshorder {
 namespace {
 
@@ -87,6 +91,45 @@ TEST(Advice, MeasuresWhereItIsAskedTo) {
     EXPECT_GT((*advice.as_is.costs.measured)[k], 0);
     EXPECT_GT((*advice.candidates.front().costs.measured)[k], 0);
   }
+}
+
+TEST(Advice, ARaceTimesTheFirstAndThoseThatArePredictedToBeTheBest) {
+  AdviceOptions options = quick();
+  options.methods = {{"scrambled", "scrambled"},
+                     {"bfs", "lexmax"},
+                     {"bfs", "lexmax"},
+                     {"hilbert", "lexmax"},
+                     {"scrambled", "lexmax"}};
+  options.race_of = 3;
+  const Advice advice = advice_on(grid_in_order("scrambled", "original"), options);
+  ASSERT_EQ(advice.candidates.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(advice.candidates[i].vertices.name, (std::array{"scrambled", "bfs", "hilbert"})[i]);
+    EXPECT_TRUE(advice.candidates[i].costs.predicted);
+    EXPECT_TRUE(advice.candidates[i].costs.measured);
+  }
+  EXPECT_TRUE(advice.as_is.costs.measured);
+  EXPECT_LT(advice.candidates[2].spans.mean_span,
+            advice.candidates[0].spans.mean_span / 4);  // the order that it names
+  options.predict = false;
+  EXPECT_THROW((void)advice_on(make_grid({.size = 4}), options), InvalidArgument);
+}
+
+TEST(Race, GoesToTheFastestForTheWorkload) {
+  const Advice advice = made_up({2, 4, 30, 1}, {1.5, 3, 10, 0.5}, {1, 3, 30, 1});
+  EXPECT_EQ(winner_for(Workload::spmv, advice), 1U);
+  EXPECT_EQ(winner_for(Workload::assembly, advice), 0U);
+  EXPECT_EQ(winner_for(Workload::all, advice), 0U);
+  EXPECT_DOUBLE_EQ(factor_for(Workload::spmv, advice, 1), 2);
+  EXPECT_DOUBLE_EQ(factor_for(Workload::all, advice, 1), std::pow(2 * 4.0 / 3, 0.25));
+  EXPECT_THROW((void)winner_for(Workload::fill, advice), InvalidArgument);
+}
+
+TEST(Race, GoesToTheOrderThatIsThereAndThenToTheFirstOneWhereNoneIsMuchFaster) {
+  EXPECT_EQ(winner_for(Workload::element, made_up({2, 2, 2, 2}, {2, 1.9, 2, 2}, {2, 1.85, 2, 2})),
+            std::nullopt);
+  EXPECT_EQ(winner_for(Workload::element, made_up({2, 2, 2, 2}, {2, 1.05, 2, 2}, {2, 1, 2, 2})), 0U);
+  EXPECT_EQ(winner_for(Workload::element, made_up({2, 2, 2, 2}, {2, 1.15, 2, 2}, {2, 1, 2, 2})), 1U);
 }
 
 TEST(KernelAdvice, TakesTheFastestCandidateAndTellsWhenItHasPaid) {
