@@ -12,6 +12,7 @@
 #include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"
 #include "peak_memory.hpp"
+#include "spectral/fiedler.hpp"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>

@@ -9,6 +9,7 @@
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
+#include "ordering/method.hpp"
 
 #include <fmt/core.h>
 
