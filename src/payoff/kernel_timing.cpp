@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/kernel_timing.hpp"
 
+#include "base/median.hpp"
 #include "base/memory.hpp"
 #include "base/run_scope.hpp"
 #include "base/stopwatch.hpp"
@@ -86,11 +87,10 @@ KernelTimes summary(std::vector<double> samples, double reference_seconds) {
   KernelTimes times;
   times.samples = static_cast<int>(samples.size());
   if (samples.empty()) return times;
-  std::sort(samples.begin(), samples.end());
-  const double best = samples.front();
+  const double best = *std::min_element(samples.begin(), samples.end());
   times.best_ms = 1e3 * best;
-  times.median_ms = 500.0 * (samples[(samples.size() - 1) / 2] + samples[samples.size() / 2]);
   times.speedup = best > 0.0 ? reference_seconds / best : 1.0;
+  times.median_ms = 1e3 * median(std::move(samples));
   return times;
 }
 

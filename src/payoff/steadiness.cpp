@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/steadiness.hpp"
 
+#include "base/median.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
 
@@ -18,14 +19,6 @@ namespace {
 constexpr double kMostWaiting = 0.05;
 constexpr double kMostPace = 0.1;
 constexpr double kMostRepeat = 0.05;
-
-/// 0 for no values.
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// A chain of operations of which each waits for the one before: its time is the processor's clock alone.
 std::uint64_t fixed_arithmetic() {

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/findings/prediction_error.hpp"
 
+#include "base/median.hpp"
 #include "lab/report/findings/lookup.hpp"
 
 #include <algorithm>
@@ -53,7 +54,7 @@ PredictionError prediction_error(const StudyResults& results, std::size_t kernel
   std::sort(errors.begin(), errors.end());
   const std::size_t count = errors.size();
   error.speedups = static_cast<int>(count);
-  error.median = (errors[(count - 1) / 2] + errors[count / 2]) / 2;
+  error.median = median(errors);
   error.of_nine_tenths = errors[(9 * count + 9) / 10 - 1];
   error.largest = errors.back();
   return error;
