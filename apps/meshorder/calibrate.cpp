@@ -149,7 +149,7 @@ void add_calibrate(CLI::App& subcommand) {
       "Measure this machine, so that `info` predicts times for it: what a thread gets of the caches,\n"
       "latencies, bandwidths, and what misses cost each kernel. The result is kept for this processor\n"
       "and this build in $MESHORDER_CACHE, else in $XDG_CACHE_HOME/meshorder, else in\n"
-      "~/.cache/meshorder. `info` does it by itself the first time, some 30 s, unless --machine or\n"
+      "~/.cache/meshorder. `info` does it by itself the first time, some 20 s, unless --machine or\n"
       "$MESHORDER_MACHINE names another machine.");
   subcommand.footer(
       "Examples:\n"

@@ -35,7 +35,7 @@ MachineChoice calibrated(MachineChoice choice, Progress& progress, bool quiet, N
   if (!choice.stands_in) return choice;
   if (!choice.fault.empty()) notes.push_back(choice.fault + "; this machine is measured anew");
   if (!quiet) {
-    write_stderr("meshorder: measuring this machine once, some 30 s; `--machine zen5` predicts without\n");
+    write_stderr("meshorder: measuring this machine once, some 20 s; `--machine zen5` predicts without\n");
   }
   progress.stage("measuring this machine", 0, 0.9);
   Run run;

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/calibration.hpp"
 
+#include "base/median.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
@@ -19,7 +20,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <limits>
+#include <optional>
+#include <span>
 #include <utility>
 
 namespace meshorder {
@@ -32,6 +34,7 @@ struct Runs {
   std::array<std::vector<TimedReuse>, kKernels.size()> timed;
   /// By what share two timings of the same problem differ.
   std::array<std::vector<double>, kKernels.size()> apart;
+  std::vector<Steadiness> steadiness;  ///< of each measurement
 };
 
 /// What the costs are multiplied by, in milliseconds a nanosecond.
@@ -44,30 +47,42 @@ std::array<double, kCosts> counts_of(const Reuse& reuse, const std::array<Offset
   return counts;
 }
 
-double middle_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
-}
-
 /// What `advise` estimates from a sample of the lines is estimated here.
 int halvings_for(const Mesh& mesh) { return mesh.cell_count() < 50'000 ? 0 : 3; }
 
 /// Orders of a lattice, prepared to be timed.
 struct Prepared {
   std::vector<KernelReuse> reuse;
-  std::vector<KernelBench> benches;
+  std::vector<std::optional<KernelBench>> benches;
 
-  void add(const Mesh& mesh) {
-    const CsrGraph graph = vertex_graph(mesh);
-    reuse.push_back(reuse_of_kernels(graph, cut_into_simplices(mesh), halvings_for(mesh)));
-    benches.emplace_back(mesh, graph);
+  Prepared(const CalibrationLattice& lattice, std::span<const LatticeOrder> orders) { add(lattice, orders); }
+
+  /// Orders, predicts and prepares on all threads.
+  void add(const CalibrationLattice& lattice, std::span<const LatticeOrder> orders) {
+    std::vector<Mesh> meshes(orders.size());
+    std::vector<CsrGraph> graphs(orders.size());
+    for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
+      meshes[i] = in_order(lattice, orders[i]);
+      graphs[i] = vertex_graph(meshes[i]);
+    });
+    const std::size_t first = benches.size();
+    reuse.resize(first + orders.size());
+    benches.resize(first + orders.size());
+    for_each_chunk(2 * index_size(orders), 1, [&](Index task, Index /*begin*/, Index /*end*/) {
+      const std::size_t i = static_cast<std::size_t>(task) / 2;
+      if (task % 2 == 0) {
+        benches[first + i].emplace(meshes[i], graphs[i]);
+      } else {
+        reuse[first + i] =
+            reuse_of_kernels(graphs[i], cut_into_simplices(meshes[i]), halvings_for(meshes[i]));
+      }
+    });
   }
 
   /// Times all in interleaved rounds.
   [[nodiscard]] Timings timed(double seconds) {
     std::vector<KernelBench*> pointers;
-    for (KernelBench& bench : benches) pointers.push_back(&bench);
+    for (std::optional<KernelBench>& bench : benches) pointers.push_back(&bench.value());
     return time_interleaved(pointers, {.budget_seconds = seconds,
                                        .min_rounds = 3,
                                        .max_rounds = 40,
@@ -84,9 +99,18 @@ void add_runs(const Prepared& prepared, const Timings& timings, Runs& runs) {
   }
 }
 
-/// The worst of what disturbed several measurements.
-Steadiness worse(const Steadiness& a, const Steadiness& b) {
-  return {std::max(a.waiting, b.waiting), std::max(a.pace, b.pace), std::max(a.repeat, b.repeat)};
+/// What disturbed several measurements: the worst of it, and for how well timings repeat the middle, as a
+/// short measurement repeats less well than a long one.
+Steadiness steadiness_of(std::span<const Steadiness> measurements) {
+  Steadiness result;
+  std::vector<double> repeats;
+  for (const Steadiness& one : measurements) {
+    result.waiting = std::max(result.waiting, one.waiting);
+    result.pace = std::max(result.pace, one.pace);
+    repeats.push_back(one.repeat);
+  }
+  result.repeat = median(std::move(repeats));
+  return result;
 }
 
 /// The caches that costs belong to. A found one that is within a factor of 1.6 of a reported one is that one,
@@ -131,11 +155,11 @@ void measure_memory(const CalibrationEffort& effort, Calibration& calibration) {
 }
 
 /// Times all orders of a lattice side by side, the last but one of them twice, at other addresses.
-void time_small(const CalibrationLattice& lattice, double seconds, Calibration& calibration, Runs& runs) {
-  Prepared prepared;
-  for (const LatticeOrder& order : lattice.orders) prepared.add(in_order(lattice, order));
+void time_small(const CalibrationLattice& lattice, double seconds, Runs& runs) {
   const std::size_t twice = lattice.orders.size() - 2;
-  prepared.add(in_order(lattice, lattice.orders[twice]));
+  std::vector<LatticeOrder> orders = lattice.orders;
+  orders.push_back(orders[twice]);
+  Prepared prepared(lattice, orders);
   const Timings timings = prepared.timed(seconds);
   add_runs(prepared, timings, runs);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
@@ -143,13 +167,12 @@ void time_small(const CalibrationLattice& lattice, double seconds, Calibration& 
     const double other = timings.orders.back()[kKernels[k]].best_ms;
     runs.apart[k].push_back(std::max(one, other) / std::min(one, other) - 1);
   }
-  calibration.steadiness = worse(calibration.steadiness, timings.steadiness);
+  runs.steadiness.push_back(timings.steadiness);
 }
 
 /// Times the orders of a lattice one after another, as long as there is time, but at least the best and the
 /// worst.
-void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double seconds,
-                Calibration& calibration, Runs& runs) {
+void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double seconds, Runs& runs) {
   std::vector<LatticeOrder>& orders = lattice.orders;
   // the most that an order can cost is what meshes are predicted by that are larger than all of these
   std::swap(orders[1], orders.back());
@@ -158,11 +181,10 @@ void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double
     const double begin = since_start.seconds();
     if (i >= 2 && begin + longest > seconds) break;
     report("lattices", std::min(0.98, 0.6 + 0.4 * (begin / seconds - 0.5)));
-    Prepared prepared;
-    prepared.add(in_order(lattice, orders[i]));
+    Prepared prepared(lattice, std::span(orders).subspan(i, 1));
     const Timings timings = prepared.timed(0.3);
     add_runs(prepared, timings, runs);
-    calibration.steadiness = worse(calibration.steadiness, timings.steadiness);
+    runs.steadiness.push_back(timings.steadiness);
     longest = std::max(longest, since_start.seconds() - begin);
   }
 }
@@ -192,7 +214,7 @@ FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches) {
     for (std::size_t j = 0; j < kCosts; ++j) predicted += rows[i][j] * costs[j];
     errors.push_back(std::abs(predicted - 1));
   }
-  result.error = middle_of(std::move(errors));
+  result.error = median(std::move(errors));
   return result;
 }
 
@@ -251,17 +273,17 @@ Calibration measure_machine(const CalibrationEffort& effort) {
     const Stopwatch stopwatch;
     const CalibrationLattice lattice =
         make_calibration_lattice(step.vertices, step.flat, model.caches, step.orders);
-    time_small(lattice, step.share * effort.seconds, calibration, runs);
+    time_small(lattice, step.share * effort.seconds, runs);
     done += step.share;
   }
-  time_large(make_calibration_lattice(largest, false, model.caches, 6), since_start, effort.seconds,
-             calibration, runs);
+  time_large(make_calibration_lattice(largest, false, model.caches, 6), since_start, effort.seconds, runs);
+  calibration.steadiness = steadiness_of(runs.steadiness);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     const FittedCosts fitted = fit_costs(runs.timed[k], model.caches);
     model.kernels[k] = fitted.costs;
     calibration.condition[k] = fitted.condition;
     calibration.error[k] = fitted.error;
-    calibration.floor[k] = middle_of(runs.apart[k]);
+    calibration.floor[k] = median(runs.apart[k]);
   }
   calibration.seconds = since_start.seconds();
   return calibration;
@@ -269,13 +291,15 @@ Calibration measure_machine(const CalibrationEffort& effort) {
 
 Recheck recheck(const Calibration& calibration) {
   const Caches& caches = calibration.model.caches;
-  Prepared prepared;
-  for (const Index vertices : {Index{4000}, Index{30'000}}) {
-    report("recheck", vertices < 30'000 ? 0 : 0.3);
-    const CalibrationLattice lattice = make_calibration_lattice(vertices, false, caches, 3);
-    prepared.add(in_order(lattice, lattice.orders.front()));
-    prepared.add(in_order(lattice, lattice.orders[lattice.orders.size() - 2]));
-  }
+  const auto ends = [](const CalibrationLattice& lattice) {
+    return std::array{lattice.orders.front(), lattice.orders[lattice.orders.size() - 2]};
+  };
+  report("recheck", 0);
+  const CalibrationLattice small = make_calibration_lattice(4000, false, caches, 3);
+  Prepared prepared(small, ends(small));
+  report("recheck", 0.2);
+  const CalibrationLattice large = make_calibration_lattice(30'000, false, caches, 3);
+  prepared.add(large, ends(large));
   report("recheck", 0.5);
   const Timings timings = prepared.timed(1.0);
   Recheck result;
@@ -286,7 +310,7 @@ Recheck recheck(const Calibration& calibration) {
       const double predicted = predicted_ms(kKernels[k], prepared.reuse[i][k], caches, calibration.model);
       ratios.push_back(timings.orders[i][kKernels[k]].best_ms / std::max(predicted, 1e-9));
     }
-    result.ratio[k] = middle_of(std::move(ratios));
+    result.ratio[k] = median(std::move(ratios));
     const double most = std::max(0.15, 3 * (calibration.error[k] + calibration.floor[k]));
     if (std::abs(std::log(result.ratio[k])) <= std::log(1 + most)) continue;
     moved.push_back(
