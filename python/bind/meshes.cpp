@@ -105,8 +105,9 @@ nb::dict described(const Candidate& candidate) {
 using MethodPairs = std::vector<std::pair<std::string, std::string>>;
 
 PayoffOptions payoff_options(const MethodPairs& methods, bool predict, bool measure, double budget,
-                             const OrderOptions& order) {
-  PayoffOptions options{.predict = predict, .measure = measure, .budget_seconds = budget, .order = order};
+                             const std::string& machine, const OrderOptions& order) {
+  PayoffOptions options{
+      .predict = predict, .machine = machine, .measure = measure, .budget_seconds = budget, .order = order};
   for (const auto& [vertices, elements] : methods) options.methods.push_back({vertices, elements});
   return options;
 }
@@ -120,7 +121,8 @@ nb::tuple advise_mesh(const MeshView& mesh, const PayoffOptions& options) {
     const KernelAdvice& best = advice.kernels[static_cast<std::size_t>(kernel)];
     kernels[text(to_string(kernel))] = nb::make_tuple(best.candidate, best.factor, best.runs_to_pay);
   }
-  return nb::make_tuple(to_string(advice), described(advice.as_is), candidates, kernels, advice.doubt);
+  return nb::make_tuple(to_string(advice), described(advice.as_is), candidates, kernels, advice.doubt,
+                        advice.machine);
 }
 
 nb::list compare_mesh(const MeshView& mesh, const PayoffOptions& options) {
@@ -130,14 +132,22 @@ nb::list compare_mesh(const MeshView& mesh, const PayoffOptions& options) {
   return list;
 }
 
+nb::tuple calibrated(double seconds, bool keep, const nb::dict& options) {
+  const Options given_options(options);
+  const CalibrationReport report =
+      unlocked([&] { return calibrate({.seconds = seconds, .keep = keep, .run = given_options.run()}); });
+  return nb::make_tuple(report.machine, report.json, report.file, report.doubt);
+}
+
 /// A method of Mesh that asks `question`, advise_mesh or compare_mesh, with Python's arguments as its
 /// options.
 template <class Answer>
 auto answering(Answer (*question)(const MeshView&, const PayoffOptions&)) {
   return [question](const Mesh& self, const MethodPairs& methods, bool predict, bool measure, double budget,
-                    const nb::dict& options) {
+                    const std::string& machine, const nb::dict& options) {
     const Options given_options(options);
-    return question(view(self), payoff_options(methods, predict, measure, budget, given_options.order()));
+    return question(view(self),
+                    payoff_options(methods, predict, measure, budget, machine, given_options.order()));
   };
 }
 
@@ -310,6 +320,7 @@ void add_meshes(nb::module_& module) {
     shapes.append(text(to_string(static_cast<Shape>(s))));
     dimensions.append(dimension(static_cast<Shape>(s)));
   }
+  module.def("calibrate", &calibrated);
   module.attr("shapes") = nb::tuple(shapes);
   module.attr("dimensions") = nb::tuple(dimensions);
   nb::list kernels;

@@ -127,8 +127,24 @@ def test_comparison_and_advice(mesh):
     measured = meshorder.compare(mesh, ["rcm"], measure=True, predict=False, budget=0)
     assert all(time > 0 for candidate in measured for time in candidate.milliseconds.values())
     assert all(candidate.measured and not candidate.predicted for candidate in measured)
-    advice = meshorder.advise(mesh)
+    advice = meshorder.advise(mesh, machine="zen4")
+    assert advice.machine == "zen4"
+    assert advice.as_is.predicted != meshorder.advise(mesh, machine="zen5").as_is.predicted
+    with pytest.raises(InvalidArgument, match="zen"):
+        meshorder.compare(mesh, machine="zen9")
     assert str(advice) == advice.verdict and set(advice.kernels) == {"spmv", "element", "assembly", "springs"}
+
+
+def test_calibration(mesh, tmp_path, monkeypatch):
+    monkeypatch.setenv("MESHORDER_CACHE", str(tmp_path))
+    stages = []
+    found = meshorder.calibrate(0.5, keep=False, progress=lambda stage, part: stages.append(stage))
+    assert found.file is None and not list(tmp_path.iterdir()) and "caches" in stages
+    assert found.machine.startswith("this machine, calibrated") and found.figures["caches"]
+    kept = meshorder.calibrate(0.5)
+    assert kept.file.is_file() and meshorder.advise(mesh, machine="this").machine == kept.machine
+    with pytest.raises(InvalidArgument):
+        meshorder.calibrate(0)
 
 
 def test_bad_files(tmp_path):

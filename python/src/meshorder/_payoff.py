@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -74,6 +76,8 @@ class Advice:
         kernels: the best candidate for each kernel.
         doubt: why measured times are not to be trusted (the machine was busy or throttled); empty where they are, and
             where nothing was measured.
+        machine: what the predicted times are those of: "this machine, calibrated 2026-11-22", "zen5", or "this machine's
+            caches at the costs of zen5"; empty where nothing was predicted.
     """
 
     verdict: str
@@ -81,6 +85,7 @@ class Advice:
     candidates: list[Candidate]
     kernels: dict[str, KernelAdvice]
     doubt: str = ""
+    machine: str = ""
 
     def __str__(self) -> str:
         return self.verdict
@@ -152,29 +157,73 @@ def _pairs(methods: Any) -> list[tuple[str, str]]:
     return [(method, "auto") if isinstance(method, str) else tuple(method) for method in methods or []]
 
 
-def advise(mesh: Any, *, measure: bool = False, budget: float = 10, **options: Any) -> Advice:
+@dataclass(frozen=True)
+class Calibration:
+    """What `calibrate` found of this machine.
+
+    Attributes:
+        machine: what `Advice.machine` calls it.
+        figures: all that was measured: what a thread gets of the caches, latencies, bandwidths, costs of the kernels.
+        file: where it is stored; None if it is not kept.
+        doubt: why it is not to be trusted (the machine was busy or throttled); empty where it is.
+    """
+
+    machine: str
+    figures: dict[str, Any] = field(repr=False)
+    file: Path | None
+    doubt: str
+
+
+def calibrate(seconds: float = 16, *, keep: bool = True, **options: Any) -> Calibration:
+    """Measures this machine, so that `advise` and `compare` predict for it from now on.
+
+    Other work on the machine spoils it.
+
+    Args:
+        seconds: no measurement begins that would end later, but each is made once: some 20 s in all for 16.
+        keep: stores it for this processor and this build of the library.
+        **options: see `Options`; only ``threads`` and ``progress`` matter.
+    """
+    with prepared(options) as given:
+        machine, figures, file, doubt = _core.calibrate(seconds, keep, given)
+    return Calibration(machine, json.loads(figures), Path(file) if file else None, doubt)
+
+
+def advise(
+    mesh: Any, *, measure: bool = False, budget: float = 10, machine: str = "", **options: Any
+) -> Advice:
     """Tells what reordering a mesh would be worth, before it is done.
 
     Args:
         mesh: a path, or a mesh as of `reorder`.
         measure: runs the kernels here; otherwise they are predicted.
         budget: seconds for that.
+        machine: what to predict for: "this", as `calibrate` measured it, or one that ships, as "zen5"; empty: what the
+            environment variable MESHORDER_MACHINE says, else "this".
         **options: see `Options`.
     """
     with prepared(options) as given:
-        made = mesh_of(mesh)._handle.advise([], not measure, measure, budget, given)
-    verdict, as_is, candidates, kernels, doubt = made
+        made = mesh_of(mesh)._handle.advise([], not measure, measure, budget, machine, given)
+    verdict, as_is, candidates, kernels, doubt, predicted_for = made
     return Advice(
         verdict,
         Candidate._of(as_is),
         [Candidate._of(candidate) for candidate in candidates],
         {kernel: KernelAdvice(*best) for kernel, best in kernels.items()},
         doubt,
+        predicted_for,
     )
 
 
 def compare(
-    mesh: Any, methods: Any = None, *, measure: bool = False, budget: float = 10, predict: bool = True, **options: Any
+    mesh: Any,
+    methods: Any = None,
+    *,
+    measure: bool = False,
+    budget: float = 10,
+    predict: bool = True,
+    machine: str = "",
+    **options: Any,
 ) -> Comparison:
     """Compares orders of a mesh: their spans and the time of four kernels of simulators.
 
@@ -184,8 +233,9 @@ def compare(
         measure: runs the kernels here, on one thread.
         budget: seconds for that.
         predict: by reuse distances and a cost model.
+        machine: as of `advise`.
         **options: see `Options`.
     """
     with prepared(options) as given:
-        made = mesh_of(mesh)._handle.compare(_pairs(methods), predict, measure, budget, given)
+        made = mesh_of(mesh)._handle.compare(_pairs(methods), predict, measure, budget, machine, given)
     return Comparison([Candidate._of(candidate) for candidate in made])
