@@ -49,7 +49,7 @@ KINDS: dict[str, tuple[str, str, dict[str, object]]] = {
 COPIES = {
     "exodus": (["nccopy"], ".e"),
     "xdmf": (["h5repack"], ".h5"),
-    "xdmf-gzip": (["h5repack"], ".h5"),
+    "xdmf-gzip": (["h5repack", "-f", "GZIP=4"], ".h5"),  # otherwise it copies what is compressed as it is
     "med": (["h5repack"], ".med"),
 }
 
