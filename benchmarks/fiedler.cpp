@@ -4,6 +4,8 @@
 // every direction, its vertices scrambled) the time from cells to graph, and from the graph to the vector at
 // two accuracies on one and two threads, median of five runs; the mean edge span of the order that follows;
 // the memory that the solver took, relative to the graph's.
+#include "spectral/fiedler.hpp"
+
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
@@ -12,7 +14,6 @@
 #include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"
 #include "peak_memory.hpp"
-#include "spectral/fiedler.hpp"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
