@@ -142,7 +142,8 @@ def test_calibration(mesh, tmp_path, monkeypatch):
     assert found.file is None and not list(tmp_path.iterdir()) and "caches" in stages
     assert found.machine.startswith("this machine, calibrated") and found.figures["caches"]
     kept = meshorder.calibrate(0.5)
-    assert kept.file.is_file() and meshorder.advise(mesh, machine="this").machine == kept.machine
+    assert kept.file is not None and kept.file.is_file()
+    assert meshorder.advise(mesh, machine="this").machine == kept.machine
     with pytest.raises(InvalidArgument):
         meshorder.calibrate(0)
 
