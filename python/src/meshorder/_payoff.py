@@ -162,7 +162,7 @@ class Calibration:
     """What `calibrate` found of this machine.
 
     Attributes:
-        machine: what `Advice.machine` calls it.
+        machine: what ``Advice.machine`` calls it.
         figures: all that was measured: what a thread gets of the caches, latencies, bandwidths, costs of the kernels.
         file: where it is stored; None if it is not kept.
         doubt: why it is not to be trusted (the machine was busy or throttled); empty where it is.
