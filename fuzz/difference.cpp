@@ -9,7 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <type_traits>
+#include <vector>
 
 namespace meshorder::fuzz {
 namespace {
@@ -72,16 +74,24 @@ std::vector<std::vector<Index>> sorted_cells(const Cells& cells) {
   return result;
 }
 
-/// Compares an array with the one of its name in a mesh, which may have its arrays in another order.
-std::string difference_of_array(const Mesh& found, const DataArray& expected) {
-  const std::string name =
-      "the array '" + expected.name + "' on " + std::string(to_string(expected.association));
-  const DataArray* const array = find_array(found, expected.name, expected.association);
-  if (array == nullptr) return name + " is gone";
-  if (array->components != expected.components) return name + " has another number of components";
-  if (array->indices != expected.indices) return name + " has rows of other vertices or cells";
-  if (array->component_names != expected.component_names) return name + " has other names of components";
-  if (!same_values(array->values, expected.values)) return name + " has other values";
+/// Returns the arrays of a mesh sorted by what they belong to and by name, those of one name in their order:
+/// a file may have its arrays in another order.
+std::vector<const DataArray*> arrays_by_name(const Mesh& mesh) {
+  std::vector<const DataArray*> arrays;
+  for (const DataArray& array : mesh.data) arrays.push_back(&array);
+  std::stable_sort(arrays.begin(), arrays.end(), [](const DataArray* a, const DataArray* b) {
+    return std::tie(a->association, a->name) < std::tie(b->association, b->name);
+  });
+  return arrays;
+}
+
+std::string difference_of_arrays(const DataArray& a, const DataArray& b) {
+  const std::string name = "the array '" + b.name + "' on " + std::string(to_string(b.association));
+  if (a.name != b.name || a.association != b.association) return name + " is gone";
+  if (a.components != b.components) return name + " has another number of components";
+  if (a.indices != b.indices) return name + " has rows of other vertices or cells";
+  if (a.component_names != b.component_names) return name + " has other names of components";
+  if (!same_values(a.values, b.values)) return name + " has other values";
   return {};
 }
 
@@ -89,8 +99,10 @@ std::string difference_of_data(const Mesh& a, const Mesh& b) {
   if (a.data.size() != b.data.size()) {
     return std::to_string(a.data.size()) + " arrays for " + std::to_string(b.data.size());
   }
-  for (const DataArray& expected : b.data) {
-    std::string found = difference_of_array(a, expected);
+  const std::vector<const DataArray*> found_arrays = arrays_by_name(a);
+  const std::vector<const DataArray*> expected_arrays = arrays_by_name(b);
+  for (std::size_t i = 0; i < expected_arrays.size(); ++i) {
+    std::string found = difference_of_arrays(*found_arrays[i], *expected_arrays[i]);
     if (!found.empty()) return found;
   }
   if (a.sets.size() != b.sets.size()) {
