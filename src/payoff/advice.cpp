@@ -49,19 +49,27 @@ std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
   return result;
 }
 
-/// For so many seconds. `doubt` receives why the times are not to be trusted.
-std::vector<KernelMilliseconds> measurements(const std::vector<Ordered>& orders, double seconds,
-                                             std::string& doubt) {
-  report("measure");
-  const Timings timings =
-      time_orders(index_size(orders), [&](Index i) { return KernelBench(orders[i].mesh, orders[i].graph); },
-                  {.budget_seconds = std::max(0.0, seconds), .min_rounds = 2, .sample_seconds = 0.01});
-  doubt = reason_to_doubt(timings.steadiness);
-  std::vector<KernelMilliseconds> result(orders.size());
-  for (std::size_t i = 0; i < orders.size(); ++i) {
-    for (std::size_t k = 0; k < kKernels.size(); ++k) result[i][k] = timings.orders[i][kKernels[k]].best_ms;
-  }
-  return result;
+TimingOptions for_seconds(double seconds) {
+  return {.budget_seconds = std::max(0.0, seconds), .min_rounds = 2, .sample_seconds = 0.01};
+}
+
+/// In rounds that end by `seconds` on the stopwatch.
+Timings measured(const std::vector<Ordered>& orders, const Stopwatch& stopwatch, double seconds) {
+  std::vector<std::optional<KernelBench>> benches(orders.size());
+  for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
+    benches[i].emplace(orders[i].mesh, orders[i].graph);
+  });
+  std::vector<KernelBench*> pointers;
+  pointers.reserve(benches.size());
+  for (std::optional<KernelBench>& bench : benches) pointers.push_back(&bench.value());
+  return time_interleaved(pointers, for_seconds(seconds - stopwatch.seconds()));
+}
+
+/// For half a second an order, as many at a time as memory allows.
+Timings raced(const std::vector<Ordered>& orders) {
+  constexpr double kSeconds = 0.5;
+  const auto prepare = [&](Index i) { return KernelBench(orders[i].mesh, orders[i].graph); };
+  return time_orders(index_size(orders), prepare, for_seconds(kSeconds * static_cast<double>(orders.size())));
 }
 
 /// What is asked for of `compute_reordering`, one after another.
@@ -196,17 +204,18 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
     const std::vector<KernelMilliseconds> predicted = predictions(orders, options);
     for (std::size_t i = 0; i < orders.size(); ++i) candidate(i).costs.predicted = predicted[i];
   }
-  std::optional<double> seconds;  // to measure for
-  if (options.race_of > 0) {
-    keep_best(advice, orders, options.ordering.workload, options.race_of);
-    constexpr double kSecondsInRace = 0.5;
-    seconds = kSecondsInRace * static_cast<double>(orders.size());
-  } else if (options.measure_within) {
-    seconds = *options.measure_within - since_call.seconds();
-  }
-  if (seconds) {
-    const std::vector<KernelMilliseconds> measured = measurements(orders, *seconds, advice.doubt);
-    for (std::size_t i = 0; i < orders.size(); ++i) candidate(i).costs.measured = measured[i];
+  if (options.race_of > 0) keep_best(advice, orders, options.ordering.workload, options.race_of);
+  if (options.race_of > 0 || options.measure_within) {
+    report("measure");
+    const Timings timings =
+        options.race_of > 0 ? raced(orders) : measured(orders, since_call, *options.measure_within);
+    advice.doubt = reason_to_doubt(timings.steadiness);
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+      KernelMilliseconds& milliseconds = candidate(i).costs.measured.emplace();
+      for (std::size_t k = 0; k < kKernels.size(); ++k) {
+        milliseconds[k] = timings.orders[i][kKernels[k]].best_ms;
+      }
+    }
   }
   advice.floor = options.machine.floor;
   advice.kernels = kernel_advice(advice);

@@ -12,7 +12,11 @@ pytestmark = [pytest.mark.package, pytest.mark.long]
 CLANG = shutil.which("clang++") or shutil.which("clang++-14")
 
 
-@pytest.mark.parametrize("compiler, flags", [(CLANG, "-O1"), (CLANG, "-O3"), ("g++", "-O2")])
+#: docs/limits.md promises nothing for instructions that fuse operations
+FUSED = pytest.param("g++", "-O3 -march=x86-64-v3", marks=pytest.mark.xfail(strict=True, reason="fused operations"))
+
+
+@pytest.mark.parametrize("compiler, flags", [(CLANG, "-O1"), (CLANG, "-O3"), FUSED])
 def test_orders_have_the_committed_hashes(compiler, flags, tmp_path):
     if not compiler:
         pytest.skip("there is no clang++")
