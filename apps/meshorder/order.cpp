@@ -279,9 +279,9 @@ void add_order(CLI::App& subcommand) {
       ->type_name("NAME");
   subcommand.add_flag(
       "--measure", arguments->measure,
-      "For meshes that live long: run the kernels for about two seconds, in the file's order, in\n"
-      "the one that `auto` takes and in the two predicted to be the best of five others; take\n"
-      "the fastest. The result may differ from run to run, and between machines");
+      "Time the kernels for about two seconds, in the file's order, in the one that `auto` takes and\n"
+      "in the two predicted to be the best of five others, and take the fastest. Worth it for meshes\n"
+      "that are computed on for long. The result may differ from run to run, and between machines");
   add_ids_option(subcommand, arguments->ids);
   add_keeping_options(subcommand, arguments->keeping);
   subcommand.add_option(
