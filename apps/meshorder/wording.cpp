@@ -32,8 +32,10 @@ std::vector<std::pair<std::string, Index>> type_counts(const Mesh& mesh) {
 }
 
 std::string plural(const std::string& type) {
-  const std::map<std::string, std::string> irregular{
-      {"tetrahedron", "tetrahedra"}, {"hexahedron", "hexahedra"}, {"vertex", "vertex cells"}};
+  const std::map<std::string, std::string> irregular{{"tetrahedron", "tetrahedra"},
+                                                     {"hexahedron", "hexahedra"},
+                                                     {"polyhedron", "polyhedra"},
+                                                     {"vertex", "vertex cells"}};
   const auto found = irregular.find(type);
   return found == irregular.end() ? type + "s" : found->second;
 }

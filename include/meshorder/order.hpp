@@ -174,7 +174,8 @@ class MESHORDER_API Graph {
 /// @param cells         the cells; vertex e of the graph is the e-th cell of the highest dimension
 /// @param vertex_count  number of the mesh's vertices
 /// @param by_facet      true: join elements that share a face (volumes), an edge (surfaces) or an end
-///                      (lines); where more than two share it, each is joined to the next. false: join those
+///                      (lines); where more than two share it, each is joined to the next, and polyhedra to
+///                      the elements that have three of their vertices. false: join those
 ///                      that share a vertex, about 50 neighbours for a tetrahedron
 /// @param run           threads, progress
 /// @throws as `vertex_graph`; InvalidArgument for `by_facet` with cells of unknown shape

@@ -12,10 +12,12 @@ namespace meshorder {
 inline namespace v0_2 {
 
 /// The geometric shape of a cell. Shape and number of vertices together are the type of a cell: a tetrahedron
-/// of 4 vertices is linear, one of 10 is quadratic. The last four shapes have any number of vertices.
+/// of 4 vertices is linear, one of 10 is quadratic. The last five shapes have any number of vertices.
 ///
 /// Corners come first, in VTK's order except for linear wedges: the first triangle of every wedge faces
 /// inward, as in Gmsh. In second-order cells the nodes of edges, faces and interior follow, in VTK's order.
+/// A polyhedron has the corners of its faces, each once, in any order; the faces themselves are not part of
+/// the cell, and stay with what the file's format keeps.
 enum class Shape : std::uint8_t {
   vertex,
   line,
@@ -29,10 +31,11 @@ enum class Shape : std::uint8_t {
   polyline,
   polygon,
   triangle_strip,
+  polyhedron,
 };
 
 /// Number of values of `Shape`.
-inline constexpr int kShapes = 12;
+inline constexpr int kShapes = 13;
 
 /// Returns the dimension of a shape: 0 for vertices, 1 for lines, 2 for surfaces, 3 for volumes. O(1).
 MESHORDER_API int dimension(Shape shape);
@@ -53,7 +56,8 @@ MESHORDER_API std::string type_name(Shape shape, int vertices);
 /// Returns the facets of a cell: faces of a volume, edges of a surface, ends of a line.
 ///
 /// @return each facet as positions, from 0, of its corners in the cell: `facets(Shape::triangle, 3)` is
-///         {{0, 1}, {1, 2}, {2, 0}}. A triangle strip gives its outline. Vertex shapes have none.
+///         {{0, 1}, {1, 2}, {2, 0}}. A triangle strip gives its outline. Vertex shapes have none, and those
+///         of a polyhedron are not known.
 MESHORDER_API std::vector<std::vector<int>> facets(Shape shape, int vertices);
 
 }  // namespace v0_2

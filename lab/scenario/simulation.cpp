@@ -161,6 +161,10 @@ void set_up_projective(Simplices simplices, const MotionState& start, Simulation
 
 void require_volume_cells(const Mesh& mesh, const std::string& file) {
   const int dimension = mesh.cells.highest_dimension();
+  const std::vector<Shape>& shapes = mesh.cells.shapes;
+  if (std::find(shapes.begin(), shapes.end(), Shape::polyhedron) != shapes.end()) {
+    throw InputError(file, "has polyhedra", "cut them into tetrahedra first, in ParaView by Tetrahedralize");
+  }
   if (dimension == 3) return;
   throw InputError(
       file, dimension == 2 ? "is a surface: it has no volume cells" : "has no volume cells",

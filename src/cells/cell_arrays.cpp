@@ -81,6 +81,8 @@ std::optional<Shape> shape_of_vtk_type(int type) {
     case 74:
     case 81:
       return Shape::pyramid;
+    case 42:
+      return Shape::polyhedron;
     default:
       return std::nullopt;
   }

@@ -60,9 +60,42 @@ std::vector<ElementFacet> matched_facets(const CellArrays& cells, const CellSele
   return matched_facets(all, cells.vertex_count);
 }
 
+namespace {
+
+/// Adds the joins of polyhedra with all elements that have three of their vertices.
+void join_polyhedra(const CellArrays& cells, const CellSelection& elements, std::vector<Edge>& joins) {
+  constexpr int kFaceCorners = 3;
+  constexpr std::size_t kMostElements = 1024;
+  const auto is_polyhedron = [&](Index e) { return cells.shapes[elements.cell(e)] == Shape::polyhedron; };
+  if (std::find(cells.shapes.begin(), cells.shapes.end(), Shape::polyhedron) == cells.shapes.end()) return;
+  const IncidenceRef vertices = elements.incidence();
+  const Incidence elements_at = transposed(vertices);
+  std::vector<int> common(static_cast<std::size_t>(elements.size()), 0);  // vertices, with each element
+  std::vector<Index> near;
+  for (Index e = 0; e < elements.size(); ++e) {
+    poll_in_loop(e);
+    if (!is_polyhedron(e)) continue;
+    for (const Index v : vertices[e]) {
+      if (elements_at[v].size() > kMostElements) continue;
+      for (const Index other : elements_at[v]) {
+        if (common[other]++ == 0) near.push_back(other);
+      }
+    }
+    for (const Index other : near) {
+      const bool is_first = other > e || !is_polyhedron(other);
+      if (other != e && is_first && common[other] >= kFaceCorners) joins.push_back({e, other});
+      common[other] = 0;
+    }
+    near.clear();
+  }
+}
+
+}  // namespace
+
 CsrGraph joined_by_facet(const CellArrays& cells, const CellSelection& elements) {
   const std::vector<ElementFacet> facets = matched_facets(cells, elements);
   std::vector<Edge> joins;
+  join_polyhedra(cells, elements, joins);
   for (std::size_t i = 1; i < facets.size(); ++i) {
     // a facet of more than two elements joins each to the next, which keeps them together
     if (facets[i - 1].corners == facets[i].corners)

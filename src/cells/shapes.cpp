@@ -25,7 +25,8 @@ constexpr std::array<ShapeFacts, kShapes> kFacts{{{"vertex", 0, 1},
                                                   {"poly_vertex", 0, 0},
                                                   {"polyline", 1, 0},
                                                   {"polygon", 2, 0},
-                                                  {"triangle_strip", 2, 0}}};
+                                                  {"triangle_strip", 2, 0},
+                                                  {"polyhedron", 3, 0}}};
 
 const ShapeFacts& facts(Shape shape) { return kFacts[static_cast<std::size_t>(shape)]; }
 
@@ -78,6 +79,7 @@ std::vector<std::vector<int>> facets(Shape shape, int vertices) {
     }
     case Shape::vertex:
     case Shape::poly_vertex:
+    case Shape::polyhedron:
       return {};
   }
   return {};

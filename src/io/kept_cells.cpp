@@ -81,8 +81,8 @@ std::vector<Index> cells_but(const Mesh& mesh, const std::vector<TypeCount>& lef
 /// Returns "1 line", "212 triangles", "7 triangles of 6 vertices".
 std::string in_words(const TypeCount& type) {
   constexpr std::array<std::string_view, kShapes> kPlurals{
-      "vertices", "lines",     "triangles",    "quads",     "tetrahedra", "pyramids",
-      "wedges",   "hexahedra", "point clouds", "polylines", "polygons",   "triangle strips"};
+      "vertices",  "lines",        "triangles", "quads",    "tetrahedra",      "pyramids", "wedges",
+      "hexahedra", "point clouds", "polylines", "polygons", "triangle strips", "polyhedra"};
   const std::string_view plural = kPlurals[static_cast<std::size_t>(type.shape)];
   std::string name(type.count == 1 ? to_string(type.shape) : plural);
   std::replace(name.begin(), name.end(), '_', ' ');

@@ -36,6 +36,11 @@ std::vector<int> pieces(Shape shape, int vertices) {
       for (int i = 2; i < vertices; ++i) strip.insert(strip.end(), {i - 2, i - 1, i});
       return strip;
     }
+    case Shape::polyhedron: {
+      std::vector<int> chain;
+      for (int i = 3; i < vertices; ++i) chain.insert(chain.end(), {i - 3, i - 2, i - 1, i});
+      return chain;
+    }
     case Shape::vertex:
     case Shape::poly_vertex:
       return {};

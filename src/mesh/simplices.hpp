@@ -20,8 +20,10 @@ struct Simplices {
 
 /// Cuts the mesh's elements, in their order, into simplices on their corners: a hexahedron into six
 /// tetrahedra, a wedge into three, a pyramid into two, a polygon into a fan of triangles. Ignores mid-side
-/// nodes and cells of lower dimension. The pieces of a cell depend on the order of its corners alone, so
-/// that reordering the mesh reorders the simplices and changes none. O(cells).
+/// nodes and cells of lower dimension. A polyhedron, whose faces are not known, becomes a chain of
+/// tetrahedra, each on four successive corners: they touch what its cut would touch, but do not fill it. The
+/// pieces of a cell depend on the order of its corners alone, so that reordering the mesh reorders the
+/// simplices and changes none. O(cells).
 Simplices cut_into_simplices(const Mesh& mesh);
 
 }  // namespace meshorder

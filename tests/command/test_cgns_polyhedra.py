@@ -7,6 +7,7 @@ import subprocess
 import h5py
 import numpy
 import pytest
+import scipy.spatial
 from test_cgns import KUHN, checked, children, keep, new_file, put, put_condition, put_zone, text, word
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
@@ -53,9 +54,41 @@ def mixed(n, seed, at=0.0):
     return moved, [[int(shuffle[v]) for v in cell] for cell in cells]
 
 
-def polyhedra(cells, seed, signs=True):
-    """The faces of cells, those of the boundary last, and for each cell its faces, signed, in an order by chance."""
+def voronoi(count, seed, at=0.0):
+    """The cells of points by chance in a cube: points, for each cell its corners, faces, and their cells with signs."""
     chance = numpy.random.default_rng(seed)
+    sites = chance.random((count, 3))
+    images = [sites]
+    for axis, wall in itertools.product(range(3), (0.0, 1.0)):
+        image = sites.copy()
+        image[:, axis] = 2 * wall - image[:, axis]
+        images.append(image)
+    diagram = scipy.spatial.Voronoi(numpy.concatenate(images))
+    faces, users = [], []
+    for sides, corners in zip(diagram.ridge_points.tolist(), diagram.ridge_vertices):
+        inside = sorted(side for side in sides if side < count)
+        if not inside:
+            continue
+        points = diagram.vertices[corners]
+        normal = numpy.cross(points[1] - points[0], points[2] - points[0])
+        outward = normal @ (points.mean(0) - sites[inside[0]]) > 0
+        faces.append(corners)
+        users.append([(cell, sign if outward else -sign) for cell, sign in zip(inside, (1, -1))])
+    used = numpy.unique([v for face in faces for v in face])
+    number = {int(old): new for new, old in enumerate(chance.permutation(used))}
+    points = numpy.empty((len(used), 3))
+    for old, new in number.items():
+        points[new] = diagram.vertices[old] + [at, 0, 0]
+    faces = [[number[v] for v in face] for face in faces]
+    cells = [set() for _ in range(count)]
+    for face, sides in zip(faces, users):
+        for cell, _ in sides:
+            cells[cell].update(face)
+    return points, [sorted(cell) for cell in cells], faces, users
+
+
+def faces_of_cells(cells, chance):
+    """The faces of standard cells, turned by chance, and for each face its cells with signs."""
     known, faces, users = {}, [], []
     for number, cell in enumerate(cells):
         for face in FACES[len(cell)]:
@@ -69,11 +102,16 @@ def polyhedra(cells, seed, signs=True):
                 users.append([(number, -1 if inward else 1)])
             else:
                 users[place].append((number, -users[place][0][1]))
+    return faces, users
+
+
+def polyhedra(faces, users, chance, signs=True):
+    """The faces, those of the boundary last, their cells, and for each cell its faces, signed, in an order by chance."""
     inner = [k for k in chance.permutation(len(faces)) if len(users[k]) == 2]
     outer = [k for k in chance.permutation(len(faces)) if len(users[k]) == 1]
     outer.sort(key=lambda k: len(faces[k]))
     order = inner + outer
-    of_cells = [[] for _ in cells]
+    of_cells = [[] for _ in range(1 + max(cell for user in users for cell, _ in user))]
     for new, old in enumerate(order, 1):
         for cell, sign in users[old]:
             of_cells[cell].append(new * sign if signs else new)
@@ -95,9 +133,16 @@ def put_rows(zone, name, kind, first, rows, offsets, whole="int32", shift=0):
     return section
 
 
-def write_zone(base, name, n, seed, offsets=True, whole="int32", at=0.0, signs=1, parents="elements", cells_first=False):
-    points, cells = mixed(n, seed, at)
-    faces, users, of_cells, inner = polyhedra(cells, seed, bool(signs))
+def write_zone(base, name, n, seed, offsets=True, whole="int32", at=0.0, signs=1, parents="elements", cells_first=False,
+               general=False):
+    """`general`: n³ cells of Voronoi's, else such as are standard cells."""
+    chance = numpy.random.default_rng(seed)
+    if general:
+        points, cells, faces, users = voronoi(n**3, seed, at)
+    else:
+        points, cells = mixed(n, seed, at)
+        faces, users = faces_of_cells(cells, chance)
+    faces, users, of_cells, inner = polyhedra(faces, users, chance, bool(signs))
     zone = put_zone(base, name, points, len(cells), whole)
     first_face, first_cell = (len(cells) + 1, 1) if cells_first else (1, len(faces) + 1)
     polygons = put_rows(zone, "faces", 22, first_face, faces, offsets, whole, shift=1)
@@ -265,8 +310,9 @@ def cells_in_vtu(path):
 @pytest.mark.parametrize("whole", ["int32", "int64"])
 @pytest.mark.parametrize("offsets", [False, True])
 @pytest.mark.parametrize("cells_first", [False, True])
-def test_polyhedra_move_with_all_that_belongs_to_them(command, tmp_path, whole, offsets, cells_first):
-    write_polyhedra(tmp_path / "a.cgns", offsets=offsets, whole=whole, cells_first=cells_first)
+@pytest.mark.parametrize("general", [False, True])
+def test_polyhedra_move_with_all_that_belongs_to_them(command, tmp_path, whole, offsets, cells_first, general):
+    write_polyhedra(tmp_path / "a.cgns", offsets=offsets, whole=whole, cells_first=cells_first, general=general)
     before = content(tmp_path / "a.cgns")
     command.ok("order", "a.cgns", "-o", "b.cgns", "--vertices", "rcm", "--elements", "min")
     assert content(tmp_path / "b.cgns") == before
@@ -288,8 +334,9 @@ def test_faces_between_cells_follow_these(command, tmp_path):
         assert all(len(pair) == 2 for pair in pairs) and (pairs == sorted(pairs)) == is_sorted
 
 
-def test_vtk_reads_the_same_polyhedra(command, tmp_path):
-    write_polyhedra(tmp_path / "a.cgns", offsets=False)
+@pytest.mark.parametrize("general", [False, True])
+def test_vtk_reads_the_same_polyhedra(command, tmp_path, general):
+    write_polyhedra(tmp_path / "a.cgns", offsets=False, general=general)
     before = polyhedra_by_vtk(tmp_path / "a.cgns")
     assert len(before) == len(rows(tmp_path / "a.cgns", "cells"))
     command.ok("order", "a.cgns", "-o", "b.cgns", "--vertices", "rcm", "--elements", "min")
@@ -298,8 +345,9 @@ def test_vtk_reads_the_same_polyhedra(command, tmp_path):
 
 @pytest.mark.skipif(shutil.which("cgnscheck") is None, reason="no cgnscheck (Debian's cgns-convert)")
 @pytest.mark.parametrize("offsets", [False, True])
-def test_tools_of_cgns_accept_the_files(command, tmp_path, offsets):
-    write_polyhedra(tmp_path / "a.cgns", offsets=offsets)
+@pytest.mark.parametrize("general", [False, True])
+def test_tools_of_cgns_accept_the_files(command, tmp_path, offsets, general):
+    write_polyhedra(tmp_path / "a.cgns", offsets=offsets, general=general)
     command.ok("order", "a.cgns", "-o", "b.cgns", "--vertices", "rcm", "--elements", "min")
     assert checked(tmp_path, "b.cgns").count("WARNING") == checked(tmp_path, "a.cgns").count("WARNING")
     keep(command, "a.cgns", "c.cgns")
@@ -528,17 +576,62 @@ def rows_of_first(path):
         return int(file["Base/A/cells/ElementRange/ data"][0])
 
 
-def test_other_polyhedra_are_refused_by_count(command, tmp_path):
-    """A cube of which one face is cut in two has no other shape; a prism of five sides neither."""
+def write_pair(path):
+    """A cube of which one face is cut in two, and a cube above it."""
     points = numpy.array([[x, y, z] for z in (0, 1, 2) for y in (0, 1) for x in (0, 1)], float)
     cube = [[0, 2, 3, 1], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]]
     upper = [[4, 5, 9, 8], [5, 7, 11, 9], [7, 6, 10, 11], [6, 4, 8, 10], [8, 9, 11, 10]]
     halves = [[4, 5, 7], [4, 7, 6]]
-    with new_file(tmp_path / "a.cgns", 4.0) as file:
+    with new_file(path, 4.0) as file:
         zone = put_zone(put(file, "Base", "CGNSBase_t", numpy.array([3, 3], "int32")), "A", points, 2)
         put_rows(zone, "faces", 22, 1, cube + halves + upper, True, shift=1)
         put_rows(zone, "cells", 23, 13, [[1, 2, 3, 4, 5, 6, 7], [-6, -7, 8, 9, 10, 11, 12]], True)
-    message = command.fails("order", "a.cgns", "-o", "b.cgns")
-    assert "2 of 2 polyhedra are no tetrahedra, pyramids, wedges or hexahedra" in message
-    assert "first element 13 with 7 faces" in message and "Tetrahedralize" in message
-    assert "/Base/A/cells" in message
+
+
+def test_a_face_cut_in_two_makes_polyhedra(command, tmp_path):
+    write_pair(tmp_path / "a.cgns")
+    assert "2 polyhedra" in command.ok("info", "a.cgns").stdout
+    command.ok("order", "a.cgns", "-o", "b.cgns", "--vertices", "rcm", "--elements", "fiedler")
+    assert content(tmp_path / "b.cgns") == content(tmp_path / "a.cgns")
+
+
+@pytest.mark.parametrize("method", ["fiedler", "fiedler-facet", "min", "hilbert", "auto"])
+def test_neighbouring_polyhedra_come_near_each_other(command, tmp_path, method):
+    write_polyhedra(tmp_path / "a.cgns", n=8, general=True)
+    command.ok("order", "a.cgns", "-o", "b.cgns", "--vertices", "spectral", "--elements", method)
+    gaps = []
+    for name in "ab":
+        with h5py.File(tmp_path / f"{name}.cgns") as file:
+            sides = PolyhedralZone(file["Base/A"]).inside
+        gaps.append(numpy.mean([abs(pair[1] - pair[0]) for pair in sides.values() if len(pair) == 2]))
+    assert gaps[1] < 0.5 * gaps[0]
+    assert content(tmp_path / "b.cgns") == content(tmp_path / "a.cgns")
+
+
+def test_the_order_of_polyhedra_can_be_undone(command, tmp_path):
+    write_polyhedra(tmp_path / "a.cgns", general=True)
+    command.ok("order", "a.cgns", "-o", "b.cgns", "--vertices", "rcm", "--elements", "min", "--maps", "m")
+    command.ok("apply", "m", "b.cgns", "--inverse", "-o", "c.cgns")
+    assert rows(tmp_path / "c.cgns", "cells") != rows(tmp_path / "b.cgns", "cells")
+    assert content(tmp_path / "c.cgns") == content(tmp_path / "a.cgns")
+
+
+@pytest.mark.parametrize("to", ["b.vtu", "b.msh", "b.e", "b.inp", "b.med"])
+def test_formats_without_polyhedra_refuse_them(command, tmp_path, to):
+    write_pair(tmp_path / "a.cgns")
+    message = command.fails("order", "a.cgns", "-o", to)
+    assert "polyhedron" in message and ".cgns" in message and not (tmp_path / to).exists()
+
+
+def test_polyhedra_are_not_simulated(command, tmp_path):
+    write_pair(tmp_path / "a.cgns")
+    message = command.fails("simulate", "falling", "--mesh", "a.cgns")
+    assert "has polyhedra" in message and "Tetrahedralize" in message
+
+
+def test_a_part_with_polyhedra_is_written(command, tmp_path):
+    write_polyhedra(tmp_path / "a.cgns", general=True)
+    command.ok("order", "a.cgns", "-o", "b.cgns", "--only", "volume", "--vertices", "rcm", "--elements", "min")
+    before, after = content(tmp_path / "a.cgns")["/Base/A"], content(tmp_path / "b.cgns")["/Base/A"]
+    assert after["cells"] == before["cells"] and after["faces"] == before["faces"]
+    assert "/Base/A/ZoneBC/triangles" not in after

@@ -365,6 +365,15 @@ struct CallersCells {
   }
 };
 
+TEST(DualGraph, JoinsPolyhedraOfVtkByThreeVertices) {
+  const std::vector<std::int64_t> offsets{0, 6, 11, 15};
+  const std::vector<std::int64_t> vertices{0, 1, 2, 3, 4, 5, 5, 4, 3, 6, 7, 7, 6, 8, 0};
+  const std::vector<std::uint8_t> types{42, 42, 10};
+  const Graph graph = dual_graph(CellsView::mixed(offsets, vertices, types), 9);
+  EXPECT_THAT(graph.offsets(), ElementsAre(0, 1, 2, 2));
+  EXPECT_THAT(graph.neighbours(), ElementsAre(1, 0));
+}
+
 TEST(OrderElements, IsTheSameForAllLayoutsOfTheCells) {
   const Mesh mesh = test::tetrahedral_bar(9);
   const Permutation vertices = test::shuffled(mesh.vertex_count(), 3);
@@ -454,7 +463,7 @@ TEST(OrderElements, RefusesFaultyCells) {
   const std::vector<Shape> unknown_shape{static_cast<Shape>(200)};
   EXPECT_THAT(refused(CellsView::mixed(offsets, first, std::span<const Shape>(unknown_shape))),
               HasSubstr("the shape 200"));
-  EXPECT_THAT(refused(CellsView::uniform(static_cast<Shape>(12), 4, first)), HasSubstr("the shape 12"));
+  EXPECT_THAT(refused(CellsView::uniform(static_cast<Shape>(kShapes), 4, first)), HasSubstr("the shape 13"));
   EXPECT_THAT(refused(CellsView::mixed(offsets, first, two_types, 3)), HasSubstr("base"));
   const std::vector<std::int64_t> falling{0, 5, 4};
   EXPECT_THAT(refused(CellsView::mixed(falling, first)), HasSubstr("offset 2 is less"));

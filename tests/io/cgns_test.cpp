@@ -1,15 +1,21 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/cgns/cgns.hpp"
+
 #include "io/cgns/tree.hpp"
 #include "support/files.hpp"
+#include "support/refusal.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <memory>
 #include <random>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
@@ -44,6 +50,20 @@ TEST(Cgns, ReadsFilesOfAdf) {
   write_mesh(test::tetrahedral_bar(1), folder.path() / "a.cgns");
   const Mesh expected = read_mesh(folder.path() / "a.cgns");
   test::expect_same(read_mesh(folder.file("b.cgns", adf_file())), expected);
+}
+
+TEST(Cgns, RefusesPolyhedraThatAreNotThoseOfTheirFile) {
+  for (const Shape shape : {Shape::polygon, Shape::polyhedron}) {
+    Mesh mesh = test::cells_of_type(shape, 7, 2);
+    auto metadata = std::make_shared<cgns::Metadata>();
+    metadata->cell_of_polygon = {0};
+    metadata->cell_of_polyhedron = {0};
+    mesh.format_metadata = std::move(metadata);
+    const TemporaryFolder folder;
+    const std::string message = test::refusal([&] { write_mesh(mesh, folder.path() / "a.cgns"); });
+    EXPECT_NE(message.find("of the file that it was read from"), std::string::npos) << message;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "a.cgns"));
+  }
 }
 
 TEST(Cgns, RefusesNodesOfAdfThatPointElsewhere) {

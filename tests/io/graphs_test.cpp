@@ -188,6 +188,27 @@ TEST(FacetGraph, ComparesCornersOfSecondOrderCells) {
   EXPECT_EQ(facet_neighbours({{Shape::triangle, {0, 1, 2, 5, 6, 7}}, {Shape::triangle, {5, 6, 3}}}), Pairs{});
 }
 
+TEST(FacetGraph, JoinsPolyhedraByThreeVertices) {
+  const Cell prism{Shape::polyhedron, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}};
+  EXPECT_EQ(facet_neighbours({prism, {Shape::polyhedron, {9, 3, 11, 12, 0}}}), (Pairs{{0, 1}}));
+  EXPECT_EQ(facet_neighbours({prism, {Shape::polyhedron, {9, 3, 11, 12, 13}}}), Pairs{});
+  EXPECT_EQ(
+      facet_neighbours({{Shape::tetrahedron, {4, 5, 20, 6}}, prism, {Shape::tetrahedron, {20, 4, 6, 21}}}),
+      (Pairs{{0, 1}, {0, 2}}));
+}
+
+TEST(FacetGraph, DoesNotCountVerticesOfVeryManyPolyhedra) {
+  const auto around_one_vertex = [](Index count) {
+    std::vector<Cell> cells;
+    for (Index c = 0; c < count; ++c) {
+      cells.push_back({Shape::polyhedron, {0, 1 + 2 * c, 2 + 2 * c, 3 + 2 * c, 4 + 2 * c}});
+    }
+    return facet_neighbours(cells).size();
+  };
+  EXPECT_EQ(around_one_vertex(1024), 1023U);
+  EXPECT_EQ(around_one_vertex(1025), 0U);
+}
+
 TEST(FacetGraph, LeavesOutLowerCells) {
   const Mesh mesh = mesh_of({{Shape::triangle, {0, 1, 2}},
                              {Shape::tetrahedron, {0, 1, 2, 3}},

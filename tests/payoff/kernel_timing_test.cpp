@@ -102,9 +102,11 @@ TEST(KernelBench, RunsOnCellsOfEveryType) {
   std::vector<std::pair<Shape, int>> types = test::linear_types();
   const auto quadratic = test::quadratic_types();
   types.insert(types.end(), quadratic.begin(), quadratic.end());
-  types.insert(
-      types.end(),
-      {{Shape::polygon, 5}, {Shape::polyline, 4}, {Shape::triangle_strip, 6}, {Shape::poly_vertex, 3}});
+  types.insert(types.end(), {{Shape::polygon, 5},
+                             {Shape::polyline, 4},
+                             {Shape::triangle_strip, 6},
+                             {Shape::poly_vertex, 3},
+                             {Shape::polyhedron, 9}});
   for (const auto& [shape, vertices] : types) {
     SCOPED_TRACE(type_name(shape, vertices));
     KernelBench bench(test::cells_of_type(shape, vertices, 5));

@@ -156,7 +156,10 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
   const ElementType* const type = element_type_of(shape, vertices);
   constexpr int kLastOfSecondOrder = 21;
   const Metadata* const own = own_metadata(mesh);
-  if (type == nullptr) return own != nullptr && shape == Shape::polygon && !own->cell_of_polygon.empty();
+  if (type == nullptr) {
+    return own != nullptr && ((shape == Shape::polygon && !own->cell_of_polygon.empty()) ||
+                              (shape == Shape::polyhedron && !own->cell_of_polyhedron.empty()));
+  }
   return type->number <= kLastOfSecondOrder || own != nullptr;
 }
 

@@ -12,7 +12,8 @@
 // or cells, and "NAME step K" where the file says that it belongs to one of several times. Arrays at cell
 // centres belong to the cells of the base's dimension. All other nodes are kept as they are.
 //
-// Polyhedra are the cells that their faces make. Of the polygons, those are cells that fewer than two
+// Polyhedra are the cells that their faces make: tetrahedra, pyramids, wedges and hexahedra if they can, else
+// cells of the shape polyhedron. Of the polygons, those are cells that fewer than two
 // polyhedra have and those that a condition or a solution names; the others lie between two cells and follow
 // these.
 

@@ -6,6 +6,7 @@
 #include "io/labels.hpp"
 #include "io/names.hpp"
 #include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -144,7 +145,13 @@ class Layout {
       const Index first = starts[s];
       const Index end = s + 1 < starts.size() ? starts[s + 1] : mesh_.cell_count();
       const CellPart& key = division.keys[division.key_of_cell[first]];
-      const ElementType& type = *element_type_of(key.shape, key.nodes);
+      const ElementType* const type_if_any = element_type_of(key.shape, key.nodes);
+      if (type_if_any == nullptr) {
+        throw InvalidArgument(fmt::format(
+            "CGNS: a {} is written only with the cells and faces of the file that it was read from",
+            type_name(key.shape, key.nodes)));
+      }
+      const ElementType& type = *type_if_any;
       const auto named = names.find(first);
       const bool is_boundary = dimension(key.shape) < metadata_->cell_dimension;
       const std::string name = is_boundary && named != names.end() ? named->second

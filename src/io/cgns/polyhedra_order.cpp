@@ -11,24 +11,38 @@
 namespace meshorder::cgns {
 namespace {
 
-/// Returns whether a cell has the corners of the faces of a polyhedron and no others.
-bool has_corners_of(std::span<const Index> cell, const Metadata& metadata, Index polyhedron) {
-  constexpr std::size_t kMostCorners = 8;
-  if (cell.size() > kMostCorners) return false;
-  unsigned found = 0;
-  for (const Index face : metadata.polyhedra->faces_of(polyhedron)) {
-    for (const Index corner : metadata.polyhedra->corners_of(Polyhedra::polygon_of(face))) {
-      const auto at = std::find(cell.begin(), cell.end(), metadata.vertex_at(corner));
-      if (at == cell.end()) return false;
-      found |= 1U << static_cast<unsigned>(at - cell.begin());
+/// Compares cells with the corners of the faces of polyhedra.
+class CornersOfPolyhedra {
+ public:
+  CornersOfPolyhedra(const Metadata& metadata, Index vertex_count)
+      : metadata_(metadata), polyhedron_with_(static_cast<std::size_t>(vertex_count), -1) {}
+
+  /// Returns whether a cell has the corners of the faces of a polyhedron, each once, and no others. Compares
+  /// each polyhedron once.
+  bool are_those_of(std::span<const Index> cell, Index polyhedron) {
+    std::size_t corners = 0;
+    for (const Index face : metadata_.polyhedra->faces_of(polyhedron)) {
+      for (const Index corner : metadata_.polyhedra->corners_of(Polyhedra::polygon_of(face))) {
+        Index& with = polyhedron_with_[metadata_.vertex_at(corner)];
+        if (with != polyhedron) ++corners;
+        with = polyhedron;
+      }
     }
+    if (cell.size() != corners) return false;
+    return std::all_of(cell.begin(), cell.end(), [&](Index vertex) {
+      return std::exchange(polyhedron_with_[vertex], -1) == polyhedron;
+    });
   }
-  return found == (1U << cell.size()) - 1;
-}
+
+ private:
+  const Metadata& metadata_;
+  std::vector<Index> polyhedron_with_;  ///< the last polyhedron that had each vertex
+};
 
 }  // namespace
 
 bool polyhedra_fit(const Mesh& mesh, const Metadata& metadata) {
+  if (metadata.polyhedra == nullptr) return true;
   Index cells = 0;
   for (Index p = 0; p < index_size(metadata.cell_of_polygon); ++p) {
     const Index c = metadata.cell_of_polygon[p];
@@ -39,11 +53,12 @@ bool polyhedra_fit(const Mesh& mesh, const Metadata& metadata) {
       return false;
     }
   }
+  CornersOfPolyhedra corners(metadata, mesh.vertex_count());
   for (Index p = 0; p < index_size(metadata.cell_of_polyhedron); ++p) {
     const Index c = metadata.cell_of_polyhedron[p];
     if (c < 0) continue;
     ++cells;
-    if (dimension(mesh.cells.shapes[c]) < 3 || !has_corners_of(mesh.cells[c], metadata, p)) return false;
+    if (dimension(mesh.cells.shapes[c]) < 3 || !corners.are_those_of(mesh.cells[c], p)) return false;
   }
   const auto wanted =
       std::count_if(metadata.section_of_cell.begin(), metadata.section_of_cell.end(), [&](Index s) {

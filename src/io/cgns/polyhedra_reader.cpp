@@ -17,6 +17,18 @@ namespace {
 
 constexpr std::uint8_t kBothSides = 2;
 
+/// Returns the corners of faces, each once, in the order in which the faces have them. `corners` is memory
+/// to use again.
+std::span<const Index> corners_of(std::span<const PolyhedronFace> faces, std::vector<Index>& corners) {
+  corners.clear();
+  for (const PolyhedronFace& face : faces) {
+    for (const Index corner : face.corners) {
+      if (std::find(corners.begin(), corners.end(), corner) == corners.end()) corners.push_back(corner);
+    }
+  }
+  return corners;
+}
+
 bool is_list(const Node& node) {
   return node.name == "PointList" || node.name == "PointRange" || node.name == "PointListDonor";
 }
@@ -281,37 +293,27 @@ void PolyhedraReader::append_polyhedra(const FoundSection& found) {
   std::vector<PolyhedronFace> faces;
   WedgeVote vote(mesh.points);
   Index contradictions = 0;
-  Index others = 0;
-  std::string first_other;
+  std::vector<Index> corners;
   for (Index k = 0; k < found.section.count; ++k) {
     const Index polyhedron = found.section.first_item + k;
     faces.clear();
     for (const Index face : polyhedra.faces_of(polyhedron)) {
       faces.push_back({polyhedra.corners_of(Polyhedra::polygon_of(face)), face < 0});
     }
-    CellOfFaces cell = cell_of_faces(faces);
+    const CellOfFaces cell = cell_of_faces(faces);
     if (cell.kind == CellOfFaces::Kind::open) {
       reading_.fail(element_place(found, k),
                     fmt::format("its {} faces do not enclose a volume", faces.size()),
                     "each edge belongs to two faces of a polyhedron");
     }
+    reading_.metadata->cell_of_polyhedron[polyhedron] = mesh.cell_count();
     if (cell.kind == CellOfFaces::Kind::other) {
-      if (others++ == 0) {
-        first_other =
-            fmt::format("element {} with {} faces", found.section.first + k, std::to_string(faces.size()));
-      }
+      mesh.cells.push_back(Shape::polyhedron, corners_of(faces, corners));
       continue;
     }
     if (!cell.signs_agree) ++contradictions;
     vote.add(cell.shape, cell.cell());
-    reading_.metadata->cell_of_polyhedron[polyhedron] = mesh.cell_count();
     mesh.cells.push_back(cell.shape, cell.cell());
-  }
-  if (others > 0) {
-    reading_.fail(found.path,
-                  fmt::format("{} of {} polyhedra are no tetrahedra, pyramids, wedges or hexahedra, first {}",
-                              others, found.section.count, first_other),
-                  "cut them into tetrahedra, in ParaView by Tetrahedralize");
   }
   turn_by_volumes(first, found.path, contradictions, vote.sign_of_volumes());
 }

@@ -79,8 +79,7 @@ using NumberRanges = std::vector<std::pair<std::int64_t, std::int64_t>>;
 /// Returns the elements of each zone that conditions, solutions and connectivities list by their numbers.
 std::vector<NumberRanges> listed_elements(const Reading& reading);
 
-/// Reads the polygons and polyhedra of a zone. Throws InputError for what is damaged, and for polyhedra that
-/// are no standard cells.
+/// Reads the polygons and polyhedra of a zone. Throws InputError for what is damaged.
 class PolyhedraReader {
  public:
   /// `sections`: those of the zone, ascending by their numbers.

@@ -15,8 +15,8 @@ from .._permutation import Permutation
 from .host import Host, Request, moved_rows, parts
 
 _POLYHEDRON = 42
-#: pentagonal and hexagonal prisms, quadratic polygons, convex point sets and polyhedra: ordered by their points alone
-_WITHOUT_SHAPE = (15, 16, 36, 41, _POLYHEDRON)
+#: pentagonal and hexagonal prisms, quadratic polygons and convex point sets: ordered by their points alone
+_WITHOUT_SHAPE = (15, 16, 36, 41)
 
 
 class _Dataset(Host):
