@@ -217,7 +217,14 @@ FilePath DataReader::path_of(pugi::xml_node item, const std::string& name) const
 const hdf5::File& DataReader::file(pugi::xml_node item, const std::string& name) {
   const auto known = files_.find(name);
   if (known != files_.end()) return known->second;
-  return files_.emplace(name, hdf5::File::open(path_of(item, name))).first->second;
+  hdf5::File opened = hdf5::File::open(path_of(item, name));
+  const std::string mark = opened.text_attribute("/", kMark).value_or("");
+  if (!mark.empty() && !document_.mark().empty() && mark != document_.mark()) {
+    throw document_.error(
+        item, fmt::format("'{}' was not written together with this file: their marks differ", name),
+        fmt::format("give the files of one mesh, or remove the line <?{}…?> if they belong together", kMark));
+  }
+  return files_.emplace(name, std::move(opened)).first->second;
 }
 
 Values DataReader::read(const DataPlace& place) {

@@ -73,6 +73,10 @@ bool is_linear(std::string_view xpath) {
 
 }  // namespace
 
+bool is_mark(pugi::xml_node node) {
+  return node.type() == pugi::node_pi && std::string_view(node.name()) == kMark;
+}
+
 std::string attribute(pugi::xml_node element, const char* name, const char* other_name) {
   const pugi::xml_attribute own = element.attribute(name);
   return own ? own.value() : element.attribute(other_name).value();

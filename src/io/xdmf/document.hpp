@@ -16,6 +16,14 @@
 
 namespace meshorder::xdmf {
 
+/// Name of what marks an .xdmf file and its HDF5 files as written together: a processing instruction in the
+/// root element, and an attribute of each HDF5 file's root. Both have the same 16 digits; the reader refuses
+/// files with different ones.
+inline constexpr const char* kMark = "meshorder";
+
+/// Returns whether a child of the root element is that instruction.
+bool is_mark(pugi::xml_node node);
+
 /// The XML of an XDMF file.
 class Document {
  public:
@@ -27,6 +35,9 @@ class Document {
 
   /// Makes an InputError at the line of an element.
   [[nodiscard]] InputError error(pugi::xml_node at, const std::string& what, const std::string& remedy) const;
+
+  /// Returns the mark that the file shares with its HDF5 files, empty without one; see `kMark`.
+  [[nodiscard]] std::string_view mark() const { return root().find_child(is_mark).value(); }
 
   /// Returns the element that one refers to by Reference="…", or itself.
   [[nodiscard]] pugi::xml_node resolved(pugi::xml_node element) const;

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/xdmf/xdmf.hpp"
 
+#include "base/checksum.hpp"
 #include "base/index.hpp"
 #include "base/large_pages.hpp"
 #include "base/text.hpp"
@@ -111,6 +112,7 @@ class XdmfWriter {
     remove_gone();
     add_others();
     rename_files();
+    mark_files();
     for (auto& [name, output] : files_) finish(output);
 
     put_xml([&](std::string_view part) { xml.write(part); });
@@ -185,6 +187,23 @@ class XdmfWriter {
       const auto shape = shapes_.find(output->second.name + ":" + dataset);
       if (shape != shapes_.end()) set_shape(item, shape->second);
     }
+  }
+
+  /// Marks the files as those of one mesh.
+  void mark_files() {
+    pugi::xml_node root = xml_.document_element();
+    root.remove_child(root.find_child(is_mark));
+    if (files_.empty()) return;
+    Checksum sum;
+    sum.add_all(mesh_.points);
+    for (const std::vector<Index>& cells : rows_) {
+      for (const Index c : cells) sum.add_all(mesh_.cells[c]);
+    }
+    const std::string mark = fmt::format("{:016x}", sum.value());
+    pugi::xml_node instruction = root.prepend_child(pugi::node_pi);
+    instruction.set_name(kMark);
+    instruction.set_value(mark.c_str());
+    for (auto& [name, output] : files_) output.file->set_attribute("/", kMark, mark);
   }
 
   void put_xml(const TakeText& take) const {
