@@ -11,11 +11,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <memory>
 #include <numeric>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 namespace meshorder::exodus {
@@ -47,6 +49,42 @@ int read_part(int file, int variable, const std::size_t* starts, const std::size
   return nc_get_vara(file, variable, starts, counts, into);
 }
 
+/// Returns whether a value is one of another type's.
+template <class To, class From>
+bool is_one_of(From value) {
+  constexpr int kDigits = std::numeric_limits<To>::digits;
+  if constexpr (std::is_integral_v<From> && std::is_integral_v<To>) {
+    return std::in_range<To>(value);
+  } else if constexpr (std::is_integral_v<From>) {
+    constexpr std::int64_t kMost = std::int64_t{1} << kDigits;
+    return std::cmp_less_equal(value, kMost) && std::cmp_greater_equal(value, -kMost);
+  } else if constexpr (std::is_integral_v<To>) {
+    const double number = value;
+    return number == std::trunc(number) && number >= static_cast<double>(std::numeric_limits<To>::min()) &&
+           number < std::ldexp(1.0, kDigits);
+  } else if constexpr (sizeof(From) > sizeof(To)) {
+    if (!std::isfinite(value)) return true;
+    return std::abs(value) <= std::numeric_limits<To>::max() && From{static_cast<To>(value)} == value;
+  } else {
+    return true;
+  }
+}
+
+template <class To>
+bool are_of(const Values& values) {
+  return std::visit(
+      [](const auto& all) {
+        using From = typename std::decay_t<decltype(all)>::value_type;
+        if constexpr (std::is_arithmetic_v<From>) {
+          return std::is_same_v<From, To> ||
+                 std::all_of(all.begin(), all.end(), [](From value) { return is_one_of<To>(value); });
+        } else {
+          return false;
+        }
+      },
+      values);
+}
+
 }  // namespace
 
 bool is_whole(NcType type) {
@@ -73,6 +111,33 @@ std::size_t size_of(NcType type) {
       return 8;
     default:
       return 0;
+  }
+}
+
+bool can_hold(NcType type, const Values& values) {
+  switch (type) {
+    case NC_FLOAT:
+      return are_of<float>(values);
+    case NC_DOUBLE:
+      return are_of<double>(values);
+    case NC_BYTE:
+      return are_of<std::int8_t>(values);
+    case NC_UBYTE:
+      return are_of<std::uint8_t>(values);
+    case NC_SHORT:
+      return are_of<std::int16_t>(values);
+    case NC_USHORT:
+      return are_of<std::uint16_t>(values);
+    case NC_INT:
+      return are_of<std::int32_t>(values);
+    case NC_UINT:
+      return are_of<std::uint32_t>(values);
+    case NC_INT64:
+      return are_of<std::int64_t>(values);
+    case NC_UINT64:
+      return are_of<std::uint64_t>(values);
+    default:
+      return false;
   }
 }
 
@@ -514,6 +579,14 @@ void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std:
   if (values.empty()) return;
   const std::vector<long long> numbers(values.begin(), values.end());
   file_->check(nc_put_vara_longlong(file_->id_, variable_, starts.data(), counts.data(), numbers.data()),
+               name_);
+}
+
+void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+                  const std::vector<std::uint64_t>& values) const {
+  if (values.empty()) return;
+  const std::vector<unsigned long long> numbers(values.begin(), values.end());
+  file_->check(nc_put_vara_ulonglong(file_->id_, variable_, starts.data(), counts.data(), numbers.data()),
                name_);
 }
 
