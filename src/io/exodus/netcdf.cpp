@@ -2,6 +2,7 @@
 #include "io/exodus/netcdf.hpp"
 
 #include "base/memory.hpp"
+#include "io/exact_values.hpp"
 #include "io/hdf5/mutex.hpp"
 #include "io/stream/read_limits.hpp"
 
@@ -11,13 +12,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <memory>
 #include <numeric>
 #include <system_error>
-#include <type_traits>
 #include <utility>
 
 namespace meshorder::exodus {
@@ -47,42 +46,6 @@ int read_part(int file, int variable, const std::size_t* starts, const std::size
 template <class Number>
 int read_part(int file, int variable, const std::size_t* starts, const std::size_t* counts, Number* into) {
   return nc_get_vara(file, variable, starts, counts, into);
-}
-
-/// Returns whether a value is one of another type's.
-template <class To, class From>
-bool is_one_of(From value) {
-  constexpr int kDigits = std::numeric_limits<To>::digits;
-  if constexpr (std::is_integral_v<From> && std::is_integral_v<To>) {
-    return std::in_range<To>(value);
-  } else if constexpr (std::is_integral_v<From>) {
-    constexpr std::int64_t kMost = std::int64_t{1} << kDigits;
-    return std::cmp_less_equal(value, kMost) && std::cmp_greater_equal(value, -kMost);
-  } else if constexpr (std::is_integral_v<To>) {
-    const double number = value;
-    return number == std::trunc(number) && number >= static_cast<double>(std::numeric_limits<To>::min()) &&
-           number < std::ldexp(1.0, kDigits);
-  } else if constexpr (sizeof(From) > sizeof(To)) {
-    if (!std::isfinite(value)) return true;
-    return std::abs(value) <= std::numeric_limits<To>::max() && From{static_cast<To>(value)} == value;
-  } else {
-    return true;
-  }
-}
-
-template <class To>
-bool are_of(const Values& values) {
-  return std::visit(
-      [](const auto& all) {
-        using From = typename std::decay_t<decltype(all)>::value_type;
-        if constexpr (std::is_arithmetic_v<From>) {
-          return std::is_same_v<From, To> ||
-                 std::all_of(all.begin(), all.end(), [](From value) { return is_one_of<To>(value); });
-        } else {
-          return false;
-        }
-      },
-      values);
 }
 
 }  // namespace
@@ -117,25 +80,25 @@ std::size_t size_of(NcType type) {
 bool can_hold(NcType type, const Values& values) {
   switch (type) {
     case NC_FLOAT:
-      return are_of<float>(values);
+      return are_exact<float>(values);
     case NC_DOUBLE:
-      return are_of<double>(values);
+      return are_exact<double>(values);
     case NC_BYTE:
-      return are_of<std::int8_t>(values);
+      return are_exact<std::int8_t>(values);
     case NC_UBYTE:
-      return are_of<std::uint8_t>(values);
+      return are_exact<std::uint8_t>(values);
     case NC_SHORT:
-      return are_of<std::int16_t>(values);
+      return are_exact<std::int16_t>(values);
     case NC_USHORT:
-      return are_of<std::uint16_t>(values);
+      return are_exact<std::uint16_t>(values);
     case NC_INT:
-      return are_of<std::int32_t>(values);
+      return are_exact<std::int32_t>(values);
     case NC_UINT:
-      return are_of<std::uint32_t>(values);
+      return are_exact<std::uint32_t>(values);
     case NC_INT64:
-      return are_of<std::int64_t>(values);
+      return are_exact<std::int64_t>(values);
     case NC_UINT64:
-      return are_of<std::uint64_t>(values);
+      return are_exact<std::uint64_t>(values);
     default:
       return false;
   }

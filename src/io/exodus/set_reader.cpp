@@ -471,7 +471,7 @@ void read_elemental(Reading& reading) {
       series.type = rows.empty() || series.type == of_block[b]->type ? of_block[b]->type : kDouble;
       for (Index c = first; c < end; ++c) rows.push_back(c);
     }
-    bool is_exact = true;
+    bool keeps_digits = true;
     const bool covers_all = index_size(rows) == reading.mesh.cell_count();
     for (std::size_t step = 0; step < metadata.steps && !rows.empty(); ++step) {
       DataArray array{.name = name_of_step(name_or_number(names[v], v), step, metadata.steps),
@@ -480,14 +480,14 @@ void read_elemental(Reading& reading) {
         if (of_block[b] == nullptr) continue;
         const auto elements = static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]);
         Values values = file.values(*of_block[b], {step, 0}, {1, elements});
-        is_exact = is_exact && (series.type != kDouble || can_hold(kDouble, values));
+        keeps_digits = keeps_digits && (series.type != kDouble || can_hold(kDouble, values));
         append(array.values, std::move(values));
       }
       array.values = as_labels(array.name, std::move(array.values));
       if (!covers_all) array.indices = rows;
       series.arrays.push_back(reading.add_array(std::move(array)));
     }
-    if (!is_exact) {
+    if (!keeps_digits) {
       reading.notes.push_back(fmt::format(
           "the variable '{}' loses digits: its blocks have whole and real numbers, which become real "
           "numbers of 53 bits",
