@@ -11,7 +11,7 @@
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/judgement.hpp"
-#include "payoff/advice.hpp"
+#include "payoff/race.hpp"
 #include "progress.hpp"
 #include "verdict.hpp"
 #include "wording.hpp"
@@ -40,9 +40,6 @@ struct OrderArguments : Common {
   bool measure = false;
 };
 
-/// Orders that are timed against the file's own.
-constexpr std::size_t kInRace = 3;
-
 /// Throws InvalidArgument unless the arguments leave a race anything to decide.
 void check_race(const ReorderOptions& options) {
   const Workload use = options.order.workload;
@@ -57,49 +54,13 @@ void check_race(const ReorderOptions& options) {
   }
 }
 
-/// What a race told.
-struct Race {
-  Advice advice;
-  std::optional<std::size_t> winner;
-  std::string reason;  ///< a sentence
-};
-
-/// Times what may be the best orders of a mesh, beside its own.
-Race race(const Mesh& mesh, const OrderOptions& options) {
-  const Stopwatch stopwatch;
-  const CsrGraph graph = vertex_graph(mesh);
-  Race result;
-  result.advice = advise(mesh, graph,
-                         {.methods = contenders(),
-                          .ordering = options,
-                          .graph_seconds = stopwatch.seconds(),
-                          .race_of = kInRace});
-  result.winner = winner_for(options.workload, result.advice);
-  const std::size_t timed = result.advice.candidates.size();
-  result.reason =
-      result.winner
-          ? fmt::format(
-                "none of {} orders timed here is faster by more than times vary; {:.2f} times as fast "
-                "as the file's",
-                timed, factor_for(options.workload, result.advice, *result.winner))
-          : fmt::format("none of {} orders timed here is faster than the file's by more than times vary",
-                        timed);
-  return result;
-}
-
-MeshMethods methods_of(const Race& race) {
-  if (!race.winner) return {"original", "original"};
-  const Candidate& winner = race.advice.candidates[*race.winner];
-  return {winner.vertices.name, winner.elements.name};
-}
-
 /// "hilbert/lexmax 2.31, spectral/lexmax 2.29 times as fast as the file's"
-std::string in_words(const Race& race, Workload workload) {
+std::string in_words(const Race& race) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < race.advice.candidates.size(); ++i) {
     const Candidate& candidate = race.advice.candidates[i];
-    words.push_back(fmt::format("{}/{} {:.2f}", candidate.vertices.name, candidate.elements.name,
-                                factor_for(workload, race.advice, i)));
+    words.push_back(
+        fmt::format("{}/{} {:.2f}", candidate.vertices.name, candidate.elements.name, race.factors[i]));
   }
   return join(words) + " times as fast as the file's order";
 }
@@ -188,25 +149,24 @@ void run(const OrderArguments& arguments) {
   if (!arguments.maps.empty()) old_order = checksums_of(mesh);
   std::optional<Grouping> groups;
   if (!options.group_by.empty()) groups = grouping_by(mesh, options.group_by);
+  std::optional<CsrGraph> graph;
   std::optional<Race> measured;
   if (arguments.measure) {
-    measured = race(mesh, options.order);
-    options.methods = methods_of(*measured);
+    const Stopwatch stopwatch;
+    graph = vertex_graph(mesh);
+    measured = race(mesh, *graph, {.ordering = options.order, .graph_seconds = stopwatch.seconds()});
+    options.methods = measured->methods();
     if (!measured->advice.doubt.empty()) notes.push_back(measured->advice.doubt);
   }
-  CsrGraph graph;
   MeshOrder order = reorder(mesh, options, graph);
-  if (measured) {
-    order.vertices.method.reason = measured->reason;
-    order.cells.method.reason = "timed together with the order of the vertices";
-  }
+  if (measured) give_reasons(*measured, order);
   const double order_seconds = ordering.seconds();
   maps.vertices = order.vertices.permutation;
   maps.cells = order.cells.permutation;
-  const EdgeSpan before = edge_span(graph, Permutation::identity(mesh.vertex_count()));
-  const EdgeSpan after = edge_span(graph, maps.vertices);
+  const EdgeSpan before = edge_span(*graph, Permutation::identity(mesh.vertex_count()));
+  const EdgeSpan after = edge_span(*graph, maps.vertices);
   if (!measured) {
-    note_no_better(graph, options, maps.vertices, notes);
+    note_no_better(*graph, options, maps.vertices, notes);
     note_no_better(mesh, options, maps.cells, notes);
   }
   note_convergence(order.vertices.fiedler, "the vertices", notes);
@@ -225,7 +185,7 @@ void run(const OrderArguments& arguments) {
 
   progress.finish();
   console.warn_of(notes);
-  if (measured) console.print("{:<10} {}", "race", in_words(*measured, options.order.workload));
+  if (measured) console.print("{:<10} {}", "race", in_words(*measured));
   print_result(console, order, groups, before, after);
   console.print("{:<10} {}", "wrote", arguments.output);
   for (const std::string& file : map_files) console.print("{:<10} {}", "", file);

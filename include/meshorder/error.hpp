@@ -60,7 +60,7 @@ struct Location {
 class MESHORDER_API InputError : public Error {
  public:
   /// @param location  where the fault is
-  /// @param what      the fault
+  /// @param what      the fault, maybe with names of the file, of which `what()` shows line ends by escapes
   /// @param remedy    what would be right; may be empty
   InputError(Location location, const std::string& what, const std::string& remedy);
 

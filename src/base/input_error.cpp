@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
 #include <meshorder/error.hpp>
 
 #include <memory>
@@ -17,7 +18,7 @@ std::string format_message(const Location& location, const std::string& what, co
   }
   text.append(what);
   if (!remedy.empty()) text.append("; ").append(remedy);
-  return text;
+  return visible(text);  // one line, though a file's names may have several
 }
 
 }  // namespace

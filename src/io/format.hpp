@@ -6,6 +6,7 @@
 #include <meshorder/io.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -78,7 +79,7 @@ void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, 
 /// As the public `write_mesh`; a mesh whose path belongs to a set of outputs is put in place by that.
 Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options);
 
-/// As the public function; `graph` receives the vertex graph of the mesh in its old order.
-MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, CsrGraph& graph);
+/// As the public function; `graph` is the vertex graph of the mesh in its old order, or receives it.
+MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph>& graph);
 
 }  // namespace meshorder

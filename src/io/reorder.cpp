@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -89,7 +90,7 @@ void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, 
   apply_reordering(mesh, vertices.inverse(), Permutation::identity(mesh.cell_count()));
 }
 
-MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, CsrGraph& graph) {
+MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph>& graph) {
   return in_call(options.order.run, [&] {
     if (options.order.check != Check::none) check_mesh(mesh);
     if (!options.format.empty()) check_holds_ids(format_named(options.format), options.ids);
@@ -97,8 +98,8 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, CsrGraph& graph) {
     const Permutation arranged = options.format.empty() ? Permutation::identity(mesh.cell_count())
                                                         : arrange_cells(mesh, format_named(options.format));
     try {
-      graph = vertex_graph(mesh);
-      MeshOrder order = compute_reordering(mesh, graph, options);
+      if (!graph) graph = vertex_graph(mesh);
+      MeshOrder order = compute_reordering(mesh, *graph, options);
       move_with_ids(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
       order.cells.permutation = arranged.then(order.cells.permutation);
       return order;
@@ -112,7 +113,7 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, CsrGraph& graph) {
 inline namespace v0_2 {
 
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options) {
-  CsrGraph graph;
+  std::optional<CsrGraph> graph;
   return reorder(mesh, options, graph);
 }
 

@@ -10,7 +10,6 @@
 #include "metrics/sparsity_pattern.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/cost_model.hpp"
-#include "payoff/kernel_timing.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -66,10 +65,10 @@ Timings measured(const std::vector<Ordered>& orders, const Stopwatch& stopwatch,
 }
 
 /// For half a second an order, as many at a time as memory allows.
-Timings raced(const std::vector<Ordered>& orders) {
+Timings raced(const std::vector<Ordered>& orders, const OrderTimer& timer) {
   constexpr double kSeconds = 0.5;
   const auto prepare = [&](Index i) { return KernelBench(orders[i].mesh, orders[i].graph); };
-  return time_orders(index_size(orders), prepare, for_seconds(kSeconds * static_cast<double>(orders.size())));
+  return timer(index_size(orders), prepare, for_seconds(kSeconds * static_cast<double>(orders.size())));
 }
 
 /// What is asked for of `compute_reordering`, one after another.
@@ -129,15 +128,6 @@ void keep_best(Advice& advice, std::vector<Ordered>& orders, Workload workload, 
 }
 
 }  // namespace
-
-std::vector<MeshMethods> contenders() {
-  return {{},
-          {"hilbert", "lexmax"},
-          {"spectral", "lexmax"},
-          {"rcm", "lexmax"},
-          {"bfs", "lexmax"},
-          {"fiedler", "lexmax"}};
-}
 
 double factor_for(Workload workload, const Advice& advice, std::size_t candidate) {
   return std::exp(-cost_for(workload, advice, advice.candidates[candidate].costs));
@@ -207,8 +197,8 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   if (options.race_of > 0) keep_best(advice, orders, options.ordering.workload, options.race_of);
   if (options.race_of > 0 || options.measure_within) {
     report("measure");
-    const Timings timings =
-        options.race_of > 0 ? raced(orders) : measured(orders, since_call, *options.measure_within);
+    const Timings timings = options.race_of > 0 ? raced(orders, options.race_timer)
+                                                : measured(orders, since_call, *options.measure_within);
     advice.doubt = reason_to_doubt(timings.steadiness);
     for (std::size_t i = 0; i < orders.size(); ++i) {
       KernelMilliseconds& milliseconds = candidate(i).costs.measured.emplace();

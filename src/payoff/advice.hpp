@@ -3,6 +3,7 @@
 
 #include "graph/csr_graph.hpp"
 #include "metrics/cache.hpp"
+#include "payoff/kernel_timing.hpp"
 #include "payoff/machine_choice.hpp"
 #include <meshorder/mesh.hpp>
 #include <meshorder/payoff.hpp>
@@ -36,10 +37,8 @@ struct AdviceOptions {
   /// `ordering.workload`. They are timed for half a second each, as long as memory allows them beside the
   /// mesh's own order, whatever `measure_within` says.
   std::size_t race_of = 0;
+  OrderTimer race_timer = time_orders;  ///< what times them
 };
-
-/// Returns the methods that may beat what `auto` takes, `auto` first: what a race begins with.
-std::vector<MeshMethods> contenders();
 
 /// Computes the candidates and the times of the kernels in them and in the mesh's own order. `graph` is the
 /// vertex graph of `mesh`. Throws InvalidArgument if neither prediction nor measurement is wanted.

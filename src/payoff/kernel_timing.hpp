@@ -63,4 +63,8 @@ Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOpti
 Timings time_orders(Index orders, const std::function<KernelBench(Index)>& prepare,
                     const TimingOptions& options = {});
 
+/// What times orders as `time_orders` does.
+using OrderTimer = std::function<Timings(Index orders, const std::function<KernelBench(Index)>& prepare,
+                                         const TimingOptions& options)>;
+
 }  // namespace meshorder

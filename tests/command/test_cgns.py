@@ -12,7 +12,7 @@ KUHN = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0
 ADF = bytes([0xC0, 0xA8, 0xA3, 0xA9]) + b"ADF Database Version"
 NODES = {2: 1, 3: 2, 5: 3, 7: 4, 10: 4, 12: 5, 14: 6, 17: 8}
 TYPES = {numpy.dtype("int8"): "C1", numpy.dtype("int32"): "I4", numpy.dtype("int64"): "I8",
-         numpy.dtype("float32"): "R4", numpy.dtype("float64"): "R8"}
+         numpy.dtype("float32"): "R4", numpy.dtype("float64"): "R8", numpy.dtype("uint8"): "B1"}
 
 needs_tools = pytest.mark.skipif(shutil.which("cgnscheck") is None, reason="no cgnscheck (Debian's cgns-convert)")
 
@@ -345,6 +345,33 @@ def test_zones_stay_apart_and_the_maps_can_say_so(command, tmp_path):
         x = [numpy.concatenate([file[f"Base/{zone}/GridCoordinates/CoordinateX/ data"][...] for zone in "AB"])
              for file in (a, c)]
     assert numpy.array_equal(x[1][old_to_new], x[0])
+
+
+def test_values_of_each_type_move_and_keep_it(command, tmp_path):
+    points, tets, _ = box(3, 1)
+    with new_file(tmp_path / "a.cgns") as file:
+        base = put(file, "Base", "CGNSBase_t", numpy.array([3, 3], "int32"))
+        for name, real in (("A", "float64"), ("B", "float32")):
+            zone = put_zone(base, name, points, len(tets), real=real)
+            put_section(zone, "Tets", 10, 1, len(tets), tets + 1)
+            solution = put(zone, "Solution", "FlowSolution_t")
+            place = numpy.round(points @ [7, 49, 343])
+            put(solution, "Density", "DataArray_t", (place * (1e165 if real == "float64" else 1)).astype(real))
+            put(solution, "Mark", "DataArray_t", (place % 256).astype("uint8"))
+            put(solution, "Letters", "DataArray_t", numpy.full(len(points), ord("a"), "int8"))
+            put(solution, "Nothing", "DataArray_t")
+    done = command.ok("order", "a.cgns", "-o", "b.cgns", "--vertices", "scrambled", "--elements", "original")
+    assert "/Base/A/Solution/Letters' is kept as it is, though it has as many characters as there are vertices" in done.stderr
+    with h5py.File(tmp_path / "a.cgns") as a, h5py.File(tmp_path / "b.cgns") as b:
+        for zone in "AB":
+            def rows(file):
+                node = file[f"Base/{zone}"]  # noqa: B023
+                columns = [node[f"GridCoordinates/Coordinate{axis}/ data"][...] for axis in "XYZ"]
+                columns += [node[f"Solution/{name}/ data"][...] for name in ("Density", "Mark")]
+                assert "Nothing" in node["Solution"] and " data" not in node["Solution/Nothing"]
+                return [column.dtype for column in columns], list(zip(*(column.tolist() for column in columns)))
+            before, after = rows(a), rows(b)
+            assert before[0] == after[0] and before[1] != after[1] and sorted(before[1]) == sorted(after[1])
 
 
 @needs_tools

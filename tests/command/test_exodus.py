@@ -405,6 +405,130 @@ def test_what_is_not_understood_is_left_out_with_a_note(command, tmp_path):
         assert text_rows(f["name_nod_var"])[0] == "ux"
 
 
+def write_pair(path, kind="NETCDF3_64BIT_OFFSET", steps=2):
+    """Writes a file of six nodes and two blocks of two triangles, with a node set and a side set; it is left open."""
+    f = netCDF4.Dataset(path, "w", format=kind)
+    f.set_auto_mask(False)
+    points = numpy.array([(x, y, 0) for y in (0, 1) for x in (0, 1, 2)], float)
+    for name, length in [("len_name", 33), ("time_step", None), ("num_dim", 3), ("num_nodes", 6), ("num_elem", 4),
+                         ("num_el_blk", 2), ("num_node_sets", 1), ("num_nod_ns1", 3), ("num_side_sets", 1), ("num_side_ss1", 2)]:
+        f.createDimension(name, length)
+    for k in range(3):
+        f.createVariable("coord" + "xyz"[k], "f8", ("num_nodes",))[:] = points[:, k]
+    f.createVariable("time_whole", "f8", ("time_step",))[:] = numpy.arange(steps)
+    for b, cells in enumerate([[[1, 2, 5], [1, 5, 4]], [[2, 3, 6], [2, 6, 5]]], 1):
+        f.createDimension(f"num_el_in_blk{b}", 2)
+        f.createDimension(f"num_nod_per_el{b}", 3)
+        connect = f.createVariable(f"connect{b}", "i4", (f"num_el_in_blk{b}", f"num_nod_per_el{b}"))
+        connect.elem_type = "TRI3"
+        connect[:] = cells
+    for name, values in [("node_ns1", [6, 1, 3]), ("elem_ss1", [1, 4]), ("side_ss1", [3, 4])]:
+        f.createVariable(name, "i4", ("num_nod_ns1" if name == "node_ns1" else "num_side_ss1",))[:] = values
+    return f
+
+
+def put_series(f, name, dimension, type="f8", values=None):
+    """Writes a variable of two steps."""
+    if values is None:
+        values = numpy.random.default_rng(len(f.variables)).uniform(size=(2, len(f.dimensions[dimension])))
+    f.createVariable(name, type, ("time_step", dimension))[:] = numpy.asarray(values, type)
+
+
+def put_variable_names(f, of, names, table=None):
+    f.createDimension(f"num_{of}_var", len(names))
+    put_names(f, f"name_{of}_var", f"num_{of}_var", names)
+    if table is not None:
+        objects = {"elem": "num_el_blk", "nset": "num_node_sets", "sset": "num_side_sets"}[of]
+        f.createVariable(f"{of}_var_tab", "i4", (objects, f"num_{of}_var"))[:] = table
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_names_without_values_stay_names(command, tmp_path, kind):
+    tables = {"elem_var_tab": [[1, 1, 0], [0, 1, 0]], "nset_var_tab": [[1, 1]], "sset_var_tab": [[0]]}
+    with write_pair(tmp_path / "a.exo", kind) as f:
+        put_variable_names(f, "nod", ["first", "heat", "last"])
+        put_series(f, "vals_nod_var2", "num_nodes")
+        put_variable_names(f, "elem", ["stress", "damage", "flux"], tables["elem_var_tab"])
+        put_series(f, "vals_elem_var2eb2", "num_el_in_blk2")
+        put_variable_names(f, "nset", ["reaction", "slip"], tables["nset_var_tab"])
+        put_series(f, "vals_nset_var2ns1", "num_nod_ns1")
+        put_variable_names(f, "sset", ["traction"], tables["sset_var_tab"])
+    done = command.ok("order", "a.exo", "-o", "b.exo", "--vertices", "scrambled", "--elements", "scrambled", "--maps", "m")
+    assert "left out" not in done.stderr and "not written" not in done.stderr, done.stderr
+    command.ok("apply", "m", "b.exo", "-o", "c.exo", "--inverse")
+    with netCDF4.Dataset(tmp_path / "a.exo") as a:
+        for name in ("b.exo", "c.exo"):
+            with netCDF4.Dataset(tmp_path / name) as after:
+                after.set_auto_mask(False)
+                assert {v for v in after.variables if v.startswith("vals_")} == {v for v in a.variables if v.startswith("vals_")}
+                for of in ("nod", "elem", "nset", "sset"):
+                    assert text_rows(after[f"name_{of}_var"]) == text_rows(a[f"name_{of}_var"])
+                assert {table: after[table][:].tolist() for table in tables} == tables
+        with netCDF4.Dataset(tmp_path / "b.exo") as b, netCDF4.Dataset(tmp_path / "c.exo") as c:
+            places = numpy.load(tmp_path / "m.vertices.old_to_new.npy")
+            assert (places != numpy.arange(6)).any()
+            assert (b["vals_nod_var2"][:][:, places] == a["vals_nod_var2"][:]).all()
+            for name in ("vals_nod_var2", "vals_elem_var2eb2", "vals_nset_var2ns1"):
+                assert c[name][:].tolist() == a[name][:].tolist()
+
+
+def test_variables_of_no_step_stay_declared(command, tmp_path):
+    with write_pair(tmp_path / "a.exo", steps=0) as f:
+        put_variable_names(f, "nod", ["first", "heat"])
+        put_variable_names(f, "elem", ["stress", "damage"])
+        put_variable_names(f, "nset", ["reaction"], [[1]])
+        for name, dimension in [("nod_var2", "num_nodes"), ("elem_var1eb2", "num_el_in_blk2"), ("nset_var1ns1", "num_nod_ns1")]:
+            f.createVariable(f"vals_{name}", "f4", ("time_step", dimension))
+    command.ok("order", "a.exo", "-o", "b.exo", "--vertices", "scrambled")
+    with netCDF4.Dataset(tmp_path / "b.exo") as b:
+        assert {name: (v.dtype, v.shape) for name, v in b.variables.items() if name.startswith("vals_")} == {
+            "vals_nod_var2": ("f4", (0, 6)), "vals_elem_var1eb2": ("f4", (0, 2)), "vals_nset_var1ns1": ("f4", (0, 3))}
+        assert b["elem_var_tab"][:].tolist() == [[0, 0], [1, 0]] and b["nset_var_tab"][:].tolist() == [[1]]
+
+
+@pytest.mark.parametrize("types", [("f8", "f4"), ("f4", "f8"), ("i4", "f4"), ("i2", "f4"), ("i4", "i2")])
+def test_mixed_precision_loses_no_value(command, tmp_path, types):
+    values = {"f8": [[1e165, 0.1], [-1e-200, 3]], "f4": [[0.1, 1e30], [2, 3]], "i4": [[16777217, 2**31 - 1], [-5, 6]],
+              "i2": [[1, -2], [30000, 4]]}
+    with write_pair(tmp_path / "a.exo") as f:
+        put_variable_names(f, "elem", ["stress"], [[1], [1]])
+        for b, type in enumerate(types, 1):
+            put_series(f, f"vals_elem_var1eb{b}", f"num_el_in_blk{b}", type, values[type])
+    command.ok("order", "a.exo", "-o", "b.exo", "--vertices", "rcm", "--elements", "scrambled", "--maps", "m")
+    command.ok("apply", "m", "b.exo", "-o", "c.exo", "--inverse")
+    with netCDF4.Dataset(tmp_path / "a.exo") as a, netCDF4.Dataset(tmp_path / "c.exo") as c:
+        for name in ("vals_elem_var1eb1", "vals_elem_var1eb2"):
+            assert c[name].dtype == "f8" and c[name][:].tolist() == a[name][:].tolist(), name
+
+
+def test_types_of_variables_stay(command, tmp_path):
+    big = [[2**53 + 1, -2**62, 3], [4, 5, 2**63 - 1]]
+    with write_pair(tmp_path / "a.exo", "NETCDF4") as f:
+        put_variable_names(f, "nod", ["heat", "cold"])
+        packed = f.createVariable("vals_nod_var", "f4", ("time_step", "num_nod_var", "num_nodes"))
+        packed[:] = numpy.arange(24).reshape(2, 2, 6) / 7
+        put_variable_names(f, "nset", ["owner"], [[1]])
+        put_series(f, "vals_nset_var1ns1", "num_nod_ns1", "i8", big)
+        put_variable_names(f, "sset", ["mark"], [[1]])
+        put_series(f, "vals_sset_var1ss1", "num_side_ss1", "u8", [[2**64 - 1, 2**63], [2**53 + 1, 0]])
+        put_variable_names(f, "elem", ["key"], [[1], [0]])
+        put_series(f, "vals_elem_var1eb1", "num_el_in_blk1", "u8", [[2**64 - 1, 2**63], [2**53 + 1, 0]])
+    command.ok("order", "a.exo", "-o", "b.exo", "--vertices", "scrambled", "--elements", "scrambled", "--maps", "m")
+    command.ok("apply", "m", "b.exo", "-o", "c.exo", "--inverse")
+    with netCDF4.Dataset(tmp_path / "a.exo") as a, netCDF4.Dataset(tmp_path / "c.exo") as c:
+        for name in ("vals_nod_var", "vals_nset_var1ns1", "vals_sset_var1ss1", "vals_elem_var1eb1"):
+            assert c[name].dtype == a[name].dtype and c[name][:].tolist() == a[name][:].tolist(), name
+
+
+def test_digits_that_no_type_of_all_blocks_has_are_told(command, tmp_path):
+    with write_pair(tmp_path / "a.exo", "NETCDF4") as f:
+        put_variable_names(f, "elem", ["key"], [[1], [1]])
+        put_series(f, "vals_elem_var1eb1", "num_el_in_blk1", "i8", [[2**53 + 1, 1], [2, 3]])
+        put_series(f, "vals_elem_var1eb2", "num_el_in_blk2", "f4")
+    done = command.ok("order", "a.exo", "-o", "b.exo")
+    assert "the variable 'key' loses digits" in done.stderr
+
+
 # the nodes between corners, in the order of the format's manual
 QUAD_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0)]
 HEX_EDGES = QUAD_EDGES + [(0, 4), (1, 5), (2, 6), (3, 7), (4, 5), (5, 6), (6, 7), (7, 4)]

@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 
+#include <meshorder/error.hpp>
+
 #include <gtest/gtest.h>
 
 #include <string>
@@ -43,6 +45,12 @@ TEST(IsUtf8, RefusesWhatIsNone) {
   for (const std::string_view text :
        {"\xff", "a\xdf", "\xe2\x82", "\xc1\xbf", "\xed\xbf\xbf", "\xf5\x80\x80\x80"})
     EXPECT_FALSE(is_utf8(text)) << visible(text);
+}
+
+TEST(InputError, IsOneLineWhateverTheNames) {
+  const InputError error(Location{"a\nb.exo", 0, 7}, "els\n\x1b has too many dimensions", "a remedy");
+  EXPECT_STREQ(error.what(), "a\\u000ab.exo: byte 7: els\\u000a\\u001b has too many dimensions; a remedy");
+  EXPECT_EQ(error.location().file, "a\nb.exo");
 }
 
 TEST(Utf8Prefix, EndsWithAWholeCharacter) {

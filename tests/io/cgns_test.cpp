@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <random>
@@ -43,6 +45,60 @@ TEST(Cgns, MakesTheSameSetsOfSectionsInAnyOrder) {
   apply_reordering(mesh, test::shuffled(mesh.vertex_count(), 1), test::shuffled_cells(mesh, 2));
   write_mesh(mesh, folder.path() / "b.cgns");
   EXPECT_EQ(read_mesh(folder.path() / "b.cgns").sets.size(), sets);
+}
+
+/// Returns the node of that name below another; null if there is none.
+cgns::Node* find_node(cgns::Node& node, const std::string& name) {
+  if (node.name == name) return &node;
+  for (cgns::Node& child : node.children) {
+    if (cgns::Node* const found = find_node(child, name)) return found;
+  }
+  return nullptr;
+}
+
+TEST(Cgns, WhatItsTypeCannotHoldIsWrittenInAWiderOne) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "a.cgns";
+  Mesh mesh = test::tetrahedral_bar(1);
+  const std::size_t points = mesh.points.size();
+  mesh.data = {{"real", Association::vertices, 1, std::vector<float>(points, 0.5F), {}, {}},
+               {"whole", Association::vertices, 1, std::vector<std::int32_t>(points, 7), {}, {}},
+               {"same", Association::vertices, 1, std::vector<float>(points, 0.5F), {}, {}}};
+  write_mesh(mesh, path);
+  cgns::Tree tree = cgns::read_tree(path);
+  for (const char* const axis : {"CoordinateX", "CoordinateY", "CoordinateZ"}) {
+    cgns::Node& node = *find_node(tree.root, axis);
+    std::vector<double> values(points);
+    std::memcpy(values.data(), node.bytes.data(), node.bytes.size());
+    const std::vector<float> singles(values.begin(), values.end());
+    node.type = "R4";
+    node.bytes.resize(points * sizeof(float));
+    std::memcpy(node.bytes.data(), singles.data(), node.bytes.size());
+  }
+  cgns::write_tree(tree, path, [](cgns::Node& /*node*/) {});
+  mesh = read_mesh(path);
+  mesh.points[1][0] = 0.1;
+  const auto fill = [&](const char* name, Values values) {
+    for (DataArray& array : mesh.data) {
+      if (array.name == name) array.values = std::move(values);
+    }
+  };
+  std::vector<double> reals(points, 0.1);
+  reals[0] = 1e165;
+  fill("real", reals);
+  fill("whole", std::vector<double>(points, 2147483648.0));
+  fill("same", std::vector<double>(points, 0.25));
+  write_mesh(mesh, path);
+  tree = cgns::read_tree(path);
+  for (const auto& [name, type] : std::vector<std::pair<std::string, std::string>>{
+           {"CoordinateX", "R8"}, {"CoordinateY", "R4"}, {"real", "R8"}, {"whole", "I8"}, {"same", "R4"}}) {
+    EXPECT_EQ(find_node(tree.root, name)->type, type) << name;
+  }
+  const Mesh back = read_mesh(path);
+  EXPECT_EQ(back.points, mesh.points);
+  EXPECT_EQ(find_array(back, "real", Association::vertices)->values, Values(reals));
+  EXPECT_EQ(find_array(back, "whole", Association::vertices)->values,
+            Values(std::vector<std::int64_t>(points, 2147483648)));
 }
 
 TEST(Cgns, ReadsFilesOfAdf) {

@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/exodus/netcdf.hpp"
 #include "io/format.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
@@ -9,7 +10,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -148,6 +153,124 @@ TEST(Exodus, TellsWhatItCannotHold) {
   EXPECT_THAT(notes,
               ElementsAre(HasSubstr("'wide' loses digits"), HasSubstr("'word' on cells is not written"),
                           HasSubstr("'few' is given for some vertices; the others get NaN")));
+}
+
+/// Writes two triangles in two blocks, with what `put` adds.
+void write_two_blocks(const std::filesystem::path& path, const std::function<void(exodus::NcOutput&)>& put) {
+  exodus::NcOutput file(path, exodus::plain_storage(false));
+  for (const auto& [name, length] :
+       {std::pair("time_step", 1), std::pair("len_name", 33), std::pair("num_dim", 2),
+        std::pair("num_nodes", 3), std::pair("num_elem", 2), std::pair("num_el_blk", 2), std::pair("one", 1),
+        std::pair("three", 3)}) {
+    (void)file.dimension({name, static_cast<std::size_t>(length)});
+  }
+  for (const char* const name : {"coordx", "coordy"}) {
+    const exodus::NcSink sink = file.variable(name, exodus::kDouble, {"num_nodes"});
+    file.later([sink, name] {
+      sink.reals(name[5] == 'x' ? std::vector<double>{0, 1, 0} : std::vector<double>{0, 0, 1});
+    });
+  }
+  for (const char* const name : {"connect1", "connect2"}) {
+    const exodus::NcSink sink =
+        file.variable(name, exodus::kInt, {"one", "three"}, {exodus::text_attribute("elem_type", "TRI3")});
+    file.later([sink] { sink.integers(std::vector<std::int32_t>{1, 2, 3}); });
+  }
+  put(file);
+  file.finish();
+}
+
+/// Declares variables of nodes or elements, of which each has a name of one letter.
+void put_names(exodus::NcOutput& file, const std::string& of, const std::string& letters) {
+  const std::string count = "num_" + of + "_var";
+  (void)file.dimension({count, letters.size()});
+  const exodus::NcSink sink = file.variable("name_" + of + "_var", exodus::kChar, {count, "len_name"});
+  std::string table(letters.size() * 33, '\0');
+  for (std::size_t i = 0; i < letters.size(); ++i) table[i * 33] = letters[i];
+  file.later([sink, table, rows = letters.size()] { sink.bytes({rows, 33}, table); });
+}
+
+void put_values(exodus::NcOutput& file, const std::string& name, const std::string& dimension,
+                exodus::NcType type, const std::vector<double>& values) {
+  const exodus::NcSink sink = file.variable(name, type, {"time_step", dimension});
+  file.later([sink, values] { sink.part({0, 0}, {1, values.size()}, values); });
+}
+
+TEST(Exodus, NamesWithoutValuesGetNone) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "a.exo";
+  write_two_blocks(path, [](exodus::NcOutput& file) {
+    put_names(file, "nod", "uvw");
+    put_values(file, "vals_nod_var2", "num_nodes", exodus::kDouble, {1, 2, 3});
+    put_names(file, "elem", "ab");
+    put_values(file, "vals_elem_var2eb1", "one", exodus::kDouble, {4});
+  });
+  const Mesh mesh = read_mesh(path);
+  ASSERT_EQ(mesh.data.size(), 3U);  // and the labels of blocks
+  EXPECT_EQ(array_of(mesh, "v", Association::vertices).values, Values(std::vector<double>{1, 2, 3}));
+  test::expect_order_and_back(path);
+  // in memory, where netCDF fills what is not written
+  const MemoryFiles files = write_mesh_to_memory(mesh, "exodus", "b.exo");
+  test::expect_same(read_mesh(std::as_bytes(std::span(files.files.front().bytes))), mesh);
+}
+
+TEST(Exodus, ValuesOfBlocksOfMixedTypesStay) {
+  constexpr double kLarge = 1e165;
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "a.exo";
+  for (const auto& [first, second] :
+       {std::pair(exodus::kDouble, exodus::kFloat), std::pair(exodus::kFloat, exodus::kDouble),
+        std::pair(exodus::kInt, exodus::kFloat)}) {
+    SCOPED_TRACE(second);
+    const auto value_of = [](exodus::NcType type) {
+      return type == exodus::kDouble ? kLarge : type == exodus::kInt ? 16777217 : 0.5;
+    };
+    write_two_blocks(path, [&, first = first, second = second](exodus::NcOutput& file) {
+      put_names(file, "elem", "a");
+      put_values(file, "vals_elem_var1eb1", "one", first, {value_of(first)});
+      put_values(file, "vals_elem_var1eb2", "one", second, {value_of(second)});
+    });
+    EXPECT_EQ(array_of(read_mesh(path), "a", Association::cells).values,
+              Values(std::vector<double>{value_of(first), value_of(second)}));
+    test::expect_order_and_back(path);
+  }
+}
+
+TEST(Exodus, ArraysThatNoLongerFitTheirTypeAreWrittenInDouble) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "a.exo";
+  write_two_blocks(path, [](exodus::NcOutput& file) {
+    put_names(file, "nod", "ui");
+    put_values(file, "vals_nod_var1", "num_nodes", exodus::kFloat, {0.5, 1, 2});
+    put_values(file, "vals_nod_var2", "num_nodes", exodus::kInt, {1, 2, 3});
+  });
+  Mesh mesh = read_mesh(path);
+  for (DataArray& array : mesh.data) {
+    if (array.association == Association::vertices)
+      array.values = std::vector<double>{0.1, 1e165, 2147483648.0};
+  }
+  test::expect_same(there_and_back(mesh), mesh);
+}
+
+TEST(Exodus, TypesHoldWhatTheyCanTellApart) {
+  using exodus::can_hold;
+  const auto real = [](double value) { return Values(std::vector<double>{0, value}); };
+  const auto whole = [](std::int64_t value) { return Values(std::vector<std::int64_t>{0, value}); };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const double value : {0.5, -HUGE_VAL, kNan, 16777216.0, 1e30F * 1.0})
+    EXPECT_TRUE(can_hold(exodus::kFloat, real(value))) << value;
+  for (const double value : {0.1, 1e165, -1e-200, 16777217.0})
+    EXPECT_FALSE(can_hold(exodus::kFloat, real(value))) << value;
+  EXPECT_TRUE(can_hold(exodus::kFloat, whole(-16777216)));
+  EXPECT_FALSE(can_hold(exodus::kFloat, whole(16777217)));
+  EXPECT_TRUE(can_hold(exodus::kDouble, whole(-(std::int64_t{1} << 53))));
+  EXPECT_FALSE(can_hold(exodus::kDouble, whole((std::int64_t{1} << 53) + 1)));
+  EXPECT_TRUE(can_hold(exodus::kInt, real(-2147483648.0)));
+  for (const double value : {0.5, 2147483648.0, -2147483649.0, HUGE_VAL, kNan})
+    EXPECT_FALSE(can_hold(exodus::kInt, real(value))) << value;
+  EXPECT_FALSE(can_hold(exodus::kInt64, real(9223372036854775808.0)));
+  EXPECT_FALSE(can_hold(exodus::kInt64, Values(std::vector<std::uint64_t>{std::uint64_t{1} << 63})));
+  EXPECT_FALSE(can_hold(exodus::kDouble, Values(std::vector<std::string>{"1"})));
+  EXPECT_FALSE(can_hold(exodus::kChar, whole(1)));
 }
 
 TEST(Exodus, GoesThroughMemory) {

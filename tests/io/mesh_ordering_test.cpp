@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 namespace meshorder {
@@ -118,6 +120,26 @@ TEST(MeshOrdering, IsTheSameTwice) {
     EXPECT_EQ(once.vertices.permutation, again.vertices.permutation) << method.name;
     EXPECT_EQ(once.cells.permutation, again.cells.permutation) << method.name;
   }
+}
+
+TEST(MeshOrdering, TakesTheVertexGraphThatItIsGiven) {
+  const Mesh original = bar_with_boundary();
+  ReorderOptions options = methods("rcm", "lexmax");
+  options.format = "tetgen";  // sorts the cells before
+  Mesh mesh = original;
+  std::optional<CsrGraph> graph;
+  const MeshOrder computed = reorder(mesh, options, graph);
+  EXPECT_EQ(graph, vertex_graph(original));
+  const Mesh expected = mesh;
+  mesh = original;
+  const MeshOrder given = reorder(mesh, options, graph);
+  EXPECT_EQ(given.vertices.permutation, computed.vertices.permutation);
+  test::expect_same(mesh, expected);
+  // one without edges is not replaced
+  graph = CsrGraph{std::vector<Offset>(original.points.size() + 1, 0), {}};
+  mesh = original;
+  EXPECT_NE(reorder(mesh, options, graph).vertices.permutation, computed.vertices.permutation);
+  EXPECT_NE(graph, vertex_graph(original));
 }
 
 TEST(MeshOrdering, EveryPairOfMethodsGivesASoundMeshThatTheInverseRestores) {

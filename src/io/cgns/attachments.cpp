@@ -216,7 +216,14 @@ class AttachmentReader {
   void read_values(Node& node, const std::string& solution, Association association,
                    const std::shared_ptr<const std::vector<Index>>& rows, int list, const std::string& path) {
     Values values = numbers_of(node);
-    if (std::holds_alternative<std::vector<std::string>>(values)) return;
+    if (std::holds_alternative<std::vector<std::string>>(values)) {
+      if (rows->size() > 1 && node.size() == rows->size()) {
+        reading_.notes.push_back(
+            fmt::format("'{}' is kept as it is, though it has as many characters as there are {}", path,
+                        to_string(association)));
+      }
+      return;
+    }
     if (node.size() != rows->size()) {
       reading_.fail(path,
                     fmt::format("has {} values for {} {}", node.size(), rows->size(), to_string(association)),

@@ -2,6 +2,7 @@
 #include "io/cgns/filler.hpp"
 
 #include "base/index.hpp"
+#include "io/exact_values.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -169,9 +170,9 @@ void Filler::fill_size(Node& node, int z) const {
 }
 
 template <class Number>
-void Filler::put_coordinate(Node& node, const Field& field) const {
+void Filler::put_coordinate(Node& node, const std::string& type, const Field& field) const {
   const Index count = vertex_count(field.place);
-  NodeValues<Number> values(node, field.type, static_cast<std::size_t>(count));
+  NodeValues<Number> values(node, type, static_cast<std::size_t>(count));
   const auto axis = static_cast<std::size_t>(field.axis);
   for (Index v = 0; v < count; ++v) {
     values.put(static_cast<std::size_t>(v),
@@ -180,8 +181,13 @@ void Filler::put_coordinate(Node& node, const Field& field) const {
 }
 
 void Filler::fill_coordinate(Node& node, const Field& field) const {
-  if (field.type == "R4") return put_coordinate<float>(node, field);
-  put_coordinate<double>(node, field);
+  bool is_single = field.type == "R4";
+  const auto axis = static_cast<std::size_t>(field.axis);
+  for (Index v = 0; is_single && v < vertex_count(field.place); ++v) {
+    is_single = is_exact<float>(mesh_.points[vertex_at(field.place, v)][axis]);
+  }
+  if (is_single) return put_coordinate<float>(node, "R4", field);
+  put_coordinate<double>(node, "R8", field);
 }
 
 template <class Number>
@@ -276,8 +282,31 @@ void Filler::put_values(Node& node, const std::string& type, const std::vector<O
   }
 }
 
+namespace {
+
+/// Returns whether a type of CGNS has each of the values.
+bool can_hold(std::string_view type, const Values& values) {
+  if (type == "R4") return are_exact<float>(values);
+  if (type == "B1") return are_exact<std::uint8_t>(values);
+  if (type == "I4") return are_exact<std::int32_t>(values);
+  if (type == "U4") return are_exact<std::uint32_t>(values);
+  if (type == "I8") return are_exact<std::int64_t>(values);
+  if (type == "U8") return are_exact<std::uint64_t>(values);
+  return type == "R8";
+}
+
+/// Returns the type in which values are written that had a type in the file: this one if it has each of them,
+/// else a wider one.
+std::string written_type(const std::string& of_file, const Values& values) {
+  if (can_hold(of_file, values)) return of_file;
+  return !of_file.starts_with('R') && can_hold("I8", values) ? "I8" : "R8";
+}
+
+}  // namespace
+
 void Filler::fill_values(Node& node, const Field& field) const {
   const DataArray& array = *find_array(mesh_, field.array, field.association);
+  const std::string type = written_type(field.type, array.values);
   const std::vector<Index> rows = rows_of(field);
   std::vector<Index> table;
   if (!array.is_dense()) {
@@ -288,13 +317,14 @@ void Filler::fill_values(Node& node, const Field& field) const {
   std::visit(
       [&](const auto& values) {
         const auto put_as = [&](auto zero) {
-          put_values<decltype(zero)>(node, field.type, values, rows, table, field, array.components);
+          put_values<decltype(zero)>(node, type, values, rows, table, field, array.components);
         };
-        if (field.type == "R4") return put_as(float{});
-        if (field.type == "I4") return put_as(std::int32_t{});
-        if (field.type == "U4") return put_as(std::uint32_t{});
-        if (field.type == "I8") return put_as(std::int64_t{});
-        if (field.type == "U8") return put_as(std::uint64_t{});
+        if (type == "R4") return put_as(float{});
+        if (type == "B1") return put_as(std::uint8_t{});
+        if (type == "I4") return put_as(std::int32_t{});
+        if (type == "U4") return put_as(std::uint32_t{});
+        if (type == "I8") return put_as(std::int64_t{});
+        if (type == "U8") return put_as(std::uint64_t{});
         put_as(double{});
       },
       array.values);

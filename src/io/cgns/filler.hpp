@@ -39,7 +39,7 @@ class Filler {
 
   void fill_size(Node& node, int z) const;
   template <class Number>
-  void put_coordinate(Node& node, const Field& field) const;
+  void put_coordinate(Node& node, const std::string& type, const Field& field) const;
   void fill_coordinate(Node& node, const Field& field) const;
   template <class Number>
   void put_connectivity(Node& node, int s, const std::string& type) const;

@@ -38,6 +38,7 @@ Values numbers_of(const Node& node) {
   if (node.type == "U4") return copied(std::uint32_t{});
   if (node.type == "U8") return copied(std::uint64_t{});
   if (node.type == "I4") return copied(std::int32_t{});
+  if (node.type == "B1") return copied(std::uint8_t{});
   return std::vector<std::string>();
 }
 

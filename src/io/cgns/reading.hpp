@@ -67,7 +67,7 @@ struct FoundSection {
 /// Returns the values of a node of whole numbers; throws InputError for others.
 std::vector<std::int64_t> whole_numbers(const Reading& reading, const Node& node, const std::string& path);
 
-/// Returns the numbers of a node in their own type; text, bits and the like give none.
+/// Returns the numbers of a node in their own type; of text there are none.
 Values numbers_of(const Node& node);
 
 /// Returns what values and lists of a node belong to; cells also for their faces and edges.

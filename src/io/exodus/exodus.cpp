@@ -68,6 +68,10 @@ void Writing::write_integers(const std::string& variable, const std::string& dim
   file.later([sink, values = std::move(values)] { sink.integers(values); });
 }
 
+NcType written_type(NcType of_file, const Values& values) {
+  return can_hold(of_file, values) ? of_file : kDouble;
+}
+
 bool are_whole(const Values& values) {
   return std::visit(
       [](const auto& all) {
@@ -315,30 +319,40 @@ Columns attributes_of(Writing& writing, const BlockPlan& block) {
   return columns;
 }
 
+/// Returns the values of an attribute for the elements of a block, 0 where it has none.
+std::vector<double> values_in(const Mesh& mesh, const Block& block, const DataArray& array) {
+  std::vector<double> result(static_cast<std::size_t>(block.count), 0);
+  const std::vector<Index> places = row_table(array, mesh.cell_count());
+  std::visit(
+      [&](const auto& values) {
+        for (Index e = 0; e < block.count; ++e) {
+          const Index row = places.empty() ? block.first + e : places[block.first + e];
+          if (row >= 0) result[e] = number_as<double>(values[row]);
+        }
+      },
+      array.values);
+  return result;
+}
+
 void write_attributes(Writing& writing, const std::string& number, const BlockPlan& block,
                       const Columns& columns) {
   if (columns.empty()) return;
   NcOutput& file = writing.file;
   const std::string count = "num_att_in_blk" + number;
   file.dimension({count, columns.size()});
-  const NcType type = block.record != nullptr && block.record->attribute_type == kFloat ? kFloat : kDouble;
+  const bool is_single = block.record != nullptr && block.record->attribute_type == kFloat &&
+                         std::all_of(columns.begin(), columns.end(), [&](const auto& column) {
+                           return can_hold(kFloat, values_in(writing.mesh, block.cells, *column.second));
+                         });
+  const NcType type = is_single ? kFloat : kDouble;
   const NcSink sink = writing.declare("attrib" + number, type, {"num_el_in_blk" + number, count});
   file.later([sink, columns, &writing, cells = block.cells] {
     const std::size_t width = columns.size();
     const auto rows = static_cast<std::size_t>(cells.count);
     std::vector<double> table(rows * width, 0);
     for (std::size_t k = 0; k < width; ++k) {
-      const DataArray& array = *columns[k].second;
-      const std::vector<Index> places = row_table(array, writing.mesh.cell_count());
-      std::visit(
-          [&](const auto& values) {
-            for (std::size_t e = 0; e < rows; ++e) {
-              const Index c = cells.first + static_cast<Index>(e);
-              const Index row = places.empty() ? c : places[c];
-              if (row >= 0) table[e * width + k] = number_as<double>(values[row]);
-            }
-          },
-          array.values);
+      const std::vector<double> values = values_in(writing.mesh, cells, *columns[k].second);
+      for (std::size_t e = 0; e < rows; ++e) table[e * width + k] = values[e];
     }
     sink.part({0, 0}, {rows, width}, table);
   });

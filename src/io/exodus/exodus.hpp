@@ -58,8 +58,10 @@ int nodes_of_side(Shape shape, int nodes, int side, int dimension);
 struct Series {
   std::string name;
   NcType type = kDouble;
-  std::vector<std::string> arrays = {};  ///< of the mesh, one for each step; empty where a step has none
-  std::vector<bool> present = {};        ///< variables of elements: by block
+  std::vector<std::string> arrays = {};  ///< of the mesh, one for each step; none for a name without values
+  // by block for elements, one entry for nodes or a set
+  std::vector<bool> present = {};   ///< a table of the file says that there are values
+  std::vector<bool> declared = {};  ///< there is a variable for values, though there may be no step
 };
 
 struct BlockRecord {

@@ -2,6 +2,7 @@
 #include "io/exodus/netcdf.hpp"
 
 #include "base/memory.hpp"
+#include "io/exact_values.hpp"
 #include "io/hdf5/mutex.hpp"
 #include "io/stream/read_limits.hpp"
 
@@ -73,6 +74,33 @@ std::size_t size_of(NcType type) {
       return 8;
     default:
       return 0;
+  }
+}
+
+bool can_hold(NcType type, const Values& values) {
+  switch (type) {
+    case NC_FLOAT:
+      return are_exact<float>(values);
+    case NC_DOUBLE:
+      return are_exact<double>(values);
+    case NC_BYTE:
+      return are_exact<std::int8_t>(values);
+    case NC_UBYTE:
+      return are_exact<std::uint8_t>(values);
+    case NC_SHORT:
+      return are_exact<std::int16_t>(values);
+    case NC_USHORT:
+      return are_exact<std::uint16_t>(values);
+    case NC_INT:
+      return are_exact<std::int32_t>(values);
+    case NC_UINT:
+      return are_exact<std::uint32_t>(values);
+    case NC_INT64:
+      return are_exact<std::int64_t>(values);
+    case NC_UINT64:
+      return are_exact<std::uint64_t>(values);
+    default:
+      return false;
   }
 }
 
@@ -514,6 +542,14 @@ void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std:
   if (values.empty()) return;
   const std::vector<long long> numbers(values.begin(), values.end());
   file_->check(nc_put_vara_longlong(file_->id_, variable_, starts.data(), counts.data(), numbers.data()),
+               name_);
+}
+
+void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+                  const std::vector<std::uint64_t>& values) const {
+  if (values.empty()) return;
+  const std::vector<unsigned long long> numbers(values.begin(), values.end());
+  file_->check(nc_put_vara_ulonglong(file_->id_, variable_, starts.data(), counts.data(), numbers.data()),
                name_);
 }
 

@@ -32,6 +32,9 @@ extern const NcType kDouble;
 bool is_whole(NcType type);
 /// Returns the bytes of a value, 0 for strings and types that a file defines.
 std::size_t size_of(NcType type);
+/// Returns whether a type has each of the values, to the last digit; NaN is one of the real types only.
+/// O(values).
+bool can_hold(NcType type, const Values& values);
 
 /// A named value of a file or a variable.
 struct Attribute {
@@ -161,6 +164,8 @@ class NcSink {
             const std::vector<float>& values) const;
   void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
             const std::vector<std::int64_t>& values) const;
+  void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
+            const std::vector<std::uint64_t>& values) const;
   void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
             const std::vector<std::int32_t>& values) const;
   /// Writes the part of `counts` values from 0 on, in the variable's own type.

@@ -16,8 +16,6 @@
 namespace meshorder::exodus {
 namespace {
 
-constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers up to here are exact as double
-
 /// Returns one component of an array for `count` vertices or cells from `first` on; NaN, or 0 of whole
 /// numbers, where it has no row.
 template <class Number>
@@ -53,26 +51,14 @@ void put(const NcSink& sink, NcType type, std::vector<std::size_t> starts, const
     });
   };
   if (type == kFloat) return put_as(std::numeric_limits<float>::quiet_NaN());
-  if (is_whole(type)) return put_as(std::int64_t{0});
+  const bool is_wide = array != nullptr && std::holds_alternative<std::vector<std::uint64_t>>(array->values);
+  if (is_whole(type)) return is_wide ? put_as(std::uint64_t{0}) : put_as(std::int64_t{0});
   put_as(std::numeric_limits<double>::quiet_NaN());
 }
 
 /// Returns the type in which an array is written where no file gave it one.
 NcType type_for(const DataArray& array) {
   return std::holds_alternative<std::vector<float>>(array.values) ? kFloat : kDouble;
-}
-
-bool is_exact(const DataArray& array) {
-  return std::visit(
-      [](const auto& values) {
-        using Number = typename std::decay_t<decltype(values)>::value_type;
-        if constexpr (std::is_integral_v<Number> && sizeof(Number) == 8) {
-          return std::none_of(values.begin(), values.end(),
-                              [](Number value) { return std::abs(static_cast<double>(value)) > kExact; });
-        }
-        return true;
-      },
-      array.values);
 }
 
 /// Returns the names of the variables that the components of an array become.
@@ -106,15 +92,16 @@ class SeriesPlanner {
 
  private:
   void add(const Series& series) {
-    SeriesPlan plan{.name = series.name, .type = series.type};
-    plan.present = series.present;
+    SeriesPlan plan{
+        .name = series.name, .type = series.type, .present = series.present, .declared = series.declared};
     bool found = series.arrays.empty();
     for (const std::string& name : series.arrays) {
       plan.arrays.push_back(writing_.take(name, association_));
       const DataArray* const array = plan.arrays.back();
       found = found || array != nullptr;
-      if (array != nullptr && is_whole(plan.type) && !are_whole(array->values)) plan.type = kDouble;
+      if (array != nullptr) plan.type = written_type(plan.type, array->values);
     }
+    for (const DataArray* const array : plan.arrays) note_digits(array, plan.type);
     if (!found) return;
     names_.insert(plan.name);
     plans_.push_back(std::move(plan));
@@ -125,15 +112,18 @@ class SeriesPlanner {
     if (std::holds_alternative<std::vector<std::string>>(array.values)) {
       return note_array_unsupported(array, "Exodus", notes);
     }
-    if (!is_exact(array)) {
-      notes.push_back(fmt::format(
-          "the array '{}' loses digits: variables of Exodus are real numbers of 53 bits", array.name));
-    }
+    note_digits(&array, kDouble);
     if (array.components == 1) return add(array, 0, array.name);
     const std::vector<std::string> names = names_of_components(array);
     notes.push_back(fmt::format("the array '{}' of {} components is written as the variables '{}' to '{}'",
                                 array.name, names.size(), names.front(), names.back()));
     for (Index k = 0; k < array.components; ++k) add(array, k, names[k]);
+  }
+
+  void note_digits(const DataArray* array, NcType type) {
+    if (array == nullptr || can_hold(type, array->values)) return;
+    writing_.notes.push_back(fmt::format(
+        "the array '{}' loses digits: variables of Exodus are real numbers of 53 bits", array->name));
   }
 
   void add(const DataArray& array, Index component, const std::string& wanted) {
@@ -167,6 +157,14 @@ std::vector<std::string> names_of_series(const std::vector<SeriesPlan>& series) 
   return names;
 }
 
+/// Returns the type of all variables where they are in one variable of the file.
+NcType type_of_all(const std::vector<SeriesPlan>& series) {
+  const NcType first = series.front().type;
+  const bool is_one =
+      std::all_of(series.begin(), series.end(), [&](const SeriesPlan& one) { return one.type == first; });
+  return is_one ? first : kDouble;
+}
+
 void note_filled(const DataArray& array, Notes& notes) {
   notes.push_back(fmt::format("the array '{}' is given for some {}; the others get NaN", array.name,
                               to_string(array.association)));
@@ -188,18 +186,22 @@ std::vector<Index> rows_in_blocks(const Writing& writing, const DataArray& array
   return rows;
 }
 
-/// Returns whether each block has values of a variable.
-std::vector<bool> presence(Writing& writing, const SeriesPlan& series) {
-  std::vector<bool> present(writing.blocks.size(), false);
-  if (series.arrays.empty()) {
-    for (std::size_t b = 0; b < present.size(); ++b) {
-      const BlockRecord* const record = writing.blocks[b].record;
-      const auto place = record == nullptr
-                             ? series.present.size()
-                             : static_cast<std::size_t>(record - writing.metadata.blocks.data());
-      present[b] = place < series.present.size() && series.present[place];
-    }
-    return present;
+/// What a block has of a variable.
+struct Presence {
+  bool in_table = false;
+  bool declared = false;
+};
+
+/// Returns what each block has of a variable: values, or what it had in its file without any.
+std::vector<Presence> presence(Writing& writing, const SeriesPlan& series) {
+  std::vector<Presence> result(writing.blocks.size());
+  for (std::size_t b = 0; b < result.size(); ++b) {
+    const BlockRecord* const record = writing.blocks[b].record;
+    if (record == nullptr || series.present.empty()) continue;
+    const auto place = static_cast<std::size_t>(record - writing.metadata.blocks.data());
+    const bool had_values = series.declared[place] && !series.arrays.empty();
+    result[b].in_table = series.present[place] && !had_values;
+    result[b].declared = series.declared[place] && writing.steps == 0;
   }
   const DataArray* last = nullptr;
   for (const DataArray* const array : series.arrays) {
@@ -207,13 +209,13 @@ std::vector<bool> presence(Writing& writing, const SeriesPlan& series) {
     last = array;
     const std::vector<Index> rows = rows_in_blocks(writing, *array);
     bool filled = false;
-    for (std::size_t b = 0; b < present.size(); ++b) {
-      present[b] = present[b] || rows[b] > 0;
+    for (std::size_t b = 0; b < result.size(); ++b) {
+      if (rows[b] > 0) result[b] = {true, true};
       filled = filled || (rows[b] > 0 && rows[b] < writing.blocks[b].cells.count);
     }
     if (filled && series.component == 0) note_filled(*array, writing.notes);
   }
-  return present;
+  return result;
 }
 
 }  // namespace
@@ -239,12 +241,13 @@ void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series) {
   const bool packed = writing.metadata.packs_nodal;
   if (mesh.points.empty()) return;
   const NcSink together =
-      packed ? writing.declare("vals_nod_var", kDouble, {"time_step", "num_nod_var", "num_nodes"})
+      packed ? writing.declare("vals_nod_var", type_of_all(series), {"time_step", "num_nod_var", "num_nodes"})
              : NcSink(file, "", -1);
   for (std::size_t v = 0; v < series.size(); ++v) {
     const SeriesPlan& one = series[v];
     const DataArray* const first = one.arrays.empty() ? nullptr : one.arrays.front();
     if (first != nullptr && !first->is_dense() && one.component == 0) note_filled(*first, writing.notes);
+    if (!packed && one.arrays.empty() && (writing.steps > 0 || !one.declared.front())) continue;
     const NcSink sink =
         packed ? together
                : writing.declare(fmt::format("vals_nod_var{}", v + 1), one.type, {"time_step", "num_nodes"});
@@ -270,12 +273,11 @@ void write_elemental(Writing& writing, const std::vector<SeriesPlan>& series) {
   std::vector<std::int32_t> table(writing.blocks.size() * series.size(), 0);
   for (std::size_t v = 0; v < series.size(); ++v) {
     const SeriesPlan& one = series[v];
-    const std::vector<bool> present = presence(writing, one);
+    const std::vector<Presence> presences = presence(writing, one);
     std::vector<std::pair<std::size_t, NcSink>> sinks;
     for (std::size_t b = 0; b < writing.blocks.size(); ++b) {
-      if (!present[b]) continue;
-      table[b * series.size() + v] = 1;
-      if (writing.blocks[b].cells.count == 0) continue;
+      table[b * series.size() + v] = presences[b].in_table ? 1 : 0;
+      if (!presences[b].declared || writing.blocks[b].cells.count == 0) continue;
       sinks.emplace_back(b, writing.declare(fmt::format("vals_elem_var{}eb{}", v + 1, b + 1), one.type,
                                             {"time_step", fmt::format("num_el_in_blk{}", b + 1)}));
     }

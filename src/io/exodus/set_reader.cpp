@@ -70,6 +70,16 @@ std::vector<Number> packed(const Sides& sides, const std::vector<Number>& values
   return result;
 }
 
+/// Returns the table of which object, a block or a set, has values of which variable, row by row; empty where
+/// the file has none.
+std::vector<std::int64_t> read_table(Reading& reading, const std::string& of, std::size_t objects,
+                                     std::size_t variables) {
+  const Variable* const table = reading.take(of + "_var_tab");
+  if (table == nullptr) return {};
+  reading.require_shape(*table, {objects, variables});
+  return reading.file.integers(*table);
+}
+
 /// Reads the sets of one kind and their variables.
 class SetReader {
  public:
@@ -92,24 +102,37 @@ class SetReader {
     family_.properties = read_properties(reading_, prefix, count, [&](std::size_t s, std::int64_t value) {
       family_.sets[s].properties.push_back(value);
     });
-    read_names_of_variables();
-    (void)file.claimed("the records of " + prefix, count,
-                       sizeof(SetRecord) + family_.variables.size() * sizeof(Series));
+    const std::vector<std::int64_t> table = read_names_of_variables();
+    (void)file.claimed(
+        "the records of " + prefix, count,
+        sizeof(SetRecord) + family_.variables.size() * 2 * sizeof(Series));  // and what they own
     for (std::size_t s = 0; s < count; ++s) {
       SetRecord& set = family_.sets[s];
       set.id = ids[s];
       set.name = names[s];
       set.variables.resize(family_.variables.size());
+      for (std::size_t v = 0; v < set.variables.size(); ++v) {
+        const Variable* const variable = file.find(name_of_values(v, s + 1));
+        set.variables[v].declared = {variable != nullptr};
+        set.variables[v].present = {table.empty() ? variable != nullptr
+                                                  : table[s * set.variables.size() + v] != 0};
+      }
       read_set(s + 1, set);
     }
   }
 
  private:
-  void read_names_of_variables() {
+  /// Returns the table of which set has values of which variable, empty where the file has none.
+  std::vector<std::int64_t> read_names_of_variables() {
     const std::string of(kind_.variable);
     const std::size_t count = reading_.file.count("num_" + of + "_var");
     family_.variables = reading_.take_names("name_" + of + "_var", count);
-    (void)reading_.take(of + "_var_tab");
+    return read_table(reading_, of, family_.sets.size(), count);
+  }
+
+  /// Returns the name of the variable with the values of variable `v`, from 0, on a set, from 1.
+  [[nodiscard]] std::string name_of_values(std::size_t v, std::size_t set) const {
+    return fmt::format("vals_{}_var{}{}{}", kind_.variable, v + 1, kind_.prefix, set);
   }
 
   /// Returns the members of a set, from 0.
@@ -322,8 +345,7 @@ class SetReader {
   template <class Add>
   void read_set_variables(std::size_t number, SetRecord& set, std::size_t members, const Add& add) {
     for (std::size_t v = 0; v < family_.variables.size(); ++v) {
-      const Variable* const variable =
-          reading_.take(fmt::format("vals_{}_var{}{}{}", kind_.variable, v + 1, kind_.prefix, number));
+      const Variable* const variable = reading_.take(name_of_values(v, number));
       if (variable == nullptr) continue;
       const std::size_t steps = reading_.metadata->steps;
       reading_.require_shape(*variable, {steps, members});
@@ -379,8 +401,9 @@ void read_nodal(Reading& reading) {
     if (variable != nullptr && together == nullptr) {
       reading.require_shape(*variable, is_vector ? std::vector{metadata.steps, nodes, shape[2]}
                                                  : std::vector{metadata.steps, nodes});
-      series.type = variable->type;
     }
+    if (variable != nullptr) series.type = variable->type;
+    series.declared = {variable != nullptr};
     for (std::size_t step = 0; variable != nullptr && step < metadata.steps; ++step) {
       const Values values = together != nullptr ? file.values(*together, {step, v, 0}, {1, 1, nodes})
                             : is_vector         ? file.values(*variable, {step, 0, 0}, {1, nodes, shape[2]})
@@ -432,25 +455,23 @@ void read_elemental(Reading& reading) {
   const std::vector<std::string> names = reading.take_names("name_elem_var", count);
   const std::size_t blocks = metadata.blocks.size();
   (void)file.claimed("the table of variables", count, bytes_for(blocks, sizeof(Series)));
-  std::vector<std::int64_t> table;
-  if (const Variable* const given = reading.take("elem_var_tab")) {
-    reading.require_shape(*given, {blocks, count});
-    table = file.integers(*given);
-  }
+  const std::vector<std::int64_t> table = read_table(reading, "elem", blocks, count);
   for (std::size_t v = 0; v < count; ++v) {
     Series series{.name = names[v]};
     std::vector<const Variable*> of_block(blocks, nullptr);
     std::vector<Index> rows;
     for (std::size_t b = 0; b < blocks; ++b) {
-      series.present.push_back(!table.empty() && table[b * count + v] != 0);
       of_block[b] = reading.take(fmt::format("vals_elem_var{}eb{}", v + 1, b + 1));
+      series.declared.push_back(of_block[b] != nullptr);
+      series.present.push_back(table.empty() ? of_block[b] != nullptr : table[b * count + v] != 0);
       if (of_block[b] == nullptr) continue;
       const Index first = reading.block_ends[b];
       const Index end = reading.block_ends[b + 1];
       reading.require_shape(*of_block[b], {metadata.steps, static_cast<std::size_t>(end - first)});
-      series.type = of_block[b]->type;
+      series.type = rows.empty() || series.type == of_block[b]->type ? of_block[b]->type : kDouble;
       for (Index c = first; c < end; ++c) rows.push_back(c);
     }
+    bool keeps_digits = true;
     const bool covers_all = index_size(rows) == reading.mesh.cell_count();
     for (std::size_t step = 0; step < metadata.steps && !rows.empty(); ++step) {
       DataArray array{.name = name_of_step(name_or_number(names[v], v), step, metadata.steps),
@@ -458,11 +479,19 @@ void read_elemental(Reading& reading) {
       for (std::size_t b = 0; b < blocks; ++b) {
         if (of_block[b] == nullptr) continue;
         const auto elements = static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]);
-        append(array.values, file.values(*of_block[b], {step, 0}, {1, elements}));
+        Values values = file.values(*of_block[b], {step, 0}, {1, elements});
+        keeps_digits = keeps_digits && (series.type != kDouble || can_hold(kDouble, values));
+        append(array.values, std::move(values));
       }
       array.values = as_labels(array.name, std::move(array.values));
       if (!covers_all) array.indices = rows;
       series.arrays.push_back(reading.add_array(std::move(array)));
+    }
+    if (!keeps_digits) {
+      reading.notes.push_back(fmt::format(
+          "the variable '{}' loses digits: its blocks have whole and real numbers, which become real "
+          "numbers of 53 bits",
+          name_or_number(names[v], v)));
     }
     metadata.elements.push_back(std::move(series));
   }

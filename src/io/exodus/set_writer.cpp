@@ -184,10 +184,11 @@ class FamilyPlanner {
 
 /// Returns the values of an array for the members of a set: `counts` of each, or one. Members without a row
 /// get `missing`.
-std::vector<double> values_of_members(const SetPlan& plan, const DataArray& array, int width,
-                                      const std::vector<int>& counts, double missing) {
+template <class Number>
+std::vector<Number> values_of_members(const SetPlan& plan, const DataArray& array, int width,
+                                      const std::vector<int>& counts, Number missing) {
   const SparseRows rows(array);
-  std::vector<double> result;
+  std::vector<Number> result;
   result.reserve(plan.members.size());
   std::visit(
       [&](const auto& values) {
@@ -199,7 +200,7 @@ std::vector<double> values_of_members(const SetPlan& plan, const DataArray& arra
             const Offset column = Offset{rank} * width + k;
             const bool there = row >= 0 && column < array.components;
             result.push_back(
-                there ? number_as<double>(
+                there ? number_as<Number>(
                             values[static_cast<std::size_t>(Offset{row} * array.components + column)])
                       : missing);
           }
@@ -265,11 +266,12 @@ class FamilyWriter {
     }
     const std::string factor_size = std::string(kind_.factor_size) + number;
     file.dimension({factor_size, factors});
+    const NcType of_factors =
+        plan.record != nullptr ? written_type(plan.record->factor_type, plan.factors->values) : kDouble;
     const NcSink sink =
-        writing_.declare("dist_fact_" + std::string(kind_.prefix) + number,
-                         plan.record != nullptr ? plan.record->factor_type : kDouble, {factor_size});
+        writing_.declare("dist_fact_" + std::string(kind_.prefix) + number, of_factors, {factor_size});
     file.later([sink, &plan] {
-      sink.reals(values_of_members(plan, *plan.factors, plan.factor_width, plan.factor_counts, 1));
+      sink.reals(values_of_members(plan, *plan.factors, plan.factor_width, plan.factor_counts, 1.0));
     });
   }
 
@@ -281,35 +283,64 @@ class FamilyWriter {
     writing_.write_names("name_" + of + "_var", count, family_.variables);
     std::vector<std::int32_t> table;
     for (const SetPlan& plan : plans_) {
-      for (const auto& arrays : plan.variables) {
-        table.push_back(
-            std::any_of(arrays.begin(), arrays.end(), [](const auto* array) { return array != nullptr; }));
-      }
+      for (std::size_t v = 0; v < family_.variables.size(); ++v)
+        table.push_back(is_in_table(plan, v) ? 1 : 0);
     }
     const NcSink sink = writing_.declare(of + "_var_tab", kInt, {std::string(kind_.count), count});
     writing_.file.later([sink, table] { sink.integers(table); });
     for (std::size_t v = 0; v < family_.variables.size(); ++v) {
       for (std::size_t s = 0; s < plans_.size(); ++s) {
-        if (table[s * family_.variables.size() + v] != 0) write_variable(v, s);
+        if (is_declared(plans_[s], v)) write_variable(v, s);
       }
     }
+  }
+
+  static bool has_values(const SetPlan& plan, std::size_t v) {
+    return std::any_of(plan.variables[v].begin(), plan.variables[v].end(),
+                       [](const DataArray* array) { return array != nullptr; });
+  }
+
+  /// Returns whether the table of variables says that a set has values, which it may have said before without
+  /// any.
+  static bool is_in_table(const SetPlan& plan, std::size_t v) {
+    if (has_values(plan, v)) return true;
+    if (plan.record == nullptr) return false;
+    const Series& series = plan.record->variables[v];
+    return series.present.front() && (series.arrays.empty() || !series.declared.front());
+  }
+
+  [[nodiscard]] bool is_declared(const SetPlan& plan, std::size_t v) const {
+    if (has_values(plan, v)) return true;
+    return writing_.steps == 0 && plan.record != nullptr && plan.record->variables[v].declared.front() &&
+           !plan.members.empty();
   }
 
   void write_variable(std::size_t v, std::size_t s) {
     const SetPlan& plan = plans_[s];
     const std::string number = std::to_string(s + 1);
+    NcType type = plan.record->variables[v].type;
+    for (const DataArray* const array : plan.variables[v]) {
+      if (array != nullptr) type = written_type(type, array->values);
+    }
     const NcSink sink =
-        writing_.declare(fmt::format("vals_{}_var{}{}{}", kind_.variable, v + 1, kind_.prefix, number),
-                         plan.record->variables[v].type, {"time_step", std::string(kind_.size) + number});
-    writing_.file.later([sink, &plan, v] {
-      constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+        writing_.declare(fmt::format("vals_{}_var{}{}{}", kind_.variable, v + 1, kind_.prefix, number), type,
+                         {"time_step", std::string(kind_.size) + number});
+    const auto put_as = [sink, &plan, v]<class Number>(Number nothing) {
       for (std::size_t step = 0; step < plan.variables[v].size(); ++step) {
         const DataArray* const array = plan.variables[v][step];
         const std::size_t members = plan.members.size();
         sink.part({step, 0}, {1, members},
-                  array == nullptr ? std::vector<double>(members, kNothing)
-                                   : values_of_members(plan, *array, 1, {}, kNothing));
+                  array == nullptr ? std::vector<Number>(members, nothing)
+                                   : values_of_members(plan, *array, 1, {}, nothing));
       }
+    };
+    const bool is_wide =
+        std::any_of(plan.variables[v].begin(), plan.variables[v].end(), [](const DataArray* array) {
+          return array != nullptr && std::holds_alternative<std::vector<std::uint64_t>>(array->values);
+        });
+    writing_.file.later([put_as, type, is_wide] {
+      if (is_whole(type)) return is_wide ? put_as(std::uint64_t{0}) : put_as(std::int64_t{0});
+      put_as(std::numeric_limits<double>::quiet_NaN());
     });
   }
 

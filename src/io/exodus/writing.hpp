@@ -48,6 +48,10 @@ struct Writing {
   std::size_t steps = 0;
 };
 
+/// Returns the type in which values are written that had a type in the file that the mesh came from: this one
+/// if it holds each of them, else double precision.
+NcType written_type(NcType of_file, const Values& values);
+
 /// Returns whether values are whole numbers of up to 53 bits, whatever their type.
 bool are_whole(const Values& values);
 
@@ -91,7 +95,8 @@ struct SetPlan {
   const DataArray* factors = nullptr;
   std::vector<int> factor_counts = {};  ///< of sides: of each; empty if each member has one
   int factor_width = 1;                 ///< of sides: places in the array for one
-  std::vector<std::vector<const DataArray*>> variables = {};  ///< by variable and step
+  std::vector<std::vector<const DataArray*>> variables =
+      {};  ///< by variable and step, as the record has them
 };
 
 /// Returns the sets of each kind, which take their arrays with that.
@@ -107,7 +112,8 @@ struct SeriesPlan {
   NcType type = kDouble;
   std::vector<const DataArray*> arrays = {};  ///< for each step; null where there is none
   Index component = 0;
-  std::vector<bool> present = {};  ///< by block, for files without steps
+  std::vector<bool> present = {};   ///< by block: where the file's table says that there are values
+  std::vector<bool> declared = {};  ///< by block, or one for nodes: where the file has a variable for values
 };
 
 /// Returns the variables of an association: those of the file that the mesh came from, then arrays that have

@@ -1,0 +1,54 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <meshorder/mesh.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace meshorder {
+
+/// Returns whether a number is one of another type's, to the last digit. NaN and infinity are those of real
+/// types only, whole numbers those of a real type up to 2^(its digits).
+template <class To, class From>
+bool is_exact(From value) {
+  constexpr int kDigits = std::numeric_limits<To>::digits;
+  if constexpr (std::is_integral_v<From> && std::is_integral_v<To>) {
+    return std::in_range<To>(value);
+  } else if constexpr (std::is_integral_v<From>) {
+    constexpr std::int64_t kMost = std::int64_t{1} << kDigits;
+    return std::cmp_less_equal(value, kMost) && std::cmp_greater_equal(value, -kMost);
+  } else if constexpr (std::is_integral_v<To>) {
+    const double number = value;
+    return number == std::trunc(number) && number >= static_cast<double>(std::numeric_limits<To>::min()) &&
+           number < std::ldexp(1.0, kDigits);
+  } else if constexpr (sizeof(From) > sizeof(To)) {
+    if (!std::isfinite(value)) return true;
+    return std::abs(value) <= std::numeric_limits<To>::max() && From{static_cast<To>(value)} == value;
+  } else {
+    return true;
+  }
+}
+
+/// Returns whether all values are; false for texts. O(values), O(1) for values of that type.
+template <class To>
+bool are_exact(const Values& values) {
+  return std::visit(
+      [](const auto& all) {
+        using From = typename std::decay_t<decltype(all)>::value_type;
+        if constexpr (std::is_arithmetic_v<From>) {
+          return std::is_same_v<From, To> ||
+                 std::all_of(all.begin(), all.end(), [](From value) { return is_exact<To>(value); });
+        } else {
+          return false;
+        }
+      },
+      values);
+}
+
+}  // namespace meshorder

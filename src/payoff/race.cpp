@@ -1,0 +1,70 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/race.hpp"
+
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// Orders that are timed against the mesh's own.
+constexpr std::size_t kInRace = 3;
+
+/// Returns the methods that may beat what `auto` takes, `auto` first.
+std::vector<MeshMethods> contenders() {
+  return {{},
+          {"hilbert", "lexmax"},
+          {"spectral", "lexmax"},
+          {"rcm", "lexmax"},
+          {"bfs", "lexmax"},
+          {"fiedler", "lexmax"}};
+}
+
+std::string reason_for(const Race& race) {
+  const std::size_t timed = race.factors.size();
+  if (!race.winner) {
+    return fmt::format("none of {} orders timed here is faster than the file's by more than times vary",
+                       timed);
+  }
+  return fmt::format(
+      "none of {} orders timed here is faster by more than times vary; {:.2f} times as fast as the file's",
+      timed, race.factors[*race.winner]);
+}
+
+}  // namespace
+
+MeshMethods Race::methods() const {
+  if (!winner) return {"original", "original"};
+  return {advice.candidates[*winner].vertices.name, advice.candidates[*winner].elements.name};
+}
+
+Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options) {
+  const Workload workload = options.ordering.workload;
+  if (workload == Workload::bandwidth || workload == Workload::fill) {
+    throw InvalidArgument(fmt::format("race: no kernel tells what is best for {}", to_string(workload)));
+  }
+  Race result;
+  result.advice = advise(mesh, graph,
+                         {.methods = contenders(),
+                          .machine = options.machine,
+                          .ordering = options.ordering,
+                          .graph_seconds = options.graph_seconds,
+                          .race_of = kInRace,
+                          .race_timer = options.timer});
+  for (std::size_t i = 0; i < result.advice.candidates.size(); ++i) {
+    result.factors.push_back(factor_for(workload, result.advice, i));
+  }
+  result.winner = winner_for(workload, result.advice);
+  result.reason = reason_for(result);
+  return result;
+}
+
+void give_reasons(const Race& race, MeshOrder& order) {
+  order.vertices.method.reason = race.reason;
+  order.cells.method.reason = "timed together with the order of the vertices";
+}
+
+}  // namespace meshorder
