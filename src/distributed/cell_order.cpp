@@ -1,0 +1,71 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/cell_order.hpp"
+
+#include "distributed/halo.hpp"
+#include "graph/incidence.hpp"
+#include "ordering/method.hpp"
+#include <meshorder/error.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace meshorder::distributed {
+namespace {
+
+/// The cells as they travel: rows of the cell's number and its vertices.
+Rows with_numbers(const Rows& cell_vertices, GlobalIndex first) {
+  Rows rows;
+  rows.entries.reserve(cell_vertices.entries.size() + cell_vertices.offsets.size());
+  for (Offset c = 0; c < cell_vertices.size(); ++c) {
+    rows.entries.push_back(first + c);
+    rows.entries.insert(rows.entries.end(), cell_vertices[c].begin(), cell_vertices[c].end());
+    rows.end_row();
+  }
+  return rows;
+}
+
+/// Cells that came by rank, so that their numbers ascend, in their new order. Vertices are numbered by their
+/// places among those of the cells, which compare as they do.
+std::vector<GlobalIndex> sorted_by_lexmax(const Rows& rows) {
+  std::vector<GlobalIndex> names;
+  names.reserve(rows.entries.size());
+  for (Offset c = 0; c < rows.size(); ++c) names.insert(names.end(), rows[c].begin() + 1, rows[c].end());
+  names = distinct(std::move(names));
+  if (std::max<Offset>(rows.size(), std::ssize(names)) > kMaxIndex) {
+    throw TooLarge("more than 2,147,483,647 cells on a rank; start more ranks");
+  }
+  Incidence cells;
+  cells.vertex_count = index_size(names);
+  for (Offset c = 0; c < rows.size(); ++c) {
+    for (const GlobalIndex vertex : rows[c].subspan(1)) {
+      const auto place = std::lower_bound(names.begin(), names.end(), vertex) - names.begin();
+      cells.vertices.push_back(static_cast<Index>(place));
+    }
+    cells.offsets.push_back(static_cast<Offset>(cells.vertices.size()));
+  }
+  const Permutation as_numbered = Permutation::identity(cells.vertex_count);
+  const Order order = order_incidence("lexmax", {cells, as_numbered, {}, {}});
+  std::vector<GlobalIndex> result;
+  result.reserve(static_cast<std::size_t>(rows.size()));
+  for (const Index c : order.permutation.new_to_old()) result.push_back(rows[c][0]);
+  return result;
+}
+
+}  // namespace
+
+std::vector<GlobalIndex> cells_by_lexmax(const Communicator& communicator, const Layout& cells,
+                                         const Rows& cell_vertices, const Layout& vertices) {
+  std::vector<Dispatch> dispatches;
+  const Rows rows = communicator.together([&] {
+    for (Offset c = 0; c < cell_vertices.size(); ++c) {
+      const auto own = cell_vertices[c];
+      dispatches.push_back({vertices.owner(*std::max_element(own.begin(), own.end())), c});
+    }
+    return with_numbers(cell_vertices, cells.begin(communicator.rank()));
+  });
+  const Rows received = send_rows(communicator, rows, std::move(dispatches));
+  return communicator.together([&] { return sorted_by_lexmax(received); });
+}
+
+}  // namespace meshorder::distributed
