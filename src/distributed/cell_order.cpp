@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/cell_order.hpp"
 
-#include "distributed/halo.hpp"
+#include "distributed/number_set.hpp"
 #include "graph/incidence.hpp"
 #include "ordering/method.hpp"
 #include <meshorder/error.hpp>
@@ -31,17 +31,15 @@ std::vector<GlobalIndex> sorted_by_lexmax(const Rows& rows) {
   std::vector<GlobalIndex> names;
   names.reserve(rows.entries.size());
   for (Offset c = 0; c < rows.size(); ++c) names.insert(names.end(), rows[c].begin() + 1, rows[c].end());
-  names = distinct(std::move(names));
-  if (std::max<Offset>(rows.size(), std::ssize(names)) > kMaxIndex) {
+  const NumberSet vertices(names);
+  if (std::max<Offset>(rows.size(), std::ssize(vertices.numbers())) > kMaxIndex) {
     throw TooLarge("more than 2,147,483,647 cells on a rank; start more ranks");
   }
   Incidence cells;
-  cells.vertex_count = index_size(names);
+  cells.vertex_count = index_size(vertices.numbers());
   for (Offset c = 0; c < rows.size(); ++c) {
-    for (const GlobalIndex vertex : rows[c].subspan(1)) {
-      const auto place = std::lower_bound(names.begin(), names.end(), vertex) - names.begin();
-      cells.vertices.push_back(static_cast<Index>(place));
-    }
+    for (const GlobalIndex vertex : rows[c].subspan(1))
+      cells.vertices.push_back(static_cast<Index>(vertices.position(vertex)));
     cells.offsets.push_back(static_cast<Offset>(cells.vertices.size()));
   }
   const Permutation as_numbered = Permutation::identity(cells.vertex_count);
@@ -64,7 +62,7 @@ std::vector<GlobalIndex> cells_by_lexmax(const Communicator& communicator, const
     }
     return with_numbers(cell_vertices, cells.begin(communicator.rank()));
   });
-  const Rows received = send_rows(communicator, rows, std::move(dispatches));
+  const Rows received = send_rows(communicator, rows, dispatches);
   return communicator.together([&] { return sorted_by_lexmax(received); });
 }
 

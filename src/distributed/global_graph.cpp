@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/global_graph.hpp"
 
-#include "distributed/halo.hpp"
+#include "distributed/number_set.hpp"
 #include "graph/incidence.hpp"
 #include <meshorder/error.hpp>
 
@@ -27,30 +27,29 @@ std::vector<Dispatch> to_owners(const Layout& layout, const Rows& elements) {
 }
 
 /// The elements with their vertices numbered by their places in `numbers`.
-Incidence renumbered(const Rows& elements, const std::vector<GlobalIndex>& numbers) {
+Incidence renumbered(const Rows& elements, const NumberSet& numbers) {
   Incidence result;
-  result.vertex_count = index_size(numbers);
+  result.vertex_count = index_size(numbers.numbers());
   result.offsets = elements.offsets;
   result.vertices.reserve(elements.entries.size());
-  for (const GlobalIndex vertex : elements.entries) {
-    const auto place = std::lower_bound(numbers.begin(), numbers.end(), vertex) - numbers.begin();
-    result.vertices.push_back(static_cast<Index>(place));
-  }
+  for (const GlobalIndex vertex : elements.entries)
+    result.vertices.push_back(static_cast<Index>(numbers.position(vertex)));
   return result;
 }
 
 }  // namespace
 
 GlobalGraph global_graph(const Communicator& communicator, const Layout& layout, const Rows& elements) {
-  std::vector<Dispatch> dispatches = communicator.together([&] { return to_owners(layout, elements); });
-  Rows received = send_rows(communicator, elements, std::move(dispatches));
+  const std::vector<Dispatch> dispatches = communicator.together([&] { return to_owners(layout, elements); });
+  Rows received = send_rows(communicator, elements, dispatches);
   return communicator.together([&] {
     // numbers of the rank's own, which rise with those among all ranks: the serial graph's rows then do, too
-    const std::vector<GlobalIndex> numbers = distinct(received.entries);
+    const NumberSet set(received.entries);
+    const std::vector<GlobalIndex>& numbers = set.numbers();
     if (numbers.size() > static_cast<std::size_t>(kMaxIndex)) {
       throw TooLarge("more than 2,147,483,647 vertices on a rank; start more ranks");
     }
-    const CsrGraph local = joined_vertices(renumbered(received, numbers));
+    const CsrGraph local = joined_vertices(renumbered(received, set));
     received = {};
     GlobalGraph graph{layout, {}};
     const GlobalIndex begin = layout.begin(communicator.rank());
@@ -74,7 +73,7 @@ std::vector<GlobalIndex> ghosts(const GlobalGraph& graph, int rank) {
   for (const GlobalIndex vertex : graph.rows.entries) {
     if (vertex < graph.layout.begin(rank) || vertex >= graph.layout.end(rank)) others.push_back(vertex);
   }
-  return distinct(std::move(others));
+  return NumberSet(others).numbers();
 }
 
 }  // namespace meshorder::distributed

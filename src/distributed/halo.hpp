@@ -3,6 +3,7 @@
 
 #include "distributed/communicator.hpp"
 #include "distributed/layout.hpp"
+#include "distributed/number_set.hpp"
 
 #include <cstddef>
 #include <iterator>
@@ -12,11 +13,6 @@
 
 namespace meshorder::distributed {
 
-/// Groups numbers by the rank that owns them.
-///
-/// @param numbers  of the layout, ascending
-[[nodiscard]] Parcels<GlobalIndex> by_owner(const Layout& layout, std::vector<GlobalIndex> numbers);
-
 /// Entries of other ranks that this rank has to know. Made once, asked for as many values of each as are
 /// wanted.
 class Halo {
@@ -24,16 +20,16 @@ class Halo {
   /// Every rank has to call it. O(numbers + ranks).
   ///
   /// @param layout   who owns what
-  /// @param numbers  of the entries to know, ascending, each once; own ones are allowed
+  /// @param numbers  of the entries to know, in any order; own ones and repeats are allowed
   /// @throws as `Communicator::exchange`
-  Halo(const Communicator& communicator, const Layout& layout, std::vector<GlobalIndex> numbers);
+  Halo(const Communicator& communicator, const Layout& layout, std::span<const GlobalIndex> numbers);
 
-  /// Returns the numbers that were asked for.
-  [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return wanted_.values; }
+  /// Returns the numbers that were asked for, ascending, each once.
+  [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return wanted_.numbers(); }
   /// Returns the numbers of this rank that others or itself asked for, some perhaps several times.
   [[nodiscard]] const std::vector<GlobalIndex>& asked_of_this_rank() const noexcept { return asked_.values; }
-  /// Returns the position of a number among those that were asked for. O(log numbers).
-  [[nodiscard]] std::size_t position(GlobalIndex number) const;
+  /// Returns the place of a number among those that were asked for. O(1) or O(log numbers), as `NumberSet`.
+  [[nodiscard]] std::size_t position(GlobalIndex number) const { return wanted_.position(number); }
 
   /// Returns the owners' values of the numbers, one for each. Every rank has to call it.
   ///
@@ -57,9 +53,9 @@ class Halo {
 
  private:
   const Communicator& communicator_;
-  GlobalIndex first_;            ///< number of this rank
-  Parcels<GlobalIndex> wanted_;  ///< by owner, which is by number
-  Parcels<GlobalIndex> asked_;   ///< by the rank that asks
+  GlobalIndex first_;  ///< number of this rank
+  NumberSet wanted_;
+  Parcels<GlobalIndex> asked_;  ///< by the rank that asks
 };
 
 /// A value of each vertex that a rank owns, and of those that a halo adds.
@@ -76,7 +72,7 @@ class HaloValues {
   /// Returns the k-th own value.
   [[nodiscard]] const T& own(Offset k) const { return own_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] const std::vector<T>& own() const noexcept { return own_; }
-  /// Returns the value of a number that is the rank's own or the halo's. O(log numbers of the halo).
+  /// Returns the value of a number that is the rank's own or the halo's. O(1), or as `Halo::position`.
   [[nodiscard]] const T& operator[](GlobalIndex number) const {
     const GlobalIndex k = number - first_;
     if (k >= 0 && k < std::ssize(own_)) return own(k);
@@ -89,9 +85,6 @@ class HaloValues {
   std::vector<T> own_;
   std::vector<T> others_;
 };
-
-/// Returns the numbers in ascending order, each once. O(n log n).
-[[nodiscard]] std::vector<GlobalIndex> distinct(std::vector<GlobalIndex> numbers);
 
 /// Hands values to the owners of numbers. Every rank has to call it. O(numbers · log numbers).
 ///

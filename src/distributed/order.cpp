@@ -112,8 +112,7 @@ DistributedOrder order_slices(const Communicator& communicator, const MeshSlice&
   Rows elements = elements_of(communicator, slice);
   std::optional<Curve> curve;
   {
-    const Halo halo(communicator, slice.vertices,
-                    communicator.together([&] { return distinct(elements.entries); }));
+    const Halo halo(communicator, slice.vertices, elements.entries);
     const std::vector<char> used = used_vertices(communicator, slice.vertices, halo);
     curve = along_hilbert_curve(communicator, slice.vertices, slice.points, used);
     renumber(elements, halo, halo.fetch(curve->number_of));
@@ -150,8 +149,7 @@ DistributedOrder order_slices(const Communicator& communicator, const MeshSlice&
   report.before = edge_span(communicator, graph, HaloValues<GlobalIndex>(halo, first, curve->number_in_file));
   report.after = edge_span(communicator, graph, HaloValues<GlobalIndex>(halo, first, parts.new_numbers));
   Rows cells = slice.cell_vertices;
-  const Halo of_cells(communicator, slice.vertices,
-                      communicator.together([&] { return distinct(cells.entries); }));
+  const Halo of_cells(communicator, slice.vertices, cells.entries);
   renumber(cells, of_cells, of_cells.fetch(order.new_vertices));
   order.cells = cells_by_lexmax(communicator, slice.cells, cells, slice.vertices);
   stages.end("cells");

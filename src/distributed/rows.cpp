@@ -3,29 +3,36 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <numeric>
 
 namespace meshorder::distributed {
 
-Rows send_rows(const Communicator& communicator, const Rows& rows, std::vector<Dispatch> dispatches) {
+Rows send_rows(const Communicator& communicator, const Rows& rows, std::span<const Dispatch> dispatches) {
   Parcels<Index> sizes;
   Parcels<GlobalIndex> entries;
   communicator.together([&] {
-    std::sort(dispatches.begin(), dispatches.end());
+    // how much goes to each rank, then where it begins
     const auto ranks = static_cast<std::size_t>(communicator.size());
     sizes.starts.assign(ranks + 1, 0);
     entries.starts.assign(ranks + 1, 0);
-    sizes.values.reserve(dispatches.size());
+    for (const Dispatch& dispatch : dispatches) {
+      const auto to = static_cast<std::size_t>(dispatch.to) + 1;
+      ++sizes.starts[to];
+      entries.starts[to] += std::ssize(rows[dispatch.row]);
+    }
+    std::partial_sum(sizes.starts.begin(), sizes.starts.end(), sizes.starts.begin());
+    std::partial_sum(entries.starts.begin(), entries.starts.end(), entries.starts.begin());
+    sizes.values.resize(dispatches.size());
+    entries.values.resize(static_cast<std::size_t>(entries.starts.back()));
+    std::vector<Offset> next_size(sizes.starts.begin(), sizes.starts.end() - 1);
+    std::vector<Offset> next_entry(entries.starts.begin(), entries.starts.end() - 1);
     for (const Dispatch& dispatch : dispatches) {
       const auto row = rows[dispatch.row];
-      sizes.values.push_back(index_size(row));
-      entries.values.insert(entries.values.end(), row.begin(), row.end());
-      const auto next = static_cast<std::size_t>(dispatch.to) + 1;
-      sizes.starts[next] = static_cast<Offset>(sizes.values.size());
-      entries.starts[next] = static_cast<Offset>(entries.values.size());
-    }
-    for (std::size_t r = 1; r <= ranks; ++r) {  // ranks that get nothing
-      sizes.starts[r] = std::max(sizes.starts[r], sizes.starts[r - 1]);
-      entries.starts[r] = std::max(entries.starts[r], entries.starts[r - 1]);
+      const auto to = static_cast<std::size_t>(dispatch.to);
+      sizes.values[static_cast<std::size_t>(next_size[to]++)] = index_size(row);
+      std::copy(row.begin(), row.end(), entries.values.begin() + next_entry[to]);
+      next_entry[to] += std::ssize(row);
     }
   });
   const Parcels<Index> sizes_here = communicator.exchange(sizes);

@@ -29,16 +29,14 @@ struct Rows {
 struct Dispatch {
   int to;
   Offset row;
-
-  auto operator<=>(const Dispatch&) const = default;
 };
 
 /// Sends copies of rows to ranks, a row to as many as there are dispatches of it, and returns what this rank
-/// gets: by the rank that sent it, then by its place there. Every rank has to call it. O(entries + dispatches
-/// · log dispatches).
+/// gets: by the rank that sent it, then in the order of the dispatches there. Every rank has to call it.
+/// O(entries + dispatches).
 ///
 /// @throws as `Communicator::exchange`
 [[nodiscard]] Rows send_rows(const Communicator& communicator, const Rows& rows,
-                             std::vector<Dispatch> dispatches);
+                             std::span<const Dispatch> dispatches);
 
 }  // namespace meshorder::distributed
