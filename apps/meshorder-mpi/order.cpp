@@ -94,10 +94,10 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   const DistributedOptions options = options_of(arguments);
   const Stopwatch reading;
   Job job = read_at_root(communicator, arguments);
-  const distributed::MeshSlice slice = distributed::scattered(communicator, job.mesh);
+  distributed::MeshSlice slice = distributed::scattered(communicator, job.mesh);
   const double read_seconds = reading.seconds();
 
-  DistributedOrder order = distributed::order_slices(communicator, slice, options);
+  DistributedOrder order = distributed::order_slices(communicator, std::move(slice), options);
   const Stopwatch writing;
   const std::vector<GlobalIndex> vertices = communicator.gathered_at_root(order.new_vertices);
   const std::vector<GlobalIndex> cells = communicator.gathered_at_root(order.cells);

@@ -14,11 +14,11 @@ namespace meshorder::distributed {
 /// cells of a rank.
 ///
 /// @param cells          who has which cells
-/// @param cell_vertices  new numbers of the vertices of the own ones, each with one at least
+/// @param cell_vertices  new numbers of the vertices of the own ones, each with one at least; taken
 /// @param vertices       of the new numbers: the rank of a cell's largest one orders it
 /// @return this rank's share of the cells' numbers in their new order, which goes on on the next rank
 /// @throws as `Communicator::exchange`; SharedError where a rank gets more than 2,147,483,647 cells
 [[nodiscard]] std::vector<GlobalIndex> cells_by_lexmax(const Communicator& communicator, const Layout& cells,
-                                                       const Rows& cell_vertices, const Layout& vertices);
+                                                       Rows cell_vertices, const Layout& vertices);
 
 }  // namespace meshorder::distributed

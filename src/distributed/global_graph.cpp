@@ -37,11 +37,38 @@ Incidence renumbered(const Rows& elements, const NumberSet& numbers) {
   return result;
 }
 
+/// The rows of a rank's own vertices, of a graph whose k-th vertex is `numbers[k]`. Vertices that are not
+/// among these have no neighbours.
+Rows own_rows(const CsrGraph& graph, const std::vector<GlobalIndex>& numbers, const Layout& layout,
+              int rank) {
+  const auto place_of = [&](GlobalIndex number) {
+    return static_cast<Index>(std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin());
+  };
+  Index place = place_of(layout.begin(rank));
+  const Offset entries = graph.offsets[place_of(layout.end(rank))] - graph.offsets[place];
+  Rows rows;
+  rows.offsets.reserve(static_cast<std::size_t>(layout.size(rank)) + 1);
+  rows.entries.reserve(static_cast<std::size_t>(entries));
+  for (GlobalIndex vertex = layout.begin(rank); vertex < layout.end(rank); ++vertex) {
+    if (place < graph.size() && numbers[place] == vertex) {
+      for (const Index neighbour : graph[place]) rows.entries.push_back(numbers[neighbour]);
+      ++place;
+    }
+    rows.end_row();
+  }
+  return rows;
+}
+
 }  // namespace
 
-GlobalGraph global_graph(const Communicator& communicator, const Layout& layout, const Rows& elements) {
-  const std::vector<Dispatch> dispatches = communicator.together([&] { return to_owners(layout, elements); });
-  Rows received = send_rows(communicator, elements, dispatches);
+GlobalGraph global_graph(const Communicator& communicator, const Layout& layout, Rows elements) {
+  Rows received;
+  {
+    const std::vector<Dispatch> dispatches =
+        communicator.together([&] { return to_owners(layout, elements); });
+    received = send_rows(communicator, elements, dispatches);
+    elements = {};
+  }
   return communicator.together([&] {
     // numbers of the rank's own, which rise with those among all ranks: the serial graph's rows then do, too
     const NumberSet set(received.entries);
@@ -49,22 +76,11 @@ GlobalGraph global_graph(const Communicator& communicator, const Layout& layout,
     if (numbers.size() > static_cast<std::size_t>(kMaxIndex)) {
       throw TooLarge("more than 2,147,483,647 vertices on a rank; start more ranks");
     }
-    const CsrGraph local = joined_vertices(renumbered(received, set));
+    Incidence incidence = renumbered(received, set);
     received = {};
-    GlobalGraph graph{layout, {}};
-    const GlobalIndex begin = layout.begin(communicator.rank());
-    const GlobalIndex end = layout.end(communicator.rank());
-    auto place = std::lower_bound(numbers.begin(), numbers.end(), begin) - numbers.begin();
-    for (GlobalIndex vertex = begin; vertex < end; ++vertex) {
-      const bool is_there = place < std::ssize(numbers) && numbers[static_cast<std::size_t>(place)] == vertex;
-      if (is_there) {
-        for (const Index u : local[static_cast<Index>(place)])
-          graph.rows.entries.push_back(numbers[static_cast<std::size_t>(u)]);
-        ++place;
-      }
-      graph.rows.end_row();
-    }
-    return graph;
+    const CsrGraph local = joined_vertices(incidence);
+    incidence = {};
+    return GlobalGraph{layout, own_rows(local, numbers, layout, communicator.rank())};
   });
 }
 

@@ -20,12 +20,12 @@ struct GlobalGraph {
 /// rank has to call it. O(sum of element sizes squared · log degree).
 ///
 /// @param layout    of the vertices
-/// @param elements  vertices of the elements that this rank has; each element on one rank
+/// @param elements  vertices of the elements that this rank has; each element on one rank. Taken: they would
+///                  need as much memory as the graph
 /// @throws SharedError where the rows of a rank have more than 2,147,483,647 vertices, and where a rank has
 /// no
 ///         memory
-[[nodiscard]] GlobalGraph global_graph(const Communicator& communicator, const Layout& layout,
-                                       const Rows& elements);
+[[nodiscard]] GlobalGraph global_graph(const Communicator& communicator, const Layout& layout, Rows elements);
 
 /// Returns the neighbours of own vertices that other ranks own, ascending, each once.
 [[nodiscard]] std::vector<GlobalIndex> ghosts(const GlobalGraph& graph, int rank);

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace meshorder::distributed {
 namespace {
@@ -60,6 +61,8 @@ Rows elements_of(const Communicator& communicator, const MeshSlice& slice) {
   const std::vector<char> is_element = are_elements(communicator, slice.shapes);
   return communicator.together([&] {
     Rows elements;
+    elements.entries.reserve(slice.cell_vertices.entries.size());
+    elements.offsets.reserve(slice.cell_vertices.offsets.size());
     for (Offset c = 0; c < slice.cell_vertices.size(); ++c) {
       if (is_element[static_cast<std::size_t>(c)] == 0) continue;
       const auto vertices = slice.cell_vertices[c];
@@ -99,7 +102,7 @@ std::vector<GlobalIndex> numbers_in_file(const Communicator& communicator, const
 
 }  // namespace
 
-DistributedOrder order_slices(const Communicator& communicator, const MeshSlice& slice,
+DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
                               const DistributedOptions& options) {
   communicator.together([&] { check_options(options); });
   DistributedOrder order;
@@ -118,8 +121,8 @@ DistributedOrder order_slices(const Communicator& communicator, const MeshSlice&
     renumber(elements, halo, halo.fetch(curve->number_of));
   }
   stages.end("distribute");
-  const GlobalGraph graph = global_graph(communicator, curve->layout, elements);
-  elements = {};
+  slice.points = {};
+  const GlobalGraph graph = global_graph(communicator, curve->layout, std::move(elements));
   report.edges = communicator.sum(static_cast<GlobalIndex>(graph.rows.entries.size())) / 2;
   const Halo halo(communicator, graph.layout, communicator.together([&] { return ghosts(graph, rank); }));
   const GlobalIndex first = graph.layout.begin(rank);
@@ -148,10 +151,11 @@ DistributedOrder order_slices(const Communicator& communicator, const MeshSlice&
   order.new_vertices = numbers_in_file(communicator, slice, *curve, parts.new_numbers);
   report.before = edge_span(communicator, graph, HaloValues<GlobalIndex>(halo, first, curve->number_in_file));
   report.after = edge_span(communicator, graph, HaloValues<GlobalIndex>(halo, first, parts.new_numbers));
-  Rows cells = slice.cell_vertices;
-  const Halo of_cells(communicator, slice.vertices, cells.entries);
-  renumber(cells, of_cells, of_cells.fetch(order.new_vertices));
-  order.cells = cells_by_lexmax(communicator, slice.cells, cells, slice.vertices);
+  {
+    const Halo of_cells(communicator, slice.vertices, slice.cell_vertices.entries);
+    renumber(slice.cell_vertices, of_cells, of_cells.fetch(order.new_vertices));
+  }
+  order.cells = cells_by_lexmax(communicator, slice.cells, std::move(slice.cell_vertices), slice.vertices);
   stages.end("cells");
   return order;
 }

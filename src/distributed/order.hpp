@@ -47,11 +47,12 @@ struct DistributedOrder {
 /// method, those that no element uses behind all others, in their old order; cells by `lexmax`. Every rank
 /// has to call it.
 ///
+/// @param slice  taken: what is done with is given up
 /// @throws SharedError for a method that there is not or that has no meaning within parts, for fewer than one
 ///         part, and where a rank fails
 /// @note The same order for the same mesh, options and number of ranks; with `Partitioner::hilbert` and the
 ///       number of parts given, on any number of ranks and threads.
-[[nodiscard]] DistributedOrder order_slices(const Communicator& communicator, const MeshSlice& slice,
+[[nodiscard]] DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
                                             const DistributedOptions& options);
 
 }  // namespace meshorder::distributed

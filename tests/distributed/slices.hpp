@@ -44,8 +44,8 @@ struct WholeOrder {
 
 inline WholeOrder ordered(const distributed::Communicator& communicator, const Mesh& mesh,
                           const distributed::DistributedOptions& options) {
-  const distributed::MeshSlice slice = scattered(communicator, mesh);
-  const distributed::DistributedOrder order = order_slices(communicator, slice, options);
+  const distributed::DistributedOrder order =
+      order_slices(communicator, scattered(communicator, mesh), options);
   const auto everywhere = [&](const std::vector<distributed::GlobalIndex>& own) {
     const std::vector<distributed::GlobalIndex> all =
         communicator.broadcast(communicator.gathered_at_root(own));
