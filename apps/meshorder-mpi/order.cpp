@@ -79,14 +79,35 @@ std::vector<Index> narrowed(const std::vector<GlobalIndex>& numbers) {
   return {numbers.begin(), numbers.end()};
 }
 
+/// The part that a vertex is in by its new number; those that no element uses are behind the last one, and
+/// count to it.
+Index part_of(GlobalIndex vertex, const std::vector<GlobalIndex>& starts) {
+  const auto behind = std::upper_bound(starts.begin() + 1, starts.end() - 1, vertex);
+  return static_cast<Index>(behind - starts.begin()) - 1;
+}
+
+/// Fills in the part of each vertex, and of each cell: that of its last vertex, so that parts of cells ascend
+/// where cells are sorted by `lexmax`. The mesh is in its new order.
+void note_parts(const Mesh& mesh, const std::vector<GlobalIndex>& starts, Maps& maps) {
+  maps.vertex_parts.reserve(mesh.points.size());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) maps.vertex_parts.push_back(part_of(v, starts));
+  maps.cell_parts.reserve(mesh.cells.shapes.size());
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const auto vertices = mesh.cells[c];
+    maps.cell_parts.push_back(maps.vertex_parts[*std::max_element(vertices.begin(), vertices.end())]);
+  }
+}
+
 /// Puts the mesh into its new order and writes it; returns the paths of the maps.
 std::vector<std::string> write_at_root(const Arguments& arguments, Job& job,
                                        const std::vector<GlobalIndex>& vertices,
-                                       const std::vector<GlobalIndex>& cells) {
+                                       const std::vector<GlobalIndex>& cells,
+                                       const std::vector<GlobalIndex>& part_starts) {
   job.maps.vertices = Permutation::from_old_to_new(narrowed(vertices));
   const Permutation places = permutation_within_classes(slot_classes(cell_arrays(job.mesh)), narrowed(cells));
   apply_reordering(job.mesh, job.maps.vertices, places, parse<Ids>(arguments.ids));
   job.maps.cells = job.arranged.then(places);
+  if (!arguments.maps.empty()) note_parts(job.mesh, part_starts, job.maps);
   return write_ordered(job, arguments, job.notes);
 }
 
@@ -101,8 +122,8 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   const Stopwatch writing;
   const std::vector<GlobalIndex> vertices = communicator.gathered_at_root(order.new_vertices);
   const std::vector<GlobalIndex> cells = communicator.gathered_at_root(order.cells);
-  const std::vector<std::string> map_files =
-      communicator.at_root([&] { return write_at_root(arguments, job, vertices, cells); });
+  const std::vector<std::string> map_files = communicator.at_root(
+      [&] { return write_at_root(arguments, job, vertices, cells, order.report.part_starts); });
 
   distributed::DistributedReport& report = order.report;
   report.seconds.insert(report.seconds.begin(), {"read", read_seconds});
@@ -165,7 +186,8 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
   subcommand.add_option(
       "--maps", arguments->maps,
       "Also write the permutations as NumPy files, by which `meshorder apply` moves or puts\n"
-      "back, as `meshorder order` does");
+      "back, as `meshorder order` does, and the part of each vertex and cell of the output,\n"
+      "PREFIX.vertices.parts.npy and PREFIX.cells.parts.npy");
   subcommand.add_option("--seed", arguments->order.seed, "Seed of random start vectors and of METIS")
       ->check(whole_from(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str();

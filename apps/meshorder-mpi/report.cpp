@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
 
 namespace meshorder::command {
@@ -25,6 +26,15 @@ double share_of_edges(const DistributedReport& report) {
   return report.edges > 0 ? static_cast<double>(report.cut) / static_cast<double>(report.edges) : 0;
 }
 
+/// Vertices of the largest part, relative to the mean.
+double imbalance(const DistributedReport& report) {
+  distributed::GlobalIndex largest = 0;
+  for (std::size_t p = 0; p + 1 < report.part_starts.size(); ++p)
+    largest = std::max(largest, report.part_starts[p + 1] - report.part_starts[p]);
+  const auto mean = static_cast<double>(report.part_starts.back()) / report.parts;
+  return mean > 0 ? static_cast<double>(largest) / mean : 1;
+}
+
 }  // namespace
 
 std::int64_t peak_memory() {
@@ -38,7 +48,7 @@ void print_report(const Console& console, const distributed::DistributedOptions&
                   const DistributedReport& report, const std::vector<std::int64_t>& peaks) {
   console.print("{:<10} {} by {}, {:.2f} % of the edges between them, largest {:.3f} of the mean, {} ghosts",
                 "parts", report.parts, to_string(report.partitioner), 100 * share_of_edges(report),
-                report.imbalance, with_commas(report.ghosts));
+                imbalance(report), with_commas(report.ghosts));
   console.print("{:<10} {} in each part", "vertices", options.vertices);
   console.print("{:<10} lexmax", "elements");
   console.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}", "edge span",
@@ -56,6 +66,8 @@ void print_report(const Console& console, const distributed::DistributedOptions&
 nlohmann::ordered_json to_json(const DistributedReport& report, const std::vector<std::int64_t>& peaks) {
   nlohmann::ordered_json seconds;
   for (const auto& [stage, time] : report.seconds) seconds[std::string(stage)] = time;
+  const std::vector<distributed::GlobalIndex> first_vertices(report.part_starts.begin(),
+                                                             report.part_starts.end() - 1);
   return {{"ranks", peaks.size()},
           {"parts", report.parts},
           {"partition",
@@ -64,8 +76,9 @@ nlohmann::ordered_json to_json(const DistributedReport& report, const std::vecto
                                                         : nlohmann::ordered_json(report.partition_reason)},
             {"edges", report.edges},
             {"cut", report.cut},
-            {"imbalance", report.imbalance},
-            {"ghosts", report.ghosts}}},
+            {"imbalance", imbalance(report)},
+            {"ghosts", report.ghosts},
+            {"first_vertices", first_vertices}}},
           {"edge_span", {{"before", span_json(report.before)}, {"after", span_json(report.after)}}},
           {"memory_bytes", peaks},
           {"seconds", seconds}};

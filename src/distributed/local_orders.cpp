@@ -9,7 +9,6 @@
 #include <array>
 #include <bit>
 #include <cstddef>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -123,11 +122,11 @@ PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph&
     return own;
   });
   sizes = communicator.sums(std::move(sizes));
-  result.largest = *std::max_element(sizes.begin(), sizes.end());
-  if (result.largest > kMaxIndex)
+  if (*std::max_element(sizes.begin(), sizes.end()) > kMaxIndex) {
     throw SharedError(Code::too_large, "more than 2,147,483,647 vertices in a part; give more --parts");
-  std::vector<GlobalIndex> firsts(sizes.size());
-  std::exclusive_scan(sizes.begin(), sizes.end(), firsts.begin(), GlobalIndex{0});
+  }
+  result.starts.assign(1, 0);
+  for (const GlobalIndex size : sizes) result.starts.push_back(result.starts.back() + size);
 
   // to the ranks of the parts
   const Layout ranks_of_parts = Layout::even(parts, communicator.size());
@@ -149,7 +148,7 @@ PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph&
     for (std::size_t k = 0; k < part_count; ++k) {
       const Part part = part_of_rows(rows, members[k]);
       const std::vector<Index> places = places_in(part, method, options);
-      const GlobalIndex first = firsts[static_cast<std::size_t>(first_part) + k];
+      const GlobalIndex first = result.starts[static_cast<std::size_t>(first_part) + k];
       for (std::size_t v = 0; v < places.size(); ++v) {
         names.push_back(part.names[v]);
         numbers.push_back(first + places[v]);

@@ -15,8 +15,8 @@ namespace meshorder::distributed {
 /// New numbers of vertices, contiguous by part, and what there is to tell of the parts.
 struct PartOrders {
   std::vector<GlobalIndex> new_numbers;  ///< of the vertices in the graph's rows
+  std::vector<GlobalIndex> starts;       ///< first new number of each part, and the end of the last one's
   GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts
-  GlobalIndex largest = 0;               ///< vertices of the largest part
 };
 
 /// Orders each part by a method, on the rank that the part falls to. `spectral` gets the pull of the parts

@@ -144,8 +144,7 @@ DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
       ordered_in_parts(communicator, graph, *curve, HaloValues<Index>(halo, first, std::move(places)),
                        report.parts, options.vertices, options.order);
   report.ghosts = parts.ghosts;
-  const auto mean = static_cast<double>(graph.layout.size()) / report.parts;
-  report.imbalance = mean > 0 ? static_cast<double>(parts.largest) / mean : 1;
+  report.part_starts = parts.starts;
   stages.end("order");
 
   order.new_vertices = numbers_in_file(communicator, slice, *curve, parts.new_numbers);

@@ -28,9 +28,9 @@ struct DistributedReport {
   Partitioner partitioner = Partitioner::ptscotch;  ///< that made the parts
   std::string partition_reason;                     ///< why that is not the one asked for; else empty
   GlobalIndex edges = 0;
-  GlobalIndex cut = 0;     ///< edges between parts
-  GlobalIndex ghosts = 0;  ///< vertices that parts need of others, summed over the parts
-  double imbalance = 1;    ///< vertices of the largest part, relative to the mean
+  GlobalIndex cut = 0;                   ///< edges between parts
+  GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts
+  std::vector<GlobalIndex> part_starts;  ///< first new number of each part, and the end of the last one's
   GlobalEdgeSpan before;
   GlobalEdgeSpan after;
   std::vector<std::pair<std::string_view, double>> seconds;  ///< of each stage, in their order

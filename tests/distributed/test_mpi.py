@@ -101,7 +101,20 @@ def test_maps_have_the_serial_names(tmp_path, ball):
     order(2, ball, "-o", tmp_path / "a.vtu", "--maps", tmp_path / "parallel")
     serial("order", ball, "-o", tmp_path / "b.vtu", "--maps", tmp_path / "serial")
     names = {path.name.removeprefix("parallel") for path in tmp_path.glob("parallel*")}
-    assert names == {path.name.removeprefix("serial") for path in tmp_path.glob("serial*")} and len(names) == 5
+    of_parts = {".vertices.parts.npy", ".cells.parts.npy"}
+    assert names == {path.name.removeprefix("serial") for path in tmp_path.glob("serial*")} | of_parts and len(names) == 7
+
+
+def test_parts_of_vertices_and_cells_are_written_with_the_maps(tmp_path, ball):
+    result = json.loads(order(3, ball, "-o", tmp_path / "a.vtu", "--parts", "8", "--maps", tmp_path / "m", "--json").stdout)
+    vertices, cells = (numpy.load(tmp_path / f"m.{what}.parts.npy") for what in ("vertices", "cells"))
+    mesh = meshio.read(tmp_path / "a.vtu")
+    assert list(vertices) == sorted(vertices) and set(vertices) == set(range(8)) and len(vertices) == len(mesh.points)
+    assert list(numpy.searchsorted(vertices, range(8))) == result["partition"]["first_vertices"]
+    assert list(cells) == sorted(cells)
+    assert (cells == vertices[mesh.cells[0].data.max(axis=1)]).all()
+    serial("order", ball, "-o", tmp_path / "b.vtu", "--maps", tmp_path / "m")
+    assert not list(tmp_path.glob("*.parts.npy"))
 
 
 def test_the_same_bits_in_every_run(tmp_path, ball):
