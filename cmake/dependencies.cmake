@@ -94,3 +94,26 @@ endif()
 if(MESHORDER_CLI)
   meshorder_require(CLI11 libcli11-dev)                # the command line
 endif()
+if(MESHORDER_MPI)
+  meshorder_require(MPI libopenmpi-dev COMPONENTS C)   # ranks
+  # PT-Scotch's archives come in two widths of numbers under the same names. Archives, whose symbols the linker hides:
+  # a library with PT-Scotch of the other width in the same process would get these functions, or these its own.
+  find_path(PTSCOTCH_INCLUDE_DIR ptscotch.h PATH_SUFFIXES scotch-int64)
+  set(ptscotch_archives ptscotch scotch ptscotcherr)
+  set(ptscotch_libraries "")
+  foreach(library IN LISTS ptscotch_archives)
+    find_library(${library}_ARCHIVE NAMES lib${library}.a PATH_SUFFIXES scotch-int64)
+    mark_as_advanced(${library}_ARCHIVE)
+    if(NOT ${library}_ARCHIVE OR NOT PTSCOTCH_INCLUDE_DIR)
+      message(FATAL_ERROR "PT-Scotch was not found; Debian's package libptscotch-dev has it")
+    endif()
+    list(APPEND ptscotch_libraries ${${library}_ARCHIVE})
+  endforeach()
+  mark_as_advanced(PTSCOTCH_INCLUDE_DIR)
+  find_package(Threads REQUIRED)
+  meshorder_require(ZLIB zlib1g-dev)                   # PT-Scotch's own files
+  add_library(ptscotch::ptscotch INTERFACE IMPORTED)
+  target_include_directories(ptscotch::ptscotch INTERFACE ${PTSCOTCH_INCLUDE_DIR})
+  target_link_libraries(ptscotch::ptscotch INTERFACE ${ptscotch_libraries} MPI::MPI_C ZLIB::ZLIB Threads::Threads m)
+  target_link_options(ptscotch::ptscotch INTERFACE LINKER:--exclude-libs,libptscotch.a:libscotch.a:libptscotcherr.a)
+endif()

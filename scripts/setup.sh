@@ -32,9 +32,16 @@ packages_to_run=(
   tetgen               "fills the surfaces with tetrahedra"
   gnuplot-nox          "draws the figures of a study"
 )
+# shellcheck disable=SC2034  # for ./run --mpi
+packages_for_mpi=(
+  libopenmpi-dev       "several ranks"
+  openmpi-bin          "starts them"
+  libptscotch-dev      "cuts meshes into parts for them"
+)
 # shellcheck disable=SC2034  # for ./test
 packages_to_test=(
   "${packages_to_run[@]}"
+  "${packages_for_mpi[@]}"
   libgtest-dev         "unit tests"
   libvtk9-dev          "an independent reader and writer of .vtu and .vtk files"
   libgmock-dev         "matchers of the unit tests"

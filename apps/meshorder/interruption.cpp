@@ -46,6 +46,11 @@ extern "C" void clean_up(int signal) {
   ::raise(signal);
 }
 
+extern "C" void clean_up_quietly(int signal) {
+  remove_unfinished_outputs();
+  ::raise(signal);  // as above
+}
+
 extern "C" void set_flag(int signal) {
   caught = signal;
   for (std::size_t k = 0; k < kNoted.size(); ++k) {
@@ -61,16 +66,20 @@ struct sigaction action_of(void (*handler)(int), int flags) {
   return action;
 }
 
-}  // namespace
-
-void clean_up_at_signals() {
+void handle_endings(void (*handler)(int)) {
   for (const Ending& ending : kEndings) {
     struct sigaction now {};
     if (::sigaction(ending.signal, nullptr, &now) != 0 || now.sa_handler == SIG_IGN) continue;
-    const struct sigaction action = action_of(clean_up, static_cast<int>(SA_RESETHAND));
+    const struct sigaction action = action_of(handler, static_cast<int>(SA_RESETHAND));
     ::sigaction(ending.signal, &action, nullptr);
   }
 }
+
+}  // namespace
+
+void clean_up_at_signals() { handle_endings(clean_up); }
+
+void clean_up_quietly_at_signals() { handle_endings(clean_up_quietly); }
 
 Interruption::Interruption() {
   caught = 0;

@@ -7,6 +7,9 @@ namespace meshorder::command {
 /// with a line on stderr, SIGPIPE silently. Those that are ignored stay so.
 void clean_up_at_signals();
 
+/// The same without lines, for one of several processes, whose launcher says why it ends them.
+void clean_up_quietly_at_signals();
+
 /// While alive, the first Ctrl-C (SIGINT) or SIGTERM sets a flag; a second one does what it did before. Only
 /// one object at a time.
 class Interruption {

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/text.hpp"
 #include "command.hpp"
+#include "hand_over.hpp"
 #include "help_format.hpp"
 #include "interruption.hpp"
 #ifdef MESHORDER_HAS_HDF5
@@ -19,13 +19,15 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace {
+
+using meshorder::command::report_failure;
 
 constexpr int kBadInput = 2;
 constexpr int kOwnFailure = 1;
@@ -50,21 +52,6 @@ constexpr std::array kSubcommands{
     Subcommand{"methods", meshorder::command::add_methods},
     Subcommand{"serve-steps", meshorder::command::add_serve_steps},
 };
-
-/// Prints why the command fails, with characters that a terminal acts on escaped as long as there is memory,
-/// and returns the status.
-int report(std::string_view message, int status) noexcept {
-  std::string escaped;
-  try {
-    escaped = meshorder::visible(message);
-    message = escaped;
-  } catch (const std::bad_alloc&) {
-    // as it is
-  }
-  for (const std::string_view part : {std::string_view("meshorder: "), message, std::string_view("\n")})
-    meshorder::command::write_stderr(part);
-  return status;
-}
 
 /// Gives the command its options and subcommands.
 void describe(CLI::App& app) {
@@ -112,12 +99,12 @@ int run(std::vector<std::string> arguments) {
   try {
     app.parse(std::move(arguments));
   } catch (const CLI::Success& asked_for_help) {
-    if (const auto fault = meshorder::command::unknown_command(app)) return report(*fault, kBadInput);
+    if (const auto fault = meshorder::command::unknown_command(app)) return report_failure(*fault, kBadInput);
     std::ostringstream text;
     app.exit(asked_for_help, text);
     meshorder::command::write_stdout(text.str());
   } catch (const CLI::ParseError& error) {
-    return report(meshorder::command::usage_fault(app, error), kBadInput);
+    return report_failure(meshorder::command::usage_fault(app, error), kBadInput);
   }
   meshorder::command::flush_stdout();
   return 0;
@@ -128,15 +115,15 @@ int run_and_report(int argc, char** argv) {
   try {
     return run({argv + std::min(argc, 1), argv + argc});
   } catch (const meshorder::command::CommandError& error) {
-    return report(error.what(), error.status);
+    return report_failure(error.what(), error.status);
   } catch (const meshorder::Error& error) {
-    return report(error.what(), error.code() == meshorder::Code::internal ? kOwnFailure : kBadInput);
+    return report_failure(error.what(), error.code() == meshorder::Code::internal ? kOwnFailure : kBadInput);
   } catch (const std::bad_alloc&) {
-    return report("out of memory", kOwnFailure);
+    return report_failure("out of memory", kOwnFailure);
   } catch (const std::exception& error) {
-    return report(error.what(), kOwnFailure);
+    return report_failure(error.what(), kOwnFailure);
   } catch (...) {
-    return report("an unknown failure", kOwnFailure);
+    return report_failure("an unknown failure", kOwnFailure);
   }
 }
 
@@ -147,7 +134,7 @@ bool has_run = false;
 extern "C" void tell_if_a_library_ended_it() {
   if (has_run) return;
   meshorder::remove_unfinished_outputs();
-  std::_Exit(report("a library has ended the process; is there enough memory?", kOwnFailure));
+  std::_Exit(report_failure("a library has ended the process; is there enough memory?", kOwnFailure));
 }
 
 }  // namespace
@@ -159,7 +146,8 @@ int main(int argc, char** argv) {
 #ifdef MESHORDER_HAS_HDF5
   meshorder::hdf5::close_nothing_at_exit();
 #endif
-  const int status = run_and_report(argc, argv);
+  const std::optional<int> handed_over = meshorder::command::hand_over_to_mpi(argv);
+  const int status = handed_over ? *handed_over : run_and_report(argc, argv);
   has_run = true;
   return status;
 }

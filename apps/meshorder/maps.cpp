@@ -35,18 +35,29 @@ std::string ids_path(const std::string& prefix, const std::string& what) {
 }
 std::string kept_path(const std::string& prefix) { return prefix + ".cells.kept.npy"; }
 
+std::string parts_path(const std::string& prefix, const std::string& what) {
+  return prefix + "." + what + ".parts.npy";
+}
+
 /// What the names of the maps of cells said before they said "cells".
 constexpr const char* kOldNameOfCells = "elements";
+
+/// Writes numbers, or has a file removed that an earlier run left where there are none.
+template <class Number>
+void write_or_remove(const std::vector<Number>& numbers, const std::string& path, OutputSet& files,
+                     std::vector<std::string>& written) {
+  if (numbers.empty()) {
+    files.remove(path);
+  } else {
+    write_npy(numbers, {written.emplace_back(path), files});
+  }
+}
 
 void write_map(const Permutation& map, const std::vector<std::int64_t>& ids, const std::string& prefix,
                const std::string& what, OutputSet& files, std::vector<std::string>& written) {
   write_npy(map.old_to_new(), {written.emplace_back(old_to_new_path(prefix, what)), files});
   write_npy(map.new_to_old(), {written.emplace_back(new_to_old_path(prefix, what)), files});
-  if (!ids.empty()) {
-    write_npy(ids, {written.emplace_back(ids_path(prefix, what)), files});
-  } else {
-    files.remove(ids_path(prefix, what));
-  }
+  write_or_remove(ids, ids_path(prefix, what), files, written);
 }
 
 std::vector<std::int64_t> read_ids(const std::string& path, Index count) {
@@ -67,6 +78,8 @@ Maps read_permutations(const std::string& prefix, const Mesh& mesh) {
           read_permutation(old_to_new_path(prefix, cells), mesh.cell_count(), "cells"),
           read_ids(ids_path(prefix, "vertices"), mesh.vertex_count()),
           read_ids(ids_path(prefix, cells), mesh.cell_count()),
+          {},
+          {},
           {}};
 }
 
@@ -188,11 +201,9 @@ std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& befor
   write_map(maps.vertices, maps.vertex_ids, prefix, "vertices", files, written);
   write_map(maps.cells, maps.cell_ids, prefix, "cells", files, written);
   remove_old_maps(prefix, files);
-  if (!maps.kept.empty()) {
-    write_npy(maps.kept, {written.emplace_back(kept_path(prefix)), files});
-  } else {
-    files.remove(kept_path(prefix));
-  }
+  write_or_remove(maps.kept, kept_path(prefix), files, written);
+  write_or_remove(maps.vertex_parts, parts_path(prefix, "vertices"), files, written);
+  write_or_remove(maps.cell_parts, parts_path(prefix, "cells"), files, written);
   const MapChecksums of_maps = checksums_of_maps(maps);
   const nlohmann::ordered_json identity{
       {"version", MESHORDER_VERSION},

@@ -16,14 +16,17 @@ namespace meshorder::command {
 /// PREFIX.vertices.new_to_old.npy, and PREFIX.cells.*.npy for all cells. If the input numbers its vertices
 /// or cells other than from 0 or 1 on, PREFIX.vertices.ids.npy or PREFIX.cells.ids.npy holds these numbers
 /// in the input's order. If cells of the input were left out, the maps of cells number those that were kept,
-/// and PREFIX.cells.kept.npy holds their positions among all cells of the input. PREFIX.maps.json tells
-/// which mesh the maps are for, without the cells that were left out.
+/// and PREFIX.cells.kept.npy holds their positions among all cells of the input. Where the mesh is in parts,
+/// PREFIX.vertices.parts.npy and PREFIX.cells.parts.npy hold the part of each in the new order.
+/// PREFIX.maps.json tells which mesh the maps are for, without the cells that were left out.
 struct Maps {
   Permutation vertices;
   Permutation cells;
   std::vector<std::int64_t> vertex_ids;
   std::vector<std::int64_t> cell_ids;
-  std::vector<Index> kept;  ///< empty: all cells
+  std::vector<Index> kept;          ///< empty: all cells
+  std::vector<Index> vertex_parts;  ///< of each vertex in the new order; empty: no parts
+  std::vector<Index> cell_parts;    ///< of each cell in the new order
 };
 
 /// Checksums that tell a mesh, and the order that it is in, from others.

@@ -3,12 +3,10 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
-#include "io/kept_cells.hpp"
-#include "io/stream/output_set.hpp"
-#include "maps.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh_files.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/judgement.hpp"
 #include "payoff/race.hpp"
@@ -30,13 +28,9 @@
 namespace meshorder::command {
 namespace {
 
-struct OrderArguments : Common {
-  std::string input;
-  std::string output;
-  std::string maps;
+struct OrderArguments : Common, MeshFiles {
   ReorderOptions reordering;
   std::string ids = "renumber";
-  Keeping keeping;
   bool measure = false;
 };
 
@@ -117,36 +111,20 @@ void run(const OrderArguments& arguments) {
   Console console(arguments);
   ReorderOptions options = arguments.reordering;
   options.ids = parse<Ids>(arguments.ids);
-  const Format& format = format_of(arguments.output);
-  options.format = format.key();
+  options.format = format_of(arguments.output).key();
   if (arguments.measure) check_race(options);
-  (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
-  if (!arguments.maps.empty()) check_can_write_maps(arguments.maps);
+  check_can_write(arguments);  // fail before the work
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.4);
   const Stopwatch reading;
   Notes notes;
-  Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
+  MeshToOrder job = read_to_order(arguments, notes);
+  Mesh& mesh = job.mesh;
   const double read_seconds = reading.seconds();
-  Maps maps;
-  const Index cells_read = mesh.cell_count();
-  const std::vector<Index> wanted =
-      keep_cells(mesh, {.dimension = arguments.keeping.dimension, .notes = &notes});
-  const std::vector<Index> held = arguments.keeping.strict ? all_cells(mesh) : cells_for(mesh, format, notes);
-  require_held_cells(mesh, held, arguments.output, format);  // fail before the work
-  keep_cells_at(mesh, held, notes);
-  if (mesh.cell_count() < cells_read) {
-    maps.kept.reserve(held.size());
-    for (const Index c : held) maps.kept.push_back(wanted[c]);
-  }
 
   progress.stage("ordering", 0.4, 0.7);
   const Stopwatch ordering;
-  maps.vertex_ids = mesh.vertex_ids;
-  maps.cell_ids = mesh.cell_ids;
-  MeshChecksums old_order;
-  if (!arguments.maps.empty()) old_order = checksums_of(mesh);
   std::optional<Grouping> groups;
   if (!options.group_by.empty()) groups = grouping_by(mesh, options.group_by);
   std::optional<CsrGraph> graph;
@@ -161,26 +139,20 @@ void run(const OrderArguments& arguments) {
   MeshOrder order = reorder(mesh, options, graph);
   if (measured) give_reasons(*measured, order);
   const double order_seconds = ordering.seconds();
-  maps.vertices = order.vertices.permutation;
-  maps.cells = order.cells.permutation;
+  job.maps.vertices = order.vertices.permutation;
+  job.maps.cells = order.cells.permutation;
   const EdgeSpan before = edge_span(*graph, Permutation::identity(mesh.vertex_count()));
-  const EdgeSpan after = edge_span(*graph, maps.vertices);
+  const EdgeSpan after = edge_span(*graph, job.maps.vertices);
   if (!measured) {
-    note_no_better(*graph, options, maps.vertices, notes);
-    note_no_better(mesh, options, maps.cells, notes);
+    note_no_better(*graph, options, job.maps.vertices, notes);
+    note_no_better(mesh, options, job.maps.cells, notes);
   }
   note_convergence(order.vertices.fiedler, "the vertices", notes);
   note_convergence(order.cells.fiedler, "the elements", notes);
 
   progress.stage("writing " + arguments.output, 0.7, 1);
   const Stopwatch writing;
-  OutputSet files;
-  write_mesh_to(mesh, {arguments.output, files}, {.strict = arguments.keeping.strict, .notes = &notes});
-  std::vector<std::string> map_files;
-  if (!arguments.maps.empty())
-    map_files = write_maps(maps, old_order, checksums_of(mesh), arguments.maps, files);
-  files.commit();
-  notes.insert(notes.end(), files.notes().begin(), files.notes().end());
+  const std::vector<std::string> map_files = write_ordered(job, arguments, notes);
   const double write_seconds = writing.seconds();
 
   progress.finish();

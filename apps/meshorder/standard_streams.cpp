@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "standard_streams.hpp"
 
+#include "base/text.hpp"
 #include "command.hpp"
 
 #include <fcntl.h>
@@ -8,6 +9,8 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <new>
+#include <string>
 
 namespace meshorder::command {
 namespace {
@@ -39,5 +42,18 @@ void flush_stdout() {
 }
 
 void write_stderr(std::string_view text) noexcept { (void)std::fwrite(text.data(), 1, text.size(), stderr); }
+
+int report_failure(std::string_view message, int status) noexcept {
+  std::string escaped;
+  try {
+    escaped = visible(message);
+    message = escaped;
+  } catch (const std::bad_alloc&) {
+    // as it is
+  }
+  for (const std::string_view part : {std::string_view("meshorder: "), message, std::string_view("\n")})
+    write_stderr(part);
+  return status;
+}
 
 }  // namespace meshorder::command

@@ -19,4 +19,8 @@ void flush_stdout();
 /// Writes text to stderr; where that fails, there is nobody to tell.
 void write_stderr(std::string_view text) noexcept;
 
+/// Prints why the command fails, with characters that a terminal acts on escaped as long as there is memory,
+/// and returns the status.
+int report_failure(std::string_view message, int status) noexcept;
+
 }  // namespace meshorder::command

@@ -17,7 +17,7 @@ struct Place {
 };
 
 Place place_of(const CLI::App& app) {
-  Place place{&app, "meshorder"};
+  Place place{&app, app.get_name()};
   while (!place.command->get_subcommands().empty()) {
     place.command = place.command->get_subcommands().front();
     place.words += " " + place.command->get_name();

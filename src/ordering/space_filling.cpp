@@ -24,11 +24,34 @@ void check_points(const PointsView& points, std::size_t count, std::string_view 
   }
 }
 
-LatticePoints on_lattice(const PointsView& points) {
-  LatticePoints lattice;
-  if (points.size() == 0) return lattice;
+Lattice::Lattice(const Point& low, const Point& high) : low_(low) {
+  for (int a = 0; a < 3; ++a) {
+    if (!(high[a] > low[a])) continue;
+    used_[axes_++] = a;
+    extent_ = std::max(extent_, high[a] - low[a]);
+  }
+  bits_ = axes_ == 3 ? 21 : 31;
+  if (std::isfinite(extent_)) return;
+  shrink_ = 0.5;
+  extent_ = 0;
+  for (int a = 0; a < 3; ++a) extent_ = std::max(extent_, shrink_ * high[a] - shrink_ * low[a]);
+}
 
-  // the bounding box, and its axes of any extent
+std::array<std::uint32_t, 3> Lattice::cell_of(const Point& point) const {
+  const double cells = std::ldexp(1.0, bits_) - 1;
+  std::array<std::uint32_t, 3> cell{0, 0, 0};
+  for (int k = 0; k < axes_; ++k) {
+    const double share = (shrink_ * point[used_[k]] - shrink_ * low_[used_[k]]) / extent_;
+    cell[k] = static_cast<std::uint32_t>(share > 0 ? std::min(share, 1.0) * cells : 0);
+  }
+  return cell;
+}
+
+LatticePoints on_lattice(const PointsView& points) {
+  LatticePoints result;
+  if (points.size() == 0) return result;
+
+  // the bounding box
   const Index n = index_size(points);
   Point low = point_at(points, 0);
   Point high = low;
@@ -40,35 +63,16 @@ LatticePoints on_lattice(const PointsView& points) {
       high[a] = std::max(high[a], point[a]);
     }
   }
-  std::array<int, 3> used{};
-  lattice.axes = 0;
-  double extent = 0;
-  for (int a = 0; a < 3; ++a) {
-    if (!(high[a] > low[a])) continue;
-    used[lattice.axes++] = a;
-    extent = std::max(extent, high[a] - low[a]);
-  }
-  lattice.bits = lattice.axes == 3 ? 21 : 31;
 
-  // a box whose extent no double holds is halved
-  const double shrink = std::isfinite(extent) ? 1 : 0.5;
-  if (shrink < 1) {
-    extent = 0;
-    for (int a = 0; a < 3; ++a) extent = std::max(extent, shrink * high[a] - shrink * low[a]);
-  }
-
-  // one scale for all axes, so that cells are cubes
-  const double cells = std::ldexp(1.0, lattice.bits) - 1;
-  lattice.coordinates.assign(points.size(), {0, 0, 0});
+  const Lattice lattice(low, high);
+  result.axes = lattice.axes();
+  result.bits = lattice.bits();
+  result.coordinates.reserve(points.size());
   for (Index i = 0; i < n; ++i) {
     poll_in_loop(i);
-    const Point point = point_at(points, i);
-    for (int k = 0; k < lattice.axes; ++k) {
-      const double share = (shrink * point[used[k]] - shrink * low[used[k]]) / extent;
-      lattice.coordinates[i][k] = static_cast<std::uint32_t>(share > 0 ? std::min(share, 1.0) * cells : 0);
-    }
+    result.coordinates.push_back(lattice.cell_of(point_at(points, i)));
   }
-  return lattice;
+  return result;
 }
 
 std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int axes, int bits) {
@@ -79,11 +83,6 @@ std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int a
   return key;
 }
 
-namespace {
-
-constexpr Index kPointsAtOnce = 16384;  // whose keys a thread finds together
-
-/// The number of a lattice cell along Hilbert's curve.
 std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x, int axes, int bits) {
   if (axes == 0) return 0;
   // undo the rotations and reflections of each scale, from the coarsest
@@ -108,6 +107,10 @@ std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x, int axes, int bits) {
   for (int a = 0; a < axes; ++a) x[a] ^= flips;
   return interleaved(x, axes, bits);
 }
+
+namespace {
+
+constexpr Index kPointsAtOnce = 16384;  // whose keys a thread finds together
 
 /// The number of each point along the curve that `key(coordinates, axes, bits)` gives.
 template <class Key>

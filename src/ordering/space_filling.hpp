@@ -10,21 +10,47 @@
 
 namespace meshorder {
 
-/// Points on a lattice of 2^bits cells along each of their axes.
+/// The finest lattice of cubes that covers a box and whose cell number fits in 64 bits: 2^bits cells along
+/// each axis.
+class Lattice {
+ public:
+  /// @param low   least coordinates of the box, finite
+  /// @param high  largest ones; not below `low`
+  Lattice(const Point& low, const Point& high);
+
+  /// Returns how many axes the box extends along; the others are left out.
+  [[nodiscard]] int axes() const noexcept { return axes_; }
+  /// Returns the bits of a coordinate; axes · bits ≤ 63.
+  [[nodiscard]] int bits() const noexcept { return bits_; }
+  /// Returns the cell that a point of the box is in. O(1).
+  [[nodiscard]] std::array<std::uint32_t, 3> cell_of(const Point& point) const;
+
+ private:
+  int axes_ = 0;
+  int bits_ = 31;
+  std::array<int, 3> used_{};  ///< the axes along which the box extends
+  Point low_;
+  double shrink_ = 1;  ///< a box whose extent no double holds is halved
+  double extent_ = 0;  ///< of the longest axis: one scale for all, so that cells are cubes
+};
+
+/// Points on a lattice.
 struct LatticePoints {
-  int axes = 3;   ///< axes along which the points extend; the others are left out
-  int bits = 21;  ///< axes · bits ≤ 63
+  int axes = 3;   ///< as of `Lattice`
+  int bits = 21;  ///< as of `Lattice`
   std::vector<std::array<std::uint32_t, 3>> coordinates;
 };
 
 /// Throws InvalidArgument, naming `method`, unless there are `count` points.
 void check_points(const PointsView& points, std::size_t count, std::string_view method);
 
-/// The points on the finest lattice of cubes that covers their bounding box and whose cell number fits in 64
-/// bits. O(points).
+/// The points on the `Lattice` of their bounding box. O(points).
 LatticePoints on_lattice(const PointsView& points);
 
 /// One bit of each axis in turn, highest first: the number of a cell along Morton's curve.
 std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int axes, int bits);
+
+/// The number of the lattice cell x along Hilbert's curve, below 2^63.
+std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x, int axes, int bits);
 
 }  // namespace meshorder

@@ -32,16 +32,19 @@ struct Piece {
 
 /// A component of the graph, its vertices rising. `number` has an entry for each vertex of the graph; those
 /// of the component are changed. O(component).
-Piece whole_component(GraphRef graph, std::vector<Index> component, std::vector<Index>& number) {
+Piece whole_component(const VertexInput& input, std::vector<Index> component, std::vector<Index>& number) {
   Piece piece;
   for (Index k = 0; k < index_size(component); ++k) number[component[k]] = k;
   piece.graph.offsets.reserve(component.size() + 1);
   for (const Index v : component) {
     poll_in_loop(v);
-    for (const Index u : graph[v]) piece.graph.neighbours.push_back(number[u]);
+    for (const Index u : input.graph[v]) piece.graph.neighbours.push_back(number[u]);
     piece.graph.offsets.push_back(static_cast<Offset>(piece.graph.neighbours.size()));
   }
   piece.pull.assign(component.size(), 0);
+  if (!input.pull.empty()) {
+    for (Index k = 0; k < index_size(component); ++k) piece.pull[k] = input.pull[component[k]];
+  }
   piece.names = std::move(component);
   return piece;
 }
@@ -155,6 +158,24 @@ void write_in_order(Piece piece, std::uint64_t seed, TimeLimit limit, Index* out
   });
 }
 
+/// The components of the graph; where it is a part of a larger one, first the one that is pulled forward
+/// most.
+std::vector<std::vector<Index>> components_in_order(const VertexInput& input) {
+  std::vector<std::vector<Index>> components = connected_components(input.graph);
+  if (input.pull.empty() || components.size() < 2) return components;
+  std::vector<std::pair<double, std::size_t>> places;
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    double pull = 0;
+    for (const Index v : components[c]) pull += input.pull[v];
+    places.emplace_back(-pull / index_size(components[c]), c);
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<std::vector<Index>> sorted;
+  sorted.reserve(components.size());
+  for (const auto& place : places) sorted.push_back(std::move(components[place.second]));
+  return sorted;
+}
+
 }  // namespace
 
 Order spectral_vertices(const VertexInput& input, const OrderOptions& options) {
@@ -162,9 +183,9 @@ Order spectral_vertices(const VertexInput& input, const OrderOptions& options) {
   std::vector<Index> number(input.graph.size());
   const TimeLimit limit;
   Index* out = new_to_old.data();
-  for (std::vector<Index>& component : connected_components(input.graph)) {
+  for (std::vector<Index>& component : components_in_order(input)) {
     const Index size = index_size(component);
-    write_in_order(whole_component(input.graph, std::move(component), number), options.seed, limit, out);
+    write_in_order(whole_component(input, std::move(component), number), options.seed, limit, out);
     out += size;
   }
   return {.permutation = Permutation::from_new_to_old(std::move(new_to_old)), .complete = !limit.is_over()};

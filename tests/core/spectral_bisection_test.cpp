@@ -106,6 +106,29 @@ TEST(SpectralOrder, PutsBranchesThatEndBeforeThoseThatGoOn) {
   EXPECT_LT(edge_span(branches, order_of(branches, "spectral")).mean, 1.18);
 }
 
+/// The order of a graph that is a part of a larger one.
+std::vector<Index> order_of_part(GraphRef graph, std::vector<float> pull) {
+  const Permutation order = order_graph("spectral", {.graph = graph, .pull = pull}).permutation;
+  return {order.new_to_old().begin(), order.new_to_old().end()};
+}
+
+TEST(SpectralOrder, BeginsAtTheEndOfAPartThatIsPulledForward) {
+  for (const Index n : {40, 9000}) {  // one leaf; slabs
+    std::vector<Index> rising(n);
+    std::iota(rising.begin(), rising.end(), Index{0});
+    std::vector<float> pull(n, 0);
+    pull.front() = 1;
+    EXPECT_EQ(order_of_part(test::path(n), pull), rising) << n;
+    pull.front() = -1;
+    EXPECT_EQ(order_of_part(test::path(n), pull), std::vector<Index>(rising.rbegin(), rising.rend())) << n;
+  }
+}
+
+TEST(SpectralOrder, PutsTheComponentOfAPartFirstThatIsPulledForwardMost) {
+  const CsrGraph graph = test::disjoint_union({test::path(3), test::path(2), test::path(2)});
+  EXPECT_EQ(order_of_part(graph, {0, 0, -1, 0.25F, 0, 1, 0}), (std::vector<Index>{5, 6, 3, 4, 0, 1, 2}));
+}
+
 TEST(SpectralOrder, ComesToAnEndOnGraphsWithoutGoodCuts) {
   const std::vector<std::pair<std::string, CsrGraph>> graphs{
       {"star", test::star(test::large(200000))},

@@ -22,6 +22,7 @@ LAYERS = {
     "io": {*CORE, "mesh"},
     "kernels": {*CORE, "mesh"},
     "payoff": {*CORE, "mesh", "kernels"},
+    "distributed": {*CORE, "mesh", "io"},
 }
 # libraries, by the first word of their headers, and the folders that may include them
 LIBRARIES = {
@@ -39,6 +40,8 @@ LIBRARIES = {
     "hdf5.h": {"io"},
     "pugixml.hpp": {"io"},
     "zlib.h": {"io"},
+    "mpi.h": {"distributed"},
+    "ptscotch.h": {"distributed"},
 }
 # plugins/: the headers of each solver, by their beginnings, and those that plugins give to users
 HOSTS = {"petsc": ("petsc",), "dealii": ("deal.II/",), "dolfinx": ("dolfinx", "basix/", "xtl/", "mpi.h", "petsc")}

@@ -1,0 +1,103 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/communicator.hpp"
+#include "help_format.hpp"
+#include "interruption.hpp"
+#ifdef MESHORDER_HAS_HDF5
+#include "io/hdf5/process_end.hpp"
+#endif
+#include "io/stream/scratch.hpp"
+#include "order.hpp"
+#include "standard_streams.hpp"
+#include "usage.hpp"
+#include <meshorder/error.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using meshorder::command::report_failure;
+using meshorder::distributed::Communicator;
+
+constexpr int kBadInput = 2;
+constexpr int kOwnFailure = 1;
+
+int status_of(const meshorder::Error& error) {
+  return error.code() == meshorder::Code::internal ? kOwnFailure : kBadInput;
+}
+
+/// Prints why the command fails, where that is the first rank's part, and returns the status.
+int tell(const Communicator& communicator, const std::string& message, int status) {
+  return communicator.is_root() ? report_failure(message, status) : status;
+}
+
+/// Runs what the arguments ask for, which are the same on all ranks; returns the exit status.
+int run(const Communicator& communicator, std::vector<std::string> arguments) {
+  CLI::App app;
+  app.description(
+      "What `meshorder` executes where mpirun or srun starts several of it: orders a mesh by all ranks.\n"
+      "The other commands run on one, without mpirun.");
+  app.name("meshorder-mpi");
+  app.set_version_flag("-V,--version", MESHORDER_VERSION);
+  app.require_subcommand(1);
+  app.formatter(meshorder::command::help_format());
+  meshorder::command::add_distributed_order(*app.add_subcommand("order"), communicator);
+  if (arguments.empty()) arguments.emplace_back("--help");
+  arguments = meshorder::command::with_words_as_options(std::move(arguments));
+  const std::string first = arguments.front();
+  std::reverse(arguments.begin(), arguments.end());  // as the parser takes them
+  try {
+    app.parse(std::move(arguments));
+  } catch (const CLI::Success& asked_for_help) {
+    std::ostringstream text;
+    app.exit(asked_for_help, text);
+    if (communicator.is_root()) meshorder::command::write_stdout(text.str());
+  } catch (const CLI::ParseError& error) {
+    if (meshorder::command::unknown_command(app))
+      return tell(communicator, "several ranks run `order` only; start `" + first + "` without mpirun",
+                  kBadInput);
+    return tell(communicator, meshorder::command::usage_fault(app, error), kBadInput);
+  }
+  if (communicator.is_root()) meshorder::command::flush_stdout();
+  return 0;
+}
+
+/// Ends all ranks for a failure of this one that the others do not know of: they may wait for it.
+[[noreturn]] void abort_all(const std::string& message) noexcept {
+  meshorder::remove_unfinished_outputs();
+  meshorder::distributed::Session::abort(report_failure(message, kOwnFailure));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  meshorder::command::occupy_closed_streams();
+  meshorder::command::clean_up_quietly_at_signals();
+#ifdef MESHORDER_HAS_HDF5
+  meshorder::hdf5::close_nothing_at_exit();
+#endif
+  try {
+    const meshorder::distributed::Session session(argc, argv);
+    try {
+      const Communicator communicator;
+      try {
+        return run(communicator, {argv + std::min(argc, 1), argv + argc});
+      } catch (const meshorder::distributed::SharedError& error) {
+        return tell(communicator, error.what(), status_of(error));
+      }
+    } catch (const std::bad_alloc&) {
+      abort_all("out of memory");
+    } catch (const std::exception& error) {
+      abort_all(error.what());
+    }
+  } catch (const meshorder::Error& error) {
+    return report_failure(error.what(), status_of(error));
+  }
+}

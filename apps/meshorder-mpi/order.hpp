@@ -1,0 +1,16 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/communicator.hpp"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
+class App;
+}  // namespace CLI
+
+namespace meshorder::command {
+
+/// Gives `order` its options; it runs on all ranks once all arguments are parsed, and throws SharedError on
+/// all of them where one fails.
+void add_distributed_order(CLI::App& subcommand, const distributed::Communicator& communicator);
+
+}  // namespace meshorder::command

@@ -1,0 +1,47 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "mesh_files.hpp"
+
+#include "io/format.hpp"
+#include "io/kept_cells.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/stream/output_set.hpp"
+
+namespace meshorder::command {
+
+void check_can_write(const MeshFiles& files) {
+  (void)OutputFile(files.output);
+  if (!files.maps.empty()) check_can_write_maps(files.maps);
+}
+
+MeshToOrder read_to_order(const MeshFiles& files, Notes& notes) {
+  const Format& format = format_of(files.output);
+  MeshToOrder result;
+  Mesh& mesh = result.mesh;
+  mesh = read_mesh(files.input, {.notes = &notes});
+  const Index cells_read = mesh.cell_count();
+  const std::vector<Index> wanted = keep_cells(mesh, {.dimension = files.keeping.dimension, .notes = &notes});
+  const std::vector<Index> held = files.keeping.strict ? all_cells(mesh) : cells_for(mesh, format, notes);
+  require_held_cells(mesh, held, files.output, format);  // fail before the work
+  keep_cells_at(mesh, held, notes);
+  if (mesh.cell_count() < cells_read) {
+    result.maps.kept.reserve(held.size());
+    for (const Index c : held) result.maps.kept.push_back(wanted[c]);
+  }
+  result.maps.vertex_ids = mesh.vertex_ids;
+  result.maps.cell_ids = mesh.cell_ids;
+  if (!files.maps.empty()) result.before = checksums_of(mesh);
+  return result;
+}
+
+std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, Notes& notes) {
+  OutputSet outputs;
+  write_mesh_to(ordered.mesh, {files.output, outputs}, {.strict = files.keeping.strict, .notes = &notes});
+  std::vector<std::string> written;
+  if (!files.maps.empty())
+    written = write_maps(ordered.maps, ordered.before, checksums_of(ordered.mesh), files.maps, outputs);
+  outputs.commit();
+  notes.insert(notes.end(), outputs.notes().begin(), outputs.notes().end());
+  return written;
+}
+
+}  // namespace meshorder::command

@@ -1,0 +1,40 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "command.hpp"
+#include "maps.hpp"
+#include <meshorder/io.hpp>
+#include <meshorder/mesh.hpp>
+
+#include <string>
+#include <vector>
+
+namespace meshorder::command {
+
+/// Where a mesh comes from and goes to.
+struct MeshFiles {
+  std::string input;
+  std::string output;
+  std::string maps;  ///< prefix of the maps' names; empty: none are written
+  Keeping keeping;
+};
+
+/// A mesh as it was read, to be ordered and written.
+struct MeshToOrder {
+  Mesh mesh;
+  Maps maps;             ///< ids and cells that are kept; not the permutations
+  MeshChecksums before;  ///< only where maps are wanted
+};
+
+/// Fails, before the work, if the output or its maps cannot be written.
+void check_can_write(const MeshFiles& files);
+
+/// Reads a mesh with the cells that the output can hold. Throws Error for a faulty file and for cells that
+/// the output must hold and cannot.
+MeshToOrder read_to_order(const MeshFiles& files, Notes& notes);
+
+/// Writes a mesh that is in its new order, with its maps, whose permutations are known by now; returns the
+/// paths of the maps. All files take their places together, or none does.
+std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, Notes& notes);
+
+}  // namespace meshorder::command

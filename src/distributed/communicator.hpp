@@ -1,0 +1,191 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+#include <meshorder/error.hpp>
+
+#include <mpi.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// MPI, for as long as this object lives. One a process, made before any `Communicator`.
+class Session {
+ public:
+  /// @throws Unavailable where MPI lets only one thread of a process call it: PT-Scotch needs more
+  Session(int& argc, char**& argv);
+  ~Session();
+  Session(const Session&) = delete;
+  Session(Session&&) = delete;
+  Session& operator=(const Session&) = delete;
+  Session& operator=(Session&&) = delete;
+
+  /// Ends all processes, where this one cannot go on and the others may wait for it.
+  [[noreturn]] static void abort(int status) noexcept;
+};
+
+/// An exception of one rank, thrown on all of them. None of them waits for another.
+struct SharedError : Error {
+  using Error::Error;
+};
+
+/// Values to or from each rank: those of rank r are at starts[r] … starts[r + 1] − 1.
+template <class T>
+struct Parcels {
+  std::vector<T> values;
+  std::vector<Offset> starts;  ///< ranks + 1, from 0
+
+  [[nodiscard]] std::span<const T> operator[](int rank) const {
+    const auto r = static_cast<std::size_t>(rank);
+    return {values.data() + starts[r], values.data() + starts[r + 1]};
+  }
+};
+
+/// The ranks that work together. All functions but `rank`, `size` and `set_chunk_limit` have to be called by
+/// every rank, in the same order. Sums do not depend on timing.
+class Communicator {
+ public:
+  /// All ranks of the session.
+  Communicator();
+  ~Communicator();
+  Communicator(const Communicator&) = delete;
+  Communicator(Communicator&&) = delete;
+  Communicator& operator=(const Communicator&) = delete;
+  Communicator& operator=(Communicator&&) = delete;
+
+  [[nodiscard]] MPI_Comm handle() const noexcept { return handle_; }
+  [[nodiscard]] int rank() const noexcept { return rank_; }
+  [[nodiscard]] int size() const noexcept { return size_; }
+  [[nodiscard]] bool is_root() const noexcept { return rank_ == 0; }
+
+  /// Returns how many ranks share this one's memory, itself included.
+  [[nodiscard]] int ranks_on_this_machine() const;
+
+  /// Sets the most bytes of one message, ≥ 1; MPI 3 counts them by an int.
+  void set_chunk_limit(Offset bytes) noexcept { chunk_limit_ = bytes; }
+
+  /// Sends each rank its parcel, and returns those that the ranks sent to this one. Chunked, so that a parcel
+  /// may have more than 2 GiB. O(values + ranks).
+  ///
+  /// @param values  those for rank r at starts[r] … starts[r + 1] − 1
+  /// @param starts  ranks + 1, ascending
+  /// @throws SharedError where a rank has no memory for what it gets
+  template <class T>
+  [[nodiscard]] Parcels<T> exchange(std::span<const T> values, const std::vector<Offset>& starts) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    Parcels<T> received;
+    received.starts = starts_to_receive(starts);
+    together([&] { received.values.resize(static_cast<std::size_t>(received.starts.back())); });
+    exchange_bytes(reinterpret_cast<const std::byte*>(values.data()), starts,
+                   reinterpret_cast<std::byte*>(received.values.data()), received.starts, sizeof(T));
+    return received;
+  }
+  template <class T>
+  [[nodiscard]] Parcels<T> exchange(const Parcels<T>& sent) const {
+    return exchange(std::span<const T>(sent.values), sent.starts);
+  }
+
+  /// Returns the values of all ranks, in rank order, at the root; nothing elsewhere. Throws as `exchange`.
+  template <class T>
+  [[nodiscard]] std::vector<T> gathered_at_root(const std::vector<T>& own) const {
+    std::vector<Offset> starts(static_cast<std::size_t>(size_) + 1, static_cast<Offset>(own.size()));
+    starts[0] = 0;
+    return exchange(std::span<const T>(own), starts).values;
+  }
+
+  /// Returns the root's values on all ranks. Throws as `exchange`.
+  template <class T>
+  [[nodiscard]] std::vector<T> broadcast(std::vector<T> at_root) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const std::int64_t count = broadcast_count(static_cast<std::int64_t>(at_root.size()));
+    together([&] { at_root.resize(static_cast<std::size_t>(count)); });
+    broadcast_bytes(reinterpret_cast<std::byte*>(at_root.data()), count * Offset{sizeof(T)});
+    return at_root;
+  }
+
+  /// Returns the value of each rank, on all of them. O(ranks).
+  template <class T>
+  [[nodiscard]] std::vector<T> gathered(const T& own) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::vector<T> all(static_cast<std::size_t>(size_));
+    gather_bytes(reinterpret_cast<const std::byte*>(&own), reinterpret_cast<std::byte*>(all.data()),
+                 sizeof(T));
+    return all;
+  }
+
+  /// Returns the sum of the ranks' values, added up in rank order. `Sum` needs a zero by `Sum{}` and +=.
+  template <class Sum>
+  [[nodiscard]] Sum sum(const Sum& own) const {
+    Sum total{};
+    for (const Sum& value : gathered(own)) total += value;
+    return total;
+  }
+
+  /// Returns the sums of the ranks' values, entry by entry; `own` has the same size on all ranks.
+  [[nodiscard]] std::vector<std::int64_t> sums(std::vector<std::int64_t> own) const;
+
+  /// Does work that is a rank's own, and returns what it returns.
+  ///
+  /// @throws SharedError on all ranks if it throws on one
+  template <class Work>
+  auto together(const Work& work) const {  // NOLINT(modernize-use-nodiscard): work may return nothing
+    using Result = std::invoke_result_t<const Work&>;
+    std::exception_ptr fault;
+    if constexpr (std::is_void_v<Result>) {
+      try {
+        work();
+      } catch (...) {
+        fault = std::current_exception();
+      }
+      settle(fault);
+    } else {
+      std::optional<Result> result;
+      try {
+        result.emplace(work());
+      } catch (...) {
+        fault = std::current_exception();
+      }
+      settle(fault);
+      return *std::move(result);
+    }
+  }
+
+  /// As `together`, but only the root does the work; the others get `Result{}`.
+  template <class Work>
+  auto at_root(const Work& work) const {  // NOLINT(modernize-use-nodiscard): work may return nothing
+    using Result = std::invoke_result_t<const Work&>;
+    return together([&] {
+      if constexpr (std::is_void_v<Result>) {
+        if (is_root()) work();
+      } else {
+        return is_root() ? work() : Result{};
+      }
+    });
+  }
+
+ private:
+  [[nodiscard]] std::vector<Offset> starts_to_receive(const std::vector<Offset>& sent) const;
+  void exchange_bytes(const std::byte* sent, const std::vector<Offset>& sent_starts, std::byte* received,
+                      const std::vector<Offset>& received_starts, std::size_t size_of_value) const;
+  [[nodiscard]] std::int64_t broadcast_count(std::int64_t at_root) const;
+  void broadcast_bytes(std::byte* bytes, Offset count) const;
+  void gather_bytes(const std::byte* own, std::byte* all, std::size_t bytes_each) const;
+  /// Throws on all ranks if one has a fault.
+  void settle(const std::exception_ptr& fault) const;
+
+  MPI_Comm handle_ = MPI_COMM_NULL;
+  int rank_ = 0;
+  int size_ = 1;
+  Offset chunk_limit_ = Offset{1} << 30;
+};
+
+}  // namespace meshorder::distributed

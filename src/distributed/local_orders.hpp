@@ -1,0 +1,34 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/communicator.hpp"
+#include "distributed/curve.hpp"
+#include "distributed/global_graph.hpp"
+#include "distributed/halo.hpp"
+#include <meshorder/options.hpp>
+
+#include <string_view>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// New numbers of vertices, contiguous by part, and what there is to tell of the parts.
+struct PartOrders {
+  std::vector<GlobalIndex> new_numbers;  ///< of the vertices in the graph's rows
+  std::vector<GlobalIndex> starts;       ///< first new number of each part, and the end of the last one's
+  GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts
+};
+
+/// Orders each part by a method, on the rank that the part falls to. `spectral` gets the pull of the parts
+/// before and behind; what other methods make is turned round where that brings the ends of edges between
+/// parts nearer. Every rank has to call it. O(entries) and what the method costs.
+///
+/// @param graph     numbered as `curve` says, and ordered within a part from there
+/// @param place_of  part of each vertex, numbered by the order of the parts
+/// @param method    name of a vertex method
+/// @throws as `Communicator::exchange`; SharedError with what the method throws
+[[nodiscard]] PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph& graph,
+                                          const Curve& curve, const HaloValues<Index>& place_of, Index parts,
+                                          std::string_view method, const OrderOptions& options);
+
+}  // namespace meshorder::distributed

@@ -1,0 +1,162 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/order.hpp"
+
+#include "base/stopwatch.hpp"
+#include "base/text.hpp"
+#include "distributed/cell_order.hpp"
+#include "distributed/curve.hpp"
+#include "distributed/global_graph.hpp"
+#include "distributed/halo.hpp"
+#include "distributed/local_orders.hpp"
+#include "distributed/quotient.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/registry.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace meshorder::distributed {
+namespace {
+
+/// Methods that go by the order of the file, which parts do not have, or by an own choice.
+constexpr std::array<std::string_view, 3> kNotInParts{"auto", "original", "scrambled"};
+
+void check_options(const DistributedOptions& options) {
+  std::vector<MethodInfo> methods = vertex_methods();
+  methods.erase(std::remove_if(methods.begin(), methods.end(),
+                               [](const MethodInfo& method) {
+                                 return std::find(kNotInParts.begin(), kNotInParts.end(), method.name) !=
+                                        kNotInParts.end();
+                               }),
+                methods.end());
+  if (std::none_of(methods.begin(), methods.end(),
+                   [&](const MethodInfo& method) { return method.name == options.vertices; })) {
+    throw InvalidArgument("there is no vertex order '" + options.vertices + "' within parts; known are " +
+                          join(
+                              methods, [](const MethodInfo& method) -> const auto& { return method.name; }));
+  }
+  if (options.parts < 0) throw InvalidArgument("parts: " + std::to_string(options.parts) + " of them");
+}
+
+/// The stages of a run, each from where the one before ended.
+class Stages {
+ public:
+  explicit Stages(DistributedReport& report) : report_(report) {}
+  void end(std::string_view stage) {
+    report_.seconds.emplace_back(stage, stopwatch_.seconds());
+    stopwatch_ = {};
+  }
+
+ private:
+  DistributedReport& report_;
+  Stopwatch stopwatch_;
+};
+
+/// Elements of a slice, by the numbers of their vertices in the file.
+Rows elements_of(const Communicator& communicator, const MeshSlice& slice) {
+  const std::vector<char> is_element = are_elements(communicator, slice.shapes);
+  return communicator.together([&] {
+    Rows elements;
+    elements.entries.reserve(slice.cell_vertices.entries.size());
+    elements.offsets.reserve(slice.cell_vertices.offsets.size());
+    for (Offset c = 0; c < slice.cell_vertices.size(); ++c) {
+      if (is_element[static_cast<std::size_t>(c)] == 0) continue;
+      const auto vertices = slice.cell_vertices[c];
+      elements.entries.insert(elements.entries.end(), vertices.begin(), vertices.end());
+      elements.end_row();
+    }
+    return elements;
+  });
+}
+
+/// Gives vertices in rows the values that are their numbers' in the halo.
+void renumber(Rows& rows, const Halo& halo, const std::vector<GlobalIndex>& values) {
+  for (GlobalIndex& vertex : rows.entries) vertex = values[halo.position(vertex)];
+}
+
+/// Those vertices of a slice that elements use, by their halo.
+std::vector<char> used_vertices(const Communicator& communicator, const Layout& vertices, const Halo& halo) {
+  return communicator.together([&] {
+    std::vector<char> used(static_cast<std::size_t>(vertices.size(communicator.rank())), 0);
+    for (const GlobalIndex vertex : halo.asked_of_this_rank())
+      used[static_cast<std::size_t>(vertex - vertices.begin(communicator.rank()))] = 1;
+    return used;
+  });
+}
+
+/// New numbers of the vertices of a slice: those that are unused keep their places on the curve.
+std::vector<GlobalIndex> numbers_in_file(const Communicator& communicator, const MeshSlice& slice,
+                                         const Curve& curve, std::span<const GlobalIndex> new_numbers) {
+  constexpr GlobalIndex kNone = -1;
+  std::vector<GlobalIndex> numbers =
+      delivered<GlobalIndex>(communicator, slice.vertices, curve.number_in_file, new_numbers, kNone);
+  for (std::size_t v = 0; v < numbers.size(); ++v) {
+    if (numbers[v] == kNone) numbers[v] = curve.number_of[v];
+  }
+  return numbers;
+}
+
+}  // namespace
+
+DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
+                              const DistributedOptions& options) {
+  communicator.together([&] { check_options(options); });
+  DistributedOrder order;
+  DistributedReport& report = order.report;
+  report.parts = options.parts > 0 ? options.parts : communicator.size();
+  Stages stages(report);
+  const int rank = communicator.rank();
+
+  // vertices along the curve, and the graph in these numbers
+  Rows elements = elements_of(communicator, slice);
+  std::optional<Curve> curve;
+  {
+    const Halo halo(communicator, slice.vertices, elements.entries);
+    const std::vector<char> used = used_vertices(communicator, slice.vertices, halo);
+    curve = along_hilbert_curve(communicator, slice.vertices, slice.points, used);
+    renumber(elements, halo, halo.fetch(curve->number_of));
+  }
+  stages.end("distribute");
+  slice.points = {};
+  const GlobalGraph graph = global_graph(communicator, curve->layout, std::move(elements));
+  report.edges = communicator.sum(static_cast<GlobalIndex>(graph.rows.entries.size())) / 2;
+  const Halo halo(communicator, graph.layout, communicator.together([&] { return ghosts(graph, rank); }));
+  const GlobalIndex first = graph.layout.begin(rank);
+  stages.end("graph");
+
+  Partition partition = partitioned(communicator, graph, report.parts, options.partitioner);
+  report.partitioner = partition.by;
+  report.partition_reason = std::move(partition.reason);
+  stages.end("partition");
+
+  std::vector<Index> places = std::move(partition.part_of);
+  {
+    const Quotient quotient =
+        order_of_parts(communicator, graph, HaloValues<Index>(halo, first, places), report.parts);
+    report.cut = quotient.cut;
+    for (Index& part : places) part = quotient.place_of[static_cast<std::size_t>(part)];
+  }
+  const PartOrders parts =
+      ordered_in_parts(communicator, graph, *curve, HaloValues<Index>(halo, first, std::move(places)),
+                       report.parts, options.vertices, options.order);
+  report.ghosts = parts.ghosts;
+  report.part_starts = parts.starts;
+  stages.end("order");
+
+  order.new_vertices = numbers_in_file(communicator, slice, *curve, parts.new_numbers);
+  report.before = edge_span(communicator, graph, HaloValues<GlobalIndex>(halo, first, curve->number_in_file));
+  report.after = edge_span(communicator, graph, HaloValues<GlobalIndex>(halo, first, parts.new_numbers));
+  {
+    const Halo of_cells(communicator, slice.vertices, slice.cell_vertices.entries);
+    renumber(slice.cell_vertices, of_cells, of_cells.fetch(order.new_vertices));
+  }
+  order.cells = cells_by_lexmax(communicator, slice.cells, std::move(slice.cell_vertices), slice.vertices);
+  stages.end("cells");
+  return order;
+}
+
+}  // namespace meshorder::distributed

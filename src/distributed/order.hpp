@@ -1,0 +1,58 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/communicator.hpp"
+#include "distributed/mesh_slice.hpp"
+#include "distributed/partition.hpp"
+#include "distributed/spans.hpp"
+#include <meshorder/options.hpp>
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// How a mesh is ordered by many ranks.
+struct DistributedOptions {
+  std::string vertices = "spectral";  ///< vertex method inside a part; not `auto`, `original` or `scrambled`
+  Partitioner partitioner = Partitioner::ptscotch;
+  Index parts = 0;          ///< 0: one for each rank
+  OrderOptions order = {};  ///< seed, tolerance and run
+};
+
+/// What there is to tell of an order.
+struct DistributedReport {
+  Index parts = 0;
+  Partitioner partitioner = Partitioner::ptscotch;  ///< that made the parts
+  std::string partition_reason;                     ///< why that is not the one asked for; else empty
+  GlobalIndex edges = 0;
+  GlobalIndex cut = 0;                   ///< edges between parts
+  GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts
+  std::vector<GlobalIndex> part_starts;  ///< first new number of each part, and the end of the last one's
+  GlobalEdgeSpan before;
+  GlobalEdgeSpan after;
+  std::vector<std::pair<std::string_view, double>> seconds;  ///< of each stage, in their order
+};
+
+/// A rank's share of the order of a mesh.
+struct DistributedOrder {
+  std::vector<GlobalIndex> new_vertices;  ///< new number of each vertex of the slice
+  std::vector<GlobalIndex> cells;  ///< numbers of cells in their new order, which goes on on the next rank
+  DistributedReport report;
+};
+
+/// Orders a mesh: parts, numbered so that those that touch are near each other; the vertices of a part by the
+/// method, those that no element uses behind all others, in their old order; cells by `lexmax`. Every rank
+/// has to call it.
+///
+/// @param slice  taken: what is done with is given up
+/// @throws SharedError for a method that there is not or that has no meaning within parts, for fewer than one
+///         part, and where a rank fails
+/// @note The same order for the same mesh, options and number of ranks; with `Partitioner::hilbert` and the
+///       number of parts given, on any number of ranks and threads.
+[[nodiscard]] DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
+                                            const DistributedOptions& options);
+
+}  // namespace meshorder::distributed

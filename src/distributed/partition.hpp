@@ -1,0 +1,66 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/text.hpp"
+#include "distributed/communicator.hpp"
+#include "distributed/global_graph.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// How a graph is cut into parts.
+enum class Partitioner : std::uint8_t {
+  ptscotch,  ///< few edges between parts; the same parts for the same graph on the same number of ranks
+  hilbert,   ///< equal ranges of the graph's own order; the same parts on any number of ranks
+};
+
+}  // namespace meshorder::distributed
+
+namespace meshorder {
+
+template <>
+struct EnumNames<distributed::Partitioner> {
+  static constexpr std::string_view kind = "partition";
+  static constexpr std::array names{std::pair{distributed::Partitioner::ptscotch, "ptscotch"},
+                                    std::pair{distributed::Partitioner::hilbert, "hilbert"}};
+};
+
+}  // namespace meshorder
+
+namespace meshorder::distributed {
+
+/// Parts of a graph.
+struct Partition {
+  std::vector<Index> part_of;  ///< of each own vertex, 0 … parts − 1
+  Partitioner by;              ///< what made them
+  std::string reason;          ///< why that is not what was asked for; else empty
+};
+
+/// Cuts a graph into parts of about the same number of vertices. `ptscotch` gives way to `hilbert` where it
+/// fails or the graph is too small for it. Every rank has to call it.
+///
+/// @param graph  numbered along Hilbert's curve from 0 on, equal shares on all ranks
+/// @param parts  ≥ 1
+/// @throws as `Communicator::exchange`
+[[nodiscard]] Partition partitioned(const Communicator& communicator, const GlobalGraph& graph, Index parts,
+                                    Partitioner by);
+
+/// Cuts a graph by PT-Scotch, with one thread a rank, always alike. Every rank has to call it.
+///
+/// @param graph    as of `partitioned`
+/// @param parts    ≥ 2
+/// @param part_of  receives the part of each own vertex
+/// @return whether it did; the same on all ranks
+/// @throws SharedError where a rank has no memory, and where this program was linked with a PT-Scotch of
+/// other
+///         than 64-bit numbers
+[[nodiscard]] bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph, Index parts,
+                                   std::vector<Index>& part_of);
+
+}  // namespace meshorder::distributed

@@ -1,0 +1,99 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/partition.hpp"
+
+#include "distributed/curve.hpp"
+#include "distributed/quotient.hpp"
+#include "mesh/procedural.hpp"
+#include "slices.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace meshorder::distributed {
+namespace {
+
+/// How many vertices each part has.
+std::vector<std::int64_t> sizes_of(const Communicator& communicator, const std::vector<Index>& part_of,
+                                   Index parts) {
+  std::vector<std::int64_t> sizes(static_cast<std::size_t>(parts), 0);
+  for (const Index part : part_of) ++sizes[static_cast<std::size_t>(part)];
+  return communicator.sums(sizes);
+}
+
+GlobalIndex cut_of(const Communicator& communicator, const GlobalGraph& graph,
+                   const std::vector<Index>& part_of, Index parts) {
+  const Halo halo(communicator, graph.layout, ghosts(graph, communicator.rank()));
+  return order_of_parts(communicator, graph, {halo, graph.layout.begin(communicator.rank()), part_of}, parts)
+      .cut;
+}
+
+class Partitions : public testing::TestWithParam<Index> {};
+
+TEST_P(Partitions, OfPtScotchAreBalancedAndCutFewerEdges) {
+  const Communicator communicator;
+  const Index parts = GetParam();
+  const GlobalGraph graph = test::graph_in_file(communicator, make_ball({.size = 16}));
+  const Partition scotch = partitioned(communicator, graph, parts, Partitioner::ptscotch);
+  EXPECT_EQ(scotch.by, Partitioner::ptscotch) << scotch.reason;
+  const std::vector<std::int64_t> sizes = sizes_of(communicator, scotch.part_of, parts);
+  EXPECT_GT(*std::min_element(sizes.begin(), sizes.end()), 0);
+  EXPECT_LE(static_cast<double>(*std::max_element(sizes.begin(), sizes.end())), 1.03 * 4913 / parts + 1);
+
+  // ranges of a lattice's rows are slabs
+  const Partition ranges = partitioned(communicator, graph, parts, Partitioner::hilbert);
+  const std::vector<std::int64_t> shares = sizes_of(communicator, ranges.part_of, parts);
+  EXPECT_LE(*std::max_element(shares.begin(), shares.end()) - *std::min_element(shares.begin(), shares.end()),
+            1);
+  EXPECT_LE(cut_of(communicator, graph, scotch.part_of, parts),
+            cut_of(communicator, graph, ranges.part_of, parts));
+}
+
+TEST_P(Partitions, OfPtScotchAreTheSameAgain) {
+  const Communicator communicator;
+  const GlobalGraph graph = test::graph_in_file(communicator, make_ball({.size = 16}));
+  const Partition first = partitioned(communicator, graph, GetParam(), Partitioner::ptscotch);
+  for (int k = 0; k < 3; ++k) {
+    const Partition again = partitioned(communicator, graph, GetParam(), Partitioner::ptscotch);
+    EXPECT_EQ(again.part_of, first.part_of);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Parts, Partitions, testing::Values(2, 5, 16));
+
+TEST(Partition, OfSmallGraphsIsTheHilbertCut) {
+  const Communicator communicator;
+  const GlobalGraph graph = test::graph_in_file(communicator, make_grid({.size = 3}));  // 64 vertices
+  const Partition partition = partitioned(communicator, graph, 3, Partitioner::ptscotch);
+  EXPECT_EQ(partition.by, Partitioner::hilbert);
+  EXPECT_NE(partition.reason, "");
+  EXPECT_EQ(partition.part_of, partitioned(communicator, graph, 3, Partitioner::hilbert).part_of);
+}
+
+TEST(Quotient, NumbersPartsAlongAChain) {
+  const Communicator communicator;
+  // a path of 60 vertices; parts of 6 in disorder
+  const std::vector<Index> part_at{4, 7, 0, 9, 2, 5, 1, 8, 3, 6};
+  const Layout layout = Layout::even(60, communicator.size());
+  GlobalGraph graph{layout, {}};
+  std::vector<Index> part_of;
+  for (GlobalIndex v = layout.begin(communicator.rank()); v < layout.end(communicator.rank()); ++v) {
+    if (v > 0) graph.rows.entries.push_back(v - 1);
+    if (v < 59) graph.rows.entries.push_back(v + 1);
+    graph.rows.end_row();
+    part_of.push_back(part_at[static_cast<std::size_t>(v / 6)]);
+  }
+  const Halo halo(communicator, layout, ghosts(graph, communicator.rank()));
+  const Quotient quotient =
+      order_of_parts(communicator, graph, {halo, layout.begin(communicator.rank()), part_of}, 10);
+  EXPECT_EQ(quotient.cut, 9);
+  std::vector<Index> along_the_path;
+  for (const Index part : part_at)
+    along_the_path.push_back(quotient.place_of[static_cast<std::size_t>(part)]);
+  if (along_the_path.front() > along_the_path.back())
+    std::reverse(along_the_path.begin(), along_the_path.end());
+  EXPECT_EQ(along_the_path, index_range(0, 10));
+}
+
+}  // namespace
+}  // namespace meshorder::distributed

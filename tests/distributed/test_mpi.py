@@ -1,0 +1,218 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""`meshorder order` under mpirun, as a user runs it: what comes back, what stays the same, how it ends."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+
+import meshio
+import numpy
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MESHORDER = pathlib.Path(os.environ.get("MESHORDER", ROOT / "build" / "bin" / "meshorder"))
+SHARED = ROOT.parent / "shared" / "meshes"
+# more ranks than cores, none of them tied to a core that others use
+MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
+SECONDS = 60  # after which ranks are taken to wait for each other
+
+if not MESHORDER.with_name("meshorder-mpi").exists():
+    pytest.skip("needs a build with MESHORDER_MPI=ON", allow_module_level=True)
+
+
+def environment(**variables):
+    """Open MPI's wish to be asked twice before it runs as root, and ranks that share cores giving way."""
+    return {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+            "OMPI_MCA_mpi_yield_when_idle": "1", **variables}
+
+
+def launch(ranks, *arguments, program=MESHORDER):
+    """Starts ranks, and returns how they ended. One rank is started without mpirun."""
+    start = [*MPIRUN, "-n", str(ranks)] if ranks > 1 else []
+    program = program if ranks > 1 else program.with_name("meshorder-mpi")
+    return subprocess.run([*start, program, *map(str, arguments)], env=environment(), capture_output=True, text=True,
+                          timeout=SECONDS, check=False)
+
+
+def order(ranks, *arguments):
+    done = launch(ranks, "order", *arguments)
+    assert done.returncode == 0, done.stderr
+    return done
+
+
+def serial(*arguments):
+    return subprocess.run([MESHORDER, *map(str, arguments)], capture_output=True, text=True, check=True)
+
+
+def own_lines(done):
+    """What meshorder said, less what mpirun adds."""
+    return [line for line in done.stderr.splitlines() if line.startswith("meshorder: ")]
+
+
+@pytest.fixture(scope="module")
+def ball():
+    made = serial("models", "make", "ball", "--size", "12", "--json")
+    return pathlib.Path(json.loads(made.stdout)["models"][0]["path"])
+
+
+def mixed(folder):
+    """Tetrahedra, triangles of one of their faces each, data on both and on points, and points that nothing uses."""
+    random = numpy.random.default_rng(3)
+    points = random.random((300, 3))
+    tetrahedra = numpy.array([random.choice(290, 4, replace=False) for _ in range(500)])
+    mesh = meshio.Mesh(points, [("tetra", tetrahedra), ("triangle", tetrahedra[::7, :3])],
+                       point_data={"u": random.random(300)},
+                       cell_data={"s": [random.random(500), random.random(len(tetrahedra[::7]))]})
+    mesh.write(folder / "mixed.vtu")
+    return folder / "mixed.vtu"
+
+
+@pytest.mark.parametrize("name, ranks", [("ball", 1), ("ball", 2), ("ball", 5), ("mixed", 3), ("monkey.msh", 3),
+                                         ("simpleBridge-hex.veg", 3), ("torus.node", 3)])
+def test_inverse_gives_the_file_back(tmp_path, ball, name, ranks):
+    source = ball if name == "ball" else mixed(tmp_path) if name == "mixed" else SHARED / name
+    if not source.exists():
+        pytest.skip(f"needs {source}")
+    extension = source.suffix
+    out = tmp_path / f"ordered{extension}"
+    order(ranks, source, "-o", out, "--parts", "4", "--maps", tmp_path / "m")
+    serial("apply", tmp_path / "m", out, "-o", tmp_path / f"back{extension}", "--inverse")
+    serial("order", source, "-o", tmp_path / f"same{extension}", "--vertices", "original", "--elements", "original")
+    assert (tmp_path / f"back{extension}").read_bytes() == (tmp_path / f"same{extension}").read_bytes()
+    serial("apply", tmp_path / "m", source, "-o", tmp_path / f"again{extension}")
+    assert (tmp_path / f"again{extension}").read_bytes() == out.read_bytes()
+
+
+def test_inverse_restores_cells_that_the_output_sorts_by_type(tmp_path):
+    source = mixed(tmp_path)
+    mesh = meshio.read(source)  # triangles and tetrahedra in turn, which Medit keeps apart
+    turns = [block for pair in zip(numpy.array_split(mesh.cells_dict["triangle"], 3),
+                                   numpy.array_split(mesh.cells_dict["tetra"], 3)) for block in pair]
+    meshio.Mesh(mesh.points, [("triangle" if len(block[0]) == 3 else "tetra", block) for block in turns]).write(source)
+    order(2, source, "-o", tmp_path / "ordered.mesh", "--maps", tmp_path / "m")
+    serial("apply", tmp_path / "m", source, "-o", tmp_path / "again.mesh")
+    assert (tmp_path / "again.mesh").read_bytes() == (tmp_path / "ordered.mesh").read_bytes()
+
+
+def test_maps_have_the_serial_names(tmp_path, ball):
+    order(2, ball, "-o", tmp_path / "a.vtu", "--maps", tmp_path / "parallel")
+    serial("order", ball, "-o", tmp_path / "b.vtu", "--maps", tmp_path / "serial")
+    names = {path.name.removeprefix("parallel") for path in tmp_path.glob("parallel*")}
+    of_parts = {".vertices.parts.npy", ".cells.parts.npy"}
+    assert names == {path.name.removeprefix("serial") for path in tmp_path.glob("serial*")} | of_parts and len(names) == 7
+
+
+def test_parts_of_vertices_and_cells_are_written_with_the_maps(tmp_path, ball):
+    result = json.loads(order(3, ball, "-o", tmp_path / "a.vtu", "--parts", "8", "--maps", tmp_path / "m", "--json").stdout)
+    vertices, cells = (numpy.load(tmp_path / f"m.{what}.parts.npy") for what in ("vertices", "cells"))
+    mesh = meshio.read(tmp_path / "a.vtu")
+    assert list(vertices) == sorted(vertices) and set(vertices) == set(range(8)) and len(vertices) == len(mesh.points)
+    assert list(numpy.searchsorted(vertices, range(8))) == result["partition"]["first_vertices"]
+    assert list(cells) == sorted(cells)
+    assert (cells == vertices[mesh.cells[0].data.max(axis=1)]).all()
+    serial("order", ball, "-o", tmp_path / "b.vtu", "--maps", tmp_path / "m")
+    assert not list(tmp_path.glob("*.parts.npy"))
+
+
+def test_the_same_bits_in_every_run(tmp_path, ball):
+    files = []
+    for k in range(3):
+        order(3, ball, "-o", tmp_path / f"{k}.vtu", "--parts", "8", "--threads", 1 + k % 2)
+        files.append((tmp_path / f"{k}.vtu").read_bytes())
+    assert files[0] == files[1] == files[2]
+
+
+def test_hilbert_gives_the_same_bits_on_every_number_of_ranks(tmp_path, ball):
+    files = []
+    for ranks in (1, 2, 3, 5):
+        order(ranks, ball, "-o", tmp_path / f"{ranks}.vtu", "--partition", "hilbert", "--parts", "7")
+        files.append((tmp_path / f"{ranks}.vtu").read_bytes())
+    assert files[0] == files[1] == files[2] == files[3]
+
+
+def test_json_tells_of_parts_ranks_and_stages(tmp_path, ball):
+    result = json.loads(order(3, ball, "-o", tmp_path / "a.vtu", "--parts", "6", "--json").stdout)
+    expected = json.loads(serial("order", ball, "-o", tmp_path / "b.vtu", "--vertices", "spectral", "--json").stdout)
+    assert result["ranks"] == 3 and result["parts"] == 6 and len(result["memory_bytes"]) == 3
+    assert result["partition"]["method"] == "ptscotch" and result["partition"]["because"] is None
+    assert 0 < result["partition"]["cut"] < result["partition"]["edges"] and result["partition"]["ghosts"] > 0
+    assert result["edge_span"]["before"] == pytest.approx(expected["edge_span"]["before"])
+    assert set(result["seconds"]) == {"read", "distribute", "graph", "partition", "order", "cells", "write"}
+    assert result["vertices"]["count"] == expected["vertices"]["count"]
+
+
+def test_small_meshes_are_cut_along_the_curve_with_a_note(tmp_path):
+    grid = json.loads(serial("models", "make", "grid", "--size", "3", "--json").stdout)["models"][0]["path"]
+    done = order(2, grid, "-o", tmp_path / "a.vtu", "--json")
+    assert json.loads(done.stdout)["partition"]["method"] == "hilbert"
+    assert len(own_lines(done)) == 1 and "Hilbert's curve" in done.stderr
+
+
+@pytest.mark.parametrize("arguments, part", [
+    (["order", "nothing.vtu", "-o", "out.vtu"], "nothing.vtu: no such file"),
+    (["order", "damaged.vtu", "-o", "out.vtu"], "damaged.vtu"),
+    (["order", "BALL", "-o", "nowhere/out.vtu"], "nowhere"),
+    (["order", "BALL", "-o", "full.vtu"], "full"),
+    (["order", "BALL", "-o", "out.vtu", "--vertices", "original"], "'original' within parts"),
+    (["order", "BALL", "-o", "out.vtu", "--partition", "metis"], "metis"),
+    (["order", "BALL", "-o", "out.vtu", "--part", "2"], "unknown option '--part'"),
+    (["info", "BALL"], "start `info` without mpirun"),
+])
+def test_what_fails_ends_all_ranks_with_one_line(tmp_path, monkeypatch, ball, arguments, part):
+    monkeypatch.chdir(tmp_path)
+    serial("order", ball, "-o", "whole.vtu")
+    whole = pathlib.Path("whole.vtu").read_bytes()
+    pathlib.Path("damaged.vtu").write_bytes(whole[:len(whole) // 2])
+    os.symlink("/dev/full", "full.vtu")
+    before = sorted(os.listdir())
+    done = launch(3, *[str(ball) if word == "BALL" else word for word in arguments])
+    assert done.returncode == 2, done.stderr
+    assert len(own_lines(done)) == 1 and part in own_lines(done)[0], done.stderr
+    assert sorted(os.listdir()) == before
+
+
+def ranks_of(parent):
+    children = subprocess.run(["ps", "--ppid", str(parent), "-o", "pid=,comm="], capture_output=True, text=True,
+                              check=False).stdout.split("\n")
+    return [int(line.split()[0]) for line in children if "meshorder-mpi" in line]
+
+
+@pytest.mark.parametrize("which", [0, -1])
+def test_a_rank_that_is_killed_ends_all_and_leaves_nothing(tmp_path, which):
+    large = json.loads(serial("models", "make", "ball", "--size", "45", "--json").stdout)["models"][0]["path"]
+    with subprocess.Popen([*MPIRUN, "-n", "3", MESHORDER, "order", large, "-o", tmp_path / "out.vtu"],
+                          env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        ranks = []
+        while len(ranks) < 3 and running.poll() is None:
+            ranks = ranks_of(running.pid)
+        time.sleep(0.3)
+        os.kill(ranks[which], signal.SIGKILL)
+        killed = time.monotonic()
+        running.communicate(timeout=SECONDS)
+    assert time.monotonic() - killed < 5
+    assert running.returncode != 0
+    assert os.listdir(tmp_path) == []
+
+
+def test_without_the_program_beside_it_says_what_to_build(tmp_path, ball):
+    alone = tmp_path / "meshorder"
+    shutil.copy(MESHORDER, alone)
+    words = [alone, "order", ball, "-o", tmp_path / "out.vtu"]
+    for rank, lines in ((0, 1), (1, 0)):
+        for size_name, rank_name in (("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"), ("PMI_SIZE", "PMI_RANK"),
+                                     ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID")):
+            done = subprocess.run(words, env=environment(**{size_name: "2", rank_name: str(rank)}), capture_output=True,
+                                  text=True, check=False)
+            assert done.returncode == 2 and len(done.stderr.splitlines()) == lines
+            assert not lines or "MESHORDER_MPI=ON" in done.stderr
+    assert not (tmp_path / "out.vtu").exists()
+
+
+@pytest.mark.parametrize("variables", [{"SLURM_NTASKS": "4"}, {"OMPI_COMM_WORLD_SIZE": "1", "PMIX_RANK": "0"}])
+def test_one_process_orders_by_itself(tmp_path, ball, variables):
+    done = subprocess.run([MESHORDER, "order", ball, "-o", tmp_path / "out.vtu", "--json"], env=environment(**variables),
+                          capture_output=True, text=True, check=True)
+    assert "ranks" not in json.loads(done.stdout)
