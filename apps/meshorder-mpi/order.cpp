@@ -6,7 +6,10 @@
 #include "console.hpp"
 #include "distributed/mesh_slice.hpp"
 #include "distributed/order.hpp"
+#include "distributed/vtu_slices.hpp"
 #include "io/format.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/stream/output_set.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
 #include "mesh_files.hpp"
@@ -19,8 +22,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -33,6 +38,7 @@ using distributed::Communicator;
 using distributed::DistributedOptions;
 using distributed::DistributedOrder;
 using distributed::GlobalIndex;
+using distributed::VtuSlices;
 
 /// Cells from which the memory of the rank that reads them is worth a warning.
 constexpr Index kManyCells = 10'000'000;
@@ -111,19 +117,63 @@ std::vector<std::string> write_at_root(const Arguments& arguments, Job& job,
   return write_ordered(job, arguments, job.notes);
 }
 
+/// Returns the input as all ranks read it; nothing where rank 0 has to: for maps, old numbers and chosen
+/// cells, and for files of other kinds.
+std::optional<VtuSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
+  const auto is_vtu = [](const std::string& name) {
+    return std::filesystem::path(name).extension() == ".vtu";
+  };
+  const Keeping& keeping = arguments.keeping;
+  if (!is_vtu(arguments.input) || !is_vtu(arguments.output) || !arguments.maps.empty() ||
+      arguments.ids != "renumber" || keeping.dimension >= 0 || keeping.strict) {
+    return std::nullopt;
+  }
+  communicator.at_root([&] { check_can_write(arguments); });  // fail before the work
+  return VtuSlices::open(communicator, arguments.input);
+}
+
+/// Writes the mesh in its new order by all ranks, to a file that takes its place when it is complete.
+void write_slices(const Communicator& communicator, const Arguments& arguments, const VtuSlices& slices,
+                  const DistributedOrder& order, Notes& notes) {
+  OutputSet outputs;
+  std::optional<OutputFile> file;
+  const std::string name = communicator.at_root([&] {
+    file.emplace(FilePath(arguments.output, outputs));
+    file->close();
+    return file->temporary().string();
+  });
+  const std::vector<char> path = communicator.broadcast(std::vector<char>(name.begin(), name.end()));
+  slices.write(communicator, {path.begin(), path.end()}, arguments.output, order);
+  communicator.at_root([&] {
+    file->commit();
+    outputs.commit();
+    notes.insert(notes.end(), outputs.notes().begin(), outputs.notes().end());
+  });
+}
+
 void run(const Arguments& arguments, const Communicator& communicator) {
   const DistributedOptions options = options_of(arguments);
   const Stopwatch reading;
-  Job job = read_at_root(communicator, arguments);
-  distributed::MeshSlice slice = distributed::scattered(communicator, job.mesh);
+  const std::optional<VtuSlices> slices = slices_of(communicator, arguments);
+  Job job;
+  if (!slices) job = read_at_root(communicator, arguments);
+  distributed::MeshSlice slice =
+      slices ? slices->read(communicator) : distributed::scattered(communicator, job.mesh);
+  const GlobalIndex vertex_count = slice.vertices.size();
+  const GlobalIndex cell_count = slice.cells.size();
   const double read_seconds = reading.seconds();
 
   DistributedOrder order = distributed::order_slices(communicator, std::move(slice), options);
   const Stopwatch writing;
-  const std::vector<GlobalIndex> vertices = communicator.gathered_at_root(order.new_vertices);
-  const std::vector<GlobalIndex> cells = communicator.gathered_at_root(order.cells);
-  const std::vector<std::string> map_files = communicator.at_root(
-      [&] { return write_at_root(arguments, job, vertices, cells, order.report.part_starts); });
+  std::vector<std::string> map_files;
+  if (slices) {
+    write_slices(communicator, arguments, *slices, order, job.notes);
+  } else {
+    const std::vector<GlobalIndex> vertices = communicator.gathered_at_root(order.new_vertices);
+    const std::vector<GlobalIndex> cells = communicator.gathered_at_root(order.cells);
+    map_files = communicator.at_root(
+        [&] { return write_at_root(arguments, job, vertices, cells, order.report.part_starts); });
+  }
 
   distributed::DistributedReport& report = order.report;
   report.seconds.insert(report.seconds.begin(), {"read", read_seconds});
@@ -135,13 +185,13 @@ void run(const Arguments& arguments, const Communicator& communicator) {
       job.notes.push_back(report.partition_reason + ": parts are ranges of Hilbert's curve");
     console.warn_of(job.notes);
     print_report(console, options, report, peaks);
-    console.print("{:<10} {}", "wrote", arguments.output);
+    console.print("{:<10} {}{}", "wrote", arguments.output, slices ? ", read and written by all ranks" : "");
     for (const std::string& file : map_files) console.print("{:<10} {}", "", file);
-    nlohmann::ordered_json result{
-        {"input", arguments.input},
-        {"output", arguments.output},
-        {"vertices", {{"count", job.mesh.vertex_count()}, {"method", options.vertices}}},
-        {"cells", {{"count", job.mesh.cell_count()}, {"method", "lexmax"}}}};
+    nlohmann::ordered_json result{{"input", arguments.input},
+                                  {"output", arguments.output},
+                                  {"files_by", slices ? "all ranks" : "rank 0"},
+                                  {"vertices", {{"count", vertex_count}, {"method", options.vertices}}},
+                                  {"cells", {{"count", cell_count}, {"method", "lexmax"}}}};
     result.update(to_json(report, peaks));
     result["maps"] = map_files;
     console.print_json(std::move(result));
@@ -160,7 +210,8 @@ int share_of_cores(const Communicator& communicator) {
 void add_distributed_order(CLI::App& subcommand, const Communicator& communicator) {
   subcommand.description(
       "Reorder a mesh by all ranks: parts, each in an order of its own, numbered one after another, so\n"
-      "that parts that touch are near each other. Rank 0 reads and writes.");
+      "that parts that touch are near each other. A .vtu file of one piece with raw appended data is\n"
+      "read and written by all ranks, unless --maps, --ids, --only or --strict are given; others by rank 0.");
   subcommand.footer(
       "Examples:\n"
       "  mpirun -n 4 meshorder order part.vtu -o ordered.vtu\n"

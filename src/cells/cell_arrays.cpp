@@ -22,72 +22,6 @@ constexpr Offset kEntriesPerRange = 262144;  // that a thread converts together
 constexpr std::uint8_t kPixel = 8;
 constexpr std::uint8_t kVoxel = 11;
 
-/// Returns the shape of a VTK type (vtkCellType.h), none for types that are no cell of a mesh here.
-std::optional<Shape> shape_of_vtk_type(int type) {
-  switch (type) {
-    case 1:
-      return Shape::vertex;
-    case 2:
-      return Shape::poly_vertex;
-    case 3:
-    case 21:
-    case 35:
-    case 68:
-    case 75:
-      return Shape::line;
-    case 4:
-      return Shape::polyline;
-    case 5:
-    case 22:
-    case 34:
-    case 69:
-    case 76:
-      return Shape::triangle;
-    case 6:
-      return Shape::triangle_strip;
-    case 7:
-      return Shape::polygon;
-    case kPixel:
-    case 9:
-    case 23:
-    case 28:
-    case 30:
-    case 70:
-    case 77:
-      return Shape::quad;
-    case 10:
-    case 24:
-    case 71:
-    case 78:
-      return Shape::tetrahedron;
-    case kVoxel:
-    case 12:
-    case 25:
-    case 29:
-    case 33:
-    case 72:
-    case 79:
-      return Shape::hexahedron;
-    case 13:
-    case 26:
-    case 31:
-    case 32:
-    case 73:
-    case 80:
-      return Shape::wedge;
-    case 14:
-    case 27:
-    case 37:
-    case 74:
-    case 81:
-      return Shape::pyramid;
-    case 42:
-      return Shape::polyhedron;
-    default:
-      return std::nullopt;
-  }
-}
-
 Index checked_size(std::size_t size, const char* what) {
   if (size > static_cast<std::size_t>(kMaxIndex)) {
     throw TooLarge("cells: " + std::to_string(size) + " " + what + "; at most 2,147,483,647 are possible");
@@ -259,6 +193,71 @@ void take_blocks(const CellsView& view, CellArrays& cells) {
 }
 
 }  // namespace
+
+std::optional<Shape> shape_of_vtk_type(int type) {
+  switch (type) {
+    case 1:
+      return Shape::vertex;
+    case 2:
+      return Shape::poly_vertex;
+    case 3:
+    case 21:
+    case 35:
+    case 68:
+    case 75:
+      return Shape::line;
+    case 4:
+      return Shape::polyline;
+    case 5:
+    case 22:
+    case 34:
+    case 69:
+    case 76:
+      return Shape::triangle;
+    case 6:
+      return Shape::triangle_strip;
+    case 7:
+      return Shape::polygon;
+    case kPixel:
+    case 9:
+    case 23:
+    case 28:
+    case 30:
+    case 70:
+    case 77:
+      return Shape::quad;
+    case 10:
+    case 24:
+    case 71:
+    case 78:
+      return Shape::tetrahedron;
+    case kVoxel:
+    case 12:
+    case 25:
+    case 29:
+    case 33:
+    case 72:
+    case 79:
+      return Shape::hexahedron;
+    case 13:
+    case 26:
+    case 31:
+    case 32:
+    case 73:
+    case 80:
+      return Shape::wedge;
+    case 14:
+    case 27:
+    case 37:
+    case 74:
+    case 81:
+      return Shape::pyramid;
+    case 42:
+      return Shape::polyhedron;
+    default:
+      return std::nullopt;
+  }
+}
 
 CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check check) {
   CellArrays cells;

@@ -40,6 +40,9 @@ struct CellArrays {
   [[nodiscard]] int dimension_of(Index cell) const { return shapes.empty() ? 3 : dimension(shapes[cell]); }
 };
 
+/// Returns the shape of a VTK type (vtkCellType.h), none for types that are no cell of a mesh here. O(1).
+std::optional<Shape> shape_of_vtk_type(int type);
+
 /// Converts a view of cells, and checks it unless `check` is none: sizes that match, ascending offsets, known
 /// VTK types, as many vertices as the shape has corners, vertices in range.
 ///

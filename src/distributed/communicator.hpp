@@ -72,6 +72,7 @@ class Communicator {
 
   /// Sets the most bytes of one message, ≥ 1; MPI 3 counts them by an int.
   void set_chunk_limit(Offset bytes) noexcept { chunk_limit_ = bytes; }
+  [[nodiscard]] Offset chunk_limit() const noexcept { return chunk_limit_; }
 
   /// Sends each rank its parcel, and returns those that the ranks sent to this one. Chunked, so that a parcel
   /// may have more than 2 GiB. O(values + ranks).
