@@ -88,7 +88,8 @@ bool lock_new(const fs::path& folder, Descriptor& lock) {
   return ::flock(lock.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
-void remove_all_in(const fs::path& folder) {
+/// Returns whether the folder is gone: without memory it may not be.
+bool remove_all_in(const fs::path& folder) {
   std::error_code ignored;
   std::vector<fs::path> files;
   for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end; entry.increment(ignored))
@@ -98,7 +99,21 @@ void remove_all_in(const fs::path& folder) {
     return (a.filename() == kLock) < (b.filename() == kLock);
   });
   for (const fs::path& file : files) fs::remove(file, ignored);
-  fs::remove(folder, ignored);
+  return fs::remove(folder, ignored);
+}
+
+/// Removes what this program puts into a scratch folder, and the folder, by system functions alone, which a
+/// signal handler may call.
+void remove_known_in(const char* folder) noexcept {
+  std::array<char, 4096 + 16> file{};
+  const std::size_t length = std::strlen(folder);
+  for (const char* const name : {"/new", "/old", "/set", "/journal.part", "/lock"}) {
+    if (length + std::strlen(name) >= file.size()) continue;
+    std::memcpy(file.data(), folder, length);
+    std::strcpy(file.data() + length, name);
+    ::unlink(file.data());
+  }
+  ::rmdir(folder);
 }
 
 }  // namespace
@@ -131,7 +146,7 @@ Scratch::Scratch(Scratch&& other) noexcept
 Scratch::~Scratch() {
   if (lock_.is_open()) --locks_held;
   if (path_.empty()) return;
-  if (!is_kept_) remove_all_in(path_);
+  if (!is_kept_ && !remove_all_in(path_)) remove_known_in(path_.c_str());
   forget(slot_);
 }
 
@@ -194,18 +209,8 @@ std::vector<fs::path> scratches_not_seen(const fs::path& folder) {
 }
 
 void remove_unfinished_outputs() noexcept {
-  std::array<char, 4096 + 16> file{};
   for (std::atomic<char*>& slot : unfinished) {
-    const char* const folder = slot.exchange(nullptr);
-    if (folder == nullptr) continue;
-    const std::size_t length = std::strlen(folder);
-    for (const char* const name : {"/new", "/old", "/set", "/journal.part", "/lock"}) {
-      if (length + std::strlen(name) >= file.size()) continue;
-      std::memcpy(file.data(), folder, length);
-      std::strcpy(file.data() + length, name);
-      ::unlink(file.data());
-    }
-    ::rmdir(folder);
+    if (const char* const folder = slot.exchange(nullptr); folder != nullptr) remove_known_in(folder);
   }
 }
 
