@@ -160,6 +160,21 @@ TEST(Gmsh, TakesFilesWithoutEntitiesAndGroups) {
 
 // ---- writing what was read
 
+TEST(Gmsh, TakesBlocksOfOneKindThatFollowEachOtherForOne) {
+  const std::string head =
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 5 1 5\n2 0 0 5\n1\n2\n3\n4\n5\n0 0 0\n1 0 0\n0 1 0\n"
+      "1 1 0\n2 0 0\n$EndNodes\n$Elements\n";
+  const std::string elements = "2 1 2 1\n1 1 2 3\n2 1 2 1\n2 2 4 3\n2 2 2 1\n3 2 5 4\n";
+  const Mesh mesh = read_text(head + "3 3 1 3\n" + elements + "$EndElements\n");
+  EXPECT_THAT(mesh.cell_blocks, ElementsAre(0, 2));
+  EXPECT_EQ(read_text(written(mesh)).cell_blocks, mesh.cell_blocks);
+  // others stand apart: their order matters more than their blocks
+  const std::string turns = "2 1 2 1\n1 1 2 3\n2 2 2 1\n2 2 4 3\n2 1 2 1\n3 2 5 4\n";
+  const Mesh in_turns = read_text(head + "3 3 1 3\n" + turns + "$EndElements\n");
+  EXPECT_THAT(in_turns.cell_blocks, IsEmpty());
+  EXPECT_THAT(read_text(written(in_turns)).cell_blocks, IsEmpty());
+}
+
 TEST(Gmsh, WritesAgainWhatItReadByteForByte) {
   for (const std::string& content : {std::string(kGmsh41), std::string(kGmsh22),
                                      gmsh_41_binary(std::endian::little), gmsh_41_binary(std::endian::big),

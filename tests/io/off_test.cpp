@@ -51,6 +51,19 @@ TEST(Off, WritesColorsInTheirNumberTypeAndKeepsComments) {
   EXPECT_TRUE(notes.empty());
 }
 
+TEST(Off, KeepsColorsThatAreTooLargeForIntegers) {
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(folder.file("a.off",
+                                          "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n"
+                                          "3 0 1 2 255 4294967296 0\n3 1 3 2 0.5 1 0.25\n"));
+  const DataArray* const color = find_array(mesh, "color", Association::cells);
+  ASSERT_NE(color, nullptr);
+  EXPECT_EQ(color->values, Values(std::vector<double>{255, 4294967296, 0, 0.5, 1, 0.25}));
+  write_mesh(mesh, folder.path() / "b.off");
+  const Mesh back = read_mesh(folder.path() / "b.off");
+  EXPECT_EQ(*find_array(back, "color", Association::cells), *color);
+}
+
 TEST(Off, KeepsNormalsColorsAndTextureOfVertices) {
   const TemporaryFolder folder;
   const std::string text =

@@ -187,6 +187,21 @@ TEST(VtkLegacy, ReadsPointsCellsAndAllArrays) {
   EXPECT_TRUE(notes.empty());
 }
 
+TEST(VtkLegacy, KeepsAnArrayThatOnlyHasTheNameOfTheCellTypes) {
+  const TemporaryFolder folder;
+  Mesh mesh = mixed_mesh();
+  const DataArray array{
+      "vtk:type", Association::cells, 1, std::vector<std::uint8_t>(mesh.cells.shapes.size(), 1), {}, {}};
+  mesh.data.push_back(array);
+  for (const char* const name : {"a.vtk", "a.vtu"}) {
+    write_mesh(mesh, folder.path() / name);
+    const Mesh back = read_mesh(folder.path() / name);
+    const DataArray* const found = find_array(back, "vtk:type", Association::cells);
+    ASSERT_NE(found, nullptr) << name;
+    EXPECT_EQ(*found, array) << name;
+  }
+}
+
 TEST(VtkLegacy, WritesTextThatKeepsEveryDigitAndSection) {
   const TemporaryFolder folder;
   const Mesh mesh = read_mesh(folder.file("a.vtk", kSmall));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <set>
 #include <span>
 
@@ -244,6 +245,7 @@ void read_elements_4(ReadContext& reading) {
   std::vector<std::int32_t> types;
   std::vector<Index> starts;
   std::set<EmptyBlock> kinds;
+  std::optional<EmptyBlock> last;
   bool repeated = false;
   reserve_large(ids, static_cast<std::size_t>(head.count));
   for (Index b = 0; b < head.blocks; ++b) {
@@ -259,8 +261,13 @@ void read_elements_4(ReadContext& reading) {
       reading.metadata.empty_element_blocks.push_back({dimension, tag, type.number});
       continue;
     }
-    starts.push_back(index_size(ids));
-    repeated = !kinds.insert({dimension, tag, type.number}).second || repeated;
+    // a block that goes on with the kind of the one before is part of it
+    const EmptyBlock kind{dimension, tag, type.number};
+    if (kind != last) {
+      starts.push_back(index_size(ids));
+      repeated = !kinds.insert(kind).second || repeated;
+      last = kind;
+    }
     read_element_block(reading, type, count, ids);
     tags.insert(tags.end(), count, tag);
     dimensions.insert(dimensions.end(), count, dimension);

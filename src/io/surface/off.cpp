@@ -114,10 +114,14 @@ struct Numbers {
     values.push_back(parse_real(scanner, word, what));
   }
 
-  /// Returns 32-bit integers if all were written as integers and fit.
+  /// Returns whether all were written as integers and fit 32 bits.
+  [[nodiscard]] bool are_integers() const {
+    return integers && std::all_of(values.begin(), values.end(), [](double x) { return std::abs(x) < 2e9; });
+  }
+
+  /// Returns 32-bit integers if they are such.
   [[nodiscard]] Values typed() && {
-    const bool fit = std::all_of(values.begin(), values.end(), [](double x) { return std::abs(x) < 2e9; });
-    if (integers && fit) return std::vector<std::int32_t>(values.begin(), values.end());
+    if (are_integers()) return std::vector<std::int32_t>(values.begin(), values.end());
     return std::move(values);
   }
 };
@@ -179,9 +183,10 @@ void read_color(Scanner& scanner, Index face, ColorGroups& groups) {
     scanner.fail("a face is followed by " + std::to_string(width) + " numbers",
                  "a colour has 1, 3 or 4, and each face a line of its own");
   }
-  ColorGroup& group = groups[2 * width + (color.integers ? 1 : 0)];
+  const bool are_integers = color.are_integers();
+  ColorGroup& group = groups[2 * width + (are_integers ? 1 : 0)];
   group.rows.push_back(face);
-  group.numbers.integers = color.integers;
+  group.numbers.integers = are_integers;
   group.numbers.values.insert(group.numbers.values.end(), color.values.begin(), color.values.end());
 }
 

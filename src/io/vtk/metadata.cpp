@@ -173,8 +173,10 @@ void WriteContext::add_made(DataArray array) {
 void WriteContext::collect_arrays(bool in_xml) {
   Names names(in_xml);
   for (const DataArray& array : mesh.data) {
-    // written as the cell types
-    if (array.association == Association::cells && array.name == kCellTypes) continue;
+    // what the reader kept is written as the cell types; an array that only has its name is one
+    const auto* const kept = std::get_if<std::vector<std::uint8_t>>(&array.values);
+    const bool holds_types = kept != nullptr && array.is_dense() && *kept == types;
+    if (array.association == Association::cells && array.name == kCellTypes && holds_types) continue;
     const std::string name = names.unused(array.name, array.association, notes);
     if (array.is_dense() && name == array.name) {
       arrays.push_back(&array);
