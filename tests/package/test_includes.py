@@ -29,7 +29,7 @@ LIBRARIES = {
     "tbb": {*CORE, "kernels", "payoff"},
     "Eigen": set(CORE),
     "metis.h": {"base", "ordering"},
-    "fmt": {"mesh", "io", "kernels", "payoff"},
+    "fmt": {"mesh", "io", "kernels", "payoff", "distributed"},
     "hwy": {"kernels", "payoff"},
     "nlohmann": {"payoff"},
     "lz4.h": {"io"},
