@@ -108,7 +108,7 @@ void add_mesh(Page& page, const std::string& file, const ReportArguments& argume
   options.progress = [&](std::string_view what, double fraction) {
     progress.stage(fmt::format("{}: {}", name, what), from + (0.1 + 0.8 * fraction) * (to - from), to);
   };
-  OrderedMesh studied = study_mesh(mesh, page.results.orderings, options);
+  meshorder::OrderedMesh studied = study_mesh(mesh, page.results.orderings, options);
   studied.record.name = name;
   studied.record.file = file;
   studied.record.verdict = verdict_on(studied.record);
@@ -213,7 +213,7 @@ nlohmann::ordered_json saving_json(const Speedup& speedup) {
 
 nlohmann::ordered_json savings_json(const ComparedStudy& a, const ComparedStudy& b) {
   auto savings = nlohmann::ordered_json::array();
-  for (const ComparedOrder& order : compared_orders(a.results, b.results)) {
+  for (const meshorder::ComparedOrder& order : compared_orders(a.results, b.results)) {
     nlohmann::ordered_json difference;
     if (order.difference) {
       difference = {{"points", order.difference->points},
