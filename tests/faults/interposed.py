@@ -34,6 +34,9 @@ ERRORS = {
 # libraries that end the process themselves when there is no memory; what they do is counted apart
 FOREIGN = ("libhdf5", "libcgns", "libnetcdf", "libtbb")
 
+# what the C library says when it finds its heap damaged
+DAMAGED_HEAP = re.compile(r"corrupted|double free|invalid (pointer|size|next size|chunk)")
+
 
 @dataclasses.dataclass
 class Fault:
@@ -61,10 +64,12 @@ class Ending:
 
     def culprit(self):
         """The library that could not do without memory: it ended the process, raised a signal, by the stack that the
-        interposer wrote, or prints what happened."""
+        interposer wrote, or prints what happened. The C library finds a damaged heap wherever it takes or gives back
+        memory next: then it is the library that got none."""
         if "a library has ended the process" in self.stderr or "HDF5-DIAG" in self.stderr:
             return "libhdf5"
-        frames = re.findall(r"^(/\S+?)\(", self.log, re.M)
+        stack = self.log.partition("failed " if DAMAGED_HEAP.search(self.stderr) else "signal ")[2]
+        frames = re.findall(r"^(/\S+?)\(", stack, re.M)
         names = (pathlib.Path(frame).name for frame in frames)
         return next((library for name in names for library in FOREIGN if name.startswith(library)), None)
 

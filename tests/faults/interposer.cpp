@@ -85,6 +85,16 @@ void log_descriptor(const char* verb, int descriptor) {
   for (;;) pause();
 }
 
+/// Writes the functions that are running to the log, under a line of their own.
+void log_functions(const char* why, const char* what) {
+  if (log_file < 0) return;
+  active = false;
+  std::array<void*, 64> frames{};
+  log_line(why, what);
+  backtrace_symbols_fd(frames.data(), backtrace(frames.data(), static_cast<int>(frames.size())), log_file);
+  active = true;
+}
+
 /// Counts a call. Returns the fault that it is to have, or nullptr; does not return where it is to be killed.
 const Fault* fault_of(Kind kind) {
   if (!active) return nullptr;
@@ -92,6 +102,7 @@ const Fault* fault_of(Kind kind) {
   if (fault.kind != kind || (fault.later ? count < fault.nth : count != fault.nth)) return nullptr;
   __atomic_add_fetch(&counters[kKinds], 1, __ATOMIC_RELAXED);
   if (fault.what == What::kill) die();
+  if (kind == kAllocation) log_functions("failed", kKindNames[kind]);
   if (fault.what == What::error) errno = fault.error;
   return &fault;
 }
@@ -134,12 +145,8 @@ void set_fault(const char* text) {
 }
 
 extern "C" void log_stack(int signal) {
+  log_functions("signal", strsignal(signal));
   active = false;
-  std::array<void*, 64> frames{};
-  if (log_file >= 0) {
-    log_line("signal", strsignal(signal));
-    backtrace_symbols_fd(frames.data(), backtrace(frames.data(), static_cast<int>(frames.size())), log_file);
-  }
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }

@@ -150,7 +150,10 @@ class TreeReader {
     if (children > 0) {
       file_.check(cgio_children_ids(number, id, 1, children, &found, ids.data()), place);
     }
-    ids.resize(static_cast<std::size_t>(std::clamp(found, 0, children)));
+    if (found != children) {
+      file_.fail(fmt::format("{} has {} children and gives {}", place, children, found),
+                 "the file may be damaged");
+    }
     node.children.reserve(ids.size());
     for (const double child : ids) {
       node.children.push_back(read(child, path, depth + 1));

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <new>
 #include <type_traits>
 #include <variant>
 
@@ -102,10 +103,11 @@ Handle file_access() {
 
 Handle memory_access(std::string_view bytes) {
   Handle access = file_access();
-  H5Pset_fapl_core(access.id(), kCoreStep, false);
+  // otherwise the library would make a file on the disk
+  if (H5Pset_fapl_core(access.id(), kCoreStep, false) < 0) throw std::bad_alloc();
   if (!bytes.empty()) {
     std::string copy(bytes);  // the library copies it once more, and wants to be allowed to write
-    H5Pset_file_image(access.id(), copy.data(), copy.size());
+    if (H5Pset_file_image(access.id(), copy.data(), copy.size()) < 0) throw std::bad_alloc();
   }
   return access;
 }

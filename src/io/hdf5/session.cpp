@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <new>
 #include <string_view>
 #include <utility>
@@ -56,12 +57,16 @@ herr_t note_failure(hid_t stack, void* /*data*/) {
 
 Session::Session() : lock_(library_mutex()) {
   if (std::exchange(closes_nothing_at_exit, false)) H5dont_atexit();
-  if (faults.sessions++ == 0) faults = {.sessions = 1};
+  if (faults.sessions++ == 0) {
+    faults = {.sessions = 1};
+    errno = 0;
+  }
   H5Eget_auto2(H5E_DEFAULT, &handler_, &data_);
   watch();
 }
 
 Session::~Session() {
+  faults.memory = faults.memory || errno == ENOMEM;
   H5Eset_auto2(H5E_DEFAULT, handler_, data_);
   --faults.sessions;
 }
@@ -75,7 +80,9 @@ void Session::require_no_fault(const std::string& file) const {
                      std::string("HDF5 could not read or write all of it (") + faults.words.data() + ")",
                      "is the disk full, or does it fail?");
   }
-  if (faults.memory) throw InputError(file, "HDF5 had no memory for a part of it", "the file may be damaged");
+  // not all of the library looks at the result of malloc, and what fails then gives another cause or none
+  if (faults.memory || errno == ENOMEM)
+    throw InputError(file, "HDF5 had no memory for a part of it", "the file may be damaged");
 }
 // NOLINTEND(readability-convert-member-functions-to-static)
 

@@ -9,8 +9,8 @@
 namespace meshorder::hdf5 {
 
 /// Keeps other threads out of libhdf5 and the library quiet as long as it lives. May be nested. Takes note of
-/// calls for which the system had no memory or could not read or write, also where nobody looks at their
-/// result.
+/// calls for which the system had no memory or could not read or write, also where the library, or one on
+/// top of it, does not look at their result.
 class Session {
  public:
   Session();

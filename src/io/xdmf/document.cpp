@@ -98,7 +98,17 @@ std::vector<pugi::xml_node> elements_named(const pugi::xml_document& xml, std::s
 }
 
 void parse(pugi::xml_document& xml, const std::string& text) {
-  xml.load_buffer(text.data(), text.size(), kParse);
+  if (!xml.load_buffer(text.data(), text.size(), kParse)) throw std::bad_alloc();
+}
+
+void set_text(pugi::xml_node element, const std::string& text) {
+  if (!element.text().set(text.c_str())) throw std::bad_alloc();
+}
+
+void set_attribute(pugi::xml_node element, const char* name, const std::string& value) {
+  pugi::xml_attribute own = element.attribute(name);
+  if (!own) own = element.append_attribute(name);
+  if (!own.set_value(value.c_str())) throw std::bad_alloc();
 }
 
 void print(const pugi::xml_document& xml, std::string_view prolog, const TakeText& take) {

@@ -68,8 +68,13 @@ class Document {
 /// Returns all elements of a name in the order of the file.
 std::vector<pugi::xml_node> elements_named(const pugi::xml_document& xml, std::string_view name);
 
-/// Parses XML that `Document::take_values_out` made.
+/// Parses XML that `Document::take_values_out` made. Throws std::bad_alloc without memory.
 void parse(pugi::xml_document& xml, const std::string& text);
+
+/// Sets the text of an element; adds an attribute, or sets it. Throw std::bad_alloc without memory, for an
+/// element, too, that could not be added.
+void set_text(pugi::xml_node element, const std::string& text);
+void set_attribute(pugi::xml_node element, const char* name, const std::string& value);
 
 /// Takes the next part of a text.
 using TakeText = std::function<void(std::string_view part)>;

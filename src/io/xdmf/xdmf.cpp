@@ -71,12 +71,6 @@ std::string_view attribute_type(Index components) {
   }
 }
 
-void set_attribute(pugi::xml_node element, const char* name, const std::string& value) {
-  pugi::xml_attribute own = element.attribute(name);
-  if (!own) own = element.append_attribute(name);
-  own.set_value(value.c_str());
-}
-
 /// Sets the one of two attributes that is there, else adds the first.
 void set_either(pugi::xml_node element, const char* name, const char* other, const std::string& value) {
   set_attribute(element, element.attribute(other) && !element.attribute(name) ? other : name, value);
@@ -183,7 +177,7 @@ class XdmfWriter {
       const auto [file, dataset] = split_hdf5_name(item.text().get());
       const auto output = files_.find(file);
       if (output == files_.end()) continue;
-      item.text().set((output->second.name + ":" + dataset).c_str());
+      set_text(item, output->second.name + ":" + dataset);
       const auto shape = shapes_.find(output->second.name + ":" + dataset);
       if (shape != shapes_.end()) set_shape(item, shape->second);
     }
@@ -201,8 +195,7 @@ class XdmfWriter {
     }
     const std::string mark = fmt::format("{:016x}", sum.value());
     pugi::xml_node instruction = root.prepend_child(pugi::node_pi);
-    instruction.set_name(kMark);
-    instruction.set_value(mark.c_str());
+    if (!instruction.set_name(kMark) || !instruction.set_value(mark.c_str())) throw std::bad_alloc();
     for (auto& [name, output] : files_) output.file->set_attribute("/", kMark, mark);
   }
 
@@ -244,7 +237,7 @@ class XdmfWriter {
     if (!same_type || layout_.is_made) set_number_type(item, values.index());
     switch (place.format) {
       case Format::xml:
-        item.text().set(text_of_values(values, components).c_str());
+        set_text(item, text_of_values(values, components));
         return;
       case Format::hdf:
         if (!same_type) files_.at(place.file).file->remove(place.dataset);
@@ -276,7 +269,7 @@ class XdmfWriter {
   /// Writes the name of a dataset that a made layout does not have yet; `rename_files` replaces its file.
   void name_dataset(const DataPlace& place) {
     files_.at(place.file).datasets.insert(place.dataset);
-    if (layout_.is_made) items_[place.item].text().set((place.file + ":" + place.dataset).c_str());
+    if (layout_.is_made) set_text(items_[place.item], place.file + ":" + place.dataset);
   }
 
   void put_binary(pugi::xml_node item, const DataPlace& place, const Values& values) {
@@ -291,7 +284,7 @@ class XdmfWriter {
         },
         values);
     item.remove_attribute("Seek");
-    item.text().set(name.c_str());
+    set_text(item, name);
   }
 
   static std::string text_of_values(const Values& values, std::size_t components) {
@@ -663,13 +656,13 @@ class XdmfWriter {
     set_number_type(item, values.index());
     set_attribute(item, "Format", files_.empty() ? "XML" : "HDF");
     if (files_.empty()) {
-      item.text().set(text_of_values(values, components).c_str());
+      set_text(item, text_of_values(values, components));
       return;
     }
     auto& [old_name, output] = *files_.begin();
     const std::string dataset = unused_dataset(output, part, name);
     output.file->write(dataset, values, shape);
-    item.text().set((old_name + ":" + dataset).c_str());
+    set_text(item, old_name + ":" + dataset);
   }
 
   static std::string unused_dataset(Hdf5Output& output, int part, const std::string& name) {
