@@ -2,11 +2,12 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """How well times are predicted on this machine: by the costs that ship, and by its own calibration.
 
-    judge.py MEASURE [--budget SECONDS] [--table TABLE.csv] [--calibrations FILE FILE] [MESH …]
+    judge.py MEASURE [--budget SECONDS] [--threads N] [--table TABLE.csv] [--calibrations FILE FILE] [MESH …]
 
 MEASURE is the program build/bin/measure. Each mesh is timed in some orders and predicted for each of MACHINES (see
 measure.cpp); the tables that docs/prediction.md holds are printed. Both halves of each measurement are compared, too:
-nothing can be predicted better than it repeats. With --table, lines of MEASURE are kept there, and meshes that it holds
+nothing can be predicted better than it repeats. The regret of a choice is what its order costs over the fastest one that was
+timed, in both halves; that of "one half by the other" is the regret of taking what the other half found fastest. With --table, lines of MEASURE are kept there, and meshes that it holds
 are not measured again. With --calibrations, two files of `meshorder calibrate` take the place of the one that is stored,
 and what they predict is compared.
 """
@@ -21,25 +22,33 @@ KERNELS = {"spmv": "SpMV", "element": "element force", "assembly": "assembly", "
 MACHINES = {"zen5": "zen5", "prior": "zen5, caches of this machine"}
 CALIBRATED = ("calibrated here", "calibrated here again")
 MESHES = ["grid-17", "ball-24", "torus-12", "grid-32", "torus-20", "ball-45", "grid-64"]
-ORDERS = ["scrambled/scrambled", "original/original", "hilbert/lexmax", "fiedler/lexmax", "bfs/lexmax", "spectral/lexmax"]
+OWN = "original/original"
+ORDERS = ["scrambled/scrambled", OWN, "hilbert/lexmax", "fiedler/lexmax", "bfs/lexmax", "spectral/lexmax"]
 DIFFERENT = 0.1
+#: factors that a verdict takes for no difference, as docs/prediction.md says
+SAME = {"spmv": 1.25, "element": 1.1, "assembly": 1.1, "springs": 1.1}
 
 
 def measured(arguments):
-    """By kernel and mesh: (vertices, by order (one half, the other, predicted…))."""
+    """By kernel and mesh: (vertices, by order (one half, the other, predicted…)); by kernel and mesh: auto's order."""
     lines = arguments.table.read_text().splitlines() if arguments.table and arguments.table.exists() else []
     for mesh in arguments.meshes:
         if any(line.startswith(f"{mesh},") for line in lines):
             continue
-        command = [arguments.measure, "judge", mesh, str(arguments.budget), ",".join([*MACHINES, *arguments.calibrations]), *ORDERS]
+        command = [arguments.measure, "judge", mesh, str(arguments.budget), str(arguments.threads),
+                   ",".join([*MACHINES, *arguments.calibrations]), *arguments.orders]
         lines += subprocess.check_output(command, text=True).split()
         if arguments.table:
             arguments.table.write_text("\n".join(lines) + "\n")
     result = {kernel: {} for kernel in KERNELS}
+    chosen = {kernel: {} for kernel in KERNELS}
     for line in lines:
         mesh, vertices, order, kernel, *times = line.split(",")
-        result[kernel].setdefault(mesh, (int(vertices), {}))[1][order] = [float(time) for time in times]
-    return result
+        if order == "auto":
+            chosen[kernel][mesh] = times[0]
+        else:
+            result[kernel].setdefault(mesh, (int(vertices), {}))[1][order] = [float(time) for time in times]
+    return result, chosen
 
 
 def pairs(meshes, column):
@@ -56,6 +65,49 @@ def errors(meshes, column):
     return f"{100 * statistics.median(off):.0f} % | {100 * off[int(0.9 * len(off))]:.0f} % | {right} of {len(far)}"
 
 
+def regrets(orders, pick_in):
+    """What the order costs, in each half, over the fastest one there; `pick_in(half)` names it."""
+    for half in (0, 1):
+        best = min(times[half] for times in orders.values())
+        yield orders[pick_in(half)][half] / best - 1
+
+
+def regret(meshes, pick):
+    """Of the order that `pick(mesh, orders, half)` names for each mesh."""
+    of_all = [one for mesh, (_, orders) in meshes.items()
+              for one in regrets(orders, lambda half, mesh=mesh, orders=orders: pick(mesh, orders, half))]
+    return f"{100 * statistics.mean(of_all):.1f} % | {100 * max(of_all):.0f} %"
+
+
+def fastest(orders, column):
+    return min(orders, key=lambda order: orders[order][column])
+
+
+def verdict(orders, column, same):
+    """The order with the least predicted time, or the file's own where that is no worse."""
+    best = fastest(orders, column)
+    return OWN if orders[OWN][column] < same * orders[best][column] else best
+
+
+def nothing_to_gain(meshes, column, same):
+    """How often a verdict says that there is nothing to gain, and how often an order is faster by more than that."""
+    said = [orders for _, orders in meshes.values() if verdict(orders, column, same) == OWN]
+    wrong = sum(min(orders[OWN][:2]) >= same * min(min(times[:2]) for times in orders.values()) for orders in said)
+    return f"{wrong} of {len(said)}"
+
+
+def print_regrets(results, chosen, column):
+    """The table of what choices cost."""
+    print("\n| kernel | choice | regret: mean | largest | \"nothing to gain\" wrong |")
+    print("| --- | --- | ---: | ---: | ---: |")
+    for kernel, title in KERNELS.items():
+        meshes, same = results[kernel], SAME[kernel]
+        print(f"| {title} | one half by the other | {regret(meshes, lambda _, orders, half: fastest(orders, 1 - half))} | |")
+        print(f"| {title} | `auto` | {regret(meshes, lambda mesh, orders, _, kernel=kernel: chosen[kernel][mesh])} | |")
+        print(f"| {title} | the verdict | {regret(meshes, lambda _, orders, __, same=same: verdict(orders, column, same))} | "
+              f"{nothing_to_gain(meshes, column, same)} |")
+
+
 def repeated(meshes, one, other):
     off = sorted(math.exp(abs(math.log(a[one] / b[one]) - math.log(a[other] / b[other]))) - 1
                  for _, orders in meshes.values() for a, b in itertools.combinations(orders.values(), 2))
@@ -67,10 +119,12 @@ def main():
     parser.add_argument("measure")
     parser.add_argument("meshes", nargs="*", default=MESHES)
     parser.add_argument("--budget", type=float, default=20, help="seconds a mesh, preparation not counted")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--orders", type=lambda text: text.split(","), default=ORDERS)
     parser.add_argument("--table", type=pathlib.Path)
     parser.add_argument("--calibrations", nargs=2, default=["this"])
     arguments = parser.parse_args()
-    results = measured(arguments)
+    results, chosen = measured(arguments)
     machines = [*MACHINES.values(), *CALIBRATED[:len(arguments.calibrations)]]
     print("| kernel | predicted by | ratio of two times off by: median | 90 % | pairs > 10 % apart told right |")
     print("| --- | --- | ---: | ---: | ---: |")
@@ -80,6 +134,7 @@ def main():
         print(f"| {title} | the measurement itself, once more | {repeated(results[kernel], 0, 1)} |")
         if len(arguments.calibrations) == 2:
             print(f"| {title} | one calibration by the other | {repeated(results[kernel], -2, -1)} |")
+    print_regrets(results, chosen, 2 + len(MACHINES))
     print("\nScrambled over hilbert/lexmax, predicted by zen5 / calibrated here / measured:\n")
     print("| mesh | vertices | " + " | ".join(KERNELS.values()) + " |")
     print("| --- | ---: |" + " ---: |" * len(KERNELS))

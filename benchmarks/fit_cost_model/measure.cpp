@@ -5,11 +5,12 @@
 // measure time MESH BUDGET FOLDER VERTICES/ELEMENTS…: times the kernels in the orders that FOLDER keeps, and
 // prints order, kernel, best and median milliseconds, samples. The first order is the one to compare with.
 //
-// measure judge MESH BUDGET MACHINES VERTICES/ELEMENTS…: times the kernels in these orders twice over, in
-// interleaved rounds, and predicts them for machines whose names are separated by commas ("zen5", "this";
-// "prior": zen5 with the caches of this machine; with a slash: the file of a calibration). Prints mesh,
-// vertices, order, kernel, the best milliseconds of each half, then the milliseconds predicted for each
-// machine.
+// measure judge MESH BUDGET THREADS MACHINES VERTICES/ELEMENTS…: times the kernels in these orders, and in
+// those that `auto` takes for each kernel, twice over, in interleaved rounds, and predicts them for machines
+// whose names are separated by commas ("zen5", "this"; "prior": zen5 with the caches of this machine; with a
+// slash: the file of a calibration). Prints mesh, vertices, order, kernel, the best milliseconds of each
+// half, then the milliseconds predicted for each machine; and mesh, vertices, "auto", kernel, the order that
+// `auto` takes.
 //
 // MESH is the name of a model, "grid-20", "dragon", or a file; with "-skin" behind it, the triangles on its
 // surface. benchmarks/fit_cost_model/collect.py calls this for all of them.
@@ -162,13 +163,27 @@ mo::CostModel machine_named(const std::string& name) {
   return model;
 }
 
-void judge(const std::string& name, double budget, const std::string& machines,
-           const std::vector<std::string>& orders) {
+/// Prints the order that `auto` takes for each kernel, and adds it to `orders`.
+void add_auto(const std::string& name, const mo::Mesh& mesh, const mo::CsrGraph& graph,
+              std::vector<std::string>& orders) {
+  for (const mo::Kernel kernel : mo::kKernels) {
+    const auto workload = mo::parse_workload(mo::to_string(kernel));
+    const mo::MeshOrder r =
+        mo::compute_reordering(mesh, graph, {.methods = {}, .order = {.workload = workload}});
+    const std::string order = r.vertices.method.name + "/" + r.cells.method.name;
+    fmt::print("{},{},auto,{},{}\n", name, mesh.vertex_count(), mo::to_string(kernel), order);
+    if (std::find(orders.begin(), orders.end(), order) == orders.end()) orders.push_back(order);
+  }
+}
+
+void judge(const std::string& name, double budget, int threads, const std::string& machines,
+           std::vector<std::string> orders) {
   std::vector<mo::CostModel> models;
   std::istringstream words(machines);
   for (std::string word; std::getline(words, word, ',');) models.push_back(machine_named(word));
   const mo::Mesh mesh = mesh_of(name);
   const mo::CsrGraph graph = mo::vertex_graph(mesh);
+  add_auto(name, mesh, graph, orders);
   std::vector<mo::KernelReuse> reuse;
   std::vector<mo::KernelBench> benches;
   for (const std::string& order : orders) {
@@ -180,7 +195,7 @@ void judge(const std::string& name, double budget, const std::string& machines,
     const mo::CsrGraph of_order = mo::renumbered(graph, r.vertices.permutation.old_to_new());
     const mo::Simplices simplices = mo::cut_into_simplices(ordered);
     reuse.push_back(mo::reuse_of_kernels(of_order, simplices, simplices.size() < 50'000 ? 0 : kHalvings));
-    benches.emplace_back(ordered, of_order);
+    benches.emplace_back(ordered, of_order, threads);
   }
   std::vector<mo::KernelBench*> pointers;
   for (mo::KernelBench& bench : benches) pointers.push_back(&bench);
@@ -190,7 +205,7 @@ void judge(const std::string& name, double budget, const std::string& machines,
                                            .min_rounds = 3,
                                            .max_rounds = 200,
                                            .sample_seconds = 0.005,
-                                           .processor_time = true});
+                                           .processor_time = threads == 1});
   }
   for (std::size_t i = 0; i < orders.size(); ++i) {
     for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
@@ -213,12 +228,13 @@ int main(int argc, char** argv) try {
     predict(words[1], mo::parse_caches(words[2]), words[3], {words.begin() + 4, words.end()});
   } else if (words.size() >= 5 && words[0] == "time") {
     time(words[1], std::atof(words[2].c_str()), words[3], {words.begin() + 4, words.end()});
-  } else if (words.size() >= 5 && words[0] == "judge") {
-    judge(words[1], std::atof(words[2].c_str()), words[3], {words.begin() + 4, words.end()});
+  } else if (words.size() >= 6 && words[0] == "judge") {
+    judge(words[1], std::atof(words[2].c_str()), std::atoi(words[3].c_str()), words[4],
+          {words.begin() + 5, words.end()});
   } else {
     fmt::print(stderr,
                "measure predict MESH CACHES FOLDER ORDER…; measure time MESH BUDGET FOLDER ORDER…; "
-               "measure judge MESH BUDGET MACHINES ORDER…\n");
+               "measure judge MESH BUDGET THREADS MACHINES ORDER…\n");
     return 2;
   }
   return 0;
