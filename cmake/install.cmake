@@ -1,6 +1,6 @@
 # What `cmake --install` puts where. Install components: library (shared C++ library), c (shared C library), development
-# (headers, archives, CMake and pkg-config files, examples), petsc (plugin for PETSc, if it was built), command (program,
-# manual, completions, documents) and licence. All paths are relative to the prefix, so that an installed tree can be moved.
+# (headers, archives, CMake and pkg-config files, examples), mpi (shared library for many ranks, if it was built), petsc
+# (plugin for PETSc, if it was built), command (program, manual, completions, documents) and licence. All paths are relative to the prefix, so that an installed tree can be moved.
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -28,6 +28,15 @@ foreach(component IN LISTS components)
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
   install(EXPORT ${export} NAMESPACE meshorder:: DESTINATION ${cmake_folder} COMPONENT development)
 endforeach()
+
+if(TARGET meshorder_mpi)
+  install(
+    TARGETS meshorder_mpi
+    EXPORT meshorder-mpi-targets
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT mpi NAMELINK_COMPONENT development
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+  install(EXPORT meshorder-mpi-targets NAMESPACE meshorder:: DESTINATION ${cmake_folder} COMPONENT development)
+endif()
 
 # ---- find_package(meshorder)
 
@@ -112,6 +121,11 @@ foreach(component IN LISTS components)
                          LIBRARIES -lmeshorder_${component} ${${component}_libraries})
   endif()
 endforeach()
+
+if(TARGET meshorder_mpi)
+  # whoever compiles by the wrappers of MPI has its headers and libraries
+  meshorder_pkg_config(mpi DESCRIPTION "orders of meshes that many ranks share, C and C++20" LIBRARIES -lmeshorder_mpi)
+endif()
 
 # ---- plugins for solvers: headers alone, which ask for their solver where they are included, and a library
 

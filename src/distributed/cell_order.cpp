@@ -86,4 +86,8 @@ std::vector<GlobalIndex> cells_by_lexmax(const Communicator& communicator, const
   return communicator.together([&] { return sorted_by_lexmax(std::move(received)); });
 }
 
+std::vector<GlobalIndex> own_cells_by_lexmax(const Rows& cell_vertices) {
+  return sorted_by_lexmax(with_numbers(cell_vertices, 0));
+}
+
 }  // namespace meshorder::distributed

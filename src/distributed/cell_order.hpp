@@ -21,4 +21,9 @@ namespace meshorder::distributed {
 [[nodiscard]] std::vector<GlobalIndex> cells_by_lexmax(const Communicator& communicator, const Layout& cells,
                                                        Rows cell_vertices, const Layout& vertices);
 
+/// The same for the cells of this rank alone. Returns their places, from 0 on, in their new order.
+///
+/// @throws TooLarge for more than 2,147,483,647 cells
+[[nodiscard]] std::vector<GlobalIndex> own_cells_by_lexmax(const Rows& cell_vertices);
+
 }  // namespace meshorder::distributed

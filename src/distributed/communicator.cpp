@@ -41,8 +41,8 @@ void Session::abort(int status) noexcept {
   std::_Exit(status);
 }
 
-Communicator::Communicator() {
-  MPI_Comm_dup(MPI_COMM_WORLD, &handle_);
+Communicator::Communicator(MPI_Comm ranks) {
+  MPI_Comm_dup(ranks, &handle_);
   MPI_Comm_rank(handle_, &rank_);
   MPI_Comm_size(handle_, &size_);
 }

@@ -54,8 +54,8 @@ struct Parcels {
 /// every rank, in the same order. Sums do not depend on timing.
 class Communicator {
  public:
-  /// All ranks of the session.
-  Communicator();
+  /// All ranks of the session, or those of another communicator, which stays the caller's.
+  explicit Communicator(MPI_Comm ranks = MPI_COMM_WORLD);
   ~Communicator();
   Communicator(const Communicator&) = delete;
   Communicator(Communicator&&) = delete;

@@ -25,23 +25,6 @@ namespace {
 /// Methods that go by the order of the file, which parts do not have, or by an own choice.
 constexpr std::array<std::string_view, 3> kNotInParts{"auto", "original", "scrambled"};
 
-void check_options(const DistributedOptions& options) {
-  std::vector<MethodInfo> methods = vertex_methods();
-  methods.erase(std::remove_if(methods.begin(), methods.end(),
-                               [](const MethodInfo& method) {
-                                 return std::find(kNotInParts.begin(), kNotInParts.end(), method.name) !=
-                                        kNotInParts.end();
-                               }),
-                methods.end());
-  if (std::none_of(methods.begin(), methods.end(),
-                   [&](const MethodInfo& method) { return method.name == options.vertices; })) {
-    throw InvalidArgument("there is no vertex order '" + options.vertices + "' within parts; known are " +
-                          join(
-                              methods, [](const MethodInfo& method) -> const auto& { return method.name; }));
-  }
-  if (options.parts < 0) throw InvalidArgument("parts: " + std::to_string(options.parts) + " of them");
-}
-
 /// The stages of a run, each from where the one before ended.
 class Stages {
  public:
@@ -101,6 +84,23 @@ std::vector<GlobalIndex> numbers_in_file(const Communicator& communicator, const
 }
 
 }  // namespace
+
+void check_options(const DistributedOptions& options) {
+  std::vector<MethodInfo> methods = vertex_methods();
+  methods.erase(std::remove_if(methods.begin(), methods.end(),
+                               [](const MethodInfo& method) {
+                                 return std::find(kNotInParts.begin(), kNotInParts.end(), method.name) !=
+                                        kNotInParts.end();
+                               }),
+                methods.end());
+  if (std::none_of(methods.begin(), methods.end(),
+                   [&](const MethodInfo& method) { return method.name == options.vertices; })) {
+    throw InvalidArgument("there is no vertex order '" + options.vertices + "' within parts; known are " +
+                          join(
+                              methods, [](const MethodInfo& method) -> const auto& { return method.name; }));
+  }
+  if (options.parts < 0) throw InvalidArgument("parts: " + std::to_string(options.parts) + " of them");
+}
 
 DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
                               const DistributedOptions& options) {

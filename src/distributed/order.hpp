@@ -22,6 +22,10 @@ struct DistributedOptions {
   OrderOptions order = {};  ///< seed, tolerance and run
 };
 
+/// Throws InvalidArgument for a method that there is not or that has no meaning within parts, and for fewer
+/// than no parts.
+void check_options(const DistributedOptions& options);
+
 /// What there is to tell of an order.
 struct DistributedReport {
   Index parts = 0;

@@ -212,6 +212,26 @@ def test_the_plugin_for_petsc(prefix, tmp_path, environment, source, options):
         run(tmp_path / source, env={**environment, "OMPI_MCA_plm": "isolated"})
 
 
+@pytest.mark.parametrize("by", ["find_package", "pkg-config"])
+def test_the_library_for_many_ranks(prefix, tmp_path, environment, by):
+    if not (prefix / "lib" / "libmeshorder_mpi.so").exists():
+        pytest.skip("built without MESHORDER_MPI")
+    source = ROOT / "examples" / "ranks_of_a_solver.cpp"
+    if by == "find_package":
+        (tmp_path / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(solver LANGUAGES C CXX)\n"
+            "find_package(meshorder 0.2 REQUIRED COMPONENTS mpi)\n"
+            f"add_executable(solver {source})\ntarget_link_libraries(solver PRIVATE meshorder::mpi)\n")
+        configure(tmp_path, tmp_path, f"-DCMAKE_PREFIX_PATH={prefix}")
+        run("cmake", "--build", tmp_path)
+    else:
+        flags = run("pkg-config", "--cflags", "--libs", "meshorder-mpi", env=environment).split()
+        run("mpicxx", "-std=c++20", source, *flags, "-o", tmp_path / "solver", env=environment)
+    said = run("mpirun", "--oversubscribe", "--bind-to", "none", "-n", "2", tmp_path / "solver",
+               env={**environment, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
+    assert said.count("mean span") == 2
+
+
 def test_subproject():
     """The core without METIS, within a project that sets no build type. What was compiled is kept."""
     said = configure(USER, USER_BUILD, "--fresh", f"-DMESHORDER_SOURCE={ROOT}", "-DMESHORDER_METIS=OFF")

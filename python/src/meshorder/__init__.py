@@ -37,6 +37,6 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Loads the modules for other libraries when they are first used."""
-    if name in ("csgraph", "gmsh", "networkx", "pyvista"):
+    if name in ("csgraph", "gmsh", "mpi", "networkx", "pyvista"):
         return importlib.import_module(f"{__name__}.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

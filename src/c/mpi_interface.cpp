@@ -1,0 +1,182 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+// The C interface for many ranks: it copies the caller's arrays, checks them on all ranks, and turns
+// exceptions into statuses.
+#include "base/status.hpp"
+#include "distributed/communicator.hpp"
+#include "distributed/owned_order.hpp"
+#include <meshorder/error.hpp>
+
+#include <meshorder_mpi.h>
+#include <mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+using distributed::Communicator;
+using distributed::DistributedOptions;
+using distributed::GlobalIndex;
+using distributed::Layout;
+using distributed::OwnedMesh;
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the error of each thread
+thread_local std::string last_mpi_error;
+
+void require(bool holds, const std::string& fault) {
+  if (!holds) throw InvalidArgument(fault);
+}
+
+void require_mpi() {
+  int is_on = 0;
+  int is_off = 0;
+  MPI_Initialized(&is_on);
+  MPI_Finalized(&is_off);
+  require(is_on != 0 && is_off == 0, "MPI is not initialised");
+}
+
+bool lets_threads_call() {
+  int given = MPI_THREAD_SINGLE;
+  MPI_Query_thread(&given);
+  return given >= MPI_THREAD_MULTIPLE;
+}
+
+mo_mpi_options default_mpi_options() {
+  mo_mpi_options options{};
+  options.struct_size = sizeof options;
+  options.threads = 1;
+  return options;
+}
+
+/// The caller's options; those of all ranks must be for the same number of parts.
+DistributedOptions options_of(const Communicator& communicator, const mo_mpi_options* given) {
+  DistributedOptions options;
+  communicator.together([&] {
+    mo_mpi_options all = default_mpi_options();
+    if (given != nullptr) {
+      require(given->struct_size >= sizeof all, "options: struct_size must be the size of the structure");
+      all = *given;
+    }
+    if (all.method != nullptr) options.vertices = all.method;
+    if (all.partition != nullptr) options.partitioner = parse<distributed::Partitioner>(all.partition);
+    require(all.parts >= 0, "options: there cannot be " + std::to_string(all.parts) + " parts");
+    options.parts = all.parts;
+    options.order.seed = all.seed;
+    options.order.run.threads = all.threads;
+  });
+  const std::vector<Index> parts = communicator.gathered(options.parts);
+  communicator.together([&] {
+    require(std::count(parts.begin(), parts.end(), parts.front()) == std::ssize(parts),
+            "options: the ranks want different numbers of parts");
+  });
+  return options;
+}
+
+/// Copies the arrays of a rank. Vertices have been counted.
+void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
+  const GlobalIndex n = mesh.vertices.size();
+  require(given.cell_count >= 0, "cell_count: " + std::to_string(given.cell_count));
+  mesh.cells.offsets.reserve(static_cast<std::size_t>(given.cell_count) + 1);
+  if (given.cell_count > 0) {
+    require(given.cell_offsets != nullptr && given.cell_vertices != nullptr, "cells: an array is null");
+    require(given.cell_offsets[0] == 0, "cell_offsets: the first must be 0");
+  }
+  for (std::int64_t c = 0; c < given.cell_count; ++c) {
+    const std::int64_t begin = given.cell_offsets[c];
+    const std::int64_t end = given.cell_offsets[c + 1];
+    require(begin < end, "cell_offsets: element " + std::to_string(c) + " has no vertices");
+    for (std::int64_t k = begin; k < end; ++k) {
+      const std::int64_t vertex = given.cell_vertices[k];
+      require(vertex >= 0 && vertex < n, "cell_vertices: element " + std::to_string(c) + " has the vertex " +
+                                             std::to_string(vertex) + ", and there are " + std::to_string(n));
+      mesh.cells.entries.push_back(vertex);
+    }
+    mesh.cells.end_row();
+  }
+  if (given.points == nullptr) return;
+  mesh.points.resize(static_cast<std::size_t>(given.vertex_count));
+  std::memcpy(mesh.points.data(), given.points, mesh.points.size() * sizeof(Point));
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const Point& point = mesh.points[v];
+    require(std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); }),
+            "points: a coordinate of own vertex " + std::to_string(v) + " is not finite");
+  }
+}
+
+OwnedMesh mesh_of(const Communicator& communicator, const mo_mpi_mesh* given) {
+  communicator.together([&] {
+    require(given != nullptr, "mesh: null");
+    require(given->struct_size >= sizeof *given, "mesh: struct_size must be the size of the structure");
+    require(given->vertex_count >= 0, "vertex_count: " + std::to_string(given->vertex_count));
+  });
+  const std::vector<std::int64_t> counts = communicator.gathered(given->vertex_count);
+  OwnedMesh mesh;
+  communicator.together([&] {
+    std::vector<GlobalIndex> starts{0};
+    for (const std::int64_t count : counts) starts.push_back(starts.back() + count);
+    mesh.vertices = Layout(std::move(starts));
+    copy_arrays(*given, mesh);
+  });
+  return mesh;
+}
+
+/// Writes numbers to the caller's array, which may be missing where it is not `wanted`.
+void write(const Communicator& communicator, const std::vector<GlobalIndex>& numbers, std::int64_t* to,
+           const char* wanted = nullptr) {
+  communicator.together([&] {
+    require(to != nullptr || wanted == nullptr || numbers.empty(),
+            std::string(wanted ? wanted : "") + ": null");
+    if (to != nullptr) std::copy(numbers.begin(), numbers.end(), to);
+  });
+}
+
+}  // namespace
+}  // namespace meshorder
+
+using namespace meshorder;
+
+void mo_mpi_options_init(mo_mpi_options* options, size_t struct_size) {
+  if (options == nullptr || struct_size < sizeof(std::size_t)) return;
+  const mo_mpi_options defaults = default_mpi_options();
+  std::memset(static_cast<void*>(options), 0, struct_size);
+  std::memcpy(options, &defaults, std::min(struct_size, sizeof defaults));
+  options->struct_size = struct_size;
+}
+
+mo_status mo_mpi_order_ranks(int32_t communicator, const mo_mpi_mesh* mesh, const mo_mpi_options* options,
+                             int64_t* new_numbers, int64_t* cell_order) {
+  return status_of(
+      [&] {
+        require_mpi();
+        const Communicator ranks(MPI_Comm_f2c(communicator));
+        const DistributedOptions wanted = options_of(ranks, options);
+        const distributed::OwnedOrder order = order_owned(ranks, mesh_of(ranks, mesh), wanted);
+        write(ranks, order.new_numbers, new_numbers, "new_numbers");
+        write(ranks, order.cells, cell_order);
+      },
+      last_mpi_error);
+}
+
+mo_status mo_mpi_order_parts(int32_t communicator, const mo_mpi_mesh* mesh, const mo_mpi_options* options,
+                             int64_t* new_numbers, int64_t* part_starts, int64_t* cell_parts) {
+  return status_of(
+      [&] {
+        require_mpi();
+        const Communicator ranks(MPI_Comm_f2c(communicator));
+        DistributedOptions wanted = options_of(ranks, options);
+        if (!lets_threads_call()) wanted.partitioner = distributed::Partitioner::hilbert;
+        const distributed::OwnedParts parts = order_parts_of_owned(ranks, mesh_of(ranks, mesh), wanted);
+        write(ranks, parts.new_numbers, new_numbers, "new_numbers");
+        write(ranks, parts.starts, part_starts, "part_starts");
+        write(ranks, parts.cells, cell_parts);
+      },
+      last_mpi_error);
+}
+
+const char* mo_mpi_last_error() { return last_mpi_error.c_str(); }

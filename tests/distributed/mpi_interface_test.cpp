@@ -1,0 +1,196 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "mesh/procedural.hpp"
+#include "metrics/edge_span.hpp"
+#include "ordering/method.hpp"
+#include "slices.hpp"
+#include <meshorder/distributed.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace meshorder {
+namespace {
+
+using distributed::Communicator;
+using distributed::GlobalIndex;
+using distributed::MeshSlice;
+
+/// What a solver's ranks have of a mesh: vertices and cells in ranges.
+struct Solver {
+  Communicator communicator;
+  Mesh mesh;
+  MeshSlice slice;
+
+  explicit Solver(Mesh whole) : mesh(std::move(whole)), slice(scattered(communicator, mesh)) {}
+
+  [[nodiscard]] RankMesh view() const {
+    return {slice.vertices.size(communicator.rank()), slice.cell_vertices.offsets,
+            slice.cell_vertices.entries,
+            std::span(slice.points.empty() ? nullptr : slice.points.front().data(), 3 * slice.points.size())};
+  }
+  /// Values of all ranks on each of them.
+  [[nodiscard]] std::vector<Index> all(const std::vector<std::int64_t>& own) const {
+    const std::vector<std::int64_t> values = communicator.broadcast(communicator.gathered_at_root(own));
+    return {values.begin(), values.end()};
+  }
+};
+
+/// Expects that all ranks get an error of this kind, in these words.
+template <class Work>
+void expect_error(const Work& work, Code code, const std::string& words) {
+  try {
+    work();
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), code);
+    EXPECT_THAT(error.what(), testing::HasSubstr(words));
+  }
+}
+
+TEST(OrderRanks, KeepsVerticesWithTheirOwnersAndBringsNeighboursTogether) {
+  const Solver solver(make_ball({.size = 12}));
+  const RankOrder order = order_ranks(MPI_COMM_WORLD, solver.view());
+  const int rank = solver.communicator.rank();
+  std::vector<std::int64_t> sorted = order.new_numbers;
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t v = 0; v < sorted.size(); ++v)
+    ASSERT_EQ(sorted[v], solver.slice.vertices.begin(rank) + static_cast<GlobalIndex>(v));
+
+  const CsrGraph graph = vertex_graph(solver.mesh);
+  const Permutation whole = Permutation::from_old_to_new(solver.all(order.new_numbers));
+  EXPECT_LT(edge_span(graph, whole).mean_log2,
+            0.95 * edge_span(graph, Permutation::identity(graph.size())).mean_log2);
+  if (solver.communicator.size() == 1) {
+    EXPECT_EQ(whole, order_graph("spectral", {.graph = graph}).permutation);
+  }
+}
+
+TEST(OrderRanks, OrdersElementsByTheirNewNumbers) {
+  const Solver solver(make_ball({.size = 5}));
+  const RankOrder order = order_ranks(MPI_COMM_WORLD, solver.view());
+  const std::vector<Index> numbers = solver.all(order.new_numbers);
+  std::vector<std::vector<Index>> words;
+  for (const std::int64_t c : order.cell_order) {
+    std::vector<Index>& word = words.emplace_back();
+    for (const GlobalIndex vertex : solver.slice.cell_vertices[c])
+      word.push_back(numbers[static_cast<std::size_t>(vertex)]);
+    std::sort(word.rbegin(), word.rend());
+  }
+  EXPECT_TRUE(std::is_sorted(words.begin(), words.end()));
+  EXPECT_EQ(std::ssize(words), solver.slice.cell_vertices.size());
+}
+
+TEST(OrderRanks, TakesElementsThatSeveralRanksHave) {
+  const Solver solver(make_ball({.size = 5}));
+  const RankOrder order = order_ranks(MPI_COMM_WORLD, solver.view());
+  Solver with_ghosts = Solver(make_ball({.size = 5}));
+  distributed::Rows& cells = with_ghosts.slice.cell_vertices;
+  for (Index c = 0; c < with_ghosts.mesh.cell_count(); c += 3) {
+    const auto vertices = with_ghosts.mesh.cells[c];
+    cells.entries.insert(cells.entries.end(), vertices.begin(), vertices.end());
+    cells.end_row();
+  }
+  EXPECT_EQ(order_ranks(MPI_COMM_WORLD, with_ghosts.view()).new_numbers, order.new_numbers);
+}
+
+TEST(OrderRanks, NeedsNoCoordinatesButForGeometricOrders) {
+  const Solver solver(make_torus({.size = 4}));
+  RankMesh mesh = solver.view();
+  const RankOrder placed = order_ranks(MPI_COMM_WORLD, mesh);
+  mesh.points = {};
+  EXPECT_EQ(order_ranks(MPI_COMM_WORLD, mesh).new_numbers, placed.new_numbers);
+  expect_error([&] { (void)order_ranks(MPI_COMM_WORLD, mesh, {.method = "hilbert"}); },
+               Code::invalid_argument, "needs coordinates");
+  EXPECT_EQ(order_ranks(MPI_COMM_WORLD, solver.view(), {.method = "hilbert"}).new_numbers.size(),
+            placed.new_numbers.size());
+}
+
+TEST(OrderParts, AreThoseOfTheCommand) {
+  const Solver solver(make_ball({.size = 10}));
+  const PartOrder parts = order_parts(MPI_COMM_WORLD, solver.view(), {.parts = 6});
+  const distributed::DistributedOrder expected =
+      order_slices(solver.communicator, solver.slice, {.parts = 6});
+  EXPECT_EQ(parts.new_numbers, expected.new_vertices);
+  EXPECT_EQ(parts.part_starts, expected.report.part_starts);
+  const std::vector<Index> numbers = solver.all(parts.new_numbers);
+  for (Offset c = 0; c < solver.slice.cell_vertices.size(); ++c) {
+    Index last = 0;
+    for (const GlobalIndex vertex : solver.slice.cell_vertices[c])
+      last = std::max(last, numbers[static_cast<std::size_t>(vertex)]);
+    const std::int64_t part = parts.cell_parts[static_cast<std::size_t>(c)];
+    EXPECT_LE(parts.part_starts[static_cast<std::size_t>(part)], last);
+    EXPECT_LT(last, parts.part_starts[static_cast<std::size_t>(part) + 1]);
+  }
+}
+
+TEST(OrderParts, NeedCoordinates) {
+  const Solver solver(make_ball({.size = 4}));
+  RankMesh mesh = solver.view();
+  mesh.points = {};
+  expect_error([&] { (void)order_parts(MPI_COMM_WORLD, mesh); }, Code::invalid_argument, "coordinates");
+}
+
+TEST(RankMeshes, WithoutVerticesOrElementsAreFine) {
+  const Communicator communicator;
+  const bool is_root = communicator.is_root();
+  const std::vector<double> points{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const std::vector<std::int64_t> offsets{0, 3};
+  const std::vector<std::int64_t> vertices{0, 1, 2};
+  const RankMesh at_root{3, offsets, vertices, points};
+  EXPECT_EQ(order_ranks(MPI_COMM_WORLD, is_root ? at_root : RankMesh{}).new_numbers.size(),
+            is_root ? 3U : 0U);
+  EXPECT_EQ(order_ranks(MPI_COMM_WORLD, RankMesh{}).cell_order.size(), 0U);
+  EXPECT_EQ(order_parts(MPI_COMM_WORLD, RankMesh{}).part_starts.back(), 0);
+}
+
+TEST(RankMeshes, AFaultOfOneRankIsToldOnAll) {
+  const Solver solver(make_ball({.size = 4}));
+  const int last = solver.communicator.size() - 1;
+  const bool is_last = solver.communicator.rank() == last;
+  const auto expect_fault = [&](const RankMesh& faulty, const std::string& words) {
+    expect_error([&] { (void)order_ranks(MPI_COMM_WORLD, is_last ? faulty : solver.view()); },
+                 Code::invalid_argument, words);
+    expect_error([&] { (void)order_parts(MPI_COMM_WORLD, is_last ? faulty : solver.view()); },
+                 Code::invalid_argument, words);
+  };
+  std::vector<std::int64_t> vertices = solver.slice.cell_vertices.entries;
+  std::vector<std::int64_t> offsets = solver.slice.cell_vertices.offsets;
+  RankMesh mesh = solver.view();
+  ASSERT_FALSE(vertices.empty());
+  vertices.front() = solver.slice.vertices.size();
+  mesh.cell_vertices = vertices;
+  expect_fault(mesh, "cell_vertices: element 0 has the vertex");
+  mesh = solver.view();
+  offsets[1] = 0;
+  mesh.cell_offsets = offsets;
+  expect_fault(mesh, "element 0 has no vertices");
+  mesh = solver.view();
+  mesh.vertex_count = -1;
+  expect_fault(mesh, "vertex_count: -1");
+  mesh = solver.view();
+  std::vector<double> points(mesh.points.begin(), mesh.points.end());
+  points.back() = std::numeric_limits<double>::quiet_NaN();
+  mesh.points = points;
+  expect_fault(mesh, "is not finite");
+  expect_error(
+      [&] {
+        (void)order_ranks(MPI_COMM_WORLD, solver.view(), {.method = is_last ? "nonsense" : "spectral"});
+      },
+      Code::invalid_argument, "nonsense");
+  expect_error([&] { (void)order_parts(MPI_COMM_WORLD, solver.view(), {.partition = "rcb"}); },
+               Code::invalid_argument, "rcb");
+  if (last > 0) {
+    expect_error([&] { (void)order_parts(MPI_COMM_WORLD, solver.view(), {.parts = is_last ? 3 : 2}); },
+                 Code::invalid_argument, "different numbers of parts");
+    mesh = solver.view();
+    mesh.points = {};
+    expect_fault(mesh, "some ranks have coordinates");
+  }
+}
+
+}  // namespace
+}  // namespace meshorder

@@ -1,0 +1,105 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""`meshorder.mpi`, which calls libmeshorder_mpi, in programs that mpirun starts."""
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MESHORDER = pathlib.Path(os.environ.get("MESHORDER", ROOT / "build" / "bin" / "meshorder"))
+LIBRARY = MESHORDER.parents[1] / "src" / "libmeshorder_mpi.so"
+SECONDS = 60  # after which ranks are taken to wait for each other
+
+# the module alone: the wheel with the rest is not this interpreter's
+BEGINNING = f"""
+import sys, types
+package = types.ModuleType("meshorder")
+package.__path__ = [{str(ROOT / "python" / "src" / "meshorder")!r}]
+sys.modules["meshorder"] = package
+import numpy
+from mpi4py import MPI
+import meshorder.mpi
+comm = MPI.COMM_WORLD
+# a strip of triangles, of which each rank owns `own` vertices in a poor order
+own = 500
+def number(k):
+    return k // own * own + 77 * (k % own) % own
+first = comm.rank * own
+last = min(comm.size * own, first + own + 2)
+triangles = numpy.array([[number(k), number(k + 1), number(k + 2)] for k in range(first, last - 2)])
+places = numpy.empty((own, 2))
+for k in range(first, first + own):
+    places[number(k) - first] = k // 2, k % 2
+"""
+
+pytest.importorskip("mpi4py")
+if not LIBRARY.exists():
+    pytest.skip("needs a build with MESHORDER_MPI=ON", allow_module_level=True)
+
+
+def ranks(count, program, **variables):
+    environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                   "OMPI_MCA_mpi_yield_when_idle": "1", "MESHORDER_MPI_LIBRARY": str(LIBRARY), **variables}
+    return subprocess.run(["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(count), sys.executable, "-c",
+                           BEGINNING + program], env=environment, capture_output=True, text=True, timeout=SECONDS, check=False)
+
+
+def ended_well(done):
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_vertices_stay_with_their_ranks_and_neighbours_meet(count):
+    ended_well(ranks(count, """
+order = meshorder.mpi.order_ranks(comm, own, triangles)
+assert sorted(order.new_numbers) == list(range(first, first + own))
+assert sorted(order.cell_order) == list(range(len(triangles)))
+inside = triangles[(triangles // own == comm.rank).all(axis=1)] - first
+span = numpy.abs(numpy.diff(order.new_numbers[inside], axis=1))
+assert span.mean() < 2.1, span.mean()
+ordered = triangles[order.cell_order]
+same = meshorder.mpi.order_ranks(comm, own, (3 * numpy.arange(len(triangles) + 1), triangles.ravel()), places)
+assert (same.new_numbers == order.new_numbers).all()
+"""))
+
+
+def test_parts_are_ranges_of_the_new_numbers():
+    ended_well(ranks(2, """
+order = meshorder.mpi.order_parts(comm, own, triangles, places, parts=5)
+every = numpy.sort(numpy.concatenate(comm.allgather(order.new_numbers)))
+assert (every == numpy.arange(own * comm.size)).all()
+assert order.part_starts[0] == 0 and order.part_starts[-1] == own * comm.size and len(order.part_starts) == 6
+sizes = numpy.diff(order.part_starts)
+assert sizes.max() <= 1.05 * sizes.mean()
+assert set(order.cell_parts) <= set(range(5))
+"""))
+
+
+def test_errors_reach_all_ranks():
+    said = ended_well(ranks(2, """
+wrong = triangles.copy()
+if comm.rank == 1:
+    wrong[0, 0] = 10 ** 12
+for call in (lambda: meshorder.mpi.order_ranks(comm, own, wrong),
+             lambda: meshorder.mpi.order_ranks(comm, own, triangles, method="nonsense"),
+             lambda: meshorder.mpi.order_parts(comm, own, triangles, places, partition="nonsense")):
+    try:
+        call()
+    except ValueError as error:
+        print(type(error).__name__, error)
+"""))
+    assert said.count("InvalidArgument") == 6
+    assert said.count("has the vertex 1000000000000") == 2
+
+
+def test_a_missing_library_is_told():
+    done = ranks(1, """
+try:
+    meshorder.mpi.order_ranks(comm, own, triangles)
+except RuntimeError as error:
+    print(type(error).__name__, error)
+""", MESHORDER_MPI_LIBRARY="libnowhere.so")
+    assert ended_well(done).startswith("Unavailable libnowhere.so was not found")
