@@ -87,7 +87,9 @@ void check_same_format(const Mesh& mesh, std::string_view format, const std::str
   Notes notes;
   const std::optional<MemoryFiles> files = written(mesh, format, name, notes);
   if (!files) return;
-  const Mesh again = read_back(format, files->files);
+  Mesh again = read_back(format, files->files);
+  // Gmsh's entities that come in turns bind no cells; an order may bring the cells of each together
+  if (format == "gmsh" && mesh.cell_blocks.empty()) again.cell_blocks.clear();
   const Extent extent = extent_of(format, notes.empty());
   const std::string found = format == "med"
                                 ? difference(without_families(again), without_families(mesh), extent)

@@ -17,6 +17,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -109,6 +110,20 @@ TEST(Gmsh, KeepsStepsOfDataApartAndKnowsPartialData) {
   EXPECT_EQ(values<double>(mesh, "jump", Association::cells), (Reals{1, 2, 3, 0, 4, 5, 6, 7}));
   EXPECT_THAT(mesh.format_metadata->contents(), Contains("the times and steps of data"));
   EXPECT_THAT(mesh.format_metadata->contents(), Contains("Gmsh's $Entities"));
+}
+
+TEST(Gmsh, KeepsViewsWithoutANameApart) {
+  const auto view = [](const char* values) {
+    return std::string("$NodeData\n1\n\"\"\n1\n0\n3\n0\n1\n") + values + "$EndNodeData\n";
+  };
+  const std::string text =
+      std::string(kGmsh41) + view("2\n2 0.5\n10 0.25\n") + view("1\n2 8\n") + view("0\n");
+  const Mesh mesh = read_text(text);
+  EXPECT_EQ(values<double>(mesh, " step 0", Association::vertices), (Reals{0.5, 0.25}));
+  const MemoryFiles files = write_mesh_to_memory(mesh, "gmsh", "m.msh");
+  expect_same(read_text(files.files.front().bytes), mesh);
+  EXPECT_THAT(files.files.front().bytes,
+              EndsWith(view("2\n2 0.5\n10 0.25\n") + view("1\n2 8\n") + view("0\n")));
 }
 
 TEST(Gmsh, ReadsAllOfVersion22) {

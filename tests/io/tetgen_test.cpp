@@ -217,6 +217,17 @@ TEST(TetGen, NumbersWithGapsInAnyOrderRunInTheNewOrder) {
   EXPECT_EQ(unmarked(folder.path() / "out.ele"), "2  4  0\n5 4000000000 10 20 30\n7 10 4000000000 20 30\n");
 }
 
+TEST(TetGen, APointZeroInAnyPlaceCountsCellsFromZero) {
+  const TemporaryFolder folder;
+  const fs::path path =
+      put(folder, {"4 3\n7 0 0 0\n0 1 0 0\n8 0 1 0\n9 0 0 1\n", "1 4\n1 7 0 8 9\n", "", ""});
+  Mesh mesh = read_mesh(path);
+  EXPECT_THAT(mesh.cell_ids, ElementsAre(1));
+  apply_reordering(mesh, Permutation::from_new_to_old({1, 0, 2, 3}), Permutation::identity(1));
+  write_mesh(mesh, folder.path() / "out.node");
+  test::expect_same(read_mesh(folder.path() / "out.node"), mesh);
+}
+
 TEST(TetGen, AttributesThatAreNotRegionsStayReal) {
   const Mesh mesh = read({.ele = "2 4 2\n1 1 2 3 4  10 0.5\n2 2 3 4 5  20 1e-3\n"});
   const DataArray* attribute = find_array(mesh, "attribute", Association::cells);

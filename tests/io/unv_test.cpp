@@ -252,6 +252,17 @@ TEST(Unv, NamesStepsOfResults) {
   EXPECT_TRUE(written(mesh).ends_with(again));
 }
 
+TEST(Unv, StepsStayInTheirPlacesWhereAHeaderIsMadeAnew) {
+  const std::string again = "    -1\n    55\n" + dataset_of(std::string(kFile), 55) + "    -1\n";
+  // the first says whole numbers, and has others
+  const std::string text =
+      with(std::string(kFile), "         8         2         3\n", "         8         1         3\n") +
+      again;
+  const Mesh mesh = read_text(text);
+  ASSERT_NE(find_array(mesh, "displacement step 2", Association::vertices), nullptr);
+  test::expect_same(read_text(written(mesh)), mesh);
+}
+
 TEST(Unv, ReadsOlderDatasets) {
   const std::string text =
       "    -1\n    15\n"

@@ -252,14 +252,14 @@ void read_view(ReadContext& reading, std::string_view section) {
   check_distinct(reading.source, entries.rows, section);
   find_rule(reading, entries, view);
   DataArray array;
-  array.name = view.array;
+  array.name = *view.array;
   array.association = view.association;
   std::vector<double> values = even_rows(reading, entries, view, array.components);
   expect_end(reading.source, section);
   reading.metadata.sections.push_back({SectionKind::view, view.section, "", reading.metadata.views.size()});
   reading.view_arrays.push_back(reading.mesh.data.size());
   if (entries.rows.empty()) {  // an array without rows would mean all
-    view.array.clear();
+    view.array.reset();
   } else {
     array.indices = std::move(entries.rows);
     sort_full(array, values, on_vertices ? reading.mesh.vertex_count() : reading.mesh.cell_count());
@@ -272,15 +272,17 @@ void read_view(ReadContext& reading, std::string_view section) {
 void name_views(ReadContext& reading) {
   auto& views = reading.metadata.views;
   std::map<std::pair<std::string, std::string>, int> steps;
-  for (const View& view : views) ++steps[{view.section, view.array}];
+  for (const View& view : views) {
+    if (view.array) ++steps[{view.section, *view.array}];
+  }
   const std::map<std::pair<std::string, std::string>, int> counts = std::move(steps);
   ArrayNames names(reading.mesh);
   for (std::size_t i = 0; i < views.size(); ++i) {
     View& view = views[i];
-    if (view.array.empty()) continue;
+    if (!view.array) continue;
     DataArray& array = reading.mesh.data[reading.view_arrays[i]];
-    std::string name = view.array;
-    if (counts.at({view.section, view.array}) > 1) name += " step " + std::to_string(view.integers[0]);
+    std::string name = *view.array;
+    if (counts.at({view.section, name}) > 1) name += " step " + std::to_string(view.integers[0]);
     names.rename(array, name);
     restore_labels(array);
     view.array = array.name;
@@ -332,7 +334,7 @@ bool add_view(Metadata& layout, const DataArray& array, Notes& notes) {
 
 void write_view(NumberWriter& sink, const WriteContext& output, const View& view) {
   const Mesh& mesh = output.mesh;
-  const DataArray* array = find_array(mesh, view.array, view.association);
+  const DataArray* array = view.array ? find_array(mesh, *view.array, view.association) : nullptr;
   const Index rows = array ? row_count(*array) : 0;
   const Index components = view.integers[1];
 

@@ -11,6 +11,7 @@
 #include <bit>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -63,7 +64,7 @@ enum class PerElement : std::uint8_t { one, each_node, each_corner, fixed };
 struct View {
   std::string section;
   Association association = Association::vertices;
-  std::string array;                   ///< name of the array in the mesh
+  std::optional<std::string> array;    ///< name of the array in the mesh; none: a view without values
   std::vector<std::string> strings;    ///< verbatim, quotes included
   std::vector<double> reals;           ///< the time first
   std::vector<std::int32_t> integers;  ///< step, components, entries (set anew when written), partition …

@@ -170,9 +170,12 @@ void read_points(Scanner& in, ReadContext& to) {
     end_record(in);
   }
 
-  // as TetGen does, the first number decides whether counting begins at 0 or at 1
+  // As TetGen does, the first number decides whether counting begins at 0 or at 1. Where numbers do not run,
+  // any 0 decides, so that no order of the points changes what the numbers of cells mean.
   to.metadata->base = to.points.id(0) == 0 ? 0 : 1;
   mesh.vertex_ids = to.points.ids_unless_from(to.metadata->base);
+  if (std::find(mesh.vertex_ids.begin(), mesh.vertex_ids.end(), 0) != mesh.vertex_ids.end())
+    to.metadata->base = 0;
   if (attributes > 0) {
     mesh.data.push_back(
         {"attribute", Association::vertices, static_cast<Index>(attributes), std::move(values), {}, {}});

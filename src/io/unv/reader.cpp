@@ -455,6 +455,7 @@ class UnvReader {
       const std::pair key{found.results.association, found.name};
       Section& section = file_->sections[section_of_results_[r]];
       const bool of_nodes = found.results.association == Association::vertices;
+      found.results.name = found.name;
       found.results.array = steps[key] > 1 ? fmt::format("{} step {}", found.name, ++step[key]) : found.name;
       auto array = array_of(found, of_nodes ? file_->nodes : file_->elements);
       const bool is_taken = find_array(mesh_, found.results.array, found.results.association) != nullptr;

@@ -403,11 +403,13 @@ class UnvWriter {
     const Results& results = file_.results[section.first];
     const DataArray* const array = find_array(mesh_, results.array, results.association);
     if (array == nullptr || array->components != results.components ||
-        std::holds_alternative<std::vector<std::string>>(array->values) ||
-        (results.integers && !holds_integers(*array))) {
+        std::holds_alternative<std::vector<std::string>>(array->values)) {
       return;
     }
     written_arrays_.insert(array);
+    // a header that says whole numbers of others is made anew, in its place: the steps of one name are
+    // counted
+    if (results.integers && !holds_integers(*array)) return write_result(*array, results.name, 1);
     lines_.text(section.text);
     const bool counts = results.association == Association::cells;
     write_rows(*array, results, counts ? results.components_in_file : 0);
@@ -461,16 +463,31 @@ class UnvWriter {
         note_array_unsupported(array, kName, notes_);
         continue;
       }
-      Results results;
-      results.integers = holds_integers(array);
-      results.digits = 12;
-      write_header(array, results, ++label);
-      write_rows(array, results, array.association == Association::cells ? array.components : 0);
-      lines_.delimiter();
+      const std::string name = name_in_file(array.name);
+      note_renamed_array(array, name, notes_);
+      write_result(array, name, ++label);
     }
   }
 
-  void write_header(const DataArray& array, const Results& results, std::int64_t label) {
+  static std::string name_in_file(const std::string& wanted) {
+    std::string name = plain_name(wanted);
+    if (trimmed(name).empty()) name = "results";
+    if (trimmed(name) == kDelimiter) name = "_" + name;
+    return std::string(utf8_prefix(name, kLongestLine));
+  }
+
+  /// Writes a dataset with a header of its own.
+  void write_result(const DataArray& array, const std::string& name, std::int64_t label) {
+    Results results;
+    results.integers = holds_integers(array);
+    results.digits = 12;
+    write_header(array, name, results, label);
+    write_rows(array, results, array.association == Association::cells ? array.components : 0);
+    lines_.delimiter();
+  }
+
+  void write_header(const DataArray& array, const std::string& name, const Results& results,
+                    std::int64_t label) {
     /// What is said of values with so many components.
     struct Meaning {
       Index components;
@@ -483,11 +500,6 @@ class UnvWriter {
       return known.components == array.components;
     });
     const bool is_known = meaning != kMeanings.end();
-    std::string name = plain_name(array.name);
-    if (trimmed(name).empty()) name = "results";
-    if (trimmed(name) == kDelimiter) name = "_" + name;
-    name = std::string(utf8_prefix(name, kLongestLine));
-    note_renamed_array(array, name, notes_);
     lines_.begin_dataset(kResults);
     lines_.integer(label);
     lines_.end_line();

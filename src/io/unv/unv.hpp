@@ -108,6 +108,7 @@ struct Group {
 /// Values at nodes or elements.
 struct Results {
   std::string array;  ///< name in the mesh
+  std::string name;   ///< as in the file
   Association association = Association::vertices;
   Index components = 1;
   std::int64_t components_in_file = 1;  ///< where complex numbers are one component
