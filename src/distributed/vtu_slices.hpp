@@ -6,9 +6,9 @@
 #include "distributed/mesh_slice.hpp"
 #include "distributed/order.hpp"
 #include "distributed/shared_file.hpp"
+#include "distributed/vtu_head.hpp"
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,42 +48,16 @@ class VtuSlices {
              const DistributedOrder& order) const;
 
  private:
-  enum class Role : std::uint8_t { points, types, offsets, connectivity, data };
-
-  /// The values of an array in the file.
-  struct Array {
-    Role role;
-    Association association;
-    std::uint8_t type;  ///< number type, as the alternatives of Values
-    Offset at;          ///< first byte
-    Offset row;         ///< bytes of a row
-    Offset size;        ///< bytes
-  };
-
-  class Head;
-
-  [[nodiscard]] const Array& array(Role role) const;
+  [[nodiscard]] const VtuArray& array(VtuArray::Role role) const;
   [[nodiscard]] MeshSlice empty_slice(const Communicator& communicator) const;
   [[nodiscard]] std::vector<std::byte> rows(const Communicator& communicator, const SharedFile& file,
-                                            Role role, GlobalIndex begin, GlobalIndex end) const;
+                                            VtuArray::Role role, GlobalIndex begin, GlobalIndex end) const;
   void read_points(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
   void read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
   void copy_rest(const std::string& path, const std::string& name) const;
 
   std::string path_;
-  GlobalIndex vertices_ = 0;
-  GlobalIndex cells_ = 0;
-  GlobalIndex entries_ = 0;  ///< of the connectivity
-  Offset bytes_ = 0;         ///< size of the file
-  std::vector<Array> arrays_;
+  VtuHead head_;
 };
-
-/// Returns the new place of each cell of a slice: those of a dimension take their places in the order in
-/// which `in_order`, this rank's share of all cells, lists them. Every rank has to call it. O(cells).
-///
-/// @throws as `Communicator::exchange`
-[[nodiscard]] std::vector<GlobalIndex> places_by_dimension(const Communicator& communicator,
-                                                           const MeshSlice& slice,
-                                                           const std::vector<GlobalIndex>& in_order);
 
 }  // namespace meshorder::distributed
