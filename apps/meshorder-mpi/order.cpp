@@ -210,8 +210,9 @@ int share_of_cores(const Communicator& communicator) {
 void add_distributed_order(CLI::App& subcommand, const Communicator& communicator) {
   subcommand.description(
       "Reorder a mesh by all ranks: parts, each in an order of its own, numbered one after another, so\n"
-      "that parts that touch are near each other. A .vtu file of one piece with raw appended data is\n"
-      "read and written by all ranks, unless --maps, --ids, --only or --strict are given; others by rank 0.");
+      "that parts that touch are near each other. A .vtu file of one piece with raw appended data,\n"
+      "compressed or not, is read and written by all ranks, unless --maps, --ids, --only or --strict\n"
+      "are given; others by rank 0.");
   subcommand.footer(
       "Examples:\n"
       "  mpirun -n 4 meshorder order part.vtu -o ordered.vtu\n"

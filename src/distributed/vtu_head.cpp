@@ -1,11 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/vtu_head.hpp"
 
+#include "base/memory.hpp"
 #include "distributed/vtu_numbers.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/vtk/vtk.hpp"
+#include "io/vtk/vtu_compressor.hpp"
 #include "io/vtk/vtu_document.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
+#include <cstring>
 #include <fstream>
 #include <string_view>
 #include <utility>
@@ -23,6 +25,7 @@ namespace {
 
 constexpr std::size_t kLongestHead = std::size_t{1} << 26;
 constexpr Offset kMostComponents = Offset{1} << 24;
+constexpr const char* kCutShort = "the file may be cut short";
 constexpr std::string_view kAppended = "<AppendedData";
 
 /// The XML of a file without its arrays, for the parser.
@@ -50,44 +53,34 @@ std::string head_of(const FilePath& path) {
   return {};
 }
 
-/// Returns a count in an attribute; `otherwise`, unless it is negative, without the attribute.
-Offset whole_number(const vtk::VtuDocument& file, const vtk::VtuElement& element, std::string_view name,
-                    Offset otherwise = -1) {
-  if (otherwise >= 0 && element.attribute(name) == nullptr) return otherwise;
-  const std::string& text = file.required(element, name);
-  Offset value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc{} || end != text.data() + text.size() || value < 0) {
-    throw file.error(element, fmt::format("{} is '{}'", name, text.substr(0, 40)),
-                     "a whole number from 0 on is needed");
-  }
-  return value;
-}
-
 using Role = VtuArray::Role;
 
 class HeadReader {
  public:
-  explicit HeadReader(const std::string& path) : path_(path) {}
+  HeadReader(const std::string& path, int ranks) : path_(path), ranks_(ranks) {}
 
   std::optional<VtuHead> read() {
     finish_interrupted(path_);
-    const std::string text = head_of(path_);
+    std::string text = head_of(path_);
     if (text.empty()) return std::nullopt;
-    first_byte_ = static_cast<Offset>(text.size());
+    head_.facts.first_byte = static_cast<Offset>(text.size());
     HeadOnly store(text + "</AppendedData></VTKFile>");
     const FilePath path(path_, store);
     const ReadScope scope(path);
-    const vtk::VtuDocument file(path);
     bytes_.open(path_, std::ios::binary | std::ios::ate);
-    head_.sizes.bytes = static_cast<Offset>(bytes_.tellg());
-    const VtuEncoding& encoding = file.encoding();
+    head_.facts.bytes = static_cast<Offset>(bytes_.tellg());
+    count_file(path, static_cast<std::uint64_t>(head_.facts.bytes));
+    const vtk::VtuDocument file(path);
+    const VtuEncoding& encoding = head_.facts.encoding = file.encoding();
     const vtk::VtuElement* const grid = file.root().child("UnstructuredGrid");
-    if (encoding.compressor != VtuEncoding::Compressor::none || encoding.order != std::endian::native ||
+    if (!vtk::VtuCompressor::available(encoding.compressor) || encoding.order != std::endian::native ||
         grid == nullptr || count_of(*grid, "Piece") != 1) {
       return std::nullopt;
     }
-    if (!read_piece(file, *grid->child("Piece")) || !are_apart()) return std::nullopt;
+    word_ = encoding.wide_headers ? 8 : 4;
+    if (!read_piece(file, *grid->child("Piece"))) return std::nullopt;
+    head_.xml = VtuXml(std::move(text), file);
+    if (!are_apart()) return std::nullopt;
     return std::move(head_);
   }
 
@@ -98,14 +91,14 @@ class HeadReader {
   }
 
   bool read_piece(const vtk::VtuDocument& file, const vtk::VtuElement& piece) {
-    head_.sizes.vertices = whole_number(file, piece, "NumberOfPoints");
-    head_.sizes.cells = whole_number(file, piece, "NumberOfCells");
+    head_.facts.vertices = whole_number(file, piece, "NumberOfPoints");
+    head_.facts.cells = whole_number(file, piece, "NumberOfCells");
     for (const vtk::VtuElement& section : piece.children) {
       for (const vtk::VtuElement& element : section.children) {
         if (!read_array(file, section.name, element)) return false;
       }
     }
-    if (head_.sizes.vertices == 0 || head_.sizes.cells == 0) return false;
+    if (head_.facts.vertices == 0 || head_.facts.cells == 0) return false;
     constexpr std::array kNeeded{Role::points, Role::types, Role::offsets, Role::connectivity};
     return std::all_of(kNeeded.begin(), kNeeded.end(), [&](Role role) {
       return std::count_if(head_.arrays.begin(), head_.arrays.end(),
@@ -151,59 +144,135 @@ class HeadReader {
                                                  : components == 1 && is_whole;
     if (number == 0 || !fits) return false;
     array.row = number * components;
-    place(file, element, array);
-    head_.arrays.push_back(array);
+    if (name != nullptr) copy_start(*name, array.name);
+    std::vector<Offset> blocks = place(file, element, array);
+    const auto behind = std::upper_bound(head_.arrays.begin(), head_.arrays.end(), array,
+                                         [](const VtuArray& a, const VtuArray& b) { return a.at < b.at; });
+    head_.blocks.insert(head_.blocks.begin() + (behind - head_.arrays.begin()), std::move(blocks));
+    head_.arrays.insert(behind, array);
     return true;
   }
 
-  /// Finds the bytes of an array by its offset and the word before them.
-  void place(const vtk::VtuDocument& file, const vtk::VtuElement& element, VtuArray& array) {
-    const Offset word = file.encoding().wide_headers ? 8 : 4;
+  /// Keeps as much of a name as there is room for, in one line.
+  static void copy_start(std::string_view name, std::array<char, 41>& target) {
+    std::replace_copy_if(
+        name.begin(), name.begin() + std::min<std::ptrdiff_t>(std::ssize(name), 40), target.begin(),
+        [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
+  }
+
+  /// Finds the bytes of an array by its offset and the words before them; returns its blocks.
+  std::vector<Offset> place(const vtk::VtuDocument& file, const vtk::VtuElement& element, VtuArray& array) {
+    const std::string what = fmt::format("the array '{}'", array.name.data());
     const Offset offset = whole_number(file, element, "offset");
-    const std::string* const name = element.attribute("Name");
-    const std::string what = fmt::format("the array '{}'", name == nullptr ? "" : name->substr(0, 40));
-    if (offset > head_.sizes.bytes - first_byte_ - word)
-      throw file.error(element, what + " lies beyond the end of the file", "the file may be cut short");
-    array.at = first_byte_ + offset + word;
-    std::uint64_t size = 0;
-    bytes_.seekg(first_byte_ + offset);
-    bytes_.read(reinterpret_cast<char*>(&size), word);
-    const Offset rows = array.association == Association::vertices ? head_.sizes.vertices : head_.sizes.cells;
+    if (offset > head_.facts.bytes - head_.facts.first_byte)
+      throw file.error(element, what + " lies beyond the end of the file", kCutShort);
+    array.at = head_.facts.first_byte + offset;
+    std::vector<Offset> blocks;
+    const std::uint64_t size = head_.facts.encoding.compressor == VtuEncoding::Compressor::none
+                                   ? place_bytes(file, element, what, array)
+                                   : place_blocks(file, element, what, array, blocks);
+    const Offset rows = array.association == Association::vertices ? head_.facts.vertices : head_.facts.cells;
     const bool is_free = array.role == Role::connectivity;
-    if (!bytes_ || size > static_cast<std::uint64_t>(head_.sizes.bytes - array.at)) {
-      throw file.error(element,
-                       fmt::format("{} has {} bytes, but the file ends after {}", what, size,
-                                   head_.sizes.bytes - array.at),
-                       "the file may be cut short");
-    }
     array.size = static_cast<Offset>(size);
     if (is_free ? array.size % array.row != 0
                 : array.size / array.row != rows || array.size % array.row != 0) {
       throw file.error(element, fmt::format("{} has {} bytes for {} rows of {}", what, size, rows, array.row),
                        "the file may be damaged");
     }
-    if (is_free) head_.sizes.entries = array.size / array.row;
+    if (is_free) head_.facts.entries = array.size / array.row;
+    return blocks;
   }
 
-  /// Returns whether no two arrays share bytes.
-  bool are_apart() {
-    std::vector<std::pair<Offset, Offset>> ranges;
-    for (const VtuArray& array : head_.arrays) ranges.emplace_back(array.at, array.at + array.size);
-    std::sort(ranges.begin(), ranges.end());
-    for (std::size_t k = 1; k < ranges.size(); ++k) {
-      if (ranges[k].first < ranges[k - 1].second) return false;
+  /// Returns the next words of the file.
+  std::vector<std::uint64_t> words(const vtk::VtuDocument& file, const vtk::VtuElement& element,
+                                   const std::string& what, std::uint64_t count) {
+    const auto left = static_cast<std::uint64_t>(head_.facts.bytes - bytes_.tellg());
+    if (count > left / word_) throw file.error(element, what + " ends early", kCutShort);
+    file.claim(element, bytes_for(count, 2 * sizeof(std::uint64_t)));
+    std::vector<char> bytes(count * word_);
+    bytes_.read(bytes.data(), std::ssize(bytes));
+    if (!bytes_) throw InputError(path_, "cannot be read", "it may have changed while it was read");
+    std::vector<std::uint64_t> result;
+    for (std::size_t at = 0; at < bytes.size(); at += word_) {
+      std::uint64_t wide = 0;
+      std::uint32_t narrow = 0;
+      std::memcpy(word_ == 8 ? static_cast<void*>(&wide) : &narrow, bytes.data() + at, word_);
+      result.push_back(word_ == 8 ? wide : narrow);
     }
-    return true;
+    return result;
+  }
+
+  /// Finds the bytes of an array that is not compressed, by the word before them; returns their number.
+  std::uint64_t place_bytes(const vtk::VtuDocument& file, const vtk::VtuElement& element,
+                            const std::string& what, VtuArray& array) {
+    bytes_.seekg(array.at);
+    const std::uint64_t size = words(file, element, what, 1).front();
+    const auto left = static_cast<std::uint64_t>(head_.facts.bytes - bytes_.tellg());
+    if (size > left)
+      throw file.error(element, fmt::format("{} has {} bytes, but the file ends after {}", what, size, left),
+                       kCutShort);
+    array.stored = static_cast<Offset>(word_ + size);
+    return size;
+  }
+
+  /// Finds the blocks of a compressed array by the words before them: how many there are, the bytes of each
+  /// and of a shorter last one, and the compressed bytes of each. Returns how many bytes they hold.
+  std::uint64_t place_blocks(const vtk::VtuDocument& file, const vtk::VtuElement& element,
+                             const std::string& what, VtuArray& array, std::vector<Offset>& blocks) {
+    bytes_.seekg(array.at);
+    const std::vector<std::uint64_t> head = words(file, element, what, 3);
+    const std::vector<std::uint64_t> compressed = words(file, element, what, head[0]);
+    if (head[0] > 1 && head[1] == 0)
+      throw file.error(element, what + " has empty blocks", "the array is damaged");
+    const std::uint64_t ratio = vtk::VtuCompressor::greatest_ratio(head_.facts.encoding.compressor);
+    std::uint64_t size = 0;
+    blocks.push_back(bytes_.tellg());
+    for (std::size_t b = 0; b < compressed.size(); ++b) {
+      if (compressed[b] > static_cast<std::uint64_t>(head_.facts.bytes - blocks.back()))
+        throw file.error(element, what + " ends early", kCutShort);
+      const std::uint64_t bytes = b + 1 == compressed.size() && head[2] > 0 ? head[2] : head[1];
+      if (bytes > compressed[b] * ratio + 1024) {
+        throw file.error(element,
+                         fmt::format("{}: a block of {} bytes cannot hold {}", what, compressed[b], bytes),
+                         "the array is damaged");
+      }
+      size += bytes;
+      blocks.push_back(blocks.back() + static_cast<Offset>(compressed[b]));
+    }
+    // what a rank holds of it: its share, and a block that it needs a part of
+    file.claim(element, size / static_cast<std::uint64_t>(ranks_) + std::min(head[1], size));
+    array.stored = blocks.back() - array.at;
+    array.blocks = std::ssize(compressed);
+    array.block = static_cast<Offset>(compressed.size() == 1 ? size : head[1]);
+    return size;
+  }
+
+  /// Returns whether no two arrays share bytes, and none begins within another.
+  [[nodiscard]] bool are_apart() const {
+    const std::vector<VtuArray>& arrays = head_.arrays;
+    for (std::size_t k = 1; k < arrays.size(); ++k) {
+      if (arrays[k].at < arrays[k - 1].at + arrays[k - 1].stored) return false;
+    }
+    const std::vector<Offset> offsets = head_.xml.offsets();
+    return std::none_of(offsets.begin(), offsets.end(), [&](Offset offset) {
+      const Offset at = head_.facts.first_byte + offset;
+      return std::any_of(arrays.begin(), arrays.end(), [&](const VtuArray& array) {
+        return array.at < at && at < array.at + array.stored;
+      });
+    });
   }
 
   const std::string& path_;
+  int ranks_;
   VtuHead head_;
-  Offset first_byte_ = 0;  ///< of the appended data
+  std::size_t word_ = 8;  ///< bytes of a word before an array
   std::ifstream bytes_;
 };
 
 }  // namespace
 
-std::optional<VtuHead> read_vtu_head(const std::string& path) { return HeadReader(path).read(); }
+std::optional<VtuHead> read_vtu_head(const std::string& path, int ranks) {
+  return HeadReader(path, ranks).read();
+}
 
 }  // namespace meshorder::distributed

@@ -7,13 +7,16 @@
 #include "distributed/moved_rows.hpp"
 #include "distributed/shared_file.hpp"
 #include "distributed/vtu_numbers.hpp"
+#include "distributed/vtu_rows.hpp"
+#include "io/vtk/vtu_compressor.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/shape.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <span>
 #include <utility>
 
 namespace meshorder::distributed {
@@ -23,18 +26,60 @@ using Role = VtuArray::Role;
 
 constexpr Offset kChunk = Offset{1} << 24;  // bytes that are copied at a time
 
+/// Copies bytes begin … end − 1 of a file to another, by the root.
+void copy_bytes(const Communicator& communicator, const SharedFile& in, Offset begin, Offset end,
+                const SharedFile& out, Offset to) {
+  std::vector<std::byte> bytes;
+  for (Offset at = begin; at < end; at += kChunk) {
+    if (communicator.is_root()) bytes.resize(static_cast<std::size_t>(std::min(kChunk, end - at)));
+    in.read(at, bytes);
+    out.write(to + at - begin, bytes);
+  }
+}
+
+/// Where arrays are in a new file that were elsewhere in an old one.
+class NewPlaces {
+ public:
+  /// Takes the first bytes of both files that are no XML.
+  NewPlaces(Offset old_begin, Offset new_begin) : moves_{{old_begin, new_begin}} {}
+
+  /// Says that what begins at a byte of the old file, and does not end before the next such, begins
+  /// elsewhere.
+  void add(Offset old_begin, Offset new_begin) { moves_.emplace_back(old_begin, new_begin); }
+
+  /// Returns the first byte of the new file that is no XML.
+  [[nodiscard]] Offset first_byte() const { return moves_.front().second; }
+  /// Returns the new offset for an old one. O(log arrays).
+  [[nodiscard]] Offset of_offset(Offset old) const {
+    const Offset at = moves_.front().first + old;
+    const auto behind = std::upper_bound(moves_.begin(), moves_.end(), at,
+                                         [](Offset byte, const auto& move) { return byte < move.first; });
+    const auto& [old_begin, new_begin] = *(behind - 1);
+    return new_begin + at - old_begin - first_byte();
+  }
+
+ private:
+  std::vector<std::pair<Offset, Offset>> moves_;  ///< ascending
+};
+
 }  // namespace
 
 std::optional<VtuSlices> VtuSlices::open(const Communicator& communicator, const std::string& path) {
-  std::optional<VtuHead> at_root = communicator.at_root([&] { return read_vtu_head(path); });
-  const std::vector<VtuSizes> sizes =
-      communicator.broadcast(at_root ? std::vector<VtuSizes>{at_root->sizes} : std::vector<VtuSizes>{});
-  if (sizes.empty()) return std::nullopt;
+  std::optional<VtuHead> at_root =
+      communicator.at_root([&] { return read_vtu_head(path, communicator.size()); });
+  const std::vector<VtuFacts> facts =
+      communicator.broadcast(at_root ? std::vector<VtuFacts>{at_root->facts} : std::vector<VtuFacts>{});
+  if (facts.empty()) return std::nullopt;
   VtuSlices slices;
   slices.path_ = path;
-  slices.head_.sizes = sizes.front();
+  slices.head_.facts = facts.front();
   slices.head_.arrays =
       communicator.broadcast(at_root ? std::move(at_root->arrays) : std::vector<VtuArray>{});
+  slices.head_.blocks.resize(slices.head_.arrays.size());
+  if (at_root) {
+    slices.head_.blocks = std::move(at_root->blocks);
+    slices.head_.xml = std::move(at_root->xml);
+  }
   return slices;
 }
 
@@ -45,8 +90,8 @@ const VtuArray& VtuSlices::array(Role role) const {
 
 MeshSlice VtuSlices::empty_slice(const Communicator& communicator) const {
   MeshSlice slice;
-  slice.vertices = Layout::even(head_.sizes.vertices, communicator.size());
-  slice.cells = Layout::even(head_.sizes.cells, communicator.size());
+  slice.vertices = Layout::even(head_.facts.vertices, communicator.size());
+  slice.cells = Layout::even(head_.facts.cells, communicator.size());
   return slice;
 }
 
@@ -54,28 +99,28 @@ MeshSlice VtuSlices::read(const Communicator& communicator) const {
   MeshSlice slice = empty_slice(communicator);
   const SharedFile file(communicator, path_, path_, SharedFile::Use::read);
   read_points(communicator, file, slice);
+  read_shapes(communicator, file, slice);
   read_cells(communicator, file, slice);
   return slice;
 }
 
-/// Returns the bytes of rows begin … end − 1 of an array.
-std::vector<std::byte> VtuSlices::rows(const Communicator& communicator, const SharedFile& file, Role role,
-                                       GlobalIndex begin, GlobalIndex end) const {
-  const VtuArray& array = this->array(role);
-  std::vector<std::byte> bytes = communicator.together(
-      [&] { return std::vector<std::byte>(static_cast<std::size_t>((end - begin) * array.row)); });
-  file.read(array.at + begin * array.row, bytes);
-  return bytes;
+/// Returns the bytes of rows begin … end − 1 of an array of the file.
+std::vector<std::byte> VtuSlices::rows(const Communicator& communicator, const SharedFile& file,
+                                       const VtuArray& array, GlobalIndex begin, GlobalIndex end) const {
+  const auto number = static_cast<std::size_t>(&array - head_.arrays.data());
+  return read_values(communicator, file, path_, head_.facts.encoding.compressor, array, head_.blocks[number],
+                     begin * array.row, end * array.row);
 }
 
 void VtuSlices::read_points(const Communicator& communicator, const SharedFile& file,
                             MeshSlice& slice) const {
   const int rank = communicator.rank();
   const GlobalIndex first_vertex = slice.vertices.begin(rank);
-  const std::vector<std::byte> points =
-      rows(communicator, file, Role::points, first_vertex, slice.vertices.end(rank));
+  const VtuArray& array = this->array(Role::points);
+  const std::vector<std::byte> bytes =
+      rows(communicator, file, array, first_vertex, slice.vertices.end(rank));
   communicator.together([&] {
-    const std::vector<double> coordinates = numbers_of<double>(points, array(Role::points).type);
+    const std::vector<double> coordinates = numbers_of<double>(bytes, array.type);
     slice.points.resize(coordinates.size() / 3);
     for (std::size_t k = 0; k < coordinates.size(); ++k) {
       if (!std::isfinite(coordinates[k])) {
@@ -89,131 +134,145 @@ void VtuSlices::read_points(const Communicator& communicator, const SharedFile& 
   });
 }
 
-void VtuSlices::read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const {
+void VtuSlices::read_shapes(const Communicator& communicator, const SharedFile& file,
+                            MeshSlice& slice) const {
   const int rank = communicator.rank();
   const GlobalIndex first_cell = slice.cells.begin(rank);
-  const GlobalIndex end_cell = slice.cells.end(rank);
-  const std::vector<std::byte> types = rows(communicator, file, Role::types, first_cell, end_cell);
-  // where the cell before ends is where the first one begins
-  const GlobalIndex before = std::max<GlobalIndex>(first_cell - 1, 0);
-  const std::vector<std::byte> ends =
-      rows(communicator, file, Role::offsets, end_cell > first_cell ? before : end_cell, end_cell);
-  Offset first_entry = 0;
+  const VtuArray& array = this->array(Role::types);
+  const std::vector<std::byte> bytes = rows(communicator, file, array, first_cell, slice.cells.end(rank));
   communicator.together([&] {
-    std::vector<GlobalIndex> offsets = numbers_of<GlobalIndex>(ends, array(Role::offsets).type);
-    if (first_cell == 0) offsets.insert(offsets.begin(), 0);
-    if (end_cell == first_cell) offsets = {0};
-    first_entry = offsets.front();
-    for (std::size_t c = 0; c + 1 < offsets.size(); ++c) {
-      if (offsets[c + 1] > offsets[c] && offsets[c] >= 0 && offsets[c + 1] <= head_.sizes.entries) continue;
-      throw InputError(path_,
-                       fmt::format("cell {} (counted from 0) has the entries {} to {} of {}",
-                                   first_cell + static_cast<GlobalIndex>(c), offsets[c], offsets[c + 1],
-                                   head_.sizes.entries),
-                       "offsets must ascend to the number of entries");
-    }
-    if (end_cell == head_.sizes.cells && end_cell > first_cell && offsets.back() != head_.sizes.entries) {
-      throw InputError(path_,
-                       fmt::format("the cells have {} entries of {}", offsets.back(), head_.sizes.entries),
-                       "offsets must ascend to the number of entries");
-    }
-    slice.cell_vertices.offsets.clear();
-    for (const GlobalIndex offset : offsets) slice.cell_vertices.offsets.push_back(offset - first_entry);
-    const std::vector<int> numbers = numbers_of<int>(types, array(Role::types).type);
+    const std::vector<int> numbers = numbers_of<int>(bytes, array.type);
+    slice.shapes.reserve(numbers.size());
     for (std::size_t c = 0; c < numbers.size(); ++c) {
       const std::optional<Shape> shape = shape_of_vtk_type(numbers[c]);
-      const auto vertices = static_cast<int>(offsets[c + 1] - offsets[c]);
-      if (!shape || *shape == Shape::polyhedron || vertices < corners(*shape, 1)) {
+      if (!shape || *shape == Shape::polyhedron) {
         throw InputError(path_,
-                         fmt::format("cell {} (counted from 0) is of VTK's type {} and has {} points",
-                                     first_cell + static_cast<GlobalIndex>(c), numbers[c], vertices),
-                         "the type is not understood, or has more points");
+                         fmt::format("cell {} (counted from 0) is of VTK's type {}",
+                                     first_cell + static_cast<GlobalIndex>(c), numbers[c]),
+                         "the type is not understood");
       }
       slice.shapes.push_back(*shape);
     }
   });
-  const std::vector<std::byte> connectivity = rows(communicator, file, Role::connectivity, first_entry,
-                                                   first_entry + slice.cell_vertices.offsets.back());
+}
+
+/// Reads the vertices of the cells, whose shapes are known.
+void VtuSlices::read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const {
+  const int rank = communicator.rank();
+  const GlobalIndex entries = head_.facts.entries;
+  const GlobalIndex first_cell = slice.cells.begin(rank);
+  const GlobalIndex end_cell = slice.cells.end(rank);
+  const VtuArray& ends = array(Role::offsets);
+  // where the cell before ends is where the first one begins
+  const GlobalIndex before = std::max<GlobalIndex>(first_cell - 1, 0);
+  Offset first_entry = 0;
+  {
+    const std::vector<std::byte> bytes =
+        rows(communicator, file, ends, end_cell > first_cell ? before : end_cell, end_cell);
+    communicator.together([&] {
+      std::vector<Offset>& offsets = slice.cell_vertices.offsets;
+      offsets = numbers_of<Offset>(bytes, ends.type);
+      if (first_cell == 0) offsets.insert(offsets.begin(), 0);
+      if (end_cell == first_cell) offsets = {0};
+      for (std::size_t c = 0; c + 1 < offsets.size(); ++c) {
+        const GlobalIndex cell = first_cell + static_cast<GlobalIndex>(c);
+        if (offsets[c + 1] <= offsets[c] || offsets[c] < 0 || offsets[c + 1] > entries) {
+          throw InputError(path_,
+                           fmt::format("cell {} (counted from 0) has the entries {} to {} of {}", cell,
+                                       offsets[c], offsets[c + 1], entries),
+                           "offsets must ascend to the number of entries");
+        }
+        const GlobalIndex vertices = offsets[c + 1] - offsets[c];
+        if (vertices < corners(slice.shapes[c], 1)) {
+          throw InputError(path_,
+                           fmt::format("cell {} (counted from 0) is a {} of {} points", cell,
+                                       to_string(slice.shapes[c]), vertices),
+                           fmt::format("it has {} corners", corners(slice.shapes[c], 1)));
+        }
+      }
+      if (end_cell == head_.facts.cells && end_cell > first_cell && offsets.back() != entries) {
+        throw InputError(path_, fmt::format("the cells have {} entries of {}", offsets.back(), entries),
+                         "offsets must ascend to the number of entries");
+      }
+      first_entry = offsets.front();
+      for (Offset& offset : offsets) offset -= first_entry;
+    });
+  }
+  const VtuArray& connectivity = array(Role::connectivity);
+  const std::vector<std::byte> bytes =
+      rows(communicator, file, connectivity, first_entry, first_entry + slice.cell_vertices.offsets.back());
   communicator.together([&] {
-    slice.cell_vertices.entries = numbers_of<GlobalIndex>(connectivity, array(Role::connectivity).type);
+    slice.cell_vertices.entries = numbers_of<GlobalIndex>(bytes, connectivity.type);
     for (const GlobalIndex vertex : slice.cell_vertices.entries) {
-      if (vertex >= 0 && vertex < head_.sizes.vertices) continue;
+      if (vertex >= 0 && vertex < head_.facts.vertices) continue;
       throw InputError(path_, fmt::format("a cell names the point {}", vertex),
-                       fmt::format("the file has points 0 to {}", head_.sizes.vertices - 1));
+                       fmt::format("the file has points 0 to {}", head_.facts.vertices - 1));
     }
   });
 }
 
-/// Copies all that is no row of an array, and gives the new file its size.
-void VtuSlices::copy_rest(const std::string& path, const std::string& name) const {
-  std::vector<std::pair<Offset, Offset>> rows;
-  for (const VtuArray& array : head_.arrays) rows.emplace_back(array.at, array.at + array.size);
-  rows.emplace_back(head_.sizes.bytes, head_.sizes.bytes);
-  std::sort(rows.begin(), rows.end());
-  std::ifstream from(path_, std::ios::binary);
-  std::ofstream to(path, std::ios::binary | std::ios::in | std::ios::out);
-  std::vector<char> buffer(static_cast<std::size_t>(kChunk));
-  Offset at = 0;
-  for (const auto& [begin, end] : rows) {
-    for (; at < begin; at += kChunk) {
-      const Offset count = std::min(kChunk, begin - at);
-      from.seekg(at);
-      from.read(buffer.data(), count);
-      to.seekp(at);
-      to.write(buffer.data(), count);
-    }
-    at = end;
+/// Returns the cells of this rank's places, with the new numbers of their vertices.
+Rows VtuSlices::moved_cells(const Communicator& communicator, const SharedFile& file, MeshSlice slice,
+                            const RowMover& mover, const std::vector<GlobalIndex>& new_vertices) const {
+  read_cells(communicator, file, slice);
+  std::vector<GlobalIndex>& numbers = slice.cell_vertices.entries;
+  {
+    const Halo halo(communicator, slice.vertices, numbers);
+    const std::vector<GlobalIndex> new_numbers = halo.fetch(new_vertices);
+    for (GlobalIndex& number : numbers) number = new_numbers[halo.position(number)];
   }
-  if (!from) throw InputError(path_, "cannot be read", "it may have changed while it was read");
-  to.close();
-  if (!to) throw InputError(name, "cannot be written", "the disk may be full");
+  return mover.moved(slice.cell_vertices);
 }
 
 void VtuSlices::write(const Communicator& communicator, const std::string& path, const std::string& name,
                       const DistributedOrder& order) const {
-  communicator.at_root([&] { copy_rest(path, name); });
   const int rank = communicator.rank();
   const SharedFile in(communicator, path_, path_, SharedFile::Use::read);
   SharedFile out(communicator, path, name, SharedFile::Use::write);
   MeshSlice slice = empty_slice(communicator);
-  read_cells(communicator, in, slice);
-  const GlobalIndex first_cell = slice.cells.begin(rank);
-
+  read_shapes(communicator, in, slice);
   const RowMover vertices(communicator, slice.vertices, order.new_vertices);
   const RowMover cells(communicator, slice.cells, places_by_dimension(communicator, slice, order.cells));
+
+  // the XML comes last: it has the offsets of arrays whose compressed sizes are not known yet
+  const bool is_raw = head_.facts.encoding.compressor == VtuEncoding::Compressor::none;
+  Offset from = head_.facts.first_byte;
+  Offset to = communicator.broadcast(std::vector<Offset>{is_raw ? from : head_.xml.most_bytes()}).front();
+  NewPlaces places(from, to);
+  std::optional<Rows> moved;
   for (const VtuArray& array : head_.arrays) {
-    if (array.role == Role::offsets || array.role == Role::connectivity) continue;
+    copy_bytes(communicator, in, from, array.at, out, to);
+    to += array.at - from;
+    from = array.at + array.stored;
+    const auto write_array = [&](std::vector<std::byte> values) {
+      places.add(array.at, to);
+      to += write_values(communicator, out, head_.facts.encoding, to, std::move(values),
+                         vtk::VtuCompressor::kBlock);
+      places.add(from, to);
+    };
+    if (array.role == Role::connectivity || array.role == Role::offsets) {
+      if (!moved) moved = moved_cells(communicator, in, slice, cells, order.new_vertices);
+      const GlobalIndex first_entry =
+          Layout::of_sizes(communicator.gathered(std::ssize(moved->entries))).begin(rank);
+      write_array(communicator.together([&] {
+        if (array.role == Role::connectivity) return bytes_of(moved->entries, array.type);
+        std::vector<GlobalIndex> ends(moved->offsets.begin() + 1, moved->offsets.end());
+        for (GlobalIndex& end : ends) end += first_entry;
+        return bytes_of(ends, array.type);
+      }));
+      continue;
+    }
     const bool on_vertices = array.association == Association::vertices;
     const Layout& layout = on_vertices ? slice.vertices : slice.cells;
-    const Offset at = array.at + layout.begin(rank) * array.row;
-    std::vector<std::byte> rows = communicator.together(
-        [&] { return std::vector<std::byte>(static_cast<std::size_t>(layout.size(rank) * array.row)); });
-    in.read(at, rows);
-    rows = (on_vertices ? vertices : cells).moved(rows, array.row);
-    out.write(at, rows);
+    const std::vector<std::byte> values = rows(communicator, in, array, layout.begin(rank), layout.end(rank));
+    write_array((on_vertices ? vertices : cells).moved(values, array.row));
   }
-
-  {
-    std::vector<GlobalIndex>& numbers = slice.cell_vertices.entries;
-    const Halo halo(communicator, slice.vertices, numbers);
-    const std::vector<GlobalIndex> new_numbers = halo.fetch(order.new_vertices);
-    for (GlobalIndex& number : numbers) number = new_numbers[halo.position(number)];
-  }
-  const Rows moved = cells.moved(slice.cell_vertices);
-  slice = {};
-  GlobalIndex first_entry = 0;
-  const std::vector<GlobalIndex> sizes =
-      communicator.gathered(static_cast<GlobalIndex>(moved.entries.size()));
-  for (int r = 0; r < rank; ++r) first_entry += sizes[static_cast<std::size_t>(r)];
-  const VtuArray& entries = array(Role::connectivity);
-  out.write(entries.at + first_entry * entries.row,
-            communicator.together([&] { return bytes_of(moved.entries, entries.type); }));
-  const VtuArray& ends = array(Role::offsets);
-  out.write(ends.at + first_cell * ends.row, communicator.together([&] {
-    std::vector<GlobalIndex> numbers(moved.offsets.begin() + 1, moved.offsets.end());
-    for (GlobalIndex& number : numbers) number += first_entry;
-    return bytes_of(numbers, ends.type);
-  }));
+  copy_bytes(communicator, in, from, head_.facts.bytes, out, to);
+  const std::string xml = communicator.at_root([&] {
+    return head_.xml.with_offsets([&](Offset offset) { return places.of_offset(offset); },
+                                  places.first_byte());
+  });
+  out.write(0, std::as_bytes(std::span(xml)));
   out.close();
 }
 

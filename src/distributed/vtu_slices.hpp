@@ -4,6 +4,7 @@
 #include "distributed/communicator.hpp"
 #include "distributed/layout.hpp"
 #include "distributed/mesh_slice.hpp"
+#include "distributed/moved_rows.hpp"
 #include "distributed/order.hpp"
 #include "distributed/shared_file.hpp"
 #include "distributed/vtu_head.hpp"
@@ -15,26 +16,27 @@
 
 namespace meshorder::distributed {
 
-/// A .vtu file of one piece, the arrays of which stand raw in its appended data, read and written by all
-/// ranks at once: each its share of every array, one array after another. The new file is the old one with
-/// the rows of its arrays in their new places; whatever else it has is copied byte by byte.
+/// A .vtu file of one piece, the arrays of which stand in its appended data, raw or in compressed blocks,
+/// read and written by all ranks at once: each its share of every array, one array after another. The new
+/// file is the old one with the rows of its arrays in their new places; whatever else it has is copied byte
+/// by byte, but for the offsets of arrays behind compressed ones.
 ///
 /// Format: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
 class VtuSlices {
  public:
   /// Looks at a file; every rank has to call it. Returns nothing for a file that is no such .vtu file: of
-  /// several pieces, with text, base64, compression or the other order of bytes. O(size of its XML) at the
-  /// root.
+  /// several pieces, with text, base64, the other order of bytes, or compression that this build lacks.
+  /// O(size of its XML + blocks) at the root.
   ///
   /// @throws SharedError for a file of that kind that is damaged: XML, counts that differ, bytes beyond its
-  ///         end
+  ///         end, blocks that cannot hold what they are said to
   [[nodiscard]] static std::optional<VtuSlices> open(const Communicator& communicator,
                                                      const std::string& path);
 
   /// Reads this rank's points and cells. Every rank has to call it. O(size of the slice).
   ///
   /// @throws SharedError for coordinates that are not finite, unknown types, cells without vertices, with too
-  ///         few, or with such that do not exist
+  ///         few, or with such that do not exist, and for blocks that are damaged
   [[nodiscard]] MeshSlice read(const Communicator& communicator) const;
 
   /// Writes the mesh in its new order over a file that exists, and is empty. Every rank has to call it. Reads
@@ -51,13 +53,15 @@ class VtuSlices {
   [[nodiscard]] const VtuArray& array(VtuArray::Role role) const;
   [[nodiscard]] MeshSlice empty_slice(const Communicator& communicator) const;
   [[nodiscard]] std::vector<std::byte> rows(const Communicator& communicator, const SharedFile& file,
-                                            VtuArray::Role role, GlobalIndex begin, GlobalIndex end) const;
+                                            const VtuArray& array, GlobalIndex begin, GlobalIndex end) const;
   void read_points(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
+  void read_shapes(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
   void read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
-  void copy_rest(const std::string& path, const std::string& name) const;
+  [[nodiscard]] Rows moved_cells(const Communicator& communicator, const SharedFile& file, MeshSlice slice,
+                                 const RowMover& mover, const std::vector<GlobalIndex>& new_vertices) const;
 
   std::string path_;
-  VtuHead head_;
+  VtuHead head_;  ///< blocks and XML at the root only
 };
 
 }  // namespace meshorder::distributed
