@@ -8,6 +8,7 @@
 #include "distributed/shared_file.hpp"
 #include "distributed/vtu_numbers.hpp"
 #include "distributed/vtu_rows.hpp"
+#include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/shape.hpp>
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -134,14 +136,29 @@ void VtuSlices::read_points(const Communicator& communicator, const SharedFile& 
   });
 }
 
+/// Returns VTK's types of this rank's cells.
+std::vector<int> VtuSlices::types(const Communicator& communicator, const SharedFile& file,
+                                  const Layout& cells) const {
+  const int rank = communicator.rank();
+  const VtuArray& array = this->array(Role::types);
+  const std::vector<std::byte> bytes = rows(communicator, file, array, cells.begin(rank), cells.end(rank));
+  return communicator.together([&] { return numbers_of<int>(bytes, array.type); });
+}
+
+bool VtuSlices::has_nodes_as_a_mesh(const Communicator& communicator) const {
+  const SharedFile file(communicator, path_, path_, SharedFile::Use::read);
+  const std::vector<int> numbers = types(communicator, file, empty_slice(communicator).cells);
+  const auto other = std::count_if(numbers.begin(), numbers.end(), [](int type) {
+    return type >= 0 && type < 256 && vtk::may_be_reordered(static_cast<std::uint8_t>(type));
+  });
+  return communicator.sum(static_cast<GlobalIndex>(other)) == 0;
+}
+
 void VtuSlices::read_shapes(const Communicator& communicator, const SharedFile& file,
                             MeshSlice& slice) const {
-  const int rank = communicator.rank();
-  const GlobalIndex first_cell = slice.cells.begin(rank);
-  const VtuArray& array = this->array(Role::types);
-  const std::vector<std::byte> bytes = rows(communicator, file, array, first_cell, slice.cells.end(rank));
+  const GlobalIndex first_cell = slice.cells.begin(communicator.rank());
+  const std::vector<int> numbers = types(communicator, file, slice.cells);
   communicator.together([&] {
-    const std::vector<int> numbers = numbers_of<int>(bytes, array.type);
     slice.shapes.reserve(numbers.size());
     for (std::size_t c = 0; c < numbers.size(); ++c) {
       const std::optional<Shape> shape = shape_of_vtk_type(numbers[c]);
@@ -224,15 +241,16 @@ Rows VtuSlices::moved_cells(const Communicator& communicator, const SharedFile& 
   return mover.moved(slice.cell_vertices);
 }
 
-void VtuSlices::write(const Communicator& communicator, const std::string& path, const std::string& name,
-                      const DistributedOrder& order) const {
+std::vector<GlobalIndex> VtuSlices::write(const Communicator& communicator, const std::string& path,
+                                          const std::string& name, const DistributedOrder& order) const {
   const int rank = communicator.rank();
   const SharedFile in(communicator, path_, path_, SharedFile::Use::read);
   SharedFile out(communicator, path, name, SharedFile::Use::write);
   MeshSlice slice = empty_slice(communicator);
   read_shapes(communicator, in, slice);
   const RowMover vertices(communicator, slice.vertices, order.new_vertices);
-  const RowMover cells(communicator, slice.cells, places_by_dimension(communicator, slice, order.cells));
+  std::vector<GlobalIndex> new_cells = places_by_dimension(communicator, slice, order.cells);
+  const RowMover cells(communicator, slice.cells, new_cells);
 
   // the XML comes last: it has the offsets of arrays whose compressed sizes are not known yet
   const bool is_raw = head_.facts.encoding.compressor == VtuEncoding::Compressor::none;
@@ -274,6 +292,7 @@ void VtuSlices::write(const Communicator& communicator, const std::string& path,
   });
   out.write(0, std::as_bytes(std::span(xml)));
   out.close();
+  return new_cells;
 }
 
 }  // namespace meshorder::distributed

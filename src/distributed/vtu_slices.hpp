@@ -33,6 +33,12 @@ class VtuSlices {
   [[nodiscard]] static std::optional<VtuSlices> open(const Communicator& communicator,
                                                      const std::string& path);
 
+  /// Returns whether all cells have their nodes in the order in which a Mesh has them, so that the checksums
+  /// of both are the same. Every rank has to call it. O(cells).
+  ///
+  /// @throws SharedError where a rank cannot read
+  [[nodiscard]] bool has_nodes_as_a_mesh(const Communicator& communicator) const;
+
   /// Reads this rank's points and cells. Every rank has to call it. O(size of the slice).
   ///
   /// @throws SharedError for coordinates that are not finite, unknown types, cells without vertices, with too
@@ -45,9 +51,10 @@ class VtuSlices {
   ///
   /// @param path    of the new file
   /// @param name    of the new file in messages
+  /// @return the new place of each cell of the slice
   /// @throws SharedError where a rank cannot read or write
-  void write(const Communicator& communicator, const std::string& path, const std::string& name,
-             const DistributedOrder& order) const;
+  [[nodiscard]] std::vector<GlobalIndex> write(const Communicator& communicator, const std::string& path,
+                                               const std::string& name, const DistributedOrder& order) const;
 
  private:
   [[nodiscard]] const VtuArray& array(VtuArray::Role role) const;
@@ -55,6 +62,8 @@ class VtuSlices {
   [[nodiscard]] std::vector<std::byte> rows(const Communicator& communicator, const SharedFile& file,
                                             const VtuArray& array, GlobalIndex begin, GlobalIndex end) const;
   void read_points(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
+  [[nodiscard]] std::vector<int> types(const Communicator& communicator, const SharedFile& file,
+                                       const Layout& cells) const;
   void read_shapes(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
   void read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
   [[nodiscard]] Rows moved_cells(const Communicator& communicator, const SharedFile& file, MeshSlice slice,

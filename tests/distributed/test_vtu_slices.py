@@ -16,7 +16,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOCore import vtkLZ4DataCompressor, vtkLZMADataCompressor, vtkZLibDataCompressor
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
-LINE, TRIANGLE, TETRAHEDRON, PYRAMID = 3, 5, 10, 14
+LINE, TRIANGLE, TETRAHEDRON, VOXEL, PYRAMID = 3, 5, 10, 11, 14
 
 
 def array(name, values):
@@ -220,11 +220,65 @@ def test_fewer_cells_than_ranks(tmp_path, compressor):
     assert_same_but_for_order(read(tmp_path / "a.vtu"), read(tmp_path / "b.vtu"))
 
 
-@pytest.mark.parametrize("arguments", [["--maps", "m"], ["--ids", "attach"], ["--only", "volume"], ["--strict"]])
+@pytest.mark.parametrize("arguments", [["--ids", "attach"], ["--only", "volume"], ["--strict"]])
 def test_what_needs_the_whole_mesh_is_done_by_rank_0(tmp_path, monkeypatch, arguments):
     monkeypatch.chdir(tmp_path)
     write("a.vtu", grid())
     assert json.loads(order(2, "a.vtu", "-o", "b.vtu", "--json", *arguments).stdout)["files_by"] == "rank 0"
+
+
+def files_of_maps(folder, prefix):
+    return {path.name.removeprefix(prefix): path.read_bytes() for path in folder.glob(f"{prefix}.*") if path.suffix != ".vtu"}
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3, 5])
+def test_maps_are_those_that_one_rank_writes(tmp_path, ranks):
+    made = grid()
+    write(tmp_path / "raw.vtu", made)
+    write(tmp_path / "zlib.vtu", made, True, vtkZLibDataCompressor, 1000)
+    write(tmp_path / "text.vtu", made, mode="binary")
+    for name, by in (("raw", "all ranks"), ("zlib", "all ranks"), ("text", "rank 0")):
+        (tmp_path / f"{name}.vertices.ids.npy").write_bytes(b"of an earlier run")
+        (tmp_path / f"{name}.elements.old_to_new.npy").write_bytes(b"of an earlier version")
+        result = json.loads(order(ranks, tmp_path / f"{name}.vtu", "-o", tmp_path / f"{name}-out.vtu", "--parts", "4", "--maps",
+                                  tmp_path / name, "--json").stdout)
+        assert result["files_by"] == by
+        assert sorted(result["maps"]) == sorted(map(str, set(tmp_path.glob(f"{name}.*")) - {tmp_path / f"{name}.vtu"}))
+    assert len(files_of_maps(tmp_path, "text")) == 7
+    assert files_of_maps(tmp_path, "raw") == files_of_maps(tmp_path, "zlib") == files_of_maps(tmp_path, "text")
+    serial("apply", tmp_path / "zlib", tmp_path / "zlib-out.vtu", "-o", tmp_path / "back.vtu", "--inverse")
+    assert_same(read(tmp_path / "back.vtu"), read(tmp_path / "raw.vtu"))
+
+
+def test_a_file_of_meshorder_comes_back_byte_by_byte(tmp_path):
+    write(tmp_path / "made.vtu", grid())
+    serial("order", tmp_path / "made.vtu", "-o", tmp_path / "a.vtu", "--vertices", "scrambled", "--elements", "scrambled")
+    order(3, tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--maps", tmp_path / "m")
+    serial("apply", tmp_path / "m", tmp_path / "b.vtu", "-o", tmp_path / "back.vtu", "--inverse")
+    assert (tmp_path / "back.vtu").read_bytes() == (tmp_path / "a.vtu").read_bytes() != (tmp_path / "b.vtu").read_bytes()
+
+
+def test_maps_of_cells_that_a_mesh_has_in_another_order_are_written_by_rank_0(tmp_path):
+    """A voxel becomes a hexahedron, whose vertices the maps' checksums have in another order."""
+    points = numpy.stack(numpy.meshgrid(range(2), range(2), range(2), indexing="ij"), axis=-1).reshape(-1, 3)[:, ::-1]
+    made = vtkUnstructuredGrid()
+    places = vtkPoints()
+    places.SetData(convert.numpy_to_vtk(points.astype(float), deep=True))
+    made.SetPoints(places)
+    made.InsertNextCell(VOXEL, 8, range(8))
+    write(tmp_path / "a.vtu", made)
+    by = [json.loads(order(2, tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--json", *maps).stdout)["files_by"]
+          for maps in ([], ["--maps", tmp_path / "m"])]
+    assert by == ["all ranks", "rank 0"]
+    serial("apply", tmp_path / "m", tmp_path / "a.vtu", "-o", tmp_path / "again.vtu")
+    assert (tmp_path / "again.vtu").read_bytes() == (tmp_path / "b.vtu").read_bytes()
+
+
+def test_maps_that_cannot_be_written_leave_nothing(tmp_path):
+    write(tmp_path / "a.vtu", grid())
+    done = launch(3, "order", tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--maps", tmp_path / "nowhere" / "m")
+    assert done.returncode == 2 and len(own_lines(done)) == 1 and "nowhere" in own_lines(done)[0], done.stderr
+    assert os.listdir(tmp_path) == ["a.vtu"]
 
 
 def replaced(data, at, values):
