@@ -238,7 +238,7 @@ Rows VtuSlices::moved_cells(const Communicator& communicator, const SharedFile& 
     const std::vector<GlobalIndex> new_numbers = halo.fetch(new_vertices);
     for (GlobalIndex& number : numbers) number = new_numbers[halo.position(number)];
   }
-  return mover.moved(slice.cell_vertices);
+  return mover.moved(std::move(slice.cell_vertices));
 }
 
 std::vector<GlobalIndex> VtuSlices::write(const Communicator& communicator, const std::string& path,
