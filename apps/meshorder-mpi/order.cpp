@@ -15,6 +15,8 @@
 #include "mesh_files.hpp"
 #include "ordering/order_cells.hpp"
 #include "report.hpp"
+#include "shared_output.hpp"
+#include "sliced_maps.hpp"
 #include "wording.hpp"
 #include <meshorder/io.hpp>
 
@@ -85,13 +87,6 @@ std::vector<Index> narrowed(const std::vector<GlobalIndex>& numbers) {
   return {numbers.begin(), numbers.end()};
 }
 
-/// The part that a vertex is in by its new number; those that no element uses are behind the last one, and
-/// count to it.
-Index part_of(GlobalIndex vertex, const std::vector<GlobalIndex>& starts) {
-  const auto behind = std::upper_bound(starts.begin() + 1, starts.end() - 1, vertex);
-  return static_cast<Index>(behind - starts.begin()) - 1;
-}
-
 /// Fills in the part of each vertex, and of each cell: that of its last vertex, so that parts of cells ascend
 /// where cells are sorted by `lexmax`. The mesh is in its new order.
 void note_parts(const Mesh& mesh, const std::vector<GlobalIndex>& starts, Maps& maps) {
@@ -117,38 +112,43 @@ std::vector<std::string> write_at_root(const Arguments& arguments, Job& job,
   return write_ordered(job, arguments, job.notes);
 }
 
-/// Returns the input as all ranks read it; nothing where rank 0 has to: for maps, old numbers and chosen
-/// cells, and for files of other kinds.
+/// Returns the input as all ranks read it; nothing where rank 0 has to: for old numbers and chosen cells, for
+/// files of other kinds, and for maps of cells whose nodes a Mesh has in another order.
 std::optional<VtuSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
   const auto is_vtu = [](const std::string& name) {
     return std::filesystem::path(name).extension() == ".vtu";
   };
   const Keeping& keeping = arguments.keeping;
-  if (!is_vtu(arguments.input) || !is_vtu(arguments.output) || !arguments.maps.empty() ||
-      arguments.ids != "renumber" || keeping.dimension >= 0 || keeping.strict) {
+  if (!is_vtu(arguments.input) || !is_vtu(arguments.output) || arguments.ids != "renumber" ||
+      keeping.dimension >= 0 || keeping.strict) {
     return std::nullopt;
   }
   communicator.at_root([&] { check_can_write(arguments); });  // fail before the work
-  return VtuSlices::open(communicator, arguments.input);
+  std::optional<VtuSlices> slices = VtuSlices::open(communicator, arguments.input);
+  if (slices && !arguments.maps.empty() && !slices->has_nodes_as_a_mesh(communicator)) slices.reset();
+  return slices;
 }
 
-/// Writes the mesh in its new order by all ranks, to a file that takes its place when it is complete.
-void write_slices(const Communicator& communicator, const Arguments& arguments, const VtuSlices& slices,
-                  const DistributedOrder& order, Notes& notes) {
+/// Writes the mesh in its new order and its maps by all ranks, to files that take their places when they are
+/// complete; returns the paths of the maps.
+std::vector<std::string> write_slices(const Communicator& communicator, const Arguments& arguments,
+                                      const VtuSlices& slices, const DistributedOrder& order,
+                                      const MeshChecksums& before, Notes& notes) {
   OutputSet outputs;
-  std::optional<OutputFile> file;
-  const std::string name = communicator.at_root([&] {
-    file.emplace(FilePath(arguments.output, outputs));
-    file->close();
-    return file->temporary().string();
-  });
-  const std::vector<char> path = communicator.broadcast(std::vector<char>(name.begin(), name.end()));
-  slices.write(communicator, {path.begin(), path.end()}, arguments.output, order);
+  SharedOutput file(communicator, outputs, arguments.output);
+  const std::vector<GlobalIndex> new_cells = slices.write(communicator, file.path(), arguments.output, order);
+  file.commit();
+  std::vector<std::string> maps;
+  if (!arguments.maps.empty()) {
+    const std::optional<VtuSlices> written = VtuSlices::open(communicator, file.path());
+    maps = write_sliced_maps(communicator, {order.new_vertices, new_cells, order.report.part_starts}, before,
+                             written->read(communicator), arguments.maps, outputs);
+  }
   communicator.at_root([&] {
-    file->commit();
     outputs.commit();
     notes.insert(notes.end(), outputs.notes().begin(), outputs.notes().end());
   });
+  return maps;
 }
 
 void run(const Arguments& arguments, const Communicator& communicator) {
@@ -161,13 +161,15 @@ void run(const Arguments& arguments, const Communicator& communicator) {
       slices ? slices->read(communicator) : distributed::scattered(communicator, job.mesh);
   const GlobalIndex vertex_count = slice.vertices.size();
   const GlobalIndex cell_count = slice.cells.size();
+  MeshChecksums before;
+  if (slices && !arguments.maps.empty()) before = checksums_of(communicator, slice);
   const double read_seconds = reading.seconds();
 
   DistributedOrder order = distributed::order_slices(communicator, std::move(slice), options);
   const Stopwatch writing;
   std::vector<std::string> map_files;
   if (slices) {
-    write_slices(communicator, arguments, *slices, order, job.notes);
+    map_files = write_slices(communicator, arguments, *slices, order, before, job.notes);
   } else {
     const std::vector<GlobalIndex> vertices = communicator.gathered_at_root(order.new_vertices);
     const std::vector<GlobalIndex> cells = communicator.gathered_at_root(order.cells);
@@ -210,14 +212,15 @@ int share_of_cores(const Communicator& communicator) {
 void add_distributed_order(CLI::App& subcommand, const Communicator& communicator) {
   subcommand.description(
       "Reorder a mesh by all ranks: parts, each in an order of its own, numbered one after another, so\n"
-      "that parts that touch are near each other. A .vtu file of one piece with raw appended data is\n"
-      "read and written by all ranks, unless --maps, --ids, --only or --strict are given; others by rank 0.");
+      "that parts that touch are near each other. A .vtu file of one piece with raw appended data,\n"
+      "compressed or not, is read and written by all ranks, and its maps, unless --ids, --only or\n"
+      "--strict are given; others by rank 0.");
   subcommand.footer(
       "Examples:\n"
       "  mpirun -n 4 meshorder order part.vtu -o ordered.vtu\n"
       "  mpirun -n 4 meshorder order part.msh -o ordered.vtu --parts 64 --maps part");
   const auto arguments = std::make_shared<Arguments>();
-  subcommand.add_option("MESH", arguments->input, "Mesh file, which rank 0 reads")->required();
+  subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
   subcommand.add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
   subcommand
       .add_option("--vertices", arguments->vertices,

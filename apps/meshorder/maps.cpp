@@ -35,10 +35,6 @@ std::string ids_path(const std::string& prefix, const std::string& what) {
 }
 std::string kept_path(const std::string& prefix) { return prefix + ".cells.kept.npy"; }
 
-std::string parts_path(const std::string& prefix, const std::string& what) {
-  return prefix + "." + what + ".parts.npy";
-}
-
 /// What the names of the maps of cells said before they said "cells".
 constexpr const char* kOldNameOfCells = "elements";
 
@@ -115,14 +111,6 @@ std::uint64_t checksum_from(const nlohmann::json& json) {
   return value;
 }
 
-/// Checksums of the maps themselves.
-struct MapChecksums {
-  std::uint64_t vertices = 0;
-  std::uint64_t cells = 0;
-
-  bool operator==(const MapChecksums&) const = default;
-};
-
 MapChecksums checksums_of_maps(const Maps& maps) {
   Checksum vertices;
   vertices.add_all(maps.vertices.old_to_new());
@@ -193,6 +181,11 @@ MeshChecksums checksums_of(const Mesh& mesh) {
   return {points.value(), cells.value()};
 }
 
+MapPaths map_paths(const std::string& prefix, const std::string& what) {
+  return {old_to_new_path(prefix, what), new_to_old_path(prefix, what), ids_path(prefix, what),
+          prefix + "." + what + ".parts.npy"};
+}
+
 void check_can_write_maps(const std::string& prefix) { (void)OutputFile(identity_path(prefix)); }
 
 std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& before, const MeshChecksums& after,
@@ -202,18 +195,30 @@ std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& befor
   write_map(maps.cells, maps.cell_ids, prefix, "cells", files, written);
   remove_old_maps(prefix, files);
   write_or_remove(maps.kept, kept_path(prefix), files, written);
-  write_or_remove(maps.vertex_parts, parts_path(prefix, "vertices"), files, written);
-  write_or_remove(maps.cell_parts, parts_path(prefix, "cells"), files, written);
-  const MapChecksums of_maps = checksums_of_maps(maps);
+  write_or_remove(maps.vertex_parts, map_paths(prefix, "vertices").parts, files, written);
+  write_or_remove(maps.cell_parts, map_paths(prefix, "cells").parts, files, written);
+  written.push_back(write_identity(before, after, checksums_of_maps(maps), prefix, files));
+  return written;
+}
+
+std::string write_identity(const MeshChecksums& before, const MeshChecksums& after,
+                           const MapChecksums& of_maps, const std::string& prefix, OutputSet& files) {
   const nlohmann::ordered_json identity{
       {"version", MESHORDER_VERSION},
       {"before", checksums_json(before)},
       {"after", checksums_json(after)},
       {"maps", {{"vertices", digits_of(of_maps.vertices)}, {"cells", digits_of(of_maps.cells)}}}};
-  OutputFile file({written.emplace_back(identity_path(prefix)), files});
+  std::string path = identity_path(prefix);
+  OutputFile file({path, files});
   file.write(identity.dump(2) + "\n");
   file.commit();
-  return written;
+  return path;
+}
+
+void remove_other_maps(const std::string& prefix, OutputSet& files) {
+  for (const char* const what : {"vertices", "cells"}) files.remove(ids_path(prefix, what));
+  files.remove(kept_path(prefix));
+  remove_old_maps(prefix, files);
 }
 
 void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes) {

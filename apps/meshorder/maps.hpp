@@ -37,6 +37,25 @@ struct MeshChecksums {
   bool operator==(const MeshChecksums&) const = default;
 };
 
+/// Checksums of the maps themselves: of the new places of all vertices and of all cells.
+struct MapChecksums {
+  std::uint64_t vertices = 0;
+  std::uint64_t cells = 0;
+
+  bool operator==(const MapChecksums&) const = default;
+};
+
+/// The files of the maps of vertices or of cells.
+struct MapPaths {
+  std::string old_to_new;
+  std::string new_to_old;
+  std::string ids;
+  std::string parts;
+};
+
+/// Returns the paths of maps with a prefix; `what` is "vertices" or "cells".
+MapPaths map_paths(const std::string& prefix, const std::string& what);
+
 /// Returns the checksums of a mesh in its order, the same on any number of threads. O(points + cells).
 MeshChecksums checksums_of(const Mesh& mesh);
 
@@ -47,6 +66,14 @@ void check_can_write_maps(const std::string& prefix);
 /// maps that an earlier run left with this prefix; returns the paths.
 std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& before, const MeshChecksums& after,
                                     const std::string& prefix, OutputSet& files);
+
+/// Writes PREFIX.maps.json as a file of a set; returns its path.
+std::string write_identity(const MeshChecksums& before, const MeshChecksums& after, const MapChecksums& maps,
+                           const std::string& prefix, OutputSet& files);
+
+/// Has a set remove maps that an earlier run left with this prefix and that not every mesh has: old numbers,
+/// kept cells, and maps of cells with the names of earlier versions.
+void remove_other_maps(const std::string& prefix, OutputSet& files);
 
 /// Leaves those cells out of a mesh that were left out before it was ordered, with the notes of `keep_cells`.
 /// A mesh that has just the cells that were kept stays as it is. Throws Error for positions that do not fit

@@ -72,7 +72,7 @@ std::vector<GlobalIndex> cells_by_lexmax(const Communicator& communicator, const
   Rows received;
   {
     std::vector<Dispatch> dispatches;
-    const Rows rows = communicator.together([&] {
+    Rows rows = communicator.together([&] {
       dispatches.reserve(cell_vertices.offsets.size());
       for (Offset c = 0; c < cell_vertices.size(); ++c) {
         const auto own = cell_vertices[c];
@@ -81,7 +81,7 @@ std::vector<GlobalIndex> cells_by_lexmax(const Communicator& communicator, const
       return with_numbers(cell_vertices, cells.begin(communicator.rank()));
     });
     cell_vertices = {};
-    received = send_rows(communicator, rows, dispatches);
+    received = send_rows(communicator, std::move(rows), std::move(dispatches));
   }
   return communicator.together([&] { return sorted_by_lexmax(std::move(received)); });
 }

@@ -62,13 +62,8 @@ Rows own_rows(const CsrGraph& graph, const std::vector<GlobalIndex>& numbers, co
 }  // namespace
 
 GlobalGraph global_graph(const Communicator& communicator, const Layout& layout, Rows elements) {
-  Rows received;
-  {
-    const std::vector<Dispatch> dispatches =
-        communicator.together([&] { return to_owners(layout, elements); });
-    received = send_rows(communicator, elements, dispatches);
-    elements = {};
-  }
+  std::vector<Dispatch> dispatches = communicator.together([&] { return to_owners(layout, elements); });
+  Rows received = send_rows(communicator, std::move(elements), std::move(dispatches));
   return communicator.together([&] {
     // numbers of the rank's own, which rise with those among all ranks: the serial graph's rows then do, too
     const NumberSet set(received.entries);

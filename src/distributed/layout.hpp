@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,13 @@ class Layout {
     const GlobalIndex more = count % ranks;  // ranks that get one more: the first ones
     for (GlobalIndex r = 0; r < ranks; ++r)
       starts[static_cast<std::size_t>(r) + 1] = (r + 1) * each + std::min(r + 1, more);
+    return Layout(std::move(starts));
+  }
+
+  /// Gives rank r the next sizes[r] numbers. O(ranks).
+  static Layout of_sizes(const std::vector<GlobalIndex>& sizes) {
+    std::vector<GlobalIndex> starts(sizes.size() + 1, 0);
+    std::partial_sum(sizes.begin(), sizes.end(), starts.begin() + 1);
     return Layout(std::move(starts));
   }
 

@@ -133,8 +133,7 @@ PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph&
   Departure departure = communicator.together(
       [&] { return departing(graph, curve, place_of, ranks_of_parts, communicator.rank()); });
   result.ghosts = communicator.sum(departure.ghosts);
-  const Rows rows = send_rows(communicator, departure.rows, departure.dispatches);
-  departure = {};
+  const Rows rows = send_rows(communicator, std::move(departure.rows), std::move(departure.dispatches));
 
   // part by part; rows came by rank, so those of a part ascend
   std::vector<GlobalIndex> names;

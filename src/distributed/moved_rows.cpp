@@ -52,7 +52,7 @@ std::vector<std::byte> RowMover::moved(std::span<const std::byte> rows, Offset w
   });
 }
 
-Rows RowMover::moved(const Rows& rows) const {
+Rows RowMover::moved(Rows rows) const {
   Parcels<GlobalIndex> lengths;
   Parcels<GlobalIndex> entries;
   communicator_.together([&] {
@@ -67,9 +67,12 @@ Rows RowMover::moved(const Rows& rows) const {
       }
       entries.starts.push_back(static_cast<Offset>(entries.values.size()));
     }
+    rows = {};
   });
   const std::vector<GlobalIndex> arrived_lengths = communicator_.exchange(lengths).values;
+  lengths = {};
   const std::vector<GlobalIndex> arrived = communicator_.exchange(entries).values;
+  entries = {};
   return communicator_.together([&] {
     Rows result;
     result.offsets.assign(places_.size() + 1, 0);

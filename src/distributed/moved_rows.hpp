@@ -30,7 +30,9 @@ class RowMover {
   [[nodiscard]] std::vector<std::byte> moved(std::span<const std::byte> rows, Offset width) const;
 
   /// The same for rows of different lengths. O(entries + rows).
-  [[nodiscard]] Rows moved(const Rows& rows) const;
+  ///
+  /// @param rows  taken: with those that are sent and those that arrive they would be there three times
+  [[nodiscard]] Rows moved(Rows rows) const;
 
  private:
   const Communicator& communicator_;

@@ -8,7 +8,7 @@
 
 namespace meshorder::distributed {
 
-Rows send_rows(const Communicator& communicator, const Rows& rows, std::span<const Dispatch> dispatches) {
+Rows send_rows(const Communicator& communicator, Rows rows, std::vector<Dispatch> dispatches) {
   Parcels<Index> sizes;
   Parcels<GlobalIndex> entries;
   communicator.together([&] {
@@ -34,10 +34,14 @@ Rows send_rows(const Communicator& communicator, const Rows& rows, std::span<con
       std::copy(row.begin(), row.end(), entries.values.begin() + next_entry[to]);
       next_entry[to] += std::ssize(row);
     }
+    rows = {};
+    dispatches = {};
   });
   const Parcels<Index> sizes_here = communicator.exchange(sizes);
+  sizes = {};
   Rows received;
   received.entries = communicator.exchange(entries).values;
+  entries = {};
   communicator.together([&] {
     received.offsets.reserve(sizes_here.values.size() + 1);
     for (const Index size : sizes_here.values) received.offsets.push_back(received.offsets.back() + size);

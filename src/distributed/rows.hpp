@@ -35,8 +35,9 @@ struct Dispatch {
 /// gets: by the rank that sent it, then in the order of the dispatches there. Every rank has to call it.
 /// O(entries + dispatches).
 ///
+/// @param rows        taken: with those that are sent and those that arrive they would be there three times
+/// @param dispatches  taken
 /// @throws as `Communicator::exchange`
-[[nodiscard]] Rows send_rows(const Communicator& communicator, const Rows& rows,
-                             std::span<const Dispatch> dispatches);
+[[nodiscard]] Rows send_rows(const Communicator& communicator, Rows rows, std::vector<Dispatch> dispatches);
 
 }  // namespace meshorder::distributed

@@ -34,48 +34,36 @@ SharedFile::~SharedFile() {
   if (handle_ != MPI_FILE_NULL) MPI_File_close(&handle_);
 }
 
-template <class Byte, class Transfer>
-void SharedFile::in_chunks(Offset at, std::span<Byte> bytes, const Transfer& transfer) const {
+template <class Byte, class Call>
+void SharedFile::transfer(Offset at, std::span<Byte> bytes, const Call& call, const Words& words) const {
   const auto size = static_cast<Offset>(bytes.size());
   const Offset chunk = communicator_.chunk_limit();
-  for (Offset done = 0; done < size; done += chunk)
-    transfer(at + done, bytes.data() + done, static_cast<int>(std::min(chunk, size - done)));
+  std::string fault;
+  for (Offset done = 0; done < size && fault.empty(); done += chunk) {
+    const auto count = static_cast<int>(std::min(chunk, size - done));
+    MPI_Status status{};
+    const int code = call(handle_, at + done, bytes.data() + done, count, MPI_BYTE, &status);
+    int moved = 0;
+    if (code == MPI_SUCCESS) MPI_Get_count(&status, MPI_BYTE, &moved);
+    if (code != MPI_SUCCESS) {
+      fault = std::string(words.fault) + ": " + words_of_mpi(code);
+    } else if (moved < count) {
+      fault = std::string(words.too_short) + std::to_string(at + done + count);
+    }
+  }
+  communicator_.together([&] {
+    if (!fault.empty()) throw InputError(name_, fault, std::string(words.remedy));
+  });
 }
 
 void SharedFile::read(Offset at, std::span<std::byte> bytes) const {
-  std::string fault;
-  in_chunks(at, bytes, [&](Offset from, std::byte* target, int count) {
-    MPI_Status status{};
-    const int code = MPI_File_read_at(handle_, from, target, count, MPI_BYTE, &status);
-    int got = 0;
-    if (code == MPI_SUCCESS) MPI_Get_count(&status, MPI_BYTE, &got);
-    if (code != MPI_SUCCESS) {
-      fault = "cannot be read: " + words_of_mpi(code);
-    } else if (got < count) {
-      fault = "ends before byte " + std::to_string(from + count);
-    }
-  });
-  communicator_.together([&] {
-    if (!fault.empty()) throw InputError(name_, fault, "it may have changed while it was read");
-  });
+  transfer(at, bytes, MPI_File_read_at,
+           {"cannot be read", "ends before byte ", "it may have changed while it was read"});
 }
 
 void SharedFile::write(Offset at, std::span<const std::byte> bytes) const {
-  std::string fault;
-  in_chunks(at, bytes, [&](Offset to, const std::byte* source, int count) {
-    MPI_Status status{};
-    const int code = MPI_File_write_at(handle_, to, source, count, MPI_BYTE, &status);
-    int put = 0;
-    if (code == MPI_SUCCESS) MPI_Get_count(&status, MPI_BYTE, &put);
-    if (code != MPI_SUCCESS) {
-      fault = "cannot be written: " + words_of_mpi(code);
-    } else if (put < count) {
-      fault = "cannot be written to its end";
-    }
-  });
-  communicator_.together([&] {
-    if (!fault.empty()) throw InputError(name_, fault, "the disk may be full");
-  });
+  transfer(at, bytes, MPI_File_write_at,
+           {"cannot be written", "cannot be written to byte ", "the disk may be full"});
 }
 
 void SharedFile::close() {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace meshorder::distributed {
 
@@ -42,9 +43,16 @@ class SharedFile {
   void close();
 
  private:
-  /// Calls `transfer(at, bytes, count)` for chunks of the rank's own bytes.
-  template <class Byte, class Transfer>
-  void in_chunks(Offset at, std::span<Byte> bytes, const Transfer& transfer) const;
+  /// What messages say of a call that fails, and of one that moves fewer bytes.
+  struct Words {
+    std::string_view fault;
+    std::string_view too_short;  ///< before the byte where it should have ended
+    std::string_view remedy;
+  };
+
+  /// Moves the rank's own bytes by a function of MPI, chunk by chunk.
+  template <class Byte, class Call>
+  void transfer(Offset at, std::span<Byte> bytes, const Call& call, const Words& words) const;
 
   const Communicator& communicator_;
   std::string name_;

@@ -266,6 +266,10 @@ std::vector<std::uint8_t> cell_types(const Mesh& mesh) {
 
 bool is_higher_order_hexahedron(std::uint8_t type) { return type == 67 || type == 72 || type == 79; }
 
+bool may_be_reordered(std::uint8_t type) {
+  return kSwappedTypes[type] != nullptr || is_higher_order_hexahedron(type);
+}
+
 void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& types, Cells& cells) {
   const DataArray* array = find_array(mesh, "HigherOrderDegrees", Association::cells);
   const bool usable = array != nullptr && array->components == 3 && array->is_dense();

@@ -197,6 +197,9 @@ std::vector<std::uint8_t> cell_types(const Mesh& mesh);
 /// XML version 2.1 and legacy version 5.1).
 bool is_higher_order_hexahedron(std::uint8_t type);
 
+/// Returns whether the nodes of a cell of that type may be in another order in a file than in a Mesh.
+bool may_be_reordered(std::uint8_t type);
+
 /// Swaps the two edges that VTK 9 numbers differently in all higher-order hexahedra of `cells`; its own
 /// inverse. Degrees come from the array HigherOrderDegrees of the mesh, if any.
 void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& types, Cells& cells);

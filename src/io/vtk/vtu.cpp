@@ -26,8 +26,6 @@
 namespace meshorder::vtk {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 20;  // bytes that are swapped and compressed at once
-
 using Mode = VtuEncoding::Mode;
 using Compressor = VtuEncoding::Compressor;
 
@@ -224,7 +222,7 @@ class VtuWriter {
     std::visit(
         [&](const auto& numbers) {
           using Number = typename std::decay_t<decltype(numbers)>::value_type;
-          constexpr std::size_t kAtOnce = kBlock / sizeof(Number);
+          constexpr std::size_t kAtOnce = VtuCompressor::kBlock / sizeof(Number);
           std::vector<char> swapped;
           for (std::size_t begin = 0; begin < numbers.size(); begin += kAtOnce) {
             const auto part = numbers.subspan(begin, std::min(kAtOnce, numbers.size() - begin));
@@ -263,7 +261,8 @@ class VtuWriter {
   /// Returns the header of compressed blocks: their number, the bytes of each and of a shorter last one, and
   /// the compressed bytes of each.
   [[nodiscard]] std::string block_header(const Array& array, const std::vector<std::string>& blocks) const {
-    std::vector<std::uint64_t> values{blocks.size(), kBlock, byte_count(array) % kBlock};
+    std::vector<std::uint64_t> values{blocks.size(), VtuCompressor::kBlock,
+                                      byte_count(array) % VtuCompressor::kBlock};
     for (const std::string& block : blocks) values.push_back(block.size());
     return words(values);
   }

@@ -3,6 +3,7 @@
 
 #include "io/vtk/vtk.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -14,6 +15,9 @@ namespace meshorder::vtk {
 /// vtkLZ4DataCompressor and vtkLZMADataCompressor write them. The build may lack some of their libraries.
 class VtuCompressor {
  public:
+  /// Bytes of a block of the arrays that meshorder writes, before it is compressed.
+  static constexpr std::size_t kBlock = std::size_t{1} << 20;
+
   /// `kind` is not `none`, and available.
   explicit VtuCompressor(VtuEncoding::Compressor kind) : kind_(kind) {}
 

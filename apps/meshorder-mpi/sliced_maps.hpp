@@ -1,0 +1,46 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/communicator.hpp"
+#include "distributed/layout.hpp"
+#include "distributed/mesh_slice.hpp"
+#include "io/stream/output_set.hpp"
+#include "maps.hpp"
+
+#include <string>
+#include <vector>
+
+namespace meshorder::command {
+
+/// Returns `checksums_of` a mesh that the ranks have slices of, on all of them. Every rank has to call it;
+/// each waits for those before it. O(points + cells).
+MeshChecksums checksums_of(const distributed::Communicator& communicator,
+                           const distributed::MeshSlice& slice);
+
+/// The part that a vertex is in by its new number; those that no element uses are behind the last one, and
+/// count to it. O(log parts).
+///
+/// @param starts  first new number of each part, and the end of the last one's
+Index part_of(distributed::GlobalIndex vertex, const std::vector<distributed::GlobalIndex>& starts);
+
+/// What maps are made of.
+struct SlicedOrder {
+  const std::vector<distributed::GlobalIndex>& new_vertices;  ///< new number of each vertex of the old slice
+  const std::vector<distributed::GlobalIndex>& new_cells;     ///< new place of each of its cells
+  const std::vector<distributed::GlobalIndex>& part_starts;   ///< as of `part_of`
+};
+
+/// Writes the same files as `write_maps` by all ranks, each its range of every map, as files of a set. Every
+/// rank has to call it. O(vertices + cells).
+///
+/// @param before   of the mesh in its old order
+/// @param after    the mesh in its new order
+/// @param outputs  the root's
+/// @return the paths
+/// @throws SharedError where a rank cannot write
+std::vector<std::string> write_sliced_maps(const distributed::Communicator& communicator,
+                                           const SlicedOrder& order, const MeshChecksums& before,
+                                           const distributed::MeshSlice& after, const std::string& prefix,
+                                           OutputSet& outputs);
+
+}  // namespace meshorder::command

@@ -1,0 +1,62 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/layout.hpp"
+#include "distributed/vtu_offsets.hpp"
+#include "io/format.hpp"
+#include "io/vtu.hpp"
+#include <meshorder/mesh.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// An array of a .vtu file: what it holds, and where its values are.
+struct VtuArray {
+  enum class Role : std::uint8_t { points, types, offsets, connectivity, data };
+
+  std::array<char, 41> name;  ///< or how it begins, for messages; ends with a zero
+  Role role;
+  Association association;
+  std::uint8_t type;  ///< number type, as the alternatives of Values
+  Offset at;          ///< first byte in the file, of the words before the values
+  Offset stored;      ///< bytes in the file, those words among them
+  Offset row;         ///< bytes of a row
+  Offset size;        ///< bytes of all rows
+  Offset blocks;      ///< in which they are compressed; 0: they are not
+  Offset block;       ///< bytes of a block, but for the last one, which has the rest
+};
+
+/// What all ranks know of a .vtu file.
+struct VtuFacts {
+  GlobalIndex vertices = 0;
+  GlobalIndex cells = 0;
+  GlobalIndex entries = 0;  ///< of the connectivity
+  Offset bytes = 0;         ///< size of the file
+  Offset first_byte = 0;    ///< of the appended data
+  VtuEncoding encoding;
+};
+
+/// What the XML of a .vtu file says, and the words before its arrays.
+struct VtuHead {
+  VtuFacts facts;
+  std::vector<VtuArray> arrays;  ///< in the order of their bytes
+  std::vector<std::vector<Offset>>
+      blocks;  ///< of each array: first byte of each block, and the last one's end
+  VtuXml xml;
+};
+
+/// Reads the XML of a file and the tables of its compressed blocks. Returns nothing for a file that is no
+/// .vtu file of one piece with raw appended data in this machine's order of bytes, and for one whose
+/// compression this build lacks. O(size of the XML + blocks).
+///
+/// @param ranks  that share what the arrays take when uncompressed
+/// @throws InputError for a file of that kind that is damaged: XML, counts that differ, bytes beyond its end,
+///         blocks that cannot hold what they are said to
+[[nodiscard]] std::optional<VtuHead> read_vtu_head(const std::string& path, int ranks);
+
+}  // namespace meshorder::distributed
