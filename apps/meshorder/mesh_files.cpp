@@ -35,13 +35,18 @@ MeshToOrder read_to_order(const MeshFiles& files, Notes& notes) {
 
 std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, Notes& notes) {
   OutputSet outputs;
-  write_mesh_to(ordered.mesh, {files.output, outputs}, {.strict = files.keeping.strict, .notes = &notes});
-  std::vector<std::string> written;
-  if (!files.maps.empty())
-    written = write_maps(ordered.maps, ordered.before, checksums_of(ordered.mesh), files.maps, outputs);
+  std::vector<std::string> written = write_ordered(ordered, files, outputs, notes);
   outputs.commit();
   notes.insert(notes.end(), outputs.notes().begin(), outputs.notes().end());
   return written;
+}
+
+std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
+                                       Notes& notes) {
+  if (!files.output.empty())
+    write_mesh_to(ordered.mesh, {files.output, outputs}, {.strict = files.keeping.strict, .notes = &notes});
+  if (files.maps.empty()) return {};
+  return write_maps(ordered.maps, ordered.before, checksums_of(ordered.mesh), files.maps, outputs);
 }
 
 }  // namespace meshorder::command

@@ -37,4 +37,8 @@ MeshToOrder read_to_order(const MeshFiles& files, Notes& notes);
 /// paths of the maps. All files take their places together, or none does.
 std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, Notes& notes);
 
+/// The same as files of a set, which takes the places. An empty output is not written.
+std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
+                                       Notes& notes);
+
 }  // namespace meshorder::command

@@ -3,8 +3,9 @@
 
 #include "cells/cell_arrays.hpp"
 #include "distributed/halo.hpp"
-#include "distributed/moved_rows.hpp"
+#include "distributed/number_types.hpp"
 #include "distributed/shared_file.hpp"
+#include "distributed/text_store.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
@@ -33,71 +34,6 @@ namespace {
 constexpr Offset kChunk = Offset{1} << 24;  // bytes that are copied at a time
 constexpr std::size_t kLongestHead = std::size_t{1} << 26;
 constexpr std::string_view kAppended = "<AppendedData";
-
-/// Returns the size in bytes of a number of an alternative of Values; 0 for texts.
-Offset size_of_type(std::size_t alternative) {
-  return std::visit(
-      [](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        return std::is_arithmetic_v<Number> ? Offset{sizeof(Number)} : Offset{0};
-      },
-      vtk::values_of_type(alternative));
-}
-
-/// Calls `work` with a zero of the number type of an alternative of Values.
-template <class Work>
-void with_number_type(std::size_t alternative, const Work& work) {
-  std::visit(
-      [&](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_arithmetic_v<Number>) work(Number{});
-      },
-      vtk::values_of_type(alternative));
-}
-
-/// Converts the bytes of numbers of a type.
-template <class Target>
-std::vector<Target> numbers_of(const std::vector<std::byte>& bytes, std::size_t alternative) {
-  std::vector<Target> result;
-  with_number_type(alternative, [&](auto zero) {
-    using Number = decltype(zero);
-    result.reserve(bytes.size() / sizeof(Number));
-    for (std::size_t at = 0; at < bytes.size(); at += sizeof(Number)) {
-      Number number{};
-      std::memcpy(&number, bytes.data() + at, sizeof(Number));
-      result.push_back(static_cast<Target>(number));
-    }
-  });
-  return result;
-}
-
-/// Returns the bytes of whole numbers in a type.
-std::vector<std::byte> bytes_of(const std::vector<GlobalIndex>& numbers, std::size_t alternative) {
-  std::vector<std::byte> result;
-  with_number_type(alternative, [&](auto zero) {
-    using Number = decltype(zero);
-    result.resize(numbers.size() * sizeof(Number));
-    std::byte* at = result.data();
-    for (const GlobalIndex value : numbers) {
-      const auto number = static_cast<Number>(value);
-      std::memcpy(at, &number, sizeof(Number));
-      at += sizeof(Number);
-    }
-  });
-  return result;
-}
-
-/// The XML of a file without its arrays, for the parser.
-class HeadOnly : public FileStore {
- public:
-  explicit HeadOnly(std::string text) : text_(std::move(text)) {}
-  [[nodiscard]] bool has(const std::filesystem::path& /*path*/) const override { return true; }
-  [[nodiscard]] std::string read(const std::filesystem::path& /*path*/) const override { return text_; }
-  void write(const std::filesystem::path& /*path*/, std::string bytes) override { text_ = std::move(bytes); }
-
- private:
-  std::string text_;
-};
 
 /// Returns the file up to the underscore before its appended data; nothing if it has none.
 std::string head_of(const FilePath& path) {
@@ -139,7 +75,8 @@ class VtuSlices::Head {
     const std::string head = head_of(path_);
     if (head.empty()) return false;
     first_byte_ = static_cast<Offset>(head.size());
-    HeadOnly store(head + "</AppendedData></VTKFile>");
+    slices.head_ = head;
+    TextStore store(head + "</AppendedData></VTKFile>");
     const FilePath path(path_, store);
     const ReadScope scope(path);
     const vtk::VtuDocument file(path);
@@ -279,6 +216,7 @@ std::optional<VtuSlices> VtuSlices::open(const Communicator& communicator, const
   slices.cells_ = numbers[2];
   slices.entries_ = numbers[3];
   slices.bytes_ = numbers[4];
+  slices.head_ = std::move(head.slices.head_);
   slices.arrays_ = communicator.broadcast(std::move(head.slices.arrays_));
   return slices;
 }
@@ -416,34 +354,17 @@ void VtuSlices::write(const Communicator& communicator, const std::string& path,
                       const DistributedOrder& order) const {
   communicator.at_root([&] { copy_rest(path, name); });
   const int rank = communicator.rank();
-  const SharedFile in(communicator, path_, path_, SharedFile::Use::read);
+  GridRows grid = in_new_order(communicator, order);
   SharedFile out(communicator, path, name, SharedFile::Use::write);
-  MeshSlice slice = empty_slice(communicator);
-  read_cells(communicator, in, slice);
-  const GlobalIndex first_cell = slice.cells.begin(rank);
-
-  const RowMover vertices(communicator, slice.vertices, order.new_vertices);
-  const RowMover cells(communicator, slice.cells, places_by_dimension(communicator, slice, order.cells));
-  for (const Array& array : arrays_) {
+  for (std::size_t k = 0; k < arrays_.size(); ++k) {
+    const Array& array = arrays_[k];
     if (array.role == Role::offsets || array.role == Role::connectivity) continue;
-    const bool on_vertices = array.association == Association::vertices;
-    const Layout& layout = on_vertices ? slice.vertices : slice.cells;
-    const Offset at = array.at + layout.begin(rank) * array.row;
-    std::vector<std::byte> rows = communicator.together(
-        [&] { return std::vector<std::byte>(static_cast<std::size_t>(layout.size(rank) * array.row)); });
-    in.read(at, rows);
-    rows = (on_vertices ? vertices : cells).moved(rows, array.row);
-    out.write(at, rows);
+    const Layout& layout = array.association == Association::vertices ? grid.vertices : grid.cells;
+    out.write(array.at + layout.begin(rank) * array.row, grid.rows(k));
   }
 
-  {
-    std::vector<GlobalIndex>& numbers = slice.cell_vertices.entries;
-    const Halo halo(communicator, slice.vertices, numbers);
-    const std::vector<GlobalIndex> new_numbers = halo.fetch(order.new_vertices);
-    for (GlobalIndex& number : numbers) number = new_numbers[halo.position(number)];
-  }
-  const Rows moved = cells.moved(slice.cell_vertices);
-  slice = {};
+  const Rows moved = std::move(grid.cell_vertices);
+  const GlobalIndex first_cell = grid.cells.begin(rank);
   GlobalIndex first_entry = 0;
   const std::vector<GlobalIndex> sizes =
       communicator.gathered(static_cast<GlobalIndex>(moved.entries.size()));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "distributed/communicator.hpp"
+#include "distributed/grid_rows.hpp"
 #include "distributed/layout.hpp"
 #include "distributed/mesh_slice.hpp"
 #include "distributed/order.hpp"
@@ -37,6 +38,12 @@ class VtuSlices {
   ///         few, or with such that do not exist
   [[nodiscard]] MeshSlice read(const Communicator& communicator) const;
 
+  /// Returns the mesh in its new order, this object's as long as it lives. Every rank has to call it. Reads
+  /// the cells once more, and each array when its rows are asked for. O(size of the slice).
+  ///
+  /// @throws SharedError where a rank cannot read
+  [[nodiscard]] GridRows in_new_order(const Communicator& communicator, const DistributedOrder& order) const;
+
   /// Writes the mesh in its new order over a file that exists, and is empty. Every rank has to call it. Reads
   /// the arrays once more, one after another. O(size of the slice), memory for the cells or the largest array
   /// of a rank three times.
@@ -71,6 +78,7 @@ class VtuSlices {
   void copy_rest(const std::string& path, const std::string& name) const;
 
   std::string path_;
+  std::string head_;  ///< at the root: the file up to its appended data
   GlobalIndex vertices_ = 0;
   GlobalIndex cells_ = 0;
   GlobalIndex entries_ = 0;  ///< of the connectivity

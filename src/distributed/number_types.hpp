@@ -1,0 +1,67 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+#include "io/vtk/vtk.hpp"
+
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+/// Bytes of numbers whose type is known at run time only, as the alternative of `Values`.
+namespace meshorder::distributed {
+
+/// Calls `work` with a zero of a number type; does nothing for texts.
+template <class Work>
+void with_number_type(std::size_t alternative, const Work& work) {
+  std::visit(
+      [&](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_arithmetic_v<Number>) work(Number{});
+      },
+      vtk::values_of_type(alternative));
+}
+
+/// Returns the size in bytes of a number; 0 for texts.
+[[nodiscard]] inline Offset size_of_type(std::size_t alternative) {
+  Offset size = 0;
+  with_number_type(alternative, [&](auto zero) { size = sizeof(zero); });
+  return size;
+}
+
+/// Converts the bytes of numbers of a type. O(bytes).
+template <class Target>
+[[nodiscard]] std::vector<Target> numbers_of(const std::vector<std::byte>& bytes, std::size_t alternative) {
+  std::vector<Target> result;
+  with_number_type(alternative, [&](auto zero) {
+    using Number = decltype(zero);
+    result.reserve(bytes.size() / sizeof(Number));
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof(Number)) {
+      Number number{};
+      std::memcpy(&number, bytes.data() + at, sizeof(Number));
+      result.push_back(static_cast<Target>(number));
+    }
+  });
+  return result;
+}
+
+/// Returns the bytes of whole numbers in a type. O(numbers).
+template <class Whole>
+[[nodiscard]] std::vector<std::byte> bytes_of(const std::vector<Whole>& numbers, std::size_t alternative) {
+  std::vector<std::byte> result;
+  with_number_type(alternative, [&](auto zero) {
+    using Number = decltype(zero);
+    result.resize(numbers.size() * sizeof(Number));
+    std::byte* at = result.data();
+    for (const Whole value : numbers) {
+      const auto number = static_cast<Number>(value);
+      std::memcpy(at, &number, sizeof(Number));
+      at += sizeof(Number);
+    }
+  });
+  return result;
+}
+
+}  // namespace meshorder::distributed
