@@ -37,6 +37,7 @@ struct Arguments : Common, OrderFiles {
   std::string vertices = "auto";
   std::string partition{to_string(distributed::Partitioner::ptscotch)};
   Index parts = 0;
+  std::string interface { to_string(distributed::InterfacePlace::mixed) };
   OrderOptions order;
   std::string ids = "renumber";
 };
@@ -46,6 +47,7 @@ DistributedOptions options_of(const Arguments& arguments) {
   if (arguments.vertices != "auto") options.vertices = arguments.vertices;
   options.partitioner = parse<distributed::Partitioner>(arguments.partition);
   options.parts = arguments.parts;
+  options.interface = parse<distributed::InterfacePlace>(arguments.interface);
   options.order = arguments.order;
   return options;
 }
@@ -116,7 +118,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
         {"files_by", slices ? "all ranks" : "rank 0"},
         {"vertices", {{"count", vertex_count}, {"method", options.vertices}}},
         {"cells", {{"count", cell_count}, {"method", "lexmax"}}}};
-    result.update(to_json(report, peaks));
+    result.update(to_json(options, report, peaks));
     result["maps"] = outputs.maps();
     if (!arguments.pieces.empty()) {
       result["pieces"] = {{"file", outputs.pieces_file()},
@@ -181,6 +183,14 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
                   "What makes the parts: `ptscotch` has few edges between them, `hilbert` cuts Hilbert's\n"
                   "curve and gives the same parts on any number of ranks")
       ->check(CLI::IsMember({"ptscotch", "hilbert"}))
+      ->capture_default_str();
+  subcommand
+      .add_option(
+          "--interface", arguments->interface,
+          "Where a part has the vertices that share an element with those of other parts: `mixed` with\n"
+          "the others, in the method's order, or `last`, behind them, so that a program can work on\n"
+          "the others while it waits for these")
+      ->check(CLI::IsMember({"mixed", "last"}))
       ->capture_default_str();
   add_ids_option(subcommand, arguments->ids);
   add_keeping_options(subcommand, arguments->keeping);

@@ -142,9 +142,10 @@ DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
   }
   const PartOrders parts =
       ordered_in_parts(communicator, graph, *curve, HaloValues<Index>(halo, first, std::move(places)),
-                       report.parts, options.vertices, options.order);
+                       report.parts, options.vertices, options.interface, options.order);
   report.ghosts = parts.ghosts;
   report.part_starts = parts.starts;
+  report.interfaces = parts.interfaces;
   stages.end("order");
 
   order.new_vertices = numbers_in_file(communicator, slice, *curve, parts.new_numbers);

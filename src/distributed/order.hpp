@@ -2,6 +2,7 @@
 #pragma once
 
 #include "distributed/communicator.hpp"
+#include "distributed/interface_place.hpp"
 #include "distributed/mesh_slice.hpp"
 #include "distributed/partition.hpp"
 #include "distributed/spans.hpp"
@@ -18,7 +19,8 @@ namespace meshorder::distributed {
 struct DistributedOptions {
   std::string vertices = "spectral";  ///< vertex method inside a part; not `auto`, `original` or `scrambled`
   Partitioner partitioner = Partitioner::ptscotch;
-  Index parts = 0;          ///< 0: one for each rank
+  Index parts = 0;  ///< 0: one for each rank
+  InterfacePlace interface = InterfacePlace::mixed;
   OrderOptions order = {};  ///< seed, tolerance and run
 };
 
@@ -31,6 +33,7 @@ struct DistributedReport {
   GlobalIndex cut = 0;                   ///< edges between parts
   GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts
   std::vector<GlobalIndex> part_starts;  ///< first new number of each part, and the end of the last one's
+  std::vector<GlobalIndex> interfaces;   ///< of each part: vertices that share an element with other parts'
   GlobalEdgeSpan before;
   GlobalEdgeSpan after;
   std::vector<std::pair<std::string_view, double>> seconds;  ///< of each stage, in their order

@@ -8,7 +8,7 @@ import subprocess
 import numpy
 import pytest
 import vtkmodules.util.numpy_support as convert
-from test_mpi import SHARED, launch, order, own_lines
+from test_mpi import SHARED, ball, launch, order, own_lines
 from test_vtu_slices import array, grid, write
 from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
@@ -251,6 +251,21 @@ def test_a_full_disk_leaves_the_old_pieces(tmp_path):
         assert done.returncode == 2 and os.listdir(folder) == ["out"], done.stderr
     finally:
         subprocess.run(["umount", folder], check=True)
+
+
+@pytest.mark.parametrize("place", ["mixed", "last"])
+def test_interfaces_stand_behind_the_other_vertices_of_a_piece(tmp_path, ball, place):
+    done = order(3, ball, "--pieces", tmp_path, "--parts", "4", "--interface", place, "--json")
+    partition = json.loads(done.stdout)["partition"]
+    assert partition["interface"] == place and len(partition["interface_vertices"]) == 4
+    last = []
+    for part, count in enumerate(partition["interface_vertices"]):
+        piece = Grid(next(tmp_path.glob(f"*_{part:04}.vtu")))
+        own = int((piece.of_points["vtkGhostType"] == 0).sum())
+        interface = {v for _, row in piece.cells if max(row) >= own for v in row if v < own}
+        assert 0 < len(interface) == count < own
+        last.append(interface == set(range(own - count, own)))
+    assert last == [place == "last"] * 4
 
 
 def test_the_same_bits_on_every_number_of_ranks(tmp_path):
