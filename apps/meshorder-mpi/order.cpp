@@ -37,7 +37,8 @@ struct Arguments : Common, OrderFiles {
   std::string vertices = "auto";
   std::string partition{to_string(distributed::Partitioner::ptscotch)};
   Index parts = 0;
-  std::string interface { to_string(distributed::InterfacePlace::mixed) };
+  std::string balance{to_string(distributed::Balance::vertices)};
+  std::string interface_place{to_string(distributed::InterfacePlace::mixed)};
   OrderOptions order;
   std::string ids = "renumber";
 };
@@ -47,7 +48,8 @@ DistributedOptions options_of(const Arguments& arguments) {
   if (arguments.vertices != "auto") options.vertices = arguments.vertices;
   options.partitioner = parse<distributed::Partitioner>(arguments.partition);
   options.parts = arguments.parts;
-  options.interface = parse<distributed::InterfacePlace>(arguments.interface);
+  options.balance = parse<distributed::Balance>(arguments.balance);
+  options.interface_place = parse<distributed::InterfacePlace>(arguments.interface_place);
   options.order = arguments.order;
   return options;
 }
@@ -186,7 +188,14 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
       ->capture_default_str();
   subcommand
       .add_option(
-          "--interface", arguments->interface,
+          "--balance", arguments->balance,
+          "What parts have equally much of: `vertices`, or `cells`: elements, each shared out among its\n"
+          "vertices")
+      ->check(CLI::IsMember({"vertices", "cells"}))
+      ->capture_default_str();
+  subcommand
+      .add_option(
+          "--interface", arguments->interface_place,
           "Where a part has the vertices that share an element with those of other parts: `mixed` with\n"
           "the others, in the method's order, or `last`, behind them, so that a program can work on\n"
           "the others while it waits for these")

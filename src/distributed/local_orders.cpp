@@ -113,7 +113,7 @@ void put_interface_last(std::vector<Index>& places, const std::vector<char>& is_
 }
 
 /// The new place of each vertex of a part within it.
-std::vector<Index> places_in(const Part& part, std::string_view method, InterfacePlace interface,
+std::vector<Index> places_in(const Part& part, std::string_view method, InterfacePlace interface_place,
                              const OrderOptions& options) {
   const Order order = in_call(options.run, [&] {
     return order_graph(method, {.graph = part.graph, .points = part.points, .pull = part.pull}, options);
@@ -123,7 +123,7 @@ std::vector<Index> places_in(const Part& part, std::string_view method, Interfac
   if (is_reversible && is_the_wrong_way_round(places, part.pull)) {
     for (Index& place : places) place = index_size(places) - 1 - place;
   }
-  if (interface == InterfacePlace::last) put_interface_last(places, part.is_interface);
+  if (interface_place == InterfacePlace::last) put_interface_last(places, part.is_interface);
   return places;
 }
 
@@ -131,7 +131,7 @@ std::vector<Index> places_in(const Part& part, std::string_view method, Interfac
 
 PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph& graph, const Curve& curve,
                             const HaloValues<Index>& place_of, Index parts, std::string_view method,
-                            InterfacePlace interface, const OrderOptions& options) {
+                            InterfacePlace interface_place, const OrderOptions& options) {
   PartOrders result;
   std::vector<GlobalIndex> sizes = communicator.together([&] {
     std::vector<GlobalIndex> own(static_cast<std::size_t>(parts), 0);
@@ -165,7 +165,7 @@ PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph&
       members[static_cast<std::size_t>(rows[row][kPart] - first_part)].push_back(row);
     for (std::size_t k = 0; k < part_count; ++k) {
       const Part part = part_of_rows(rows, members[k]);
-      const std::vector<Index> places = places_in(part, method, interface, options);
+      const std::vector<Index> places = places_in(part, method, interface_place, options);
       result.interfaces[static_cast<std::size_t>(first_part) + k] =
           std::count(part.is_interface.begin(), part.is_interface.end(), 1);
       const GlobalIndex first = result.starts[static_cast<std::size_t>(first_part) + k];

@@ -28,11 +28,11 @@ struct PartOrders {
 /// @param graph     numbered as `curve` says, and ordered within a part from there
 /// @param place_of  part of each vertex, numbered by the order of the parts
 /// @param method    name of a vertex method
-/// @param interface where a part has the vertices with neighbours in other parts
+/// @param interface_place where a part has the vertices with neighbours in other parts
 /// @throws as `Communicator::exchange`; SharedError with what the method throws
 [[nodiscard]] PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph& graph,
                                           const Curve& curve, const HaloValues<Index>& place_of, Index parts,
-                                          std::string_view method, InterfacePlace interface,
+                                          std::string_view method, InterfacePlace interface_place,
                                           const OrderOptions& options);
 
 }  // namespace meshorder::distributed

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "distributed/balance.hpp"
 #include "distributed/communicator.hpp"
 #include "distributed/interface_place.hpp"
 #include "distributed/mesh_slice.hpp"
@@ -20,7 +21,8 @@ struct DistributedOptions {
   std::string vertices = "spectral";  ///< vertex method inside a part; not `auto`, `original` or `scrambled`
   Partitioner partitioner = Partitioner::ptscotch;
   Index parts = 0;  ///< 0: one for each rank
-  InterfacePlace interface = InterfacePlace::mixed;
+  Balance balance = Balance::vertices;
+  InterfacePlace interface_place = InterfacePlace::mixed;
   OrderOptions order = {};  ///< seed, tolerance and run
 };
 
@@ -29,6 +31,7 @@ struct DistributedReport {
   Index parts = 0;
   Partitioner partitioner = Partitioner::ptscotch;  ///< that made the parts
   std::string partition_reason;                     ///< why that is not the one asked for; else empty
+  double imbalance = 1;  ///< of what parts should have equally much of: the largest relative to the mean
   GlobalIndex edges = 0;
   GlobalIndex cut = 0;                   ///< edges between parts
   GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts
