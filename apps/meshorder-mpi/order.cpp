@@ -149,7 +149,8 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
   subcommand.footer(
       "Examples:\n"
       "  mpirun -n 4 meshorder order part.vtu -o ordered.vtu\n"
-      "  mpirun -n 4 meshorder order part.msh -o ordered.vtu --parts 64 --maps part");
+      "  mpirun -n 4 meshorder order part.msh -o ordered.vtu --parts 64 --maps part\n"
+      "  mpirun -n 4 meshorder order part.vtu --pieces out --parts 64 --interface last");
   const auto arguments = std::make_shared<Arguments>();
   subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
   subcommand.add_option("-o,--output", arguments->output,
@@ -201,16 +202,10 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
           "the others while it waits for these")
       ->check(CLI::IsMember({"mixed", "last"}))
       ->capture_default_str();
-  add_ids_option(subcommand, arguments->ids);
-  add_keeping_options(subcommand, arguments->keeping);
-  subcommand.add_option(
-      "--maps", arguments->maps,
-      "Also write the permutations as NumPy files, by which `meshorder apply` moves or puts\n"
-      "back, as `meshorder order` does, and the part of each vertex and cell of the output,\n"
-      "PREFIX.vertices.parts.npy and PREFIX.cells.parts.npy");
-  subcommand.add_option("--seed", arguments->order.seed, "Seed of random start vectors and of METIS")
-      ->check(whole_from(0, std::numeric_limits<std::uint64_t>::max()))
-      ->capture_default_str();
+  add_moving_options(subcommand, *arguments, arguments->ids,
+                     "; and the part of each vertex and\n"
+                     "cell of the output, PREFIX.vertices.parts.npy and PREFIX.cells.parts.npy");
+  add_seed_option(subcommand, arguments->order.seed);
   add_reading_options(subcommand);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments, &communicator] {

@@ -6,7 +6,20 @@
 #include "io/stream/output_file.hpp"
 #include "io/stream/output_set.hpp"
 
+#include <CLI/CLI.hpp>
+
 namespace meshorder::command {
+
+void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids,
+                        const std::string& more_maps) {
+  add_ids_option(subcommand, ids);
+  add_keeping_options(subcommand, files.keeping);
+  subcommand.add_option(
+      "--maps", files.maps,
+      "Also write the permutations as NumPy files, PREFIX.vertices.old_to_new.npy and so on, and\n"
+      "PREFIX.maps.json, by which `apply` knows the mesh" +
+          more_maps);
+}
 
 void check_can_write(const MeshFiles& files) {
   (void)OutputFile(files.output);

@@ -26,6 +26,12 @@ struct MeshToOrder {
   MeshChecksums before;  ///< only where maps are wanted
 };
 
+/// Adds --ids, whose value parse<Ids> reads, --only, --strict and --maps.
+///
+/// @param more_maps  what else is written with the maps, as the end of a sentence of the help
+void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids,
+                        const std::string& more_maps = "");
+
 /// Fails, before the work, if the output or its maps cannot be written.
 void check_can_write(const MeshFiles& files);
 
