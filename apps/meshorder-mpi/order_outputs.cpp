@@ -94,13 +94,19 @@ void OrderOutputs::write(const MeshToOrder& whole, const distributed::Distribute
   communicator_.at_root([&] { maps_ = write_ordered(whole, files_, set_, notes); });
   if (files_.pieces.empty()) return;
   Notes of_pieces;
-  write_pieces(scattered_grid(communicator_, whole.mesh, of_pieces), order.report, notes);
+  const GridRows grid = scattered_grid(communicator_, whole.mesh, of_pieces);
+  communicator_.at_root([&] { refuse_losses(of_pieces); });
+  write_pieces(grid, order.report, notes);
   add_new(of_pieces, notes);
 }
 
 void OrderOutputs::write_pieces(const GridRows& grid, const distributed::DistributedReport& report,
                                 Notes& notes) {
   const distributed::PieceSchema schema = schema_of_pieces(communicator_, grid, files_.ghosts);
+  Notes replaced;
+  if (!schema.replaced().empty())
+    replaced = {"the pieces have arrays of their own in place of those " + join(schema.replaced())};
+  communicator_.at_root([&] { refuse_losses(replaced); });
   const std::vector<std::string> paths =
       shared(communicator_, communicator_.at_root([&] { return pieces_->open(report.parts); }));
   const std::vector<std::string> names =
@@ -109,9 +115,13 @@ void OrderOutputs::write_pieces(const GridRows& grid, const distributed::Distrib
                                              files_.ghosts > 0, paths, names);
   communicator_.at_root([&] {
     pieces_->add_to(set_, schema.index(pieces_->names()));
-    if (!schema.replaced().empty())
-      notes.push_back("the pieces have arrays of their own in place of those " + join(schema.replaced()));
+    add_new(replaced, notes);
   });
+}
+
+void OrderOutputs::refuse_losses(const Notes& losses) const {
+  if (files_.keeping.strict && !losses.empty())
+    throw InputError(pieces_file(), losses.front(), "nothing is written, as no loss is allowed");
 }
 
 void OrderOutputs::commit(Notes& notes) {

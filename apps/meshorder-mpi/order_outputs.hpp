@@ -61,6 +61,8 @@ class OrderOutputs {
  private:
   void write_pieces(const distributed::GridRows& grid, const distributed::DistributedReport& report,
                     Notes& notes);
+  /// Throws InputError, at the root, for what pieces do not hold, where no loss is allowed.
+  void refuse_losses(const Notes& losses) const;
 
   const distributed::Communicator& communicator_;
   const OrderFiles& files_;

@@ -159,6 +159,16 @@ def test_texts_roles_and_names_that_pieces_use(tmp_path):
     assert set(Grid(tmp_path / "out" / "b_0002.vtu").of_points["text"]) == {f"<{k}>" * n for k in range(7) for n in range(3)}
 
 
+def test_no_loss_where_none_is_allowed(tmp_path):
+    with_texts_and_roles(tmp_path / "a.vtu")
+    write(tmp_path / "b.vtu", grid())
+    done = launch(2, "order", tmp_path / "a.vtu", "--pieces", tmp_path / "out", "--strict")
+    assert done.returncode == 2 and len(own_lines(done)) == 1, done.stderr
+    assert "'part'" in own_lines(done)[0] and "no loss is allowed" in own_lines(done)[0]
+    assert sorted(os.listdir(tmp_path)) == ["a.vtu", "b.vtu"]
+    order(2, tmp_path / "b.vtu", "--pieces", tmp_path / "out", "--strict")
+
+
 @pytest.mark.parametrize("wide", [True, False])
 @pytest.mark.parametrize("compressed", [False, True])
 def test_every_piece_has_the_fields(tmp_path, wide, compressed):
