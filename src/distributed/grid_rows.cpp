@@ -75,7 +75,7 @@ class WholeGrid {
     std::string text = store.text();
     if (std::any_of(context_.types.begin(), context_.types.end(), vtk::is_higher_order_hexahedron)) {
       constexpr std::string_view kVersion = "version=\"1.0\"";
-      text.replace(text.find(kVersion), kVersion.size(), "version=\"2.2\"");
+      text.replace(text.find(kVersion, text.find("<VTKFile")), kVersion.size(), "version=\"2.2\"");
     }
     return text;
   }

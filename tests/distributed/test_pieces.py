@@ -10,7 +10,8 @@ import pytest
 import vtkmodules.util.numpy_support as convert
 from test_mpi import SHARED, ball, launch, order, own_lines
 from test_vtu_slices import array, grid, write
-from vtkmodules.vtkCommonCore import vtkStringArray
+from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkHigherOrderHexahedron, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 OF_PIECES = {"GlobalPointIds", "GlobalCellIds", "vtkGhostType", "part"}
@@ -191,6 +192,26 @@ def test_pieces_of_other_formats_have_the_numbers_of_the_output(tmp_path, name, 
     # what Medit's files do not hold stands in the pieces all the same
     whole = Grid(out if extension == ".vtu" else tmp_path / "same.vtu")
     assert_pieces_of(whole, tmp_path / "out", "b", json.loads(done.stdout), with_arrays=extension == ".vtu")
+
+
+@pytest.mark.parametrize("compressed", [False, True])
+def test_hexahedra_of_higher_order_keep_their_nodes(tmp_path, compressed):
+    """Lagrange hexahedra of 27 nodes, whose order depends on the version of the file."""
+    numbers, rows = {}, []
+    for x, y, z in numpy.ndindex(6, 2, 2):
+        row = [0] * 27
+        for i, j, k in numpy.ndindex(3, 3, 3):
+            place = vtkHigherOrderHexahedron.PointIndexFromIJK(i, j, k, [2, 2, 2])
+            row[place] = numbers.setdefault((2 * x + i, 2 * y + j, 2 * z + k), len(numbers))
+        rows.append(row)
+    made, points, cells = vtkUnstructuredGrid(), vtkPoints(), vtkCellArray()
+    points.SetData(convert.numpy_to_vtk(numpy.array(list(numbers), dtype=float), deep=True))
+    made.SetPoints(points)
+    cells.SetData(27, convert.numpy_to_vtkIdTypeArray(numpy.array(rows).ravel(), deep=True))
+    made.SetCells(72, cells)
+    write(tmp_path / "a.vtu", made, compressed=compressed)
+    done = order(2, tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--pieces", tmp_path / "out", "--parts", "3", "--json")
+    assert_pieces_of(Grid(tmp_path / "b.vtu"), tmp_path / "out", "b", json.loads(done.stdout))
 
 
 def test_more_parts_than_vertices_leave_empty_pieces(tmp_path):
