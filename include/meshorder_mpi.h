@@ -35,12 +35,16 @@ typedef struct mo_mpi_mesh {
 /** Options of a call. `mo_mpi_options_init` fills in the defaults; a null pointer stands for them. The same
  * on all ranks. */
 typedef struct mo_mpi_options {
-  size_t struct_size;    /**< sizeof(mo_mpi_options) of the caller */
-  const char* method;    /**< vertex method of a part; null: "spectral" */
-  const char* partition; /**< what makes parts: "ptscotch" (null) or "hilbert" */
-  uint64_t seed;         /**< of the method; default 0 */
-  int32_t parts;         /**< number of parts; 0 (default): one for each rank */
-  int32_t threads;       /**< of this rank; default 1 */
+  size_t struct_size;     /**< sizeof(mo_mpi_options) of the caller */
+  const char* method;     /**< vertex method of a part; null: "spectral" */
+  const char* partition;  /**< what makes parts: "ptscotch" (null) or "hilbert" */
+  const char* balance;    /**< what parts have equally much of: "vertices" (null) or "cells" */
+  uint64_t seed;          /**< of the method; default 0 */
+  int32_t parts;          /**< number of parts; 0 (default): one for each rank */
+  int32_t threads;        /**< of this rank; default 1 */
+  int32_t interface_last; /**< non-zero: vertices that share an element with those of other ranks or parts
+                             come behind the others; default 0 */
+  int32_t reserved;       /**< 0 */
 } mo_mpi_options;
 
 /** Fills in the defaults. `struct_size` is sizeof(mo_mpi_options) of the caller. Does nothing for a null
@@ -55,7 +59,7 @@ MO_API void mo_mpi_options_init(mo_mpi_options* options, size_t struct_size);
  *
  * @param communicator  Fortran handle of the ranks that share the mesh
  * @param mesh          of this rank
- * @param options       or null; `parts` and `partition` are not used
+ * @param options       or null; `parts`, `partition` and `balance` are not used
  * @param new_numbers   vertex_count numbers: the new number of each own vertex, within the rank's own range
  * @param cell_order    cell_count numbers, or null: the elements in their new order, by `lexmax`: entry k is
  *                      the old place (from 0 on) of the element that comes k-th

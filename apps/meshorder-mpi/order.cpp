@@ -7,31 +7,23 @@
 #include "distributed/mesh_slice.hpp"
 #include "distributed/order.hpp"
 #include "distributed/vtu_slices.hpp"
-#include "io/format.hpp"
-#include "io/stream/output_file.hpp"
-#include "io/stream/output_set.hpp"
-#include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
-#include "mesh_files.hpp"
-#include "ordering/order_cells.hpp"
+#include "order_outputs.hpp"
 #include "report.hpp"
-#include "shared_output.hpp"
 #include "sliced_maps.hpp"
+#include "whole_mesh.hpp"
 #include "wording.hpp"
-#include <meshorder/io.hpp>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
 namespace meshorder::command {
 namespace {
@@ -42,13 +34,12 @@ using distributed::DistributedOrder;
 using distributed::GlobalIndex;
 using distributed::VtuSlices;
 
-/// Cells from which the memory of the rank that reads them is worth a warning.
-constexpr Index kManyCells = 10'000'000;
-
-struct Arguments : Common, MeshFiles {
+struct Arguments : Common, OrderFiles {
   std::string vertices = "auto";
   std::string partition{to_string(distributed::Partitioner::ptscotch)};
   Index parts = 0;
+  std::string balance{to_string(distributed::Balance::vertices)};
+  std::string interface_place{to_string(distributed::InterfacePlace::mixed)};
   OrderOptions order;
   std::string ids = "renumber";
 };
@@ -58,107 +49,43 @@ DistributedOptions options_of(const Arguments& arguments) {
   if (arguments.vertices != "auto") options.vertices = arguments.vertices;
   options.partitioner = parse<distributed::Partitioner>(arguments.partition);
   options.parts = arguments.parts;
+  options.balance = parse<distributed::Balance>(arguments.balance);
+  options.interface_place = parse<distributed::InterfacePlace>(arguments.interface_place);
   options.order = arguments.order;
   return options;
 }
 
-/// The mesh at the root, its cells as the output keeps them.
-struct Job : MeshToOrder {
-  Permutation arranged;  ///< places of the cells as they were read
-  Notes notes;
-};
-
-Job read_at_root(const Communicator& communicator, const Arguments& arguments) {
-  return communicator.at_root([&] {
-    check_can_write(arguments);  // fail before the work
-    check_holds_ids(format_of(arguments.output), parse<Ids>(arguments.ids));
-    Job job;
-    static_cast<MeshToOrder&>(job) = read_to_order(arguments, job.notes);
-    if (job.mesh.cell_count() > kManyCells) {
-      job.notes.push_back(with_commas(job.mesh.cell_count()) +
-                          " cells are read and written by rank 0, which has memory for all of them");
-    }
-    job.arranged = arrange_cells(job.mesh, format_of(arguments.output));
-    return job;
-  });
-}
-
-std::vector<Index> narrowed(const std::vector<GlobalIndex>& numbers) {
-  return {numbers.begin(), numbers.end()};
-}
-
-/// Fills in the part of each vertex, and of each cell: that of its last vertex, so that parts of cells ascend
-/// where cells are sorted by `lexmax`. The mesh is in its new order.
-void note_parts(const Mesh& mesh, const std::vector<GlobalIndex>& starts, Maps& maps) {
-  maps.vertex_parts.reserve(mesh.points.size());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) maps.vertex_parts.push_back(part_of(v, starts));
-  maps.cell_parts.reserve(mesh.cells.shapes.size());
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const auto vertices = mesh.cells[c];
-    maps.cell_parts.push_back(maps.vertex_parts[*std::max_element(vertices.begin(), vertices.end())]);
-  }
-}
-
-/// Puts the mesh into its new order and writes it; returns the paths of the maps.
-std::vector<std::string> write_at_root(const Arguments& arguments, Job& job,
-                                       const std::vector<GlobalIndex>& vertices,
-                                       const std::vector<GlobalIndex>& cells,
-                                       const std::vector<GlobalIndex>& part_starts) {
-  job.maps.vertices = Permutation::from_old_to_new(narrowed(vertices));
-  const Permutation places = permutation_within_classes(slot_classes(cell_arrays(job.mesh)), narrowed(cells));
-  apply_reordering(job.mesh, job.maps.vertices, places, parse<Ids>(arguments.ids));
-  job.maps.cells = job.arranged.then(places);
-  if (!arguments.maps.empty()) note_parts(job.mesh, part_starts, job.maps);
-  return write_ordered(job, arguments, job.notes);
-}
-
 /// Returns the input as all ranks read it; nothing where rank 0 has to: for old numbers and chosen cells, for
-/// files of other kinds, and for maps of cells whose nodes a Mesh has in another order.
+/// files of other kinds, for maps of cells whose nodes a Mesh has in another order, and for maps without a
+/// file.
 std::optional<VtuSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
   const auto is_vtu = [](const std::string& name) {
     return std::filesystem::path(name).extension() == ".vtu";
   };
   const Keeping& keeping = arguments.keeping;
-  if (!is_vtu(arguments.input) || !is_vtu(arguments.output) || arguments.ids != "renumber" ||
-      keeping.dimension >= 0 || keeping.strict) {
+  const bool with_maps = !arguments.maps.empty();
+  if (!is_vtu(arguments.input) || !is_vtu(arguments.with_output().output) || arguments.ids != "renumber" ||
+      keeping.dimension >= 0 || keeping.strict || (with_maps && arguments.output.empty())) {
     return std::nullopt;
   }
-  communicator.at_root([&] { check_can_write(arguments); });  // fail before the work
   std::optional<VtuSlices> slices = VtuSlices::open(communicator, arguments.input);
-  if (slices && !arguments.maps.empty() && !slices->has_nodes_as_a_mesh(communicator)) slices.reset();
+  if (slices && with_maps && !slices->has_nodes_as_a_mesh(communicator)) slices.reset();
   return slices;
-}
-
-/// Writes the mesh in its new order and its maps by all ranks, to files that take their places when they are
-/// complete; returns the paths of the maps.
-std::vector<std::string> write_slices(const Communicator& communicator, const Arguments& arguments,
-                                      const VtuSlices& slices, const DistributedOrder& order,
-                                      const MeshChecksums& before, Notes& notes) {
-  OutputSet outputs;
-  SharedOutput file(communicator, outputs, arguments.output);
-  const std::vector<GlobalIndex> new_cells = slices.write(communicator, file.path(), arguments.output, order);
-  file.commit();
-  std::vector<std::string> maps;
-  if (!arguments.maps.empty()) {
-    const std::optional<VtuSlices> written = VtuSlices::open(communicator, file.path());
-    maps = write_sliced_maps(communicator, {order.new_vertices, new_cells, order.report.part_starts}, before,
-                             written->read(communicator), arguments.maps, outputs);
-  }
-  communicator.at_root([&] {
-    outputs.commit();
-    notes.insert(notes.end(), outputs.notes().begin(), outputs.notes().end());
-  });
-  return maps;
 }
 
 void run(const Arguments& arguments, const Communicator& communicator) {
   const DistributedOptions options = options_of(arguments);
+  OrderOutputs outputs(communicator, arguments);
   const Stopwatch reading;
+  Notes notes;
   const std::optional<VtuSlices> slices = slices_of(communicator, arguments);
-  Job job;
-  if (!slices) job = read_at_root(communicator, arguments);
+  WholeMesh whole;
+  if (!slices) {
+    whole = read_at_root(communicator, arguments.with_output(), parse<Ids>(arguments.ids), notes);
+    outputs.check(whole.mesh);
+  }
   distributed::MeshSlice slice =
-      slices ? slices->read(communicator) : distributed::scattered(communicator, job.mesh);
+      slices ? slices->read(communicator) : distributed::scattered(communicator, whole.mesh);
   const GlobalIndex vertex_count = slice.vertices.size();
   const GlobalIndex cell_count = slice.cells.size();
   MeshChecksums before;
@@ -167,15 +94,13 @@ void run(const Arguments& arguments, const Communicator& communicator) {
 
   DistributedOrder order = distributed::order_slices(communicator, std::move(slice), options);
   const Stopwatch writing;
-  std::vector<std::string> map_files;
   if (slices) {
-    map_files = write_slices(communicator, arguments, *slices, order, before, job.notes);
+    outputs.write(*slices, order, before, notes);
   } else {
-    const std::vector<GlobalIndex> vertices = communicator.gathered_at_root(order.new_vertices);
-    const std::vector<GlobalIndex> cells = communicator.gathered_at_root(order.cells);
-    map_files = communicator.at_root(
-        [&] { return write_at_root(arguments, job, vertices, cells, order.report.part_starts); });
+    move_at_root(communicator, whole, order, arguments, parse<Ids>(arguments.ids));
+    outputs.write(whole, order, notes);
   }
+  outputs.commit(notes);
 
   distributed::DistributedReport& report = order.report;
   report.seconds.insert(report.seconds.begin(), {"read", read_seconds});
@@ -184,18 +109,32 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   communicator.at_root([&] {
     Console console(arguments);
     if (!report.partition_reason.empty())
-      job.notes.push_back(report.partition_reason + ": parts are ranges of Hilbert's curve");
-    console.warn_of(job.notes);
+      notes.push_back(report.partition_reason + ": parts are ranges of Hilbert's curve");
+    console.warn_of(notes);
     print_report(console, options, report, peaks);
-    console.print("{:<10} {}{}", "wrote", arguments.output, slices ? ", read and written by all ranks" : "");
-    for (const std::string& file : map_files) console.print("{:<10} {}", "", file);
-    nlohmann::ordered_json result{{"input", arguments.input},
-                                  {"output", arguments.output},
-                                  {"files_by", slices ? "all ranks" : "rank 0"},
-                                  {"vertices", {{"count", vertex_count}, {"method", options.vertices}}},
-                                  {"cells", {{"count", cell_count}, {"method", "lexmax"}}}};
-    result.update(to_json(report, peaks));
-    result["maps"] = map_files;
+    const char* const by = slices ? ", read and written by all ranks" : "";
+    if (!arguments.output.empty()) console.print("{:<10} {}{}", "wrote", arguments.output, by);
+    if (!arguments.pieces.empty()) {
+      console.print("{:<10} {}{}", "wrote", outputs.pieces_file(), by);
+      console.print("{:<10} {} pieces with {} ghost vertices and {} ghost cells in all", "", report.parts,
+                    with_commas(outputs.pieces().ghost_vertices), with_commas(outputs.pieces().ghost_cells));
+    }
+    for (const std::string& file : outputs.maps()) console.print("{:<10} {}", "", file);
+    nlohmann::ordered_json result{
+        {"input", arguments.input},
+        {"output", arguments.output.empty() ? nlohmann::ordered_json(nullptr)
+                                            : nlohmann::ordered_json(arguments.output)},
+        {"files_by", slices ? "all ranks" : "rank 0"},
+        {"vertices", {{"count", vertex_count}, {"method", options.vertices}}},
+        {"cells", {{"count", cell_count}, {"method", "lexmax"}}}};
+    result.update(to_json(options, report, peaks));
+    result["maps"] = outputs.maps();
+    if (!arguments.pieces.empty()) {
+      result["pieces"] = {{"file", outputs.pieces_file()},
+                          {"ghost_layers", arguments.ghosts},
+                          {"ghost_vertices", outputs.pieces().ghost_vertices},
+                          {"ghost_cells", outputs.pieces().ghost_cells}};
+    }
     console.print_json(std::move(result));
     flush_stdout();
   });
@@ -218,10 +157,31 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
   subcommand.footer(
       "Examples:\n"
       "  mpirun -n 4 meshorder order part.vtu -o ordered.vtu\n"
-      "  mpirun -n 4 meshorder order part.msh -o ordered.vtu --parts 64 --maps part");
+      "  mpirun -n 4 meshorder order part.msh -o ordered.vtu --parts 64 --maps part\n"
+      "  mpirun -n 4 meshorder order part.vtu --pieces out --parts 64 --interface last");
   const auto arguments = std::make_shared<Arguments>();
   subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
-  subcommand.add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
+  subcommand.add_option("-o,--output", arguments->output,
+                        "File to write; may be the input, and may be left out with --pieces");
+  CLI::Option* const pieces =
+      subcommand
+          .add_option(
+              "--pieces", arguments->pieces,
+              "Also write the parts as pieces for a program that reads one for each of its ranks:\n"
+              "FOLDER/NAME.pvtu and FOLDER/NAME_0000.vtu and so on, with numbers in the whole mesh, the\n"
+              "part that owns each vertex and cell, and ghosts marked as VTK does. NAME is that of the\n"
+              "output, or of MESH. The folder is made if it is missing")
+          ->type_name("FOLDER")
+          ->check([](const std::string& folder) {
+            return folder.empty() ? std::string("a folder is needed") : std::string();
+          });
+  subcommand
+      .add_option("--ghosts", arguments->ghosts,
+                  "Layers of ghost cells in pieces: 1 for the cells of other parts that use a vertex of the\n"
+                  "part, 0 for none")
+      ->check(in_range(0, 1))
+      ->needs(pieces)
+      ->capture_default_str();
   subcommand
       .add_option("--vertices", arguments->vertices,
                   "Method for the vertices of a part, see `meshorder methods`; `auto` is spectral")
@@ -235,16 +195,25 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
                   "curve and gives the same parts on any number of ranks")
       ->check(CLI::IsMember({"ptscotch", "hilbert"}))
       ->capture_default_str();
-  add_ids_option(subcommand, arguments->ids);
-  add_keeping_options(subcommand, arguments->keeping);
-  subcommand.add_option(
-      "--maps", arguments->maps,
-      "Also write the permutations as NumPy files, by which `meshorder apply` moves or puts\n"
-      "back, as `meshorder order` does, and the part of each vertex and cell of the output,\n"
-      "PREFIX.vertices.parts.npy and PREFIX.cells.parts.npy");
-  subcommand.add_option("--seed", arguments->order.seed, "Seed of random start vectors and of METIS")
-      ->check(whole_from(0, std::numeric_limits<std::uint64_t>::max()))
+  subcommand
+      .add_option(
+          "--balance", arguments->balance,
+          "What parts have equally much of: `vertices`, or `cells`: elements, each shared out among its\n"
+          "vertices")
+      ->check(CLI::IsMember({"vertices", "cells"}))
       ->capture_default_str();
+  subcommand
+      .add_option(
+          "--interface", arguments->interface_place,
+          "Where a part has the vertices that share an element with those of other parts: `mixed` with\n"
+          "the others, in the method's order, or `last`, behind them, so that a program can work on\n"
+          "the others while it waits for these")
+      ->check(CLI::IsMember({"mixed", "last"}))
+      ->capture_default_str();
+  add_moving_options(subcommand, *arguments, arguments->ids,
+                     "; and the part of each vertex and\n"
+                     "cell of the output, PREFIX.vertices.parts.npy and PREFIX.cells.parts.npy");
+  add_seed_option(subcommand, arguments->order.seed);
   add_reading_options(subcommand);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments, &communicator] {

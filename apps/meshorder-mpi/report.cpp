@@ -10,13 +10,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <string>
 
 namespace meshorder::command {
 namespace {
 
+using distributed::DistributedOptions;
 using distributed::DistributedReport;
 using distributed::GlobalEdgeSpan;
+using distributed::GlobalIndex;
 
 nlohmann::ordered_json span_json(const GlobalEdgeSpan& span) {
   return {{"mean", span.mean}, {"max", span.max}, {"mean_log2", span.mean_log2}};
@@ -24,15 +27,6 @@ nlohmann::ordered_json span_json(const GlobalEdgeSpan& span) {
 
 double share_of_edges(const DistributedReport& report) {
   return report.edges > 0 ? static_cast<double>(report.cut) / static_cast<double>(report.edges) : 0;
-}
-
-/// Vertices of the largest part, relative to the mean.
-double imbalance(const DistributedReport& report) {
-  distributed::GlobalIndex largest = 0;
-  for (std::size_t p = 0; p + 1 < report.part_starts.size(); ++p)
-    largest = std::max(largest, report.part_starts[p + 1] - report.part_starts[p]);
-  const auto mean = static_cast<double>(report.part_starts.back()) / report.parts;
-  return mean > 0 ? static_cast<double>(largest) / mean : 1;
 }
 
 }  // namespace
@@ -44,12 +38,16 @@ std::int64_t peak_memory() {
   return std::int64_t{usage.ru_maxrss} * 1024;  // Linux counts in KiB
 }
 
-void print_report(const Console& console, const distributed::DistributedOptions& options,
-                  const DistributedReport& report, const std::vector<std::int64_t>& peaks) {
-  console.print("{:<10} {} by {}, {:.2f} % of the edges between them, largest {:.3f} of the mean, {} ghosts",
-                "parts", report.parts, to_string(report.partitioner), 100 * share_of_edges(report),
-                imbalance(report), with_commas(report.ghosts));
-  console.print("{:<10} {} in each part", "vertices", options.vertices);
+void print_report(const Console& console, const DistributedOptions& options, const DistributedReport& report,
+                  const std::vector<std::int64_t>& peaks) {
+  console.print(
+      "{:<10} {} by {}, {:.2f} % of the edges between them, largest {:.3f} of the mean by {}, {} ghosts",
+      "parts", report.parts, to_string(report.partitioner), 100 * share_of_edges(report), report.imbalance,
+      to_string(options.balance), with_commas(report.ghosts));
+  console.print(
+      "{:<10} {} in each part, {} on the interfaces{}", "vertices", options.vertices,
+      with_commas(std::accumulate(report.interfaces.begin(), report.interfaces.end(), GlobalIndex{0})),
+      options.interface_place == distributed::InterfacePlace::last ? ", behind the others" : "");
   console.print("{:<10} lexmax", "elements");
   console.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}", "edge span",
                 report.before.mean, report.after.mean, with_commas(report.before.max),
@@ -63,7 +61,8 @@ void print_report(const Console& console, const distributed::DistributedOptions&
                 size_text(static_cast<std::uint64_t>(peaks.front())));
 }
 
-nlohmann::ordered_json to_json(const DistributedReport& report, const std::vector<std::int64_t>& peaks) {
+nlohmann::ordered_json to_json(const DistributedOptions& options, const DistributedReport& report,
+                               const std::vector<std::int64_t>& peaks) {
   nlohmann::ordered_json seconds;
   for (const auto& [stage, time] : report.seconds) seconds[std::string(stage)] = time;
   const std::vector<distributed::GlobalIndex> first_vertices(report.part_starts.begin(),
@@ -76,9 +75,12 @@ nlohmann::ordered_json to_json(const DistributedReport& report, const std::vecto
                                                         : nlohmann::ordered_json(report.partition_reason)},
             {"edges", report.edges},
             {"cut", report.cut},
-            {"imbalance", imbalance(report)},
+            {"balance", to_string(options.balance)},
+            {"imbalance", report.imbalance},
             {"ghosts", report.ghosts},
-            {"first_vertices", first_vertices}}},
+            {"first_vertices", first_vertices},
+            {"interface", to_string(options.interface_place)},
+            {"interface_vertices", report.interfaces}}},
           {"edge_span", {{"before", span_json(report.before)}, {"after", span_json(report.after)}}},
           {"memory_bytes", peaks},
           {"seconds", seconds}};

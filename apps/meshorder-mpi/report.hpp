@@ -19,7 +19,8 @@ void print_report(const Console& console, const distributed::DistributedOptions&
                   const distributed::DistributedReport& report, const std::vector<std::int64_t>& peaks);
 
 /// Returns {"ranks", "parts", "partition", "edge_span", "memory_bytes", "seconds"}.
-nlohmann::ordered_json to_json(const distributed::DistributedReport& report,
+nlohmann::ordered_json to_json(const distributed::DistributedOptions& options,
+                               const distributed::DistributedReport& report,
                                const std::vector<std::int64_t>& peaks);
 
 }  // namespace meshorder::command

@@ -3,6 +3,7 @@
 
 #include "base/checksum.hpp"
 #include "distributed/halo.hpp"
+#include "distributed/parts.hpp"
 #include "distributed/shared_file.hpp"
 #include "io/npy_header.hpp"
 #include "io/stream/byte_order.hpp"
@@ -124,11 +125,6 @@ MeshChecksums checksums_of(const Communicator& communicator, const MeshSlice& sl
   return {points.value(), cells.value()};
 }
 
-Index part_of(GlobalIndex vertex, const std::vector<GlobalIndex>& starts) {
-  const auto behind = std::upper_bound(starts.begin() + 1, starts.end() - 1, vertex);
-  return static_cast<Index>(behind - starts.begin()) - 1;
-}
-
 std::vector<std::string> write_sliced_maps(const Communicator& communicator, const SlicedOrder& order,
                                            const MeshChecksums& before, const MeshSlice& after,
                                            const std::string& prefix, OutputSet& outputs) {
@@ -141,13 +137,11 @@ std::vector<std::string> write_sliced_maps(const Communicator& communicator, con
   const int rank = communicator.rank();
   std::vector<GlobalIndex> parts;
   for (GlobalIndex v = after.vertices.begin(rank); v < after.vertices.end(rank); ++v)
-    parts.push_back(part_of(v, order.part_starts));
+    parts.push_back(distributed::part_of(v, order.part_starts));
   maps.write(vertices.parts, after.vertices, parts);
   parts.clear();
-  for (Offset c = 0; c < after.cell_vertices.size(); ++c) {
-    const auto corners = after.cell_vertices[c];
-    parts.push_back(part_of(*std::max_element(corners.begin(), corners.end()), order.part_starts));
-  }
+  for (Offset c = 0; c < after.cell_vertices.size(); ++c)
+    parts.push_back(distributed::part_of_cell(after.cell_vertices[c], order.part_starts));
   maps.write(cells.parts, after.cells, parts);
 
   const MapChecksums of_maps{checksum_of(communicator, after.vertices, order.new_vertices),

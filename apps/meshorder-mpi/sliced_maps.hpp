@@ -17,17 +17,11 @@ namespace meshorder::command {
 MeshChecksums checksums_of(const distributed::Communicator& communicator,
                            const distributed::MeshSlice& slice);
 
-/// The part that a vertex is in by its new number; those that no element uses are behind the last one, and
-/// count to it. O(log parts).
-///
-/// @param starts  first new number of each part, and the end of the last one's
-Index part_of(distributed::GlobalIndex vertex, const std::vector<distributed::GlobalIndex>& starts);
-
 /// What maps are made of.
 struct SlicedOrder {
   const std::vector<distributed::GlobalIndex>& new_vertices;  ///< new number of each vertex of the old slice
   const std::vector<distributed::GlobalIndex>& new_cells;     ///< new place of each of its cells
-  const std::vector<distributed::GlobalIndex>& part_starts;   ///< as of `part_of`
+  const std::vector<distributed::GlobalIndex>& part_starts;   ///< as of `distributed::part_of`
 };
 
 /// Writes the same files as `write_maps` by all ranks, each its range of every map, as files of a set. Every

@@ -111,6 +111,12 @@ void add_keeping_options(CLI::App& subcommand, Keeping& keeping) {
       "for; without it they are named on stderr");
 }
 
+void add_seed_option(CLI::App& subcommand, std::uint64_t& seed) {
+  subcommand.add_option("--seed", seed, "Seed of random orders, of METIS and of start vectors")
+      ->check(whole_from(0, std::numeric_limits<std::uint64_t>::max()))
+      ->capture_default_str();
+}
+
 void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
   subcommand
       .add_option_function<std::string>(
@@ -119,9 +125,7 @@ void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
               join(kWorkloads, [](Workload use) { return to_string(use); }))
       ->type_name("KERNEL")
       ->default_str(std::string(to_string(options.workload)));
-  subcommand.add_option("--seed", options.seed, "Seed of random orders, of METIS and of start vectors")
-      ->check(whole_from(0, std::numeric_limits<std::uint64_t>::max()))
-      ->capture_default_str();
+  add_seed_option(subcommand, options.seed);
   subcommand
       .add_option("--tolerance", options.tolerance,
                   "Residual of Fiedler vectors relative to lambda2; below 0.1 the order hardly changes")

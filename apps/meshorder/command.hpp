@@ -66,6 +66,9 @@ void add_common(CLI::App& subcommand, Common& common, const std::string& quiet =
 /// Adds --limit-memory and --allow-includes-from, which hold for the rest of the process.
 void add_reading_options(CLI::App& subcommand);
 
+/// Adds --seed.
+void add_seed_option(CLI::App& subcommand, std::uint64_t& seed);
+
 /// Adds --for, --seed and --tolerance.
 void add_ordering_options(CLI::App& subcommand, OrderOptions& options);
 

@@ -6,7 +6,20 @@
 #include "io/stream/output_file.hpp"
 #include "io/stream/output_set.hpp"
 
+#include <CLI/CLI.hpp>
+
 namespace meshorder::command {
+
+void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids,
+                        const std::string& more_maps) {
+  add_ids_option(subcommand, ids);
+  add_keeping_options(subcommand, files.keeping);
+  subcommand.add_option(
+      "--maps", files.maps,
+      "Also write the permutations as NumPy files, PREFIX.vertices.old_to_new.npy and so on, and\n"
+      "PREFIX.maps.json, by which `apply` knows the mesh" +
+          more_maps);
+}
 
 void check_can_write(const MeshFiles& files) {
   (void)OutputFile(files.output);
@@ -35,13 +48,18 @@ MeshToOrder read_to_order(const MeshFiles& files, Notes& notes) {
 
 std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, Notes& notes) {
   OutputSet outputs;
-  write_mesh_to(ordered.mesh, {files.output, outputs}, {.strict = files.keeping.strict, .notes = &notes});
-  std::vector<std::string> written;
-  if (!files.maps.empty())
-    written = write_maps(ordered.maps, ordered.before, checksums_of(ordered.mesh), files.maps, outputs);
+  std::vector<std::string> written = write_ordered(ordered, files, outputs, notes);
   outputs.commit();
   notes.insert(notes.end(), outputs.notes().begin(), outputs.notes().end());
   return written;
+}
+
+std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
+                                       Notes& notes) {
+  if (!files.output.empty())
+    write_mesh_to(ordered.mesh, {files.output, outputs}, {.strict = files.keeping.strict, .notes = &notes});
+  if (files.maps.empty()) return {};
+  return write_maps(ordered.maps, ordered.before, checksums_of(ordered.mesh), files.maps, outputs);
 }
 
 }  // namespace meshorder::command

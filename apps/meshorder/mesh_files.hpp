@@ -26,6 +26,12 @@ struct MeshToOrder {
   MeshChecksums before;  ///< only where maps are wanted
 };
 
+/// Adds --ids, whose value parse<Ids> reads, --only, --strict and --maps.
+///
+/// @param more_maps  what else is written with the maps, as the end of a sentence of the help
+void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids,
+                        const std::string& more_maps = "");
+
 /// Fails, before the work, if the output or its maps cannot be written.
 void check_can_write(const MeshFiles& files);
 
@@ -36,5 +42,9 @@ MeshToOrder read_to_order(const MeshFiles& files, Notes& notes);
 /// Writes a mesh that is in its new order, with its maps, whose permutations are known by now; returns the
 /// paths of the maps. All files take their places together, or none does.
 std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, Notes& notes);
+
+/// The same as files of a set, which takes the places. An empty output is not written.
+std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
+                                       Notes& notes);
 
 }  // namespace meshorder::command

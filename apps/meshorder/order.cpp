@@ -214,12 +214,7 @@ void add_order(CLI::App& subcommand) {
       "Time the kernels for about two seconds, in the file's order, in the one that `auto` takes and\n"
       "in the two predicted to be the best of five others, and take the fastest. Worth it for meshes\n"
       "that are computed on for long. The result may differ from run to run, and between machines");
-  add_ids_option(subcommand, arguments->ids);
-  add_keeping_options(subcommand, arguments->keeping);
-  subcommand.add_option(
-      "--maps", arguments->maps,
-      "Also write the permutations as NumPy files, PREFIX.vertices.old_to_new.npy and so on, and\n"
-      "PREFIX.maps.json, by which `apply` knows the mesh");
+  add_moving_options(subcommand, *arguments, arguments->ids);
   add_ordering_options(subcommand, arguments->reordering.order);
   add_reading_options(subcommand);
   add_common(subcommand, *arguments);

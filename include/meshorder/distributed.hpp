@@ -29,9 +29,12 @@ struct RankMesh {
 struct RankOptions {
   std::string method = "spectral";     ///< vertex method of a part, see `vertex_methods`
   std::string partition = "ptscotch";  ///< of `order_parts`: "ptscotch" or "hilbert"
+  std::string balance = "vertices";    ///< of `order_parts`: "vertices" or "cells" are shared out evenly
   std::uint64_t seed = 0;
   std::int32_t parts = 0;    ///< of `order_parts`; 0: one for each rank
   std::int32_t threads = 1;  ///< of this rank
+  /// Whether vertices that share an element with those of other ranks or parts come behind the others.
+  bool interface_last = false;
 };
 
 /// Order of what a rank has.
@@ -64,8 +67,15 @@ inline mo_mpi_mesh to_c(const RankMesh& mesh) {
 }
 
 inline mo_mpi_options to_c(const RankOptions& options) {
-  return {sizeof(mo_mpi_options), options.method.c_str(), options.partition.c_str(),
-          options.seed,           options.parts,          options.threads};
+  return {.struct_size = sizeof(mo_mpi_options),
+          .method = options.method.c_str(),
+          .partition = options.partition.c_str(),
+          .balance = options.balance.c_str(),
+          .seed = options.seed,
+          .parts = options.parts,
+          .threads = options.threads,
+          .interface_last = options.interface_last ? 1 : 0,
+          .reserved = 0};
 }
 
 /// A negative count is for the library to refuse, on all ranks.

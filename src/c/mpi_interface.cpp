@@ -65,6 +65,9 @@ DistributedOptions options_of(const Communicator& communicator, const mo_mpi_opt
     }
     if (all.method != nullptr) options.vertices = all.method;
     if (all.partition != nullptr) options.partitioner = parse<distributed::Partitioner>(all.partition);
+    if (all.balance != nullptr) options.balance = parse<distributed::Balance>(all.balance);
+    if (all.interface_last != 0) options.interface_place = distributed::InterfacePlace::last;
+    require(all.reserved == 0, "options: reserved must be 0; mo_mpi_options_init makes it so");
     require(all.parts >= 0, "options: there cannot be " + std::to_string(all.parts) + " parts");
     options.parts = all.parts;
     options.order.seed = all.seed;

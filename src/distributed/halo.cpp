@@ -2,6 +2,7 @@
 #include "distributed/halo.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace meshorder::distributed {
 
@@ -25,5 +26,19 @@ Halo::Halo(const Communicator& communicator, const Layout& layout, std::span<con
       wanted_(communicator.together([&] { return NumberSet(numbers); })),
       asked_(communicator.exchange(std::span<const GlobalIndex>(wanted_.numbers()),
                                    starts_by_owner(layout, wanted_.numbers()))) {}
+
+std::vector<std::byte> Halo::fetch_rows(std::span<const std::byte> own, Offset width) const {
+  Parcels<std::byte> answers;
+  communicator_.together([&] {
+    for (const Offset start : asked_.starts) answers.starts.push_back(start * width);
+    answers.values.resize(static_cast<std::size_t>(answers.starts.back()));
+    std::byte* to = answers.values.data();
+    for (const GlobalIndex number : asked_.values) {
+      std::memcpy(to, own.data() + (number - first_) * width, static_cast<std::size_t>(width));
+      to += width;
+    }
+  });
+  return communicator_.exchange(answers).values;
+}
 
 }  // namespace meshorder::distributed

@@ -51,6 +51,12 @@ class Halo {
     return fetch(std::span<const T>(own));
   }
 
+  /// Returns the owners' rows of the numbers, `width` bytes for each. Every rank has to call it. O(bytes).
+  ///
+  /// @param own  a row for each number that this rank owns
+  /// @throws as `Communicator::exchange`
+  [[nodiscard]] std::vector<std::byte> fetch_rows(std::span<const std::byte> own, Offset width) const;
+
  private:
   const Communicator& communicator_;
   GlobalIndex first_;  ///< number of this rank

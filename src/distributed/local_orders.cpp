@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 4> kReversible{"fiedler", "minla", "hilbe
 
 // A vertex on its way to the rank of its part: a row of these entries, and then of its neighbours in the
 // part.
-enum Entry : std::size_t { kVertex, kPart, kPull, kX, kY, kZ, kNeighbours };
+enum Entry : std::size_t { kVertex, kPart, kPull, kIsInterface, kX, kY, kZ, kNeighbours };
 
 /// The rows of this rank's vertices, and to whom they go.
 struct Departure {
@@ -41,7 +41,7 @@ Departure departing(const GlobalGraph& graph, const Curve& curve, const HaloValu
     const std::size_t begin = entries.size();
     const Point& point = curve.points[static_cast<std::size_t>(row)];
     entries.insert(entries.end(),
-                   {graph.layout.begin(rank) + row, part, 0, std::bit_cast<GlobalIndex>(point[0]),
+                   {graph.layout.begin(rank) + row, part, 0, 0, std::bit_cast<GlobalIndex>(point[0]),
                     std::bit_cast<GlobalIndex>(point[1]), std::bit_cast<GlobalIndex>(point[2])});
     other_parts.clear();
     for (const GlobalIndex neighbour : graph.rows[row]) {
@@ -53,6 +53,7 @@ Departure departing(const GlobalGraph& graph, const Curve& curve, const HaloValu
         other_parts.push_back(other);
       }
     }
+    entries[begin + kIsInterface] = other_parts.empty() ? 0 : 1;
     departure.rows.end_row();
     departure.dispatches.push_back({parts.owner(part), row});
     std::sort(other_parts.begin(), other_parts.end());
@@ -67,6 +68,7 @@ struct Part {
   CsrGraph graph;
   std::vector<Point> points;
   std::vector<float> pull;
+  std::vector<char> is_interface;  ///< whether each has neighbours in other parts
 };
 
 /// A part of vertices that are the given rows, ascending.
@@ -79,6 +81,7 @@ Part part_of_rows(const Rows& rows, std::span<const Offset> members) {
     part.points.push_back({std::bit_cast<double>(entries[kX]), std::bit_cast<double>(entries[kY]),
                            std::bit_cast<double>(entries[kZ])});
     part.pull.push_back(static_cast<float>(entries[kPull]));
+    part.is_interface.push_back(static_cast<char>(entries[kIsInterface]));
     for (const GlobalIndex neighbour : entries.subspan(kNeighbours)) {
       const auto place =
           std::lower_bound(part.names.begin(), part.names.end(), neighbour) - part.names.begin();
@@ -97,8 +100,21 @@ bool is_the_wrong_way_round(std::span<const Index> places, const std::vector<flo
   return along > 0;
 }
 
+/// Moves the vertices of the interface behind the others; both keep their order.
+void put_interface_last(std::vector<Index>& places, const std::vector<char>& is_interface) {
+  std::vector<Index> vertex_at(places.size());
+  for (Index v = 0; v < index_size(places); ++v) vertex_at[places[v]] = v;
+  Index next = 0;
+  for (const bool on_interface : {false, true}) {
+    for (const Index vertex : vertex_at) {
+      if ((is_interface[vertex] != 0) == on_interface) places[vertex] = next++;
+    }
+  }
+}
+
 /// The new place of each vertex of a part within it.
-std::vector<Index> places_in(const Part& part, std::string_view method, const OrderOptions& options) {
+std::vector<Index> places_in(const Part& part, std::string_view method, InterfacePlace interface_place,
+                             const OrderOptions& options) {
   const Order order = in_call(options.run, [&] {
     return order_graph(method, {.graph = part.graph, .points = part.points, .pull = part.pull}, options);
   });
@@ -107,6 +123,7 @@ std::vector<Index> places_in(const Part& part, std::string_view method, const Or
   if (is_reversible && is_the_wrong_way_round(places, part.pull)) {
     for (Index& place : places) place = index_size(places) - 1 - place;
   }
+  if (interface_place == InterfacePlace::last) put_interface_last(places, part.is_interface);
   return places;
 }
 
@@ -114,7 +131,7 @@ std::vector<Index> places_in(const Part& part, std::string_view method, const Or
 
 PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph& graph, const Curve& curve,
                             const HaloValues<Index>& place_of, Index parts, std::string_view method,
-                            const OrderOptions& options) {
+                            InterfacePlace interface_place, const OrderOptions& options) {
   PartOrders result;
   std::vector<GlobalIndex> sizes = communicator.together([&] {
     std::vector<GlobalIndex> own(static_cast<std::size_t>(parts), 0);
@@ -138,6 +155,7 @@ PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph&
   // part by part; rows came by rank, so those of a part ascend
   std::vector<GlobalIndex> names;
   std::vector<GlobalIndex> numbers;
+  result.interfaces.assign(static_cast<std::size_t>(parts), 0);
   communicator.together([&] {
     const GlobalIndex first_part = ranks_of_parts.begin(communicator.rank());
     const auto part_count = static_cast<std::size_t>(ranks_of_parts.size(communicator.rank()));
@@ -146,7 +164,9 @@ PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph&
       members[static_cast<std::size_t>(rows[row][kPart] - first_part)].push_back(row);
     for (std::size_t k = 0; k < part_count; ++k) {
       const Part part = part_of_rows(rows, members[k]);
-      const std::vector<Index> places = places_in(part, method, options);
+      const std::vector<Index> places = places_in(part, method, interface_place, options);
+      result.interfaces[static_cast<std::size_t>(first_part) + k] =
+          std::count(part.is_interface.begin(), part.is_interface.end(), 1);
       const GlobalIndex first = result.starts[static_cast<std::size_t>(first_part) + k];
       for (std::size_t v = 0; v < places.size(); ++v) {
         names.push_back(part.names[v]);
@@ -154,6 +174,7 @@ PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph&
       }
     }
   });
+  result.interfaces = communicator.sums(std::move(result.interfaces));
   result.new_numbers = delivered<GlobalIndex>(communicator, graph.layout, names, numbers, 0);
   return result;
 }

@@ -5,6 +5,7 @@
 #include "distributed/curve.hpp"
 #include "distributed/global_graph.hpp"
 #include "distributed/halo.hpp"
+#include "distributed/interface_place.hpp"
 #include <meshorder/options.hpp>
 
 #include <string_view>
@@ -16,6 +17,7 @@ namespace meshorder::distributed {
 struct PartOrders {
   std::vector<GlobalIndex> new_numbers;  ///< of the vertices in the graph's rows
   std::vector<GlobalIndex> starts;       ///< first new number of each part, and the end of the last one's
+  std::vector<GlobalIndex> interfaces;   ///< of each part: vertices with neighbours in other parts
   GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts
 };
 
@@ -26,9 +28,11 @@ struct PartOrders {
 /// @param graph     numbered as `curve` says, and ordered within a part from there
 /// @param place_of  part of each vertex, numbered by the order of the parts
 /// @param method    name of a vertex method
+/// @param interface_place where a part has the vertices with neighbours in other parts
 /// @throws as `Communicator::exchange`; SharedError with what the method throws
 [[nodiscard]] PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph& graph,
                                           const Curve& curve, const HaloValues<Index>& place_of, Index parts,
-                                          std::string_view method, const OrderOptions& options);
+                                          std::string_view method, InterfacePlace interface_place,
+                                          const OrderOptions& options);
 
 }  // namespace meshorder::distributed

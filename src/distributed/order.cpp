@@ -122,13 +122,17 @@ DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
   }
   stages.end("distribute");
   slice.points = {};
+  std::vector<GlobalIndex> weights;
+  if (options.balance == Balance::cells) weights = shares_in_elements(communicator, curve->layout, elements);
   const GlobalGraph graph = global_graph(communicator, curve->layout, std::move(elements));
   report.edges = communicator.sum(static_cast<GlobalIndex>(graph.rows.entries.size())) / 2;
   const Halo halo(communicator, graph.layout, communicator.together([&] { return ghosts(graph, rank); }));
   const GlobalIndex first = graph.layout.begin(rank);
   stages.end("graph");
 
-  Partition partition = partitioned(communicator, graph, report.parts, options.partitioner);
+  Partition partition = partitioned(communicator, graph, report.parts, options.partitioner, weights);
+  report.imbalance = imbalance_of(communicator, partition.part_of, weights, report.parts);
+  weights = {};
   report.partitioner = partition.by;
   report.partition_reason = std::move(partition.reason);
   stages.end("partition");
@@ -142,9 +146,10 @@ DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
   }
   const PartOrders parts =
       ordered_in_parts(communicator, graph, *curve, HaloValues<Index>(halo, first, std::move(places)),
-                       report.parts, options.vertices, options.order);
+                       report.parts, options.vertices, options.interface_place, options.order);
   report.ghosts = parts.ghosts;
   report.part_starts = parts.starts;
+  report.interfaces = parts.interfaces;
   stages.end("order");
 
   order.new_vertices = numbers_in_file(communicator, slice, *curve, parts.new_numbers);

@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "distributed/balance.hpp"
 #include "distributed/communicator.hpp"
+#include "distributed/interface_place.hpp"
 #include "distributed/mesh_slice.hpp"
 #include "distributed/partition.hpp"
 #include "distributed/spans.hpp"
@@ -18,7 +20,9 @@ namespace meshorder::distributed {
 struct DistributedOptions {
   std::string vertices = "spectral";  ///< vertex method inside a part; not `auto`, `original` or `scrambled`
   Partitioner partitioner = Partitioner::ptscotch;
-  Index parts = 0;          ///< 0: one for each rank
+  Index parts = 0;  ///< 0: one for each rank
+  Balance balance = Balance::vertices;
+  InterfacePlace interface_place = InterfacePlace::mixed;
   OrderOptions order = {};  ///< seed, tolerance and run
 };
 
@@ -31,10 +35,12 @@ struct DistributedReport {
   Index parts = 0;
   Partitioner partitioner = Partitioner::ptscotch;  ///< that made the parts
   std::string partition_reason;                     ///< why that is not the one asked for; else empty
+  double imbalance = 1;  ///< of what parts should have equally much of: the largest relative to the mean
   GlobalIndex edges = 0;
   GlobalIndex cut = 0;                   ///< edges between parts
   GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts
   std::vector<GlobalIndex> part_starts;  ///< first new number of each part, and the end of the last one's
+  std::vector<GlobalIndex> interfaces;   ///< of each part: vertices that share an element with other parts'
   GlobalEdgeSpan before;
   GlobalEdgeSpan after;
   std::vector<std::pair<std::string_view, double>> seconds;  ///< of each stage, in their order

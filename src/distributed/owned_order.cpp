@@ -69,10 +69,11 @@ OwnedOrder order_owned(const Communicator& communicator, const OwnedMesh& mesh,
   });
   const Halo halo(communicator, graph.layout, communicator.together([&] { return ghosts(graph, rank); }));
   OwnedOrder order;
-  order.new_numbers = ordered_in_parts(communicator, graph, in_place,
-                                       HaloValues<Index>(halo, graph.layout.begin(rank), std::move(owners)),
-                                       communicator.size(), options.vertices, options.order)
-                          .new_numbers;
+  order.new_numbers =
+      ordered_in_parts(communicator, graph, in_place,
+                       HaloValues<Index>(halo, graph.layout.begin(rank), std::move(owners)),
+                       communicator.size(), options.vertices, options.interface_place, options.order)
+          .new_numbers;
   const Rows cells = renumbered(communicator, mesh.vertices, mesh.cells, order.new_numbers);
   order.cells = communicator.together([&] { return own_cells_by_lexmax(cells); });
   return order;

@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/partition.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,27 @@ std::vector<Index> cut_by_numbers(const Communicator& communicator, const Global
   });
 }
 
+/// Ranges of the vertices' numbers of equal weight: a vertex goes to the part that its middle lies in.
+std::vector<Index> cut_by_weights(const Communicator& communicator, const std::vector<GlobalIndex>& weights,
+                                  Index parts) {
+  const std::vector<GlobalIndex> of_ranks =
+      communicator.gathered(std::accumulate(weights.begin(), weights.end(), GlobalIndex{0}));
+  const GlobalIndex total = std::accumulate(of_ranks.begin(), of_ranks.end(), GlobalIndex{0});
+  GlobalIndex before =
+      std::accumulate(of_ranks.begin(), of_ranks.begin() + communicator.rank(), GlobalIndex{0});
+  return communicator.together([&] {
+    std::vector<Index> part_of;
+    part_of.reserve(weights.size());
+    for (const GlobalIndex weight : weights) {
+      const double middle = static_cast<double>(before) + 0.5 * static_cast<double>(weight);
+      const auto part = static_cast<Index>(middle / static_cast<double>(total) * parts);
+      part_of.push_back(std::min(part, parts - 1));
+      before += weight;
+    }
+    return part_of;
+  });
+}
+
 /// Why PT-Scotch is not to be asked; empty if it is.
 std::string too_small(const GlobalGraph& graph, Index parts) {
   const GlobalIndex n = graph.layout.size();
@@ -37,19 +60,21 @@ std::string too_small(const GlobalGraph& graph, Index parts) {
 
 }  // namespace
 
-Partition partitioned(const Communicator& communicator, const GlobalGraph& graph, Index parts,
-                      Partitioner by) {
+Partition partitioned(const Communicator& communicator, const GlobalGraph& graph, Index parts, Partitioner by,
+                      const std::vector<GlobalIndex>& weights) {
   Partition partition;
   partition.by = by;
   if (by == Partitioner::ptscotch && parts > 1) {
     partition.reason = too_small(graph, parts);
     if (partition.reason.empty()) {
-      if (cut_by_ptscotch(communicator, graph, parts, partition.part_of)) return partition;
+      if (cut_by_ptscotch(communicator, graph, parts, weights, partition.part_of)) return partition;
       partition.reason = "PT-Scotch failed";
     }
     partition.by = Partitioner::hilbert;
   }
-  partition.part_of = cut_by_numbers(communicator, graph, parts);
+  const bool is_weighted = communicator.sum(static_cast<GlobalIndex>(weights.size())) > 0;
+  partition.part_of =
+      is_weighted ? cut_by_weights(communicator, weights, parts) : cut_by_numbers(communicator, graph, parts);
   return partition;
 }
 

@@ -17,7 +17,7 @@ namespace meshorder::distributed {
 /// How a graph is cut into parts.
 enum class Partitioner : std::uint8_t {
   ptscotch,  ///< few edges between parts; the same parts for the same graph on the same number of ranks
-  hilbert,   ///< equal ranges of the graph's own order; the same parts on any number of ranks
+  hilbert,   ///< ranges of equal weight of the graph's own order; the same parts on any number of ranks
 };
 
 }  // namespace meshorder::distributed
@@ -42,25 +42,27 @@ struct Partition {
   std::string reason;          ///< why that is not what was asked for; else empty
 };
 
-/// Cuts a graph into parts of about the same number of vertices. `ptscotch` gives way to `hilbert` where it
+/// Cuts a graph into parts of about the same weight. `ptscotch` gives way to `hilbert` where it
 /// fails or the graph is too small for it. Every rank has to call it.
 ///
-/// @param graph  numbered along Hilbert's curve from 0 on, equal shares on all ranks
-/// @param parts  ≥ 1
+/// @param graph    numbered along Hilbert's curve from 0 on, equal shares on all ranks
+/// @param parts    ≥ 1
+/// @param weights  > 0, of each own vertex; none: all alike
 /// @throws as `Communicator::exchange`
 [[nodiscard]] Partition partitioned(const Communicator& communicator, const GlobalGraph& graph, Index parts,
-                                    Partitioner by);
+                                    Partitioner by, const std::vector<GlobalIndex>& weights = {});
 
 /// Cuts a graph by PT-Scotch, with one thread a rank, always alike. Every rank has to call it.
 ///
 /// @param graph    as of `partitioned`
 /// @param parts    ≥ 2
+/// @param weights  as of `partitioned`
 /// @param part_of  receives the part of each own vertex
 /// @return whether it did; the same on all ranks
 /// @throws SharedError where a rank has no memory, and where this program was linked with a PT-Scotch of
 /// other
 ///         than 64-bit numbers
 [[nodiscard]] bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph, Index parts,
-                                   std::vector<Index>& part_of);
+                                   const std::vector<GlobalIndex>& weights, std::vector<Index>& part_of);
 
 }  // namespace meshorder::distributed

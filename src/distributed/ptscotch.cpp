@@ -53,7 +53,7 @@ bool all(const Communicator& communicator, bool done) {
 }  // namespace
 
 bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph, Index parts,
-                     std::vector<Index>& part_of) {
+                     const std::vector<GlobalIndex>& weights, std::vector<Index>& part_of) {
   if (SCOTCH_numSizeof() != static_cast<int>(sizeof(SCOTCH_Num))) {
     throw SharedError(Code::unavailable, "this program runs with a PT-Scotch of " +
                                              std::to_string(8 * SCOTCH_numSizeof()) +
@@ -63,9 +63,13 @@ bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph,
   // PT-Scotch takes arrays that it may change, and does not change these
   std::vector<SCOTCH_Num> starts;
   std::vector<SCOTCH_Num> result;
+  std::vector<SCOTCH_Num> loads;  // an array on all ranks, also on those without vertices, or on none
+  const bool is_weighted = communicator.sum(static_cast<GlobalIndex>(weights.size())) > 0;
   communicator.together([&] {
     starts.assign(graph.rows.offsets.begin(), graph.rows.offsets.end());
     result.resize(static_cast<std::size_t>(vertices) + 1);
+    loads.assign(weights.begin(), weights.end());
+    loads.resize(result.size());
   });
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast)
   auto* const neighbours = const_cast<SCOTCH_Num*>(graph.rows.entries.data());
@@ -84,9 +88,9 @@ bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph,
                              SCOTCH_dgraphInit(&graph_memory, communicator.handle()) == 0))
     return false;
   const Graph own(&graph_memory);
-  if (!all(communicator,
-           SCOTCH_dgraphBuild(own.get(), 0, vertices, vertices, starts.data(), starts.data() + 1, nullptr,
-                              nullptr, entries, entries, neighbours, nullptr, nullptr) == 0))
+  if (!all(communicator, SCOTCH_dgraphBuild(own.get(), 0, vertices, vertices, starts.data(),
+                                            starts.data() + 1, is_weighted ? loads.data() : nullptr, nullptr,
+                                            entries, entries, neighbours, nullptr, nullptr) == 0))
     return false;
   SCOTCH_Dgraph bound_memory;
   if (!all(communicator, SCOTCH_contextBindDgraph(context.get(), own.get(), &bound_memory) == 0))

@@ -2,7 +2,8 @@
 #include "distributed/vtu_head.hpp"
 
 #include "base/memory.hpp"
-#include "distributed/vtu_numbers.hpp"
+#include "distributed/number_types.hpp"
+#include "distributed/text_store.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
@@ -28,18 +29,6 @@ constexpr Offset kMostComponents = Offset{1} << 24;
 constexpr const char* kCutShort = "the file may be cut short";
 constexpr std::string_view kAppended = "<AppendedData";
 
-/// The XML of a file without its arrays, for the parser.
-class HeadOnly : public FileStore {
- public:
-  explicit HeadOnly(std::string text) : text_(std::move(text)) {}
-  [[nodiscard]] bool has(const std::filesystem::path& /*path*/) const override { return true; }
-  [[nodiscard]] std::string read(const std::filesystem::path& /*path*/) const override { return text_; }
-  void write(const std::filesystem::path& /*path*/, std::string bytes) override { text_ = std::move(bytes); }
-
- private:
-  std::string text_;
-};
-
 /// Returns the file up to the underscore before its appended data; nothing if it has none.
 std::string head_of(const FilePath& path) {
   for (std::size_t most = std::size_t{1} << 16; most <= kLongestHead; most *= 8) {
@@ -64,7 +53,7 @@ class HeadReader {
     std::string text = head_of(path_);
     if (text.empty()) return std::nullopt;
     head_.facts.first_byte = static_cast<Offset>(text.size());
-    HeadOnly store(text + "</AppendedData></VTKFile>");
+    TextStore store(text + "</AppendedData></VTKFile>");
     const FilePath path(path_, store);
     const ReadScope scope(path);
     bytes_.open(path_, std::ios::binary | std::ios::ate);
@@ -114,6 +103,7 @@ class HeadReader {
                                   ? vtk::kXmlTypeNames.end()
                                   : std::find(vtk::kXmlTypeNames.begin(), vtk::kXmlTypeNames.end(), *type);
     VtuArray array{};
+    array.element = head_.arrays.size();
     if (section == "Points") {
       array.role = Role::points;
     } else if (section == "Cells") {

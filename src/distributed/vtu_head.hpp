@@ -8,6 +8,7 @@
 #include <meshorder/mesh.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,6 +21,7 @@ struct VtuArray {
   enum class Role : std::uint8_t { points, types, offsets, connectivity, data };
 
   std::array<char, 41> name;  ///< or how it begins, for messages; ends with a zero
+  std::size_t element = 0;    ///< which one of the arrays of the piece in the XML, from 0 on
   Role role;
   Association association;
   std::uint8_t type;  ///< number type, as the alternatives of Values

@@ -22,6 +22,8 @@ class VtuXml {
   /// @throws InputError for an offset that is no whole number from 0 on
   VtuXml(std::string text, const vtk::VtuDocument& file);
 
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }
+
   /// Returns the offsets, in the order of the text.
   [[nodiscard]] std::vector<Offset> offsets() const;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "distributed/communicator.hpp"
+#include "distributed/grid_rows.hpp"
 #include "distributed/layout.hpp"
 #include "distributed/mesh_slice.hpp"
 #include "distributed/moved_rows.hpp"
@@ -44,6 +45,12 @@ class VtuSlices {
   /// @throws SharedError for coordinates that are not finite, unknown types, cells without vertices, with too
   ///         few, or with such that do not exist, and for blocks that are damaged
   [[nodiscard]] MeshSlice read(const Communicator& communicator) const;
+
+  /// Returns the mesh in its new order, this object's as long as it lives. Every rank has to call it. Reads
+  /// the cells once more, and each array when its rows are asked for. O(size of the slice).
+  ///
+  /// @throws SharedError where a rank cannot read
+  [[nodiscard]] GridRows in_new_order(const Communicator& communicator, const DistributedOrder& order) const;
 
   /// Writes the mesh in its new order over a file that exists, and is empty. Every rank has to call it. Reads
   /// the arrays once more, one after another. O(size of the slice), memory for the cells or the largest array

@@ -127,6 +127,26 @@ TEST(OrderParts, AreThoseOfTheCommand) {
   }
 }
 
+TEST(OrderRanks, PutsVerticesOfInterfacesLastWhereThatIsWanted) {
+  const Solver solver(make_ball({.size = 6}));
+  const RankOrder order = order_ranks(MPI_COMM_WORLD, solver.view(), {.interface_last = true});
+  const std::vector<Index> numbers = solver.all(order.new_numbers);
+  const int rank = solver.communicator.rank();
+  const CsrGraph graph = vertex_graph(solver.mesh);
+  std::int64_t first_shared = solver.slice.vertices.end(rank);
+  std::int64_t last_own = -1;
+  for (GlobalIndex v = solver.slice.vertices.begin(rank); v < solver.slice.vertices.end(rank); ++v) {
+    const auto neighbours = graph[static_cast<Index>(v)];
+    const bool is_shared = std::any_of(neighbours.begin(), neighbours.end(), [&](Index other) {
+      return solver.slice.vertices.owner(other) != rank;
+    });
+    const std::int64_t number = numbers[static_cast<std::size_t>(v)];
+    if (is_shared) first_shared = std::min(first_shared, number);
+    if (!is_shared) last_own = std::max(last_own, number);
+  }
+  EXPECT_LT(last_own, first_shared);
+}
+
 TEST(OrderParts, NeedCoordinates) {
   const Solver solver(make_ball({.size = 4}));
   RankMesh mesh = solver.view();

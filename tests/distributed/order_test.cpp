@@ -67,6 +67,40 @@ TEST(DistributedOrder, KeepsPartsTogether) {
   EXPECT_NE(order.vertices, in_bfs.vertices);
 }
 
+TEST(DistributedOrder, PutsInterfacesLastInTheirOrder) {
+  const Communicator communicator;
+  const Mesh mesh = make_ball({.size = 10});
+  const CsrGraph graph = vertex_graph(mesh);
+  for (const Partitioner by : {Partitioner::ptscotch, Partitioner::hilbert}) {
+    const WholeOrder mixed = ordered(communicator, mesh, {.partitioner = by, .parts = 4});
+    const WholeOrder last =
+        ordered(communicator, mesh, {.partitioner = by, .parts = 4, .interface_place = InterfacePlace::last});
+    ASSERT_EQ(last.report.part_starts, mixed.report.part_starts);
+    ASSERT_EQ(last.report.interfaces, mixed.report.interfaces);
+    const std::vector<GlobalIndex>& starts = last.report.part_starts;
+    for (std::size_t p = 0; p < 4; ++p) {
+      // the vertices of the part in the mixed order, parted in two
+      std::vector<Index> interior;
+      std::vector<Index> rim;
+      for (GlobalIndex place = starts[p]; place < starts[p + 1]; ++place) {
+        const Index vertex = mixed.vertices.new_to_old()[static_cast<std::size_t>(place)];
+        const auto neighbours = graph[vertex];
+        const bool touches = std::any_of(neighbours.begin(), neighbours.end(), [&](Index other) {
+          const GlobalIndex at = mixed.vertices.old_to_new()[other];
+          return at < starts[p] || at >= starts[p + 1];
+        });
+        (touches ? rim : interior).push_back(vertex);
+      }
+      EXPECT_EQ(std::ssize(rim), last.report.interfaces[p]);
+      EXPECT_FALSE(rim.empty());
+      interior.insert(interior.end(), rim.begin(), rim.end());
+      const auto moved =
+          last.vertices.new_to_old().subspan(static_cast<std::size_t>(starts[p]), interior.size());
+      EXPECT_TRUE(std::equal(interior.begin(), interior.end(), moved.begin())) << p;
+    }
+  }
+}
+
 TEST(DistributedOrder, TurnsMethodsTowardsTheNeighbours) {
   const Communicator communicator;
   const Mesh mesh = make_grid({.size = 12});

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/partition.hpp"
 
+#include "distributed/balance.hpp"
 #include "distributed/curve.hpp"
 #include "distributed/quotient.hpp"
 #include "mesh/procedural.hpp"
@@ -68,6 +69,45 @@ TEST(Partition, OfSmallGraphsIsTheHilbertCut) {
   EXPECT_EQ(partition.by, Partitioner::hilbert);
   EXPECT_NE(partition.reason, "");
   EXPECT_EQ(partition.part_of, partitioned(communicator, graph, 3, Partitioner::hilbert).part_of);
+}
+
+TEST(Partition, ByWeightsHasEquallyHeavyParts) {
+  const Communicator communicator;
+  const GlobalGraph graph = test::graph_in_file(communicator, make_ball({.size = 16}));
+  const int rank = communicator.rank();
+  std::vector<GlobalIndex> weights;  // a third is nine times as heavy as the others
+  for (GlobalIndex v = graph.layout.begin(rank); v < graph.layout.end(rank); ++v)
+    weights.push_back(3 * v < graph.layout.size() ? 9 : 1);
+  for (const Partitioner by : {Partitioner::ptscotch, Partitioner::hilbert}) {
+    for (const Index parts : {2, 5}) {
+      const Partition even = partitioned(communicator, graph, parts, by);
+      const Partition weighed = partitioned(communicator, graph, parts, by, weights);
+      EXPECT_EQ(weighed.by, by);
+      EXPECT_GT(imbalance_of(communicator, even.part_of, weights, parts), 1.1);
+      EXPECT_LE(imbalance_of(communicator, weighed.part_of, weights, parts), 1.03);
+      EXPECT_GT(imbalance_of(communicator, weighed.part_of, {}, parts), 1.1);
+    }
+  }
+  const Partition alike =
+      partitioned(communicator, graph, 7, Partitioner::hilbert, std::vector<GlobalIndex>(weights.size(), 3));
+  EXPECT_LE(imbalance_of(communicator, alike.part_of, {}, 7), 702.0 * 7 / 4913);
+}
+
+TEST(Balance, SharesElementsOutAmongTheirVertices) {
+  const Communicator communicator;
+  // a triangle and a line on each rank, the vertices of which other ranks have, too
+  const Layout layout = Layout::even(4, communicator.size());
+  Rows elements;
+  elements.entries = {0, 1, 2, 1, 3};
+  elements.offsets = {0, 3, 5};
+  const std::vector<GlobalIndex> shares = shares_in_elements(communicator, layout, elements);
+  const std::vector<GlobalIndex> of_rank{kElementWeight / 3, kElementWeight / 3 + kElementWeight / 2,
+                                         kElementWeight / 3, kElementWeight / 2};
+  ASSERT_EQ(std::ssize(shares), layout.size(communicator.rank()));
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const auto vertex = static_cast<std::size_t>(layout.begin(communicator.rank())) + k;
+    EXPECT_EQ(shares[k], communicator.size() * of_rank[vertex]);
+  }
 }
 
 TEST(Quotient, NumbersPartsAlongAChain) {

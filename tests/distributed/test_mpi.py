@@ -144,6 +144,29 @@ def test_json_tells_of_parts_ranks_and_stages(tmp_path, ball):
     assert result["vertices"]["count"] == expected["vertices"]["count"]
 
 
+@pytest.mark.parametrize("partition", ["ptscotch", "hilbert"])
+def test_parts_have_equally_much_of_the_elements(tmp_path, partition):
+    """Tetrahedra in one half of a row of cubes, each cut into six, and hexahedra in the other."""
+    n, m = 40, 8
+    points = numpy.array([(x, y, z) for x in range(n + 1) for y in range(m + 1) for z in range(m + 1)], dtype=float)
+    corner = lambda x, y, z: (x * (m + 1) + y) * (m + 1) + z  # noqa: E731
+    cubes = numpy.array([[corner(x + a, y + b, z + c) for a, b, c in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1),
+                                                                      (1, 0, 1), (1, 1, 1), (0, 1, 1))]
+                         for x in range(n) for y in range(m) for z in range(m)])
+    half = len(cubes) // 2
+    tetrahedra = cubes[:half][:, [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]].reshape(-1, 4)
+    meshio.Mesh(points, [("tetra", tetrahedra), ("hexahedron", cubes[half:])]).write(tmp_path / "a.vtu")
+    elements = {}
+    for balance in ("vertices", "cells"):
+        done = order(2, tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--maps", tmp_path / "m", "--parts", "4", "--partition",
+                     partition, "--balance", balance, "--json")
+        result = json.loads(done.stdout)["partition"]
+        assert result["balance"] == balance and 1 <= result["imbalance"] <= 1.03 and result["method"] == partition
+        elements[balance] = numpy.bincount(numpy.load(tmp_path / "m.cells.parts.npy"), minlength=4)
+    # elements between two parts are of the later one
+    assert elements["cells"].max() < 1.25 * elements["cells"].mean() < 1.5 * elements["vertices"].mean() < elements["vertices"].max()
+
+
 def test_small_meshes_are_cut_along_the_curve_with_a_note(tmp_path):
     grid = json.loads(serial("models", "make", "grid", "--size", "3", "--json").stdout)["models"][0]["path"]
     done = order(2, grid, "-o", tmp_path / "a.vtu", "--json")

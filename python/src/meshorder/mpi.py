@@ -73,7 +73,8 @@ class _Mesh(ctypes.Structure):
 
 class _Options(ctypes.Structure):
     _fields_ = (("struct_size", ctypes.c_size_t), ("method", ctypes.c_char_p), ("partition", ctypes.c_char_p),
-                ("seed", ctypes.c_uint64), ("parts", ctypes.c_int32), ("threads", ctypes.c_int32))  # fmt: skip
+                ("balance", ctypes.c_char_p), ("seed", ctypes.c_uint64), ("parts", ctypes.c_int32),
+                ("threads", ctypes.c_int32), ("interface_last", ctypes.c_int32), ("reserved", ctypes.c_int32))  # fmt: skip
 
 
 @functools.cache
@@ -143,8 +144,8 @@ def _call(function: Any, communicator: Any, arrays: _Arrays, options: _Options, 
 
 
 def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[ArrayLike, ArrayLike],
-                points: ArrayLike | None = None, *, method: str = "spectral", seed: int = 0,
-                threads: int = 1) -> RankOrder:  # fmt: skip
+                points: ArrayLike | None = None, *, method: str = "spectral", interface_last: bool = False,
+                seed: int = 0, threads: int = 1) -> RankOrder:  # fmt: skip
     """Orders the vertices of every rank among themselves: each stays with its owner. Every rank has to call it.
 
     Args:
@@ -154,6 +155,7 @@ def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
             (offsets, vertices). Elements may be on several ranks.
         points: n × 1, 2 or 3 coordinates of the own vertices, on all ranks or on none.
         method: vertex method.
+        interface_last: True puts vertices that share an element with those of other ranks behind the others.
         seed: of the method.
         threads: of this rank.
 
@@ -161,7 +163,7 @@ def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         Error: on all ranks where one fails, but for arrays of wrong shapes, which only their rank sees.
     """
     arrays = _Arrays.of(vertex_count, cells, points)
-    options = _Options(ctypes.sizeof(_Options), method.encode(), None, seed, 0, threads)
+    options = _Options(ctypes.sizeof(_Options), method.encode(), None, None, seed, 0, threads, interface_last, 0)
     order = RankOrder(np.empty(vertex_count, np.int64), np.empty(len(arrays.offsets) - 1, np.int64))
     _call(_library().mo_mpi_order_ranks, communicator, arrays, options, order.new_numbers, order.cell_order)
     return order
@@ -169,7 +171,8 @@ def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
 
 def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[ArrayLike, ArrayLike],
                 points: ArrayLike, *, parts: int = 0, method: str = "spectral", partition: str = "ptscotch",
-                seed: int = 0, threads: int = 1) -> PartOrder:  # fmt: skip
+                balance: str = "vertices", interface_last: bool = False, seed: int = 0,
+                threads: int = 1) -> PartOrder:  # fmt: skip
     """Cuts the mesh into parts, orders each, and numbers them one after another, so that parts that touch are near each
     other. Moving vertices and elements to their new owners is left to the caller. Every rank has to call it.
 
@@ -181,6 +184,8 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         parts: number of parts; 0: one for each rank.
         method: vertex method of a part.
         partition: "ptscotch", which needs MPI_THREAD_MULTIPLE, or "hilbert", which takes its place without that.
+        balance: what parts have equally much of, "vertices" or "cells".
+        interface_last: True puts vertices that share an element with those of other parts behind the others.
         seed: of the method.
         threads: of this rank.
 
@@ -188,7 +193,8 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         Error: as `order_ranks`.
     """
     arrays = _Arrays.of(vertex_count, cells, points)
-    options = _Options(ctypes.sizeof(_Options), method.encode(), partition.encode(), seed, parts, threads)
+    options = _Options(ctypes.sizeof(_Options), method.encode(), partition.encode(), balance.encode(), seed, parts, threads,
+                       interface_last, 0)  # fmt: skip
     order = PartOrder(np.empty(vertex_count, np.int64), np.empty((parts or communicator.size) + 1, np.int64),
                       np.empty(len(arrays.offsets) - 1, np.int64))  # fmt: skip
     _call(_library().mo_mpi_order_parts, communicator, arrays, options, order.new_numbers, order.part_starts,

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "distributed/layout.hpp"
+#include "base/index.hpp"
 #include "io/vtk/vtk.hpp"
 
 #include <cstddef>
@@ -10,20 +10,10 @@
 #include <variant>
 #include <vector>
 
-/// Numbers in the bytes of .vtu files, in this machine's order, of the types that `vtk::kXmlTypeNames` lists.
+/// Bytes of numbers whose type is known at run time only, as the alternative of `Values`.
 namespace meshorder::distributed {
 
-/// Returns the size in bytes of a number of an alternative of Values; 0 for texts.
-inline Offset size_of_type(std::size_t alternative) {
-  return std::visit(
-      [](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        return std::is_arithmetic_v<Number> ? Offset{sizeof(Number)} : Offset{0};
-      },
-      vtk::values_of_type(alternative));
-}
-
-/// Calls `work` with a zero of the number type of an alternative of Values.
+/// Calls `work` with a zero of a number type; does nothing for texts.
 template <class Work>
 void with_number_type(std::size_t alternative, const Work& work) {
   std::visit(
@@ -34,9 +24,16 @@ void with_number_type(std::size_t alternative, const Work& work) {
       vtk::values_of_type(alternative));
 }
 
-/// Converts the bytes of numbers of a type.
+/// Returns the size in bytes of a number; 0 for texts.
+[[nodiscard]] inline Offset size_of_type(std::size_t alternative) {
+  Offset size = 0;
+  with_number_type(alternative, [&](auto zero) { size = sizeof(zero); });
+  return size;
+}
+
+/// Converts the bytes of numbers of a type. O(bytes).
 template <class Target>
-std::vector<Target> numbers_of(const std::vector<std::byte>& bytes, std::size_t alternative) {
+[[nodiscard]] std::vector<Target> numbers_of(const std::vector<std::byte>& bytes, std::size_t alternative) {
   std::vector<Target> result;
   with_number_type(alternative, [&](auto zero) {
     using Number = decltype(zero);
@@ -50,14 +47,15 @@ std::vector<Target> numbers_of(const std::vector<std::byte>& bytes, std::size_t 
   return result;
 }
 
-/// Returns the bytes of whole numbers in a type.
-inline std::vector<std::byte> bytes_of(const std::vector<GlobalIndex>& numbers, std::size_t alternative) {
+/// Returns the bytes of whole numbers in a type. O(numbers).
+template <class Whole>
+[[nodiscard]] std::vector<std::byte> bytes_of(const std::vector<Whole>& numbers, std::size_t alternative) {
   std::vector<std::byte> result;
   with_number_type(alternative, [&](auto zero) {
     using Number = decltype(zero);
     result.resize(numbers.size() * sizeof(Number));
     std::byte* at = result.data();
-    for (const GlobalIndex value : numbers) {
+    for (const Whole value : numbers) {
       const auto number = static_cast<Number>(value);
       std::memcpy(at, &number, sizeof(Number));
       at += sizeof(Number);

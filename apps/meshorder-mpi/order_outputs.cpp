@@ -1,0 +1,137 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "order_outputs.hpp"
+
+#include "base/text.hpp"
+#include "io/format.hpp"
+#include "io/kept_cells.hpp"
+#include "io/stream/output_file.hpp"
+#include "shared_output.hpp"
+#include "sliced_maps.hpp"
+#include <meshorder/error.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <utility>
+
+namespace meshorder::command {
+namespace {
+
+using distributed::Communicator;
+using distributed::GridRows;
+
+/// Returns texts of the root on all ranks; none is empty.
+std::vector<std::string> shared(const Communicator& communicator, const std::vector<std::string>& texts) {
+  std::vector<char> characters;
+  for (const std::string& text : texts) {
+    characters.insert(characters.end(), text.begin(), text.end());
+    characters.push_back('\0');
+  }
+  characters = communicator.broadcast(std::move(characters));
+  std::vector<std::string> result;
+  for (auto begin = characters.begin(); begin != characters.end();) {
+    const auto end = std::find(begin, characters.end(), '\0');
+    result.emplace_back(begin, end);
+    begin = end + 1;
+  }
+  return result;
+}
+
+/// Adds notes that are not there yet: what a format holds in another way, two writers tell alike.
+void add_new(const Notes& found, Notes& notes) {
+  std::copy_if(found.begin(), found.end(), std::back_inserter(notes), [&](const std::string& note) {
+    return std::find(notes.begin(), notes.end(), note) == notes.end();
+  });
+}
+
+}  // namespace
+
+std::string OrderFiles::name_of_pieces() const {
+  const std::string name = without_gz(output.empty() ? input : output).stem().string();
+  return name.empty() || name == "." || name == ".." ? "mesh" : name;
+}
+
+MeshFiles OrderFiles::with_output() const {
+  auto result = static_cast<const MeshFiles&>(*this);
+  if (output.empty()) result.output = (std::filesystem::path(pieces) / (name_of_pieces() + ".vtu")).string();
+  return result;
+}
+
+OrderOutputs::OrderOutputs(const Communicator& communicator, const OrderFiles& files)
+    : communicator_(communicator), files_(files) {
+  communicator.together([&] {
+    if (files.output.empty() && files.pieces.empty())
+      throw InvalidArgument("there is nothing to write; give -o FILE, --pieces FOLDER or both");
+  });
+  communicator.at_root([&] {
+    if (!files.output.empty()) (void)OutputFile(files.output);
+    if (!files.maps.empty()) check_can_write_maps(files.maps);
+    if (!files.pieces.empty()) pieces_.emplace(files.pieces, files.name_of_pieces());
+  });
+}
+
+void OrderOutputs::check(const Mesh& mesh) const {
+  communicator_.at_root([&] {
+    if (!files_.pieces.empty())
+      require_held_cells(mesh, all_cells(mesh), pieces_->index(), format_named("vtu"));
+  });
+}
+
+void OrderOutputs::write(const distributed::VtuSlices& slices, const distributed::DistributedOrder& order,
+                         const MeshChecksums& before, Notes& notes) {
+  if (!files_.output.empty()) {
+    SharedOutput file(communicator_, set_, files_.output);
+    const std::vector<distributed::GlobalIndex> new_cells =
+        slices.write(communicator_, file.path(), files_.output, order);
+    file.commit();
+    if (!files_.maps.empty()) {
+      const auto written = distributed::VtuSlices::open(communicator_, file.path());
+      maps_ = write_sliced_maps(communicator_, {order.new_vertices, new_cells, order.report.part_starts},
+                                before, written->read(communicator_), files_.maps, set_);
+    }
+  }
+  if (!files_.pieces.empty()) write_pieces(slices.in_new_order(communicator_, order), order.report, notes);
+}
+
+void OrderOutputs::write(const MeshToOrder& whole, const distributed::DistributedOrder& order, Notes& notes) {
+  communicator_.at_root([&] { maps_ = write_ordered(whole, files_, set_, notes); });
+  if (files_.pieces.empty()) return;
+  Notes of_pieces;
+  const GridRows grid = scattered_grid(communicator_, whole.mesh, of_pieces);
+  communicator_.at_root([&] { refuse_losses(of_pieces); });
+  write_pieces(grid, order.report, notes);
+  add_new(of_pieces, notes);
+}
+
+void OrderOutputs::write_pieces(const GridRows& grid, const distributed::DistributedReport& report,
+                                Notes& notes) {
+  const distributed::PieceSchema schema = schema_of_pieces(communicator_, grid, files_.ghosts);
+  Notes replaced;
+  if (!schema.replaced().empty())
+    replaced = {"the pieces have arrays of their own in place of those " + join(schema.replaced())};
+  communicator_.at_root([&] { refuse_losses(replaced); });
+  const std::vector<std::string> paths =
+      shared(communicator_, communicator_.at_root([&] { return pieces_->open(report.parts); }));
+  const std::vector<std::string> names =
+      shared(communicator_, pieces_ ? pieces_->names() : std::vector<std::string>{});
+  pieces_report_ = distributed::write_pieces(communicator_, grid, schema, report.part_starts,
+                                             files_.ghosts > 0, paths, names);
+  communicator_.at_root([&] {
+    pieces_->add_to(set_, schema.index(pieces_->names()));
+    add_new(replaced, notes);
+  });
+}
+
+void OrderOutputs::refuse_losses(const Notes& losses) const {
+  if (files_.keeping.strict && !losses.empty())
+    throw InputError(pieces_file(), losses.front(), "nothing is written, as no loss is allowed");
+}
+
+void OrderOutputs::commit(Notes& notes) {
+  communicator_.at_root([&] {
+    set_.commit();
+    notes.insert(notes.end(), set_.notes().begin(), set_.notes().end());
+  });
+}
+
+}  // namespace meshorder::command

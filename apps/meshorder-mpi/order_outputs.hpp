@@ -1,0 +1,78 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/communicator.hpp"
+#include "distributed/grid_rows.hpp"
+#include "distributed/order.hpp"
+#include "distributed/pieces.hpp"
+#include "distributed/vtu_slices.hpp"
+#include "io/stream/output_set.hpp"
+#include "mesh_files.hpp"
+#include "piece_outputs.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshorder::command {
+
+/// Where a mesh comes from and goes to: to a file, to pieces, or both.
+struct OrderFiles : MeshFiles {
+  std::string pieces;  ///< folder; empty: none are written
+  int ghosts = 1;      ///< layers of ghost cells in pieces, 0 or 1
+
+  /// Returns the files with an output that tells the format, also where there are pieces only.
+  [[nodiscard]] MeshFiles with_output() const;
+  /// Returns the pieces' name: that of the output, or else of the input, without folder and extension.
+  [[nodiscard]] std::string name_of_pieces() const;
+};
+
+/// What an order by all ranks writes. All files take their places at `commit`, or none does. All functions
+/// but the last three have to be called by every rank.
+class OrderOutputs {
+ public:
+  /// Looks, before the work, whether the files can be written.
+  ///
+  /// @param files  outlives this object
+  /// @throws SharedError where they cannot
+  OrderOutputs(const distributed::Communicator& communicator, const OrderFiles& files);
+
+  /// Looks, before the work, whether pieces can hold the cells of a mesh that the root has read.
+  ///
+  /// @throws SharedError where they cannot
+  void check(const Mesh& mesh) const;
+
+  /// Writes a mesh that all ranks read, in its new order, and its maps.
+  ///
+  /// @param before  of the mesh in its old order; looked at for maps only
+  void write(const distributed::VtuSlices& slices, const distributed::DistributedOrder& order,
+             const MeshChecksums& before, Notes& notes);
+
+  /// Writes a mesh that the root has, and that is in its new order, and its maps.
+  void write(const MeshToOrder& whole, const distributed::DistributedOrder& order, Notes& notes);
+
+  /// Puts all files in place.
+  void commit(Notes& notes);
+
+  /// Returns, at the root, the paths of all files but the output and the pieces.
+  [[nodiscard]] const std::vector<std::string>& maps() const noexcept { return maps_; }
+  /// Returns the path of the file that names the pieces, at the root; empty without pieces.
+  [[nodiscard]] std::string pieces_file() const { return pieces_ ? pieces_->index().string() : ""; }
+  /// Returns what there is to tell of the pieces.
+  [[nodiscard]] const distributed::PiecesReport& pieces() const noexcept { return pieces_report_; }
+
+ private:
+  void write_pieces(const distributed::GridRows& grid, const distributed::DistributedReport& report,
+                    Notes& notes);
+  /// Throws InputError, at the root, for what pieces do not hold, where no loss is allowed.
+  void refuse_losses(const Notes& losses) const;
+
+  const distributed::Communicator& communicator_;
+  const OrderFiles& files_;
+  std::optional<PieceOutputs> pieces_;  ///< at the root; its folder is removed after what the set left there
+  OutputSet set_;
+  std::vector<std::string> maps_;
+  distributed::PiecesReport pieces_report_;
+};
+
+}  // namespace meshorder::command

@@ -1,0 +1,115 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "piece_outputs.hpp"
+
+#include "base/text.hpp"
+#include "io/stream/system_fault.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace meshorder::command {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kDigits = 4;
+
+/// Returns whether a file is called as a piece: the name, an underscore and four digits or more.
+bool is_name_of_piece(std::string_view file, std::string_view name) {
+  constexpr std::string_view kExtension = ".vtu";
+  if (!file.starts_with(name) || !file.ends_with(kExtension) || file.size() < name.size() + kExtension.size())
+    return false;
+  file.remove_prefix(name.size());
+  file.remove_suffix(kExtension.size());
+  return file.size() > kDigits && file.front() == '_' &&
+         file.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
+/// Returns the files that a .pvtu file names, as they stand in it; none where it is not there.
+std::set<std::string> named_by(const fs::path& index) {
+  constexpr std::string_view kAttribute = "Source=\"";
+  std::ifstream file(index, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::set<std::string> names;
+  for (std::size_t at = text.find(kAttribute); at != std::string::npos; at = text.find(kAttribute, at)) {
+    at += kAttribute.size();
+    names.insert(text.substr(at, text.find('"', at) - at));
+  }
+  return names;
+}
+
+}  // namespace
+
+PieceOutputs::PieceOutputs(fs::path folder, std::string name)
+    : folder_(std::move(folder)), name_(std::move(name)) {
+  std::error_code code;
+  if (!fs::exists(folder_, code)) {
+    (void)OutputFile(folder_);  // that something can be made there
+    return;
+  }
+  if (!fs::is_directory(folder_, code))
+    throw InputError(folder_.string(), "is not a folder", "--pieces needs one, or makes it");
+  (void)OutputFile(index());
+  (void)old_pieces();
+}
+
+PieceOutputs::~PieceOutputs() {
+  files_.clear();
+  std::error_code ignored;
+  if (is_made_) fs::remove(folder_, ignored);  // which an output in it prevents
+}
+
+fs::path PieceOutputs::index() const { return folder_ / (name_ + ".pvtu"); }
+
+/// Returns the pieces that an earlier run left.
+std::vector<fs::path> PieceOutputs::old_pieces() const {
+  const std::set<std::string> known = named_by(index());
+  std::vector<fs::path> pieces;
+  std::error_code code;
+  for (fs::directory_iterator entry(folder_, code), end; !code && entry != end; entry.increment(code)) {
+    const std::string file = entry->path().filename().string();
+    if (!is_name_of_piece(file, name_)) continue;
+    if (!known.contains(xml_escaped(file))) {
+      throw InputError(entry->path().string(),
+                       "is called as a piece, but is none that " + index().filename().string() + " names",
+                       "give --pieces another folder, or remove the file");
+    }
+    pieces.push_back(entry->path());
+  }
+  if (code) throw_system_fault(folder_.string(), "cannot be listed", code.value());
+  return pieces;
+}
+
+std::vector<std::string> PieceOutputs::open(Index pieces) {
+  std::error_code code;
+  is_made_ = fs::create_directory(folder_, code);
+  if (code) throw_system_fault(folder_.string(), "cannot be made", code.value());
+  std::vector<std::string> paths;
+  for (Index k = 0; k < pieces; ++k) {
+    names_.push_back(fmt::format("{}_{:0{}}.vtu", name_, k, kDigits));
+    OutputFile& file = files_.emplace_back(folder_ / names_.back());
+    file.close();
+    paths.push_back(file.temporary().string());
+  }
+  return paths;
+}
+
+void PieceOutputs::add_to(OutputSet& set, const std::string& index_text) {
+  for (const fs::path& old : old_pieces()) {
+    if (std::find(names_.begin(), names_.end(), old.filename().string()) == names_.end()) set.remove(old);
+  }
+  for (OutputFile& file : files_) set.add(std::move(file));
+  files_.clear();
+  OutputFile file(index());
+  file.write(index_text);
+  set.add(std::move(file));
+}
+
+}  // namespace meshorder::command

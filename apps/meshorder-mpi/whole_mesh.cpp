@@ -1,0 +1,66 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "whole_mesh.hpp"
+
+#include "distributed/parts.hpp"
+#include "io/format.hpp"
+#include "mesh/graphs.hpp"
+#include "mesh/reorder.hpp"
+#include "ordering/order_cells.hpp"
+#include "payoff/quantities.hpp"
+
+#include <vector>
+
+namespace meshorder::command {
+namespace {
+
+using distributed::Communicator;
+using distributed::GlobalIndex;
+
+/// Cells from which the memory of the rank that reads them is worth a warning.
+constexpr Index kManyCells = 10'000'000;
+
+std::vector<Index> narrowed(const std::vector<GlobalIndex>& numbers) {
+  return {numbers.begin(), numbers.end()};
+}
+
+/// Fills in the part of each vertex and of each cell. The mesh is in its new order.
+void note_parts(const Mesh& mesh, const std::vector<GlobalIndex>& starts, Maps& maps) {
+  maps.vertex_parts.reserve(mesh.points.size());
+  for (Index v = 0; v < mesh.vertex_count(); ++v)
+    maps.vertex_parts.push_back(distributed::part_of(v, starts));
+  maps.cell_parts.reserve(mesh.cells.shapes.size());
+  for (Index c = 0; c < mesh.cell_count(); ++c)
+    maps.cell_parts.push_back(distributed::part_of_cell(mesh.cells[c], starts));
+}
+
+}  // namespace
+
+WholeMesh read_at_root(const Communicator& communicator, const MeshFiles& files, Ids ids, Notes& notes) {
+  return communicator.at_root([&] {
+    check_holds_ids(format_of(files.output), ids);
+    WholeMesh whole;
+    static_cast<MeshToOrder&>(whole) = read_to_order(files, notes);
+    if (whole.mesh.cell_count() > kManyCells) {
+      notes.push_back(with_commas(whole.mesh.cell_count()) +
+                      " cells are read and written by rank 0, which has memory for all of them");
+    }
+    whole.arranged = arrange_cells(whole.mesh, format_of(files.output));
+    return whole;
+  });
+}
+
+void move_at_root(const Communicator& communicator, WholeMesh& whole,
+                  const distributed::DistributedOrder& order, const MeshFiles& files, Ids ids) {
+  const std::vector<GlobalIndex> vertices = communicator.gathered_at_root(order.new_vertices);
+  const std::vector<GlobalIndex> cells = communicator.gathered_at_root(order.cells);
+  communicator.at_root([&] {
+    whole.maps.vertices = Permutation::from_old_to_new(narrowed(vertices));
+    const Permutation places =
+        permutation_within_classes(slot_classes(cell_arrays(whole.mesh)), narrowed(cells));
+    apply_reordering(whole.mesh, whole.maps.vertices, places, ids);
+    whole.maps.cells = whole.arranged.then(places);
+    if (!files.maps.empty()) note_parts(whole.mesh, order.report.part_starts, whole.maps);
+  });
+}
+
+}  // namespace meshorder::command

@@ -1,0 +1,43 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/communicator.hpp"
+#include "distributed/grid_rows.hpp"
+#include "distributed/layout.hpp"
+#include "distributed/piece_schema.hpp"
+
+#include <string>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// What there is to tell of pieces.
+struct PiecesReport {
+  GlobalIndex ghost_vertices = 0;  ///< of all pieces
+  GlobalIndex ghost_cells = 0;
+};
+
+/// Returns what the pieces of a mesh have in common. Every rank has to call it.
+///
+/// @param ghosts  layers of ghost cells, 0 or 1
+/// @throws as `Communicator::exchange`
+[[nodiscard]] PieceSchema schema_of_pieces(const Communicator& communicator, const GridRows& grid,
+                                           int ghosts);
+
+/// Writes a .vtu file for each part, over files that exist and are empty; each rank writes those of its
+/// parts. Every rank has to call it. O(size of the mesh of a rank · log), memory for the cells of a rank's
+/// pieces and one of their arrays after another.
+///
+/// Format: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
+///
+/// @param part_starts  first new number of each part, and the end of the last one's
+/// @param with_ghosts  whether a piece has the cells of other parts that use vertices of its part
+/// @param paths        of the files, one for each part
+/// @param names        of the files in messages
+/// @throws SharedError where a rank cannot write, as on a full disk, and for a piece that a file with 32-bit
+///         sizes cannot hold
+PiecesReport write_pieces(const Communicator& communicator, const GridRows& grid, const PieceSchema& schema,
+                          const std::vector<GlobalIndex>& part_starts, bool with_ghosts,
+                          const std::vector<std::string>& paths, const std::vector<std::string>& names);
+
+}  // namespace meshorder::distributed

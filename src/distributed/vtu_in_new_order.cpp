@@ -1,0 +1,154 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/cell_places.hpp"
+#include "distributed/moved_rows.hpp"
+#include "distributed/text_store.hpp"
+#include "distributed/vtu_slices.hpp"
+#include "io/stream/base64.hpp"
+#include "io/vtk/vtu_compressor.hpp"
+#include "io/vtk/vtu_document.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <fstream>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshorder::distributed {
+namespace {
+
+constexpr std::string_view kEndOfHead = "</AppendedData></VTKFile>";
+
+/// The values of appended arrays, as the root reads them.
+class AppendedValues {
+ public:
+  AppendedValues(const std::string& path, Offset first_byte, const VtuEncoding& encoding)
+      : path_(path), file_(path, std::ios::binary), first_byte_(first_byte), encoding_(encoding) {}
+
+  /// Returns an array with the word of its size before it, as base64.
+  std::string as_text(const std::string& offset) {
+    Offset at = 0;
+    std::from_chars(offset.data(), offset.data() + offset.size(), at);
+    file_.seekg(first_byte_ + at);
+    const bool is_raw = encoding_.compressor == VtuEncoding::Compressor::none;
+    const std::string values = is_raw ? bytes(word()) : from_blocks();
+    const std::uint64_t size = values.size();
+    return to_base64(std::string(reinterpret_cast<const char*>(&size), word_size()) + values);
+  }
+
+ private:
+  [[nodiscard]] std::size_t word_size() const { return encoding_.wide_headers ? 8 : 4; }
+
+  /// The next word; nothing but words and bytes that the file has are read.
+  std::uint64_t word() {
+    std::uint64_t value = 0;
+    file_.read(reinterpret_cast<char*>(&value), static_cast<std::streamsize>(word_size()));
+    if (!file_) throw InputError(path_, "a field lies beyond the end of the file", "it may be cut short");
+    return value;
+  }
+
+  std::string bytes(std::uint64_t count) {
+    const std::streamoff begin = file_.tellg();
+    file_.seekg(0, std::ios::end);
+    const std::streamoff left = file_.tellg() - begin;
+    if (count > static_cast<std::uint64_t>(left))
+      throw InputError(path_, "a field lies beyond the end of the file", "it may be cut short");
+    file_.seekg(begin);
+    std::string result(count, '\0');
+    file_.read(result.data(), std::ssize(result));
+    return result;
+  }
+
+  /// The values of compressed blocks: their number, the bytes of each and of a shorter last one, and the
+  /// compressed bytes of each stand before them.
+  std::string from_blocks() {
+    const std::uint64_t count = word();
+    const std::uint64_t each = word();
+    const std::uint64_t last = word();
+    std::vector<std::uint64_t> sizes;
+    for (std::uint64_t b = 0; b < count; ++b) sizes.push_back(word());
+    const vtk::VtuCompressor compressor(encoding_.compressor);
+    std::string values;
+    for (std::size_t b = 0; b < sizes.size(); ++b) {
+      const std::string compressed = bytes(sizes[b]);
+      const std::uint64_t size = b + 1 == sizes.size() && last > 0 ? last : each;
+      if (size > compressed.size() * vtk::VtuCompressor::greatest_ratio(encoding_.compressor) + 1024) fail();
+      std::string block(size, '\0');
+      if (!compressor.uncompress(compressed, block)) fail();
+      values += block;
+    }
+    return values;
+  }
+
+  [[noreturn]] void fail() const {
+    throw InputError(path_, "a block of a field does not hold what it should", "the file may be damaged");
+  }
+
+  const std::string& path_;
+  std::ifstream file_;
+  Offset first_byte_;
+  VtuEncoding encoding_;
+};
+
+/// Returns the fields of a file with their values in them.
+std::string fields_with_values(const std::string& head, const std::string& path) {
+  TextStore store(head + std::string(kEndOfHead));
+  const vtk::VtuDocument file(FilePath(path, store));
+  const vtk::VtuElement* const fields = file.root().child("UnstructuredGrid")->child("FieldData");
+  if (fields == nullptr) return "";
+  AppendedValues values(path, std::ssize(head), file.encoding());
+  std::string text = "<FieldData>";
+  for (const vtk::VtuElement& element : fields->children) {
+    if (element.attribute("format") == nullptr || *element.attribute("format") != "appended") {
+      text += file.source(element);
+      continue;
+    }
+    std::string attributes;
+    for (const auto& [name, value] : element.attributes) {
+      if (name != "format" && name != "offset")
+        attributes += fmt::format(" {}=\"{}\"", name, xml_escaped(value));
+    }
+    text += fmt::format("<{0}{1} format=\"binary\">{2}</{0}>", element.name, attributes,
+                        values.as_text(file.required(element, "offset")));
+  }
+  return text + "</FieldData>";
+}
+
+}  // namespace
+
+GridRows VtuSlices::in_new_order(const Communicator& communicator, const DistributedOrder& order) const {
+  const auto file = std::make_shared<SharedFile>(communicator, path_, path_, SharedFile::Use::read);
+  MeshSlice slice = empty_slice(communicator);
+  read_shapes(communicator, *file, slice);
+  const auto vertices = std::make_shared<RowMover>(communicator, slice.vertices, order.new_vertices);
+  const auto cells = std::make_shared<RowMover>(communicator, slice.cells,
+                                                places_by_dimension(communicator, slice, order.cells));
+  GridRows grid;
+  grid.vertices = slice.vertices;
+  grid.cells = slice.cells;
+  grid.rows = [this, &communicator, file, vertices, cells, of_vertices = slice.vertices,
+               of_cells = slice.cells](std::size_t k) {
+    const VtuArray& array = *std::find_if(head_.arrays.begin(), head_.arrays.end(),
+                                          [&](const VtuArray& one) { return one.element == k; });
+    const bool on_vertices = array.association == Association::vertices;
+    const Layout& layout = on_vertices ? of_vertices : of_cells;
+    const int rank = communicator.rank();
+    const std::vector<std::byte> values =
+        rows(communicator, *file, array, layout.begin(rank), layout.end(rank));
+    return (on_vertices ? vertices : cells)->moved(values, array.row);
+  };
+  grid.cell_vertices = moved_cells(communicator, *file, std::move(slice), *cells, order.new_vertices);
+  communicator.at_root([&] {
+    const std::string& head = head_.xml.text();
+    grid.xml = head + std::string(kEndOfHead);
+    grid.fields = fields_with_values(head, path_);
+  });
+  return grid;
+}
+
+}  // namespace meshorder::distributed
