@@ -91,9 +91,9 @@ inline void throw_unless_ok(mo_status status) {
 /// turn towards the ranks before and behind it. Every rank has to call it.
 ///
 /// @param communicator  of the ranks that share the mesh
-/// @param mesh          of this rank. Elements may be on several ranks (ghost layers); all that a rank has
-/// are
-///                      ordered
+/// @param mesh          of this rank. Elements may be on several ranks (ghost layers); each rank orders all
+///                      that it has
+/// @param options       the same on all ranks; `parts`, `partition` and `balance` are not used
 /// @throws Error on all ranks where one fails: for an unknown method, for numbers of vertices that there are
 ///         not, for a geometric method without coordinates
 /// @note The same order for the same mesh on the same ranks. O(sum of element sizes squared) memory for the
@@ -115,6 +115,7 @@ inline RankOrder order_ranks(MPI_Comm communicator, const RankMesh& mesh, const 
 ///
 /// @param communicator  of the ranks that share the mesh
 /// @param mesh          of this rank, with coordinates; each element on one rank
+/// @param options       the same on all ranks
 /// @throws Error as above
 /// @note Parts by PT-Scotch need MPI_THREAD_MULTIPLE; without it they are those of "hilbert".
 inline PartOrder order_parts(MPI_Comm communicator, const RankMesh& mesh, const RankOptions& options = {}) {
