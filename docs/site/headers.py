@@ -75,4 +75,5 @@ def write_pages(include: pathlib.Path, folder: pathlib.Path) -> None:
     for header in sorted((include / "meshorder").glob("*.hpp")):
         if header.name not in WITHOUT_PAGE:
             write(folder / "cpp" / f"{header.stem}.rst", header.name, f".. doxygenfile:: {header.name}")
-    write(folder / "c.rst", "C reference", f".. doxygenfile:: meshorder.h\n   :sections: {C_SECTIONS}")
+    files = [f".. doxygenfile:: {name}\n   :sections: {C_SECTIONS}" for name in ("meshorder.h", "meshorder_mpi.h")]
+    write(folder / "c.rst", "C reference", "\n\n".join(files))
