@@ -20,23 +20,6 @@ namespace {
 using distributed::Communicator;
 using distributed::GridRows;
 
-/// Returns texts of the root on all ranks; none is empty.
-std::vector<std::string> shared(const Communicator& communicator, const std::vector<std::string>& texts) {
-  std::vector<char> characters;
-  for (const std::string& text : texts) {
-    characters.insert(characters.end(), text.begin(), text.end());
-    characters.push_back('\0');
-  }
-  characters = communicator.broadcast(std::move(characters));
-  std::vector<std::string> result;
-  for (auto begin = characters.begin(); begin != characters.end();) {
-    const auto end = std::find(begin, characters.end(), '\0');
-    result.emplace_back(begin, end);
-    begin = end + 1;
-  }
-  return result;
-}
-
 /// Adds notes that are not there yet: what a format holds in another way, two writers tell alike.
 void add_new(const Notes& found, Notes& notes) {
   std::copy_if(found.begin(), found.end(), std::back_inserter(notes), [&](const std::string& note) {
@@ -111,9 +94,9 @@ void OrderOutputs::write_pieces(const GridRows& grid, const distributed::Distrib
     replaced = {"the pieces have arrays of their own in place of those " + join(schema.replaced())};
   communicator_.at_root([&] { refuse_losses(replaced); });
   const std::vector<std::string> paths =
-      shared(communicator_, communicator_.at_root([&] { return pieces_->open(report.parts); }));
+      communicator_.broadcast(communicator_.at_root([&] { return pieces_->open(report.parts); }));
   const std::vector<std::string> names =
-      shared(communicator_, pieces_ ? pieces_->names() : std::vector<std::string>{});
+      communicator_.broadcast(pieces_ ? pieces_->names() : std::vector<std::string>{});
   pieces_report_ = distributed::write_pieces(communicator_, grid, schema, report.part_starts,
                                              files_.ghosts > 0, paths, names);
   communicator_.at_root([&] {

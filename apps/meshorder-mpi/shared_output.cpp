@@ -10,14 +10,14 @@ namespace meshorder::command {
 SharedOutput::SharedOutput(const distributed::Communicator& communicator, OutputSet& outputs,
                            const std::string& name, std::string_view start)
     : communicator_(communicator) {
-  const std::string path = communicator.at_root([&] {
-    file_.emplace(FilePath(name, outputs));
-    file_->write(start);
-    file_->close();
-    return file_->temporary().string();
-  });
-  const std::vector<char> characters = communicator.broadcast(std::vector<char>(path.begin(), path.end()));
-  path_.assign(characters.begin(), characters.end());
+  path_ = communicator
+              .broadcast(communicator.at_root([&] {
+                file_.emplace(FilePath(name, outputs));
+                file_->write(start);
+                file_->close();
+                return std::vector<std::string>{file_->temporary().string()};
+              }))
+              .front();
 }
 
 void SharedOutput::commit() {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <new>
+#include <utility>
 
 namespace meshorder::distributed {
 namespace {
@@ -96,6 +97,21 @@ void Communicator::exchange_bytes(const std::byte* sent, const std::vector<Offse
   std::copy(sent + sent_starts[own] * width, sent + sent_starts[own + 1] * width,
             received + received_starts[own] * width);
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+}
+
+std::vector<std::string> Communicator::broadcast(const std::vector<std::string>& at_root) const {
+  std::vector<char> characters;
+  together([&] {
+    for (const std::string& text : at_root)
+      characters.insert(characters.end(), text.c_str(), text.c_str() + text.size() + 1);
+  });
+  characters = broadcast(std::move(characters));
+  return together([&] {
+    std::vector<std::string> texts;
+    for (const char* at = characters.data(); at < characters.data() + characters.size();)
+      at += texts.emplace_back(at).size() + 1;
+    return texts;
+  });
 }
 
 std::int64_t Communicator::broadcast_count(std::int64_t at_root) const {

@@ -113,6 +113,9 @@ class Communicator {
     return at_root;
   }
 
+  /// The same for texts, none of which has a zero in it.
+  [[nodiscard]] std::vector<std::string> broadcast(const std::vector<std::string>& at_root) const;
+
   /// Returns the value of each rank, on all of them. O(ranks).
   template <class T>
   [[nodiscard]] std::vector<T> gathered(const T& own) const {

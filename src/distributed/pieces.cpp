@@ -20,21 +20,6 @@ namespace {
 
 using Source = PieceArray::Source;
 
-/// Texts of all ranks, as one string: each ends with a zero.
-std::vector<std::string> shared_texts(const Communicator& communicator,
-                                      const std::vector<std::string>& texts) {
-  std::vector<char> characters;
-  for (const std::string& text : texts)
-    characters.insert(characters.end(), text.c_str(), text.c_str() + text.size() + 1);
-  characters = communicator.broadcast(std::move(characters));
-  return communicator.together([&] {
-    std::vector<std::string> result;
-    for (const char* at = characters.data(); at < characters.data() + characters.size();)
-      at += result.emplace_back(at).size() + 1;
-    return result;
-  });
-}
-
 /// Takes the rows of some numbers out of those of a halo.
 std::vector<std::byte> rows_of(const std::vector<std::byte>& rows, Offset width, const Halo& halo,
                                const std::vector<GlobalIndex>& numbers) {
@@ -100,7 +85,7 @@ class RankPieces {
         grid_(grid),
         schema_(schema),
         part_starts_(part_starts),
-        texts_(shared_texts(communicator, grid.texts)),
+        texts_(communicator.broadcast(grid.texts)),
         pieces_(contents_of_pieces(communicator, grid.vertices.size(), grid.cells, grid.cell_vertices,
                                    part_starts, with_ghosts)),
         vertices_(communicator, grid.vertices, all_numbers(&PieceContents::vertices)),
@@ -197,12 +182,8 @@ std::string size_word(Offset size, Offset word, const std::string& name) {
 }  // namespace
 
 PieceSchema schema_of_pieces(const Communicator& communicator, const GridRows& grid, int ghosts) {
-  const std::vector<char> xml = communicator.broadcast(std::vector<char>(grid.xml.begin(), grid.xml.end()));
-  const std::vector<char> fields =
-      communicator.broadcast(std::vector<char>(grid.fields.begin(), grid.fields.end()));
-  return communicator.together([&] {
-    return PieceSchema({xml.begin(), xml.end()}, {fields.begin(), fields.end()}, ghosts);
-  });
+  const std::vector<std::string> texts = communicator.broadcast(std::vector{grid.xml, grid.fields});
+  return communicator.together([&] { return PieceSchema(texts[0], texts[1], ghosts); });
 }
 
 PiecesReport write_pieces(const Communicator& communicator, const GridRows& grid, const PieceSchema& schema,

@@ -63,7 +63,7 @@ class HeadReader {
     const VtuEncoding& encoding = head_.facts.encoding = file.encoding();
     const vtk::VtuElement* const grid = file.root().child("UnstructuredGrid");
     if (!vtk::VtuCompressor::available(encoding.compressor) || encoding.order != std::endian::native ||
-        grid == nullptr || count_of(*grid, "Piece") != 1) {
+        grid == nullptr || count_of(*grid, "Piece") != 1 || has_compressed_text(file, *grid)) {
       return std::nullopt;
     }
     word_ = encoding.wide_headers ? 8 : 4;
@@ -77,6 +77,15 @@ class HeadReader {
   static Offset count_of(const vtk::VtuElement& element, std::string_view name) {
     return std::count_if(element.children.begin(), element.children.end(),
                          [&](const vtk::VtuElement& child) { return child.name == name; });
+  }
+
+  /// Whether a field stands compressed in the XML, which pieces, that are not compressed, cannot take over.
+  static bool has_compressed_text(const vtk::VtuDocument& file, const vtk::VtuElement& grid) {
+    const vtk::VtuElement* const fields = grid.child("FieldData");
+    return file.encoding().compressor != VtuEncoding::Compressor::none && fields != nullptr &&
+           std::any_of(fields->children.begin(), fields->children.end(), [&](const vtk::VtuElement& element) {
+             return file.mode(element) == VtuEncoding::Mode::base64;
+           });
   }
 
   bool read_piece(const vtk::VtuDocument& file, const vtk::VtuElement& piece) {
@@ -245,6 +254,7 @@ class HeadReader {
     }
     const std::vector<Offset> offsets = head_.xml.offsets();
     return std::none_of(offsets.begin(), offsets.end(), [&](Offset offset) {
+      if (offset > head_.facts.bytes) return false;  // found where the array is read
       const Offset at = head_.facts.first_byte + offset;
       return std::any_of(arrays.begin(), arrays.end(), [&](const VtuArray& array) {
         return array.at < at && at < array.at + array.stored;

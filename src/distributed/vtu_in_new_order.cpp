@@ -4,6 +4,7 @@
 #include "distributed/text_store.hpp"
 #include "distributed/vtu_slices.hpp"
 #include "io/stream/base64.hpp"
+#include "io/stream/read_limits.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include "io/vtk/vtu_document.hpp"
 #include <meshorder/error.hpp>
@@ -11,8 +12,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string_view>
@@ -27,16 +28,21 @@ constexpr std::string_view kEndOfHead = "</AppendedData></VTKFile>";
 /// The values of appended arrays, as the root reads them.
 class AppendedValues {
  public:
-  AppendedValues(const std::string& path, Offset first_byte, const VtuEncoding& encoding)
-      : path_(path), file_(path, std::ios::binary), first_byte_(first_byte), encoding_(encoding) {}
+  AppendedValues(const std::string& path, Offset first_byte, const vtk::VtuDocument& document)
+      : path_(path),
+        file_(path, std::ios::binary | std::ios::ate),
+        size_(file_.tellg()),
+        first_byte_(first_byte),
+        document_(document),
+        encoding_(document.encoding()) {}
 
   /// Returns an array with the word of its size before it, as base64.
-  std::string as_text(const std::string& offset) {
-    Offset at = 0;
-    std::from_chars(offset.data(), offset.data() + offset.size(), at);
+  std::string as_text(const vtk::VtuElement& element) {
+    const Offset at = whole_number(document_, element, "offset");
+    if (at > size_ - first_byte_) fail_at_end();
     file_.seekg(first_byte_ + at);
     const bool is_raw = encoding_.compressor == VtuEncoding::Compressor::none;
-    const std::string values = is_raw ? bytes(word()) : from_blocks();
+    const std::string values = is_raw ? bytes(word()) : from_blocks(element);
     const std::uint64_t size = values.size();
     return to_base64(std::string(reinterpret_cast<const char*>(&size), word_size()) + values);
   }
@@ -48,17 +54,12 @@ class AppendedValues {
   std::uint64_t word() {
     std::uint64_t value = 0;
     file_.read(reinterpret_cast<char*>(&value), static_cast<std::streamsize>(word_size()));
-    if (!file_) throw InputError(path_, "a field lies beyond the end of the file", "it may be cut short");
+    if (!file_) fail_at_end();
     return value;
   }
 
   std::string bytes(std::uint64_t count) {
-    const std::streamoff begin = file_.tellg();
-    file_.seekg(0, std::ios::end);
-    const std::streamoff left = file_.tellg() - begin;
-    if (count > static_cast<std::uint64_t>(left))
-      throw InputError(path_, "a field lies beyond the end of the file", "it may be cut short");
-    file_.seekg(begin);
+    if (count > static_cast<std::uint64_t>(size_ - Offset{file_.tellg()})) fail_at_end();
     std::string result(count, '\0');
     file_.read(result.data(), std::ssize(result));
     return result;
@@ -66,7 +67,7 @@ class AppendedValues {
 
   /// The values of compressed blocks: their number, the bytes of each and of a shorter last one, and the
   /// compressed bytes of each stand before them.
-  std::string from_blocks() {
+  std::string from_blocks(const vtk::VtuElement& element) {
     const std::uint64_t count = word();
     const std::uint64_t each = word();
     const std::uint64_t last = word();
@@ -78,6 +79,7 @@ class AppendedValues {
       const std::string compressed = bytes(sizes[b]);
       const std::uint64_t size = b + 1 == sizes.size() && last > 0 ? last : each;
       if (size > compressed.size() * vtk::VtuCompressor::greatest_ratio(encoding_.compressor) + 1024) fail();
+      document_.claim(element, size);
       std::string block(size, '\0');
       if (!compressor.uncompress(compressed, block)) fail();
       values += block;
@@ -85,23 +87,31 @@ class AppendedValues {
     return values;
   }
 
+  [[noreturn]] void fail_at_end() const {
+    throw InputError(path_, "a field lies beyond the end of the file", "it may be cut short");
+  }
   [[noreturn]] void fail() const {
     throw InputError(path_, "a block of a field does not hold what it should", "the file may be damaged");
   }
 
   const std::string& path_;
   std::ifstream file_;
+  Offset size_;  ///< bytes of the file
   Offset first_byte_;
+  const vtk::VtuDocument& document_;
   VtuEncoding encoding_;
 };
 
 /// Returns the fields of a file with their values in them.
 std::string fields_with_values(const std::string& head, const std::string& path) {
   TextStore store(head + std::string(kEndOfHead));
-  const vtk::VtuDocument file(FilePath(path, store));
+  const FilePath in_store(path, store);
+  const ReadScope scope(in_store);
+  count_file(in_store, std::filesystem::file_size(path));
+  const vtk::VtuDocument file(in_store);
   const vtk::VtuElement* const fields = file.root().child("UnstructuredGrid")->child("FieldData");
   if (fields == nullptr) return "";
-  AppendedValues values(path, std::ssize(head), file.encoding());
+  AppendedValues values(path, std::ssize(head), file);
   std::string text = "<FieldData>";
   for (const vtk::VtuElement& element : fields->children) {
     if (element.attribute("format") == nullptr || *element.attribute("format") != "appended") {
@@ -113,8 +123,8 @@ std::string fields_with_values(const std::string& head, const std::string& path)
       if (name != "format" && name != "offset")
         attributes += fmt::format(" {}=\"{}\"", name, xml_escaped(value));
     }
-    text += fmt::format("<{0}{1} format=\"binary\">{2}</{0}>", element.name, attributes,
-                        values.as_text(file.required(element, "offset")));
+    text +=
+        fmt::format("<{0}{1} format=\"binary\">{2}</{0}>", element.name, attributes, values.as_text(element));
   }
   return text + "</FieldData>";
 }

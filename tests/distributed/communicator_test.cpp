@@ -59,6 +59,9 @@ TEST_P(Exchange, BroadcastsAndGathers) {
   ASSERT_EQ(everywhere.size(), 3001U);
   EXPECT_EQ(everywhere.back(), 3005);
 
+  const std::vector<std::string> texts{"one", "", std::string(3000, 'x')};
+  EXPECT_EQ(communicator.broadcast(communicator.is_root() ? texts : std::vector<std::string>{}), texts);
+
   const std::vector<int> own(static_cast<std::size_t>(500 * communicator.rank()), communicator.rank());
   const std::vector<int> all = communicator.gathered_at_root(own);
   const int ranks = communicator.size();

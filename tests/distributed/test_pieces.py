@@ -184,6 +184,41 @@ def test_every_piece_has_the_fields(tmp_path, wide, stored):
         assert fields.GetAbstractArray("note").GetValue(0) == "kept as it is"
 
 
+def test_fields_that_stand_compressed_in_the_xml_are_those_of_every_piece(tmp_path):
+    """Such a file is rank 0's: the pieces are not compressed."""
+    write(tmp_path / "a.vtu", grid(), **STORED["compressed"])
+    write(tmp_path / "inline.vtu", grid(), compressor=vtkZLibDataCompressor, mode="binary")
+    fields = re.search(rb"<FieldData>.*?</FieldData>", (tmp_path / "inline.vtu").read_bytes(), re.DOTALL)[0]
+    mixed = re.sub(rb"<FieldData>.*?</FieldData>", lambda _: fields, (tmp_path / "a.vtu").read_bytes(), count=1, flags=re.DOTALL)
+    (tmp_path / "mixed.vtu").write_bytes(mixed)
+    done = order(2, tmp_path / "mixed.vtu", "--pieces", tmp_path / "out", "--json")
+    assert json.loads(done.stdout)["files_by"] == "rank 0"
+    for part in range(2):
+        assert Grid(tmp_path / "out" / f"mixed_{part:04}.vtu").vtk.GetFieldData().GetArray("time").GetTuple1(0) == 2.5
+
+
+def test_what_fields_claim_is_limited(tmp_path):
+    made = grid()
+    made.GetFieldData().AddArray(array("zeros", numpy.zeros(1_000_000)))
+    write(tmp_path / "a.vtu", made, compressor=vtkZLibDataCompressor)
+    done = launch(2, "order", tmp_path / "a.vtu", "--pieces", tmp_path / "out", "--limit-memory", "7M")
+    assert done.returncode == 2 and len(own_lines(done)) == 1 and "zeros" in done.stderr, done.stderr
+    assert os.listdir(tmp_path) == ["a.vtu"]
+    order(2, tmp_path / "a.vtu", "--pieces", tmp_path / "out", "--limit-memory", "9M")
+
+
+@pytest.mark.parametrize("offset", [10**6, 2**63 - 1])
+def test_fields_beyond_the_end_are_told(tmp_path, offset):
+    write(tmp_path / "a.vtu", grid())
+    moved = re.sub(rb'(<DataArray [^>]*Name="time"[^>]*offset=")\d+', lambda found: found[1] + str(offset).encode(),
+                   (tmp_path / "a.vtu").read_bytes(), count=1)
+    # the bytes of the other arrays are where they were: offsets count from the underscore
+    (tmp_path / "a.vtu").write_bytes(moved)
+    done = launch(2, "order", tmp_path / "a.vtu", "--pieces", tmp_path / "out")
+    assert done.returncode == 2 and len(own_lines(done)) == 1 and "beyond the end" in done.stderr, done.stderr
+    assert os.listdir(tmp_path) == ["a.vtu"]
+
+
 @pytest.mark.parametrize("name, extension", [("monkey.msh", ".mesh"), ("simpleBridge-hex.veg", ".vtu")])
 def test_pieces_of_other_formats_have_the_numbers_of_the_output(tmp_path, name, extension):
     if not (SHARED / name).exists():
