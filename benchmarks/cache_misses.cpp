@@ -30,7 +30,7 @@ void predict(const mo::Mesh& mesh, const mo::Caches& caches) {
              mo::to_string(caches));
   for (const mo::Kernel kernel : mo::kKernels) {
     stopwatch = {};
-    const mo::Reuse reuse = mo::reuse_of(kernel, graph, simplices);
+    const mo::RunReuse reuse = mo::reuse_of(kernel, graph, simplices);
     fmt::print("{} seconds {:.3f} accesses {} mean_log2 {:.3f} misses", mo::to_string(kernel),
                stopwatch.seconds(), reuse.all.accesses(), reuse.all.mean_log2());
     for (const mo::Offset misses : mo::misses(reuse.all, caches)) fmt::print(" {}", misses);

@@ -65,9 +65,9 @@ void print_calibration(const Console& console, const Calibration& calibration) {
   console.print(
       "\nWhat a kernel pays, in ns: an access, a miss and in addition a jump of the first cache, the "
       "second,\n"
-      "half of the last and all of it");
-  console.print("{:<14}{:>7}{:>28}{:>28}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps", "condition",
-                "error", "floor");
+      "half of the last and all of it; an addition to what was added to just before");
+  console.print("{:<14}{:>7}{:>28}{:>28}{:>8}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps", "repeat",
+                "condition", "error", "floor");
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     const KernelCosts& costs = calibration.model.kernels[k];
     std::string misses;
@@ -76,8 +76,9 @@ void print_calibration(const Console& console, const Calibration& calibration) {
       misses += fmt::format("{:>7.3g}", costs.miss[i]);
       jumps += fmt::format("{:>7.3g}", costs.jump[i]);
     }
-    console.print("{:<14}{:>7.3g}{}{}{:>10.0f}{:>6.1f}%{:>6.1f}%", kKernelTitles[k], costs.access, misses,
-                  jumps, calibration.condition[k], 100 * calibration.error[k], 100 * calibration.floor[k]);
+    console.print("{:<14}{:>7.3g}{}{}{:>8.3g}{:>10.0f}{:>6.1f}%{:>6.1f}%", kKernelTitles[k], costs.access,
+                  misses, jumps, costs.repeat, calibration.condition[k], 100 * calibration.error[k],
+                  100 * calibration.floor[k]);
   }
   console.print(
       "condition: how many times errors of measured times can grow in these numbers; error: of the times\n"

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // measure predict MESH CACHES FOLDER VERTICES/ELEMENTS…: computes the orders of a mesh, keeps them in FOLDER
 // and prints what the reuse model says of every kernel in every order: mesh, vertices, simplices, dimension,
-// order, kernel, accesses, misses of three levels, jumps of three levels.
+// order, kernel, accesses, misses of three levels, jumps of three levels, repeats.
 // measure time MESH BUDGET FOLDER VERTICES/ELEMENTS…: times the kernels in the orders that FOLDER keeps, and
 // prints order, kernel, best and median milliseconds, samples. The first order is the one to compare with.
 //
@@ -117,10 +117,10 @@ void predict(const std::string& name, const mo::Caches& caches, const std::strin
     const mo::KernelReuse reuse =
         mo::reuse_of_kernels(mesh, graph, r.vertices.permutation, r.cells.permutation, kHalvings);
     for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
-      fmt::print("{},{},{},{},{},{},{},{},{}\n", name, mesh.vertex_count(), simplices.size(),
+      fmt::print("{},{},{},{},{},{},{},{},{},{}\n", name, mesh.vertex_count(), simplices.size(),
                  simplices.dimension, order, mo::to_string(mo::kKernels[k]), reuse[k].all.accesses(),
                  fmt::join(mo::misses(reuse[k].all, caches), ","),
-                 fmt::join(mo::misses(reuse[k].jumps, caches), ","));
+                 fmt::join(mo::misses(reuse[k].jumps, caches), ","), reuse[k].repeats);
     }
     std::fflush(stdout);
   }

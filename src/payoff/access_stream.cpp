@@ -57,7 +57,34 @@ AccessStream::Array AccessStream::place(Offset bytes) {
   return array;
 }
 
-Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings) {
+namespace {
+
+/// See RunReuse::repeats.
+Offset repeated_additions(const Simplices& simplices) {
+  // the halves of a register hold lanes 0 … 3 and 4 … 7, and the first of both are added first
+  constexpr std::array<Index, kBatch> kLanes{0, 4, 1, 5, 2, 6, 3, 7};
+  const Index corners = simplices.dimension + 1;
+  if (corners == 1) return 0;
+  Offset repeats = 0;
+  Index last = -1;
+  Index last_but_one = -1;
+  for (Offset first = 0; first < simplices.size(); first += kBatch) {
+    for (Index a = 0; a < corners; ++a) {
+      for (const Index lane : kLanes) {
+        const Offset simplex = std::min(first + lane, simplices.size() - 1);
+        const Index v = simplices.vertices[corners * simplex + a];
+        repeats += v == last || v == last_but_one ? 1 : 0;
+        last_but_one = last;
+        last = v;
+      }
+    }
+  }
+  return repeats;
+}
+
+}  // namespace
+
+RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings) {
   const AccessStream stream(kernel, graph, simplices);
   ReuseSample reuse(stream.line_count(), halvings);
   std::uint32_t accesses = 0;
@@ -65,7 +92,7 @@ Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices,
     if (++accesses % 0x10000 == 0) poll();
     reuse.access(line);
   });
-  return std::move(reuse).repeated();
+  return {std::move(reuse).repeated(), kernel == Kernel::element ? repeated_additions(simplices) : 0};
 }
 
 KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings) {

@@ -204,13 +204,22 @@ class AccessStream {
   Array ends_, rest_lengths_;
 };
 
-/// Returns the reuse distances of a repeated kernel: of every run but the first. O(accesses · log distance)
-/// time and about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0
-/// estimated from 2^-halvings of the lines (see ReuseSample), which is faster.
-Reuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings = 0);
+/// What a run of a kernel uses again: cache lines, and sums.
+struct RunReuse : Reuse {
+  /// Additions of element forces to a vertex that one of the two before them went to: they wait until what
+  /// that one stored can be loaded. In the order in which registers of eight doubles are added.
+  Offset repeats = 0;
+
+  bool operator==(const RunReuse&) const = default;
+};
+
+/// Returns the reuse of a repeated kernel: of every run but the first. O(accesses · log distance) time and
+/// about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0 that of
+/// the lines is estimated from 2^-halvings of them (see ReuseSample), which is faster.
+RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings = 0);
 
 /// By kernel, as kKernels lists them.
-using KernelReuse = std::array<Reuse, kKernels.size()>;
+using KernelReuse = std::array<RunReuse, kKernels.size()>;
 
 /// Returns the reuse of all kernels, each computed on its own thread.
 KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings = 0);

@@ -42,7 +42,7 @@ std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
   for_each_chunk(kernels * index_size(orders), 1, [&](Index task, Index /*begin*/, Index /*end*/) {
     const Index i = task % index_size(orders);
     const Index k = task / index_size(orders);
-    const Reuse reuse = reuse_of(kKernels[k], orders[i].graph, simplices[i], halvings);
+    const RunReuse reuse = reuse_of(kKernels[k], orders[i].graph, simplices[i], halvings);
     result[i][k] = predicted_ms(kKernels[k], reuse, caches, options.machine.model);
   });
   return result;

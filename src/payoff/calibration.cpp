@@ -27,7 +27,7 @@
 namespace meshorder {
 namespace {
 
-constexpr std::size_t kCosts = 9;  ///< of a kernel
+constexpr std::size_t kCosts = 10;  ///< of a kernel
 
 /// What kernels took, by kernel.
 struct Runs {
@@ -38,12 +38,13 @@ struct Runs {
 };
 
 /// What the costs are multiplied by, in milliseconds a nanosecond.
-std::array<double, kCosts> counts_of(const Reuse& reuse, const std::array<Offset, 4>& sizes) {
+std::array<double, kCosts> counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes) {
   std::array<double, kCosts> counts{1e-6 * static_cast<double>(reuse.all.accesses())};
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     counts[1 + i] = 1e-6 * static_cast<double>(reuse.all.misses(sizes[i] / kLineBytes));
     counts[5 + i] = 1e-6 * static_cast<double>(reuse.jumps.misses(sizes[i] / kLineBytes));
   }
+  counts[9] = 1e-6 * static_cast<double>(reuse.repeats);
   return counts;
 }
 
@@ -207,6 +208,7 @@ FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches) {
     result.costs.miss[i] = costs[1 + i];
     result.costs.jump[i] = costs[5 + i];
   }
+  result.costs.repeat = costs[9];
   result.condition = condition_number(rows);
   std::vector<double> errors;
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -55,7 +55,7 @@ Calibration measure_machine(const CalibrationEffort& effort = {});
 
 /// A run of a kernel: the levels of reuse, and what it took.
 struct TimedReuse {
-  Reuse reuse;
+  RunReuse reuse;
   double milliseconds = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include "base/random.hpp"
 #include "kernels/positions.hpp"
+#include "kernels/simplices.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
@@ -50,11 +51,11 @@ std::vector<LatticeOrder> orders_for(Index vertices, Offset row_bytes, const Cac
     }
   }
   std::sort(windows.begin(), windows.end());
-  std::vector<LatticeOrder> result{{1, false}};
+  std::vector<LatticeOrder> result{LatticeOrder{}};
   for (const Index window : windows) {
-    if (2 * window > 3 * result.back().window) result.push_back({window, false});
+    if (2 * window > 3 * result.back().window) result.push_back({window});
   }
-  result.push_back({vertices, false});
+  result.push_back({vertices});
   // last the most that an order can cost
   const std::size_t kept = std::max<std::size_t>(3, most) - 1;
   if (result.size() > kept) {
@@ -62,8 +63,21 @@ std::vector<LatticeOrder> orders_for(Index vertices, Offset row_bytes, const Cac
     for (std::size_t i = 0; i < kept; ++i) some.push_back(result[i * (result.size() - 1) / (kept - 1)]);
     result = std::move(some);
   }
-  result.push_back({vertices, true});
+  result.push_back({vertices, LatticeElements::shuffled});
+  result.insert(result.begin() + 1, {1, LatticeElements::apart});
   return result;
+}
+
+/// Each 32 elements as four times every fourth one of them; what is left at the end as it is.
+Permutation elements_apart(Index count) {
+  constexpr Index kApart = 4;
+  constexpr Index kTogether = kApart * kBatch;
+  std::vector<Index> new_to_old(static_cast<std::size_t>(count));
+  std::iota(new_to_old.begin(), new_to_old.end(), 0);
+  for (Index first = 0; first + kTogether <= count; first += kTogether) {
+    for (Index i = 0; i < kTogether; ++i) new_to_old[first + i] = first + i % kBatch * kApart + i / kBatch;
+  }
+  return Permutation::from_new_to_old(std::move(new_to_old));
 }
 
 }  // namespace
@@ -107,8 +121,11 @@ Mesh in_order(const CalibrationLattice& lattice, const LatticeOrder& order) {
   const Permutation moved = Permutation::from_old_to_new(std::move(old_to_new));
   apply_reordering(mesh, moved, Permutation::identity(mesh.cell_count()));
   const CsrGraph graph = renumbered(lattice.graph, moved.old_to_new());
-  const char* const elements = order.elements_shuffled ? "scrambled" : "lexmax";
+  const char* const elements = order.elements == LatticeElements::shuffled ? "scrambled" : "lexmax";
   apply_reordering(mesh, compute_reordering(mesh, graph, {.methods = {"original", elements}, .order = {}}));
+  if (order.elements == LatticeElements::apart) {
+    apply_reordering(mesh, Permutation::identity(n), elements_apart(mesh.cell_count()));
+  }
   return mesh;
 }
 

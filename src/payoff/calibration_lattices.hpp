@@ -9,11 +9,15 @@
 
 namespace meshorder {
 
+/// How the elements of a lattice are ordered: by `lexmax`; so, but each 32 of them as four times every fourth
+/// one, which takes those that share a vertex apart and touches the same lines; or shuffled all together.
+enum class LatticeElements { lexmax, apart, shuffled };
+
 /// How the vertices and elements of a lattice are ordered: along a Hilbert curve, then shuffled within ranges
-/// of `window` vertices (1: not at all), the elements by `lexmax` or shuffled all together.
+/// of `window` vertices (1: not at all), and the elements.
 struct LatticeOrder {
   Index window = 1;
-  bool elements_shuffled = false;
+  LatticeElements elements = LatticeElements::lexmax;
 
   bool operator==(const LatticeOrder&) const = default;
 };
@@ -28,7 +32,8 @@ struct CalibrationLattice {
 /// Makes a lattice of about so many vertices: cubes of six tetrahedra each, or, flat, squares of two
 /// triangles. Its orders have windows of which half of one of these caches holds the vertices' positions,
 /// positions and forces, or rows of the matrix, and the whole of it, so that which cache is missed differs
-/// from order to order. At most `most` orders: the two ends, and others between evenly.
+/// from order to order. At most `most` orders and the best one with its elements apart, which comes second:
+/// the two ends, and others between evenly.
 CalibrationLattice make_calibration_lattice(Index vertices, bool flat, const Caches& caches,
                                             std::size_t most);
 

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "meshorder calibration 1";
+constexpr const char* kSchema = "meshorder calibration 2";
 
 std::string sizes_text(const Caches& caches) { return caches.level_bytes.empty() ? "" : to_string(caches); }
 
@@ -83,6 +83,7 @@ std::string to_json_text(const Calibration& calibration) {
     kernels[std::string(to_string(kKernels[k]))] = {{"access", costs.access},
                                                     {"miss", costs.miss},
                                                     {"jump", costs.jump},
+                                                    {"repeat", costs.repeat},
                                                     {"condition", finite_json(calibration.condition[k])},
                                                     {"error", calibration.error[k]},
                                                     {"floor", calibration.floor[k]}};
@@ -142,6 +143,7 @@ Calibration parse_calibration(const std::string& text) {
         sum += costs.miss[i] = number_from(kernel.at("miss").at(i));
         sum += costs.jump[i] = number_from(kernel.at("jump").at(i));
       }
+      sum += costs.repeat = number_from(kernel.at("repeat"));
       if (!(sum > 0)) throw InvalidArgument("has a kernel that costs nothing");
       calibration.condition[k] = condition_from(kernel.at("condition"));
       calibration.error[k] = number_from(kernel.at("error"));

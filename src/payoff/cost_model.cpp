@@ -45,10 +45,11 @@ std::array<Offset, 4> sizes_that_cost(const Caches& caches) {
           levels.back()};
 }
 
-double predicted_ms(Kernel kernel, const Reuse& reuse, const Caches& caches, const CostModel& model) {
+double predicted_ms(Kernel kernel, const RunReuse& reuse, const Caches& caches, const CostModel& model) {
   const KernelCosts& costs = model.kernels[static_cast<std::size_t>(kernel)];
   const std::array<Offset, 4> sizes = sizes_that_cost(caches);
-  double nanoseconds = costs.access * static_cast<double>(reuse.all.accesses());
+  double nanoseconds = costs.access * static_cast<double>(reuse.all.accesses()) +
+                       costs.repeat * static_cast<double>(reuse.repeats);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     nanoseconds += costs.miss[i] * static_cast<double>(reuse.all.misses(sizes[i] / kLineBytes));
     nanoseconds += costs.jump[i] * static_cast<double>(reuse.jumps.misses(sizes[i] / kLineBytes));

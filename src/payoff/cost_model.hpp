@@ -13,11 +13,13 @@ namespace meshorder {
 
 /// Nanoseconds (≥ 0) that a kernel spends on each access, on each miss and, in addition, on each jump (a miss
 /// that no hardware prefetcher foresees) of four caches: the first level, the second, half of the last and
-/// all of it. A thread shares the last level, so misses begin to cost when half of it is full.
+/// all of it; and on each repeat (RunReuse::repeats). A thread shares the last level, so misses begin to cost
+/// when half of it is full.
 struct KernelCosts {
   double access = 0.0;
   std::array<double, 4> miss{};
   std::array<double, 4> jump{};
+  double repeat = 0.0;
 
   bool operator==(const KernelCosts&) const = default;
 };
@@ -47,7 +49,7 @@ const CostModel& zen4_costs();
 /// Predicts the milliseconds of each run of a repeated kernel on a processor with these caches (see
 /// sizes_that_cost). Use the ratio of two orders of one mesh: the milliseconds are those of the model's
 /// machine. O(levels · bins of the histograms). Throws InvalidArgument without caches.
-double predicted_ms(Kernel kernel, const Reuse& reuse, const Caches& caches,
+double predicted_ms(Kernel kernel, const RunReuse& reuse, const Caches& caches,
                     const CostModel& model = zen5_costs());
 
 /// As above, for all kernels.

@@ -54,9 +54,9 @@ def test_a_calibration_says_what_it_measured(measured):
     assert latencies == sorted(latencies) and latencies[0] > 0
     assert list(measured["kernels"]) == KERNELS
     for kernel in measured["kernels"].values():
-        assert list(kernel) == ["access", "miss", "jump", "condition", "error", "floor"]
+        assert list(kernel) == ["access", "miss", "jump", "repeat", "condition", "error", "floor"]
         assert len(kernel["miss"]) == len(kernel["jump"]) == 4
-        assert min([kernel["access"], *kernel["miss"], *kernel["jump"]]) >= 0
+        assert min([kernel["access"], *kernel["miss"], *kernel["jump"], kernel["repeat"]]) >= 0
     assert all(rate > 0 for rate in measured["read_bandwidth"].values())
     assert os.path.dirname(measured["file"]).endswith("calibrations") and os.path.exists(measured["file"])
     assert os.listdir(os.path.dirname(measured["file"])) == [os.path.basename(measured["file"])]
@@ -136,6 +136,7 @@ def test_a_machine_that_moved_is_noticed(here, stored):
         for costs in "miss", "jump":
             kernel[costs] = [10 * cost for cost in kernel[costs]]
         kernel["access"] *= 10
+        kernel["repeat"] *= 10
     stored.write_text(json.dumps(content))
     result = here.json("calibrate", "--recheck")
     assert result["moved"] and all(ratio < 0.5 for ratio in result["ratio"].values())

@@ -192,6 +192,32 @@ TEST(ReuseOf, HasNoColdAccessesAndMissesTheLeastWithTheLargestCache) {
   }
 }
 
+TEST(ReuseOf, CountsAdditionsToAVertexThatHardlyLeftTheRegisters) {
+  for (const Mesh& mesh : {test::tetrahedral_bar(30), test::mixed_mesh()}) {
+    const Prepared p(mesh);
+    // registers of eight doubles: all lanes of a corner, those of the lower and the upper half by turns
+    std::vector<Index> added;
+    for (Offset batch = 0; batch < p.rest.batches(); ++batch) {
+      for (int a = 0; a <= p.rest.dimension; ++a) {
+        for (int i = 0; i < kBatch / 2; ++i) {
+          added.push_back(p.rest.vertex(batch * kBatch + i, a));
+          added.push_back(p.rest.vertex(batch * kBatch + kBatch / 2 + i, a));
+        }
+      }
+    }
+    Offset repeats = 0;
+    for (std::size_t i = 1; i < added.size(); ++i) {
+      if (added[i] == added[i - 1] || (i > 1 && added[i] == added[i - 2])) ++repeats;
+    }
+    ASSERT_GT(repeats, 0);
+    EXPECT_EQ(reuse_of(Kernel::element, p.graph, p.simplices).repeats, repeats);
+    EXPECT_EQ(reuse_of(Kernel::element, p.graph, p.simplices, 3).repeats, repeats);
+    for (const Kernel other : {Kernel::spmv, Kernel::assembly, Kernel::springs}) {
+      EXPECT_EQ(reuse_of(other, p.graph, p.simplices).repeats, 0);
+    }
+  }
+}
+
 TEST(ReuseOfKernels, IsThatOfEachByItself) {
   const Prepared prepared(test::mixed_mesh());
   const KernelReuse reuse = reuse_of_kernels(prepared.graph, prepared.simplices);

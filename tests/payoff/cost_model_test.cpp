@@ -14,13 +14,14 @@ namespace {
 /// Counts with a weight of their own each, so that any mix-up shows.
 CostModel distinct_costs() {
   CostModel model;
-  model.kernels.fill({.access = 1, .miss = {10, 100, 1000, 1e4}, .jump = {1e5, 1e6, 1e7, 1e8}});
+  model.kernels.fill(
+      {.access = 1, .miss = {10, 100, 1000, 1e4}, .jump = {1e5, 1e6, 1e7, 1e8}, .repeat = 1e9});
   return model;
 }
 
 /// `count` accesses each of distance 10, 100, 1000, 10,000 lines; the last of them a jump.
-Reuse some_reuse(int count) {
-  Reuse reuse;
+RunReuse some_reuse(int count) {
+  RunReuse reuse;
   for (const Index distance : {10, 100, 1000, 10'000}) {
     for (int i = 0; i < count; ++i) reuse.all.add(distance);
   }
@@ -37,6 +38,14 @@ TEST(CostModel, AddsUpAccessesMissesAndJumps) {
   // 800 of 1600 lines lets the accesses of distance 1000 miss
   const double ms = predicted_ms(Kernel::element, some_reuse(2), lines({8, 64, 1600}), distinct_costs());
   EXPECT_DOUBLE_EQ(ms, 1e-6 * (8 + 8 * 10 + 6 * 100 + 4 * 1000 + 2 * 1e4 + 1e5 + 1e6 + 1e7 + 1e8));
+}
+
+TEST(CostModel, RepeatsCostWhateverTheCaches) {
+  RunReuse reuse = some_reuse(2);
+  const Caches caches = lines({8, 64, 1600});
+  const double without = predicted_ms(Kernel::element, reuse, caches, distinct_costs());
+  reuse.repeats = 3;
+  EXPECT_DOUBLE_EQ(predicted_ms(Kernel::element, reuse, caches, distinct_costs()), without + 3e3);
 }
 
 TEST(CostModel, TakesTheLastOfTwoLevelsForTheSecondToo) {
