@@ -3,6 +3,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
+#include "machines.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
 #include "mesh/reorder.hpp"
@@ -23,6 +24,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder::command {
@@ -32,19 +34,23 @@ struct OrderArguments : Common, MeshFiles {
   ReorderOptions reordering;
   std::string ids = "renumber";
   bool measure = false;
+  bool predict = false;
+  std::string machine;
 };
 
 /// Throws InvalidArgument unless the arguments leave a race anything to decide.
-void check_race(const ReorderOptions& options) {
+void check_race(const OrderArguments& arguments) {
+  const char* const option = arguments.measure ? "--measure" : "--predict";
+  const ReorderOptions& options = arguments.reordering;
   const Workload use = options.order.workload;
   if (use == Workload::bandwidth || use == Workload::fill) {
-    throw InvalidArgument(
-        fmt::format("--measure times kernels, which tell nothing of --for {}", to_string(use)));
+    throw InvalidArgument(fmt::format("{} goes by the times of kernels, which tell nothing of --for {}",
+                                      option, to_string(use)));
   }
   if (options.methods != MeshMethods{} || !options.group_by.empty()) {
-    throw InvalidArgument(
-        "--measure chooses the methods: leave out --vertices, --elements and --group-by, or see meshorder "
-        "compare");
+    throw InvalidArgument(fmt::format(
+        "{} chooses the methods: leave out --vertices, --elements and --group-by, or see meshorder compare",
+        option));
   }
 }
 
@@ -112,7 +118,12 @@ void run(const OrderArguments& arguments) {
   ReorderOptions options = arguments.reordering;
   options.ids = parse<Ids>(arguments.ids);
   options.format = format_of(arguments.output).key();
-  if (arguments.measure) check_race(options);
+  const bool in_race = arguments.measure || arguments.predict;
+  if (in_race) check_race(arguments);
+  if (!in_race && !arguments.machine.empty()) {
+    throw InvalidArgument("--machine is for --predict and --measure, which choose by predicted times");
+  }
+  MachineChoice machine = choose_machine(arguments.machine);
   check_can_write(arguments);  // fail before the work
 
   Progress progress(!console.quiet());
@@ -123,27 +134,32 @@ void run(const OrderArguments& arguments) {
   Mesh& mesh = job.mesh;
   const double read_seconds = reading.seconds();
 
+  if (arguments.predict) machine = calibrated(std::move(machine), progress, console.quiet(), notes);
   progress.stage("ordering", 0.4, 0.7);
   const Stopwatch ordering;
   std::optional<Grouping> groups;
   if (!options.group_by.empty()) groups = grouping_by(mesh, options.group_by);
   std::optional<CsrGraph> graph;
-  std::optional<Race> measured;
-  if (arguments.measure) {
+  std::optional<Race> raced;
+  if (in_race) {
     const Stopwatch stopwatch;
     graph = vertex_graph(mesh);
-    measured = race(mesh, *graph, {.ordering = options.order, .graph_seconds = stopwatch.seconds()});
-    options.methods = measured->methods();
-    if (!measured->advice.doubt.empty()) notes.push_back(measured->advice.doubt);
+    raced = race(mesh, *graph,
+                 {.ordering = options.order,
+                  .graph_seconds = stopwatch.seconds(),
+                  .machine = std::move(machine),
+                  .timer = arguments.measure ? time_orders : OrderTimer{}});
+    options.methods = raced->methods();
+    if (!raced->advice.doubt.empty()) notes.push_back(raced->advice.doubt);
   }
   MeshOrder order = reorder(mesh, options, graph);
-  if (measured) give_reasons(*measured, order);
+  if (raced) give_reasons(*raced, order);
   const double order_seconds = ordering.seconds();
   job.maps.vertices = order.vertices.permutation;
   job.maps.cells = order.cells.permutation;
   const EdgeSpan before = edge_span(*graph, Permutation::identity(mesh.vertex_count()));
   const EdgeSpan after = edge_span(*graph, job.maps.vertices);
-  if (!measured) {
+  if (!raced) {
     note_no_better(*graph, options, job.maps.vertices, notes);
     note_no_better(mesh, options, job.maps.cells, notes);
   }
@@ -157,7 +173,7 @@ void run(const OrderArguments& arguments) {
 
   progress.finish();
   console.warn_of(notes);
-  if (measured) console.print("{:<10} {}", "race", in_words(*measured));
+  if (raced) console.print("{:<10} {}", "race", in_words(*raced));
   print_result(console, order, groups, before, after);
   console.print("{:<10} {}", "wrote", arguments.output);
   for (const std::string& file : map_files) console.print("{:<10} {}", "", file);
@@ -167,7 +183,7 @@ void run(const OrderArguments& arguments) {
       {"vertices", half_json(mesh.vertex_count(), order.vertices)},
       {"cells", half_json(mesh.cell_count(), order.cells)},
       {"for", to_string(options.order.workload)},
-      {"race", measured ? to_json(measured->advice) : nullptr},
+      {"race", raced ? to_json(raced->advice) : nullptr},
       {"group_by", groups ? to_json(*groups) : nullptr},
       {"edge_span", {{"before", to_json(before)}, {"after", to_json(after)}}},
       {"fiedler", to_json(order.vertices.fiedler)},
@@ -214,6 +230,14 @@ void add_order(CLI::App& subcommand) {
       "Time the kernels for about two seconds, in the file's order, in the one that `auto` takes and\n"
       "in the two predicted to be the best of five others, and take the fastest. Worth it for meshes\n"
       "that are computed on for long. The result may differ from run to run, and between machines");
+  subcommand
+      .add_flag(
+          "--predict", arguments->predict,
+          "The same without timing: take the order whose predicted times on --machine are the least. Gives\n"
+          "the same order whenever it is called with the same costs; the first time on a machine, some 20 s\n"
+          "go into calibrating it")
+      ->excludes("--measure");
+  add_machine_option(subcommand, arguments->machine);
   add_moving_options(subcommand, *arguments, arguments->ids);
   add_ordering_options(subcommand, arguments->reordering.order);
   add_reading_options(subcommand);

@@ -135,16 +135,18 @@ double factor_for(Workload workload, const Advice& advice, std::size_t candidate
 
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice) {
   double best = 0;
-  double same = 1;
+  double same = 0;  // the logarithm of the factor, in the mean of the kernels
+  int kernels = 0;
   for (const Candidate& candidate : advice.candidates) {
     best = std::min(best, cost_for(workload, advice, candidate.costs));
   }
   for (const Kernel kernel : kKernels) {
     if (workload == Workload::all || to_string(workload) == to_string(kernel)) {
-      same = std::max(same, same_time(advice, kernel));
+      same += std::log(same_time(advice, kernel));
+      ++kernels;
     }
   }
-  const double nearly_best = best + std::log(same);
+  const double nearly_best = best + same / std::max(1, kernels);
   if (nearly_best >= 0) return std::nullopt;
   for (std::size_t i = 0;; ++i) {
     const double cost = cost_for(workload, advice, advice.candidates[i].costs);
@@ -195,10 +197,11 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
     for (std::size_t i = 0; i < orders.size(); ++i) candidate(i).costs.predicted = predicted[i];
   }
   if (options.race_of > 0) keep_best(advice, orders, options.ordering.workload, options.race_of);
-  if (options.race_of > 0 || options.measure_within) {
+  const bool in_race = options.race_of > 0 && options.race_timer;
+  if (in_race || options.measure_within) {
     report("measure");
-    const Timings timings = options.race_of > 0 ? raced(orders, options.race_timer)
-                                                : measured(orders, since_call, *options.measure_within);
+    const Timings timings =
+        in_race ? raced(orders, options.race_timer) : measured(orders, since_call, *options.measure_within);
     advice.doubt = reason_to_doubt(timings.steadiness);
     for (std::size_t i = 0; i < orders.size(); ++i) {
       KernelMilliseconds& milliseconds = candidate(i).costs.measured.emplace();

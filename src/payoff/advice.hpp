@@ -34,10 +34,10 @@ struct AdviceOptions {
   /// number of seconds after the call, at least two; unset: do not time them.
   std::optional<double> measure_within = {};
   /// If above 0, only so many candidates stay: the first, and those predicted to be best for
-  /// `ordering.workload`. They are timed for half a second each, as long as memory allows them beside the
-  /// mesh's own order, whatever `measure_within` says.
+  /// `ordering.workload`. Where there is a `race_timer`, it times them for half a second each, as long as
+  /// memory allows them beside the mesh's own order, whatever `measure_within` says.
   std::size_t race_of = 0;
-  OrderTimer race_timer = time_orders;  ///< what times them
+  OrderTimer race_timer = time_orders;
 };
 
 /// Computes the candidates and the times of the kernels in them and in the mesh's own order. `graph` is the
@@ -59,8 +59,8 @@ double factor_for(Workload workload, const Advice& advice, std::size_t candidate
 
 /// Returns the place of the candidate in which the kernels of a workload run fastest, all of them or one; the
 /// mesh's own order, and after it the first candidate, wins where no other is faster than that by more than
-/// same_time. Nothing if the mesh's own order wins. Throws InvalidArgument for `bandwidth` and `fill`, which
-/// no kernel tells.
+/// same_time, of all kernels its geometric mean. Nothing if the mesh's own order wins. Throws InvalidArgument
+/// for `bandwidth` and `fill`, which no kernel tells.
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice);
 
 /// Returns the milliseconds that a candidate saves in each time step (see kRunsInTimeStep), negative if it is

@@ -23,8 +23,21 @@ std::vector<MeshMethods> contenders() {
           {"fiedler", "lexmax"}};
 }
 
+bool is_predicted(const Race& race) { return !race.advice.as_is.costs.measured; }
+
 std::string reason_for(const Race& race) {
   const std::size_t timed = race.factors.size();
+  if (is_predicted(race)) {
+    if (!race.winner) {
+      return fmt::format(
+          "no order is predicted to be faster than the file's by more than predictions tell, for {}",
+          race.advice.machine);
+    }
+    return fmt::format(
+        "predicted to be {:.2f} times as fast as the file's, and no other order to be faster by more than "
+        "predictions tell, for {}",
+        race.factors[*race.winner], race.advice.machine);
+  }
   if (!race.winner) {
     return fmt::format("none of {} orders timed here is faster than the file's by more than times vary",
                        timed);
@@ -64,7 +77,8 @@ Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options) {
 
 void give_reasons(const Race& race, MeshOrder& order) {
   order.vertices.method.reason = race.reason;
-  order.cells.method.reason = "timed together with the order of the vertices";
+  order.cells.method.reason =
+      fmt::format("{} together with the order of the vertices", is_predicted(race) ? "predicted" : "timed");
 }
 
 }  // namespace meshorder

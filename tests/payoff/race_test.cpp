@@ -96,6 +96,39 @@ TEST(Race, TellsOfTimesThatAreNotToBeTrusted) {
   EXPECT_THAT(raced({8, 4, 2, 5}, Workload::spmv, 0.5).advice.doubt, HasSubstr("50"));
 }
 
+TEST(Race, WithoutATimerPredictionsDecide) {
+  const Mesh mesh = scrambled_grid();
+  RaceOptions options;
+  options.machine = choose_machine("zen5");
+  options.ordering.workload = Workload::assembly;
+  options.timer = {};
+  const Race result = race(mesh, vertex_graph(mesh), options);
+  ASSERT_EQ(result.advice.candidates.size(), 3U);
+  ASSERT_TRUE(result.winner);
+  const auto assembly = static_cast<std::size_t>(Kernel::assembly);
+  const auto predicted = [&](const OrderCosts& costs) { return costs.predicted.value()[assembly]; };
+  const double taken = predicted(result.advice.candidates[*result.winner].costs);
+  EXPECT_LT(taken, predicted(result.advice.as_is.costs));
+  for (const Candidate& candidate : result.advice.candidates) {
+    EXPECT_FALSE(candidate.costs.measured);
+    EXPECT_LT(taken, 1.1 * predicted(candidate.costs));
+  }
+  EXPECT_THAT(result.reason, testing::StartsWith("predicted to be "));
+  EXPECT_THAT(result.reason, testing::EndsWith("for zen5"));
+}
+
+TEST(Race, WithoutATimerAGoodOrderStays) {
+  Mesh mesh = make_grid({.size = 12});
+  reorder(mesh, {.methods = {"bfs", "lexmax"}});
+  RaceOptions options;
+  options.machine = choose_machine("zen5");
+  options.timer = {};
+  const Race result = race(mesh, vertex_graph(mesh), options);
+  EXPECT_EQ(result.winner, std::nullopt);
+  EXPECT_EQ(result.reason,
+            "no order is predicted to be faster than the file's by more than predictions tell, for zen5");
+}
+
 TEST(Race, RefusesWhatNoKernelTells) {
   for (const Workload workload : {Workload::fill, Workload::bandwidth}) {
     const auto message = testing::StartsWith("race: no kernel tells what is best for ");  // before any work
@@ -109,6 +142,9 @@ TEST(Race, IsTheReasonForBothMethods) {
   result.reason = "it is the fastest";
   give_reasons(result, order);
   EXPECT_EQ(order.vertices.method.reason, "it is the fastest");
+  EXPECT_EQ(order.cells.method.reason, "predicted together with the order of the vertices");
+  result.advice.as_is.costs.measured = KernelMilliseconds{};
+  give_reasons(result, order);
   EXPECT_EQ(order.cells.method.reason, "timed together with the order of the vertices");
 }
 

@@ -30,7 +30,7 @@ from .hosts.meshio import Blocks, to_meshio
 #: subcommands that take a mesh: its place among the arguments that are no options
 _MESH_PLACE = {"order": 0, "apply": 1, "info": 0, "compare": 0}
 #: options without a value; every other one has one
-_FLAGS = {"--json", "--quiet", "-q", "--inverse", "--measure", "--strict"}
+_FLAGS = {"--json", "--quiet", "-q", "--inverse", "--measure", "--predict", "--strict"}
 _BAD_INPUT = 2
 
 
