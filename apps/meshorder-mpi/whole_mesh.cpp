@@ -37,14 +37,14 @@ void note_parts(const Mesh& mesh, const std::vector<GlobalIndex>& starts, Maps& 
 
 WholeMesh read_at_root(const Communicator& communicator, const MeshFiles& files, Ids ids, Notes& notes) {
   return communicator.at_root([&] {
-    check_holds_ids(format_of(files.output), ids);
+    check_holds_ids(output_format_of(files.output), ids);
     WholeMesh whole;
     static_cast<MeshToOrder&>(whole) = read_to_order(files, notes);
     if (whole.mesh.cell_count() > kManyCells) {
       notes.push_back(with_commas(whole.mesh.cell_count()) +
                       " cells are read and written by rank 0, which has memory for all of them");
     }
-    whole.arranged = arrange_cells(whole.mesh, format_of(files.output));
+    whole.arranged = arrange_cells(whole.mesh, output_format_of(files.output));
     return whole;
   });
 }

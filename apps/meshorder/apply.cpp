@@ -32,7 +32,7 @@ struct ApplyArguments : Common {
 void run(const ApplyArguments& arguments) {
   Console console(arguments);
   const Stopwatch total;
-  const Format& format = format_of(arguments.output);
+  const Format& format = output_format_of(arguments.output);
   const Ids ids = parse<Ids>(arguments.ids);
   check_holds_ids(format, ids);
   (void)OutputFile(arguments.output);  // fail before the work if it cannot be written

@@ -27,7 +27,7 @@ void check_can_write(const MeshFiles& files) {
 }
 
 MeshToOrder read_to_order(const MeshFiles& files, Notes& notes) {
-  const Format& format = format_of(files.output);
+  const Format& format = output_format_of(files.output);
   MeshToOrder result;
   Mesh& mesh = result.mesh;
   mesh = read_mesh(files.input, {.notes = &notes});

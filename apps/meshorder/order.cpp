@@ -117,7 +117,7 @@ void run(const OrderArguments& arguments) {
   Console console(arguments);
   ReorderOptions options = arguments.reordering;
   options.ids = parse<Ids>(arguments.ids);
-  options.format = format_of(arguments.output).key();
+  options.format = output_format_of(arguments.output).key();
   const bool in_race = arguments.measure || arguments.predict;
   if (in_race) check_race(arguments);
   if (!in_race && !arguments.machine.empty()) {

@@ -221,6 +221,15 @@ const Format& format_of(const std::filesystem::path& path) {
                    "known are " + known + "; the Python package and its command also take meshio's formats");
 }
 
+const Format& output_format_of(const std::filesystem::path& path) {
+  const Format& format = format_of(path);
+  if (lower_case(without_gz(path).extension().string()) == ".pvtu") {
+    throw InputError(path.string(), "lists pieces, which one mesh is not",
+                     "write a .vtu file, or pieces by `mpirun -n 4 meshorder order MESH --pieces FOLDER`");
+  }
+  return format;
+}
+
 const Format& format_named(std::string_view name) {
   const auto found = std::find_if(kFormats.begin(), kFormats.end(),
                                   [&](const Format& format) { return same_but_for_case(format.name, name); });

@@ -48,6 +48,9 @@ std::span<const Format> all_formats();
 /// build lacks the library.
 const Format& format_of(const std::filesystem::path& path);
 
+/// As format_of, of a file to be written. Throws InputError for .pvtu, which lists pieces and is only read.
+const Format& output_format_of(const std::filesystem::path& path);
+
 /// Returns the format of that name, in any case. Throws InvalidArgument, which lists the known ones, if there
 /// is none, and Unavailable likewise.
 const Format& format_named(std::string_view name);

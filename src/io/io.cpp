@@ -154,7 +154,7 @@ Permutation write_checked(const Mesh& mesh, const FilePath& path, const Format& 
 }  // namespace
 
 Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options) {
-  return write_checked(mesh, path, format_of(path.path()), options);
+  return write_checked(mesh, path, output_format_of(path.path()), options);
 }
 
 inline namespace v0_2 {

@@ -15,7 +15,6 @@ constexpr std::string_view kOneGrid = "save it as one .vtu, in ParaView by Appen
 
 constexpr std::array kOtherFormats{
     OtherFormat{".vtp", "holds VTK's PolyData", "save it as .ply or .vtu, in ParaView by Save Data"},
-    OtherFormat{".pvtu", "lists the pieces of a mesh", kOneGrid},
     OtherFormat{".vtm", "lists several datasets", kOneGrid},
     OtherFormat{".vtmb", "lists several datasets", kOneGrid},
     OtherFormat{".pvd", "lists the steps of a time series", "give one of its .vtu files"},

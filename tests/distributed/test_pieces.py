@@ -8,7 +8,7 @@ import subprocess
 import numpy
 import pytest
 import vtkmodules.util.numpy_support as convert
-from test_mpi import SHARED, ball, launch, order, own_lines
+from test_mpi import SHARED, ball, launch, order, own_lines, serial
 from test_vtu_slices import array, grid, write
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkHigherOrderHexahedron, vtkUnstructuredGrid
@@ -122,6 +122,20 @@ def test_pieces_are_the_parts_of_the_ordered_mesh(tmp_path, ranks, parts, ghosts
     assert result["files_by"] == ("rank 0" if stored == "in the XML" else "all ranks") and result["parts"] == parts
     assert result["pieces"]["file"] == str(tmp_path / "out" / "b.pvtu")
     assert_pieces_of(Grid(tmp_path / "b.vtu"), tmp_path / "out", "b", result, ghosts)
+
+
+@pytest.mark.parametrize("make, ghosts", [(lambda path: write(path, grid(seed=4)), 1), (lambda path: write(path, grid(seed=4)), 0),
+                                          (lambda path: with_texts_and_roles(path), 1)])
+def test_pieces_are_read_as_the_mesh_that_they_are_of(tmp_path, make, ghosts):
+    make(tmp_path / "a.vtu")
+    order(2, tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--pieces", tmp_path / "out", "--parts", 5, "--ghosts", ghosts)
+    serial("order", tmp_path / "out" / "b.pvtu", "-o", tmp_path / "again.vtu", "--vertices", "original", "--elements", "original")
+    whole, again = Grid(tmp_path / "b.vtu"), Grid(tmp_path / "again.vtu")
+    assert numpy.array_equal(again.points, whole.points) and again.cells == whole.cells
+    for read, written in ((again.of_points, whole.of_points), (again.of_cells, whole.of_cells)):
+        assert set(read) - {"part"} == set(written) - {"part"}
+        for name in set(written) - {"part"}:
+            assert numpy.array_equal(read[name], written[name]), name
 
 
 def test_pieces_without_a_whole_file(tmp_path):

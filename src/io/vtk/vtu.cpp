@@ -416,5 +416,5 @@ void write_vtu(const Mesh& mesh, const FilePath& path, Notes& notes) { VtuWriter
 }  // namespace meshorder::vtk
 
 meshorder::Format meshorder::vtu_format() {
-  return {"VTU", {".vtu"}, false, vtk::read_vtu, vtk::write_vtu, vtk::holds};
+  return {"VTU", {".vtu", ".pvtu"}, false, vtk::read_vtu, vtk::write_vtu, vtk::holds};
 }

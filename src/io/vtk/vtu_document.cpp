@@ -236,7 +236,7 @@ void VtuDocument::read_root() {
   if (root_.name != "VTKFile")
     throw error(root_, "the file is a <" + root_.name + ">", "a file of VTK begins with <VTKFile …>");
   const std::string& type = required(root_, "type");
-  if (type != "UnstructuredGrid") {
+  if (type != "UnstructuredGrid" && type != "PUnstructuredGrid") {
     const bool structured = type == "ImageData" || type == "StructuredGrid" || type == "RectilinearGrid";
     throw error(root_,
                 "the type of the file is " + type.substr(0, 40) +

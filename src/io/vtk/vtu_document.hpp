@@ -35,8 +35,12 @@ struct VtuElement {
 /// A parsed .vtu file: its elements and the bytes of its arrays.
 class VtuDocument {
  public:
-  /// Throws Error for a file that is not XML, ends early or is not of the type UnstructuredGrid.
+  /// Throws Error for a file that is not XML, ends early or is not of the type UnstructuredGrid or
+  /// PUnstructuredGrid.
   explicit VtuDocument(const FilePath& path);
+
+  /// Whether it is a .pvtu file, which lists pieces.
+  [[nodiscard]] bool lists_pieces() const { return *root_.attribute("type") == "PUnstructuredGrid"; }
 
   [[nodiscard]] const VtuElement& root() const noexcept { return root_; }
   [[nodiscard]] const VtuEncoding& encoding() const noexcept { return encoding_; }

@@ -7,6 +7,8 @@
 // damaged arrays, cannot read the NaN that VTK writes as text, and reports faults on standard error.
 #include "base/large_pages.hpp"
 #include "base/memory.hpp"
+#include "io/stream/read_limits.hpp"
+#include "io/vtk/joined_pieces.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
 
@@ -36,29 +38,106 @@ void append(Values& values, Values more) {
 
 class VtuReader {
  public:
-  VtuReader(const FilePath& path, Notes& notes) : file_(path), notes_(notes) {}
+  VtuReader(const FilePath& path, Notes& notes) : path_(path), notes_(notes) {}
 
   Mesh read() {
-    const VtuElement* grid = file_.root().child("UnstructuredGrid");
+    const VtuDocument file(path_);
+    const char* const root = file.lists_pieces() ? "PUnstructuredGrid" : "UnstructuredGrid";
+    const VtuElement* grid = file.root().child(root);
     if (grid == nullptr)
-      throw file_.error(file_.root(), "there is no <UnstructuredGrid>", "the file may be cut short");
-    metadata_->vtu = file_.encoding();
-    int pieces = 0;
-    for (const VtuElement& element : grid->children) {
-      if (element.name == "FieldData") {
-        read_fields(element);
-      } else if (element.name == "Piece") {
-        pieces += read_piece(element) ? 1 : 0;
-      } else {
-        note_unknown(element);
-      }
+      throw file.error(file.root(), fmt::format("there is no <{}>", root), "the file may be cut short");
+    if (file.lists_pieces()) {
+      read_listed(file, *grid);
+      file_ = &file;
+      types_ = nullptr;  // of a file that is closed
+      join(*grid);
+    } else {
+      read_grid(file, *grid);
+      if (pieces_ > 1) notes_.push_back(fmt::format("the {} pieces of the file became one", pieces_));
     }
-    if (pieces > 1) notes_.push_back(fmt::format("the {} pieces of the file became one", pieces));
     finish(*grid);
     return std::move(mesh_);
   }
 
  private:
+  /// Reads the pieces that stand in a file.
+  void read_grid(const VtuDocument& file, const VtuElement& grid) {
+    file_ = &file;
+    if (!metadata_->vtu) {
+      metadata_->vtu = file.encoding();
+      version_ = file.version();
+    }
+    for (const VtuElement& element : grid.children) {
+      if (element.name == "FieldData") {
+        read_fields(element);
+      } else if (element.name == "Piece") {
+        pieces_ += read_piece(element) ? 1 : 0;
+      } else {
+        note_unknown(element);
+      }
+    }
+  }
+
+  /// Reads the files that a .pvtu file lists.
+  void read_listed(const VtuDocument& list, const VtuElement& grid) {
+    bool any = false;
+    const std::size_t notes_before = notes_.size();
+    for (const VtuElement& element : grid.children) {
+      if (element.name != "Piece") continue;
+      any = true;
+      const std::string& source = list.required(element, "Source");
+      const FilePath path = path_.beside(source);
+      if (!may_include(path_, path)) {
+        throw list.error(element, "the piece '" + source + "' is not in the folder of the file",
+                         kIncludeRemedy);
+      }
+      if (!path.is_file())
+        throw list.error(element, "the piece '" + source + "' does not exist", "all pieces are needed");
+      const VtuDocument file(path);
+      const VtuElement* const piece = file.root().child("UnstructuredGrid");
+      if (piece == nullptr)
+        throw file.error(file.root(), "there is no <UnstructuredGrid>", "a piece holds a part of the mesh");
+      if (pieces_ > 0 && (file.version() < kNewOrder) != (version_ < kNewOrder)) {
+        throw file.error(file.root(), "the version is on another side of 2.1 than that of the piece before",
+                         "VTK numbers nodes of higher order otherwise since; save the pieces alike");
+      }
+      read_grid(file, *piece);
+    }
+    if (!any) throw list.error(grid, "the file lists no pieces", "it may be cut short");
+    // of what several pieces have, once
+    Notes of_pieces(notes_.begin() + static_cast<std::ptrdiff_t>(notes_before), notes_.end());
+    notes_.resize(notes_before);
+    for (std::string& note : of_pieces) {
+      const auto first = notes_.begin() + static_cast<std::ptrdiff_t>(notes_before);
+      if (std::find(first, notes_.end(), note) == notes_.end()) notes_.push_back(std::move(note));
+    }
+  }
+
+  /// Makes one mesh of the pieces that were listed.
+  void join(const VtuElement& grid) {
+    check_arrays(grid, index_size(cells_.types));
+    Pieces pieces{std::move(mesh_.points), std::move(cells_), std::move(arrays_),
+                  std::move(metadata_->roles)};
+    join_pieces(
+        pieces,
+        [&](const std::string& what, const std::string& remedy) { return file_->error(grid, what, remedy); },
+        notes_);
+    mesh_.points = std::move(pieces.points);
+    cells_ = std::move(pieces.cells);
+    arrays_ = std::move(pieces.arrays);
+    metadata_->roles = std::move(pieces.roles);
+  }
+
+  /// Throws unless all arrays are of all points, or of so many cells.
+  void check_arrays(const VtuElement& grid, Index cells) const {
+    for (const DataArray& array : arrays_) {
+      const Index needed = array.association == Association::vertices ? mesh_.vertex_count() : cells;
+      if (row_count(array) != needed)
+        throw file_->error(grid, "the array '" + array.name + "' is missing in a piece",
+                           "all pieces have the same arrays");
+    }
+  }
+
   void note_unknown(const VtuElement& element) {
     notes_.push_back("the element <" + element.name + "> is ignored");
   }
@@ -69,11 +148,12 @@ class VtuReader {
 
   /// Returns false for an empty piece.
   bool read_piece(const VtuElement& piece) {
-    const std::int64_t points = file_.count(piece, "NumberOfPoints");
-    const std::int64_t cells = file_.count(piece, "NumberOfCells");
+    const std::int64_t points = file_->count(piece, "NumberOfPoints");
+    const std::int64_t cells = file_->count(piece, "NumberOfCells");
     if (points == 0 && cells == 0) return false;
     if (points + mesh_.vertex_count() > kMaxIndex || cells + index_size(cells_.types) > kMaxIndex) {
-      throw file_.error(piece, "the pieces have too many points or cells", "at most 2147483647 are possible");
+      throw file_->error(piece, "the pieces have too many points or cells",
+                         "at most 2147483647 are possible");
     }
     const Index first_point = mesh_.vertex_count();
     for (const VtuElement& element : piece.children) {
@@ -96,16 +176,16 @@ class VtuReader {
     const bool one = element != nullptr &&
                      std::count_if(element->children.begin(), element->children.end(), is_array) == 1;
     if (!one)
-      throw file_.error(element != nullptr ? *element : piece, "<Points> with one array is missing",
-                        "each piece has its points");
+      throw file_->error(element != nullptr ? *element : piece, "<Points> with one array is missing",
+                         "each piece has its points");
     const VtuElement& array = *std::find_if(element->children.begin(), element->children.end(), is_array);
     if (components_of(array) != 3)
-      throw file_.error(array, "the points have " + std::to_string(components_of(array)) + " components",
-                        "3 are needed");
-    const Values values = file_.values(array, 3 * count);
+      throw file_->error(array, "the points have " + std::to_string(components_of(array)) + " components",
+                         "3 are needed");
+    const Values values = file_->values(array, 3 * count);
     if (mesh_.points.empty()) {
       metadata_->float_points = std::holds_alternative<std::vector<float>>(values);
-      metadata_->vtu->mode = file_.mode(array);
+      metadata_->vtu->mode = file_->mode(array);
     }
     const std::size_t first = mesh_.points.size();
     mesh_.points.resize(first + static_cast<std::size_t>(count));
@@ -113,14 +193,14 @@ class VtuReader {
         [&](const auto& numbers) {
           using Number = typename std::decay_t<decltype(numbers)>::value_type;
           if constexpr (std::is_same_v<Number, std::string>) {
-            throw file_.error(array, "the points are strings", "Float32 or Float64 is needed");
+            throw file_->error(array, "the points are strings", "Float32 or Float64 is needed");
           } else {
             if constexpr (!std::is_floating_point_v<Number>)
               notes_.push_back("the points are integers and are stored as Float64");
             for (std::size_t i = 0; i < numbers.size(); ++i) {
               const auto x = static_cast<double>(numbers[i]);
               if (!std::isfinite(x))
-                throw file_.error(
+                throw file_->error(
                     array,
                     fmt::format("point {} (counted from 0) has a coordinate that is not finite", i / 3),
                     "finite numbers are needed");
@@ -132,7 +212,7 @@ class VtuReader {
   }
 
   [[nodiscard]] std::int64_t components_of(const VtuElement& array) const {
-    return array.attribute("NumberOfComponents") == nullptr ? 1 : file_.count(array, "NumberOfComponents");
+    return array.attribute("NumberOfComponents") == nullptr ? 1 : file_->count(array, "NumberOfComponents");
   }
 
   [[nodiscard]] const VtuElement& cell_array(const VtuElement& cells, std::string_view name) const {
@@ -142,8 +222,8 @@ class VtuReader {
           return is_array(element) && own != nullptr && *own == name;
         });
     if (found == cells.children.end())
-      throw file_.error(cells, fmt::format("the array {} is missing in <Cells>", name),
-                        "connectivity, offsets and types are needed");
+      throw file_->error(cells, fmt::format("the array {} is missing in <Cells>", name),
+                         "connectivity, offsets and types are needed");
     refuse_time_steps(*found);
     return *found;
   }
@@ -151,7 +231,7 @@ class VtuReader {
   void read_cells(const VtuElement& piece, std::int64_t count, Index first_point) {
     if (count == 0) return;
     const VtuElement* cells = piece.child("Cells");
-    if (cells == nullptr) throw file_.error(piece, "<Cells> is missing", "each piece has its cells");
+    if (cells == nullptr) throw file_->error(piece, "<Cells> is missing", "each piece has its cells");
     types_ = &cell_array(*cells, "types");
 
     // where each cell ends
@@ -160,7 +240,7 @@ class VtuReader {
     Offset last = 0;
     append_integers(offsets, count, cells_.offsets, [&](std::int64_t c, auto end) {
       if (!std::in_range<Offset>(end) || std::cmp_less(end, last)) {
-        throw file_.error(
+        throw file_->error(
             offsets, fmt::format("cell {} (counted from 0) ends at {}, before it begins at {}", c, end, last),
             "offsets must ascend");
       }
@@ -172,16 +252,16 @@ class VtuReader {
     const Index points = mesh_.vertex_count() - first_point;
     append_integers(connectivity, last, cells_.vertices, [&](std::int64_t, auto point) {
       if (std::cmp_less(point, 0) || std::cmp_greater_equal(point, points)) {
-        throw file_.error(connectivity, fmt::format("a cell names the point {}", point),
-                          fmt::format("the piece has points 0 to {}", points - 1));
+        throw file_->error(connectivity, fmt::format("a cell names the point {}", point),
+                           fmt::format("the piece has points 0 to {}", points - 1));
       }
       return first_point + static_cast<Index>(point);
     });
 
     append_integers(*types_, count, cells_.types, [&](std::int64_t c, auto type) {
       if (std::cmp_less(type, 0) || std::cmp_greater(type, 255)) {
-        throw file_.error(*types_, fmt::format("cell {} (counted from 0) has the type {}", c, type),
-                          "VTK's types run from 0 to 81");
+        throw file_->error(*types_, fmt::format("cell {} (counted from 0) has the type {}", c, type),
+                           "VTK's types run from 0 to 81");
       }
       return static_cast<std::uint8_t>(type);
     });
@@ -192,8 +272,8 @@ class VtuReader {
   void append_integers(const VtuElement& array, std::int64_t count, std::vector<Number>& target,
                        const Checked& checked) {
     if (components_of(array) != 1)
-      throw file_.error(array, "the array has several components", "1 is needed");
-    const Values values = file_.values(array, count);
+      throw file_->error(array, "the array has several components", "1 is needed");
+    const Values values = file_->values(array, count);
     std::visit(
         [&](const auto& numbers) {
           using Stored = typename std::decay_t<decltype(numbers)>::value_type;
@@ -204,7 +284,7 @@ class VtuReader {
             Number* place = target.data() + first;
             for (const Stored number : numbers) *place++ = checked(i++, number);
           } else {
-            throw file_.error(array, "the array does not hold integers", "Int32 or Int64 is usual");
+            throw file_->error(array, "the array does not hold integers", "Int32 or Int64 is usual");
           }
         },
         values);
@@ -212,7 +292,7 @@ class VtuReader {
 
   void refuse_time_steps(const VtuElement& array) const {
     if (array.attribute("TimeStep") != nullptr)
-      throw file_.error(array, "the file holds several time steps", "save each step as a file of its own");
+      throw file_->error(array, "the file holds several time steps", "save each step as a file of its own");
   }
 
   /// Reads an array of PointData, CellData or FieldData.
@@ -220,19 +300,19 @@ class VtuReader {
                        std::int64_t tuples) {
     refuse_time_steps(element);
     DataArray array;
-    array.name = file_.required(element, "Name");
+    array.name = file_->required(element, "Name");
     array.association = association.value_or(Association::vertices);
     const std::int64_t components = components_of(element);
-    if (components < 1) throw file_.error(element, "the array has no components", "at least 1 is needed");
+    if (components < 1) throw file_->error(element, "the array has no components", "at least 1 is needed");
     array.components = static_cast<Index>(components);
-    array.values = file_.values(element, tuples * components);
+    array.values = file_->values(element, tuples * components);
     if (*element.attribute("type") == "Bit")
       notes_.push_back("the array '" + array.name + "' holds bits, which are stored as bytes");
     for (std::int64_t i = 0; i < components && i < 64; ++i) {
       const std::string* name = element.attribute("ComponentName" + std::to_string(i));
       if (name == nullptr) continue;
       if (array.component_names.empty()) {
-        file_.claim(element, bytes_for(static_cast<std::uint64_t>(components), sizeof(std::string)));
+        file_->claim(element, bytes_for(static_cast<std::uint64_t>(components), sizeof(std::string)));
         array.component_names.resize(static_cast<std::size_t>(components));
       }
       array.component_names[static_cast<std::size_t>(i)] = *name;
@@ -249,7 +329,7 @@ class VtuReader {
     for (const VtuElement& key : element.children) {
       const std::string* name = key.attribute("name");
       if (name != nullptr && name->starts_with("L2_NORM")) continue;  // VTK finds it
-      facts.xml_information += file_.source(key) + "\n";
+      facts.xml_information += file_->source(key) + "\n";
     }
     if ((!facts.type.empty() || !facts.xml_information.empty()) &&
         find_facts(*metadata_, association, array.name) == nullptr)
@@ -262,7 +342,15 @@ class VtuReader {
         note_unknown(element);
         continue;
       }
-      metadata_->fields.push_back(read_array(element, {}, file_.count(element, "NumberOfTuples")));
+      DataArray field = read_array(element, {}, file_->count(element, "NumberOfTuples"));
+      const auto same = std::find_if(metadata_->fields.begin(), metadata_->fields.end(),
+                                     [&](const DataArray& other) { return other.name == field.name; });
+      if (pieces_ == 0 || same == metadata_->fields.end()) {
+        metadata_->fields.push_back(std::move(field));
+      } else if (same->values != field.values) {
+        notes_.push_back("left out: the field '" + field.name +
+                         "' of pieces where it differs from the first's");
+      }
     }
   }
 
@@ -284,7 +372,7 @@ class VtuReader {
       }
       DataArray array = read_array(element, association, tuples);
       if (!names.insert(array.name).second)
-        throw file_.error(element, "the array '" + array.name + "' is given twice", "names must differ");
+        throw file_->error(element, "the array '" + array.name + "' is given twice", "names must differ");
       const auto [known, is_new] = places_.try_emplace({association, array.name}, arrays_.size());
       if (is_new) {
         arrays_.push_back(std::move(array));
@@ -292,37 +380,37 @@ class VtuReader {
       }
       DataArray& before = arrays_[known->second];
       if (before.components != array.components || before.values.index() != array.values.index()) {
-        throw file_.error(element,
-                          "the array '" + array.name + "' is of another type than in the piece before",
-                          "all pieces have the same arrays");
+        throw file_->error(element,
+                           "the array '" + array.name + "' is of another type than in the piece before",
+                           "all pieces have the same arrays");
       }
       append(before.values, std::move(array.values));
     }
   }
 
   void finish(const VtuElement& grid) {
-    const bool old_order = file_.version() < 21 &&
+    const bool old_order = version_ < kNewOrder &&
                            std::any_of(cells_.types.begin(), cells_.types.end(), is_higher_order_hexahedron);
     const std::vector<std::uint8_t> types = old_order ? cells_.types : std::vector<std::uint8_t>{};
     const VtuElement& at = types_ != nullptr ? *types_ : grid;
     metadata_->inward_wedges = take_cells(
         mesh_, std::move(cells_),
-        [&](const std::string& what, const std::string& remedy) { return file_.error(at, what, remedy); },
+        [&](const std::string& what, const std::string& remedy) { return file_->error(at, what, remedy); },
         notes_);
-    for (DataArray& array : arrays_) {
-      const Index needed =
-          array.association == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count();
-      if (row_count(array) != needed)
-        throw file_.error(grid, "the array '" + array.name + "' is missing in a piece",
-                          "all pieces have the same arrays");
-      add_array(mesh_, std::move(array));
-    }
+    check_arrays(grid, mesh_.cell_count());
+    for (DataArray& array : arrays_) add_array(mesh_, std::move(array));
     if (old_order) swap_hexahedron_edges(mesh_, types, mesh_.cells);
     mesh_.format_metadata = metadata_;
   }
 
-  VtuDocument file_;
+  /// Version, times ten, since which nodes of hexahedra of higher order are numbered otherwise.
+  static constexpr int kNewOrder = 21;
+
+  const FilePath& path_;
   Notes& notes_;
+  const VtuDocument* file_ = nullptr;  ///< that is read
+  int version_ = 0;                    ///< of the first file, times ten
+  int pieces_ = 0;                     ///< that are not empty
   Mesh mesh_;
   std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   std::vector<DataArray> arrays_;

@@ -1,0 +1,208 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/vtk/joined_pieces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <string_view>
+
+namespace meshorder::vtk {
+namespace {
+
+constexpr std::string_view kGhostType = "vtkGhostType";
+/// In an entry of vtkGhostType: another piece owns the point or cell.
+constexpr std::int64_t kOfAnotherPiece = 1;
+
+/// Rows of arrays of points or cells, in the order in which they stay.
+using RowsKept = std::vector<Index>;
+
+std::string_view word_for(Association association) {
+  return association == Association::vertices ? "point" : "cell";
+}
+
+class PieceJoiner {
+ public:
+  PieceJoiner(Pieces& pieces, const ErrorAt& error, Notes& notes)
+      : pieces_(pieces), error_(error), notes_(notes) {}
+
+  void join() {
+    const RowsKept cells = cells_kept();
+    const RowsKept points = points_kept(cells);
+    take_cells_of(cells);
+    const std::vector<Point> all = std::move(pieces_.points);
+    pieces_.points.clear();
+    for (const Index row : points) pieces_.points.push_back(all[row]);
+    take_rows(Association::vertices, points);
+    take_rows(Association::cells, cells);
+    for (const Association association : {Association::vertices, Association::cells}) {
+      erase(association, std::string(kGhostType));
+      if (const std::string ids = name_of_ids(association); tells_places(association, ids))
+        erase(association, ids);
+    }
+  }
+
+ private:
+  [[nodiscard]] Index count(Association association) const {
+    return association == Association::vertices ? index_size(pieces_.points)
+                                                : index_size(pieces_.cells.types);
+  }
+
+  [[nodiscard]] const DataArray* find(Association association, std::string_view name) const {
+    const auto found = std::find_if(
+        pieces_.arrays.begin(), pieces_.arrays.end(),
+        [&](const DataArray& array) { return array.association == association && array.name == name; });
+    return found == pieces_.arrays.end() ? nullptr : &*found;
+  }
+
+  void erase(Association association, const std::string& name) {
+    std::erase_if(pieces_.arrays, [&](const DataArray& array) {
+      return array.association == association && array.name == name;
+    });
+    std::erase_if(pieces_.roles, [&](const ArrayRole& role) {
+      return role.association == association && role.array == name;
+    });
+  }
+
+  /// Returns the numbers of an array with one integer for each row; none if there is no such array.
+  [[nodiscard]] std::vector<std::int64_t> integers(Association association, std::string_view name) const {
+    const DataArray* const array = find(association, name);
+    if (array == nullptr || array->components != 1) return {};
+    return integers_of<std::int64_t>(array->values);
+  }
+
+  [[nodiscard]] std::string name_of_ids(Association association) const {
+    for (const ArrayRole& role : pieces_.roles) {
+      if (role.role == Role::global_ids && role.association == association) return role.array;
+    }
+    return association == Association::vertices ? "GlobalPointIds" : "GlobalCellIds";
+  }
+
+  /// Returns the global ids of all rows; none if there are none.
+  [[nodiscard]] std::vector<std::int64_t> ids_of(Association association) const {
+    std::vector<std::int64_t> ids = integers(association, name_of_ids(association));
+    const auto negative = std::find_if(ids.begin(), ids.end(), [](std::int64_t id) { return id < 0; });
+    if (negative != ids.end()) {
+      throw error_(fmt::format("a {} has the global id {}", word_for(association), *negative),
+                   "ids are whole numbers from 0 on");
+    }
+    return ids;
+  }
+
+  [[nodiscard]] bool tells_places(Association association, std::string_view name) const {
+    const std::vector<std::int64_t> ids = integers(association, name);
+    for (std::size_t place = 0; place < ids.size(); ++place) {
+      if (!std::cmp_equal(ids[place], place)) return false;
+    }
+    return !ids.empty();
+  }
+
+  /// Returns which rows another piece owns.
+  [[nodiscard]] std::vector<bool> ghosts(Association association) const {
+    std::vector<bool> result(static_cast<std::size_t>(count(association)), false);
+    const std::vector<std::int64_t> types = integers(association, kGhostType);
+    for (std::size_t row = 0; row < types.size(); ++row) result[row] = (types[row] & kOfAnotherPiece) != 0;
+    return result;
+  }
+
+  [[nodiscard]] RowsKept cells_kept() const {
+    const std::vector<bool> is_ghost = ghosts(Association::cells);
+    RowsKept rows;
+    for (Index row = 0; row < count(Association::cells); ++row) {
+      if (!is_ghost[static_cast<std::size_t>(row)]) rows.push_back(row);
+    }
+    const std::vector<std::int64_t> ids = ids_of(Association::cells);
+    if (ids.empty()) return rows;
+    std::stable_sort(rows.begin(), rows.end(), [&](Index a, Index b) { return ids[a] < ids[b]; });
+    const auto twice =
+        std::adjacent_find(rows.begin(), rows.end(), [&](Index a, Index b) { return ids[a] == ids[b]; });
+    if (twice != rows.end()) {
+      throw error_(fmt::format("two cells have the global id {}", ids[*twice]),
+                   "pieces of one mesh number its cells apart, and mark copies in vtkGhostType");
+    }
+    return rows;
+  }
+
+  /// Returns the points that stay, and gives the entries of all cells their new numbers.
+  [[nodiscard]] RowsKept points_kept(const RowsKept& cells) {
+    const std::vector<bool> is_ghost = ghosts(Association::vertices);
+    std::vector<bool> is_used(is_ghost.size(), false);
+    const FileCells& all = pieces_.cells;
+    for (const Index cell : cells) {
+      for (Offset entry = all.offsets[cell]; entry < all.offsets[cell + 1]; ++entry)
+        is_used[static_cast<std::size_t>(all.vertices[entry])] = true;
+    }
+    RowsKept rows;
+    for (Index row = 0; row < count(Association::vertices); ++row) {
+      const auto place = static_cast<std::size_t>(row);
+      if (!is_ghost[place] || is_used[place]) rows.push_back(row);
+    }
+    std::vector<Index> new_numbers(is_ghost.size(), -1);
+    const std::vector<std::int64_t> ids = ids_of(Association::vertices);
+    if (ids.empty()) {
+      notes_.emplace_back(
+          "the points have no global ids: those on the borders of pieces are there once for each piece");
+    } else {
+      std::stable_sort(rows.begin(), rows.end(), [&](Index a, Index b) {
+        return ids[a] != ids[b] ? ids[a] < ids[b] : !is_ghost[a] && is_ghost[b];
+      });
+    }
+    RowsKept kept;
+    for (const Index row : rows) {
+      if (!ids.empty() && !kept.empty() && ids[kept.back()] == ids[row]) {
+        if (pieces_.points[kept.back()] != pieces_.points[row]) {
+          throw error_(fmt::format("the point of the global id {} has two places", ids[row]),
+                       "the pieces are of different meshes, or of different runs");
+        }
+      } else {
+        kept.push_back(row);
+      }
+      new_numbers[static_cast<std::size_t>(row)] = index_size(kept) - 1;
+    }
+    for (Index& vertex : pieces_.cells.vertices) vertex = new_numbers[static_cast<std::size_t>(vertex)];
+    return kept;
+  }
+
+  /// Leaves those cells.
+  void take_cells_of(const RowsKept& rows) {
+    const FileCells all = std::move(pieces_.cells);
+    FileCells& cells = pieces_.cells = {};
+    cells.types.reserve(rows.size());
+    for (const Index row : rows) {
+      cells.types.push_back(all.types[row]);
+      cells.vertices.insert(cells.vertices.end(), all.vertices.begin() + all.offsets[row],
+                            all.vertices.begin() + all.offsets[row + 1]);
+      cells.offsets.push_back(static_cast<Offset>(cells.vertices.size()));
+    }
+  }
+
+  /// Leaves those rows in all arrays of points or of cells.
+  void take_rows(Association association, const RowsKept& rows) {
+    for (DataArray& array : pieces_.arrays) {
+      if (array.association != association) continue;
+      std::visit(
+          [&](auto& values) {
+            std::decay_t<decltype(values)> taken;
+            taken.reserve(rows.size() * static_cast<std::size_t>(array.components));
+            for (const Index row : rows) {
+              const auto first = values.begin() + Offset{row} * array.components;
+              taken.insert(taken.end(), first, first + array.components);
+            }
+            values = std::move(taken);
+          },
+          array.values);
+    }
+  }
+
+  Pieces& pieces_;
+  const ErrorAt& error_;
+  Notes& notes_;
+};
+
+}  // namespace
+
+void join_pieces(Pieces& pieces, const ErrorAt& error, Notes& notes) {
+  PieceJoiner(pieces, error, notes).join();
+}
+
+}  // namespace meshorder::vtk
