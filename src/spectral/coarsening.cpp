@@ -89,14 +89,14 @@ struct Members {
   std::vector<Index> members;
 };
 
-Members members_of(const Aggregation& aggregation) {
+Members members_of(const Aggregation& aggregation, Index rows) {
   Members result;
   result.starts.assign(Offset{aggregation.count()} + 1, 0);
-  for (const Index a : aggregation.aggregate_of) ++result.starts[a + 1];
+  for (Index v = 0; v < rows; ++v) ++result.starts[aggregation.aggregate_of[v] + 1];
   std::partial_sum(result.starts.begin(), result.starts.end(), result.starts.begin());
   std::vector<Index> next(result.starts.begin(), result.starts.end() - 1);
-  result.members.resize(aggregation.aggregate_of.size());
-  for (Index v = 0; v < index_size(aggregation.aggregate_of); ++v) {
+  result.members.resize(rows);
+  for (Index v = 0; v < rows; ++v) {
     result.members[next[aggregation.aggregate_of[v]]++] = v;
   }
   return result;
@@ -124,11 +124,16 @@ SparseRows transposed(const SparseRows& a) {
 }
 
 Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation) {
-  const Members members = members_of(aggregation);
+  return collapsed(fine, chunks, aggregation, aggregation.count());
+}
+
+Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation,
+                    Index columns) {
+  const Members members = members_of(aggregation, fine.size());
   std::vector<LaplacianRows> parts(chunks.count());
   chunks.for_each([&](Index chunk, Index, Index) {
     LaplacianRows& rows = parts[chunk];
-    RowSum row(aggregation.count());
+    RowSum row(columns);
     for (Index a = aggregation.first_of_chunk[chunk]; a < aggregation.first_of_chunk[chunk + 1]; ++a) {
       poll_in_loop(a);
       for (Index m = members.starts[a]; m < members.starts[a + 1]; ++m) {

@@ -25,6 +25,13 @@ SparseRows transposed(const SparseRows& a);
 /// two aggregates added up. O(n + edges), on all threads.
 Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation);
 
+/// The same of some rows of a larger graph, whose other vertices are numbered behind those of the rows.
+///
+/// @param aggregation  of the rows, and with `aggregate_of` of the others, too
+/// @param columns      aggregates in all; those of the others are numbered behind those of the rows
+Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation,
+                    Index columns);
+
 /// (I − ω D⁻¹ L) P₀ with P₀ piecewise constant and ω = 2/3 (Vaněk, Mandel, Brezina 1996). Rows sum to 1, as
 /// those of P₀ do. O(n + edges).
 SparseRows smoothed_prolongation(const Laplacian& fine, const Aggregation& aggregation);

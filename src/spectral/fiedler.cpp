@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/fiedler.hpp"
 
-#include "base/random.hpp"
 #include "base/run_scope.hpp"
 #include "spectral/component_numbering.hpp"
 #include "spectral/hierarchy.hpp"
 #include "spectral/lobpcg.hpp"
+#include "spectral/nested_start.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -16,55 +16,6 @@
 
 namespace meshorder {
 namespace {
-
-// Two columns keep λ₂ and λ₃ apart where they are close.
-constexpr int kColumns = 2;
-// The start on the next finer graph is no better than prolongation makes it.
-constexpr double kCoarseTolerance = 1;
-constexpr int kCoarseIterations = 30;
-
-using Block = VectorBlock<kColumns>;
-
-void fill_with_noise(Block& x, int first_column, std::uint64_t seed) {
-  Random random(seed);
-  for (auto& row : x) {
-    for (int m = first_column; m < kColumns; ++m) row[m] = random.unit() - 0.5;
-  }
-}
-
-/// Returns the start vectors on the finest graph: exact on the coarsest, improved on every graph between.
-Block nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimit limit) {
-  const auto& levels = hierarchy.levels();
-  int level = static_cast<int>(levels.size()) - 1;
-  Block x;
-  int known = 0;  // columns
-  if (hierarchy.has_exact_coarsest()) {
-    x = hierarchy.coarsest_eigenvectors<kColumns>();
-    known = std::min(kColumns, static_cast<int>(x.size()) - 1);
-    --level;
-  } else {
-    level = 0;
-  }
-  for (; level >= 0; --level) {
-    Block finer(levels[level].laplacian.size(), std::array<double, kColumns>{});
-    if (known > 0) hierarchy.add_prolonged<kColumns>(level, 1, x, finer);
-    x = std::move(finer);
-    if (known == kColumns) {
-      hierarchy.smooth<kColumns>(level, x);
-    } else {
-      fill_with_noise(x, known, seed);
-      known = kColumns;
-    }
-    if (level > 0) lobpcg<kColumns>(hierarchy, level, {kCoarseTolerance, kCoarseIterations, limit}, x);
-  }
-  return x;
-}
-
-VectorBlock<1> column(const Block& x, int m) {
-  VectorBlock<1> result(x.size());
-  for (std::size_t v = 0; v < x.size(); ++v) result[v][0] = x[v][m];
-  return result;
-}
 
 /// Returns the caller's start vector on a component; empty if there is none or it is constant there.
 VectorBlock<1> given_start(RealView start, std::span<const Index> vertices) {
@@ -95,7 +46,7 @@ FiedlerComponent solve_component(Laplacian laplacian, std::span<const Index> ver
   } else {
     VectorBlock<1> companion;
     {
-      const Block start = nested_start(hierarchy, options.seed, limit);
+      const StartBlock start = nested_start(hierarchy, options.seed, limit);
       x = column(start, 0);
       companion = column(start, 1);
     }

@@ -3,6 +3,7 @@
 
 #include "spectral/coarsening.hpp"
 #include "spectral/dense.hpp"
+#include "spectral/relaxation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +11,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kDenseSize = 60;       // a dense eigensolver takes half a millisecond there
-constexpr double kStrength = 0.1;      // of the strongest neighbour, on coarse levels
-constexpr double kWorthwhile = 0.8;    // coarsening that keeps more vertices than this is given up
-constexpr double kOverCorrection = 2;  // of plain coarsening; 1.5 to 3 serve as well
+constexpr Index kDenseSize = 60;  // a dense eigensolver takes half a millisecond there
 
 /// Makes the next coarser level of `fine`, and in `fine` the way to it; false when that is not worth it.
 bool coarsen(Level& fine, bool smoothed, Level& coarse) {
@@ -71,14 +69,6 @@ Eigen::MatrixXd dense_inverse(const Laplacian& laplacian) {
   return inverse(shifted);
 }
 
-/// x in row v so that the row of L x = b holds.
-template <int M, class RightSide>
-void relax_row(const Laplacian& laplacian, Index v, RightSide b, VectorBlock<M>& x) {
-  const auto sum = laplacian.neighbour_sum<M>(v, x);
-  const double inverse = 1 / laplacian.diagonal[v];
-  for (int m = 0; m < M; ++m) x[v][m] = (b(v, m) + sum[m]) * inverse;
-}
-
 template <int M, class RightSide>
 void forward_gauss_seidel(const Level& level, RightSide b, VectorBlock<M>& x) {
   level.chunks.for_each_forwards(in_rising_pieces([&](Index begin, Index end) {
@@ -92,14 +82,6 @@ void backward_gauss_seidel(const Level& level, RightSide b, VectorBlock<M>& x) {
   level.chunks.for_each_backwards(in_falling_pieces([&](Index begin, Index end) {
     for (Index v = end; v-- > begin;) relax_row<M>(level.laplacian, v, b, x);
   }));
-}
-
-template <int M>
-std::array<double, M> residual_of_row(const Laplacian& laplacian, Index v, const VectorBlock<M>& b,
-                                      const VectorBlock<M>& x) {
-  std::array<double, M> residual = laplacian.neighbour_sum<M>(v, x);
-  for (int m = 0; m < M; ++m) residual[m] += b[v][m] - laplacian.diagonal[v] * x[v][m];
-  return residual;
 }
 
 /// result = Pᵀ (b − L x)
@@ -128,13 +110,24 @@ void restrict_residual(const Level& level, const VectorBlock<M>& b, const Vector
 }  // namespace
 
 Hierarchy::Hierarchy(Laplacian finest) {
-  Level level;
-  level.chunks = RowChunks(finest);
-  level.laplacian = std::move(finest);
-  levels_.push_back(std::move(level));
+  levels_.emplace_back();
+  levels_.back().laplacian = std::move(finest);
+  coarsen_all(false);
+}
+
+Hierarchy::Hierarchy(Laplacian coarse, std::vector<double> masses) {
+  levels_.emplace_back();
+  levels_.back().laplacian = std::move(coarse);
+  levels_.back().masses = std::move(masses);
+  coarsen_all(true);
+}
+
+/// Makes the levels below the finest one.
+void Hierarchy::coarsen_all(bool smoothed) {
+  levels_.back().chunks = RowChunks(levels_.back().laplacian);
   while (levels_.back().laplacian.size() > kDenseSize) {
     Level coarse;
-    if (!coarsen(levels_.back(), levels_.size() > 1, coarse)) break;
+    if (!coarsen(levels_.back(), smoothed || levels_.size() > 1, coarse)) break;
     levels_.push_back(std::move(coarse));
   }
   const Laplacian& coarsest = levels_.back().laplacian;
@@ -187,24 +180,27 @@ void Hierarchy::cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x,
     VectorBlock<M>& coarse_b = workspace.levels[level + 1].right_side;
     VectorBlock<M>& coarse_x = workspace.levels[level + 1].correction;
     VectorBlock<M>& second_x = workspace.levels[level + 1].second_correction;
-    const Level& coarse = levels_[level + 1];
-    coarse_b.resize(coarse.laplacian.size());
+    coarse_b.resize(levels_[level + 1].laplacian.size());
     restrict_residual<M>(here, b, x, coarse_b);
-    cycle<M>(level + 1, coarse_b, coarse_x, workspace);
-    if (level + 1 < coarsest) {
-      coarse.chunks.for_each_piece([&](Index begin, Index end) {
-        for (Index v = begin; v < end; ++v) {
-          coarse_b[v] = residual_of_row<M>(coarse.laplacian, v, coarse_b, coarse_x);
-        }
-      });
-      cycle<M>(level + 1, coarse_b, second_x, workspace);
-      for (std::size_t v = 0; v < coarse_x.size(); ++v) {
-        for (int m = 0; m < M; ++m) coarse_x[v][m] += second_x[v][m];
-      }
-    }
+    two_cycles<M>(level + 1, coarse_b, coarse_x, second_x, workspace);
     add_prolonged<M>(level, here.aggregate_of.empty() ? 1 : kOverCorrection, coarse_x, x);
   }
   backward_gauss_seidel<M>(here, entry_of_b, x);
+}
+
+template <int M>
+void Hierarchy::two_cycles(int level, VectorBlock<M>& b, VectorBlock<M>& x, VectorBlock<M>& second_x,
+                           CycleWorkspace<M>& workspace) const {
+  const Level& here = levels_[level];
+  cycle<M>(level, b, x, workspace);
+  if (level == static_cast<int>(levels_.size()) - 1) return;
+  here.chunks.for_each_piece([&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) b[v] = residual_of_row<M>(here.laplacian, v, b, x);
+  });
+  cycle<M>(level, b, second_x, workspace);
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    for (int m = 0; m < M; ++m) x[v][m] += second_x[v][m];
+  }
 }
 
 template <int M>
@@ -224,10 +220,14 @@ VectorBlock<M> Hierarchy::coarsest_eigenvectors() const {
 
 template void Hierarchy::add_prolonged<1>(int, double, const VectorBlock<1>&, VectorBlock<1>&) const;
 template void Hierarchy::cycle<1>(int, const VectorBlock<1>&, VectorBlock<1>&, CycleWorkspace<1>&) const;
+template void Hierarchy::two_cycles<1>(int, VectorBlock<1>&, VectorBlock<1>&, VectorBlock<1>&,
+                                       CycleWorkspace<1>&) const;
 template void Hierarchy::smooth<1>(int, VectorBlock<1>&) const;
 template VectorBlock<1> Hierarchy::coarsest_eigenvectors<1>() const;
 template void Hierarchy::add_prolonged<2>(int, double, const VectorBlock<2>&, VectorBlock<2>&) const;
 template void Hierarchy::cycle<2>(int, const VectorBlock<2>&, VectorBlock<2>&, CycleWorkspace<2>&) const;
+template void Hierarchy::two_cycles<2>(int, VectorBlock<2>&, VectorBlock<2>&, VectorBlock<2>&,
+                                       CycleWorkspace<2>&) const;
 template void Hierarchy::smooth<2>(int, VectorBlock<2>&) const;
 template VectorBlock<2> Hierarchy::coarsest_eigenvectors<2>() const;
 

@@ -11,11 +11,15 @@
 
 namespace meshorder {
 
+constexpr double kStrength = 0.1;      ///< of the strongest neighbour, on coarse levels
+constexpr double kWorthwhile = 0.8;    ///< coarsening that keeps more vertices than this is given up
+constexpr double kOverCorrection = 2;  ///< of plain coarsening; 1.5 to 3 serve as well
+
 /// One graph of the hierarchy, and the way to the next coarser.
 struct Level {
   Laplacian laplacian;
   RowChunks chunks;
-  std::vector<double> masses;       ///< see `mass`; empty on the finest level
+  std::vector<double> masses;       ///< see `mass`; empty where all are 1
   std::vector<Index> aggregate_of;  ///< plain coarsening: the coarser vertex of each vertex
   SparseRows prolongation;          ///< smoothed coarsening: the way from the next coarser level
 
@@ -43,6 +47,11 @@ class Hierarchy {
  public:
   explicit Hierarchy(Laplacian finest);
 
+  /// The same of a graph that is a coarse one itself: all coarsenings are smoothed.
+  ///
+  /// @param masses  of its vertices, > 0
+  Hierarchy(Laplacian coarse, std::vector<double> masses);
+
   [[nodiscard]] const std::vector<Level>& levels() const noexcept { return levels_; }
 
   /// x ≈ L⁺ b on level `level` by one symmetric W-cycle: Gauss–Seidel forwards before and backwards after the
@@ -51,6 +60,12 @@ class Hierarchy {
   /// 1995). The columns of b must sum to 0.
   template <int M>
   void cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x, CycleWorkspace<M>& workspace) const;
+
+  /// The same by two cycles, as the next finer level asks for it; by one where that is exact, and on the
+  /// coarsest level. Leaves another vector in b.
+  template <int M>
+  void two_cycles(int level, VectorBlock<M>& b, VectorBlock<M>& x, VectorBlock<M>& second_x,
+                  CycleWorkspace<M>& workspace) const;
 
   /// One Gauss–Seidel sweep forwards and one backwards on L x = 0: damps what prolongation left rough.
   template <int M>
@@ -69,6 +84,8 @@ class Hierarchy {
   [[nodiscard]] bool has_exact_coarsest() const noexcept { return coarsest_inverse_.size() > 0; }
 
  private:
+  void coarsen_all(bool smoothed);
+
   std::vector<Level> levels_;
   Eigen::MatrixXd coarsest_inverse_;  ///< empty when the coarsest level is too large for it
 };

@@ -69,16 +69,16 @@ constexpr auto kImages = [](auto& block) -> auto& { return block.images; };
 
 /// Sᵀ B S and Sᵀ L S of the search space S.
 template <int M, int C, int N = SearchSpace<M, C>::kSize>
-void gram_matrices(const SearchSpace<M, C>& s, const Level& level, Eigen::MatrixXd& gram,
+void gram_matrices(const SearchSpace<M, C>& s, const EigenProblem& problem, Eigen::MatrixXd& gram,
                    Eigen::MatrixXd& energy) {
   using Squares = Sums<std::size_t{2} * N * N>;
-  auto sums = sum_over_chunks<Squares>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+  auto sums = sum_over_chunks<Squares>(problem.size(), kRows, [&](Index begin, Index end) {
     Squares part;
     // one after the other: the sums of both at once do not fit in registers
     for (Index v = begin; v < end; ++v) {
       const auto vectors = row(s, v, kVectors);
       for (int i = 0; i < N; ++i) {
-        const double weighted = level.mass(v) * vectors[i];
+        const double weighted = problem.mass(v) * vectors[i];
         for (int j = i; j < N; ++j) part[N * i + j] += weighted * vectors[j];
       }
     }
@@ -91,6 +91,7 @@ void gram_matrices(const SearchSpace<M, C>& s, const Level& level, Eigen::Matrix
     }
     return part;
   });
+  problem.add_up(sums.values);
   gram.resize(N, N);
   energy.resize(N, N);
   for (int i = 0; i < N; ++i) {
@@ -148,7 +149,7 @@ void residual_of_row(const WithImage<M>& x, const std::array<double, M>& values,
 /// ‖r‖ / ‖x‖ of the first column.
 template <int M, int C, int N = SearchSpace<M, C>::kSize>
 double update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coefficients, const std::array<double, M>& values,
-              const Level& level, VectorBlock<M>& r) {
+              const EigenProblem& problem, VectorBlock<M>& r) {
   std::array<std::array<double, M>, N> c;
   for (int i = 0; i < N; ++i) {
     for (int m = 0; m < M; ++m) c[i][m] = coefficients(i, m);
@@ -164,90 +165,121 @@ double update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coefficients, const s
       part(s.p)[v][m] = direction;
     }
   };
-  auto norms = sum_over_chunks<Norms>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+  auto norms = sum_over_chunks<Norms>(problem.size(), kRows, [&](Index begin, Index end) {
     Norms part;
     for (Index v = begin; v < end; ++v) {
       combine(v, kVectors);
       combine(v, kImages);
-      residual_of_row<M>(s.x, values, level.mass(v), v, r, part);
+      residual_of_row<M>(s.x, values, problem.mass(v), v, r, part);
     }
     return part;
   });
+  problem.add_up(norms.values);
   return std::sqrt(norms[0] / norms[1]);
 }
 
 /// Computes L x afresh, since images that follow x by recurrence drift by rounding, and with it the Rayleigh
 /// quotients and r. Returns what `update` does.
 template <int M>
-double refresh(WithImage<M>& x, const Level& level, std::array<double, M>& values, VectorBlock<M>& r) {
-  level.laplacian.apply<M>(x.vectors, x.images);
+double refresh(WithImage<M>& x, const EigenProblem& problem, std::array<double, M>& values,
+               VectorBlock<M>& r) {
+  problem.apply(x.vectors, x.images);
   using Quotients = Sums<std::size_t{2} * M>;
-  auto quotients = sum_over_chunks<Quotients>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+  auto quotients = sum_over_chunks<Quotients>(problem.size(), kRows, [&](Index begin, Index end) {
     Quotients part;
     for (Index v = begin; v < end; ++v) {
       for (int m = 0; m < M; ++m) {
         part[m] += x.vectors[v][m] * x.images[v][m];
-        part[M + m] += level.mass(v) * x.vectors[v][m] * x.vectors[v][m];
+        part[M + m] += problem.mass(v) * x.vectors[v][m] * x.vectors[v][m];
       }
     }
     return part;
   });
+  problem.add_up(quotients.values);
   for (int m = 0; m < M; ++m) values[m] = quotients[M + m] > 0 ? quotients[m] / quotients[M + m] : 0;
-  auto norms = sum_over_chunks<Norms>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+  auto norms = sum_over_chunks<Norms>(problem.size(), kRows, [&](Index begin, Index end) {
     Norms part;
-    for (Index v = begin; v < end; ++v) residual_of_row<M>(x, values, level.mass(v), v, r, part);
+    for (Index v = begin; v < end; ++v) residual_of_row<M>(x, values, problem.mass(v), v, r, part);
     return part;
   });
+  problem.add_up(norms.values);
   return std::sqrt(norms[0] / norms[1]);
 }
 
 /// Makes the vectors B-orthogonal to constants, and their images.
 template <int M>
-void prepare(const Level& level, double total_mass, WithImage<M>& block) {
+void prepare(const EigenProblem& problem, double total_mass, WithImage<M>& block) {
   VectorBlock<M>& x = block.vectors;
-  auto mean = sum_over_chunks<Sums<M>>(level.laplacian.size(), kRows, [&](Index begin, Index end) {
+  auto mean = sum_over_chunks<Sums<M>>(problem.size(), kRows, [&](Index begin, Index end) {
     Sums<M> part;
     for (Index v = begin; v < end; ++v) {
-      for (int m = 0; m < M; ++m) part[m] += level.mass(v) * x[v][m];
+      for (int m = 0; m < M; ++m) part[m] += problem.mass(v) * x[v][m];
     }
     return part;
   });
+  problem.add_up(mean.values);
   for (int m = 0; m < M; ++m) mean[m] /= total_mass;
-  for_each_chunk(level.laplacian.size(), kRows, [&](Index, Index begin, Index end) {
+  for_each_chunk(problem.size(), kRows, [&](Index, Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
       for (int m = 0; m < M; ++m) x[v][m] -= mean[m];
     }
   });
-  level.laplacian.apply<M>(x, block.images);
+  problem.apply(x, block.images);
 }
+
+/// The problem on a level of a hierarchy.
+class OnLevel : public EigenProblem {
+ public:
+  OnLevel(const Hierarchy& hierarchy, int level)
+      : EigenProblem(hierarchy.levels()[level].laplacian.size(), hierarchy.levels()[level].masses),
+        hierarchy_(hierarchy),
+        level_(level) {}
+
+  void apply(const VectorBlock<1>& x, VectorBlock<1>& y) const override { laplacian().apply<1>(x, y); }
+  void apply(const VectorBlock<2>& x, VectorBlock<2>& y) const override { laplacian().apply<2>(x, y); }
+  void precondition(const VectorBlock<1>& r, VectorBlock<1>& w) override {
+    hierarchy_.cycle<1>(level_, r, w, one_);
+  }
+  void precondition(const VectorBlock<2>& r, VectorBlock<2>& w) override {
+    hierarchy_.cycle<2>(level_, r, w, two_);
+  }
+  void add_up(std::span<double> /*sums*/) const override {}
+
+ private:
+  [[nodiscard]] const Laplacian& laplacian() const { return hierarchy_.levels()[level_].laplacian; }
+
+  const Hierarchy& hierarchy_;
+  int level_;
+  CycleWorkspace<1> one_;
+  CycleWorkspace<2> two_;
+};
 
 }  // namespace
 
 template <int M, int Companions>
-LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
+LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorBlock<M>& x,
                     VectorBlock<Companions> companions) {
-  const Level& here = hierarchy.levels()[level];
-  const Index n = here.laplacian.size();
-  double total_mass = 0;
+  const Index n = problem.size();
+  Sums<1> total_mass;
   for (Index v = 0; v < n; ++v) {
     poll_in_loop(v);
-    total_mass += here.mass(v);
+    total_mass[0] += problem.mass(v);
   }
+  problem.add_up(total_mass.values);
 
   SearchSpace<M, Companions> s(std::move(x), std::move(companions));
   VectorBlock<M> r(n);
-  CycleWorkspace<M> workspace;
   Eigen::MatrixXd gram, energy;
   std::array<double, M> values{};
   const auto search = [&] {
-    gram_matrices<M, Companions>(s, here, gram, energy);
+    gram_matrices<M, Companions>(s, problem, gram, energy);
     const Ritz ritz = rayleigh_ritz(gram, energy, M);
     for (int m = 0; m < M; ++m) values[m] = ritz.values[m];
-    return update<M, Companions>(s, ritz.coefficients, values, here, r);
+    return update<M, Companions>(s, ritz.coefficients, values, problem, r);
   };
 
-  prepare(here, total_mass, s.x);
-  if constexpr (Companions > 0) prepare(here, total_mass, s.companions);
+  prepare(problem, total_mass[0], s.x);
+  if constexpr (Companions > 0) prepare(problem, total_mass[0], s.companions);
   LobpcgResult result;
   result.residual = search();
   const auto converged = [&] { return result.residual <= options.tolerance * values[0]; };
@@ -255,11 +287,11 @@ LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& 
     report("eigenvector");
     const bool last = result.iterations >= options.max_iterations || options.limit.is_over();
     if (last || converged()) {
-      result.residual = refresh<M>(s.x, here, values, r);
+      result.residual = refresh<M>(s.x, problem, values, r);
       if (last || converged()) break;
     }
-    hierarchy.cycle<M>(level, r, s.w.vectors, workspace);
-    prepare(here, total_mass, s.w);
+    problem.precondition(r, s.w.vectors);
+    prepare(problem, total_mass[0], s.w);
     result.residual = search();
   }
   result.eigenvalue = values[0];
@@ -268,11 +300,20 @@ LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& 
   return result;
 }
 
+template <int M, int Companions>
+LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
+                    VectorBlock<Companions> companions) {
+  OnLevel problem(hierarchy, level);
+  return lobpcg<M, Companions>(problem, options, x, std::move(companions));
+}
+
 template LobpcgResult lobpcg<1, 0>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<1>&,
                                    VectorBlock<0>);
 template LobpcgResult lobpcg<1, 1>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<1>&,
                                    VectorBlock<1>);
 template LobpcgResult lobpcg<2, 0>(const Hierarchy&, int, const LobpcgOptions&, VectorBlock<2>&,
                                    VectorBlock<0>);
+template LobpcgResult lobpcg<1, 1>(EigenProblem&, const LobpcgOptions&, VectorBlock<1>&, VectorBlock<1>);
+template LobpcgResult lobpcg<2, 0>(EigenProblem&, const LobpcgOptions&, VectorBlock<2>&, VectorBlock<0>);
 
 }  // namespace meshorder

@@ -5,6 +5,7 @@
 #include "spectral/hierarchy.hpp"
 
 #include <array>
+#include <span>
 
 namespace meshorder {
 
@@ -21,16 +22,51 @@ struct LobpcgResult {
   bool converged = false;
 };
 
+/// A problem L x = λ B x whose L has the constants in its null space and whose B is diagonal, as `lobpcg`
+/// sees it: this process has some of the rows, or all.
+class EigenProblem {
+ public:
+  /// @param size    rows of this process
+  /// @param masses  of them, the diagonal of B; none: all 1. Outlives this object
+  EigenProblem(Index size, std::span<const double> masses) : size_(size), masses_(masses) {}
+  virtual ~EigenProblem() = default;
+  EigenProblem(const EigenProblem&) = delete;
+  EigenProblem(EigenProblem&&) = delete;
+  EigenProblem& operator=(const EigenProblem&) = delete;
+  EigenProblem& operator=(EigenProblem&&) = delete;
+
+  [[nodiscard]] Index size() const noexcept { return size_; }
+  [[nodiscard]] double mass(Index v) const { return masses_.empty() ? 1.0 : masses_[v]; }
+
+  /// y = L x
+  virtual void apply(const VectorBlock<1>& x, VectorBlock<1>& y) const = 0;
+  virtual void apply(const VectorBlock<2>& x, VectorBlock<2>& y) const = 0;
+  /// w ≈ L⁺ r
+  virtual void precondition(const VectorBlock<1>& r, VectorBlock<1>& w) = 0;
+  virtual void precondition(const VectorBlock<2>& r, VectorBlock<2>& w) = 0;
+  /// Adds up sums over the rows of each process, the same on all of them.
+  virtual void add_up(std::span<double> sums) const = 0;
+
+ private:
+  Index size_;
+  std::span<const double> masses_;
+};
+
 /// Improves the columns of `x` towards the eigenvectors of L x = λ B x with the smallest eigenvalues after
-/// that of the constant vector, on one level of a hierarchy (B its masses, the identity on the finest).
+/// that of the constant vector.
 ///
 /// Locally optimal block preconditioned conjugate gradients (Knyazev 2001): each iteration minimises the
-/// Rayleigh quotient over the span of x, the hierarchy's cycle applied to the residuals, the previous
+/// Rayleigh quotient over the span of x, the preconditioned residuals, the previous
 /// directions, and `companions`, all kept orthogonal to constants. Companions are rough guesses of the next
 /// eigenvectors: a single column that is slow to part from a close λ₃ parts quickly when it may subtract what
 /// resembles that eigenvector, for far less than a second column costs. Columns end in ascending order of
 /// their eigenvalues, ‖x‖_B = 1. Columns of x that depend on others or are constant are replaced by the
 /// search itself. O(graph) an iteration.
+template <int M, int Companions>
+LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorBlock<M>& x,
+                    VectorBlock<Companions> companions);
+
+/// The same on one level of a hierarchy (B its masses), preconditioned by the hierarchy's cycle.
 template <int M, int Companions>
 LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
                     VectorBlock<Companions> companions);

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
 
@@ -52,6 +53,32 @@ TEST(SparseRows, TransposedSwapsRowsAndColumns) {
     EXPECT_EQ(t.columns_count, rows);
     EXPECT_EQ(dense(t), dense(a).transpose());
   }
+}
+
+TEST(Collapsed, HasTheSameRowsWhereItSeesOnlySomeOfAGraph) {
+  // a ring of 8 vertices in aggregates of two; 0 … 3 are seen, and of the others 4 and 7 as columns 4 and 5
+  Laplacian ring;
+  Laplacian half;
+  for (Index v = 0; v < 8; ++v) {
+    for (const Index u : {(v + 7) % 8, (v + 1) % 8}) {
+      ring.neighbours.push_back(u);
+      if (v < 4) half.neighbours.push_back(u == 7 ? 5 : u);
+    }
+    ring.offsets.push_back(2 * (v + 1));
+    ring.diagonal.push_back(2);
+    if (v >= 4) continue;
+    half.offsets.push_back(2 * (v + 1));
+    half.diagonal.push_back(2);
+  }
+  const Laplacian whole = collapsed(ring, RowChunks::whole(8),
+                                    {.aggregate_of = {0, 0, 1, 1, 2, 2, 3, 3}, .first_of_chunk = {0, 4}});
+  const Laplacian some =
+      collapsed(half, RowChunks::whole(4), {.aggregate_of = {0, 0, 1, 1, 2, 3}, .first_of_chunk = {0, 2}}, 4);
+  ASSERT_EQ(some.size(), 2);
+  EXPECT_TRUE(std::equal(some.neighbours.begin(), some.neighbours.end(), whole.neighbours.begin()));
+  EXPECT_TRUE(std::equal(some.weights.begin(), some.weights.end(), whole.weights.begin()));
+  EXPECT_TRUE(std::equal(some.diagonal.begin(), some.diagonal.end(), whole.diagonal.begin()));
+  EXPECT_TRUE(std::equal(some.offsets.begin(), some.offsets.end(), whole.offsets.begin()));
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "spectral/nested_start.hpp"
+
+#include "base/random.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace meshorder {
+
+namespace {
+
+void fill_with_noise(StartBlock& x, int first_column, std::uint64_t seed) {
+  Random random(seed);
+  for (auto& row : x) {
+    for (int m = first_column; m < kStartColumns; ++m) row[m] = random.unit() - 0.5;
+  }
+}
+
+}  // namespace
+
+LobpcgOptions coarse_search(TimeLimit limit) {
+  return {.tolerance = 1, .max_iterations = 30, .limit = limit};
+}
+
+StartBlock nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimit limit) {
+  const auto& levels = hierarchy.levels();
+  int level = static_cast<int>(levels.size()) - 1;
+  StartBlock x;
+  int known = 0;  // columns
+  if (hierarchy.has_exact_coarsest()) {
+    x = hierarchy.coarsest_eigenvectors<kStartColumns>();
+    known = std::min(kStartColumns, static_cast<int>(x.size()) - 1);
+    --level;
+  } else {
+    level = 0;
+  }
+  for (; level >= 0; --level) {
+    StartBlock finer(levels[level].laplacian.size(), std::array<double, kStartColumns>{});
+    if (known > 0) hierarchy.add_prolonged<kStartColumns>(level, 1, x, finer);
+    x = std::move(finer);
+    if (known == kStartColumns) {
+      hierarchy.smooth<kStartColumns>(level, x);
+    } else {
+      fill_with_noise(x, known, seed);
+      known = kStartColumns;
+    }
+    if (level > 0) lobpcg<kStartColumns>(hierarchy, level, coarse_search(limit), x);
+  }
+  return x;
+}
+
+VectorBlock<1> column(const StartBlock& x, int m) {
+  VectorBlock<1> result(x.size());
+  for (std::size_t v = 0; v < x.size(); ++v) result[v][0] = x[v][m];
+  return result;
+}
+
+}  // namespace meshorder
