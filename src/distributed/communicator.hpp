@@ -103,6 +103,19 @@ class Communicator {
     return exchange(std::span<const T>(own), starts).values;
   }
 
+  /// Returns those of the root's values that are this rank's: starts[r] … starts[r + 1] − 1 are rank r's.
+  /// Throws as `exchange`.
+  ///
+  /// @param at_root  not looked at elsewhere
+  /// @param starts   ranks + 1, ascending, the same on all ranks
+  template <class T>
+  [[nodiscard]] std::vector<T> scattered_from_root(const std::vector<T>& at_root,
+                                                   const std::vector<Offset>& starts) const {
+    const std::vector<Offset> nothing(starts.size(), 0);
+    return is_root() ? exchange(std::span<const T>(at_root), starts).values
+                     : exchange(std::span<const T>(), nothing).values;
+  }
+
   /// Returns the root's values on all ranks. Throws as `exchange`.
   template <class T>
   [[nodiscard]] std::vector<T> broadcast(std::vector<T> at_root) const {

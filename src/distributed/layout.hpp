@@ -46,6 +46,8 @@ class Layout {
   [[nodiscard]] GlobalIndex size(int rank) const { return end(rank) - begin(rank); }
   [[nodiscard]] GlobalIndex begin(int rank) const { return starts_[static_cast<std::size_t>(rank)]; }
   [[nodiscard]] GlobalIndex end(int rank) const { return starts_[static_cast<std::size_t>(rank) + 1]; }
+  /// Returns the first number of each rank, and behind them the end of the last one's.
+  [[nodiscard]] const std::vector<GlobalIndex>& starts() const noexcept { return starts_; }
   /// Returns the rank that owns a number of the layout. O(log ranks).
   [[nodiscard]] int owner(GlobalIndex number) const {
     return static_cast<int>(std::upper_bound(starts_.begin(), starts_.end(), number) - starts_.begin()) - 1;
