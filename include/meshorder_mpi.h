@@ -37,7 +37,8 @@ typedef struct mo_mpi_mesh {
 typedef struct mo_mpi_options {
   size_t struct_size;     /**< sizeof(mo_mpi_options) of the caller */
   const char* method;     /**< vertex method of a part; null: "spectral" */
-  const char* partition;  /**< what makes parts: "ptscotch" (null) or "hilbert" */
+  const char* partition;  /**< what makes parts: "ptscotch" (null), "hilbert", or "order": equal ranges of one
+                             order of the whole mesh, by the method "fiedler" only */
   const char* balance;    /**< what parts have equally much of: "vertices" (null) or "cells" */
   uint64_t seed;          /**< of the method; default 0 */
   int32_t parts;          /**< number of parts; 0 (default): one for each rank */
@@ -71,8 +72,8 @@ MO_API mo_status mo_mpi_order_ranks(int32_t communicator, const mo_mpi_mesh* mes
  * Cuts the mesh into parts, orders each, and numbers them one after another, so that parts that touch are
  * near each other. Moving vertices and elements to their new owners is left to the caller.
  *
- * Needs coordinates, and each element on one rank. Without MPI_THREAD_MULTIPLE the parts are made by
- * "hilbert".
+ * Needs coordinates, and each element on one rank. Without MPI_THREAD_MULTIPLE
+ * "hilbert" takes the place of "ptscotch".
  *
  * @param communicator  Fortran handle of the ranks that share the mesh
  * @param mesh          of this rank

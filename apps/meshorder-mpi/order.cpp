@@ -36,7 +36,7 @@ using distributed::VtuSlices;
 
 struct Arguments : Common, OrderFiles {
   std::string vertices = "auto";
-  std::string partition{to_string(distributed::Partitioner::ptscotch)};
+  std::string partition = "auto";
   Index parts = 0;
   std::string balance{to_string(distributed::Balance::vertices)};
   std::string interface_place{to_string(distributed::InterfacePlace::mixed)};
@@ -47,7 +47,11 @@ struct Arguments : Common, OrderFiles {
 DistributedOptions options_of(const Arguments& arguments) {
   DistributedOptions options;
   if (arguments.vertices != "auto") options.vertices = arguments.vertices;
-  options.partitioner = parse<distributed::Partitioner>(arguments.partition);
+  if (arguments.partition != "auto") {
+    options.partitioner = parse<distributed::Partitioner>(arguments.partition);
+  } else if (options.vertices == "fiedler") {
+    options.partitioner = distributed::Partitioner::order;
+  }
   options.parts = arguments.parts;
   options.balance = parse<distributed::Balance>(arguments.balance);
   options.interface_place = parse<distributed::InterfacePlace>(arguments.interface_place);
@@ -110,6 +114,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
     Console console(arguments);
     if (!report.partition_reason.empty())
       notes.push_back(report.partition_reason + ": parts are ranges of Hilbert's curve");
+    note_convergence(report.fiedler, "the vertices", notes);
     console.warn_of(notes);
     print_report(console, options, report, peaks);
     const char* const by = slices ? ", read and written by all ranks" : "";
@@ -128,6 +133,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
         {"vertices", {{"count", vertex_count}, {"method", options.vertices}}},
         {"cells", {{"count", cell_count}, {"method", "lexmax"}}}};
     result.update(to_json(options, report, peaks));
+    result["fiedler"] = command::to_json(report.fiedler);
     result["maps"] = outputs.maps();
     if (!arguments.pieces.empty()) {
       result["pieces"] = {{"file", outputs.pieces_file()},
@@ -184,16 +190,20 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
       ->capture_default_str();
   subcommand
       .add_option("--vertices", arguments->vertices,
-                  "Method for the vertices of a part, see `meshorder methods`; `auto` is spectral")
+                  "Method for the vertices of a part, see `meshorder methods`; `auto` is spectral; fiedler "
+                  "is that of\n"
+                  "the whole mesh unless --partition names what makes the parts")
       ->capture_default_str();
   subcommand.add_option("--parts", arguments->parts, "Number of parts; 0: as many as ranks")
       ->check(whole_from(0))
       ->capture_default_str();
   subcommand
-      .add_option("--partition", arguments->partition,
-                  "What makes the parts: `ptscotch` has few edges between them, `hilbert` cuts Hilbert's\n"
-                  "curve and gives the same parts on any number of ranks")
-      ->check(CLI::IsMember({"ptscotch", "hilbert"}))
+      .add_option(
+          "--partition", arguments->partition,
+          "What makes the parts: `ptscotch` has few edges between them, `hilbert` cuts Hilbert's\n"
+          "curve and gives the same parts on any number of ranks, `order` cuts one order of the\n"
+          "whole mesh, by fiedler only, into equal ranges; `auto` is order for fiedler, else ptscotch")
+      ->check(CLI::IsMember({"auto", "ptscotch", "hilbert", "order"}))
       ->capture_default_str();
   subcommand
       .add_option(

@@ -45,7 +45,8 @@ void print_report(const Console& console, const DistributedOptions& options, con
       "parts", report.parts, to_string(report.partitioner), 100 * share_of_edges(report), report.imbalance,
       to_string(options.balance), with_commas(report.ghosts));
   console.print(
-      "{:<10} {} in each part, {} on the interfaces{}", "vertices", options.vertices,
+      "{:<10} {} {}, {} on the interfaces{}", "vertices", options.vertices,
+      report.partitioner == distributed::Partitioner::order ? "of the whole mesh" : "in each part",
       with_commas(std::accumulate(report.interfaces.begin(), report.interfaces.end(), GlobalIndex{0})),
       options.interface_place == distributed::InterfacePlace::last ? ", behind the others" : "");
   console.print("{:<10} lexmax", "elements");

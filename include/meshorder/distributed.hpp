@@ -27,9 +27,11 @@ struct RankMesh {
 
 /// The same on all ranks.
 struct RankOptions {
-  std::string method = "spectral";     ///< vertex method of a part, see `vertex_methods`
-  std::string partition = "ptscotch";  ///< of `order_parts`: "ptscotch" or "hilbert"
-  std::string balance = "vertices";    ///< of `order_parts`: "vertices" or "cells" are shared out evenly
+  std::string method = "spectral";  ///< vertex method of a part, see `vertex_methods`
+  /// Of `order_parts`: "ptscotch", "hilbert", or "order": equal ranges of one order of the whole mesh, by the
+  /// method "fiedler" only.
+  std::string partition = "ptscotch";
+  std::string balance = "vertices";  ///< of `order_parts`: "vertices" or "cells" are shared out evenly
   std::uint64_t seed = 0;
   std::int32_t parts = 0;    ///< of `order_parts`; 0: one for each rank
   std::int32_t threads = 1;  ///< of this rank

@@ -173,7 +173,8 @@ mo_status mo_mpi_order_parts(int32_t communicator, const mo_mpi_mesh* mesh, cons
         require_mpi();
         const Communicator ranks(MPI_Comm_f2c(communicator));
         DistributedOptions wanted = options_of(ranks, options);
-        if (!lets_threads_call()) wanted.partitioner = distributed::Partitioner::hilbert;
+        if (wanted.partitioner == distributed::Partitioner::ptscotch && !lets_threads_call())
+          wanted.partitioner = distributed::Partitioner::hilbert;
         const distributed::OwnedParts parts = order_parts_of_owned(ranks, mesh_of(ranks, mesh), wanted);
         write(ranks, parts.new_numbers, new_numbers, "new_numbers");
         write(ranks, parts.starts, part_starts, "part_starts");

@@ -5,10 +5,12 @@
 #include "base/text.hpp"
 #include "distributed/cell_order.hpp"
 #include "distributed/curve.hpp"
+#include "distributed/fiedler.hpp"
 #include "distributed/global_graph.hpp"
 #include "distributed/halo.hpp"
 #include "distributed/local_orders.hpp"
 #include "distributed/quotient.hpp"
+#include "distributed/ranges.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/registry.hpp>
 
@@ -83,6 +85,53 @@ std::vector<GlobalIndex> numbers_in_file(const Communicator& communicator, const
   return numbers;
 }
 
+/// Cuts the graph, and orders each part.
+PartOrders in_parts(const Communicator& communicator, const GlobalGraph& graph, const Halo& halo,
+                    const Curve& curve, const std::vector<GlobalIndex>& weights,
+                    const DistributedOptions& options, DistributedReport& report, Stages& stages) {
+  const GlobalIndex first = graph.layout.begin(communicator.rank());
+  Partition partition = partitioned(communicator, graph, report.parts, options.partitioner, weights);
+  report.imbalance = imbalance_of(communicator, partition.part_of, weights, report.parts);
+  report.partitioner = partition.by;
+  report.partition_reason = std::move(partition.reason);
+  stages.end("partition");
+
+  std::vector<Index> places = std::move(partition.part_of);
+  {
+    const Quotient quotient =
+        order_of_parts(communicator, graph, HaloValues<Index>(halo, first, places), report.parts);
+    report.cut = quotient.cut;
+    for (Index& part : places) part = quotient.place_of[static_cast<std::size_t>(part)];
+  }
+  return ordered_in_parts(communicator, graph, curve, HaloValues<Index>(halo, first, std::move(places)),
+                          report.parts, options.vertices, options.interface_place, options.order);
+}
+
+/// Orders all vertices by the Fiedler vector, and cuts that order.
+PartOrders in_one_order(const Communicator& communicator, const GlobalGraph& graph, const Halo& halo,
+                        const std::vector<GlobalIndex>& number_in_file, const DistributedOptions& options,
+                        DistributedReport& report) {
+  SharedFiedlerOrder order = fiedler_order(communicator, graph, halo, number_in_file, options.order);
+  RangesOfOrder ranges = ranges_of(communicator, graph, halo, std::move(order.new_numbers), report.parts);
+  report.partitioner = Partitioner::order;
+  report.imbalance = ranges.imbalance;
+  report.cut = ranges.cut;
+  report.fiedler = std::move(order.components);
+  return std::move(ranges.parts);
+}
+
+/// Throws InvalidArgument for what ranges of one order cannot have.
+void check_one_order(const DistributedOptions& options) {
+  const std::string remedy = "; take --partition ptscotch or hilbert, which orders each part";
+  if (options.vertices != "fiedler")
+    throw InvalidArgument("the partition 'order' is of `fiedler` only, not of '" + options.vertices + "'" +
+                          remedy);
+  if (options.balance != Balance::vertices)
+    throw InvalidArgument("the partition 'order' has ranges of equally many vertices, not of cells" + remedy);
+  if (options.interface_place != InterfacePlace::mixed)
+    throw InvalidArgument("the partition 'order' leaves interfaces at their places in the order" + remedy);
+}
+
 }  // namespace
 
 void check_options(const DistributedOptions& options) {
@@ -104,7 +153,10 @@ void check_options(const DistributedOptions& options) {
 
 DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
                               const DistributedOptions& options) {
-  communicator.together([&] { check_options(options); });
+  communicator.together([&] {
+    check_options(options);
+    if (options.partitioner == Partitioner::order) check_one_order(options);
+  });
   DistributedOrder order;
   DistributedReport& report = order.report;
   report.parts = options.parts > 0 ? options.parts : communicator.size();
@@ -130,23 +182,10 @@ DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
   const GlobalIndex first = graph.layout.begin(rank);
   stages.end("graph");
 
-  Partition partition = partitioned(communicator, graph, report.parts, options.partitioner, weights);
-  report.imbalance = imbalance_of(communicator, partition.part_of, weights, report.parts);
-  weights = {};
-  report.partitioner = partition.by;
-  report.partition_reason = std::move(partition.reason);
-  stages.end("partition");
-
-  std::vector<Index> places = std::move(partition.part_of);
-  {
-    const Quotient quotient =
-        order_of_parts(communicator, graph, HaloValues<Index>(halo, first, places), report.parts);
-    report.cut = quotient.cut;
-    for (Index& part : places) part = quotient.place_of[static_cast<std::size_t>(part)];
-  }
   const PartOrders parts =
-      ordered_in_parts(communicator, graph, *curve, HaloValues<Index>(halo, first, std::move(places)),
-                       report.parts, options.vertices, options.interface_place, options.order);
+      options.partitioner == Partitioner::order
+          ? in_one_order(communicator, graph, halo, curve->number_in_file, options, report)
+          : in_parts(communicator, graph, halo, *curve, weights, options, report, stages);
   report.ghosts = parts.ghosts;
   report.part_starts = parts.starts;
   report.interfaces = parts.interfaces;

@@ -7,6 +7,7 @@
 #include "distributed/mesh_slice.hpp"
 #include "distributed/partition.hpp"
 #include "distributed/spans.hpp"
+#include <meshorder/fiedler.hpp>
 #include <meshorder/options.hpp>
 
 #include <string>
@@ -18,12 +19,14 @@ namespace meshorder::distributed {
 
 /// How a mesh is ordered by many ranks.
 struct DistributedOptions {
-  std::string vertices = "spectral";  ///< vertex method inside a part; not `auto`, `original` or `scrambled`
+  /// Vertex method inside a part, not `auto`, `original` or `scrambled`. With `Partitioner::order` that of
+  /// the whole mesh, which is `fiedler`.
+  std::string vertices = "spectral";
   Partitioner partitioner = Partitioner::ptscotch;
   Index parts = 0;  ///< 0: one for each rank
   Balance balance = Balance::vertices;
   InterfacePlace interface_place = InterfacePlace::mixed;
-  OrderOptions order = {};  ///< seed, tolerance and run
+  OrderOptions order = {};  ///< seed, tolerance, max_iterations and run
 };
 
 /// Throws InvalidArgument for a method that there is not or that has no meaning within parts, and for fewer
@@ -41,6 +44,8 @@ struct DistributedReport {
   GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts
   std::vector<GlobalIndex> part_starts;  ///< first new number of each part, and the end of the last one's
   std::vector<GlobalIndex> interfaces;   ///< of each part: vertices that share an element with other parts'
+  std::vector<FiedlerComponent>
+      fiedler;  ///< `Partitioner::order`: of all components, largest first; at the root
   GlobalEdgeSpan before;
   GlobalEdgeSpan after;
   std::vector<std::pair<std::string_view, double>> seconds;  ///< of each stage, in their order
@@ -54,12 +59,14 @@ struct DistributedOrder {
 };
 
 /// Orders a mesh: parts, numbered so that those that touch are near each other; the vertices of a part by the
-/// method, those that no element uses behind all others, in their old order; cells by `lexmax`. Every rank
-/// has to call it.
+/// method, those that no element uses behind all others, in their old order; cells by `lexmax`. With
+/// `Partitioner::order` the method orders all vertices, and parts are equal ranges of that. Every rank has to
+/// call it.
 ///
 /// @param slice  taken: what is done with is given up
 /// @throws SharedError for a method that there is not or that has no meaning within parts, for fewer than one
-///         part, and where a rank fails
+///         part, where `Partitioner::order` goes with another method than `fiedler` or with a balance or
+///         place of interfaces that equal ranges cannot have, and where a rank fails
 /// @note The same order for the same mesh, options and number of ranks; with `Partitioner::hilbert` and the
 ///       number of parts given, on any number of ranks and threads.
 [[nodiscard]] DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,

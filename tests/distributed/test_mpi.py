@@ -167,6 +167,73 @@ def test_parts_have_equally_much_of_the_elements(tmp_path, partition):
     assert elements["cells"].max() < 1.25 * elements["cells"].mean() < 1.5 * elements["vertices"].mean() < elements["vertices"].max()
 
 
+def fiedler_order(ranks, *arguments):
+    """What `--json` tells of an order by one Fiedler vector."""
+    result = json.loads(order(ranks, *arguments, "--vertices", "fiedler", "--json").stdout)
+    assert result["partition"]["method"] == "order" and "partition" not in result["seconds"]
+    return result
+
+
+@pytest.fixture(scope="module")
+def torus():
+    """More vertices than one rank solves alone."""
+    made = serial("models", "make", "torus", "--size", "20", "--json")
+    return pathlib.Path(json.loads(made.stdout)["models"][0]["path"])
+
+
+def test_fiedler_is_one_vector_of_all_ranks(tmp_path, torus):
+    expected = json.loads(serial("order", torus, "-o", tmp_path / "serial.vtu", "--vertices", "fiedler", "--json").stdout)
+    lambda2 = expected["fiedler"]["components"][0]["lambda2"]
+    for ranks in (2, 4):
+        result = fiedler_order(ranks, torus, "-o", tmp_path / "a.vtu")
+        component, = result["fiedler"]["components"]
+        assert component["converged"] and component["size"] == 70560 and component["iterations"] < 15
+        assert component["lambda2"] == pytest.approx(lambda2, rel=0.01)
+        assert result["edge_span"]["after"]["mean"] <= 1.02 * expected["edge_span"]["after"]["mean"]
+    parted = json.loads(order(4, torus, "-o", tmp_path / "b.vtu", "--vertices", "fiedler", "--partition", "ptscotch",
+                              "--json").stdout)
+    assert parted["partition"]["method"] == "ptscotch" and parted["fiedler"] == {"components": []}
+
+
+def test_the_fiedler_order_has_the_same_bits_in_every_run(tmp_path, torus):
+    files = set()
+    for threads in (1, 1, 2, 1, 1):
+        order(3, torus, "-o", tmp_path / "a.vtu", "--vertices", "fiedler", "--threads", str(threads))
+        files.add((tmp_path / "a.vtu").read_bytes())
+    assert len(files) == 1
+
+
+def test_parts_of_the_fiedler_order_are_equal_ranges_of_it(tmp_path, ball):
+    result = fiedler_order(3, ball, "-o", tmp_path / "a.vtu", "--parts", "7", "--maps", tmp_path / "m", "--pieces", tmp_path / "p")
+    counts = numpy.bincount(numpy.load(tmp_path / "m.vertices.parts.npy"))
+    assert len(counts) == 7 and counts.max() - counts.min() <= 1
+    assert list(numpy.cumsum(counts) - counts) == result["partition"]["first_vertices"]
+    mesh = meshio.read(tmp_path / "a.vtu")
+    tetrahedra = mesh.cells_dict["tetra"]
+    edges = numpy.unique(numpy.sort(numpy.concatenate([tetrahedra[:, pair] for pair in
+                                                       ([0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3])])), axis=0)
+    part = numpy.searchsorted(result["partition"]["first_vertices"], edges, side="right")
+    crossing = edges[part[:, 0] != part[:, 1]]
+    assert result["partition"]["cut"] == len(crossing) and result["partition"]["edges"] == len(edges)
+    assert sum(result["partition"]["interface_vertices"]) == len(numpy.unique(crossing))
+    needed = {(int(there), int(vertex)) for edge, parts in zip(edges, part) for vertex, here, there in
+              ((edge[0], parts[0], parts[1]), (edge[1], parts[1], parts[0])) if here != there}
+    assert result["partition"]["ghosts"] == len(needed)
+    assert len(list((tmp_path / "p").glob("*.vtu"))) == 7
+    serial("apply", tmp_path / "m", tmp_path / "a.vtu", "-o", tmp_path / "back.vtu", "--inverse")
+    serial("order", ball, "-o", tmp_path / "same.vtu", "--vertices", "original", "--elements", "original")
+    assert (tmp_path / "back.vtu").read_bytes() == (tmp_path / "same.vtu").read_bytes()
+
+
+def test_a_fiedler_order_of_few_vertices_in_pieces_that_nothing_joins(tmp_path):
+    points = numpy.array([[0, 0, 0], [5, 0, 0], [0, 1, 0], [1, 0, 0], [5, 1, 0], [6, 0, 0], [1, 1, 0], [9, 9, 9]], float)
+    meshio.Mesh(points, [("triangle", numpy.array([[1, 4, 5], [0, 2, 3], [2, 3, 6]]))]).write(tmp_path / "a.vtu")
+    result = fiedler_order(5, tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--maps", tmp_path / "m")
+    assert [component["size"] for component in result["fiedler"]["components"]] == [4, 3]
+    places = numpy.load(tmp_path / "m.vertices.old_to_new.npy")
+    assert set(places[[0, 2, 3, 6]]) == {0, 1, 2, 3} and set(places[[1, 4, 5]]) == {4, 5, 6} and places[7] == 7
+
+
 def test_small_meshes_are_cut_along_the_curve_with_a_note(tmp_path):
     grid = json.loads(serial("models", "make", "grid", "--size", "3", "--json").stdout)["models"][0]["path"]
     done = order(2, grid, "-o", tmp_path / "a.vtu", "--json")
@@ -181,6 +248,9 @@ def test_small_meshes_are_cut_along_the_curve_with_a_note(tmp_path):
     (["order", "BALL", "-o", "full.vtu"], "full"),
     (["order", "BALL", "-o", "out.vtu", "--vertices", "original"], "'original' within parts"),
     (["order", "BALL", "-o", "out.vtu", "--partition", "metis"], "metis"),
+    (["order", "BALL", "-o", "out.vtu", "--partition", "order"], "--partition ptscotch"),
+    (["order", "BALL", "-o", "out.vtu", "--vertices", "fiedler", "--interface", "last"], "--partition ptscotch"),
+    (["order", "BALL", "-o", "out.vtu", "--vertices", "fiedler", "--balance", "cells"], "--partition ptscotch"),
     (["order", "BALL", "-o", "out.vtu", "--part", "2"], "unknown option '--part'"),
     (["info", "BALL"], "start `info` without mpirun"),
 ])
