@@ -58,7 +58,7 @@ if("io" IN_LIST components)
     meshorder_find_library(netcdf::netcdf netcdf.h netcdf)  # Exodus II
   endif()
   if(NOT MESHORDER_HDF5 STREQUAL "OFF")
-    meshorder_find_library(hdf5::hdf5 hdf5.h "hdf5_serial;hdf5" hdf5/serial)  # MED, XDMF's arrays
+    meshorder_find_library(hdf5::hdf5 hdf5.h "hdf5_serial;hdf5" hdf5/serial)  # MED, VTKHDF, XDMF's arrays
     find_package(pugixml QUIET)                        # XDMF's XML
   endif()
   if(NOT MESHORDER_CGNS STREQUAL "OFF" AND TARGET hdf5::hdf5)

@@ -68,7 +68,7 @@ set(CPACK_DEBIAN_COMMAND_DESCRIPTION
 meshorder reorders the vertices and elements of a simulation mesh, with all
 data in its file, so that neighbours in the mesh are neighbours in memory. It
 reads and writes TetGen, Vega, Gmsh, Medit, SU2, Abaqus, Nastran, I-deas,
-Exodus, XDMF, CGNS, MED, VTK, OFF, OBJ, PLY and STL files, predicts and
+Exodus, XDMF, VTKHDF, CGNS, MED, VTK, OFF, OBJ, PLY and STL files, predicts and
 measures what an order is worth, and compares orders.")
 
 # what Debian wants in the folder of each package; not part of `cmake --install`

@@ -21,6 +21,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -70,7 +71,8 @@ void add_meshes(Seeds& seeds) {
     for (const Mesh& mesh : sample_meshes()) {
       try {
         const std::string input = input_of(write_mesh_to_memory(mesh, format, family.file).files);
-        const bool binary = format == "exodus" || format == "xdmf" || format == "cgns" || format == "med";
+        constexpr std::array kBinary{"exodus", "xdmf", "cgns", "med", "vtkhdf"};
+        const bool binary = std::find(kBinary.begin(), kBinary.end(), format) != kBinary.end();
         if (binary || input.size() <= kMostOfSeed) seeds.add(family.name, input);
       } catch (const InputError&) {  // the format does not hold such cells
       }

@@ -23,7 +23,7 @@ packages_to_run=(
   liblz4-dev           "compressed .vtu files"
   liblzma-dev          "compressed .vtu files"
   libnetcdf-dev        "Exodus II files"
-  libhdf5-dev          "MED files, XDMF's arrays"
+  libhdf5-dev          "MED and VTKHDF files, XDMF's arrays"
   libpugixml-dev       "XDMF's XML"
   libcgns-dev          "CGNS files"
   libcgal-dev          "makes the models' surfaces"

@@ -40,7 +40,8 @@ DataArray first_row(const DataArray& array) {
 /// The mesh as VTK holds it.
 class WholeGrid {
  public:
-  WholeGrid(const Mesh& mesh, Notes& notes) : context_(mesh, notes, true), cells_(context_.cells()) {
+  WholeGrid(const Mesh& mesh, Notes& notes)
+      : context_(mesh, notes, vtk::NamePlace::xml), cells_(context_.cells()) {
     // the order of the file that `xml` makes
     for (const Association association : {Association::vertices, Association::cells}) {
       for (const DataArray* const array : context_.arrays) {

@@ -12,6 +12,7 @@ Format gmsh_format();    ///< .msh 2.2 and 4.1, text and binary
 Format medit_format();   ///< .mesh
 Format vtu_format();     ///< VTK's XML unstructured grid
 Format vtk_format();     ///< VTK's legacy files
+Format vtkhdf_format();  ///< .vtkhdf; only where HDF5 is built in
 Format off_format();
 Format obj_format();
 Format ply_format();

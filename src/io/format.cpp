@@ -21,6 +21,9 @@ const std::vector<Format> kFormats{
     tetgen_format(),        vega_format(),        gmsh_format(),    medit_format(), vtu_format(),
     vtk_format(),           off_format(),         obj_format(),     ply_format(),   stl_format(),
     su2_format(),           abaqus_format(),      nastran_format(), unv_format(),
+#ifdef MESHORDER_HAS_HDF5
+    vtkhdf_format(),
+#endif
 #ifdef MESHORDER_HAS_NETCDF
     exodus_format(),
 #endif
@@ -52,6 +55,7 @@ const std::vector<LackingFormat> kLackingFormats{
     {"XDMF", {".xdmf", ".xmf"}, "HDF5 and pugixml", "MESHORDER_HDF5"},
 #endif
 #ifndef MESHORDER_HAS_HDF5
+    {"VTKHDF", {".vtkhdf"}, "HDF5", "MESHORDER_HDF5"},
     {"MED", {".med"}, "HDF5", "MESHORDER_HDF5"},
 #endif
 #ifndef MESHORDER_HAS_CGNS
@@ -102,6 +106,11 @@ bool is_exodus(std::string_view bytes) {
 bool is_med(std::string_view bytes) {
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && (bytes.find("INFOS_GENERALES") != std::string_view::npos ||
                                                     bytes.find("ENS_MAA") != std::string_view::npos);
+}
+
+/// Returns whether the bytes are a file of HDF5 with the group that VTKHDF gives.
+bool is_vtkhdf(std::string_view bytes) {
+  return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("VTKHDF") != std::string_view::npos;
 }
 
 /// Returns whether the bytes are a file of ADF, or one of HDF5 with the node that all of CGNS have.
@@ -162,6 +171,7 @@ std::string_view format_that_begins(std::string_view bytes) {
   if (is_exodus(bytes)) return "Exodus";
   if (is_bulk_data(bytes)) return "Nastran";
   if (is_med(bytes)) return "MED";
+  if (is_vtkhdf(bytes)) return "VTKHDF";
   while (!bytes.empty()) {
     std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
     bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));

@@ -18,7 +18,6 @@ constexpr std::array kOtherFormats{
     OtherFormat{".vtm", "lists several datasets", kOneGrid},
     OtherFormat{".vtmb", "lists several datasets", kOneGrid},
     OtherFormat{".pvd", "lists the steps of a time series", "give one of its .vtu files"},
-    OtherFormat{".vtkhdf", "is a VTKHDF file", "save it as .vtu, in ParaView by Save Data"},
     OtherFormat{".vti", kStructured, kGridOrder},
     OtherFormat{".vts", kStructured, kGridOrder},
     OtherFormat{".vtr", kStructured, kGridOrder},

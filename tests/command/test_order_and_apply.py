@@ -130,7 +130,7 @@ def write_boxes(folder):
 def test_files_do_not_hold_when_they_were_written(command, tmp_path):
     """CGNS alone does: its library puts the time into every node."""
     write_boxes(tmp_path)
-    extensions = ["vtu", "vtk", "msh", "node", "mesh", "veg", "su2", "xdmf", "med", "e", "bdf", "inp"]
+    extensions = ["vtu", "vtk", "msh", "node", "mesh", "veg", "su2", "xdmf", "med", "vtkhdf", "e", "bdf", "inp"]
     written = []
     for wait in (0, 1.1):  # HDF5 counts whole seconds
         time.sleep(wait)
@@ -141,7 +141,7 @@ def test_files_do_not_hold_when_they_were_written(command, tmp_path):
     assert [name for name in written[0] if written[1][name] != written[0][name]] == []
 
 
-@pytest.mark.parametrize("extension", ["vtu", "vtk", "msh", "node", "mesh", "veg", "su2", "xdmf", "cgns", "med"])
+@pytest.mark.parametrize("extension", ["vtu", "vtk", "msh", "node", "mesh", "veg", "su2", "xdmf", "cgns", "med", "vtkhdf"])
 def test_maps_know_whether_they_were_applied(command, tmp_path, extension):
     write_boxes(tmp_path)
     made = command.json("order", "a.vtu", "-o", f"b.{extension}", "--vertices", "rcm", "--maps", "m")["maps"]

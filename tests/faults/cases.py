@@ -27,7 +27,7 @@ class Line:
 
 
 SCRAMBLED = ("--vertices", "scrambled", "--elements", "scrambled", "--seed", 3)
-SOLIDS = ("node", "veg", "msh", "mesh", "vtu", "vtk", "su2", "inp", "bdf", "unv", "exo", "xdmf", "cgns", "med")
+SOLIDS = ("node", "veg", "msh", "mesh", "vtu", "vtk", "su2", "inp", "bdf", "unv", "exo", "xdmf", "cgns", "med", "vtkhdf")
 SURFACES = ("off", "obj", "ply", "stl")
 SCENARIO = {
     "name": "small", "title": "A small cube falls", "mesh": "mesh.node", "scale": {"longest_side": 2},

@@ -204,10 +204,26 @@ std::size_t width_of_texts(hid_t type) {
   return count <= kMostCharacters ? static_cast<std::size_t>(count) : 0;
 }
 
+/// Returns the type of texts of any length.
+Handle type_of_strings() {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.id(), H5T_VARIABLE);
+  return type;
+}
+
 /// Returns a type of so many characters, as an array of small numbers.
 Handle type_of_texts(std::size_t width) {
   const hsize_t count = width;
   return {H5Tarray_create2(H5T_STD_I8LE, 1, &count), H5Tclose};
+}
+
+/// Returns the most bytes that the values of a dataset may take: no filter of HDF5 makes more than some
+/// thousand bytes of one.
+std::uint64_t most_bytes(hid_t dataset) {
+  constexpr std::uint64_t kMostFromOneByte = 4096;
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  const std::uint64_t stored = H5Dget_storage_size(dataset);
+  return H5Pget_layout(creation.id()) == H5D_CHUNKED ? kMostFromOneByte * (stored + 1) : stored;
 }
 
 std::string without_padding(std::string_view text) {
@@ -425,12 +441,11 @@ DatasetInfo File::info(const std::string& path) const {
     fail(path, fmt::format("is compressed by the filter '{}', which this HDF5 lacks", filter),
          "decompress it (h5repack -f NONE)");
   }
-  // no filter of HDF5 makes more than some thousand bytes of one
-  constexpr std::uint64_t kMostFromOneByte = 4096;
-  const std::uint64_t stored = H5Dget_storage_size(dataset.id());
-  const std::uint64_t possible = layout == H5D_CHUNKED ? kMostFromOneByte * (stored + 1) : stored;
+  const std::uint64_t possible = most_bytes(dataset.id());
   if (info.size() > possible / std::min<std::size_t>(H5Tget_size(type.id()), 8) && info.size() > 0) {
-    fail(path, fmt::format("claims {} values, but only {} bytes are there", info.size(), stored),
+    fail(path,
+         fmt::format("claims {} values, but only {} bytes are there", info.size(),
+                     H5Dget_storage_size(dataset.id())),
          "it may never have been written, or the file is damaged");
   }
   return info;
@@ -480,6 +495,21 @@ std::vector<Index> File::read_indices(const std::string& path) const {
   resize_in_steps(values, size);
   if (!values.empty()) read(path, H5T_NATIVE_INT32, values.data());
   return values;
+}
+
+std::optional<std::uint64_t> File::place_of_values(const std::string& path) const {
+  const Session session;
+  const DatasetInfo of = info(path);
+  if (of.size() == 0) return 0;
+  const Handle dataset = open_dataset(path);
+  const Handle type(H5Dget_type(dataset.id()), H5Tclose);
+  const Handle creation(H5Dget_create_plist(dataset.id()), H5Pclose);
+  if (H5Pget_layout(creation.id()) != H5D_CONTIGUOUS ||
+      H5Tequal(type.id(), native_types()[of.alternative]) <= 0)
+    return {};
+  const haddr_t place = H5Dget_offset(dataset.id());
+  if (place == HADDR_UNDEF) return {};
+  return place;
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
@@ -565,17 +595,48 @@ std::vector<std::string> File::names(const std::string& group) const {
   return names_in(object.id());
 }
 
+/// Returns texts of any length, without what follows a zero byte.
+std::vector<std::string> File::read_strings(const std::string& path, const Handle& dataset,
+                                            const Handle& type) const {
+  constexpr std::uint64_t kReference = 16;  // bytes of a dataset for each text
+  const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+  const hssize_t rows = H5Sget_simple_extent_npoints(space.id());
+  if (rows < 0) fail(path, "has no values", "the file may be damaged");
+  const auto count = static_cast<std::uint64_t>(rows);
+  if (count > most_bytes(dataset.id()) / kReference) {
+    fail(path,
+         fmt::format("claims {} texts, but only {} bytes are there", rows, H5Dget_storage_size(dataset.id())),
+         "it may never have been written, or the file is damaged");
+  }
+  hsize_t bytes = 0;
+  const bool is_sized = count == 0 || H5Dvlen_get_buf_size(dataset.id(), type.id(), space.id(), &bytes) >= 0;
+  claim(path, bytes_for(count, sizeof(std::string) + sizeof(char*)) + bytes);
+  std::vector<char*> pointers(static_cast<std::size_t>(rows), nullptr);
+  if (!is_sized || (!pointers.empty() &&
+                    H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) < 0)) {
+    const std::string cause = last_cause();
+    if (!pointers.empty()) H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, pointers.data());
+    fail(path, fmt::format("cannot be read ({})", cause), "the file may be damaged or cut short");
+  }
+  std::vector<std::string> texts;
+  texts.reserve(pointers.size());
+  for (const char* const text : pointers) texts.emplace_back(text == nullptr ? "" : text);
+  if (!pointers.empty()) H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, pointers.data());
+  return texts;
+}
+
 std::vector<std::string> File::read_texts(const std::string& path) const {
   const Session session;
   const Handle dataset = open_dataset(path);
   const Handle type(H5Dget_type(dataset.id()), H5Tclose);
   const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+  if (H5Tis_variable_str(type.id()) > 0) return read_strings(path, dataset, type);
   const std::size_t width = width_of_texts(type.id());
   const hssize_t rows = H5Sget_simple_extent_npoints(space.id());
   if (width == 0 || rows < 0) fail(path, "does not hold texts of one length", "the file may be damaged");
-  const std::uint64_t stored = H5Dget_storage_size(dataset.id());
-  if (static_cast<std::uint64_t>(rows) > stored / width) {
-    fail(path, fmt::format("claims {} texts, but only {} bytes are there", rows, stored),
+  if (static_cast<std::uint64_t>(rows) > most_bytes(dataset.id()) / width) {
+    fail(path,
+         fmt::format("claims {} texts, but only {} bytes are there", rows, H5Dget_storage_size(dataset.id())),
          "it may never have been written, or the file is damaged");
   }
   claim(path, bytes_for(static_cast<std::uint64_t>(rows), width + sizeof(std::string)));
@@ -588,6 +649,13 @@ std::vector<std::string> File::read_texts(const std::string& path) const {
   return texts;
 }
 
+bool File::has_texts(const std::string& path) const {
+  const Session session;
+  const Handle dataset(has(path) ? H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+  const Handle type(dataset.is_open() ? H5Dget_type(dataset.id()) : -1, H5Tclose);
+  return type.is_open() && (H5Tis_variable_str(type.id()) > 0 || width_of_texts(type.id()) > 0);
+}
+
 Handle File::open_attribute(const std::string& path, const std::string& name) const {
   const Handle object = open_object(path);
   if (!object.is_open() || H5Aexists(object.id(), name.c_str()) <= 0) return {};
@@ -595,18 +663,26 @@ Handle File::open_attribute(const std::string& path, const std::string& name) co
 }
 
 std::optional<std::int64_t> File::integer_attribute(const std::string& path, const std::string& name) const {
+  const std::vector<std::int64_t> values = integers_attribute(path, name);
+  if (values.size() != 1) return {};
+  return values.front();
+}
+
+std::vector<std::int64_t> File::integers_attribute(const std::string& path, const std::string& name) const {
   const Session session;
   const Handle attribute = open_attribute(path, name);
   if (!attribute.is_open()) return {};
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
   const Handle space(H5Aget_space(attribute.id()), H5Sclose);
   constexpr std::size_t kFirstWhole = 2;
+  constexpr hssize_t kMost = 64;
   const std::size_t alternative = alternative_of(type.id());
   const bool is_whole = alternative >= kFirstWhole && alternative < native_types().size();
-  if (!is_whole || H5Sget_simple_extent_npoints(space.id()) != 1) return {};
-  std::int64_t value = 0;
-  if (H5Aread(attribute.id(), H5T_NATIVE_INT64, &value) < 0) return {};
-  return value;
+  const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+  if (!is_whole || count < 1 || count > kMost) return {};
+  std::vector<std::int64_t> values(static_cast<std::size_t>(count));
+  if (H5Aread(attribute.id(), H5T_NATIVE_INT64, values.data()) < 0) return {};
+  return values;
 }
 
 std::optional<std::string> File::text_attribute(const std::string& path, const std::string& name) const {
@@ -644,13 +720,41 @@ void File::write_texts(const std::string& path, std::span<const std::string> tex
   H5Ldelete(file_.id(), aside.c_str(), H5P_DEFAULT);
 }
 
-void File::make_group(const std::string& path) {
+void File::write_strings(const std::string& path, std::span<const std::string> texts) {
+  const Session session;
+  std::vector<const char*> pointers;
+  pointers.reserve(texts.size());
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  const Handle type = type_of_strings();
+  write(path, type.id(), pointers.data(), texts.size(), {texts.size()});
+}
+
+void File::make_room(const std::string& path, std::size_t alternative,
+                     const std::vector<std::uint64_t>& shape) {
+  const Session session;
+  const std::vector<hsize_t> dims(shape.begin(), shape.end());
+  const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links.id(), 1);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  forget_times(creation);
+  H5Pset_alloc_time(creation.id(), H5D_ALLOC_TIME_EARLY);
+  H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER);
+  const Handle dataset(H5Dcreate2(file_.id(), path.c_str(), native_types()[alternative], space.id(),
+                                  links.id(), creation.id(), H5P_DEFAULT),
+                       H5Dclose);
+  if (!dataset.is_open())
+    fail(path, fmt::format("cannot be written ({})", last_cause()), "is the disk full?");
+}
+
+void File::make_group(const std::string& path, LinkOrder order) {
   const Session session;
   if (has(path)) return;
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links.id(), 1);
   const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-  H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  if (order == LinkOrder::made)
+    H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   const Handle group(H5Gcreate2(file_.id(), path.c_str(), links.id(), creation.id(), H5P_DEFAULT), H5Gclose);
   if (!group.is_open()) {
     throw InputError(name_, fmt::format("the group '{}' cannot be written ({})", path, last_cause()),
@@ -658,12 +762,11 @@ void File::make_group(const std::string& path) {
   }
 }
 
-void File::put_attribute(const std::string& path, const std::string& name, hid_t type, hid_t memory,
-                         const void* value) {
+void File::put_attribute(const std::string& path, const std::string& name, hid_t space, hid_t type,
+                         hid_t memory, const void* value) {
   const Handle object = open_object(path);
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   if (H5Aexists(object.id(), name.c_str()) > 0) H5Adelete(object.id(), name.c_str());
-  const Handle attribute(H5Acreate2(object.id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT),
+  const Handle attribute(H5Acreate2(object.id(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose);
   if (attribute.is_open() && H5Awrite(attribute.id(), memory, value) >= 0) return;
   throw InputError(name_,
@@ -680,19 +783,30 @@ void File::set_attribute(const std::string& path, const std::string& name, std::
     return is_known ? std::move(type) : Handle(H5Tcopy(H5T_STD_I64LE), H5Tclose);
   };
   const Handle type = type_of_old();
-  put_attribute(path, name, type.id(), H5T_NATIVE_INT64, &value);
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  put_attribute(path, name, space.id(), type.id(), H5T_NATIVE_INT64, &value);
 }
 
 void File::set_attribute(const std::string& path, const std::string& name, double value) {
   const Session session;
-  put_attribute(path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  put_attribute(path, name, space.id(), H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
 }
 
 void File::set_attribute(const std::string& path, const std::string& name, const std::string& value) {
   const Session session;
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.id(), value.size() + 1);
-  put_attribute(path, name, type.id(), type.id(), value.c_str());
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  put_attribute(path, name, space.id(), type.id(), type.id(), value.c_str());
+}
+
+void File::set_attribute(const std::string& path, const std::string& name,
+                         std::span<const std::int64_t> values) {
+  const Session session;
+  const hsize_t count = values.size();
+  const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  put_attribute(path, name, space.id(), H5T_STD_I64LE, H5T_NATIVE_INT64, values.data());
 }
 
 void File::move(const std::string& path, const std::string& new_path) {

@@ -87,6 +87,9 @@ class File {
   [[nodiscard]] Values read(const std::string& path) const;
   /// Returns whole numbers as indices, those out of range as the limit that they exceed, which no index is.
   [[nodiscard]] std::vector<Index> read_indices(const std::string& path) const;
+  /// Returns the byte of the file where the values of a dataset that `info` accepts begin, one after another
+  /// in this machine's order of bytes, 0 for a dataset without values; nothing if they do not stand there so.
+  [[nodiscard]] std::optional<std::uint64_t> place_of_values(const std::string& path) const;
   /// Returns the paths of all datasets with at least one dimension, and the length of their first.
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> datasets() const;
 
@@ -95,12 +98,17 @@ class File {
   /// Returns the names in a group, ascending; none if there is no such group.
   [[nodiscard]] std::vector<std::string> names(const std::string& group) const;
   /// Returns the texts of a dataset whose rows are arrays of characters (at most 1,024), without the blanks
-  /// and zero bytes at their ends.
+  /// and zero bytes at their ends, or texts of any length.
   [[nodiscard]] std::vector<std::string> read_texts(const std::string& path) const;
+  /// Returns whether there is a dataset that `read_texts` understands.
+  [[nodiscard]] bool has_texts(const std::string& path) const;
   /// Returns a whole number or a text that belongs to a group or a dataset; nothing if it has no such
   /// attribute or one of another kind.
   [[nodiscard]] std::optional<std::int64_t> integer_attribute(const std::string& path,
                                                               const std::string& name) const;
+  /// Returns all whole numbers of an attribute, at most 64; none if there is no such attribute.
+  [[nodiscard]] std::vector<std::int64_t> integers_attribute(const std::string& path,
+                                                             const std::string& name) const;
   [[nodiscard]] std::optional<std::string> text_attribute(const std::string& path,
                                                           const std::string& name) const;
 
@@ -113,13 +121,20 @@ class File {
   /// keeps its attributes.
   void write_texts(const std::string& path, std::span<const std::string> texts, std::size_t width,
                    char filling = '\0');
+  /// Makes a dataset of texts of any length, in ASCII by its type, whatever their characters are.
+  void write_strings(const std::string& path, std::span<const std::string> texts);
+  /// Makes a dataset of numbers of a type, as an alternative of Values, with room in the file that is not
+  /// written to.
+  void make_room(const std::string& path, std::size_t alternative, const std::vector<std::uint64_t>& shape);
   /// Makes a group, and those around it, where it is not there. It keeps the order in which its links are
-  /// made.
-  void make_group(const std::string& path);
+  /// made, or has them by their names.
+  enum class LinkOrder : std::uint8_t { made, names };
+  void make_group(const std::string& path, LinkOrder order = LinkOrder::made);
   /// Gives a group or a dataset an attribute. A whole number keeps the number type that the attribute has.
   void set_attribute(const std::string& path, const std::string& name, std::int64_t value);
   void set_attribute(const std::string& path, const std::string& name, double value);
   void set_attribute(const std::string& path, const std::string& name, const std::string& value);
+  void set_attribute(const std::string& path, const std::string& name, std::span<const std::int64_t> values);
   /// Gives a group or a dataset another path.
   void move(const std::string& path, const std::string& new_path);
   /// Removes a group or a dataset if it is there.
@@ -138,10 +153,12 @@ class File {
   [[nodiscard]] Handle open_dataset(const std::string& path) const;
   [[nodiscard]] Handle open_object(const std::string& path) const;
   [[nodiscard]] Handle open_attribute(const std::string& path, const std::string& name) const;
-  void put_attribute(const std::string& path, const std::string& name, hid_t type, hid_t memory,
+  void put_attribute(const std::string& path, const std::string& name, hid_t space, hid_t type, hid_t memory,
                      const void* value);
   void flush() const;
   void read(const std::string& path, hid_t type, void* values) const;
+  [[nodiscard]] std::vector<std::string> read_strings(const std::string& path, const Handle& dataset,
+                                                      const Handle& type) const;
   void claim(const std::string& path, std::uint64_t bytes) const;
   void write(const std::string& path, hid_t type, const void* values, std::uint64_t count,
              const std::vector<std::uint64_t>& shape);

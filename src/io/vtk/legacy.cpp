@@ -73,7 +73,9 @@ bool fits_polydata(const Cells& cells, const std::vector<std::uint8_t>& types) {
 class LegacyWriter {
  public:
   LegacyWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
-      : from_(mesh, notes, false), layout_(from_.metadata.legacy.value_or(LegacyLayout{})), out_(path) {}
+      : from_(mesh, notes, NamePlace::legacy),
+        layout_(from_.metadata.legacy.value_or(LegacyLayout{})),
+        out_(path) {}
 
   void write() {
     choose_layout();

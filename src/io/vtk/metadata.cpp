@@ -58,12 +58,10 @@ std::vector<Number> filled(const DataArray& array, const std::vector<Number>& va
 /// Makes array names distinct, as VTK looks arrays up by name.
 class Names {
  public:
-  /// Names in XML cannot have control characters; in other files they are encoded.
-  explicit Names(bool in_xml) : in_xml_(in_xml) {}
+  explicit Names(NamePlace place) : place_(place) {}
 
   std::string unused(const std::string& wanted, Association association, Notes& notes) {
-    std::string held = wanted.empty() ? "array" : in_xml_ ? xml_text(wanted) : wanted;
-    if (!in_xml_ && held == "NULL_ARRAY") held += '_';  // readers skip an array of this name
+    const std::string held = wanted.empty() ? "array" : held_there(wanted);
     std::string name = held;
     for (int i = 2; !taken_.emplace(association, name).second; ++i) name = held + "_" + std::to_string(i);
     if (name != wanted)
@@ -73,7 +71,17 @@ class Names {
   }
 
  private:
-  bool in_xml_;
+  /// Names in XML cannot have control characters; in legacy files they are encoded. In HDF5 a slash parts
+  /// groups, a dot is the group itself, and a zero byte ends a name.
+  [[nodiscard]] std::string held_there(std::string name) const {
+    if (place_ == NamePlace::xml) return xml_text(name);
+    if (place_ == NamePlace::legacy) return name == "NULL_ARRAY" ? name + '_' : name;  // readers skip it
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == '/' || c == '\0'; }, '_');
+    return name == "." ? "_" : name;
+  }
+
+  NamePlace place_;
   std::set<std::pair<Association, std::string>> taken_;
 };
 
@@ -160,9 +168,9 @@ bool is_from_vtk(const Mesh& mesh) {
   return dynamic_cast<const Metadata*>(mesh.format_metadata.get()) != nullptr;
 }
 
-WriteContext::WriteContext(const Mesh& written, Notes& warnings, bool in_xml)
+WriteContext::WriteContext(const Mesh& written, Notes& warnings, NamePlace names)
     : mesh(written), notes(warnings), metadata(metadata_of(mesh, notes)), types(cell_types(mesh)) {
-  collect_arrays(in_xml);
+  collect_arrays(names);
 }
 
 void WriteContext::add_made(DataArray array) {
@@ -170,8 +178,8 @@ void WriteContext::add_made(DataArray array) {
   arrays.push_back(made_.back().get());
 }
 
-void WriteContext::collect_arrays(bool in_xml) {
-  Names names(in_xml);
+void WriteContext::collect_arrays(NamePlace place) {
+  Names names(place);
   for (const DataArray& array : mesh.data) {
     // what the reader kept is written as the cell types; an array that only has its name is one
     const auto* const kept = std::get_if<std::vector<std::uint8_t>>(&array.values);
@@ -208,6 +216,17 @@ void WriteContext::collect_arrays(bool in_xml) {
   };
   add_ids(mesh.vertex_ids, "vertex_id", Association::vertices);
   add_ids(mesh.cell_ids, "cell_id", Association::cells);
+}
+
+const ArrayRole* WriteContext::role(Association association, Role role) const {
+  const auto found = std::find_if(metadata.roles.begin(), metadata.roles.end(), [&](const ArrayRole& known) {
+    const Role kind = known.role == Role::color_scalars ? Role::scalars : known.role;
+    const bool there = std::any_of(arrays.begin(), arrays.end(), [&](const DataArray* array) {
+      return array->association == association && array->name == known.array;
+    });
+    return known.association == association && kind == role && there;
+  });
+  return found == metadata.roles.end() ? nullptr : &*found;
 }
 
 bool WriteContext::points_are_floats() const {

@@ -20,7 +20,7 @@
 #include <variant>
 #include <vector>
 
-/// Declarations shared by the readers and writers of VTK's two formats, .vtu and legacy .vtk.
+/// Declarations shared by the readers and writers of VTK's formats, .vtu, .vtkhdf and legacy .vtk.
 namespace meshorder::vtk {
 
 // ---- number types
@@ -219,18 +219,23 @@ Mesh read_vtu(const FilePath& path, Notes& notes);
 /// their order. `count` is the number of all vertices or cells.
 Values marks_of(const EntitySet& set, Index count);
 
-/// The input of both writers, made from a mesh. Borrows the mesh and the notes.
+/// Where a file has the names of its arrays, which tells the characters that they may have.
+enum class NamePlace : std::uint8_t { legacy, xml, hdf5 };
+
+/// The input of the writers, made from a mesh. Borrows the mesh and the notes.
 ///
 /// VTK's formats hold full arrays only: partial arrays are filled up, sets become arrays "set:NAME" and ids
 /// arrays "vertex_id" and "cell_id"; all of it noted. O(size of the arrays that are made).
 struct WriteContext {
   /// Of a mesh whose cells VTK's formats hold.
-  /// `in_xml`: the names of arrays are written in XML, which cannot hold all characters.
-  WriteContext(const Mesh& written, Notes& warnings, bool in_xml);
+  WriteContext(const Mesh& written, Notes& warnings, NamePlace names);
 
   /// Returns the cells in VTK's order of vertices; of VTK before version 9 if `old_hexahedra`. The result
   /// belongs to the mesh or to this object.
   const Cells& cells(bool old_hexahedra = false);
+
+  /// Returns the array that is written with that role, null if there is none.
+  [[nodiscard]] const ArrayRole* role(Association association, Role role) const;
 
   /// Whether the points were floats in their file and still can be written so without loss.
   [[nodiscard]] bool points_are_floats() const;
@@ -242,7 +247,7 @@ struct WriteContext {
   std::vector<const DataArray*> arrays;  ///< full arrays with distinct names, in order
 
  private:
-  void collect_arrays(bool in_xml);
+  void collect_arrays(NamePlace place);
   void add_made(DataArray array);
 
   std::vector<std::unique_ptr<DataArray>> made_;  // arrays that are not the mesh's

@@ -54,7 +54,9 @@ struct Section {
 class VtuWriter {
  public:
   VtuWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
-      : from_(mesh, notes, true), encoding_(from_.metadata.vtu.value_or(VtuEncoding{})), out_(path) {
+      : from_(mesh, notes, NamePlace::xml),
+        encoding_(from_.metadata.vtu.value_or(VtuEncoding{})),
+        out_(path) {
     if (VtuCompressor::available(encoding_.compressor)) return;
     if (encoding_.mode != Mode::ascii)
       notes.push_back(fmt::format("written without compression: this build of meshorder lacks {} ({}=ON)",
@@ -123,17 +125,8 @@ class VtuWriter {
   [[nodiscard]] std::string roles(Association association) const {
     std::string result;
     for (std::size_t role = 0; role < kXmlRoles.size(); ++role) {
-      const auto found =
-          std::find_if(from_.metadata.roles.begin(), from_.metadata.roles.end(), [&](const ArrayRole& r) {
-            const Role kind = r.role == Role::color_scalars ? Role::scalars : r.role;
-            const bool there =
-                std::any_of(from_.arrays.begin(), from_.arrays.end(), [&](const DataArray* array) {
-                  return array->association == association && array->name == r.array;
-                });
-            return r.association == association && kind == static_cast<Role>(role) && there;
-          });
-      if (found != from_.metadata.roles.end())
-        result += fmt::format(" {}=\"{}\"", kXmlRoles[role], xml_escaped(found->array));
+      const ArrayRole* const found = from_.role(association, static_cast<Role>(role));
+      if (found != nullptr) result += fmt::format(" {}=\"{}\"", kXmlRoles[role], xml_escaped(found->array));
     }
     return result;
   }

@@ -1,0 +1,381 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Reader of VTKHDF's unstructured grids. VTK's own reader is not used: it trusts the counts of a damaged
+// file.
+#include "base/large_pages.hpp"
+#include "io/hdf5/hdf5_file.hpp"
+#include "io/hdf5/session.hpp"
+#include "io/vtkhdf/vtkhdf.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <set>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace meshorder::vtkhdf {
+namespace {
+
+constexpr std::string_view kDamaged = "the file may be damaged";
+
+/// What the datasets of counts say of a partition.
+struct Partition {
+  std::int64_t points = 0;
+  std::int64_t cells = 0;
+  std::int64_t entries = 0;  ///< of the connectivity
+};
+
+std::string path_in(std::string_view group, std::string_view name) {
+  return fmt::format("{}/{}", group, name);
+}
+std::string path_of(std::string_view dataset) { return path_in(kRoot, dataset); }
+
+class VtkHdfReader {
+ public:
+  VtkHdfReader(const FilePath& path, Notes& notes) : file_(hdf5::File::open(path)), notes_(notes) {}
+
+  Mesh read() {
+    check_kind();
+    read_counts();
+    read_points();
+    read_cells();
+    read_fields();
+    for (const Association association : {Association::vertices, Association::cells}) read_data(association);
+    note_others();
+    mesh_.format_metadata = metadata_;
+    return std::move(mesh_);
+  }
+
+ private:
+  [[nodiscard]] InputError error(std::string_view path, const std::string& what,
+                                 std::string_view remedy = kDamaged) const {
+    return {file_.name(), fmt::format("the dataset '{}' {}", path, what), std::string(remedy)};
+  }
+
+  // ---- kind and counts
+
+  void check_kind() const {
+    const std::string root(kRoot);
+    if (!file_.has(root)) {
+      throw InputError(file_.name(), "has no group 'VTKHDF'", "a file of VTKHDF has its mesh in this group");
+    }
+    const std::vector<std::int64_t> version = file_.integers_attribute(root, "Version");
+    if (version.empty() || version.front() < 1 || version.front() > 2) {
+      throw InputError(file_.name(),
+                       version.empty() ? "has no version of VTKHDF"
+                                       : fmt::format("is of version {} of VTKHDF", version.front()),
+                       "the group 'VTKHDF' has an attribute Version, [1, 0] or [2, n]");
+    }
+    const std::optional<std::string> type = file_.text_attribute(root, "Type");
+    if (!type) {
+      throw InputError(file_.name(), "the group 'VTKHDF' has no attribute Type of fixed length",
+                       "VTK requires one, ASCII: UnstructuredGrid");
+    }
+    if (*type != kType) {
+      throw InputError(file_.name(), fmt::format("holds VTK's {}", type->substr(0, 40)),
+                       "save it as one UnstructuredGrid, in ParaView by Append Datasets and Save Data");
+    }
+    const std::optional<std::int64_t> steps = file_.integer_attribute(path_of("Steps"), "NSteps");
+    if (steps && *steps > 1) {
+      throw InputError(file_.name(), fmt::format("holds {} time steps", *steps),
+                       "save each step as a file of its own");
+    }
+  }
+
+  /// Reads one of the datasets with a count of each partition.
+  [[nodiscard]] std::vector<std::int64_t> counts(std::string_view dataset) const {
+    const std::string path = path_of(dataset);
+    const Values values = file_.read(path);
+    std::vector<std::int64_t> result = vtk::integers_of<std::int64_t>(values);
+    if (values.index() <= 1) throw error(path, "does not hold whole numbers");
+    if (const auto low = std::find_if(result.begin(), result.end(), [](std::int64_t n) { return n < 0; });
+        low != result.end()) {
+      throw error(path, fmt::format("has the count {}", *low));
+    }
+    return result;
+  }
+
+  void read_counts() {
+    const std::vector<std::int64_t> points = counts("NumberOfPoints");
+    const std::vector<std::int64_t> cells = counts("NumberOfCells");
+    const std::vector<std::int64_t> entries = counts("NumberOfConnectivityIds");
+    if (points.empty()) throw error(path_of("NumberOfPoints"), "has no count", "one for each partition");
+    for (const auto& [name, size] :
+         {std::pair{"NumberOfCells", cells.size()}, {"NumberOfConnectivityIds", entries.size()}}) {
+      if (size != points.size()) {
+        throw error(path_of(name), fmt::format("has {} counts", size),
+                    fmt::format("there are {} partitions by NumberOfPoints", points.size()));
+      }
+    }
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      partitions_.push_back({points[p], cells[p], entries[p]});
+      if (points[p] > kMaxIndex - all_.points || cells[p] > kMaxIndex - all_.cells) {
+        throw InputError(file_.name(), "the partitions have too many points or cells",
+                         "at most 2147483647 are possible");
+      }
+      all_.points += points[p];
+      all_.cells += cells[p];
+      if (entries[p] > INT64_MAX - all_.entries)
+        throw error(path_of("NumberOfConnectivityIds"), "has counts that are too large");
+      all_.entries += entries[p];
+    }
+    const auto full = std::count_if(partitions_.begin(), partitions_.end(),
+                                    [](const Partition& p) { return p.points > 0 || p.cells > 0; });
+    if (full > 1) {
+      notes_.push_back(fmt::format(
+          "the {} partitions of the file became one; points that several of them have stay apart", full));
+    }
+  }
+
+  // ---- the mesh
+
+  /// Throws unless a dataset has so many rows of so many numbers.
+  [[nodiscard]] hdf5::DatasetInfo check_rows(const std::string& path, std::int64_t rows,
+                                             std::uint64_t width) const {
+    hdf5::DatasetInfo info = file_.info(path);
+    const bool fits = width == 1 ? info.shape.size() == 1 : info.shape.size() == 2 && info.shape[1] == width;
+    if (!fits || std::cmp_not_equal(info.shape.front(), rows)) {
+      throw error(path, fmt::format("has the shape ({})", fmt::join(info.shape, ", ")),
+                  fmt::format("{} rows of {} are needed, by the counts of the partitions", rows, width));
+    }
+    return info;
+  }
+
+  [[nodiscard]] Values read_rows(const std::string& path, std::int64_t rows, std::uint64_t width) const {
+    (void)check_rows(path, rows, width);
+    return file_.read(path);
+  }
+
+  void read_points() {
+    const std::string path = path_of("Points");
+    const Values values = read_rows(path, all_.points, 3);
+    metadata_->float_points = std::holds_alternative<std::vector<float>>(values);
+    mesh_.points.resize(static_cast<std::size_t>(all_.points));
+    std::visit(
+        [&](const auto& numbers) {
+          using Number = typename std::decay_t<decltype(numbers)>::value_type;
+          if constexpr (!std::is_same_v<Number, std::string>) {
+            if constexpr (!std::is_floating_point_v<Number>)
+              notes_.push_back("the points are integers and are stored as double");
+            for (std::size_t i = 0; i < numbers.size(); ++i) {
+              const auto x = static_cast<double>(numbers[i]);
+              if (!std::isfinite(x)) {
+                throw error(
+                    path,
+                    fmt::format("has a coordinate of point {} (counted from 0) that is not finite", i / 3),
+                    "finite numbers are needed");
+              }
+              mesh_.points[i / 3][i % 3] = x;
+            }
+          }
+        },
+        values);
+  }
+
+  /// Calls `take(partition, i, number)` for every number of a dataset of integers, of which a partition has
+  /// `count(partition)`, after it has made room for all of them in `target`.
+  template <class Target, class Count, class Take>
+  void for_integers(const std::string& path, std::int64_t all, std::vector<Target>& target,
+                    const Count& count, const Take& take) const {
+    const Values values = read_rows(path, all, 1);
+    reserve_large(target, static_cast<std::size_t>(all));
+    std::visit(
+        [&](const auto& numbers) {
+          using Number = typename std::decay_t<decltype(numbers)>::value_type;
+          if constexpr (std::is_integral_v<Number>) {
+            std::size_t at = 0;
+            for (const Partition& partition : partitions_) {
+              const std::int64_t n = count(partition);
+              for (std::int64_t i = 0; i < n; ++i) take(partition, i, numbers[at++]);
+            }
+          } else {
+            throw error(path, "does not hold whole numbers");
+          }
+        },
+        values);
+  }
+
+  void read_cells() {
+    vtk::FileCells cells;
+    const std::string offsets = path_of("Offsets");
+    std::int64_t last = 0;
+    Offset first_entry = 0;
+    const auto count = std::ssize(partitions_);
+    for_integers(
+        offsets, all_.cells + count, cells.offsets, [](const Partition& p) { return p.cells + 1; },
+        [&](const Partition& partition, std::int64_t i, auto end) {
+          if (i == 0 && end != 0) {
+            throw error(offsets, fmt::format("begins a partition with {}", end),
+                        "the first cell begins at 0");
+          }
+          if (i == 0) {
+            last = 0;
+          } else if (!std::in_range<std::int64_t>(end) || std::cmp_less(end, last)) {
+            throw error(offsets, fmt::format("ends a cell at {}, before it begins at {}", end, last),
+                        "offsets must ascend");
+          } else {
+            last = static_cast<std::int64_t>(end);
+            if (last > partition.entries) break_off(offsets, last, partition.entries);
+            cells.offsets.push_back(first_entry + last);
+          }
+          if (i < partition.cells) return;
+          if (last != partition.entries) break_off(offsets, last, partition.entries);
+          first_entry += partition.entries;
+        });
+
+    const std::string connectivity = path_of("Connectivity");
+    Index first_point = 0;
+    const Partition* of = partitions_.data();
+    for_integers(
+        connectivity, all_.entries, cells.vertices, [](const Partition& p) { return p.entries; },
+        [&](const Partition& partition, std::int64_t /*i*/, auto point) {
+          for (; of != &partition; ++of) first_point += static_cast<Index>(of->points);
+          if (std::cmp_less(point, 0) || std::cmp_greater_equal(point, partition.points)) {
+            throw error(connectivity, fmt::format("names the point {}", point),
+                        fmt::format("the partition has points 0 to {}", partition.points - 1));
+          }
+          cells.vertices.push_back(first_point + static_cast<Index>(point));
+        });
+
+    const std::string types = path_of("Types");
+    for_integers(
+        types, all_.cells, cells.types, [](const Partition& p) { return p.cells; },
+        [&](const Partition& /*partition*/, std::int64_t /*i*/, auto type) {
+          if (std::cmp_less(type, 0) || std::cmp_greater(type, 255))
+            throw error(types, fmt::format("has the type {}", type), "VTK's types run from 0 to 81");
+          cells.types.push_back(static_cast<std::uint8_t>(type));
+        });
+    metadata_->inward_wedges = take_cells(
+        mesh_, std::move(cells),
+        [&](const std::string& what, const std::string& remedy) {
+          return InputError(file_.name(), what, remedy);
+        },
+        notes_);
+  }
+
+  [[noreturn]] void break_off(const std::string& offsets, std::int64_t end, std::int64_t entries) const {
+    throw error(offsets, fmt::format("ends the cells of a partition at {}", end),
+                fmt::format("it has {} entries by NumberOfConnectivityIds", entries));
+  }
+
+  // ---- arrays
+
+  /// Returns the numbers of a row.
+  [[nodiscard]] Index components_of(const std::string& path, const hdf5::DatasetInfo& info) const {
+    constexpr std::uint64_t kMost = kMaxIndex;
+    std::uint64_t components = 1;
+    for (std::size_t k = 1; k < info.shape.size(); ++k)
+      components = std::min(components * std::min(info.shape[k], kMost + 1), kMost + 1);
+    if (components < 1 || components > kMost) {
+      throw error(path, fmt::format("has the shape ({})", fmt::join(info.shape, ", ")),
+                  "the rows of an array have at least one number");
+    }
+    return static_cast<Index>(components);
+  }
+
+  void check_count(const std::string& path, std::int64_t found, Association association,
+                   std::int64_t needed) const {
+    if (found != needed) {
+      throw error(path, fmt::format("has {} rows", found),
+                  fmt::format("there are {} {}", needed, to_string(association)));
+    }
+  }
+
+  /// Reads an array of a group; nothing, with a note, for what is none of numbers or texts.
+  std::optional<DataArray> read_array(const std::string& group, const std::string& name) {
+    const std::string path = path_in(group, name);
+    DataArray array;
+    array.name = name;
+    if (file_.number_type(path)) {
+      array.components = components_of(path, file_.info(path));
+      array.values = file_.read(path);
+    } else if (file_.has_texts(path)) {
+      array.values = file_.read_texts(path);
+    } else {
+      notes_.push_back(
+          fmt::format("'{}' is not read: only datasets of numbers and of texts are understood", path));
+      return {};
+    }
+    return array;
+  }
+
+  void read_fields() {
+    const std::string group = path_of("FieldData");
+    for (const std::string& name : file_.names(group)) {
+      std::optional<DataArray> field = read_array(group, name);
+      if (!field) continue;
+      const std::int64_t components =
+          file_.integer_attribute(path_in(group, name), std::string(kComponents)).value_or(field->components);
+      const std::int64_t count =
+          std::visit([](const auto& values) { return std::ssize(values); }, field->values);
+      if (components < 1 || components > kMaxIndex || count % components != 0) {
+        throw error(path_in(group, name), fmt::format("has {} values in rows of {}", count, components));
+      }
+      field->components = static_cast<Index>(components);
+      metadata_->fields.push_back(std::move(*field));
+    }
+  }
+
+  void read_roles(Association association) {
+    for (std::size_t role = 0; role < vtk::kXmlRoles.size(); ++role) {
+      const std::optional<std::string> name =
+          file_.text_attribute(data_group(association), std::string(vtk::kXmlRoles[role]));
+      if (name && !name->empty())
+        metadata_->roles.push_back({static_cast<vtk::Role>(role), association, *name, {}});
+    }
+  }
+
+  void read_data(Association association) {
+    const std::string group = data_group(association);
+    read_roles(association);
+    const Index rows = association == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count();
+    for (const std::string& name : file_.names(group)) {
+      std::optional<DataArray> array = read_array(group, name);
+      if (!array) continue;
+      check_count(path_in(group, name), row_count(*array), association, rows);
+      array->association = association;
+      vtk::add_array(mesh_, std::move(*array));
+    }
+  }
+
+  /// Notes what is not kept.
+  void note_others() {
+    constexpr std::array<std::string_view, 10> kKnown{
+        "NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds",
+        "Points",         "Types",         "Connectivity",
+        "Offsets",        "PointData",     "CellData",
+        "FieldData"};
+    const auto note = [&](const std::string& path) {
+      notes_.push_back(
+          fmt::format("'{}' is ignored: it is no part of an unstructured grid of one step", path));
+    };
+    for (const std::string& name : file_.names(std::string(kRoot))) {
+      if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end()) note(path_of(name));
+    }
+    for (const std::string& name : file_.names("/")) {
+      if (name != kRoot.substr(1)) note("/" + name);
+    }
+  }
+
+  hdf5::Session session_;
+  hdf5::File file_;
+  Notes& notes_;
+  Mesh mesh_;
+  std::shared_ptr<vtk::Metadata> metadata_ = std::make_shared<vtk::Metadata>();
+  std::vector<Partition> partitions_;
+  Partition all_;
+};
+
+}  // namespace
+
+Mesh read(const FilePath& path, Notes& notes) { return VtkHdfReader(path, notes).read(); }
+
+}  // namespace meshorder::vtkhdf

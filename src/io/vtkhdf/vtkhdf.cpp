@@ -1,0 +1,169 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/vtkhdf/vtkhdf.hpp"
+
+#include "io/all_formats.hpp"
+#include "io/hdf5/hdf5_file.hpp"
+#include "io/hdf5/session.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/unsupported.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+// Writes a file of one partition.
+
+namespace meshorder::vtkhdf {
+namespace {
+
+bool is_text(const DataArray& array) {
+  return std::holds_alternative<std::vector<std::string>>(array.values);
+}
+
+/// The bytes of a file without datasets.
+std::string empty_file() {
+  hdf5::File file = hdf5::File::in_memory({}, "");
+  const std::string root(kRoot);
+  file.make_group(root, hdf5::File::LinkOrder::names);
+  constexpr std::array<std::int64_t, 2> kVersion{1, 0};
+  file.set_attribute(root, "Version", kVersion);
+  file.set_attribute(root, "Type", std::string(kType));
+  for (const char* const group : {"PointData", "CellData", "FieldData"})
+    file.make_group(fmt::format("{}/{}", kRoot, group), hdf5::File::LinkOrder::names);
+  return file.bytes();
+}
+
+class VtkHdfWriter {
+ public:
+  VtkHdfWriter(vtk::WriteContext& from, hdf5::File& file) : from_(from), file_(file) {}
+
+  void write() {
+    const Cells& cells = from_.cells();
+    count("NumberOfPoints", from_.mesh.vertex_count());
+    count("NumberOfCells", from_.mesh.cell_count());
+    count("NumberOfConnectivityIds", cells.offsets.back());
+    write_points();
+    // VTK's own writer has 64 bits here, too, and one type for both
+    put("Offsets", std::vector<std::int64_t>(cells.offsets.begin(), cells.offsets.end()));
+    put("Connectivity", std::vector<std::int64_t>(cells.vertices.begin(), cells.vertices.end()));
+    put("Types", from_.types);
+    for (const DataArray* const array : from_.arrays) {
+      if (!is_text(*array)) put_rows(data_group(array->association) + "/" + array->name, *array);
+    }
+    for (const Association association : {Association::vertices, Association::cells}) name_roles(association);
+    for (const DataArray& field : from_.metadata.fields) write_field(field);
+  }
+
+ private:
+  template <class Number>
+  void put(std::string_view dataset, std::vector<Number> numbers) {
+    const std::vector<std::uint64_t> shape{numbers.size()};
+    file_.write(fmt::format("{}/{}", kRoot, dataset), Values(std::move(numbers)), shape);
+  }
+
+  void count(std::string_view dataset, std::int64_t number) { put(dataset, std::vector{number}); }
+
+  void write_points() {
+    const std::string path = fmt::format("{}/Points", kRoot);
+    const std::vector<Point>& points = from_.mesh.points;
+    const std::span<const double> numbers(points.empty() ? nullptr : points.front().data(),
+                                          3 * points.size());
+    const std::vector<std::uint64_t> shape{points.size(), 3};
+    if (from_.points_are_floats()) {
+      file_.write(path, std::vector<float>(numbers.begin(), numbers.end()), shape);
+    } else {
+      file_.write(path, std::vector<double>(numbers.begin(), numbers.end()), shape);
+    }
+  }
+
+  /// VTK reads rows of one number from one dimension only.
+  void put_rows(const std::string& path, const DataArray& array) {
+    std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(row_count(array))};
+    if (array.components != 1) shape.push_back(static_cast<std::uint64_t>(array.components));
+    file_.write(path, array.values, shape);
+  }
+
+  void name_roles(Association association) {
+    for (std::size_t role = 0; role < vtk::kXmlRoles.size(); ++role) {
+      const vtk::ArrayRole* const found = from_.role(association, static_cast<vtk::Role>(role));
+      if (found != nullptr)
+        file_.set_attribute(data_group(association), std::string(vtk::kXmlRoles[role]), found->array);
+    }
+  }
+
+  void write_field(const DataArray& field) {
+    const std::string path = fmt::format("{}/FieldData/{}", kRoot, field.name);
+    if (const auto* const texts = std::get_if<std::vector<std::string>>(&field.values)) {
+      file_.write_strings(path, *texts);
+    } else {
+      const auto size = std::visit([](const auto& values) { return values.size(); }, field.values);
+      file_.write(path, field.values, {size});
+    }
+    if (field.components != 1)
+      file_.set_attribute(path, std::string(kComponents), std::int64_t{field.components});
+  }
+
+  vtk::WriteContext& from_;
+  hdf5::File& file_;
+};
+
+}  // namespace
+
+void note_lacking(const vtk::WriteContext& from, Notes& notes) {
+  for (const DataArray* const array : from.arrays) {
+    if (is_text(*array)) {
+      note_array_unsupported(*array, "VTKHDF", notes);
+    } else if (!array->component_names.empty()) {
+      notes.push_back(fmt::format(
+          "the names of the components of '{}' are not written: VTKHDF has no place for them", array->name));
+    }
+  }
+  for (const std::string& what : from.metadata.contents()) {
+    if (!what.starts_with("the field ")) notes.push_back("not written (VTKHDF has no place for it): " + what);
+  }
+}
+
+void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
+  const hdf5::Session session;
+  vtk::WriteContext from(mesh, notes, vtk::NamePlace::hdf5);
+  note_lacking(from, notes);
+  OutputFile out(path);
+  const auto open = [&] {
+    if (path.store() != nullptr) return hdf5::File::in_memory(empty_file(), path.string());
+    out.write(empty_file());
+    out.close();
+    return hdf5::File::change(out.temporary(), path.string());
+  };
+  std::optional<hdf5::File> file(open());
+  VtkHdfWriter(from, *file).write();
+  if (path.store() != nullptr) {
+    out.write(file->bytes());
+  } else {
+    file->close();
+  }
+  file.reset();
+  out.commit();
+}
+
+}  // namespace meshorder::vtkhdf
+
+namespace meshorder {
+
+Format vtkhdf_format() {
+  return {.name = "VTKHDF",
+          .extensions = {".vtkhdf"},
+          .groups_cells_by_type = false,
+          .read = vtkhdf::read,
+          .write = vtkhdf::write,
+          .holds = vtk::holds};
+}
+
+}  // namespace meshorder
