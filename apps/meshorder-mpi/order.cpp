@@ -63,12 +63,12 @@ DistributedOptions options_of(const Arguments& arguments) {
 /// files of other kinds, for maps of cells whose nodes a Mesh has in another order, and for maps without a
 /// file.
 std::optional<VtuSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
-  const auto is_vtu = [](const std::string& name) {
-    return std::filesystem::path(name).extension() == ".vtu";
-  };
+  const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
+  const std::filesystem::path kind = extension(arguments.input);
   const Keeping& keeping = arguments.keeping;
   const bool with_maps = !arguments.maps.empty();
-  if (!is_vtu(arguments.input) || !is_vtu(arguments.with_output().output) || arguments.ids != "renumber" ||
+  if ((kind != ".vtu" && kind != ".vtkhdf") ||
+      (!arguments.output.empty() && extension(arguments.output) != kind) || arguments.ids != "renumber" ||
       keeping.dimension >= 0 || keeping.strict || (with_maps && arguments.output.empty())) {
     return std::nullopt;
   }
@@ -158,8 +158,8 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
   subcommand.description(
       "Reorder a mesh by all ranks: parts, each in an order of its own, numbered one after another, so\n"
       "that parts that touch are near each other. A .vtu file of one piece with raw appended data,\n"
-      "compressed or not, is read and written by all ranks, and its maps, unless --ids, --only or\n"
-      "--strict are given; others by rank 0.");
+      "compressed or not, and a .vtkhdf file of one partition without chunks are read and written by\n"
+      "all ranks, and their maps, unless --ids, --only or --strict are given; others by rank 0.");
   subcommand.footer(
       "Examples:\n"
       "  mpirun -n 4 meshorder order part.vtu -o ordered.vtu\n"

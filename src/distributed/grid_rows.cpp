@@ -1,16 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/grid_rows.hpp"
 
-#include "distributed/text_store.hpp"
+#include "distributed/mold.hpp"
 #include "io/vtk/vtk.hpp"
-#include "io/vtk/vtu_document.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -59,26 +56,13 @@ class WholeGrid {
 
   /// A file of one point and one cell with the first row of each array.
   [[nodiscard]] std::string xml() const {
-    Mesh mold;
-    mold.points.resize(1);
-    mold.cells.push_back(Shape::vertex, std::vector<Index>{0});
-    for (const DataArray* const array : arrays_) mold.data.push_back(first_row(*array));
-    auto metadata = std::make_shared<vtk::Metadata>(context_.metadata);
-    metadata->float_points = context_.points_are_floats();
-    metadata->vtu = VtuEncoding{.mode = VtuEncoding::Mode::base64,
-                                .compressor = VtuEncoding::Compressor::none,
-                                .order = std::endian::native,
-                                .wide_headers = true};
-    mold.format_metadata = std::move(metadata);
-    TextStore store;
-    vtk::write_vtu(mold, FilePath("mold.vtu", store), context_.notes);
-    // as the writer does: the version tells the order of their nodes
-    std::string text = store.text();
-    if (std::any_of(context_.types.begin(), context_.types.end(), vtk::is_higher_order_hexahedron)) {
-      constexpr std::string_view kVersion = "version=\"1.0\"";
-      text.replace(text.find(kVersion, text.find("<VTKFile")), kVersion.size(), "version=\"2.2\"");
-    }
-    return text;
+    std::vector<DataArray> rows;
+    for (const DataArray* const array : arrays_) rows.push_back(first_row(*array));
+    vtk::Metadata metadata = context_.metadata;
+    metadata.float_points = context_.points_are_floats();
+    return mold_of(std::move(rows), std::move(metadata),
+                   std::any_of(context_.types.begin(), context_.types.end(), vtk::is_higher_order_hexahedron),
+                   context_.notes);
   }
 
   [[nodiscard]] std::vector<std::string> texts() const {
@@ -126,14 +110,6 @@ class WholeGrid {
   std::vector<const DataArray*> arrays_;
   std::map<std::string, std::int32_t> places_;  ///< of texts
 };
-
-/// Returns the fields of a file of whose arrays none is appended.
-std::string fields_of(const std::string& xml) {
-  TextStore store(xml);
-  const vtk::VtuDocument file(FilePath("mold.vtu", store));
-  const vtk::VtuElement* const fields = file.root().child("UnstructuredGrid")->child("FieldData");
-  return fields == nullptr ? "" : file.source(*fields);
-}
 
 }  // namespace
 

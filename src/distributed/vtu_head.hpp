@@ -16,7 +16,7 @@
 
 namespace meshorder::distributed {
 
-/// An array of a .vtu file: what it holds, and where its values are.
+/// An array of a .vtu or .vtkhdf file: what it holds, and where its values are.
 struct VtuArray {
   enum class Role : std::uint8_t { points, types, offsets, connectivity, data };
 
@@ -33,7 +33,7 @@ struct VtuArray {
   Offset block;       ///< bytes of a block, but for the last one, which has the rest
 };
 
-/// What all ranks know of a .vtu file.
+/// What all ranks know of a .vtu or .vtkhdf file.
 struct VtuFacts {
   GlobalIndex vertices = 0;
   GlobalIndex cells = 0;
@@ -41,15 +41,17 @@ struct VtuFacts {
   Offset bytes = 0;         ///< size of the file
   Offset first_byte = 0;    ///< of the appended data
   VtuEncoding encoding;
+  bool is_vtkhdf = false;  ///< a file of HDF5: arrays have no words before them, and there is no XML
 };
 
-/// What the XML of a .vtu file says, and the words before its arrays.
+/// What the XML of a .vtu file says, and the words before its arrays; or what libhdf5 says of a .vtkhdf file.
 struct VtuHead {
   VtuFacts facts;
   std::vector<VtuArray> arrays;  ///< in the order of their bytes
   std::vector<std::vector<Offset>>
       blocks;  ///< of each array: first byte of each block, and the last one's end
   VtuXml xml;
+  std::string mold;  ///< of a .vtkhdf file: what `mold_of` makes of its arrays
 };
 
 /// Reads the XML of a file and the tables of its compressed blocks. Returns nothing for a file that is no

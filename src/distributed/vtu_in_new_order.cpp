@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/cell_places.hpp"
+#include "distributed/mold.hpp"
 #include "distributed/moved_rows.hpp"
 #include "distributed/text_store.hpp"
 #include "distributed/vtu_slices.hpp"
@@ -154,6 +155,11 @@ GridRows VtuSlices::in_new_order(const Communicator& communicator, const Distrib
   };
   grid.cell_vertices = moved_cells(communicator, *file, std::move(slice), *cells, order.new_vertices);
   communicator.at_root([&] {
+    if (head_.facts.is_vtkhdf) {
+      grid.xml = head_.mold;
+      grid.fields = fields_of(head_.mold);
+      return;
+    }
     const std::string& head = head_.xml.text();
     grid.xml = head + std::string(kEndOfHead);
     grid.fields = fields_with_values(head, path_);

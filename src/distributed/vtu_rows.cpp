@@ -165,9 +165,14 @@ Offset write_values(const Communicator& communicator, const SharedFile& file, co
   }
   file.write(at, communicator.is_root() ? words_of(words, encoding.wide_headers) : std::vector<std::byte>());
   const Offset before = word_count * (encoding.wide_headers ? 8 : 4);
-  const Layout stored = Layout::of_sizes(communicator.gathered(std::ssize(values)));
-  file.write(at + before + stored.begin(communicator.rank()), values);
-  return before + stored.size();
+  return before + write_raw(communicator, file, at + before, values);
+}
+
+Offset write_raw(const Communicator& communicator, const SharedFile& file, Offset at,
+                 std::span<const std::byte> values) {
+  const Layout layout = Layout::of_sizes(communicator.gathered(std::ssize(values)));
+  file.write(at + layout.begin(communicator.rank()), values);
+  return layout.size();
 }
 
 }  // namespace meshorder::distributed

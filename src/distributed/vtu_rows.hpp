@@ -36,4 +36,8 @@ namespace meshorder::distributed {
 Offset write_values(const Communicator& communicator, const SharedFile& file, const VtuEncoding& encoding,
                     Offset at, std::vector<std::byte> values, Offset block);
 
+/// Writes an array without words before it; as `write_values`.
+Offset write_raw(const Communicator& communicator, const SharedFile& file, Offset at,
+                 std::span<const std::byte> values);
+
 }  // namespace meshorder::distributed

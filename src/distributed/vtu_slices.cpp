@@ -7,6 +7,7 @@
 #include "distributed/moved_rows.hpp"
 #include "distributed/number_types.hpp"
 #include "distributed/shared_file.hpp"
+#include "distributed/vtkhdf_head.hpp"
 #include "distributed/vtu_rows.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
@@ -67,8 +68,8 @@ class NewPlaces {
 }  // namespace
 
 std::optional<VtuSlices> VtuSlices::open(const Communicator& communicator, const std::string& path) {
-  std::optional<VtuHead> at_root =
-      communicator.at_root([&] { return read_vtu_head(path, communicator.size()); });
+  std::optional<VtuHead> at_root = communicator.at_root(
+      [&] { return is_hdf5(path) ? read_vtkhdf_head(path) : read_vtu_head(path, communicator.size()); });
   const std::vector<VtuFacts> facts =
       communicator.broadcast(at_root ? std::vector<VtuFacts>{at_root->facts} : std::vector<VtuFacts>{});
   if (facts.empty()) return std::nullopt;
@@ -81,6 +82,7 @@ std::optional<VtuSlices> VtuSlices::open(const Communicator& communicator, const
   if (at_root) {
     slices.head_.blocks = std::move(at_root->blocks);
     slices.head_.xml = std::move(at_root->xml);
+    slices.head_.mold = std::move(at_root->mold);
   }
   return slices;
 }
@@ -264,8 +266,9 @@ std::vector<GlobalIndex> VtuSlices::write(const Communicator& communicator, cons
     from = array.at + array.stored;
     const auto write_array = [&](std::vector<std::byte> values) {
       places.add(array.at, to);
-      to += write_values(communicator, out, head_.facts.encoding, to, std::move(values),
-                         vtk::VtuCompressor::kBlock);
+      to += head_.facts.is_vtkhdf ? write_raw(communicator, out, to, values)
+                                  : write_values(communicator, out, head_.facts.encoding, to,
+                                                 std::move(values), vtk::VtuCompressor::kBlock);
       places.add(from, to);
     };
     if (array.role == Role::connectivity || array.role == Role::offsets) {
@@ -287,6 +290,7 @@ std::vector<GlobalIndex> VtuSlices::write(const Communicator& communicator, cons
   }
   copy_bytes(communicator, in, from, head_.facts.bytes, out, to);
   const std::string xml = communicator.at_root([&] {
+    if (head_.facts.is_vtkhdf) return std::string();
     return head_.xml.with_offsets([&](Offset offset) { return places.of_offset(offset); },
                                   places.first_byte());
   });

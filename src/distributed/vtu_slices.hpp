@@ -17,17 +17,20 @@
 
 namespace meshorder::distributed {
 
-/// A .vtu file of one piece, the arrays of which stand in its appended data, raw or in compressed blocks,
-/// read and written by all ranks at once: each its share of every array, one array after another. The new
-/// file is the old one with the rows of its arrays in their new places; whatever else it has is copied byte
-/// by byte, but for the offsets of arrays behind compressed ones.
+/// A .vtu file of one piece, the arrays of which stand in its appended data, raw or in compressed blocks, or
+/// a .vtkhdf file of one partition whose datasets are neither chunked nor compressed, read and written by all
+/// ranks at once: each its share of every array, one array after another. The new file is the old one with
+/// the rows of its arrays in their new places; whatever else it has is copied byte by byte, but for the
+/// offsets of arrays behind compressed ones. libhdf5 tells rank 0 where the datasets are; no rank else
+/// needs it.
 ///
-/// Format: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
+/// Formats: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, and
+/// "VTKHDF File Format".
 class VtuSlices {
  public:
-  /// Looks at a file; every rank has to call it. Returns nothing for a file that is no such .vtu file: of
-  /// several pieces, with text, base64, the other order of bytes, or compression that this build lacks.
-  /// O(size of its XML + blocks) at the root.
+  /// Looks at a file; every rank has to call it. Returns nothing for a file that is no such one: of several
+  /// pieces or partitions, with text, base64, chunks, the other order of bytes, or compression that this
+  /// build lacks. O(size of its XML + blocks) at the root.
   ///
   /// @throws SharedError for a file of that kind that is damaged: XML, counts that differ, bytes beyond its
   ///         end, blocks that cannot hold what they are said to

@@ -42,6 +42,26 @@ class VtkHdfReader {
  public:
   VtkHdfReader(const FilePath& path, Notes& notes) : file_(hdf5::File::open(path)), notes_(notes) {}
 
+  /// See `find_raw`.
+  std::optional<RawGrid> find() {
+    check_kind();
+    read_counts();
+    if (partitions_.size() != 1) return {};
+    grid_ = {all_.points, all_.cells, all_.entries, {}, {}};
+    using Role = RawDataset::Role;
+    const bool is_found = add(Role::points, "Points", all_.points, 3) &&
+                          add(Role::connectivity, "Connectivity", all_.entries) &&
+                          add(Role::offsets, "Offsets", all_.cells + 1) &&
+                          add(Role::types, "Types", all_.cells) && add_data(Association::vertices) &&
+                          add_data(Association::cells);
+    if (!is_found) return {};
+    read_fields();
+    note_others();
+    if (!notes_.empty()) return {};
+    grid_.metadata = *metadata_;
+    return std::move(grid_);
+  }
+
   Mesh read() {
     check_kind();
     read_counts();
@@ -58,6 +78,41 @@ class VtkHdfReader {
   [[nodiscard]] InputError error(std::string_view path, const std::string& what,
                                  std::string_view remedy = kDamaged) const {
     return {file_.name(), fmt::format("the dataset '{}' {}", path, what), std::string(remedy)};
+  }
+
+  // ---- datasets by their places
+
+  /// Adds a dataset of the mesh; returns false where its values do not stand there as they are.
+  bool add(RawDataset::Role role, std::string_view name, std::int64_t rows, Index width = 1) {
+    const std::string path = path_of(name);
+    const hdf5::DatasetInfo info = check_rows(path, rows, static_cast<std::uint64_t>(width));
+    const std::optional<std::uint64_t> place = file_.place_of_values(path);
+    const bool is_whole = info.alternative > 1;
+    if (!place || is_whole == (role == RawDataset::Role::points)) return false;
+    const Association association =
+        role == RawDataset::Role::points ? Association::vertices : Association::cells;
+    grid_.datasets.push_back({role, std::string(name), association, info.alternative, width, rows, *place});
+    return true;
+  }
+
+  /// Adds the arrays on points or cells; returns false where the values of one do not stand there so.
+  bool add_data(Association association) {
+    const std::string group = data_group(association);
+    read_roles(association);
+    const std::int64_t rows = association == Association::vertices ? all_.points : all_.cells;
+    for (const std::string& name : file_.names(group)) {
+      const std::string path = path_in(group, name);
+      if (!file_.number_type(path)) return false;
+      const hdf5::DatasetInfo info = file_.info(path);
+      const Index components = components_of(path, info);
+      const std::optional<std::uint64_t> place = file_.place_of_values(path);
+      if (!place) return false;
+      check_count(path, info.shape.empty() ? 1 : static_cast<std::int64_t>(info.shape.front()), association,
+                  rows);
+      grid_.datasets.push_back(
+          {RawDataset::Role::data, name, association, info.alternative, components, rows, *place});
+    }
+    return true;
   }
 
   // ---- kind and counts
@@ -372,9 +427,15 @@ class VtkHdfReader {
   std::shared_ptr<vtk::Metadata> metadata_ = std::make_shared<vtk::Metadata>();
   std::vector<Partition> partitions_;
   Partition all_;
+  RawGrid grid_;
 };
 
 }  // namespace
+
+std::optional<RawGrid> find_raw(const FilePath& path) {
+  Notes notes;
+  return VtkHdfReader(path, notes).find();
+}
 
 Mesh read(const FilePath& path, Notes& notes) { return VtkHdfReader(path, notes).read(); }
 

@@ -10,9 +10,12 @@
 #include "io/format.hpp"
 #include "io/vtk/vtk.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace meshorder::vtkhdf {
 
@@ -25,6 +28,35 @@ inline constexpr std::string_view kComponents = "NumberOfComponents";
 inline std::string data_group(Association association) {
   return std::string(kRoot) + (association == Association::vertices ? "/PointData" : "/CellData");
 }
+
+/// A dataset whose values stand in the file as they do in memory, one after another.
+struct RawDataset {
+  enum class Role : std::uint8_t { points, connectivity, offsets, types, data };
+
+  Role role;
+  std::string name;         ///< of an array on points or cells
+  Association association;  ///< of what has its rows
+  std::size_t type;         ///< number type, as an alternative of Values
+  Index components;
+  std::int64_t rows;
+  std::uint64_t place;  ///< first byte in the file
+};
+
+/// What there is to know of a file of one partition to read it by its bytes.
+struct RawGrid {
+  std::int64_t vertices = 0;
+  std::int64_t cells = 0;
+  std::int64_t entries = 0;          ///< of the connectivity
+  std::vector<RawDataset> datasets;  ///< one of each role, and those of data by their associations and names
+  vtk::Metadata metadata;            ///< fields and roles
+};
+
+/// Finds where the values of a file on disk are. Returns nothing for one that can only be read by libhdf5, or
+/// of which `read` would note something: of several partitions, chunks or another order of bytes, with texts
+/// on points or cells, or with more than the format has. O(datasets + size of the fields).
+///
+/// @throws InputError as `read` for faults of counts and shapes; values are not looked at
+std::optional<RawGrid> find_raw(const FilePath& path);
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);

@@ -1,0 +1,139 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/vtkhdf_head.hpp"
+
+#include "distributed/mold.hpp"
+#include "distributed/number_types.hpp"
+#include "io/stream/file_path.hpp"
+#include "io/stream/output_set.hpp"
+#include "io/stream/read_limits.hpp"
+#ifdef MESHORDER_HAS_HDF5
+#include "io/vtkhdf/vtkhdf.hpp"
+#endif
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace meshorder::distributed {
+
+bool is_hdf5(const std::string& path) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  std::array<char, kSignature.size()> start{};
+  std::ifstream(path, std::ios::binary).read(start.data(), std::ssize(start));
+  return std::string_view(start.data(), start.size()) == kSignature;
+}
+
+#ifdef MESHORDER_HAS_HDF5
+namespace {
+
+using vtkhdf::RawDataset;
+using vtkhdf::RawGrid;
+
+constexpr Index kMostOfRow = Index{1} << 24;
+
+VtuArray::Role role_of(RawDataset::Role role) {
+  switch (role) {
+    case RawDataset::Role::points:
+      return VtuArray::Role::points;
+    case RawDataset::Role::connectivity:
+      return VtuArray::Role::connectivity;
+    case RawDataset::Role::offsets:
+      return VtuArray::Role::offsets;
+    case RawDataset::Role::types:
+      return VtuArray::Role::types;
+    default:
+      return VtuArray::Role::data;
+  }
+}
+
+VtuArray array_of(const RawDataset& dataset, std::size_t element) {
+  VtuArray array{};
+  std::replace_copy_if(
+      dataset.name.begin(), dataset.name.begin() + std::min<std::ptrdiff_t>(std::ssize(dataset.name), 40),
+      array.name.begin(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
+  array.element = element;
+  array.role = role_of(dataset.role);
+  array.association = dataset.association;
+  array.type = static_cast<std::uint8_t>(dataset.type);
+  const Offset number = size_of_type(dataset.type);
+  array.row = number * dataset.components;
+  array.at = static_cast<Offset>(dataset.place);
+  array.size = dataset.rows * array.row;
+  if (dataset.role == RawDataset::Role::offsets) {
+    // where cells end, as in a .vtu file: behind the place where the first one begins
+    array.at += number;
+    array.size -= number;
+  }
+  array.stored = array.size;
+  return array;
+}
+
+/// Whether the cells of a file begin at the first entry of its connectivity.
+bool begins_at_zero(const std::string& path, const VtuArray& offsets) {
+  std::vector<std::byte> first(static_cast<std::size_t>(offsets.row));
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(offsets.at - offsets.row);
+  file.read(reinterpret_cast<char*>(first.data()), std::ssize(first));
+  return file && numbers_of<Offset>(first, offsets.type).front() == 0;
+}
+
+/// Describes the arrays and fields of a mesh.
+std::string mold_of_grid(const RawGrid& grid) {
+  std::vector<DataArray> rows;
+  for (const RawDataset& dataset : grid.datasets) {
+    if (dataset.role != RawDataset::Role::data) continue;
+    DataArray& row = rows.emplace_back(
+        DataArray{dataset.name, dataset.association, dataset.components, vtk::values_of_type(dataset.type)});
+    std::visit([&](auto& values) { values.resize(static_cast<std::size_t>(dataset.components)); },
+               row.values);
+  }
+  Notes ignored;  // of names that XML cannot hold
+  return mold_of(std::move(rows), grid.metadata, true, ignored);
+}
+
+}  // namespace
+
+std::optional<VtuHead> read_vtkhdf_head(const std::string& path) {
+  finish_interrupted(path);
+  const FilePath file(path);
+  const ReadScope scope(file);
+  std::optional<RawGrid> grid = vtkhdf::find_raw(file);
+  if (!grid || grid->vertices == 0 || grid->cells == 0 || grid->entries == 0) return std::nullopt;
+  // the order of a .vtu file: arrays of points, of cells, then the mesh
+  std::stable_partition(grid->datasets.begin(), grid->datasets.end(),
+                        [](const RawDataset& dataset) { return dataset.role == RawDataset::Role::data; });
+  VtuHead head;
+  head.facts.is_vtkhdf = true;
+  head.facts.vertices = grid->vertices;
+  head.facts.cells = grid->cells;
+  head.facts.entries = grid->entries;
+  head.facts.bytes = static_cast<Offset>(std::filesystem::file_size(path));
+  for (const RawDataset& dataset : grid->datasets) {
+    if (dataset.components > kMostOfRow) return std::nullopt;
+    head.arrays.push_back(array_of(dataset, head.arrays.size()));
+    if (head.arrays.back().at > head.facts.bytes - head.arrays.back().size) return std::nullopt;
+    if (dataset.role == RawDataset::Role::points) grid->metadata.float_points = dataset.type == 1;
+  }
+  std::sort(head.arrays.begin(), head.arrays.end(),
+            [](const VtuArray& a, const VtuArray& b) { return a.at < b.at; });
+  for (std::size_t k = 1; k < head.arrays.size(); ++k) {
+    if (head.arrays[k].at < head.arrays[k - 1].at + head.arrays[k - 1].size) return std::nullopt;
+  }
+  const auto offsets = std::find_if(head.arrays.begin(), head.arrays.end(), [](const VtuArray& array) {
+    return array.role == VtuArray::Role::offsets;
+  });
+  if (!begins_at_zero(path, *offsets)) return std::nullopt;
+  head.blocks.resize(head.arrays.size());
+  head.mold = mold_of_grid(*grid);
+  return head;
+}
+#else
+std::optional<VtuHead> read_vtkhdf_head(const std::string& /*path*/) { return std::nullopt; }
+#endif
+
+}  // namespace meshorder::distributed
