@@ -120,6 +120,25 @@ TEST(VtkHdf, NamesThatHdf5CannotHoldAreChanged) {
   EXPECT_EQ(notes.front(), "the array 'a/b' on vertices is written as 'a_b'");
 }
 
+TEST(VtkHdf, SoAreThoseOfFields) {
+  Mesh mesh = grid();
+  auto metadata = std::make_shared<vtk::Metadata>();
+  for (const char* const name : {"a/b", "a_b", ""}) {
+    metadata->fields.push_back({name, Association::vertices, 1, std::vector<std::int32_t>{1, 2}, {}, {}});
+  }
+  mesh.format_metadata = metadata;
+  Notes notes;
+  const Mesh read = through_vtkhdf(mesh, &notes);
+  std::vector<std::string> names;
+  for (const DataArray& field : dynamic_cast<const vtk::Metadata&>(*read.format_metadata).fields) {
+    names.push_back(field.name);
+  }
+  EXPECT_THAT(names, ElementsAre("a_b", "a_b_2", "array"));
+  EXPECT_THAT(notes,
+              ElementsAre("the field 'a/b' is written as 'a_b'", "the field 'a_b' is written as 'a_b_2'",
+                          "the field '' is written as 'array'"));
+}
+
 TEST(VtkHdf, TellsWhatItHasNoPlaceFor) {
   Mesh mesh = grid();
   mesh.data[1].component_names = {"x", "y"};

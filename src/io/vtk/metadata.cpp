@@ -71,14 +71,11 @@ class Names {
   }
 
  private:
-  /// Names in XML cannot have control characters; in legacy files they are encoded. In HDF5 a slash parts
-  /// groups, a dot is the group itself, and a zero byte ends a name.
+  /// Names in XML cannot have control characters; in legacy files they are encoded.
   [[nodiscard]] std::string held_there(std::string name) const {
     if (place_ == NamePlace::xml) return xml_text(name);
     if (place_ == NamePlace::legacy) return name == "NULL_ARRAY" ? name + '_' : name;  // readers skip it
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return c == '/' || c == '\0'; }, '_');
-    return name == "." ? "_" : name;
+    return name_in_hdf5(std::move(name));
   }
 
   NamePlace place_;
@@ -162,6 +159,13 @@ void add_array(Mesh& mesh, DataArray array) {
     }
   }
   mesh.data.push_back(std::move(array));
+}
+
+std::string name_in_hdf5(std::string name) {
+  if (name.empty()) return "array";
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '/' || c == '\0'; }, '_');
+  return name == "." ? "_" : name;
 }
 
 bool is_from_vtk(const Mesh& mesh) {

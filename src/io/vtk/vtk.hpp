@@ -222,6 +222,10 @@ Values marks_of(const EntitySet& set, Index count);
 /// Where a file has the names of its arrays, which tells the characters that they may have.
 enum class NamePlace : std::uint8_t { legacy, xml, hdf5 };
 
+/// Returns a name that is one of a dataset of HDF5: there a slash parts groups, a dot is the group itself,
+/// and a zero byte ends a name.
+std::string name_in_hdf5(std::string name);
+
 /// The input of the writers, made from a mesh. Borrows the mesh and the notes.
 ///
 /// VTK's formats hold full arrays only: partial arrays are filled up, sets become arrays "set:NAME" and ids

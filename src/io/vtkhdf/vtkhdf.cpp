@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -41,6 +42,30 @@ std::string empty_file() {
   return file.bytes();
 }
 
+void write_field(hdf5::File& file, const DataArray& field, const std::string& path) {
+  if (const auto* const texts = std::get_if<std::vector<std::string>>(&field.values)) {
+    file.write_strings(path, *texts);
+  } else {
+    const auto size = std::visit([](const auto& values) { return values.size(); }, field.values);
+    file.write(path, field.values, {size});
+  }
+  if (field.components != 1)
+    file.set_attribute(path, std::string(kComponents), std::int64_t{field.components});
+}
+
+/// Writes all fields, each under a name that no other has.
+void write_fields(hdf5::File& file, const std::vector<DataArray>& fields, Notes& notes) {
+  std::set<std::string> taken;
+  for (const DataArray& field : fields) {
+    const std::string held = vtk::name_in_hdf5(field.name);
+    std::string name = held;
+    for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", held, i);
+    if (name != field.name)
+      notes.push_back(fmt::format("the field '{}' is written as '{}'", field.name, name));
+    write_field(file, field, fmt::format("{}/FieldData/{}", kRoot, name));
+  }
+}
+
 class VtkHdfWriter {
  public:
   VtkHdfWriter(vtk::WriteContext& from, hdf5::File& file) : from_(from), file_(file) {}
@@ -59,7 +84,7 @@ class VtkHdfWriter {
       if (!is_text(*array)) put_rows(data_group(array->association) + "/" + array->name, *array);
     }
     for (const Association association : {Association::vertices, Association::cells}) name_roles(association);
-    for (const DataArray& field : from_.metadata.fields) write_field(field);
+    write_fields(file_, from_.metadata.fields, from_.notes);
   }
 
  private:
@@ -97,18 +122,6 @@ class VtkHdfWriter {
       if (found != nullptr)
         file_.set_attribute(data_group(association), std::string(vtk::kXmlRoles[role]), found->array);
     }
-  }
-
-  void write_field(const DataArray& field) {
-    const std::string path = fmt::format("{}/FieldData/{}", kRoot, field.name);
-    if (const auto* const texts = std::get_if<std::vector<std::string>>(&field.values)) {
-      file_.write_strings(path, *texts);
-    } else {
-      const auto size = std::visit([](const auto& values) { return values.size(); }, field.values);
-      file_.write(path, field.values, {size});
-    }
-    if (field.components != 1)
-      file_.set_attribute(path, std::string(kComponents), std::int64_t{field.components});
   }
 
   vtk::WriteContext& from_;
