@@ -176,8 +176,9 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
               "Also write the parts as pieces for a program that reads one for each of its ranks:\n"
               "FOLDER/NAME.pvtu and FOLDER/NAME_0000.vtu and so on, with numbers in the whole mesh, the\n"
               "part that owns each vertex and cell, and ghosts marked as VTK does. NAME is that of the\n"
-              "output, or of MESH. The folder is made if it is missing")
-          ->type_name("FOLDER")
+              "output, or of MESH. The folder is made if it is missing. FILE.vtkhdf is one file with a\n"
+              "partition for each part, with the same arrays")
+          ->type_name("FOLDER|FILE.vtkhdf")
           ->check([](const std::string& folder) {
             return folder.empty() ? std::string("a folder is needed") : std::string();
           });

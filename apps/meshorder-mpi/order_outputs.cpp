@@ -34,9 +34,16 @@ std::string OrderFiles::name_of_pieces() const {
   return name.empty() || name == "." || name == ".." ? "mesh" : name;
 }
 
+bool OrderFiles::has_pieces_in_one_file() const {
+  return same_but_for_case(std::filesystem::path(pieces).extension().string(), ".vtkhdf");
+}
+
 MeshFiles OrderFiles::with_output() const {
   auto result = static_cast<const MeshFiles&>(*this);
-  if (output.empty()) result.output = (std::filesystem::path(pieces) / (name_of_pieces() + ".vtu")).string();
+  if (!output.empty()) return result;
+  result.output = pieces;
+  if (!has_pieces_in_one_file())
+    result.output = (std::filesystem::path(pieces) / (name_of_pieces() + ".vtu")).string();
   return result;
 }
 
@@ -49,14 +56,21 @@ OrderOutputs::OrderOutputs(const Communicator& communicator, const OrderFiles& f
   communicator.at_root([&] {
     if (!files.output.empty()) (void)OutputFile(files.output);
     if (!files.maps.empty()) check_can_write_maps(files.maps);
-    if (!files.pieces.empty()) pieces_.emplace(files.pieces, files.name_of_pieces());
+    if (files.has_pieces_in_one_file()) {
+      (void)format_of(files.pieces);  // whether this build has it
+      (void)OutputFile(files.pieces);
+      if (!files.output.empty() &&
+          std::filesystem::weakly_canonical(files.output) == std::filesystem::weakly_canonical(files.pieces))
+        throw InvalidArgument("the output and the pieces cannot be one file");
+    } else if (!files.pieces.empty()) {
+      pieces_.emplace(files.pieces, files.name_of_pieces());
+    }
   });
 }
 
 void OrderOutputs::check(const Mesh& mesh) const {
   communicator_.at_root([&] {
-    if (!files_.pieces.empty())
-      require_held_cells(mesh, all_cells(mesh), pieces_->index(), format_named("vtu"));
+    if (!files_.pieces.empty()) require_held_cells(mesh, all_cells(mesh), pieces_file(), format_named("vtu"));
   });
 }
 
@@ -89,10 +103,26 @@ void OrderOutputs::write(const MeshToOrder& whole, const distributed::Distribute
 void OrderOutputs::write_pieces(const GridRows& grid, const distributed::DistributedReport& report,
                                 Notes& notes) {
   const distributed::PieceSchema schema = schema_of_pieces(communicator_, grid, files_.ghosts);
-  Notes replaced;
+  Notes lacking;
   if (!schema.replaced().empty())
-    replaced = {"the pieces have arrays of their own in place of those " + join(schema.replaced())};
-  communicator_.at_root([&] { refuse_losses(replaced); });
+    lacking = {"the pieces have arrays of their own in place of those " + join(schema.replaced())};
+  if (files_.has_pieces_in_one_file()) {
+    const Notes losses = losses_in_vtkhdf(schema);
+    lacking.insert(lacking.end(), losses.begin(), losses.end());
+  }
+  communicator_.at_root([&] { refuse_losses(lacking); });
+  if (files_.has_pieces_in_one_file()) {
+    SharedOutput file(communicator_, set_, files_.pieces);
+    pieces_report_ = distributed::write_pieces_to_vtkhdf(communicator_, grid, schema, report.part_starts,
+                                                         files_.ghosts > 0, file.path(), files_.pieces);
+    file.commit();
+    communicator_.at_root([&] {
+      refuse_losses(pieces_report_.notes);
+      add_new(lacking, notes);
+      add_new(pieces_report_.notes, notes);
+    });
+    return;
+  }
   const std::vector<std::string> paths =
       communicator_.broadcast(communicator_.at_root([&] { return pieces_->open(report.parts); }));
   const std::vector<std::string> names =
@@ -101,7 +131,7 @@ void OrderOutputs::write_pieces(const GridRows& grid, const distributed::Distrib
                                              files_.ghosts > 0, paths, names);
   communicator_.at_root([&] {
     pieces_->add_to(set_, schema.index(pieces_->names()));
-    add_new(replaced, notes);
+    add_new(lacking, notes);
   });
 }
 

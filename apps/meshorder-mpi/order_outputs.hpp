@@ -18,11 +18,13 @@ namespace meshorder::command {
 
 /// Where a mesh comes from and goes to: to a file, to pieces, or both.
 struct OrderFiles : MeshFiles {
-  std::string pieces;  ///< folder; empty: none are written
+  std::string pieces;  ///< folder, or a .vtkhdf file; empty: none are written
   int ghosts = 1;      ///< layers of ghost cells in pieces, 0 or 1
 
   /// Returns the files with an output that tells the format, also where there are pieces only.
   [[nodiscard]] MeshFiles with_output() const;
+  /// Returns whether the pieces are the partitions of one file.
+  [[nodiscard]] bool has_pieces_in_one_file() const;
   /// Returns the pieces' name: that of the output, or else of the input, without folder and extension.
   [[nodiscard]] std::string name_of_pieces() const;
 };
@@ -56,8 +58,11 @@ class OrderOutputs {
 
   /// Returns, at the root, the paths of all files but the output and the pieces.
   [[nodiscard]] const std::vector<std::string>& maps() const noexcept { return maps_; }
-  /// Returns the path of the file that names the pieces, at the root; empty without pieces.
-  [[nodiscard]] std::string pieces_file() const { return pieces_ ? pieces_->index().string() : ""; }
+  /// Returns the path of the file that names the pieces, or has them in it, at the root; empty without
+  /// pieces.
+  [[nodiscard]] std::string pieces_file() const {
+    return pieces_ ? pieces_->index().string() : files_.has_pieces_in_one_file() ? files_.pieces : "";
+  }
   /// Returns what there is to tell of the pieces.
   [[nodiscard]] const distributed::PiecesReport& pieces() const noexcept { return pieces_report_; }
 

@@ -82,6 +82,7 @@ PieceArray added(Section section, Source source, std::string_view type, std::str
   const auto alternative = static_cast<std::uint8_t>(known - vtk::kXmlTypeNames.begin());
   return {section,
           source,
+          std::string(name),
           0,
           alternative,
           size_of_type(alternative),
@@ -94,7 +95,14 @@ PieceArray taken(const vtk::VtuDocument& file, const vtk::VtuElement& element, S
                  std::size_t k) {
   constexpr std::array<std::string_view, 5> kOfValues{"format", "offset", "RangeMin", "RangeMax",
                                                       "NumberOfTuples"};
-  PieceArray array{section, Source::rows, k, type_of(element), 0, attributes_without(element, kOfValues), {}};
+  PieceArray array{section,
+                   Source::rows,
+                   std::string(name_of(element)),
+                   k,
+                   type_of(element),
+                   0,
+                   attributes_without(element, kOfValues),
+                   {}};
   if (section == Section::cells && name_of(element) == "connectivity") array.source = Source::connectivity;
   if (section == Section::cells && name_of(element) == "offsets") array.source = Source::offsets;
   Offset number = size_of_type(array.type);
@@ -116,12 +124,14 @@ PieceSchema::PieceSchema(const std::string& xml, std::string fields, int ghosts)
   const std::string* const version = file.root().attribute("version");
   version_ = version == nullptr ? "0.1" : *version;
   word_ = file.encoding().wide_headers ? 8 : 4;
+  has_order_of_vtk_9_ = file.version() >= 21;
   std::size_t number = 0;
   for (const vtk::VtuElement& section : file.root().child("UnstructuredGrid")->child("Piece")->children) {
     const std::optional<Section> known = section_named(section.name);
     if (known == Section::points_data || known == Section::cells_data) {
       (known == Section::points_data ? points_data_ : cells_data_) =
           attributes_without(section, std::array{kGlobalIds});
+      add_roles(section, *known);
     }
     for (const vtk::VtuElement& element : section.children) {
       const std::size_t k = number++;
@@ -141,10 +151,24 @@ PieceSchema::PieceSchema(const std::string& xml, std::string fields, int ghosts)
     arrays_.push_back(added(section, Source::ghost_type, "UInt8", kGhostType));
     arrays_.push_back(added(section, Source::part, "Int32", kPart));
   }
+  for (const Association association : {Association::vertices, Association::cells}) {
+    const std::string_view ids = association == Association::vertices ? kPointIds : kCellIds;
+    roles_.push_back({vtk::Role::global_ids, association, std::string(ids), {}});
+  }
   points_data_ += fmt::format(" {}=\"{}\"", kGlobalIds, kPointIds);
   cells_data_ += fmt::format(" {}=\"{}\"", kGlobalIds, kCellIds);
   std::stable_sort(arrays_.begin(), arrays_.end(),
                    [](const PieceArray& a, const PieceArray& b) { return a.section < b.section; });
+}
+
+/// Keeps the roles that a section gives its arrays, but for that of the pieces' own ids.
+void PieceSchema::add_roles(const vtk::VtuElement& section, Section kind) {
+  for (std::size_t role = 0; role < vtk::kXmlRoles.size(); ++role) {
+    const std::string* const name = section.attribute(vtk::kXmlRoles[role]);
+    if (name == nullptr || name->empty() || vtk::kXmlRoles[role] == kGlobalIds) continue;
+    const Association association = kind == Section::points_data ? Association::vertices : Association::cells;
+    roles_.push_back({static_cast<vtk::Role>(role), association, *name, {}});
+  }
 }
 
 std::string PieceSchema::opening(const char* type) const {
@@ -184,6 +208,10 @@ std::string PieceSchema::head(GlobalIndex vertices, GlobalIndex cells,
   }
   text += "    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_";
   return text;
+}
+
+std::string PieceSchema::fields_alone() const {
+  return opening("UnstructuredGrid") + "<UnstructuredGrid>" + fields_ + "</UnstructuredGrid></VTKFile>\n";
 }
 
 std::string PieceSchema::index(const std::vector<std::string>& files) const {

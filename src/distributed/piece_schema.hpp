@@ -3,11 +3,16 @@
 
 #include "distributed/layout.hpp"
 #include "distributed/rows.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+namespace meshorder::vtk {
+struct VtuElement;
+}
 
 namespace meshorder::distributed {
 
@@ -25,6 +30,7 @@ struct PieceArray {
   };
   Section section;
   Source source;
+  std::string name;
   std::size_t number;      ///< of rows and texts: place among the arrays of the mesh's file
   std::uint8_t type;       ///< number type, as the alternatives of Values
   Offset row;              ///< bytes of a row; of texts, of one of their places
@@ -48,6 +54,10 @@ class PieceSchema {
   [[nodiscard]] const std::vector<PieceArray>& arrays() const noexcept { return arrays_; }
   /// Returns the bytes of the word before an array, which tells its size: 4 or 8.
   [[nodiscard]] Offset word() const noexcept { return word_; }
+  /// Returns the roles of arrays that the pieces have.
+  [[nodiscard]] const std::vector<vtk::ArrayRole>& roles() const noexcept { return roles_; }
+  /// Returns whether the nodes of higher-order hexahedra are in the order of VTK 9.
+  [[nodiscard]] bool has_order_of_vtk_9() const noexcept { return has_order_of_vtk_9_; }
   /// Returns "on points 'part'" and so on: arrays of the mesh that the pieces lack, as they have others of
   /// these names.
   [[nodiscard]] const std::vector<std::string>& replaced() const noexcept { return replaced_; }
@@ -57,12 +67,15 @@ class PieceSchema {
   /// @param sizes  bytes of each array
   [[nodiscard]] std::string head(GlobalIndex vertices, GlobalIndex cells,
                                  const std::vector<Offset>& sizes) const;
+  /// Returns a .vtu file of the fields, without a piece.
+  [[nodiscard]] std::string fields_alone() const;
   /// Returns the file that names the pieces.
   [[nodiscard]] std::string index(const std::vector<std::string>& files) const;
 
   static constexpr std::string_view kEnd = "\n  </AppendedData>\n</VTKFile>\n";
 
  private:
+  void add_roles(const vtk::VtuElement& section, PieceArray::Section kind);
   [[nodiscard]] std::string opening(const char* type) const;
   /// Writes the elements of a section's arrays.
   template <class Write>
@@ -74,6 +87,8 @@ class PieceSchema {
   std::string cells_data_;
   std::vector<PieceArray> arrays_;
   std::vector<std::string> replaced_;
+  std::vector<vtk::ArrayRole> roles_;
+  bool has_order_of_vtk_9_ = false;
   Offset word_ = 8;
   int ghosts_;
 };

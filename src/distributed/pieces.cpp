@@ -5,8 +5,18 @@
 #include "distributed/number_types.hpp"
 #include "distributed/parts.hpp"
 #include "distributed/piece_contents.hpp"
+#include "distributed/shared_file.hpp"
+#include "distributed/text_store.hpp"
+#include "distributed/vtu_rows.hpp"
+#include "io/vtk/vtk.hpp"
+#ifdef MESHORDER_HAS_HDF5
+#include "io/vtkhdf/vtkhdf.hpp"
+#endif
 #include <meshorder/error.hpp>
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -166,6 +176,17 @@ void append(const std::string& path, const std::string& name, std::string_view t
   if (!file) throw InputError(name, "cannot be written", "the disk may be full");
 }
 
+PiecesReport report_on(const Communicator& communicator, const std::vector<PieceContents>& own) {
+  PiecesReport report;
+  for (const PieceContents& piece : own) {
+    report.ghost_vertices += piece.ghost_vertices();
+    report.ghost_cells += piece.ghost_cells();
+  }
+  report.ghost_vertices = communicator.sum(report.ghost_vertices);
+  report.ghost_cells = communicator.sum(report.ghost_cells);
+  return report;
+}
+
 /// The word before the values of an array.
 std::string size_word(Offset size, Offset word, const std::string& name) {
   if (word == 4 && size > Offset{std::numeric_limits<std::uint32_t>::max()}) {
@@ -205,17 +226,148 @@ PiecesReport write_pieces(const Communicator& communicator, const GridRows& grid
              values);
     });
   }
-  PiecesReport report;
   communicator.together([&] {
-    for (std::size_t p = 0; p < own.pieces().size(); ++p) {
+    for (std::size_t p = 0; p < own.pieces().size(); ++p)
       append(paths[part(p)], names[part(p)], PieceSchema::kEnd);
-      report.ghost_vertices += own.pieces()[p].ghost_vertices();
-      report.ghost_cells += own.pieces()[p].ghost_cells();
-    }
   });
-  report.ghost_vertices = communicator.sum(report.ghost_vertices);
-  report.ghost_cells = communicator.sum(report.ghost_cells);
+  return report_on(communicator, own.pieces());
+}
+
+Notes losses_in_vtkhdf(const PieceSchema& schema) {
+  Notes notes;
+  for (const PieceArray& array : schema.arrays()) {
+    const std::string where =
+        fmt::format("'{}' on {}", array.name, array.is_on_vertices() ? "vertices" : "cells");
+    if (array.source == Source::texts) {
+      notes.push_back(fmt::format("the array {} is not in the pieces: VTKHDF has no place for it", where));
+    } else if (array.attributes.find(" ComponentName") != std::string::npos || !array.inside.empty()) {
+      notes.push_back(fmt::format(
+          "the names of components and the information of the array {} are not in the pieces: VTKHDF has no "
+          "place for them",
+          where));
+    }
+  }
+  return notes;
+}
+
+#ifdef MESHORDER_HAS_HDF5
+namespace {
+
+/// Number type of connectivity and offsets, as VTK's own writer has them.
+constexpr std::uint8_t kInt64 = 8;
+
+/// The arrays of the pieces that VTKHDF holds.
+std::vector<PieceArray> arrays_in_vtkhdf(const PieceSchema& schema) {
+  std::vector<PieceArray> arrays;
+  for (const PieceArray& array : schema.arrays()) {
+    if (array.source == Source::texts) continue;
+    arrays.push_back(array);
+    if (array.source == Source::connectivity || array.source == Source::offsets) {
+      arrays.back().type = kInt64;
+      arrays.back().row = sizeof(std::int64_t);
+    }
+  }
+  return arrays;
+}
+
+/// Describes an array as a dataset of all pieces together.
+vtkhdf::RawDataset dataset_of(const PieceArray& array, const std::vector<vtkhdf::Partition>& partitions) {
+  using Role = vtkhdf::RawDataset::Role;
+  const Role role = array.section == PieceArray::Section::points  ? Role::points
+                    : array.section != PieceArray::Section::cells ? Role::data
+                    : array.source == Source::connectivity        ? Role::connectivity
+                    : array.source == Source::offsets             ? Role::offsets
+                                                                  : Role::types;
+  std::int64_t rows = 0;
+  for (const vtkhdf::Partition& partition : partitions) {
+    rows += array.is_on_vertices()       ? partition.points
+            : role == Role::connectivity ? partition.entries
+            : role == Role::offsets      ? partition.cells + 1
+                                         : partition.cells;
+  }
+  const auto components = static_cast<Index>(array.row / size_of_type(array.type));
+  const Association association = array.is_on_vertices() ? Association::vertices : Association::cells;
+  return {role, array.name, association, array.type, components, rows, 0};
+}
+
+/// Throws where hexahedra of higher order have the nodes as VTK numbered them before its version 9.
+void refuse_old_hexahedra(const Communicator& communicator, const GridRows& grid, const PieceSchema& schema,
+                          const std::string& name) {
+  if (schema.has_order_of_vtk_9()) return;
+  for (const PieceArray& array : schema.arrays()) {
+    if (array.section != PieceArray::Section::cells || array.source != Source::rows) continue;
+    const std::vector<std::byte> own = grid.rows(array.number);
+    communicator.together([&] {
+      const std::vector<int> types = numbers_of<int>(own, array.type);
+      if (std::none_of(types.begin(), types.end(), [](int type) {
+            return type >= 0 && type < 256 &&
+                   vtk::is_higher_order_hexahedron(static_cast<std::uint8_t>(type));
+          })) {
+        return;
+      }
+      throw InputError(name, "the mesh has hexahedra of higher order, numbered as before VTK 9",
+                       "give a folder for pieces in .vtu files, or save the mesh by a later VTK first");
+    });
+  }
+}
+
+/// The fields of pieces.
+std::vector<DataArray> field_arrays(const PieceSchema& schema) {
+  TextStore store(schema.fields_alone());
+  Notes ignored;
+  const Mesh mesh = vtk::read_vtu(FilePath("the fields of the mesh", store), ignored);
+  return dynamic_cast<const vtk::Metadata&>(*mesh.format_metadata).fields;
+}
+
+}  // namespace
+
+PiecesReport write_pieces_to_vtkhdf(const Communicator& communicator, const GridRows& grid,
+                                    const PieceSchema& schema, const std::vector<GlobalIndex>& part_starts,
+                                    bool with_ghosts, const std::string& path, const std::string& name) {
+  refuse_old_hexahedra(communicator, grid, schema, name);
+  const RankPieces own(communicator, grid, schema, part_starts, with_ghosts);
+  std::vector<vtkhdf::Partition> partitions;
+  for (const PieceContents& piece : own.pieces()) {
+    partitions.push_back(
+        {std::ssize(piece.vertices), std::ssize(piece.cells), std::ssize(piece.cell_vertices.entries)});
+  }
+  // parts go to the ranks in their order
+  partitions = communicator.gathered_at_root(partitions);
+  const std::vector<PieceArray> arrays = arrays_in_vtkhdf(schema);
+  PiecesReport report = report_on(communicator, own.pieces());
+  const std::vector<Offset> places = communicator.broadcast(communicator.at_root([&] {
+    std::vector<vtkhdf::RawDataset> datasets;
+    datasets.reserve(arrays.size());
+    for (const PieceArray& array : arrays) datasets.push_back(dataset_of(array, partitions));
+    vtk::Metadata metadata;
+    metadata.roles = schema.roles();
+    metadata.fields = field_arrays(schema);
+    vtkhdf::write_without_values(path, name, partitions, datasets, metadata, report.notes);
+    std::vector<Offset> found;
+    found.reserve(datasets.size());
+    for (const vtkhdf::RawDataset& dataset : datasets) found.push_back(static_cast<Offset>(dataset.place));
+    return found;
+  }));
+  SharedFile file(communicator, path, name, SharedFile::Use::write);
+  for (std::size_t k = 0; k < arrays.size(); ++k) {
+    std::vector<std::byte> rows;
+    own.for_values(arrays[k], [&](std::size_t /*p*/, const std::vector<std::byte>& values) {
+      // a partition's offsets begin with 0
+      if (arrays[k].source == Source::offsets) rows.insert(rows.end(), sizeof(std::int64_t), std::byte{0});
+      rows.insert(rows.end(), values.begin(), values.end());
+    });
+    write_raw(communicator, file, places[k], rows);
+  }
+  file.close();
   return report;
 }
+#else
+PiecesReport write_pieces_to_vtkhdf(const Communicator& /*communicator*/, const GridRows& /*grid*/,
+                                    const PieceSchema& /*schema*/,
+                                    const std::vector<GlobalIndex>& /*part_starts*/, bool /*with_ghosts*/,
+                                    const std::string& /*path*/, const std::string& name) {
+  throw Unavailable(name + ": VTKHDF needs HDF5, which this build of meshorder lacks");
+}
+#endif
 
 }  // namespace meshorder::distributed

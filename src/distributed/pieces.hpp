@@ -15,6 +15,7 @@ namespace meshorder::distributed {
 struct PiecesReport {
   GlobalIndex ghost_vertices = 0;  ///< of all pieces
   GlobalIndex ghost_cells = 0;
+  Notes notes;  ///< at the root: what has another name in the pieces
 };
 
 /// Returns what the pieces of a mesh have in common. Every rank has to call it.
@@ -39,5 +40,23 @@ struct PiecesReport {
 PiecesReport write_pieces(const Communicator& communicator, const GridRows& grid, const PieceSchema& schema,
                           const std::vector<GlobalIndex>& part_starts, bool with_ghosts,
                           const std::vector<std::string>& paths, const std::vector<std::string>& names);
+
+/// Returns what pieces in a .vtkhdf file lack of those in .vtu files.
+[[nodiscard]] Notes losses_in_vtkhdf(const PieceSchema& schema);
+
+/// Writes the pieces as the partitions of one .vtkhdf file, over a file that exists; each rank writes the
+/// rows of its parts at the places where libhdf5, at the root, has made room for them. Every rank has to call
+/// it. O(size of the mesh of a rank · log), memory for the cells of a rank's pieces and one of their arrays
+/// after another.
+///
+/// Format: "VTKHDF File Format", version 1.0.
+///
+/// @param path  of the file
+/// @param name  of the file in messages
+/// @throws SharedError where a rank cannot write, as on a full disk, and for hexahedra of higher order that
+///         VTK before its version 9 numbered; Unavailable in a build without HDF5
+PiecesReport write_pieces_to_vtkhdf(const Communicator& communicator, const GridRows& grid,
+                                    const PieceSchema& schema, const std::vector<GlobalIndex>& part_starts,
+                                    bool with_ghosts, const std::string& path, const std::string& name);
 
 }  // namespace meshorder::distributed

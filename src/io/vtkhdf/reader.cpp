@@ -26,13 +26,6 @@ namespace {
 
 constexpr std::string_view kDamaged = "the file may be damaged";
 
-/// What the datasets of counts say of a partition.
-struct Partition {
-  std::int64_t points = 0;
-  std::int64_t cells = 0;
-  std::int64_t entries = 0;  ///< of the connectivity
-};
-
 std::string path_in(std::string_view group, std::string_view name) {
   return fmt::format("{}/{}", group, name);
 }

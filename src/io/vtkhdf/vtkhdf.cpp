@@ -6,12 +6,15 @@
 #include "io/hdf5/session.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <fstream>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -66,15 +69,25 @@ void write_fields(hdf5::File& file, const std::vector<DataArray>& fields, Notes&
   }
 }
 
+void write_counts(hdf5::File& file, const std::vector<Partition>& partitions) {
+  const auto write = [&](std::string_view dataset, std::int64_t Partition::*count) {
+    std::vector<std::int64_t> counts;
+    counts.reserve(partitions.size());
+    for (const Partition& partition : partitions) counts.push_back(partition.*count);
+    file.write(fmt::format("{}/{}", kRoot, dataset), Values(counts), {counts.size()});
+  };
+  write("NumberOfPoints", &Partition::points);
+  write("NumberOfCells", &Partition::cells);
+  write("NumberOfConnectivityIds", &Partition::entries);
+}
+
 class VtkHdfWriter {
  public:
   VtkHdfWriter(vtk::WriteContext& from, hdf5::File& file) : from_(from), file_(file) {}
 
   void write() {
     const Cells& cells = from_.cells();
-    count("NumberOfPoints", from_.mesh.vertex_count());
-    count("NumberOfCells", from_.mesh.cell_count());
-    count("NumberOfConnectivityIds", cells.offsets.back());
+    write_counts(file_, {{from_.mesh.vertex_count(), from_.mesh.cell_count(), cells.offsets.back()}});
     write_points();
     // VTK's own writer has 64 bits here, too, and one type for both
     put("Offsets", std::vector<std::int64_t>(cells.offsets.begin(), cells.offsets.end()));
@@ -93,8 +106,6 @@ class VtkHdfWriter {
     const std::vector<std::uint64_t> shape{numbers.size()};
     file_.write(fmt::format("{}/{}", kRoot, dataset), Values(std::move(numbers)), shape);
   }
-
-  void count(std::string_view dataset, std::int64_t number) { put(dataset, std::vector{number}); }
 
   void write_points() {
     const std::string path = fmt::format("{}/Points", kRoot);
@@ -128,6 +139,24 @@ class VtkHdfWriter {
   hdf5::File& file_;
 };
 
+/// Names of the datasets of a mesh, in the order of RawDataset::Role.
+constexpr std::array<std::string_view, 4> kDatasets{"Points", "Connectivity", "Offsets", "Types"};
+
+/// Returns the path of an array on points or cells under a name that no other has. `held` knows the arrays by
+/// the names that are taken.
+std::string place_array(const RawDataset& dataset,
+                        std::map<std::pair<Association, std::string>, std::string>& held, Notes& notes) {
+  const std::string wanted = vtk::name_in_hdf5(dataset.name);
+  std::string name = wanted;
+  for (int i = 2; !held.try_emplace({dataset.association, name}, dataset.name).second; ++i)
+    name = fmt::format("{}_{}", wanted, i);
+  if (name != dataset.name) {
+    notes.push_back(fmt::format("the array '{}' on {} is written as '{}'", dataset.name,
+                                to_string(dataset.association), name));
+  }
+  return data_group(dataset.association) + "/" + name;
+}
+
 }  // namespace
 
 void note_lacking(const vtk::WriteContext& from, Notes& notes) {
@@ -142,6 +171,40 @@ void note_lacking(const vtk::WriteContext& from, Notes& notes) {
   for (const std::string& what : from.metadata.contents()) {
     if (!what.starts_with("the field ")) notes.push_back("not written (VTKHDF has no place for it): " + what);
   }
+}
+
+void write_without_values(const std::filesystem::path& path, const std::string& name,
+                          const std::vector<Partition>& partitions, std::vector<RawDataset>& datasets,
+                          const vtk::Metadata& metadata, Notes& notes) {
+  const hdf5::Session session;
+  const std::string bytes = empty_file();
+  std::ofstream(path, std::ios::binary).write(bytes.data(), std::ssize(bytes));
+  hdf5::File file = hdf5::File::change(path, name);
+  write_counts(file, partitions);
+  std::map<std::pair<Association, std::string>, std::string> held;  // names that are taken, of which arrays
+  std::vector<std::string> paths;
+  for (const RawDataset& dataset : datasets) {
+    paths.push_back(dataset.role == RawDataset::Role::data
+                        ? place_array(dataset, held, notes)
+                        : fmt::format("{}/{}", kRoot, kDatasets[static_cast<std::size_t>(dataset.role)]));
+    std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(dataset.rows)};
+    if (dataset.components != 1) shape.push_back(static_cast<std::uint64_t>(dataset.components));
+    file.make_room(paths.back(), dataset.type, shape);
+  }
+  for (const auto& [place, array] : held) {
+    for (const vtk::ArrayRole& role : metadata.roles) {
+      if (role.association == place.first && role.array == array)
+        file.set_attribute(data_group(place.first),
+                           std::string(vtk::kXmlRoles[static_cast<std::size_t>(role.role)]), place.second);
+    }
+  }
+  write_fields(file, metadata.fields, notes);
+  for (std::size_t k = 0; k < datasets.size(); ++k) {
+    const std::optional<std::uint64_t> place = file.place_of_values(paths[k]);
+    if (!place) throw InputError(name, fmt::format("'{}' got no room", paths[k]), "is the disk full?");
+    datasets[k].place = *place;
+  }
+  file.close();
 }
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {

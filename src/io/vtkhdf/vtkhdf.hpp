@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,6 +29,13 @@ inline constexpr std::string_view kComponents = "NumberOfComponents";
 inline std::string data_group(Association association) {
   return std::string(kRoot) + (association == Association::vertices ? "/PointData" : "/CellData");
 }
+
+/// What the datasets of counts say of a partition.
+struct Partition {
+  std::int64_t points = 0;
+  std::int64_t cells = 0;
+  std::int64_t entries = 0;  ///< of the connectivity
+};
 
 /// A dataset whose values stand in the file as they do in memory, one after another.
 struct RawDataset {
@@ -57,6 +65,19 @@ struct RawGrid {
 ///
 /// @throws InputError as `read` for faults of counts and shapes; values are not looked at
 std::optional<RawGrid> find_raw(const FilePath& path);
+
+/// Writes a file of several partitions over one on disk, with fields, roles and counts, but without the
+/// values of its datasets: these have room, and whoever writes them has to fill it.
+///
+/// @param path      of the file
+/// @param name      of the file in messages
+/// @param datasets  one of each role but `data`; receive their places
+/// @param metadata  fields and roles of arrays that are among the datasets; others are left out
+/// @param notes     receives what has another name in the file
+/// @throws InputError if it cannot be written
+void write_without_values(const std::filesystem::path& path, const std::string& name,
+                          const std::vector<Partition>& partitions, std::vector<RawDataset>& datasets,
+                          const vtk::Metadata& metadata, Notes& notes);
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
