@@ -43,7 +43,7 @@ std::array<Offset, 4> sizes_that_cost(const Caches& caches);
 const CostModel& zen5_costs();
 
 /// Returns costs that `meshorder calibrate` measured on a 2-core Zen 4 server processor (32 KB L1, 1 MB L2,
-/// 16 MB to be had of L3).
+/// 25 MB to be had of L3).
 const CostModel& zen4_costs();
 
 /// Predicts the milliseconds of each run of a repeated kernel on a processor with these caches (see

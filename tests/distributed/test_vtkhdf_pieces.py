@@ -9,7 +9,7 @@ import h5py
 import numpy
 import pytest
 import test_vtkhdf_slices as vtkhdf
-from test_mpi import SHARED, launch, order, own_lines
+from test_mpi import SHARED, launch, order, own_lines, serial
 from test_pieces import Grid, with_texts_and_roles
 from test_vtu_slices import array, grid, write
 
@@ -92,6 +92,19 @@ def test_partitions_are_the_pieces(tmp_path, ranks, parts, ghosts, source):
     assert fields == {"time": [2.5], "note": [b"kept as it is"]}
     assert (result["pieces"]["ghost_cells"] > 0) == (ghosts == 1)
     assert sorted(os.listdir(tmp_path)) == sorted([source, "out", "out.vtkhdf"])
+
+
+@pytest.mark.parametrize("ghosts", [0, 1])
+def test_partitions_are_read_as_the_mesh_that_they_are_of(tmp_path, ghosts):
+    write(tmp_path / "a.vtu", grid())
+    order(2, tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--pieces", tmp_path / "out.vtkhdf", "--parts", 5, "--ghosts", ghosts)
+    serial("order", tmp_path / "out.vtkhdf", "-o", tmp_path / "again.vtu", "--vertices", "original", "--elements", "original")
+    whole, again = Grid(tmp_path / "b.vtu"), Grid(tmp_path / "again.vtu")
+    assert numpy.array_equal(again.points, whole.points) and again.cells == whole.cells
+    for read, written in ((again.of_points, whole.of_points), (again.of_cells, whole.of_cells)):
+        assert set(read) - {"part"} == set(written)
+        for name in written:
+            assert numpy.array_equal(read[name], written[name]), name
 
 
 def test_pieces_beside_a_whole_file_that_they_replace(tmp_path):

@@ -5,6 +5,7 @@
 #include "base/large_pages.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/session.hpp"
+#include "io/vtk/joined_pieces.hpp"
 #include "io/vtkhdf/vtkhdf.hpp"
 #include <meshorder/error.hpp>
 
@@ -62,6 +63,8 @@ class VtkHdfReader {
     read_cells();
     read_fields();
     for (const Association association : {Association::vertices, Association::cells}) read_data(association);
+    if (full_partitions_ > 1) join_partitions();
+    finish();
     note_others();
     mesh_.format_metadata = metadata_;
     return std::move(mesh_);
@@ -175,12 +178,10 @@ class VtkHdfReader {
         throw error(path_of("NumberOfConnectivityIds"), "has counts that are too large");
       all_.entries += entries[p];
     }
-    const auto full = std::count_if(partitions_.begin(), partitions_.end(),
-                                    [](const Partition& p) { return p.points > 0 || p.cells > 0; });
-    if (full > 1) {
-      notes_.push_back(fmt::format(
-          "the {} partitions of the file became one; points that several of them have stay apart", full));
-    }
+    full_partitions_ = std::count_if(partitions_.begin(), partitions_.end(),
+                                     [](const Partition& p) { return p.points > 0 || p.cells > 0; });
+    if (full_partitions_ > 1)
+      notes_.push_back(fmt::format("the {} partitions of the file became one", full_partitions_));
   }
 
   // ---- the mesh
@@ -252,7 +253,7 @@ class VtkHdfReader {
   }
 
   void read_cells() {
-    vtk::FileCells cells;
+    vtk::FileCells& cells = cells_;
     const std::string offsets = path_of("Offsets");
     std::int64_t last = 0;
     Offset first_entry = 0;
@@ -301,12 +302,27 @@ class VtkHdfReader {
             throw error(types, fmt::format("has the type {}", type), "VTK's types run from 0 to 81");
           cells.types.push_back(static_cast<std::uint8_t>(type));
         });
-    metadata_->inward_wedges = take_cells(
-        mesh_, std::move(cells),
-        [&](const std::string& what, const std::string& remedy) {
-          return InputError(file_.name(), what, remedy);
-        },
-        notes_);
+  }
+
+  [[nodiscard]] vtk::ErrorAt error_of_file() const {
+    return [this](const std::string& what, const std::string& remedy) {
+      return InputError(file_.name(), what, remedy);
+    };
+  }
+
+  void join_partitions() {
+    vtk::Pieces pieces{std::move(mesh_.points), std::move(cells_), std::move(arrays_),
+                       std::move(metadata_->roles)};
+    vtk::join_pieces(pieces, error_of_file(), notes_);
+    mesh_.points = std::move(pieces.points);
+    cells_ = std::move(pieces.cells);
+    arrays_ = std::move(pieces.arrays);
+    metadata_->roles = std::move(pieces.roles);
+  }
+
+  void finish() {
+    metadata_->inward_wedges = take_cells(mesh_, std::move(cells_), error_of_file(), notes_);
+    for (DataArray& array : arrays_) vtk::add_array(mesh_, std::move(array));
   }
 
   [[noreturn]] void break_off(const std::string& offsets, std::int64_t end, std::int64_t entries) const {
@@ -384,13 +400,13 @@ class VtkHdfReader {
   void read_data(Association association) {
     const std::string group = data_group(association);
     read_roles(association);
-    const Index rows = association == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count();
+    const std::int64_t rows = association == Association::vertices ? all_.points : all_.cells;
     for (const std::string& name : file_.names(group)) {
       std::optional<DataArray> array = read_array(group, name);
       if (!array) continue;
       check_count(path_in(group, name), row_count(*array), association, rows);
       array->association = association;
-      vtk::add_array(mesh_, std::move(*array));
+      arrays_.push_back(std::move(*array));
     }
   }
 
@@ -419,6 +435,9 @@ class VtkHdfReader {
   Mesh mesh_;
   std::shared_ptr<vtk::Metadata> metadata_ = std::make_shared<vtk::Metadata>();
   std::vector<Partition> partitions_;
+  std::int64_t full_partitions_ = 0;  ///< that have points or cells
+  vtk::FileCells cells_;              ///< of all partitions, as the arrays
+  std::vector<DataArray> arrays_;
   Partition all_;
   RawGrid grid_;
 };
