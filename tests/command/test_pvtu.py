@@ -71,6 +71,15 @@ def test_points_of_one_id_are_one_and_ghosts_are_left_out(command, tmp_path, gho
     assert info["format"] == "VTU" and info["vertices"] == 5 and sum(info["cells"].values()) == 2
 
 
+def test_other_marks_than_those_of_copies_stay(command, tmp_path):
+    write_pieces(tmp_path / "pieces")
+    piece = tmp_path / "pieces" / "p0.vtu"
+    hidden = data_array("vtkGhostType", "UInt8", [0, 1])
+    assert hidden in piece.read_text()
+    piece.write_text(piece.read_text().replace(hidden, data_array("vtkGhostType", "UInt8", [32, 1])))
+    assert read_whole(command).cell_data["vtkGhostType"][0].tolist() == [32, 0]
+
+
 def test_ids_that_are_no_places_stay(command, tmp_path):
     write_pieces(tmp_path / "pieces", first_id=7)
     mesh = read_whole(command)

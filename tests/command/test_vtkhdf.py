@@ -131,6 +131,7 @@ def test_partitions_become_one(command, tmp_path):
         assert list(file["VTKHDF/NumberOfPoints"]) == [81]
     write(tmp_path / "a.vtkhdf", partitions=3)
     whole, first = by_vtk(tmp_path / "b.vtkhdf"), by_vtk(tmp_path / "a.vtkhdf")
+    assert set(first["cells data"].pop("vtkGhostType")) == {0}  # which says nothing of one mesh
     # VTK reads all partitions as one grid, too
     assert len(whole["points"]) == 81 and by_place(whole) == by_place(first)
 

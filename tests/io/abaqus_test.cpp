@@ -174,6 +174,17 @@ std::vector<std::string> sorted_lines(std::string_view text) {
   return result;
 }
 
+TEST(Abaqus, BeginsALineBehindALastLineWithoutItsEnd) {
+  const std::string deck =
+      "*NODE, NSET=first\n1, 0, 0, 0\n2, 1, 0, 0\n*NODE\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4\n7, 1, "
+      "2, 3, 4\n*NODE";
+  Mesh mesh = read_deck(deck);
+  apply_reordering(mesh, Permutation::from_new_to_old({2, 1, 0, 3}), Permutation::identity(1), Ids::keep);
+  const std::string text = deck_of(mesh);
+  EXPECT_THAT(text, testing::EndsWith("\n*NODE\n*NSET, NSET=first\n2, 1\n"));
+  EXPECT_EQ(test::sorted_members(read_deck(text)).sets, test::sorted_members(mesh).sets);
+}
+
 TEST(Abaqus, MovesLinesAndKeepsNumbers) {
   const Mesh mesh = read_deck(with(std::string(kDeck), "*NODE, NSET=Nall", "*NODE"));
   Mesh moved = mesh;

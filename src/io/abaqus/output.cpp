@@ -94,6 +94,8 @@ void DeckOutput::add_coordinate(double value) {
 }
 
 void DeckOutput::write_line() {
+  if (within_line_) out_.write(line_end_);
+  within_line_ = false;
   out_.write(line_ += line_end_);
   line_.clear();
 }

@@ -18,7 +18,12 @@ class DeckOutput {
  public:
   DeckOutput(OutputFile& out, std::string_view line_end) : out_(out), line_end_(line_end) {}
 
-  void text(std::string_view text) { out_.write(text); }
+  /// Writes a part of the deck as it is. The last line of a deck may lack its end; what follows begins a
+  /// line.
+  void text(std::string_view text) {
+    out_.write(text);
+    if (!text.empty()) within_line_ = text.back() != '\n' && text.back() != '\r';
+  }
 
   /// Writes the line of a node with `dimension` coordinates.
   void node(std::int64_t number, const Point& point, int dimension);
@@ -41,6 +46,7 @@ class DeckOutput {
   OutputFile& out_;
   std::string line_end_;
   std::string line_;  // so far
+  bool within_line_ = false;
   std::int64_t rounded_ = 0;
 };
 

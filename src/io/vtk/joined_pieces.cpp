@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <numeric>
 #include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
 namespace meshorder::vtk {
 namespace {
@@ -36,7 +39,7 @@ class PieceJoiner {
     take_rows(Association::vertices, points);
     take_rows(Association::cells, cells);
     for (const Association association : {Association::vertices, Association::cells}) {
-      erase(association, std::string(kGhostType));
+      forget_other_pieces(association);
       if (const std::string ids = name_of_ids(association); tells_places(association, ids))
         erase(association, ids);
     }
@@ -62,6 +65,27 @@ class PieceJoiner {
     std::erase_if(pieces_.roles, [&](const ArrayRole& role) {
       return role.association == association && role.array == name;
     });
+  }
+
+  /// Takes that mark off the rows that stayed, and the array where it says nothing else of them.
+  void forget_other_pieces(Association association) {
+    bool says_more = false;
+    for (DataArray& array : pieces_.arrays) {
+      if (array.association != association || array.name != kGhostType) continue;
+      std::visit(
+          [&](auto& values) {
+            using Number = typename std::decay_t<decltype(values)>::value_type;
+            if constexpr (std::is_integral_v<Number>) {
+              for (Number& value : values)
+                value = static_cast<Number>(value & ~static_cast<Number>(kOfAnotherPiece));
+              says_more = std::any_of(values.begin(), values.end(), [](Number value) { return value != 0; });
+            } else {
+              says_more = true;
+            }
+          },
+          array.values);
+    }
+    if (!says_more) erase(association, std::string(kGhostType));
   }
 
   /// Returns the numbers of an array with one integer for each row; none if there is no such array.
