@@ -216,9 +216,10 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
 }
 
 double same_time(const Advice& advice, Kernel kernel) {
-  const double predicted = kernel == Kernel::spmv ? 1.25 : 1.1;
-  return std::max(advice.as_is.costs.measured ? 1.05 : predicted,
-                  1 + advice.floor[static_cast<std::size_t>(kernel)]);
+  const double floor = advice.floor[static_cast<std::size_t>(kernel)];
+  const bool of_this_machine = advice.as_is.costs.measured || floor > 0;
+  const double of_another = kernel == Kernel::spmv ? 1.25 : 1.1;
+  return std::max(of_this_machine ? 1.05 : of_another, 1 + floor);
 }
 
 std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice) {

@@ -44,9 +44,10 @@ struct AdviceOptions {
 /// vertex graph of `mesh`. Throws InvalidArgument if neither prediction nor measurement is wanted.
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options = {});
 
-/// Returns the factor up to which two times of a kernel count as equal: 1.05 for measured times; 1.1 for
-/// predicted ones and 1.25 for SpMV, where smaller predicted differences were not confirmed by measurement
-/// (docs/prediction.md); and more where the machine's own timings of one problem differ by more.
+/// Returns the factor up to which two times of a kernel count as equal: 1.05 for measured times and those
+/// that the machine's own calibration predicts; by the costs of another machine 1.1 and for SpMV 1.25, where
+/// smaller predicted differences were not confirmed by measurement (docs/prediction.md); and more where the
+/// machine's own timings of one problem differ by more.
 double same_time(const Advice& advice, Kernel kernel);
 
 /// Returns the best candidate for each kernel, as kKernels lists them. Meshes without cells have nothing to

@@ -45,6 +45,20 @@ Advice made_up(const KernelMilliseconds& as_is, const KernelMilliseconds& first,
   return advice;
 }
 
+TEST(Advice, SmallDifferencesCountWhereTheMachineItselfWasMeasured) {
+  Advice advice;
+  advice.as_is.costs.predicted.emplace();
+  EXPECT_DOUBLE_EQ(same_time(advice, Kernel::element), 1.1);
+  EXPECT_DOUBLE_EQ(same_time(advice, Kernel::spmv), 1.25);
+  advice.floor = {0.01, 0.01, 0.02, 0.08};  // as a calibration finds it
+  EXPECT_DOUBLE_EQ(same_time(advice, Kernel::element), 1.05);
+  EXPECT_DOUBLE_EQ(same_time(advice, Kernel::spmv), 1.05);
+  EXPECT_DOUBLE_EQ(same_time(advice, Kernel::springs), 1.08);
+  advice.floor = {};
+  advice.as_is.costs.measured.emplace();
+  EXPECT_DOUBLE_EQ(same_time(advice, Kernel::spmv), 1.05);
+}
+
 TEST(Advice, AScrambledGridHasMuchToGain) {
   const Advice advice = advice_on(grid_in_order("scrambled", "scrambled"));
   const auto kernels = kernel_advice(advice);
