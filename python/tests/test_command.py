@@ -103,7 +103,7 @@ def test_flags_are_those_that_help_shows(tmp_path):
     for subcommand in _command._MESH_PLACE:
         text = ok(subcommand, "--help", cwd=tmp_path).stdout
         for line in re.findall(r"^ +(-\S.*?)(?:  |$)", text, re.M):
-            names, *value = line.removesuffix(" Excludes: --ids").split()
+            names, *value = line.partition(" Excludes:")[0].split()
             if not value and "help" not in names:
                 found |= set(names.split(","))
     assert found == _command._FLAGS
