@@ -37,8 +37,8 @@ typedef struct mo_mpi_mesh {
 typedef struct mo_mpi_options {
   size_t struct_size;     /**< sizeof(mo_mpi_options) of the caller */
   const char* method;     /**< vertex method of a part; null: "spectral" */
-  const char* partition;  /**< what makes parts: "ptscotch" (null), "hilbert", or "order": equal ranges of one
-                             order of the whole mesh, by the method "fiedler" only */
+  const char* partition;  /**< what makes parts: "ptscotch" (null), "hilbert", "rsb", or "order": equal ranges
+                             of one  order of the whole mesh, by the method "fiedler" only */
   const char* balance;    /**< what parts have equally much of: "vertices" (null) or "cells" */
   uint64_t seed;          /**< of the method; default 0 */
   int32_t parts;          /**< number of parts; 0 (default): one for each rank */

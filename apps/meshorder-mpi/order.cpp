@@ -202,9 +202,10 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
       .add_option(
           "--partition", arguments->partition,
           "What makes the parts: `ptscotch` has few edges between them, `hilbert` cuts Hilbert's\n"
-          "curve and gives the same parts on any number of ranks, `order` cuts one order of the\n"
-          "whole mesh, by fiedler only, into equal ranges; `auto` is order for fiedler, else ptscotch")
-      ->check(CLI::IsMember({"auto", "ptscotch", "hilbert", "order"}))
+          "curve and gives the same parts on any number of ranks, `rsb` halves the mesh and its parts by\n"
+          "their Fiedler vectors, `order` cuts one order of the whole mesh, by fiedler only, into equal\n"
+          "ranges; `auto` is order for fiedler, else ptscotch")
+      ->check(CLI::IsMember({"auto", "ptscotch", "hilbert", "rsb", "order"}))
       ->capture_default_str();
   subcommand
       .add_option(

@@ -28,8 +28,8 @@ struct RankMesh {
 /// The same on all ranks.
 struct RankOptions {
   std::string method = "spectral";  ///< vertex method of a part, see `vertex_methods`
-  /// Of `order_parts`: "ptscotch", "hilbert", or "order": equal ranges of one order of the whole mesh, by the
-  /// method "fiedler" only.
+  /// Of `order_parts`: "ptscotch", "hilbert", "rsb": recursive spectral bisection, or "order": equal ranges
+  /// of one order of the whole mesh, by the method "fiedler" only.
   std::string partition = "ptscotch";
   std::string balance = "vertices";  ///< of `order_parts`: "vertices" or "cells" are shared out evenly
   std::uint64_t seed = 0;

@@ -3,6 +3,7 @@
 
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
+#include "distributed/bisection.hpp"
 #include "distributed/cell_order.hpp"
 #include "distributed/curve.hpp"
 #include "distributed/fiedler.hpp"
@@ -90,7 +91,13 @@ PartOrders in_parts(const Communicator& communicator, const GlobalGraph& graph, 
                     const Curve& curve, const std::vector<GlobalIndex>& weights,
                     const DistributedOptions& options, DistributedReport& report, Stages& stages) {
   const GlobalIndex first = graph.layout.begin(communicator.rank());
-  Partition partition = partitioned(communicator, graph, report.parts, options.partitioner, weights);
+  Partition partition{{}, Partitioner::rsb, {}};
+  if (options.partitioner == Partitioner::rsb) {
+    partition.part_of =
+        bisected(communicator, graph, halo, curve.number_in_file, report.parts, weights, options.order);
+  } else {
+    partition = partitioned(communicator, graph, report.parts, options.partitioner, weights);
+  }
   report.imbalance = imbalance_of(communicator, partition.part_of, weights, report.parts);
   report.partitioner = partition.by;
   report.partition_reason = std::move(partition.reason);

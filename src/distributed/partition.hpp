@@ -18,6 +18,7 @@ namespace meshorder::distributed {
 enum class Partitioner : std::uint8_t {
   ptscotch,  ///< few edges between parts; the same parts for the same graph on the same number of ranks
   hilbert,   ///< ranges of equal weight of the graph's own order; the same parts on any number of ranks
+  rsb,       ///< recursive spectral bisection, see `bisected`
   order,     ///< equal ranges of one order of the whole graph, which no part has an order of its own in
 };
 
@@ -30,6 +31,7 @@ struct EnumNames<distributed::Partitioner> {
   static constexpr std::string_view kind = "partition";
   static constexpr std::array names{std::pair{distributed::Partitioner::ptscotch, "ptscotch"},
                                     std::pair{distributed::Partitioner::hilbert, "hilbert"},
+                                    std::pair{distributed::Partitioner::rsb, "rsb"},
                                     std::pair{distributed::Partitioner::order, "order"}};
 };
 
@@ -49,7 +51,7 @@ struct Partition {
 ///
 /// @param graph    numbered along Hilbert's curve from 0 on, equal shares on all ranks
 /// @param parts    ≥ 1
-/// @param by       not `order`
+/// @param by       `ptscotch` or `hilbert`
 /// @param weights  > 0, of each own vertex; none: all alike
 /// @throws as `Communicator::exchange`
 [[nodiscard]] Partition partitioned(const Communicator& communicator, const GlobalGraph& graph, Index parts,

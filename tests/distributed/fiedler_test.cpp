@@ -47,17 +47,6 @@ Order serial(const Mesh& mesh, const OrderOptions& options = {}) {
   return order_graph("fiedler", {.graph = graph}, options);
 }
 
-/// A path of lines whose k-th vertex has the number k · step mod n.
-Mesh path(Index n, Index step) {
-  Mesh mesh;
-  const auto number = [&](Index k) { return static_cast<Index>(Offset{k} * step % n); };
-  mesh.points.resize(static_cast<std::size_t>(n));
-  for (Index k = 0; k < n; ++k) mesh.points[static_cast<std::size_t>(number(k))] = {1.0 * k, 0, 0};
-  for (Index k = 1; k < n; ++k)
-    mesh.cells.push_back(Shape::line, std::vector<Index>{number(k - 1), number(k)});
-  return mesh;
-}
-
 /// Grids of different sizes side by side, the vertices of all of them in turn, and two that nothing joins.
 Mesh grids_in_turn(const std::vector<Index>& sizes) {
   Mesh all;
@@ -114,7 +103,7 @@ TEST(SharedFiedler, OrdersAPathFromEndToEnd) {
   const Communicator communicator;
   constexpr Index kStep = 3 * 11 * 13;  // prime to the numbers of vertices
   for (const Index n : {2, 4, 7, 64, 1000}) {
-    const Found together = found(communicator, path(n, kStep), kAllTogether, {.tolerance = 1e-7});
+    const Found together = found(communicator, test::path(n, kStep), kAllTogether, {.tolerance = 1e-7});
     const auto at = [&](Index k) {
       return together.order.old_to_new()[static_cast<std::size_t>(Offset{k} * kStep % n)];
     };
@@ -159,7 +148,7 @@ TEST(SharedFiedler, OrdersComponentAfterComponent) {
 
 TEST(SharedFiedler, GivesTheSignOfTheSerialOne) {
   const Communicator communicator;
-  const Mesh mesh = path(300, 77);  // λ₂ is simple
+  const Mesh mesh = test::path(300, 77);  // λ₂ is simple
   const Found together = found(communicator, mesh, kAllTogether, {.tolerance = 1e-7});
   EXPECT_EQ(together.order, serial(mesh, {.tolerance = 1e-7}).permutation);
 }
@@ -182,7 +171,7 @@ TEST(SharedFiedler, TakesGraphsOfAnySort) {
   star.points.resize(3000);
   apart.points.resize(50);
   for (Index v = 1; v < 3000; ++v) star.cells.push_back(Shape::line, std::vector<Index>{0, v});
-  for (const Mesh& mesh : {star, apart, Mesh(), path(4, 1), make_grid({.size = 1})}) {
+  for (const Mesh& mesh : {star, apart, Mesh(), test::path(4, 1), make_grid({.size = 1})}) {
     for (const SharedSizes sizes : {kAllTogether, kAllAlone})
       EXPECT_EQ(found(communicator, mesh, sizes).order.size(), mesh.vertex_count());
   }

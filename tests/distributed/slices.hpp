@@ -55,4 +55,15 @@ inline WholeOrder ordered(const distributed::Communicator& communicator, const M
           permutation_within_classes(slot_classes(cell_arrays(mesh)), everywhere(order.cells)), order.report};
 }
 
+/// A path of lines whose k-th vertex has the number k · step mod n.
+inline Mesh path(Index n, Index step) {
+  Mesh mesh;
+  const auto number = [&](Index k) { return static_cast<Index>(Offset{k} * step % n); };
+  mesh.points.resize(static_cast<std::size_t>(n));
+  for (Index k = 0; k < n; ++k) mesh.points[static_cast<std::size_t>(number(k))] = {1.0 * k, 0, 0};
+  for (Index k = 1; k < n; ++k)
+    mesh.cells.push_back(Shape::line, std::vector<Index>{number(k - 1), number(k)});
+  return mesh;
+}
+
 }  // namespace meshorder::test

@@ -203,6 +203,26 @@ def test_the_fiedler_order_has_the_same_bits_in_every_run(tmp_path, torus):
     assert len(files) == 1
 
 
+@pytest.mark.parametrize("parts", [2, 7])
+def test_spectral_bisection_cuts_as_few_edges_as_ptscotch(tmp_path, torus, parts):
+    def cut(method):
+        done = order(3, torus, "-o", tmp_path / f"{method}.vtu", "--partition", method, "--parts", parts, "--json")
+        return json.loads(done.stdout)["partition"]
+
+    result = cut("rsb")
+    assert result["method"] == "rsb" and result["because"] is None and result["imbalance"] < 1.002
+    assert result["cut"] <= 1.15 * cut("ptscotch")["cut"]
+    first = (tmp_path / "rsb.vtu").read_bytes()
+    cut("rsb")
+    assert (tmp_path / "rsb.vtu").read_bytes() == first
+
+
+def test_spectral_bisection_shares_out_cells(tmp_path, torus):
+    done = order(2, torus, "-o", tmp_path / "a.vtu", "--partition", "rsb", "--parts", 5, "--balance", "cells", "--json")
+    result = json.loads(done.stdout)["partition"]
+    assert result["balance"] == "cells" and result["imbalance"] < 1.01
+
+
 def test_parts_of_the_fiedler_order_are_equal_ranges_of_it(tmp_path, ball):
     result = fiedler_order(3, ball, "-o", tmp_path / "a.vtu", "--parts", "7", "--maps", tmp_path / "m", "--pieces", tmp_path / "p")
     counts = numpy.bincount(numpy.load(tmp_path / "m.vertices.parts.npy"))

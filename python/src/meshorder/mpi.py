@@ -183,8 +183,8 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         points: n × 1, 2 or 3 coordinates of the own vertices.
         parts: number of parts; 0: one for each rank.
         method: vertex method of a part.
-        partition: "ptscotch", which needs MPI_THREAD_MULTIPLE; "hilbert", which takes its place without that; or
-            "order", equal ranges of one order of the whole mesh, by the method "fiedler" only.
+        partition: "ptscotch", which needs MPI_THREAD_MULTIPLE; "hilbert", which takes its place without that; "rsb",
+            recursive spectral bisection; or "order", equal ranges of one order of the whole mesh, by the method "fiedler" only.
         balance: what parts have equally much of, "vertices" or "cells".
         interface_last: True puts vertices that share an element with those of other parts behind the others.
         seed: of the method.
