@@ -123,7 +123,8 @@ void run(const OrderArguments& arguments) {
   if (!in_race && !arguments.machine.empty()) {
     throw InvalidArgument("--machine is for --predict and --measure, which choose by predicted times");
   }
-  MachineChoice machine = choose_machine(arguments.machine);
+  std::optional<MachineChoice> machine;
+  if (in_race) machine = choose_machine(arguments.machine);
   check_can_write(arguments);  // fail before the work
 
   Progress progress(!console.quiet());
@@ -134,7 +135,7 @@ void run(const OrderArguments& arguments) {
   Mesh& mesh = job.mesh;
   const double read_seconds = reading.seconds();
 
-  if (arguments.predict) machine = calibrated(std::move(machine), progress, console.quiet(), notes);
+  if (arguments.predict) machine = calibrated(*std::move(machine), progress, console.quiet(), notes);
   progress.stage("ordering", 0.4, 0.7);
   const Stopwatch ordering;
   std::optional<Grouping> groups;
@@ -147,7 +148,7 @@ void run(const OrderArguments& arguments) {
     raced = race(mesh, *graph,
                  {.ordering = options.order,
                   .graph_seconds = stopwatch.seconds(),
-                  .machine = std::move(machine),
+                  .machine = *std::move(machine),
                   .timer = arguments.measure ? time_orders : OrderTimer{}});
     options.methods = raced->methods();
     if (!raced->advice.doubt.empty()) notes.push_back(raced->advice.doubt);

@@ -26,7 +26,7 @@ std::string_view word_for(Association association) {
 
 class PieceJoiner {
  public:
-  PieceJoiner(Pieces& pieces, const ErrorAt& error, Notes& notes)
+  PieceJoiner(const Pieces& pieces, const ErrorAt& error, Notes& notes)
       : pieces_(pieces), error_(error), notes_(notes) {}
 
   void join() {
@@ -218,14 +218,14 @@ class PieceJoiner {
     }
   }
 
-  Pieces& pieces_;
+  const Pieces& pieces_;
   const ErrorAt& error_;
   Notes& notes_;
 };
 
 }  // namespace
 
-void join_pieces(Pieces& pieces, const ErrorAt& error, Notes& notes) {
+void join_pieces(const Pieces& pieces, const ErrorAt& error, Notes& notes) {
   PieceJoiner(pieces, error, notes).join();
 }
 

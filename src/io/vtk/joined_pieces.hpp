@@ -8,12 +8,12 @@
 
 namespace meshorder::vtk {
 
-/// What the pieces of a mesh hold, one behind another.
+/// What the pieces of a mesh hold, one behind another. Borrowed from a reader.
 struct Pieces {
-  std::vector<Point> points;
-  FileCells cells;
-  std::vector<DataArray> arrays;  ///< of all points or cells
-  std::vector<ArrayRole> roles;
+  std::vector<Point>& points;
+  FileCells& cells;
+  std::vector<DataArray>& arrays;  ///< of all points or cells
+  std::vector<ArrayRole>& roles;
 };
 
 /// Makes one mesh of its pieces, in place. Cells that `vtkGhostType` marks as another piece's are left out,
@@ -25,6 +25,6 @@ struct Pieces {
 /// Without ids of the points those on the borders of pieces stay several, which is noted. Throws `error` for
 /// ids below 0, points of one id that differ in place, and two cells of one id. O(points + cells, times their
 /// logarithms).
-void join_pieces(Pieces& pieces, const ErrorAt& error, Notes& notes);
+void join_pieces(const Pieces& pieces, const ErrorAt& error, Notes& notes);
 
 }  // namespace meshorder::vtk

@@ -116,16 +116,10 @@ class VtuReader {
   /// Makes one mesh of the pieces that were listed.
   void join(const VtuElement& grid) {
     check_arrays(grid, index_size(cells_.types));
-    Pieces pieces{std::move(mesh_.points), std::move(cells_), std::move(arrays_),
-                  std::move(metadata_->roles)};
     join_pieces(
-        pieces,
+        {mesh_.points, cells_, arrays_, metadata_->roles},
         [&](const std::string& what, const std::string& remedy) { return file_->error(grid, what, remedy); },
         notes_);
-    mesh_.points = std::move(pieces.points);
-    cells_ = std::move(pieces.cells);
-    arrays_ = std::move(pieces.arrays);
-    metadata_->roles = std::move(pieces.roles);
   }
 
   /// Throws unless all arrays are of all points, or of so many cells.

@@ -63,7 +63,8 @@ class VtkHdfReader {
     read_cells();
     read_fields();
     for (const Association association : {Association::vertices, Association::cells}) read_data(association);
-    if (full_partitions_ > 1) join_partitions();
+    if (full_partitions_ > 1)
+      vtk::join_pieces({mesh_.points, cells_, arrays_, metadata_->roles}, error_of_file(), notes_);
     finish();
     note_others();
     mesh_.format_metadata = metadata_;
@@ -308,16 +309,6 @@ class VtkHdfReader {
     return [this](const std::string& what, const std::string& remedy) {
       return InputError(file_.name(), what, remedy);
     };
-  }
-
-  void join_partitions() {
-    vtk::Pieces pieces{std::move(mesh_.points), std::move(cells_), std::move(arrays_),
-                       std::move(metadata_->roles)};
-    vtk::join_pieces(pieces, error_of_file(), notes_);
-    mesh_.points = std::move(pieces.points);
-    cells_ = std::move(pieces.cells);
-    arrays_ = std::move(pieces.arrays);
-    metadata_->roles = std::move(pieces.roles);
   }
 
   void finish() {
