@@ -5,6 +5,7 @@
 #include "base/resize_in_steps.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/hdf5/visitor.hpp"
+#include "io/stream/output_file.hpp"
 #include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
@@ -858,6 +859,25 @@ void File::close() {
     fail("", fmt::format("cannot be written to the end ({})", last_cause()), "is the disk full?");
   }
   session.require_no_fault(name_);
+}
+
+void write_from(const FilePath& path, const std::string& bytes, const std::function<void(File&)>& fill) {
+  OutputFile out(path);
+  const auto open = [&] {
+    if (path.store() != nullptr) return File::in_memory(bytes, path.string());
+    out.write(bytes);
+    out.close();
+    return File::change(out.temporary(), path.string());
+  };
+  std::optional<File> file(open());
+  fill(*file);
+  if (path.store() != nullptr) {
+    out.write(file->bytes());
+  } else {
+    file->close();
+  }
+  file.reset();
+  out.commit();
 }
 
 }  // namespace meshorder::hdf5

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <set>
 #include <span>
@@ -170,5 +171,9 @@ class File {
 
 /// Returns the path with one slash before each part and none at its end.
 std::string normal_path(std::string_view path);
+
+/// Writes a file of HDF5 that begins as the bytes of another, which `fill` adds to: in memory for a path in a
+/// store, else beside the path, and puts it in place. Throws as OutputFile and File.
+void write_from(const FilePath& path, const std::string& bytes, const std::function<void(File&)>& fill);
 
 }  // namespace meshorder::hdf5

@@ -4,7 +4,6 @@
 #include "base/index.hpp"
 #include "io/all_formats.hpp"
 #include "io/hdf5/session.hpp"
-#include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 
 #include <fmt/format.h>
@@ -409,36 +408,23 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const hdf5::Session session;
   const auto* const own = dynamic_cast<const Layout*>(mesh.format_metadata.get());
   const Layout layout = own != nullptr ? *own : new_layout(mesh);
-  OutputFile out(path);
-  const auto open = [&] {
-    if (path.store() != nullptr) return hdf5::File::in_memory(*layout.file, path.string());
-    out.write(*layout.file);
-    out.close();
-    return hdf5::File::change(out.temporary(), path.string());
-  };
-  std::optional<hdf5::File> file(open());
-  Writing writing{mesh, layout, *file, notes, {}, {}};
-  std::vector<Index>* of_type = nullptr;  // neighbours are mostly of one type
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    if (c == 0 || mesh.cells.shapes[c] != mesh.cells.shapes[c - 1] ||
-        mesh.cells.vertex_count(c) != mesh.cells.vertex_count(c - 1)) {
-      of_type = &writing.cells[geometry_type(mesh.cells.shapes[c], mesh.cells.vertex_count(c))];
+  hdf5::write_from(path, *layout.file, [&](hdf5::File& file) {
+    Writing writing{mesh, layout, file, notes, {}, {}};
+    std::vector<Index>* of_type = nullptr;  // neighbours are mostly of one type
+    for (Index c = 0; c < mesh.cell_count(); ++c) {
+      if (c == 0 || mesh.cells.shapes[c] != mesh.cells.shapes[c - 1] ||
+          mesh.cells.vertex_count(c) != mesh.cells.vertex_count(c - 1)) {
+        of_type = &writing.cells[geometry_type(mesh.cells.shapes[c], mesh.cells.vertex_count(c))];
+      }
+      of_type->push_back(c);
     }
-    of_type->push_back(c);
-  }
-  write_nodes(writing);
-  write_cells(writing);
-  note_texts(writing);
-  write_fields(writing);
-  write_equivalences(writing);
-  if (own == nullptr) note_metadata_unsupported(mesh, "MED", notes);
-  if (path.store() != nullptr) {
-    out.write(file->bytes());
-  } else {
-    file->close();
-  }
-  file.reset();
-  out.commit();
+    write_nodes(writing);
+    write_cells(writing);
+    note_texts(writing);
+    write_fields(writing);
+    write_equivalences(writing);
+    if (own == nullptr) note_metadata_unsupported(mesh, "MED", notes);
+  });
 }
 
 namespace {

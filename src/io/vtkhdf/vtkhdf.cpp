@@ -4,7 +4,6 @@
 #include "io/all_formats.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/session.hpp"
-#include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 
@@ -211,22 +210,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const hdf5::Session session;
   vtk::WriteContext from(mesh, notes, vtk::NamePlace::hdf5);
   note_lacking(from, notes);
-  OutputFile out(path);
-  const auto open = [&] {
-    if (path.store() != nullptr) return hdf5::File::in_memory(empty_file(), path.string());
-    out.write(empty_file());
-    out.close();
-    return hdf5::File::change(out.temporary(), path.string());
-  };
-  std::optional<hdf5::File> file(open());
-  VtkHdfWriter(from, *file).write();
-  if (path.store() != nullptr) {
-    out.write(file->bytes());
-  } else {
-    file->close();
-  }
-  file.reset();
-  out.commit();
+  hdf5::write_from(path, empty_file(), [&](hdf5::File& file) { VtkHdfWriter(from, file).write(); });
 }
 
 }  // namespace meshorder::vtkhdf
