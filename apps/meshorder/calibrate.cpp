@@ -42,6 +42,16 @@ auto watched(const CalibrateArguments& arguments, const std::string& what, const
 
 std::string in_bytes(Offset bytes) { return to_string(Caches{{bytes}}); }
 
+std::string in_columns(const KernelCosts& costs) {
+  std::string misses;
+  std::string jumps;
+  for (std::size_t i = 0; i < costs.miss.size(); ++i) {
+    misses += fmt::format("{:>7.3g}", costs.miss[i]);
+    jumps += fmt::format("{:>7.3g}", costs.jump[i]);
+  }
+  return fmt::format("{:>7.3g}{}{}{:>8.3g}{:>7.3g}", costs.access, misses, jumps, costs.repeat, costs.wait);
+}
+
 void print_calibration(const Console& console, const Calibration& calibration) {
   console.print("{}", calibration.processor);
   console.print("{:<10} {:>10} {:>10} {:>10} {:>12}", "", "reported", "found", "used", "latency");
@@ -65,20 +75,15 @@ void print_calibration(const Console& console, const Calibration& calibration) {
   console.print(
       "\nWhat a kernel pays, in ns: an access, a miss and in addition a jump of the first cache, the "
       "second,\n"
-      "half of the last and all of it; an addition to what was added to just before");
-  console.print("{:<14}{:>7}{:>28}{:>28}{:>8}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps", "repeat",
-                "condition", "error", "floor");
+      "half of the last and all of it; an addition to what was added to just before; a wait for jumps of\n"
+      "the last one that are close together. The second line of each kernel is of triangles");
+  console.print("{:<14}{:>7}{:>28}{:>28}{:>8}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps",
+                "repeat", "wait", "condition", "error", "floor");
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const KernelCosts& costs = calibration.model.kernels[k];
-    std::string misses;
-    std::string jumps;
-    for (std::size_t i = 0; i < costs.miss.size(); ++i) {
-      misses += fmt::format("{:>7.3g}", costs.miss[i]);
-      jumps += fmt::format("{:>7.3g}", costs.jump[i]);
-    }
-    console.print("{:<14}{:>7.3g}{}{}{:>8.3g}{:>10.0f}{:>6.1f}%{:>6.1f}%", kKernelTitles[k], costs.access,
-                  misses, jumps, costs.repeat, calibration.condition[k], 100 * calibration.error[k],
-                  100 * calibration.floor[k]);
+    console.print("{:<14}{}{:>10.0f}{:>6.1f}%{:>6.1f}%", kKernelTitles[k],
+                  in_columns(calibration.model.solid[k]), calibration.condition[k],
+                  100 * calibration.error[k], 100 * calibration.floor[k]);
+    console.print("{:<14}{}", "", in_columns(calibration.model.flat[k]));
   }
   console.print(
       "condition: how many times errors of measured times can grow in these numbers; error: of the times\n"

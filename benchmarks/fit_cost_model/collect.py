@@ -18,7 +18,7 @@ import tempfile
 
 # more sizes than a machine has caches: what part of a shared one a thread has is seen by fitting
 CACHES = ["32K", "48K", "256K", "512K", "1M", "2M", "4M", "8M", "10M", "16M", "20M", "32M"]
-COLUMNS = ["mesh", "vertices", "simplices", "dimension", "order", "kernel", "accesses", *(f"miss_{c}" for c in CACHES),
+COLUMNS = ["mesh", "vertices", "simplices", "dimension", "order", "kernel", "accesses", "gathers", *(f"miss_{c}" for c in CACHES),
            *(f"jump_{c}" for c in CACHES), "repeats", "best_ms", "median_ms", "samples"]
 
 # anybody can make them, on any machine

@@ -4,8 +4,8 @@
 
     fit.py TABLE.csv [--page docs/prediction.md]
 
-Prints the coefficients as C++, for src/payoff/cost_model.cpp: non-negative least squares of relative errors
-over all meshes. What it says of their worth is of two other fits: each half of the meshes, every second one by size,
+Prints the coefficients as C++, for src/payoff/cost_model.cpp: non-negative least squares of relative errors, for
+tetrahedra over the meshes of these, for triangles over all meshes. What it says of their worth is of two other fits: each half of the meshes, every second one by size,
 is predicted by a fit to the other half.
 """
 import argparse
@@ -13,6 +13,7 @@ import collections
 import csv
 import itertools
 import pathlib
+import textwrap
 
 import numpy
 from scipy.optimize import nnls
@@ -21,20 +22,30 @@ from scipy.stats import spearmanr
 KERNELS = {"spmv": "SpMV", "element": "element force", "assembly": "assembly", "springs": "springs"}
 # the machine's, and half of its last one, as cost_model.hpp has it
 LEVELS = ["48K", "1M", "16M", "32M"]
-FEATURES = ["accesses", *(f"miss_{c}" for c in LEVELS), *(f"jump_{c}" for c in LEVELS)]
+FEATURES = ["accesses", *(f"miss_{c}" for c in LEVELS), *(f"jump_{c}" for c in LEVELS), "repeats"]
+# gathered accesses that wait for the memory together, as cost_model.cpp has it
+TOGETHER = 32
 DIFFERENT = 0.1
 
 
+def waits(row):
+    """See counts_of in src/payoff/cost_model.cpp."""
+    gathers = float(row["gathers"])
+    hits = max(0.0, 1 - float(row[f"jump_{LEVELS[-1]}"]) / gathers) if gathers else 1.0
+    return gathers / TOGETHER * (1 - hits**TOGETHER)
+
+
 def read(table):
-    """By kernel: rows of (mesh, order, features, best ms)."""
+    """By kernel: rows of (mesh, order, features, best ms); the meshes by size, their sizes and dimensions."""
     rows = collections.defaultdict(list)
-    sizes = {}
+    sizes, dimensions = {}, {}
     with open(table) as file:
         for row in csv.DictReader(file):
             sizes[row["mesh"]] = int(row["vertices"])
-            rows[row["kernel"]].append((row["mesh"], row["order"], [float(row[f]) for f in FEATURES],
-                                        float(row["best_ms"])))
-    return rows, sorted(sizes, key=sizes.get), sizes
+            dimensions[row["mesh"]] = int(row["dimension"])
+            features = [*(float(row[f]) for f in FEATURES), waits(row)]
+            rows[row["kernel"]].append((row["mesh"], row["order"], features, float(row["best_ms"])))
+    return rows, sorted(sizes, key=sizes.get), sizes, dimensions
 
 
 def fit(features, times):
@@ -107,8 +118,8 @@ def arguments():
 
 def initialiser(kernel, coefficients):
     numbers = [f"{1e6 * c:.4g}" for c in coefficients]
-    return (f"    {{.access = {numbers[0]}, .miss = {{{', '.join(numbers[1:5])}}}, "
-            f".jump = {{{', '.join(numbers[5:])}}}}},  // {kernel}")
+    return (f"    {{.access = {numbers[0]}, .miss = {{{', '.join(numbers[1:5])}}}, .jump = {{{', '.join(numbers[5:9])}}}, "
+            f".repeat = {numbers[9]}, .wait = {numbers[10]}}},  // {kernel}")
 
 
 def tables(rows, meshes, sizes, results):
@@ -127,9 +138,10 @@ def tables(rows, meshes, sizes, results):
                      f"{percent(right)} | {claimed} | {percent(kept)} | {percent(median - 1)} | {percent(most - 1)} |")
     for kernel in ("spmv", "springs"):
         median, most = noise(rows[kernel], meshes)
-        lines += ["", f"{KERNELS[kernel]} timed twice on the same problem in one run (under `hilbert/lexmax` and "
-                      f"`hilbert/hilbert`, which differ in elements alone) differs by {percent(median - 1)} in the "
-                      f"median of the {len(meshes)} meshes, by {percent(most - 1)} at most."]
+        text = (f"{KERNELS[kernel]} timed twice on the same problem in one run (under `hilbert/lexmax` and "
+                f"`hilbert/hilbert`, which differ in elements alone) differs by {percent(median - 1)} in the median of the "
+                f"{len(meshes)} meshes, by {percent(most - 1)} at most.")
+        lines += ["", textwrap.fill(text, 112, break_on_hyphens=False)]
     lines += ["", "The scrambled order against `hilbert/lexmax`, predicted / measured:", "",
               "| mesh | vertices | " + " | ".join(KERNELS.values()) + " |", "| --- | ---: |" + " ---: |" * len(KERNELS)]
     for mesh in meshes:
@@ -150,13 +162,20 @@ def fit_to(rows, meshes):
 
 def main():
     given = arguments()
-    rows, meshes, sizes = read(given.table)
+    rows, meshes, sizes, dimensions = read(given.table)
+    solid = [mesh for mesh in meshes if dimensions[mesh] == 3]
+    flat = [mesh for mesh in meshes if dimensions[mesh] < 3]
+    for name, fitted in ((".solid", solid), (".flat", meshes)):
+        print(name)
+        for kernel in KERNELS:
+            print(initialiser(kernel, fit_to(rows[kernel], fitted)))
     results = {}
     for kernel in KERNELS:
-        print(initialiser(kernel, fit_to(rows[kernel], meshes)))
         results[kernel] = {}
         for fitting, left_out in ((meshes[0::2], meshes[1::2]), (meshes[1::2], meshes[0::2])):
-            results[kernel].update(evaluate(rows[kernel], left_out, fit_to(rows[kernel], fitting)))
+            for of_dimension, fitted in ((solid, [mesh for mesh in fitting if mesh in solid]), (flat, fitting)):
+                predicted = [mesh for mesh in left_out if mesh in of_dimension]
+                results[kernel].update(evaluate(rows[kernel], predicted, fit_to(rows[kernel], fitted)))
     text = tables(rows, meshes, sizes, results)
     print(text)
     if given.page:

@@ -1,16 +1,16 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // measure predict MESH CACHES FOLDER VERTICES/ELEMENTS…: computes the orders of a mesh, keeps them in FOLDER
 // and prints what the reuse model says of every kernel in every order: mesh, vertices, simplices, dimension,
-// order, kernel, accesses, misses of three levels, jumps of three levels, repeats.
+// order, kernel, accesses, gathered ones, misses of three levels, jumps of three levels, repeats.
 // measure time MESH BUDGET FOLDER VERTICES/ELEMENTS…: times the kernels in the orders that FOLDER keeps, and
 // prints order, kernel, best and median milliseconds, samples. The first order is the one to compare with.
 //
 // measure judge MESH BUDGET THREADS MACHINES VERTICES/ELEMENTS…: times the kernels in these orders, and in
-// those that `auto` takes for each kernel, twice over, in interleaved rounds, and predicts them for machines
-// whose names are separated by commas ("zen5", "this"; "prior": zen5 with the caches of this machine; with a
-// slash: the file of a calibration). Prints mesh, vertices, order, kernel, the best milliseconds of each
-// half, then the milliseconds predicted for each machine; and mesh, vertices, "auto", kernel, the order that
-// `auto` takes.
+// those that `auto` takes for each kernel, in interleaved rounds, twice over, the second time on other pages
+// of memory, and predicts them for machines whose names are separated by commas ("zen5", "this"; "prior":
+// zen5 with the caches of this machine; with a slash: the file of a calibration). Prints mesh, vertices,
+// order, kernel, the best milliseconds of each half, then the milliseconds predicted for each machine; and
+// mesh, vertices, "auto", kernel, the order that `auto` takes.
 //
 // MESH is the name of a model, "grid-20", "dragon", or a file; with "-skin" behind it, the triangles on its
 // surface. benchmarks/fit_cost_model/collect.py calls this for all of them.
@@ -117,9 +117,9 @@ void predict(const std::string& name, const mo::Caches& caches, const std::strin
     const mo::KernelReuse reuse =
         mo::reuse_of_kernels(mesh, graph, r.vertices.permutation, r.cells.permutation, kHalvings);
     for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
-      fmt::print("{},{},{},{},{},{},{},{},{},{}\n", name, mesh.vertex_count(), simplices.size(),
+      fmt::print("{},{},{},{},{},{},{},{},{},{},{}\n", name, mesh.vertex_count(), simplices.size(),
                  simplices.dimension, order, mo::to_string(mo::kKernels[k]), reuse[k].all.accesses(),
-                 fmt::join(mo::misses(reuse[k].all, caches), ","),
+                 reuse[k].gathers, fmt::join(mo::misses(reuse[k].all, caches), ","),
                  fmt::join(mo::misses(reuse[k].jumps, caches), ","), reuse[k].repeats);
     }
     std::fflush(stdout);
@@ -184,23 +184,24 @@ void judge(const std::string& name, double budget, int threads, const std::strin
   const mo::Mesh mesh = mesh_of(name);
   const mo::CsrGraph graph = mo::vertex_graph(mesh);
   add_auto(name, mesh, graph, orders);
+  std::vector<mo::Mesh> meshes;
   std::vector<mo::KernelReuse> reuse;
-  std::vector<mo::KernelBench> benches;
   for (const std::string& order : orders) {
     const auto slash = order.find('/');
-    const mo::MeshOrder r =
-        mo::compute_reordering(mesh, graph, {.methods = {order.substr(0, slash), order.substr(slash + 1)}});
-    mo::Mesh ordered = mesh;
-    mo::apply_reordering(ordered, r);
-    const mo::CsrGraph of_order = mo::renumbered(graph, r.vertices.permutation.old_to_new());
-    const mo::Simplices simplices = mo::cut_into_simplices(ordered);
-    reuse.push_back(mo::reuse_of_kernels(of_order, simplices, simplices.size() < 50'000 ? 0 : kHalvings));
-    benches.emplace_back(ordered, of_order, threads);
+    meshes.push_back(mesh);
+    mo::apply_reordering(
+        meshes.back(),
+        mo::compute_reordering(mesh, graph, {.methods = {order.substr(0, slash), order.substr(slash + 1)}}));
+    const mo::Simplices simplices = mo::cut_into_simplices(meshes.back());
+    reuse.push_back(mo::reuse_of_kernels(mo::vertex_graph(meshes.back()), simplices,
+                                         simplices.size() < 50'000 ? 0 : kHalvings));
   }
-  std::vector<mo::KernelBench*> pointers;
-  for (mo::KernelBench& bench : benches) pointers.push_back(&bench);
   std::array<mo::Timings, 2> timings;
   for (mo::Timings& half : timings) {
+    std::vector<mo::KernelBench> benches;
+    for (const mo::Mesh& ordered : meshes) benches.emplace_back(ordered, threads);
+    std::vector<mo::KernelBench*> pointers;
+    for (mo::KernelBench& bench : benches) pointers.push_back(&bench);
     half = mo::time_interleaved(pointers, {.budget_seconds = budget / 2,
                                            .min_rounds = 3,
                                            .max_rounds = 200,

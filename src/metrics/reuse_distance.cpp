@@ -102,10 +102,10 @@ ReuseDistance::ReuseDistance(Index lines, int halvings) : halvings_(halvings), l
   marks_in_open_.assign(levels_.size(), 0);
 }
 
-Index ReuseDistance::access(Index line) {
+Index ReuseDistance::access(Index line, Access how) {
   const Index distance = move_to_front(line);
   if (distance >= 0) {
-    const bool jump = distance >= (kFar >> halvings_) && is_jump(line);
+    const bool jump = distance >= (kFar >> halvings_) && is_jump(line, how);
     if (counts(line)) {
       reuse_.all.add(distance);
       if (jump) reuse_.jumps.add(distance);
@@ -113,7 +113,7 @@ Index ReuseDistance::access(Index line) {
     return distance;
   }
   first_accesses_.push_back(line);
-  first_access_jumps_.push_back(is_jump(line));
+  first_access_jumps_.push_back(is_jump(line, how));
   if (counts(line)) {
     reuse_.all.add_cold();
     if (first_access_jumps_.back()) reuse_.jumps.add_cold();
@@ -138,9 +138,9 @@ Index ReuseDistance::move_to_front(Index line) {
 }
 
 /// Notes an access from afar; whether no other led to it.
-bool ReuseDistance::is_jump(Index line) {
+bool ReuseDistance::is_jump(Index line, Access how) {
   ++far_accesses_;
-  bool jump = true;
+  bool jump = how == Access::gathered;
   for (Index before = std::max(0, line - 2); before < line; ++before) {
     jump = jump && far_accesses_ - last_access_of_line_[before].far > (kFollowing >> halvings_);
   }

@@ -48,12 +48,16 @@ class ReuseHistogram {
   Offset cold_ = 0;
 };
 
+/// How a program comes to a cache line: as the next one of an array that it goes through from front to back,
+/// or where the mesh tells it to.
+enum class Access : bool { streamed, gathered };
+
 /// What a processor's caches see of a stream of accesses.
 struct Reuse {
   ReuseHistogram all;
-  /// Those of distance 512 (an L1 cache of 32 KB) and more that no stream leads to: neither of the two lines
-  /// before was among the last 64 accesses of such a distance. Processors fetch ahead what follows such
-  /// accesses, line after line; a jump waits for the memory.
+  /// Gathered ones of distance 512 (an L1 cache of 32 KB) and more that no stream leads to: neither of the
+  /// two lines before was among the last 64 accesses of such a distance. Processors fetch ahead what follows
+  /// such accesses, line after line; a jump waits for the memory.
   ReuseHistogram jumps;
 
   bool operator==(const Reuse&) const = default;
@@ -74,7 +78,7 @@ class ReuseDistance {
   explicit ReuseDistance(Index lines, int halvings = 0);
 
   /// Returns the distance, −1 for a cold access. Amortised O(1 + log distance).
-  Index access(Index line);
+  Index access(Index line, Access how = Access::gathered);
 
   /// The accesses so far. Every line's first one is cold.
   [[nodiscard]] const Reuse& reuse() const noexcept { return reuse_; }
@@ -112,7 +116,7 @@ class ReuseDistance {
   Index move_mark(Slot from, Slot to);
   void close_word(std::size_t word);
   void close_gaps();
-  bool is_jump(Index line);
+  bool is_jump(Index line, Access how);
 
   [[nodiscard]] bool counts(Index line) const noexcept {
     return halvings_ == 0 || line % kSampledBlock >= kUncounted;

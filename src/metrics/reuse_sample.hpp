@@ -22,11 +22,11 @@ class ReuseSample {
   /// For accesses to lines 0 … lines − 1, of which 2^-halvings are sampled; 0 halvings measure exactly.
   ReuseSample(Index lines, int halvings);
 
-  void access(Index line) {
+  void access(Index line, Access how = Access::gathered) {
     if (place_of_block_.empty()) {
-      reuse_.access(line);
+      reuse_.access(line, how);
     } else if (const Index block = line / kBlock; sampled(block)) {
-      reuse_.access(kBlock * place_of_block_[block] + line % kBlock);
+      reuse_.access(kBlock * place_of_block_[block] + line % kBlock, how);
     }
   }
 

@@ -88,11 +88,14 @@ RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplic
   const AccessStream stream(kernel, graph, simplices);
   ReuseSample reuse(stream.line_count(), halvings);
   std::uint32_t accesses = 0;
-  stream.visit([&](Index line) {
+  Offset gathers = 0;
+  stream.visit([&](Index line, Access how) {
     if (++accesses % 0x10000 == 0) poll();
-    reuse.access(line);
+    gathers += how == Access::gathered ? 1 : 0;
+    reuse.access(line, how);
   });
-  return {std::move(reuse).repeated(), kernel == Kernel::element ? repeated_additions(simplices) : 0};
+  return {std::move(reuse).repeated(), simplices.dimension, gathers,
+          kernel == Kernel::element ? repeated_additions(simplices) : 0};
 }
 
 KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings) {

@@ -33,7 +33,8 @@ class AccessStream {
 
   [[nodiscard]] Index line_count() const noexcept { return static_cast<Index>(lines_); }
 
-  /// Calls `touch(line)` for every access. O(accesses), for assembly times the logarithm of a row's length.
+  /// Calls `touch(line, how)` for every access, an Access being how the kernel comes to the line.
+  /// O(accesses), for assembly times the logarithm of a row's length.
   template <class Touch>
   void visit(Touch touch) const {
     switch (kernel_) {
@@ -55,10 +56,15 @@ class AccessStream {
     Offset bytes = 0;
 
     template <class Touch>
-    void touch(Offset byte, Offset count, Touch& touch) const {
+    void gather(Offset byte, Offset count, Touch& touch) const {
       for (Offset line = byte / kLineBytes; kLineBytes * line < byte + count; ++line) {
-        touch(static_cast<Index>(first_line + line));
+        touch(static_cast<Index>(first_line + line), Access::gathered);
       }
+    }
+
+    template <class Touch>
+    void clear(Touch& touch) const {
+      Reader(*this).read(bytes, touch);
     }
   };
 
@@ -70,7 +76,7 @@ class AccessStream {
     template <class Touch>
     void read(Offset count, Touch& touch) {
       left_ -= count;
-      for (; left_ < 0; left_ += kLineBytes) touch(static_cast<Index>(next_line_++));
+      for (; left_ < 0; left_ += kLineBytes) touch(static_cast<Index>(next_line_++), Access::streamed);
     }
 
    private:
@@ -100,7 +106,7 @@ class AccessStream {
 
   template <class Touch>
   void visit_vertices(const Array& array, std::span<const Index> vertices, Touch& touch) const {
-    for (const Index v : vertices) array.touch(kPaddedBytes * v, kPaddedBytes, touch);
+    for (const Index v : vertices) array.gather(kPaddedBytes * v, kPaddedBytes, touch);
   }
 
   template <class Touch>
@@ -109,7 +115,7 @@ class AccessStream {
     const auto multiply = [&](Index column) {
       columns.read(sizeof(Index), touch);
       values.read(kBlockBytes, touch);
-      x_.touch(Offset{3} * sizeof(double) * column, 3 * sizeof(double), touch);
+      x_.gather(Offset{3} * sizeof(double) * column, 3 * sizeof(double), touch);
     };
     offsets.read(sizeof(Offset), touch);
     for (Index v = 0; v < graph_.size(); ++v) {
@@ -128,7 +134,7 @@ class AccessStream {
     const int corners = simplices_.dimension + 1;
     if (corners == 1) return;
     const Array& result = assembly ? values_ : forces_;
-    result.touch(0, result.bytes, touch);
+    result.clear(touch);
     Reader vertices(vertices_), geometry(geometry_), map(map_);
     std::array<Index, Offset{4} * kBatch> batch;
     for (Offset first = 0; first < simplices_.size(); first += kBatch) {
@@ -160,15 +166,15 @@ class AccessStream {
     for (int a = 0; a <= simplices_.dimension; ++a) {
       for (int b = a; b <= simplices_.dimension; ++b) {
         const Index i = v[a * kBatch], j = v[b * kBatch];
-        values_.touch(kBlockBytes * block(i, j), kBlockBytes, touch);
-        if (a != b) values_.touch(kBlockBytes * block(j, i), kBlockBytes, touch);
+        values_.gather(kBlockBytes * block(i, j), kBlockBytes, touch);
+        if (a != b) values_.gather(kBlockBytes * block(j, i), kBlockBytes, touch);
       }
     }
   }
 
   template <class Touch>
   void visit_springs(Touch& touch) const {
-    forces_.touch(0, forces_.bytes, touch);
+    forces_.clear(touch);
     Reader ends(ends_), rest_lengths(rest_lengths_);
     // the last batch is padded with springs from vertex 0 to itself
     std::array<Index, 2 * kBatch> batch{};
@@ -206,6 +212,8 @@ class AccessStream {
 
 /// What a run of a kernel uses again: cache lines, and sums.
 struct RunReuse : Reuse {
+  int dimension = 0;   ///< of the simplices: 3 for tetrahedra
+  Offset gathers = 0;  ///< gathered accesses
   /// Additions of element forces to a vertex that one of the two before them went to: they wait until what
   /// that one stored can be loaded. In the order in which registers of eight doubles are added.
   Offset repeats = 0;

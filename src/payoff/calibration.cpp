@@ -20,14 +20,13 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
 
 namespace meshorder {
 namespace {
-
-constexpr std::size_t kCosts = 10;  ///< of a kernel
 
 /// What kernels took, by kernel.
 struct Runs {
@@ -36,17 +35,6 @@ struct Runs {
   std::array<std::vector<double>, kKernels.size()> apart;
   std::vector<Steadiness> steadiness;  ///< of each measurement
 };
-
-/// What the costs are multiplied by, in milliseconds a nanosecond.
-std::array<double, kCosts> counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes) {
-  std::array<double, kCosts> counts{1e-6 * static_cast<double>(reuse.all.accesses())};
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    counts[1 + i] = 1e-6 * static_cast<double>(reuse.all.misses(sizes[i] / kLineBytes));
-    counts[5 + i] = 1e-6 * static_cast<double>(reuse.jumps.misses(sizes[i] / kLineBytes));
-  }
-  counts[9] = 1e-6 * static_cast<double>(reuse.repeats);
-  return counts;
-}
 
 /// What `advise` estimates from a sample of the lines is estimated here.
 int halvings_for(const Mesh& mesh) { return mesh.cell_count() < 50'000 ? 0 : 3; }
@@ -194,26 +182,23 @@ void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double
 
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches) {
   const std::array<Offset, 4> sizes = sizes_that_cost(caches);
-  Rows rows{.columns = kCosts};
+  Rows rows{.columns = CostRow{}.size()};
   for (const TimedReuse& run : runs) {
-    std::array<double, kCosts> row = counts_of(run.reuse, sizes);
-    for (double& count : row) count /= run.milliseconds;
+    CostRow row = counts_of(run.reuse, sizes);
+    for (double& count : row) count *= 1e-6 / run.milliseconds;
     rows.push_back(row);
   }
   const std::vector<double> ones(runs.size(), 1.0);
   const std::vector<double> costs = non_negative_least_squares(rows, ones);
   FittedCosts result;
-  result.costs.access = costs[0];
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    result.costs.miss[i] = costs[1 + i];
-    result.costs.jump[i] = costs[5 + i];
-  }
-  result.costs.repeat = costs[9];
+  CostRow row;
+  std::copy(costs.begin(), costs.end(), row.begin());
+  result.costs = as_costs(row);
   result.condition = condition_number(rows);
   std::vector<double> errors;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     double predicted = 0;
-    for (std::size_t j = 0; j < kCosts; ++j) predicted += rows[i][j] * costs[j];
+    for (std::size_t j = 0; j < row.size(); ++j) predicted += rows[i][j] * costs[j];
     errors.push_back(std::abs(predicted - 1));
   }
   result.error = median(std::move(errors));
@@ -281,8 +266,13 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   time_large(make_calibration_lattice(largest, false, model.caches, 6), since_start, effort.seconds, runs);
   calibration.steadiness = steadiness_of(runs.steadiness);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const FittedCosts fitted = fit_costs(runs.timed[k], model.caches);
-    model.kernels[k] = fitted.costs;
+    const std::vector<TimedReuse>& all = runs.timed[k];
+    std::vector<TimedReuse> of_solids;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(of_solids),
+                 [](const TimedReuse& run) { return run.reuse.dimension == 3; });
+    const FittedCosts fitted = fit_costs(of_solids, model.caches);
+    model.solid[k] = fitted.costs;
+    model.flat[k] = fit_costs(all, model.caches).costs;
     calibration.condition[k] = fitted.condition;
     calibration.error[k] = fitted.error;
     calibration.floor[k] = median(runs.apart[k]);

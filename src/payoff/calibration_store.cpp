@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "meshorder calibration 2";
+constexpr const char* kSchema = "meshorder calibration 3";
 
 std::string sizes_text(const Caches& caches) { return caches.level_bytes.empty() ? "" : to_string(caches); }
 
@@ -53,6 +53,27 @@ double condition_from(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::infinity() : number_from(json);
 }
 
+Json to_json(const KernelCosts& costs) {
+  return {{"access", costs.access},
+          {"miss", costs.miss},
+          {"jump", costs.jump},
+          {"repeat", costs.repeat},
+          {"wait", costs.wait}};
+}
+
+KernelCosts costs_from(const Json& json) {
+  KernelCosts costs;
+  double sum = costs.access = number_from(json.at("access"));
+  for (std::size_t i = 0; i < costs.miss.size(); ++i) {
+    sum += costs.miss[i] = number_from(json.at("miss").at(i));
+    sum += costs.jump[i] = number_from(json.at("jump").at(i));
+  }
+  sum += costs.repeat = number_from(json.at("repeat"));
+  sum += costs.wait = number_from(json.at("wait"));
+  if (!(sum > 0)) throw InvalidArgument("has a kernel that costs nothing");
+  return costs;
+}
+
 }  // namespace
 
 CalibrationKey key_of_this_machine() {
@@ -79,11 +100,8 @@ fs::path calibration_file(const CalibrationKey& key) {
 std::string to_json_text(const Calibration& calibration) {
   Json kernels;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const KernelCosts& costs = calibration.model.kernels[k];
-    kernels[std::string(to_string(kKernels[k]))] = {{"access", costs.access},
-                                                    {"miss", costs.miss},
-                                                    {"jump", costs.jump},
-                                                    {"repeat", costs.repeat},
+    kernels[std::string(to_string(kKernels[k]))] = {{"solid", to_json(calibration.model.solid[k])},
+                                                    {"flat", to_json(calibration.model.flat[k])},
                                                     {"condition", finite_json(calibration.condition[k])},
                                                     {"error", calibration.error[k]},
                                                     {"floor", calibration.floor[k]}};
@@ -137,14 +155,8 @@ Calibration parse_calibration(const std::string& text) {
     calibration.read_bandwidth_all = number_from(json.at("read_bandwidth").at("all"));
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
       const Json& kernel = json.at("kernels").at(std::string(to_string(kKernels[k])));
-      KernelCosts& costs = calibration.model.kernels[k];
-      double sum = costs.access = number_from(kernel.at("access"));
-      for (std::size_t i = 0; i < costs.miss.size(); ++i) {
-        sum += costs.miss[i] = number_from(kernel.at("miss").at(i));
-        sum += costs.jump[i] = number_from(kernel.at("jump").at(i));
-      }
-      sum += costs.repeat = number_from(kernel.at("repeat"));
-      if (!(sum > 0)) throw InvalidArgument("has a kernel that costs nothing");
+      calibration.model.solid[k] = costs_from(kernel.at("solid"));
+      calibration.model.flat[k] = costs_from(kernel.at("flat"));
       calibration.condition[k] = condition_from(kernel.at("condition"));
       calibration.error[k] = number_from(kernel.at("error"));
       calibration.floor[k] = number_from(kernel.at("floor"));

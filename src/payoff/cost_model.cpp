@@ -4,6 +4,8 @@
 #include <meshorder/error.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace meshorder {
@@ -13,30 +15,72 @@ const CostModel& zen5_costs() {
   static const CostModel model{
       .machine = "2-core Zen 5, 48 KB L1, 1 MB L2, 32 MB L3",
       .caches = parse_cache_sizes("48K,1M,32M"),
-      .kernels = {{
-          {.access = 0.1618, .miss = {0.206, 0.2589, 0.07844, 0.4239}, .jump = {0, 0, 2.657, 0}},   // spmv
-          {.access = 0.5038, .miss = {0, 0.01054, 1.415, 0}, .jump = {0.06757, 0.8356, 7.661, 0}},  // element
-          {.access = 0.7606, .miss = {0, 0, 0, 1.038}, .jump = {1.024, 0.6349, 2.869, 0}},        // assembly
-          {.access = 0.4856, .miss = {0, 0, 0.5409, 0}, .jump = {0.03403, 0.298, 7.274, 6.446}},  // springs
+      .solid = {{
+          {.access = 0.03582,
+           .miss = {0.264, 0.442, 0.08801, 0.2538},
+           .jump = {0, 0, 0, 0},
+           .wait = 27.69},  // spmv
+          {.access = 0.2224,
+           .miss = {0.02055, 1.83, 1.042, 0},
+           .jump = {0.0535, 0, 3.241, 0},
+           .wait = 40.08},  // element
+          {.access = 0.6869,
+           .miss = {0.1201, 0.4412, 0.6889, 0},
+           .jump = {0.8737, 0, 0.6091, 2.157},
+           .wait = 3.446},                                                                         // assembly
+          {.access = 0.4631, .miss = {0.01272, 0.3411, 0.3603, 0}, .jump = {0, 0, 6.897, 9.478}},  // springs
+      }},
+      .flat = {{
+          {.access = 0.03099,
+           .miss = {0.1883, 0.5413, 0.1304, 0.2113},
+           .jump = {0, 0, 0.2776, 0},
+           .wait = 26.12},  // spmv
+          {.access = 0.4801,
+           .miss = {0, 0.04593, 1.134, 0},
+           .jump = {0.1071, 0.8144, 5.951, 0},
+           .repeat = 0.1944,
+           .wait = 33.65},  // element
+          {.access = 0.7647,
+           .miss = {0, 0, 0, 0.5728},
+           .jump = {1.111, 0.635, 3.112, 0},
+           .wait = 5.692},                                                                         // assembly
+          {.access = 0.4856, .miss = {0, 0, 0.5416, 0}, .jump = {0.03384, 0.2992, 7.262, 6.648}},  // springs
       }}};
   return model;
 }
 
 const CostModel& zen4_costs() {
-  // printed by `meshorder calibrate --json` on the idle machine
+  // printed by `meshorder calibrate --json`
   static const CostModel model{
-      .machine = "2-core Zen 4, 32 KB L1, 1 MB L2, 25 MB to be had of 32 MB L3",
-      .caches = parse_cache_sizes("32K,1M,26008K"),
-      .kernels = {{
-          {.access = 0.525,
-           .miss = {0, 0.1117, 0.2055, 0.114},
-           .jump = {0.3934, 0.3549, 3.069, 18.49}},  // spmv
-          {.access = 0.7168,
-           .miss = {0, 0, 0, 0},
-           .jump = {0.2779, 1.325, 6.369, 63.88},
-           .repeat = 1.565},                                                             // element
-          {.access = 1.316, .miss = {0, 0, 0, 0}, .jump = {1.082, 2.633, 2.28, 14.22}},  // assembly
-          {.access = 0.9295, .miss = {0, 0, 0, 0.2698}, .jump = {0, 0.3241, 18.33, 0}},  // springs
+      .machine = "2-core Zen 4, 32 KB L1, 1 MB L2, 20 MB to be had of 32 MB L3",
+      .caches = parse_cache_sizes("32K,1M,20642K"),
+      .solid = {{
+          {.access = 0.5146,
+           .miss = {0, 0.1055, 0.2681, 0.6828},
+           .jump = {0.4847, 0.897, 0, 0},
+           .wait = 32.92},  // spmv
+          {.access = 0.6966,
+           .miss = {0.2549, 0.1181, 0.06419, 0.4009},
+           .jump = {0, 2.938, 2.428, 0},
+           .repeat = 1.251},                                                              // element
+          {.access = 1.27, .miss = {0.4919, 0, 0, 0}, .jump = {0, 3.721, 7.191, 9.371}},  // assembly
+          {.access = 0.9135,
+           .miss = {0, 0.3106, 0.1456, 1.237},
+           .jump = {0.01113, 0.05535, 3.612, 0}},  // springs
+      }},
+      .flat = {{
+          {.access = 0.516,
+           .miss = {0, 0.1138, 0.2954, 0.7286},
+           .jump = {0.4519, 0.658, 0.8366, 0},
+           .wait = 24.92},  // spmv
+          {.access = 0.718,
+           .miss = {0, 0, 0.5745, 0.4632},
+           .jump = {0.271, 1.492, 6.381, 0},
+           .repeat = 1.403},                                                               // element
+          {.access = 1.351, .miss = {0, 0, 0, 0}, .jump = {0.8732, 4.378, 1.647, 15.41}},  // assembly
+          {.access = 0.9217,
+           .miss = {0, 0.1494, 0.3087, 1.154},
+           .jump = {0.01542, 0.194, 3.584, 0}},  // springs
       }}};
   return model;
 }
@@ -48,16 +92,43 @@ std::array<Offset, 4> sizes_that_cost(const Caches& caches) {
           levels.back()};
 }
 
-double predicted_ms(Kernel kernel, const RunReuse& reuse, const Caches& caches, const CostModel& model) {
-  const KernelCosts& costs = model.kernels[static_cast<std::size_t>(kernel)];
-  const std::array<Offset, 4> sizes = sizes_that_cost(caches);
-  double nanoseconds = costs.access * static_cast<double>(reuse.all.accesses()) +
-                       costs.repeat * static_cast<double>(reuse.repeats);
+CostRow as_row(const KernelCosts& costs) {
+  CostRow row{costs.access};
+  std::copy(costs.miss.begin(), costs.miss.end(), row.begin() + 1);
+  std::copy(costs.jump.begin(), costs.jump.end(), row.begin() + 5);
+  row[9] = costs.repeat;
+  row[10] = costs.wait;
+  return row;
+}
+
+KernelCosts as_costs(const CostRow& row) {
+  KernelCosts costs{.access = row[0], .repeat = row[9], .wait = row[10]};
+  std::copy_n(row.begin() + 1, costs.miss.size(), costs.miss.begin());
+  std::copy_n(row.begin() + 5, costs.jump.size(), costs.jump.begin());
+  return costs;
+}
+
+CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes) {
+  KernelCosts counts{.access = static_cast<double>(reuse.all.accesses()),
+                     .repeat = static_cast<double>(reuse.repeats)};
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    nanoseconds += costs.miss[i] * static_cast<double>(reuse.all.misses(sizes[i] / kLineBytes));
-    nanoseconds += costs.jump[i] * static_cast<double>(reuse.jumps.misses(sizes[i] / kLineBytes));
+    counts.miss[i] = static_cast<double>(reuse.all.misses(sizes[i] / kLineBytes));
+    counts.jump[i] = static_cast<double>(reuse.jumps.misses(sizes[i] / kLineBytes));
   }
-  return 1e-6 * nanoseconds;
+  // what a processor has under way at a time, about
+  constexpr double kTogether = 32;
+  if (const auto gathers = static_cast<double>(reuse.gathers); gathers > 0) {
+    // an estimate from a sample of the lines may be above the whole
+    const double hits = std::max(0.0, 1 - counts.jump.back() / gathers);
+    counts.wait = gathers / kTogether * (1 - std::pow(hits, kTogether));
+  }
+  return as_row(counts);
+}
+
+double predicted_ms(Kernel kernel, const RunReuse& reuse, const Caches& caches, const CostModel& model) {
+  const CostRow costs = as_row(model.costs(kernel, reuse.dimension));
+  const CostRow counts = counts_of(reuse, sizes_that_cost(caches));
+  return 1e-6 * std::inner_product(costs.begin(), costs.end(), counts.begin(), 0.0);
 }
 
 KernelMilliseconds predicted_ms(const KernelReuse& reuse, const Caches& caches, const CostModel& model) {

@@ -13,22 +13,36 @@ namespace meshorder {
 
 /// Nanoseconds (≥ 0) that a kernel spends on each access, on each miss and, in addition, on each jump (a miss
 /// that no hardware prefetcher foresees) of four caches: the first level, the second, half of the last and
-/// all of it; and on each repeat (RunReuse::repeats). A thread shares the last level, so misses begin to cost
-/// when half of it is full.
+/// all of it; on each repeat (RunReuse::repeats); and on each wait for memory: jumps of the last cache that
+/// are among the same 32 gathered accesses wait together. A thread shares the last level, so misses begin to
+/// cost when half of it is full.
 struct KernelCosts {
   double access = 0.0;
   std::array<double, 4> miss{};
   std::array<double, 4> jump{};
   double repeat = 0.0;
+  double wait = 0.0;
 
   bool operator==(const KernelCosts&) const = default;
 };
 
+/// Numbers, one for each cost.
+using CostRow = std::array<double, 11>;
+
+/// The costs as a row, and costs from one.
+CostRow as_row(const KernelCosts& costs);
+KernelCosts as_costs(const CostRow& row);
+
 /// Costs of the kernels on a machine, with one thread.
 struct CostModel {
-  std::string machine;  ///< in words, "2-core Zen 5, 48 KB L1, 1 MB L2, 32 MB L3"
-  Caches caches;        ///< what the costs belong to
-  std::array<KernelCosts, kKernels.size()> kernels;
+  std::string machine;                             ///< in words, "2-core Zen 5, 48 KB L1, 1 MB L2, 32 MB L3"
+  Caches caches;                                   ///< what the costs belong to
+  std::array<KernelCosts, kKernels.size()> solid;  ///< of meshes of tetrahedra
+  std::array<KernelCosts, kKernels.size()> flat;   ///< of meshes of triangles and edges
+
+  [[nodiscard]] const KernelCosts& costs(Kernel kernel, int dimension) const noexcept {
+    return (dimension == 3 ? solid : flat)[static_cast<std::size_t>(kernel)];
+  }
 
   bool operator==(const CostModel&) const = default;
 };
@@ -38,12 +52,16 @@ struct CostModel {
 /// caches.
 std::array<Offset, 4> sizes_that_cost(const Caches& caches);
 
+/// Returns how often each cost occurs in a run, for caches of the sizes of sizes_that_cost. Waits are counted
+/// as if the jumps were spread evenly over the gathered accesses. O(levels · bins of the histograms).
+CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes);
+
 /// Returns costs that benchmarks/fit_cost_model fitted to measurements on a 2-core Zen 5 server processor (48
 /// KB L1, 1 MB L2, 32 MB L3). docs/prediction.md shows how well they predict other meshes.
 const CostModel& zen5_costs();
 
 /// Returns costs that `meshorder calibrate` measured on a 2-core Zen 4 server processor (32 KB L1, 1 MB L2,
-/// 25 MB to be had of L3).
+/// 20 MB to be had of L3).
 const CostModel& zen4_costs();
 
 /// Predicts the milliseconds of each run of a repeated kernel on a processor with these caches (see

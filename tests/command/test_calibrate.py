@@ -54,9 +54,11 @@ def test_a_calibration_says_what_it_measured(measured):
     assert latencies == sorted(latencies) and latencies[0] > 0
     assert list(measured["kernels"]) == KERNELS
     for kernel in measured["kernels"].values():
-        assert list(kernel) == ["access", "miss", "jump", "repeat", "condition", "error", "floor"]
-        assert len(kernel["miss"]) == len(kernel["jump"]) == 4
-        assert min([kernel["access"], *kernel["miss"], *kernel["jump"], kernel["repeat"]]) >= 0
+        assert list(kernel) == ["solid", "flat", "condition", "error", "floor"]
+        for costs in kernel["solid"], kernel["flat"]:
+            assert list(costs) == ["access", "miss", "jump", "repeat", "wait"]
+            assert len(costs["miss"]) == len(costs["jump"]) == 4
+            assert min([costs["access"], *costs["miss"], *costs["jump"], costs["repeat"], costs["wait"]]) >= 0
     assert all(rate > 0 for rate in measured["read_bandwidth"].values())
     assert os.path.dirname(measured["file"]).endswith("calibrations") and os.path.exists(measured["file"])
     assert os.listdir(os.path.dirname(measured["file"])) == [os.path.basename(measured["file"])]
@@ -133,10 +135,11 @@ def test_a_machine_that_moved_is_noticed(here, stored):
     content = json.loads(stored.read_text())
     for kernel in content["kernels"].values():
         kernel.update(error=0.01, floor=0.01)
-        for costs in "miss", "jump":
-            kernel[costs] = [10 * cost for cost in kernel[costs]]
-        kernel["access"] *= 10
-        kernel["repeat"] *= 10
+        for costs in kernel["solid"], kernel["flat"]:
+            for levels in "miss", "jump":
+                costs[levels] = [10 * cost for cost in costs[levels]]
+            for single in "access", "repeat", "wait":
+                costs[single] *= 10
     stored.write_text(json.dumps(content))
     result = here.json("calibrate", "--recheck")
     assert result["moved"] and all(ratio < 0.5 for ratio in result["ratio"].values())

@@ -190,6 +190,23 @@ TEST(ReuseDistance, OfASweepJumpsOnce) {
   EXPECT_EQ(measured(few, 4000).reuse().jumps.accesses(), 8);
 }
 
+TEST(ReuseDistance, WhatAStreamComesToIsNoJumpButLeadsOn) {
+  constexpr Index kLines = 4000;
+  for (const Access how : {Access::streamed, Access::gathered}) {
+    ReuseDistance reuse(kLines);
+    for (Index line = 0; line < kLines; line += 4) reuse.access(line, how);
+    EXPECT_EQ(reuse.reuse().jumps.accesses(), how == Access::streamed ? 0 : kLines / 4);
+    // far again, and not behind one that was just there
+    for (Index line = 0; line < kLines; line += 4) reuse.access(line, how);
+    EXPECT_EQ(reuse.reuse().jumps.accesses(), how == Access::streamed ? 0 : kLines / 2);
+    const Offset before = reuse.reuse().jumps.accesses();
+    reuse.access(kLines - 3);
+    EXPECT_EQ(reuse.reuse().jumps.accesses(), before);
+    reuse.access(1);
+    EXPECT_EQ(reuse.reuse().jumps.accesses(), before + 1);
+  }
+}
+
 TEST(ReuseDistance, OfASweepIsAllOtherLines) {
   const Index n = 100000;
   const ReuseHistogram twice = measured(count_up(n, 2), n).reuse().all;

@@ -37,7 +37,7 @@ Offset lru_misses(const AccessStream& stream, Offset bytes) {
   Offset misses = 0;
   for (int run = 0; run < 2; ++run) {
     misses = 0;
-    stream.visit([&](Index line) {
+    stream.visit([&](Index line, Access /*how*/) {
       const auto found = place.find(line);
       if (found != place.end()) {
         by_recency.splice(by_recency.begin(), by_recency, found->second);
@@ -97,7 +97,7 @@ TEST(MeshStudy, MissesAreThoseOfLeastRecentlyUsedCaches) {
       const KernelRecord& record = study.record.orders[i].kernels[static_cast<std::size_t>(kernel)];
       const AccessStream stream(kernel, graph, simplices);
       Offset accesses = 0;
-      stream.visit([&](Index /*line*/) { ++accesses; });
+      stream.visit([&](Index /*line*/, Access /*how*/) { ++accesses; });
       EXPECT_EQ(record.accesses, accesses);
       ASSERT_EQ(record.misses.size(), hierarchies.size());
       for (std::size_t h = 0; h < hierarchies.size(); ++h) {

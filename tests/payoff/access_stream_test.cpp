@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
@@ -54,16 +55,17 @@ class Recorder {
   using Line = std::pair<Memory, Offset>;
 
   void touch(Memory array, Offset byte, Offset bytes) {
-    for (Offset line = byte / 64; line <= (byte + bytes - 1) / 64; ++line) lines.emplace_back(array, line);
+    for (Offset line = byte / 64; line <= (byte + bytes - 1) / 64; ++line)
+      add({array, line}, Access::gathered);
   }
   /// The same, but only addresses that were not touched before.
   void read(Memory array, Offset byte, Offset bytes) {
     for (Offset line = byte / 64; line <= (byte + bytes - 1) / 64; ++line) {
-      if (read_.insert({array, line}).second) lines.emplace_back(array, line);
+      if (read_.insert({array, line}).second) add({array, line}, Access::streamed);
     }
   }
   void clear(Memory array, Offset bytes) {
-    for (Offset line = 0; line < (bytes + 63) / 64; ++line) lines.emplace_back(array, line);
+    for (Offset line = 0; line < (bytes + 63) / 64; ++line) add({array, line}, Access::streamed);
   }
   template <class Vertices>
   void vertex_data(Memory array, const Vertices& vertices, Offset first, Offset count) {
@@ -71,8 +73,14 @@ class Recorder {
   }
 
   std::vector<Line> lines;
+  std::vector<Access> how;
 
  private:
+  void add(const Line& line, Access access) {
+    lines.push_back(line);
+    how.push_back(access);
+  }
+
   std::set<Line> read_;
 };
 
@@ -127,13 +135,13 @@ void add_springs(const Prepared& p, Recorder& to) {
   }
 }
 
-std::vector<Recorder::Line> recorded(Kernel kernel, const Prepared& p) {
+Recorder recorded(Kernel kernel, const Prepared& p) {
   Recorder to;
   if (kernel == Kernel::spmv) multiply(p, to);
   if (kernel == Kernel::element || kernel == Kernel::assembly)
     add_elements(p, kernel == Kernel::assembly, to);
   if (kernel == Kernel::springs) add_springs(p, to);
-  return std::move(to.lines);
+  return to;
 }
 
 std::vector<Mesh> meshes() {
@@ -160,8 +168,16 @@ TEST(AccessStream, TouchesTheLinesThatTheKernelTouches) {
       SCOPED_TRACE(std::string(to_string(kernel)) + ", " + std::to_string(mesh.vertex_count()) + " vertices");
       const AccessStream stream(kernel, prepared.graph, prepared.simplices);
       std::vector<Index> lines;
-      stream.visit([&](Index line) { lines.push_back(line); });
-      const std::vector<Recorder::Line> expected = recorded(kernel, prepared);
+      std::vector<Access> how;
+      stream.visit([&](Index line, Access access) {
+        lines.push_back(line);
+        how.push_back(access);
+      });
+      const Recorder recorder = recorded(kernel, prepared);
+      const std::vector<Recorder::Line>& expected = recorder.lines;
+      EXPECT_EQ(how, recorder.how);
+      EXPECT_EQ(reuse_of(kernel, prepared.graph, prepared.simplices).gathers,
+                std::count(how.begin(), how.end(), Access::gathered));
       ASSERT_EQ(lines.size(), expected.size());
       std::map<Index, Recorder::Line> names;
       std::set<Recorder::Line> distinct;
@@ -183,7 +199,7 @@ TEST(ReuseOf, HasNoColdAccessesAndMissesTheLeastWithTheLargestCache) {
     const ReuseHistogram histogram = reuse_of(kernel, prepared.graph, prepared.simplices).all;
     const Index lines = AccessStream(kernel, prepared.graph, prepared.simplices).line_count();
     EXPECT_EQ(histogram.cold(), 0);
-    EXPECT_EQ(histogram.accesses(), static_cast<Offset>(recorded(kernel, prepared).size()));
+    EXPECT_EQ(histogram.accesses(), static_cast<Offset>(recorded(kernel, prepared).lines.size()));
     EXPECT_EQ(histogram.misses(2 * lines), 0);
     EXPECT_EQ(histogram.misses(0), histogram.accesses());
     // the bar in order: whoever keeps a few cubes misses each line once, and each cleared line twice

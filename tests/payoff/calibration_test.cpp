@@ -20,6 +20,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,11 +61,12 @@ Calibration made_up() {
   calibration.model.caches = parse_cache_sizes("48K,1M,20M");
   double number = 0.25;
   const auto next = [&] { return number += 0.125; };
-  for (KernelCosts& costs : calibration.model.kernels) {
-    costs.access = next();
-    for (double& cost : costs.miss) cost = next();
-    for (double& cost : costs.jump) cost = next();
-    costs.repeat = next();
+  for (auto* const kernels : {&calibration.model.solid, &calibration.model.flat}) {
+    for (KernelCosts& costs : *kernels) {
+      CostRow row;
+      for (double& cost : row) cost = next();
+      costs = as_costs(row);
+    }
   }
   calibration.processor = processor_of_this_machine();
   calibration.build = build_of_this_program();
@@ -85,11 +87,12 @@ Calibration made_up() {
 TEST(Calibration, CostsThatMadeTheTimesAreFound) {
   const Caches caches = parse_cache_sizes("32K,1M,16M");
   CostModel model;
-  model.kernels[0] = {.access = 0.5, .miss = {0.25, 0, 1, 2}, .jump = {0, 3, 0, 20}, .repeat = 1.5};
+  model.solid[0] = {.access = 0.5, .miss = {0.25, 0, 1, 2}, .jump = {0, 3, 0, 20}, .repeat = 1.5, .wait = 70};
   Random random(2);
   std::vector<TimedReuse> runs;
   for (int i = 0; i < 20; ++i) {
     TimedReuse run;
+    run.reuse.dimension = 3;
     for (const Index distance : {100, 1000, 30'000, 200'000, 300'000}) {
       const auto count = 10'000 + random.below(100'000);
       for (std::uint64_t j = 0; j < count; ++j) {
@@ -97,18 +100,15 @@ TEST(Calibration, CostsThatMadeTheTimesAreFound) {
         if (random.unit() < 0.1 * (i % 7)) run.reuse.jumps.add(distance);
       }
     }
+    run.reuse.gathers = run.reuse.all.accesses() - static_cast<Offset>(random.below(10'000));
     run.reuse.repeats = static_cast<Offset>(random.below(200'000));
     run.milliseconds = predicted_ms(Kernel::spmv, run.reuse, caches, model);
     runs.push_back(std::move(run));
   }
   const FittedCosts fitted = fit_costs(runs, caches);
-  const KernelCosts& expected = model.kernels[0];
-  EXPECT_NEAR(fitted.costs.access, expected.access, 1e-6);
-  for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(fitted.costs.miss[i], expected.miss[i], 1e-6) << i;
-    EXPECT_NEAR(fitted.costs.jump[i], expected.jump[i], 1e-6) << i;
-  }
-  EXPECT_NEAR(fitted.costs.repeat, expected.repeat, 1e-6);
+  const CostRow found = as_row(fitted.costs);
+  const CostRow expected = as_row(model.solid[0]);
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-6) << i;
   EXPECT_LT(fitted.error, 1e-9);
   EXPECT_GT(fitted.condition, 1);
   EXPECT_LT(fitted.condition, 1e4);
@@ -174,10 +174,10 @@ TEST(Calibration, MeasuresThisMachineInSmall) {
   EXPECT_EQ(calibration.date.size(), 10U);
   EXPECT_GT(calibration.seconds, 0);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const KernelCosts& costs = calibration.model.kernels[k];
-    double sum = costs.access;
-    for (std::size_t i = 0; i < 4; ++i) sum += costs.miss[i] + costs.jump[i];
-    EXPECT_GT(sum, 0);
+    for (const int dimension : {2, 3}) {
+      const CostRow costs = as_row(calibration.model.costs(kKernels[k], dimension));
+      EXPECT_GT(std::accumulate(costs.begin(), costs.end(), 0.0), 0);
+    }
     EXPECT_GE(calibration.condition[k], 1);
     EXPECT_LT(calibration.error[k], 1);
   }
@@ -247,7 +247,7 @@ TEST(CalibrationStore, NoDamagedFileIsTaken) {
   EXPECT_THAT(fault_of(""), HasSubstr("is empty"));
   EXPECT_THAT(fault_of("{}"), HasSubstr("is no calibration"));
   EXPECT_THAT(fault_of("[1]"), HasSubstr("is no calibration"));
-  EXPECT_THAT(fault_of(test::with(text, "calibration 2", "calibration 1")), HasSubstr("is no calibration"));
+  EXPECT_THAT(fault_of(test::with(text, "calibration 3", "calibration 2")), HasSubstr("is no calibration"));
   EXPECT_THAT(fault_of(test::with(text, "\"spmv\"", "\"smpv\"")), HasSubstr("is damaged"));
   EXPECT_THAT(fault_of(test::with(text, "\"date\": \"2026-01-02\"", "\"date\": 7")), HasSubstr("is damaged"));
   EXPECT_THAT(fault_of(test::with(text, "\"access\": ", "\"access\": -")), HasSubstr("negative"));
@@ -280,7 +280,7 @@ TEST(MachineChoice, IsTheOneNamedThenTheVariableThenThisMachine) {
   EXPECT_TRUE(prior.stands_in);
   EXPECT_EQ(prior.in_words(), "this machine's caches at the costs of zen5");
   EXPECT_EQ(prior.model.caches, caches_of_this_machine());
-  EXPECT_EQ(prior.model.kernels, zen5_costs().kernels);
+  EXPECT_EQ(prior.model.solid, zen5_costs().solid);
   (void)save_calibration(made_up());
   const MachineChoice calibrated = choose_machine("this");
   EXPECT_EQ(calibrated.in_words(), "this machine, calibrated 2026-01-02");

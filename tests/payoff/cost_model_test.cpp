@@ -14,14 +14,16 @@ namespace {
 /// Counts with a weight of their own each, so that any mix-up shows.
 CostModel distinct_costs() {
   CostModel model;
-  model.kernels.fill(
-      {.access = 1, .miss = {10, 100, 1000, 1e4}, .jump = {1e5, 1e6, 1e7, 1e8}, .repeat = 1e9});
+  model.solid.fill(
+      {.access = 1, .miss = {10, 100, 1000, 1e4}, .jump = {1e5, 1e6, 1e7, 1e8}, .repeat = 1e9, .wait = 1e10});
+  model.flat.fill({.access = 2});
   return model;
 }
 
 /// `count` accesses each of distance 10, 100, 1000, 10,000 lines; the last of them a jump.
 RunReuse some_reuse(int count) {
   RunReuse reuse;
+  reuse.dimension = 3;
   for (const Index distance : {10, 100, 1000, 10'000}) {
     for (int i = 0; i < count; ++i) reuse.all.add(distance);
   }
@@ -48,6 +50,40 @@ TEST(CostModel, RepeatsCostWhateverTheCaches) {
   EXPECT_DOUBLE_EQ(predicted_ms(Kernel::element, reuse, caches, distinct_costs()), without + 3e3);
 }
 
+TEST(CostModel, JumpsOfTheLastCacheThatAreCloseTogetherWaitTogether) {
+  const Caches caches = lines({8, 64, 1600});
+  RunReuse reuse = some_reuse(2);
+  const double without = predicted_ms(Kernel::element, reuse, caches, distinct_costs());
+  const auto waits = [&](Offset gathers, int jumps) {
+    reuse.gathers = gathers;
+    reuse.jumps = {};
+    for (int i = 0; i < jumps; ++i) reuse.jumps.add(10'000);
+    const double with = predicted_ms(Kernel::element, reuse, caches, distinct_costs());
+    return 1e-4 * (with - without - (jumps - 1) * 1e-6 * (1e5 + 1e6 + 1e7 + 1e8));
+  };
+  // one by one, each waits by itself
+  EXPECT_NEAR(waits(1'000'000, 10), 10, 0.01);
+  // half of all: each 32 wait once
+  EXPECT_NEAR(waits(6400, 3200), 200, 0.01);
+  // an estimated number may be above the whole
+  EXPECT_NEAR(waits(3200, 3300), 100, 0.01);
+}
+
+TEST(CostModel, TrianglesHaveCostsOfTheirOwn) {
+  RunReuse reuse = some_reuse(2);
+  for (const int dimension : {2, 1}) {
+    reuse.dimension = dimension;
+    EXPECT_DOUBLE_EQ(predicted_ms(Kernel::assembly, reuse, lines({8, 64, 1600}), distinct_costs()), 16e-6);
+  }
+}
+
+TEST(CostModel, ARowOfCostsIsTheSameCosts) {
+  const KernelCosts costs{1, {2, 3, 4, 5}, {6, 7, 8, 9}, 10, 11};
+  const CostRow row = as_row(costs);
+  for (std::size_t i = 0; i < row.size(); ++i) EXPECT_EQ(row[i], static_cast<double>(i + 1));
+  EXPECT_EQ(as_costs(row), costs);
+}
+
 TEST(CostModel, TakesTheLastOfTwoLevelsForTheSecondToo) {
   const double ms = predicted_ms(Kernel::spmv, some_reuse(2), lines({64, 1600}), distinct_costs());
   EXPECT_DOUBLE_EQ(ms, 1e-6 * (8 + 6 * 10 + 2 * 100 + 4 * 1000 + 2 * 1e4 + 1e5 + 1e6 + 1e7 + 1e8));
@@ -60,17 +96,20 @@ TEST(CostModel, LeavesOutWhatIsBetweenTheSecondLevelAndTheLast) {
 }
 
 TEST(CostModel, NoCostIsNegativeAndLargerCachesNeverCostMore) {
-  for (const Kernel kernel : kKernels) {
-    const KernelCosts& costs = zen5_costs().kernels[static_cast<std::size_t>(kernel)];
-    EXPECT_GT(costs.access, 0.0);
-    for (int level = 0; level < 4; ++level) {
-      EXPECT_GE(costs.miss[level], 0.0);
-      EXPECT_GE(costs.jump[level], 0.0);
+  for (const CostModel* const model : {&zen5_costs(), &zen4_costs()}) {
+    for (const Kernel kernel : kKernels) {
+      for (const int dimension : {2, 3}) {
+        const KernelCosts& costs = model->costs(kernel, dimension);
+        EXPECT_GT(costs.access, 0.0);
+        for (const double cost : as_row(costs)) EXPECT_GE(cost, 0.0);
+        RunReuse reuse = some_reuse(5);
+        reuse.dimension = dimension;
+        const double small = predicted_ms(kernel, reuse, lines({8, 16, 32}), *model);
+        const double large = predicted_ms(kernel, reuse, lines({512, 2048, 65536}), *model);
+        EXPECT_GT(small, large) << to_string(kernel);
+        EXPECT_GT(large, 0.0);
+      }
     }
-    const double small = predicted_ms(kernel, some_reuse(5), lines({8, 16, 32}));
-    const double large = predicted_ms(kernel, some_reuse(5), lines({512, 2048, 65536}));
-    EXPECT_GT(small, large) << to_string(kernel);
-    EXPECT_GT(large, 0.0);
   }
 }
 
