@@ -7,6 +7,7 @@
 #include "distributed/mesh_slice.hpp"
 #include "distributed/order.hpp"
 #include "distributed/vtu_slices.hpp"
+#include "distributed/xdmf_head.hpp"
 #include "mesh/reorder.hpp"
 #include "order_outputs.hpp"
 #include "report.hpp"
@@ -60,14 +61,15 @@ DistributedOptions options_of(const Arguments& arguments) {
 }
 
 /// Returns the input as all ranks read it; nothing where rank 0 has to: for old numbers and chosen cells, for
-/// files of other kinds, for maps of cells whose nodes a Mesh has in another order, and for maps without a
-/// file.
+/// files of other kinds, for maps of cells whose nodes a Mesh has in another order, for maps without a file,
+/// and for pieces of .xdmf files.
 std::optional<VtuSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
   const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
   const std::filesystem::path kind = extension(arguments.input);
   const Keeping& keeping = arguments.keeping;
   const bool with_maps = !arguments.maps.empty();
-  if ((kind != ".vtu" && kind != ".vtkhdf") ||
+  const bool is_xdmf = distributed::is_xdmf(arguments.input);
+  if ((kind != ".vtu" && kind != ".vtkhdf" && !is_xdmf) || (is_xdmf && !arguments.pieces.empty()) ||
       (!arguments.output.empty() && extension(arguments.output) != kind) || arguments.ids != "renumber" ||
       keeping.dimension >= 0 || keeping.strict || (with_maps && arguments.output.empty())) {
     return std::nullopt;
@@ -158,8 +160,9 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
   subcommand.description(
       "Reorder a mesh by all ranks: parts, each in an order of its own, numbered one after another, so\n"
       "that parts that touch are near each other. A .vtu file of one piece with raw appended data,\n"
-      "compressed or not, and a .vtkhdf file of one partition without chunks are read and written by\n"
-      "all ranks, and their maps, unless --ids, --only or --strict are given; others by rank 0.");
+      "compressed or not, a .vtkhdf file of one partition without chunks, and without --pieces an .xdmf\n"
+      "file of one mesh of one cell type with its .h5 file, without chunks, are read and written by all\n"
+      "ranks, and their maps, unless --ids, --only or --strict are given; others by rank 0.");
   subcommand.footer(
       "Examples:\n"
       "  mpirun -n 4 meshorder order part.vtu -o ordered.vtu\n"

@@ -78,13 +78,17 @@ void OrderOutputs::write(const distributed::VtuSlices& slices, const distributed
                          const MeshChecksums& before, Notes& notes) {
   if (!files_.output.empty()) {
     SharedOutput file(communicator_, set_, files_.output);
-    const std::vector<distributed::GlobalIndex> new_cells =
-        slices.write(communicator_, file.path(), files_.output, order);
+    std::optional<SharedOutput> data;
+    if (const std::string name = slices.new_data(communicator_, files_.output); !name.empty())
+      data.emplace(communicator_, set_, name);
+    const distributed::SliceFile target{file.path(), files_.output, data ? data->path() : ""};
+    const std::vector<distributed::GlobalIndex> new_cells = slices.write(communicator_, target, order);
     file.commit();
+    if (data) data->commit();
     if (!files_.maps.empty()) {
-      const auto written = distributed::VtuSlices::open(communicator_, file.path());
+      const distributed::VtuSlices written = slices.written(communicator_, target);
       maps_ = write_sliced_maps(communicator_, {order.new_vertices, new_cells, order.report.part_starts},
-                                before, written->read(communicator_), files_.maps, set_);
+                                before, written.read(communicator_), files_.maps, set_);
     }
   }
   if (!files_.pieces.empty()) write_pieces(slices.in_new_order(communicator_, order), order.report, notes);

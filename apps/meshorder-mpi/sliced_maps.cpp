@@ -4,6 +4,7 @@
 #include "base/checksum.hpp"
 #include "distributed/halo.hpp"
 #include "distributed/parts.hpp"
+#include "distributed/rank_order.hpp"
 #include "distributed/shared_file.hpp"
 #include "io/npy_header.hpp"
 #include "io/stream/byte_order.hpp"
@@ -20,20 +21,12 @@
 namespace meshorder::command {
 namespace {
 
+using distributed::add_in_rank_order;
 using distributed::Communicator;
 using distributed::GlobalIndex;
 using distributed::Layout;
 using distributed::MeshSlice;
 using distributed::SharedFile;
-
-/// Goes on with a checksum, the same on all ranks, by what each of them adds, in their order.
-template <class Add>
-void add_in_rank_order(const Communicator& communicator, Checksum& checksum, const Add& add) {
-  for (int turn = 0; turn < communicator.size(); ++turn) {
-    if (turn == communicator.rank()) add();
-    checksum = communicator.gathered(checksum)[static_cast<std::size_t>(turn)];
-  }
-}
 
 /// Returns the checksum of a list that goes on from rank to rank.
 std::uint64_t checksum_of(const Communicator& communicator, const Layout& layout,

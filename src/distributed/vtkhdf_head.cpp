@@ -3,6 +3,7 @@
 
 #include "distributed/mold.hpp"
 #include "distributed/number_types.hpp"
+#include "distributed/raw_arrays.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
@@ -52,24 +53,12 @@ VtuArray::Role role_of(RawDataset::Role role) {
 }
 
 VtuArray array_of(const RawDataset& dataset, std::size_t element) {
-  VtuArray array{};
-  std::replace_copy_if(
-      dataset.name.begin(), dataset.name.begin() + std::min<std::ptrdiff_t>(std::ssize(dataset.name), 40),
-      array.name.begin(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
+  // offsets: where cells end, as in a .vtu file, behind the place where the first one begins
+  const Offset before = dataset.role == RawDataset::Role::offsets ? 1 : 0;
+  VtuArray array = raw_array(dataset.name, role_of(dataset.role), dataset.association, dataset.type,
+                             dataset.components, dataset.rows - before,
+                             static_cast<Offset>(dataset.place) + before * size_of_type(dataset.type));
   array.element = element;
-  array.role = role_of(dataset.role);
-  array.association = dataset.association;
-  array.type = static_cast<std::uint8_t>(dataset.type);
-  const Offset number = size_of_type(dataset.type);
-  array.row = number * dataset.components;
-  array.at = static_cast<Offset>(dataset.place);
-  array.size = dataset.rows * array.row;
-  if (dataset.role == RawDataset::Role::offsets) {
-    // where cells end, as in a .vtu file: behind the place where the first one begins
-    array.at += number;
-    array.size -= number;
-  }
-  array.stored = array.size;
   return array;
 }
 
@@ -108,7 +97,7 @@ std::optional<VtuHead> read_vtkhdf_head(const std::string& path) {
   std::stable_partition(grid->datasets.begin(), grid->datasets.end(),
                         [](const RawDataset& dataset) { return dataset.role == RawDataset::Role::data; });
   VtuHead head;
-  head.facts.is_vtkhdf = true;
+  head.facts.kind = VtuFacts::Kind::vtkhdf;
   head.facts.vertices = grid->vertices;
   head.facts.cells = grid->cells;
   head.facts.entries = grid->entries;
@@ -116,14 +105,9 @@ std::optional<VtuHead> read_vtkhdf_head(const std::string& path) {
   for (const RawDataset& dataset : grid->datasets) {
     if (dataset.components > kMostOfRow) return std::nullopt;
     head.arrays.push_back(array_of(dataset, head.arrays.size()));
-    if (head.arrays.back().at > head.facts.bytes - head.arrays.back().size) return std::nullopt;
     if (dataset.role == RawDataset::Role::points) grid->metadata.float_points = dataset.type == 1;
   }
-  std::sort(head.arrays.begin(), head.arrays.end(),
-            [](const VtuArray& a, const VtuArray& b) { return a.at < b.at; });
-  for (std::size_t k = 1; k < head.arrays.size(); ++k) {
-    if (head.arrays[k].at < head.arrays[k - 1].at + head.arrays[k - 1].size) return std::nullopt;
-  }
+  if (!sort_by_bytes(head.arrays, head.facts.bytes)) return std::nullopt;
   const auto offsets = std::find_if(head.arrays.begin(), head.arrays.end(), [](const VtuArray& array) {
     return array.role == VtuArray::Role::offsets;
   });

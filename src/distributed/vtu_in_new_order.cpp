@@ -142,20 +142,14 @@ GridRows VtuSlices::in_new_order(const Communicator& communicator, const Distrib
   GridRows grid;
   grid.vertices = slice.vertices;
   grid.cells = slice.cells;
-  grid.rows = [this, &communicator, file, vertices, cells, of_vertices = slice.vertices,
-               of_cells = slice.cells](std::size_t k) {
+  grid.rows = [this, &communicator, file, vertices, cells](std::size_t k) {
     const VtuArray& array = *std::find_if(head_.arrays.begin(), head_.arrays.end(),
                                           [&](const VtuArray& one) { return one.element == k; });
-    const bool on_vertices = array.association == Association::vertices;
-    const Layout& layout = on_vertices ? of_vertices : of_cells;
-    const int rank = communicator.rank();
-    const std::vector<std::byte> values =
-        rows(communicator, *file, array, layout.begin(rank), layout.end(rank));
-    return (on_vertices ? vertices : cells)->moved(values, array.row);
+    return moved_rows(communicator, *file, array, *vertices, *cells);
   };
   grid.cell_vertices = moved_cells(communicator, *file, std::move(slice), *cells, order.new_vertices);
   communicator.at_root([&] {
-    if (head_.facts.is_vtkhdf) {
+    if (head_.facts.kind == VtuFacts::Kind::vtkhdf) {
       grid.xml = head_.mold;
       grid.fields = fields_of(head_.mold);
       return;

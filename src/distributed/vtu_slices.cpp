@@ -9,6 +9,7 @@
 #include "distributed/shared_file.hpp"
 #include "distributed/vtkhdf_head.hpp"
 #include "distributed/vtu_rows.hpp"
+#include "distributed/xdmf_head.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include <meshorder/error.hpp>
@@ -68,13 +69,16 @@ class NewPlaces {
 }  // namespace
 
 std::optional<VtuSlices> VtuSlices::open(const Communicator& communicator, const std::string& path) {
-  std::optional<VtuHead> at_root = communicator.at_root(
-      [&] { return is_hdf5(path) ? read_vtkhdf_head(path) : read_vtu_head(path, communicator.size()); });
+  std::optional<VtuHead> at_root = communicator.at_root([&] {
+    if (is_xdmf(path)) return read_xdmf_head(path);
+    return is_hdf5(path) ? read_vtkhdf_head(path) : read_vtu_head(path, communicator.size());
+  });
   const std::vector<VtuFacts> facts =
       communicator.broadcast(at_root ? std::vector<VtuFacts>{at_root->facts} : std::vector<VtuFacts>{});
   if (facts.empty()) return std::nullopt;
   VtuSlices slices;
-  slices.path_ = path;
+  const bool is_own = facts.front().kind != VtuFacts::Kind::xdmf;
+  slices.path_ = communicator.broadcast(std::vector{is_own || !at_root ? path : at_root->data}).front();
   slices.head_.facts = facts.front();
   slices.head_.arrays =
       communicator.broadcast(at_root ? std::move(at_root->arrays) : std::vector<VtuArray>{});
@@ -83,6 +87,7 @@ std::optional<VtuSlices> VtuSlices::open(const Communicator& communicator, const
     slices.head_.blocks = std::move(at_root->blocks);
     slices.head_.xml = std::move(at_root->xml);
     slices.head_.mold = std::move(at_root->mold);
+    slices.head_.layout = std::move(at_root->layout);
   }
   return slices;
 }
@@ -125,15 +130,16 @@ void VtuSlices::read_points(const Communicator& communicator, const SharedFile& 
       rows(communicator, file, array, first_vertex, slice.vertices.end(rank));
   communicator.together([&] {
     const std::vector<double> coordinates = numbers_of<double>(bytes, array.type);
-    slice.points.resize(coordinates.size() / 3);
+    const auto width = static_cast<std::size_t>(array.row / size_of_type(array.type));
+    slice.points.resize(coordinates.size() / width);
     for (std::size_t k = 0; k < coordinates.size(); ++k) {
       if (!std::isfinite(coordinates[k])) {
         throw InputError(path_,
                          fmt::format("point {} (counted from 0) has a coordinate that is not finite",
-                                     first_vertex + static_cast<GlobalIndex>(k / 3)),
+                                     first_vertex + static_cast<GlobalIndex>(k / width)),
                          "finite numbers are needed");
       }
-      slice.points[k / 3][k % 3] = coordinates[k];
+      slice.points[k / width][k % width] = coordinates[k];
     }
   });
 }
@@ -148,6 +154,7 @@ std::vector<int> VtuSlices::types(const Communicator& communicator, const Shared
 }
 
 bool VtuSlices::has_nodes_as_a_mesh(const Communicator& communicator) const {
+  if (head_.facts.kind == VtuFacts::Kind::xdmf) return true;  // others are not opened
   const SharedFile file(communicator, path_, path_, SharedFile::Use::read);
   const std::vector<int> numbers = types(communicator, file, empty_slice(communicator).cells);
   const auto other = std::count_if(numbers.begin(), numbers.end(), [](int type) {
@@ -159,6 +166,10 @@ bool VtuSlices::has_nodes_as_a_mesh(const Communicator& communicator) const {
 void VtuSlices::read_shapes(const Communicator& communicator, const SharedFile& file,
                             MeshSlice& slice) const {
   const GlobalIndex first_cell = slice.cells.begin(communicator.rank());
+  if (head_.facts.kind == VtuFacts::Kind::xdmf) {
+    const auto count = static_cast<std::size_t>(slice.cells.end(communicator.rank()) - first_cell);
+    return communicator.together([&] { slice.shapes.assign(count, head_.facts.shape); });
+  }
   const std::vector<int> numbers = types(communicator, file, slice.cells);
   communicator.together([&] {
     slice.shapes.reserve(numbers.size());
@@ -175,48 +186,59 @@ void VtuSlices::read_shapes(const Communicator& communicator, const SharedFile& 
   });
 }
 
-/// Reads the vertices of the cells, whose shapes are known.
-void VtuSlices::read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const {
+Offset VtuSlices::read_offsets(const Communicator& communicator, const SharedFile& file,
+                               MeshSlice& slice) const {
   const int rank = communicator.rank();
   const GlobalIndex entries = head_.facts.entries;
   const GlobalIndex first_cell = slice.cells.begin(rank);
   const GlobalIndex end_cell = slice.cells.end(rank);
+  std::vector<Offset>& offsets = slice.cell_vertices.offsets;
+  if (head_.facts.kind == VtuFacts::Kind::xdmf) {
+    communicator.together([&] {
+      offsets.resize(static_cast<std::size_t>(end_cell - first_cell) + 1);
+      for (std::size_t c = 0; c < offsets.size(); ++c)
+        offsets[c] = static_cast<Offset>(c) * head_.facts.nodes;
+    });
+    return first_cell * head_.facts.nodes;
+  }
   const VtuArray& ends = array(Role::offsets);
   // where the cell before ends is where the first one begins
   const GlobalIndex before = std::max<GlobalIndex>(first_cell - 1, 0);
-  Offset first_entry = 0;
-  {
-    const std::vector<std::byte> bytes =
-        rows(communicator, file, ends, end_cell > first_cell ? before : end_cell, end_cell);
-    communicator.together([&] {
-      std::vector<Offset>& offsets = slice.cell_vertices.offsets;
-      offsets = numbers_of<Offset>(bytes, ends.type);
-      if (first_cell == 0) offsets.insert(offsets.begin(), 0);
-      if (end_cell == first_cell) offsets = {0};
-      for (std::size_t c = 0; c + 1 < offsets.size(); ++c) {
-        const GlobalIndex cell = first_cell + static_cast<GlobalIndex>(c);
-        if (offsets[c + 1] <= offsets[c] || offsets[c] < 0 || offsets[c + 1] > entries) {
-          throw InputError(path_,
-                           fmt::format("cell {} (counted from 0) has the entries {} to {} of {}", cell,
-                                       offsets[c], offsets[c + 1], entries),
-                           "offsets must ascend to the number of entries");
-        }
-        const GlobalIndex vertices = offsets[c + 1] - offsets[c];
-        if (vertices < corners(slice.shapes[c], 1)) {
-          throw InputError(path_,
-                           fmt::format("cell {} (counted from 0) is a {} of {} points", cell,
-                                       to_string(slice.shapes[c]), vertices),
-                           fmt::format("it has {} corners", corners(slice.shapes[c], 1)));
-        }
-      }
-      if (end_cell == head_.facts.cells && end_cell > first_cell && offsets.back() != entries) {
-        throw InputError(path_, fmt::format("the cells have {} entries of {}", offsets.back(), entries),
+  const std::vector<std::byte> bytes =
+      rows(communicator, file, ends, end_cell > first_cell ? before : end_cell, end_cell);
+  return communicator.together([&] {
+    offsets = numbers_of<Offset>(bytes, ends.type);
+    if (first_cell == 0) offsets.insert(offsets.begin(), 0);
+    if (end_cell == first_cell) offsets = {0};
+    for (std::size_t c = 0; c + 1 < offsets.size(); ++c) {
+      const GlobalIndex cell = first_cell + static_cast<GlobalIndex>(c);
+      if (offsets[c + 1] <= offsets[c] || offsets[c] < 0 || offsets[c + 1] > entries) {
+        throw InputError(path_,
+                         fmt::format("cell {} (counted from 0) has the entries {} to {} of {}", cell,
+                                     offsets[c], offsets[c + 1], entries),
                          "offsets must ascend to the number of entries");
       }
-      first_entry = offsets.front();
-      for (Offset& offset : offsets) offset -= first_entry;
-    });
-  }
+      const GlobalIndex vertices = offsets[c + 1] - offsets[c];
+      if (vertices < corners(slice.shapes[c], 1)) {
+        throw InputError(path_,
+                         fmt::format("cell {} (counted from 0) is a {} of {} points", cell,
+                                     to_string(slice.shapes[c]), vertices),
+                         fmt::format("it has {} corners", corners(slice.shapes[c], 1)));
+      }
+    }
+    if (end_cell == head_.facts.cells && end_cell > first_cell && offsets.back() != entries) {
+      throw InputError(path_, fmt::format("the cells have {} entries of {}", offsets.back(), entries),
+                       "offsets must ascend to the number of entries");
+    }
+    const Offset first_entry = offsets.front();
+    for (Offset& offset : offsets) offset -= first_entry;
+    return first_entry;
+  });
+}
+
+/// Reads the vertices of the cells, whose shapes are known.
+void VtuSlices::read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const {
+  const Offset first_entry = read_offsets(communicator, file, slice);
   const VtuArray& connectivity = array(Role::connectivity);
   const std::vector<std::byte> bytes =
       rows(communicator, file, connectivity, first_entry, first_entry + slice.cell_vertices.offsets.back());
@@ -228,6 +250,17 @@ void VtuSlices::read_cells(const Communicator& communicator, const SharedFile& f
                        fmt::format("the file has points 0 to {}", head_.facts.vertices - 1));
     }
   });
+}
+
+std::vector<std::byte> VtuSlices::moved_rows(const Communicator& communicator, const SharedFile& file,
+                                             const VtuArray& array, const RowMover& vertices,
+                                             const RowMover& cells) const {
+  const MeshSlice all = empty_slice(communicator);
+  const bool on_vertices = array.association == Association::vertices;
+  const Layout& layout = on_vertices ? all.vertices : all.cells;
+  const int rank = communicator.rank();
+  const std::vector<std::byte> values = rows(communicator, file, array, layout.begin(rank), layout.end(rank));
+  return (on_vertices ? vertices : cells).moved(values, array.row);
 }
 
 /// Returns the cells of this rank's places, with the new numbers of their vertices.
@@ -243,11 +276,29 @@ Rows VtuSlices::moved_cells(const Communicator& communicator, const SharedFile& 
   return mover.moved(std::move(slice.cell_vertices));
 }
 
-std::vector<GlobalIndex> VtuSlices::write(const Communicator& communicator, const std::string& path,
-                                          const std::string& name, const DistributedOrder& order) const {
+std::string VtuSlices::new_data(const Communicator& communicator, const std::string& name) const {
+  if (head_.facts.kind != VtuFacts::Kind::xdmf) return {};
+  return communicator
+      .broadcast(communicator.at_root([&] { return std::vector{new_data_of_xdmf(head_, name)}; }))
+      .front();
+}
+
+VtuSlices VtuSlices::written(const Communicator& communicator, const SliceFile& file) const {
+  if (head_.facts.kind != VtuFacts::Kind::xdmf) return *open(communicator, file.path);
+  VtuSlices result = *this;
+  result.path_ = file.data;
+  const std::vector<Offset> places = communicator.broadcast(
+      communicator.at_root([&] { return places_in_xdmf(head_, file.name, file.data); }));
+  for (VtuArray& array : result.head_.arrays) array.at = places[array.element];
+  return result;
+}
+
+std::vector<GlobalIndex> VtuSlices::write(const Communicator& communicator, const SliceFile& file,
+                                          const DistributedOrder& order) const {
+  if (head_.facts.kind == VtuFacts::Kind::xdmf) return write_xdmf(communicator, file, order);
   const int rank = communicator.rank();
   const SharedFile in(communicator, path_, path_, SharedFile::Use::read);
-  SharedFile out(communicator, path, name, SharedFile::Use::write);
+  SharedFile out(communicator, file.path, file.name, SharedFile::Use::write);
   MeshSlice slice = empty_slice(communicator);
   read_shapes(communicator, in, slice);
   const RowMover vertices(communicator, slice.vertices, order.new_vertices);
@@ -255,6 +306,7 @@ std::vector<GlobalIndex> VtuSlices::write(const Communicator& communicator, cons
   const RowMover cells(communicator, slice.cells, new_cells);
 
   // the XML comes last: it has the offsets of arrays whose compressed sizes are not known yet
+  const bool is_vtkhdf = head_.facts.kind == VtuFacts::Kind::vtkhdf;
   const bool is_raw = head_.facts.encoding.compressor == VtuEncoding::Compressor::none;
   Offset from = head_.facts.first_byte;
   Offset to = communicator.broadcast(std::vector<Offset>{is_raw ? from : head_.xml.most_bytes()}).front();
@@ -266,9 +318,9 @@ std::vector<GlobalIndex> VtuSlices::write(const Communicator& communicator, cons
     from = array.at + array.stored;
     const auto write_array = [&](std::vector<std::byte> values) {
       places.add(array.at, to);
-      to += head_.facts.is_vtkhdf ? write_raw(communicator, out, to, values)
-                                  : write_values(communicator, out, head_.facts.encoding, to,
-                                                 std::move(values), vtk::VtuCompressor::kBlock);
+      to += is_vtkhdf ? write_raw(communicator, out, to, values)
+                      : write_values(communicator, out, head_.facts.encoding, to, std::move(values),
+                                     vtk::VtuCompressor::kBlock);
       places.add(from, to);
     };
     if (array.role == Role::connectivity || array.role == Role::offsets) {
@@ -283,14 +335,11 @@ std::vector<GlobalIndex> VtuSlices::write(const Communicator& communicator, cons
       }));
       continue;
     }
-    const bool on_vertices = array.association == Association::vertices;
-    const Layout& layout = on_vertices ? slice.vertices : slice.cells;
-    const std::vector<std::byte> values = rows(communicator, in, array, layout.begin(rank), layout.end(rank));
-    write_array((on_vertices ? vertices : cells).moved(values, array.row));
+    write_array(moved_rows(communicator, in, array, vertices, cells));
   }
   copy_bytes(communicator, in, from, head_.facts.bytes, out, to);
   const std::string xml = communicator.at_root([&] {
-    if (head_.facts.is_vtkhdf) return std::string();
+    if (is_vtkhdf) return std::string();
     return head_.xml.with_offsets([&](Offset offset) { return places.of_offset(offset); },
                                   places.first_byte());
   });

@@ -17,12 +17,20 @@
 
 namespace meshorder::distributed {
 
+/// A new file, which exists and is empty.
+struct SliceFile {
+  std::string path;  ///< while it is unfinished
+  std::string name;  ///< when it is in its place, and in messages
+  std::string data;  ///< path of the HDF5 file that belongs to an .xdmf file, while it is unfinished
+};
+
 /// A .vtu file of one piece, the arrays of which stand in its appended data, raw or in compressed blocks, or
-/// a .vtkhdf file of one partition whose datasets are neither chunked nor compressed, read and written by all
-/// ranks at once: each its share of every array, one array after another. The new file is the old one with
-/// the rows of its arrays in their new places; whatever else it has is copied byte by byte, but for the
-/// offsets of arrays behind compressed ones. libhdf5 tells rank 0 where the datasets are; no rank else
-/// needs it.
+/// a .vtkhdf file of one partition or an .xdmf file of one mesh of one cell type whose datasets are neither
+/// chunked nor compressed, read and written by all ranks at once: each its share of every array, one array
+/// after another. The new file is the old one with the rows of its arrays in their new places; whatever else
+/// it has is copied byte by byte, but for the offsets of arrays behind compressed ones. An .xdmf file and its
+/// HDF5 file are those that the serial writer makes. libhdf5 tells rank 0 where the datasets are; no rank
+/// else needs it.
 ///
 /// Formats: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, and
 /// "VTKHDF File Format".
@@ -59,12 +67,19 @@ class VtuSlices {
   /// the arrays once more, one after another. O(size of the slice), memory for the cells or the largest array
   /// of a rank three times.
   ///
-  /// @param path    of the new file
-  /// @param name    of the new file in messages
   /// @return the new place of each cell of the slice
   /// @throws SharedError where a rank cannot read or write
-  [[nodiscard]] std::vector<GlobalIndex> write(const Communicator& communicator, const std::string& path,
-                                               const std::string& name, const DistributedOrder& order) const;
+  [[nodiscard]] std::vector<GlobalIndex> write(const Communicator& communicator, const SliceFile& file,
+                                               const DistributedOrder& order) const;
+
+  /// Returns the path of the HDF5 file that belongs to a new .xdmf file of this mesh; empty for files of
+  /// other kinds. Every rank has to call it.
+  [[nodiscard]] std::string new_data(const Communicator& communicator, const std::string& name) const;
+
+  /// Looks at a file that this object wrote. Every rank has to call it.
+  ///
+  /// @throws SharedError as `open`
+  [[nodiscard]] VtuSlices written(const Communicator& communicator, const SliceFile& file) const;
 
  private:
   [[nodiscard]] const VtuArray& array(VtuArray::Role role) const;
@@ -76,11 +91,21 @@ class VtuSlices {
                                        const Layout& cells) const;
   void read_shapes(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
   void read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
+  /// Reads the first entry of this rank's cells and where, from there on, they begin and end.
+  [[nodiscard]] Offset read_offsets(const Communicator& communicator, const SharedFile& file,
+                                    MeshSlice& slice) const;
+  /// Returns the rows of an array that are in this rank's places.
+  [[nodiscard]] std::vector<std::byte> moved_rows(const Communicator& communicator, const SharedFile& file,
+                                                  const VtuArray& array, const RowMover& vertices,
+                                                  const RowMover& cells) const;
+  /// As `write`, for .xdmf files.
+  [[nodiscard]] std::vector<GlobalIndex> write_xdmf(const Communicator& communicator, const SliceFile& file,
+                                                    const DistributedOrder& order) const;
   [[nodiscard]] Rows moved_cells(const Communicator& communicator, const SharedFile& file, MeshSlice slice,
                                  const RowMover& mover, const std::vector<GlobalIndex>& new_vertices) const;
 
-  std::string path_;
-  VtuHead head_;  ///< blocks and XML at the root only
+  std::string path_;  ///< of the file that has the arrays
+  VtuHead head_;      ///< blocks and XML at the root only
 };
 
 }  // namespace meshorder::distributed

@@ -748,6 +748,26 @@ void File::make_room(const std::string& path, std::size_t alternative,
     fail(path, fmt::format("cannot be written ({})", last_cause()), "is the disk full?");
 }
 
+void File::give_room(const std::string& path) {
+  const Session session;
+  Handle dataset = open_dataset(path);
+  const Handle type(H5Dget_type(dataset.id()), H5Tclose);
+  const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+  // the library allots all of a dataset when a value of it is written
+  const std::vector<hsize_t> first(
+      static_cast<std::size_t>(std::max(H5Sget_simple_extent_ndims(space.id()), 0)), 0);
+  const std::vector<hsize_t> one(first.size(), 1);
+  if (!first.empty()) {
+    H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, first.data(), nullptr, one.data(), nullptr);
+  }
+  const Handle memory(H5Screate(H5S_SCALAR), H5Sclose);
+  const std::vector<char> value(H5Tget_size(type.id()), '\0');
+  const bool written =
+      H5Dwrite(dataset.id(), type.id(), memory.id(), space.id(), H5P_DEFAULT, value.data()) >= 0 &&
+      dataset.close() >= 0;
+  if (!written) fail(path, fmt::format("cannot be written ({})", last_cause()), "is the disk full?");
+}
+
 void File::make_group(const std::string& path, LinkOrder order) {
   const Session session;
   if (has(path)) return;

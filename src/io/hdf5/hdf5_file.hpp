@@ -127,6 +127,9 @@ class File {
   /// Makes a dataset of numbers of a type, as an alternative of Values, with room in the file that is not
   /// written to.
   void make_room(const std::string& path, std::size_t alternative, const std::vector<std::uint64_t>& shape);
+  /// Gives the values of a dataset that is there without them their room in the file, which is not written
+  /// to but for the first value.
+  void give_room(const std::string& path);
   /// Makes a group, and those around it, where it is not there. It keeps the order in which its links are
   /// made, or has them by their names.
   enum class LinkOrder : std::uint8_t { made, names };

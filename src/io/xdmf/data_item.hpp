@@ -66,6 +66,8 @@ class DataReader {
   /// Returns whole numbers as indices, those out of range as the limit that they exceed, which no index is.
   [[nodiscard]] std::vector<Index> read_indices(const DataPlace& place);
 
+  /// Returns the path of a file that a DataItem names. Throws where it is missing or may not be read.
+  [[nodiscard]] FilePath path_of(pugi::xml_node item, const std::string& name) const;
   /// Returns the opened HDF5 files by their names in the XML.
   [[nodiscard]] const std::map<std::string, hdf5::File>& files() const noexcept { return files_; }
 
@@ -75,7 +77,6 @@ class DataReader {
   [[nodiscard]] Values read_binary(const DataPlace& place, pugi::xml_node item);
   /// Throws for values beyond the limit on what the file may claim.
   void claim(pugi::xml_node item, std::uint64_t bytes) const;
-  [[nodiscard]] FilePath path_of(pugi::xml_node item, const std::string& name) const;
 
   const Document& document_;
   FilePath path_;

@@ -3,13 +3,16 @@
 #include "base/large_pages.hpp"
 #include "base/text.hpp"
 #include "io/hdf5/session.hpp"
+#include "io/xdmf/raw.hpp"
 #include "io/xdmf/reading.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <type_traits>
 #include <utility>
@@ -140,7 +143,119 @@ class XdmfReader {
     return std::move(reading_.mesh);
   }
 
+  /// See `find_raw`.
+  std::optional<RawGrid> find() {
+    for (const GridElement& grid : grids_of(reading_.document)) {
+      if (!find_grid(grid)) return {};
+    }
+    if (reading_.data.files().size() != 1) return {};
+    raw_.data = reading_.data.path_of(reading_.document.root(), reading_.data.files().begin()->first).path();
+    keep_rest(raw_.datasets[0].rows, raw_.datasets[1].rows);
+    if (!reading_.notes.empty()) return {};
+    raw_.layout = reading_.layout;
+    return std::move(raw_);
+  }
+
  private:
+  // ---- values that are not read
+
+  /// Adds the datasets of a Grid. Returns false where they cannot be read by their bytes.
+  bool find_grid(const GridElement& grid) {
+    pugi::xml_node topology;
+    pugi::xml_node geometry;
+    std::vector<pugi::xml_node> attributes;
+    for (const pugi::xml_node child : reading_.document.children(grid.element)) {
+      const std::string_view name = child.name();
+      if (name == "Attribute") attributes.push_back(child);
+      if (name == "Set" || (name == "Topology" && topology) || (name == "Geometry" && geometry)) return false;
+      if (name == "Topology") topology = child;
+      if (name == "Geometry") geometry = child;
+    }
+    return topology && geometry && find_points(geometry) && find_cells(topology) &&
+           std::all_of(attributes.begin(), attributes.end(),
+                       [&](pugi::xml_node element) { return find_array(element); });
+  }
+
+  bool find_points(pugi::xml_node geometry) {
+    const std::string type = attribute(geometry, "GeometryType", "Type");
+    const bool is_flat = same_but_for_case(type, "XY");
+    if ((!is_flat && !type.empty() && !same_but_for_case(type, "XYZ")) || items_of(geometry).size() != 1)
+      return false;
+    return find_values(reading_.item_of(geometry), RawDataset::Role::points, Association::vertices,
+                       is_flat ? 2 : 3);
+  }
+
+  bool find_cells(pugi::xml_node topology) {
+    const TopologyType* const type = topology_type(attribute(topology, "TopologyType", "Type"));
+    if (type == nullptr || type->nodes == 0 || vtk::may_be_reordered(static_cast<std::uint8_t>(type->vtk)) ||
+        !topology.attribute("Order").empty() || topology.attribute("BaseOffset").as_int(0) != 0 ||
+        items_of(topology).size() != 1) {
+      return false;
+    }
+    const bool is_found =
+        find_values(reading_.item_of(topology), RawDataset::Role::topology, Association::cells, type->nodes);
+    if (!is_found) return false;
+    raw_.shape = type->shape;
+    const std::string announced = attribute(topology, "NumberOfElements", "Dimensions");
+    std::string_view rest = announced;
+    const std::string_view cells = next_word(rest);
+    return cells.empty() || cells == std::to_string(raw_.datasets[1].rows);
+  }
+
+  bool find_array(pugi::xml_node element) {
+    std::string center = attribute(element, "Center");
+    if (center.empty()) center = "Node";
+    if (same_but_for_case(attribute(element, "ItemType"), "FiniteElementFunction") ||
+        items_of(element).size() != 1 || element.attribute("Name").empty()) {
+      return false;
+    }
+    const pugi::xml_node item = reading_.item_of(element);
+    if (same_but_for_case(center, "Grid"))  // is not moved
+      return reading_.data.place_of(item).format != DataPlace::Format::binary;
+    const bool on_vertices = same_but_for_case(center, "Node");
+    if (!on_vertices && !same_but_for_case(center, "Cell")) return false;
+    return find_values(item, RawDataset::Role::array,
+                       on_vertices ? Association::vertices : Association::cells, 0);
+  }
+
+  /// Adds the dataset of a DataItem in rows of so many components; 0: as many as fit the mesh. Points come
+  /// first, then the topology; that of another Grid is the same. Returns false where it cannot be read by
+  /// its bytes.
+  bool find_values(pugi::xml_node item, RawDataset::Role role, Association association, Index components) {
+    constexpr std::size_t kLastReal = 1;
+    constexpr std::size_t kInt32 = 6;
+    DataPlace place = reading_.data.place_of(item);
+    if (place.format != DataPlace::Format::hdf) return false;
+    const auto count = static_cast<std::int64_t>(hdf5::DatasetInfo{place.shape, 0}.size());
+    if (components == 0) {
+      const std::int64_t rows = raw_.datasets[association == Association::vertices ? 0 : 1].rows;
+      if (count % rows != 0 || count / rows > kMaxIndex) return false;
+      components = static_cast<Index>(count / rows);
+    }
+    if (count == 0 || count % components != 0 || count / components > kMaxIndex) return false;
+    const auto known = std::find_if(raw_.datasets.begin(), raw_.datasets.end(),
+                                    [&](const RawDataset& dataset) { return dataset.name == place.dataset; });
+    if (known != raw_.datasets.end()) return known->role == role && known->association == association;
+    // of an only mesh, in a number type that is not too narrow for any
+    if (role == RawDataset::Role::points && (!raw_.datasets.empty() || place.alternative > kLastReal))
+      return false;
+    if (role == RawDataset::Role::topology && (raw_.datasets.size() != 1 || place.alternative < kInt32))
+      return false;
+    const std::optional<std::uint64_t> byte =
+        reading_.data.files().at(place.file).place_of_values(place.dataset);
+    if (!byte) return false;
+    raw_.datasets.push_back(
+        {role, place.dataset, association, place.alternative, components, count / components, *byte});
+    Field::Role of_field = Field::Role::array;
+    if (role == RawDataset::Role::points) of_field = Field::Role::points;
+    if (role == RawDataset::Role::topology) of_field = Field::Role::topology;
+    Field& field = reading_.layout->fields.emplace_back(Field{of_field, std::move(place)});
+    field.association = association;
+    return true;
+  }
+
+  // ---- Grids
+
   void read_grid(const GridElement& grid) {
     const std::vector<pugi::xml_node> children = reading_.document.children(grid.element);
     const auto only = [&](std::string_view name) {
@@ -259,12 +374,12 @@ class XdmfReader {
         reading_.notes);
     if (reading_.mesh.cell_blocks.size() == 1) reading_.mesh.cell_blocks.clear();
     arrays_.finish();
-    keep_rest();
+    keep_rest(reading_.mesh.vertex_count(), reading_.mesh.cell_count());
     reading_.mesh.format_metadata = reading_.layout;
   }
 
   /// Keeps what the files have beside the mesh for the writer.
-  void keep_rest() {
+  void keep_rest(std::int64_t vertices, std::int64_t cells) {
     std::vector<std::size_t> items;
     std::map<std::string, std::set<std::string>> datasets;
     for (const Field& field : reading_.layout->fields) {
@@ -276,7 +391,7 @@ class XdmfReader {
     }
     reading_.layout->xml = reading_.document.take_values_out(std::move(items));
     for (const auto& [name, file] : reading_.data.files()) {
-      note_other_datasets(name, file, datasets[name]);
+      note_other_datasets(name, file, datasets[name], {vertices, cells});
       reading_.layout->hdf5[name] = file.without_values(datasets[name]);
     }
     const std::size_t times = reading_.document.root().select_nodes("//Time").size();
@@ -288,11 +403,10 @@ class XdmfReader {
 
   /// Notes datasets that the XML does not name, but that have as many rows as the mesh.
   void note_other_datasets(const std::string& name, const hdf5::File& file,
-                           const std::set<std::string>& named) {
+                           const std::set<std::string>& named, std::array<std::int64_t, 2> counts) {
     std::vector<std::string> others;
     for (const auto& [path, rows] : file.datasets()) {
-      const bool of_mesh = std::cmp_equal(rows, reading_.mesh.vertex_count()) ||
-                           std::cmp_equal(rows, reading_.mesh.cell_count());
+      const bool of_mesh = std::cmp_equal(rows, counts[0]) || std::cmp_equal(rows, counts[1]);
       if (rows > 1 && of_mesh && !named.contains(path)) others.push_back(path);
     }
     if (others.empty()) return;
@@ -304,12 +418,21 @@ class XdmfReader {
   }
 
   Reading reading_;
+  RawGrid raw_;
   TopologyReader topologies_{reading_};
   ArrayReader arrays_{reading_};
   std::set<std::string> known_geometries_;
 };
 
 }  // namespace
+
+std::optional<RawGrid> find_raw(const FilePath& path) {
+  const hdf5::Session session;
+  Notes notes;
+  std::optional<RawGrid> grid = XdmfReader(path, notes).find();
+  session.require_no_fault(path.string());
+  return grid;
+}
 
 Mesh read(const FilePath& path, Notes& notes) {
   const hdf5::Session session;

@@ -11,6 +11,7 @@
 #include "io/unsupported.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/xdmf/document.hpp"
+#include "io/xdmf/raw.hpp"
 
 #include <fmt/compile.h>
 #include <fmt/format.h>
@@ -18,6 +19,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -106,7 +109,7 @@ class XdmfWriter {
     remove_gone();
     add_others();
     rename_files();
-    mark_files();
+    mark_files(mark_of_mesh());
     for (auto& [name, output] : files_) finish(output);
 
     put_xml([&](std::string_view part) { xml.write(part); });
@@ -118,8 +121,27 @@ class XdmfWriter {
     OutputFile::commit_all(all);
   }
 
- private:
-  // ---- files
+  /// See the function of that name.
+  std::string write_without_values(const std::filesystem::path& data, const std::string& mark) {
+    const auto& [old_name, bytes] = *layout_.hdf5.begin();
+    Hdf5Output output;
+    output.name = new_name(old_name);
+    const std::string name = path_.beside(output.name).string();
+    if (!std::ofstream(data, std::ios::binary).write(bytes.data(), std::ssize(bytes)).flush())
+      throw InputError(name, "cannot be written", "the disk may be full");
+    output.file = std::make_unique<hdf5::File>(hdf5::File::change(data, name));
+    hdf5::File& file = *files_.emplace(old_name, std::move(output)).first->second.file;
+    for (const Field& field : layout_.fields) {
+      file.give_room(field.place.dataset);
+      if (field.role == Field::Role::topology) announce_cells_of(field);
+    }
+    rename_files();
+    mark_files(mark);
+    file.close();
+    std::string xml;
+    put_xml([&](std::string_view part) { xml += part; });
+    return xml;
+  }
 
   /// Returns the name of the file that takes the place of one of the old XML: both named after their .xdmf.
   [[nodiscard]] std::string new_name(const std::string& old_name) const {
@@ -141,6 +163,9 @@ class XdmfWriter {
     for (int k = 2; is_taken(); ++k) name = fmt::format("{}{}_{}{}", stem_, rest, k, extension);
     return name;
   }
+
+ private:
+  // ---- files
 
   void open_files() {
     for (const auto& [old_name, bytes] : layout_.hdf5) {
@@ -183,17 +208,21 @@ class XdmfWriter {
     }
   }
 
-  /// Marks the files as those of one mesh.
-  void mark_files() {
-    pugi::xml_node root = xml_.document_element();
-    root.remove_child(root.find_child(is_mark));
-    if (files_.empty()) return;
+  [[nodiscard]] std::string mark_of_mesh() const {
     Checksum sum;
+    if (files_.empty()) return {};
     sum.add_all(mesh_.points);
     for (const std::vector<Index>& cells : rows_) {
       for (const Index c : cells) sum.add_all(mesh_.cells[c]);
     }
-    const std::string mark = fmt::format("{:016x}", sum.value());
+    return mark_of(sum.value());
+  }
+
+  /// Marks the files as those of one mesh.
+  void mark_files(const std::string& mark) {
+    pugi::xml_node root = xml_.document_element();
+    root.remove_child(root.find_child(is_mark));
+    if (files_.empty()) return;
     pugi::xml_node instruction = root.prepend_child(pugi::node_pi);
     if (!instruction.set_name(kMark) || !instruction.set_value(mark.c_str())) throw std::bad_alloc();
     for (auto& [name, output] : files_) output.file->set_attribute("/", kMark, mark);
@@ -385,16 +414,29 @@ class XdmfWriter {
         set_attribute(topology, "NodesPerElement", std::to_string(nodes));
       }
     }
-    if (layout_.is_made || topology.attribute("NumberOfElements")) {
-      set_attribute(topology, "NumberOfElements", std::to_string(rows.size()));
-    } else if (topology.attribute("Dimensions")) {
-      set_attribute(topology, "Dimensions", std::to_string(rows.size()));
-    }
+    announce_cells(topology, rows.size());
     if (type != nullptr && field.base == 0 && is_identity(rows, mesh_.cell_count()) &&
         !is_turned(rows.front())) {
       return put_indices(field.place, mesh_.cells.vertices, nodes);
     }
     put_indices(field.place, numbers_of(rows, type == nullptr, field.base), nodes);
+  }
+
+  /// Says how many cells, of a type with so many nodes, the Topology of a field has.
+  void announce_cells_of(const Field& field) const {
+    pugi::xml_node topology = items_[field.place.item].parent();
+    const auto nodes =
+        static_cast<std::uint64_t>(topology_type(attribute(topology, "TopologyType", "Type"))->nodes);
+    announce_cells(topology, hdf5::DatasetInfo{field.place.shape, 0}.size() / nodes);
+  }
+
+  /// Says how many cells a Topology has.
+  void announce_cells(pugi::xml_node topology, std::uint64_t cells) const {
+    if (layout_.is_made || topology.attribute("NumberOfElements")) {
+      set_attribute(topology, "NumberOfElements", std::to_string(cells));
+    } else if (topology.attribute("Dimensions")) {
+      set_attribute(topology, "Dimensions", std::to_string(cells));
+    }
   }
 
   /// Whether the cell is a linear wedge that the file has the other way round.
@@ -709,6 +751,38 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const Layout layout = layout_of(mesh, path);
   XdmfWriter(mesh, layout, cells_of_parts(mesh, layout), path, notes).write();
   note_metadata_unsupported(mesh, "XDMF", notes);
+}
+
+std::string mark_of(std::uint64_t checksum) { return fmt::format("{:016x}", checksum); }
+
+std::string name_of_data(const Layout& layout, const std::filesystem::path& path) {
+  const Mesh none;
+  Notes ignored;
+  return XdmfWriter(none, layout, {}, FilePath(path), ignored).new_name(layout.hdf5.begin()->first);
+}
+
+std::string write_without_values(const Layout& layout, const std::filesystem::path& path,
+                                 const std::filesystem::path& data, const std::string& mark) {
+  const hdf5::Session session;
+  const Mesh none;
+  Notes ignored;
+  return XdmfWriter(none, layout, {}, FilePath(path), ignored).write_without_values(data, mark);
+}
+
+std::vector<std::uint64_t> places_of_values(const Layout& layout, const std::filesystem::path& data,
+                                            const std::string& name) {
+  const hdf5::Session session;
+  const hdf5::File file = hdf5::File::open(data, name);
+  std::vector<std::uint64_t> places;
+  for (const Field& field : layout.fields) {
+    const std::optional<std::uint64_t> place = file.place_of_values(field.place.dataset);
+    if (!place) {
+      throw InputError(name, fmt::format("the dataset '{}' got no room", field.place.dataset),
+                       "is the disk full?");
+    }
+    places.push_back(*place);
+  }
+  return places;
 }
 
 }  // namespace meshorder::xdmf
