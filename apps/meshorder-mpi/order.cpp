@@ -4,9 +4,9 @@
 #include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "console.hpp"
+#include "distributed/file_slices.hpp"
 #include "distributed/mesh_slice.hpp"
 #include "distributed/order.hpp"
-#include "distributed/vtu_slices.hpp"
 #include "distributed/xdmf_head.hpp"
 #include "mesh/reorder.hpp"
 #include "order_outputs.hpp"
@@ -32,8 +32,8 @@ namespace {
 using distributed::Communicator;
 using distributed::DistributedOptions;
 using distributed::DistributedOrder;
+using distributed::FileSlices;
 using distributed::GlobalIndex;
-using distributed::VtuSlices;
 
 struct Arguments : Common, OrderFiles {
   std::string vertices = "auto";
@@ -63,7 +63,7 @@ DistributedOptions options_of(const Arguments& arguments) {
 /// Returns the input as all ranks read it; nothing where rank 0 has to: for old numbers and chosen cells, for
 /// files of other kinds, for maps of cells whose nodes a Mesh has in another order, for maps without a file,
 /// and for pieces of .xdmf files.
-std::optional<VtuSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
+std::optional<FileSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
   const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
   const std::filesystem::path kind = extension(arguments.input);
   const Keeping& keeping = arguments.keeping;
@@ -74,7 +74,7 @@ std::optional<VtuSlices> slices_of(const Communicator& communicator, const Argum
       keeping.dimension >= 0 || keeping.strict || (with_maps && arguments.output.empty())) {
     return std::nullopt;
   }
-  std::optional<VtuSlices> slices = VtuSlices::open(communicator, arguments.input);
+  std::optional<FileSlices> slices = FileSlices::open(communicator, arguments.input);
   if (slices && with_maps && !slices->has_nodes_as_a_mesh(communicator)) slices.reset();
   return slices;
 }
@@ -84,7 +84,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   OrderOutputs outputs(communicator, arguments);
   const Stopwatch reading;
   Notes notes;
-  const std::optional<VtuSlices> slices = slices_of(communicator, arguments);
+  const std::optional<FileSlices> slices = slices_of(communicator, arguments);
   WholeMesh whole;
   if (!slices) {
     whole = read_at_root(communicator, arguments.with_output(), parse<Ids>(arguments.ids), notes);

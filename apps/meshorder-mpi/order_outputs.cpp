@@ -74,7 +74,7 @@ void OrderOutputs::check(const Mesh& mesh) const {
   });
 }
 
-void OrderOutputs::write(const distributed::VtuSlices& slices, const distributed::DistributedOrder& order,
+void OrderOutputs::write(const distributed::FileSlices& slices, const distributed::DistributedOrder& order,
                          const MeshChecksums& before, Notes& notes) {
   if (!files_.output.empty()) {
     SharedOutput file(communicator_, set_, files_.output);
@@ -86,7 +86,7 @@ void OrderOutputs::write(const distributed::VtuSlices& slices, const distributed
     file.commit();
     if (data) data->commit();
     if (!files_.maps.empty()) {
-      const distributed::VtuSlices written = slices.written(communicator_, target);
+      const distributed::FileSlices written = slices.written(communicator_, target);
       maps_ = write_sliced_maps(communicator_, {order.new_vertices, new_cells, order.report.part_starts},
                                 before, written.read(communicator_), files_.maps, set_);
     }

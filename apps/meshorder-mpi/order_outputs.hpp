@@ -2,10 +2,10 @@
 #pragma once
 
 #include "distributed/communicator.hpp"
+#include "distributed/file_slices.hpp"
 #include "distributed/grid_rows.hpp"
 #include "distributed/order.hpp"
 #include "distributed/pieces.hpp"
-#include "distributed/vtu_slices.hpp"
 #include "io/stream/output_set.hpp"
 #include "mesh_files.hpp"
 #include "piece_outputs.hpp"
@@ -47,7 +47,7 @@ class OrderOutputs {
   /// Writes a mesh that all ranks read, in its new order, and its maps.
   ///
   /// @param before  of the mesh in its old order; looked at for maps only
-  void write(const distributed::VtuSlices& slices, const distributed::DistributedOrder& order,
+  void write(const distributed::FileSlices& slices, const distributed::DistributedOrder& order,
              const MeshChecksums& before, Notes& notes);
 
   /// Writes a mesh that the root has, and that is in its new order, and its maps.

@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/pieces.hpp"
 
+#include "distributed/file_rows.hpp"
 #include "distributed/halo.hpp"
 #include "distributed/number_types.hpp"
 #include "distributed/parts.hpp"
 #include "distributed/piece_contents.hpp"
 #include "distributed/shared_file.hpp"
 #include "distributed/text_store.hpp"
-#include "distributed/vtu_rows.hpp"
 #include "io/vtk/vtk.hpp"
 #ifdef MESHORDER_HAS_HDF5
 #include "io/vtkhdf/vtkhdf.hpp"

@@ -8,9 +8,9 @@
 
 namespace meshorder::distributed {
 
-VtuArray raw_array(std::string_view name, VtuArray::Role role, Association association, std::size_t type,
-                   Offset row, Offset rows, Offset at) {
-  VtuArray array{};
+FileArray raw_array(std::string_view name, FileArray::Role role, Association association, std::size_t type,
+                    Offset row, Offset rows, Offset at) {
+  FileArray array{};
   name = name.substr(0, array.name.size() - 1);
   std::replace_copy_if(
       name.begin(), name.end(), array.name.begin(),
@@ -25,10 +25,10 @@ VtuArray raw_array(std::string_view name, VtuArray::Role role, Association assoc
   return array;
 }
 
-bool sort_by_bytes(std::vector<VtuArray>& arrays, Offset bytes) {
-  std::sort(arrays.begin(), arrays.end(), [](const VtuArray& a, const VtuArray& b) { return a.at < b.at; });
+bool sort_by_bytes(std::vector<FileArray>& arrays, Offset bytes) {
+  std::sort(arrays.begin(), arrays.end(), [](const FileArray& a, const FileArray& b) { return a.at < b.at; });
   Offset before = 0;
-  return std::all_of(arrays.begin(), arrays.end(), [&](const VtuArray& array) {
+  return std::all_of(arrays.begin(), arrays.end(), [&](const FileArray& array) {
     const bool is_free = array.at >= before && array.at <= bytes - array.size;
     before = array.at + array.size;
     return is_free;

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "distributed/vtu_head.hpp"
+#include "distributed/file_head.hpp"
 #include <meshorder/mesh.hpp>
 
 #include <cstddef>
@@ -16,11 +16,11 @@ namespace meshorder::distributed {
 /// @param type  number type, as an alternative of Values
 /// @param row   numbers of a row
 /// @param at    first byte in the file
-[[nodiscard]] VtuArray raw_array(std::string_view name, VtuArray::Role role, Association association,
-                                 std::size_t type, Offset row, Offset rows, Offset at);
+[[nodiscard]] FileArray raw_array(std::string_view name, FileArray::Role role, Association association,
+                                  std::size_t type, Offset row, Offset rows, Offset at);
 
 /// Puts arrays into the order of their bytes. Returns whether all are within a file of so many bytes, and no
 /// two share any. O(n log n).
-[[nodiscard]] bool sort_by_bytes(std::vector<VtuArray>& arrays, Offset bytes);
+[[nodiscard]] bool sort_by_bytes(std::vector<FileArray>& arrays, Offset bytes);
 
 }  // namespace meshorder::distributed

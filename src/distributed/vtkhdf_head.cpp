@@ -37,33 +37,33 @@ using vtkhdf::RawGrid;
 
 constexpr Index kMostOfRow = Index{1} << 24;
 
-VtuArray::Role role_of(RawDataset::Role role) {
+FileArray::Role role_of(RawDataset::Role role) {
   switch (role) {
     case RawDataset::Role::points:
-      return VtuArray::Role::points;
+      return FileArray::Role::points;
     case RawDataset::Role::connectivity:
-      return VtuArray::Role::connectivity;
+      return FileArray::Role::connectivity;
     case RawDataset::Role::offsets:
-      return VtuArray::Role::offsets;
+      return FileArray::Role::offsets;
     case RawDataset::Role::types:
-      return VtuArray::Role::types;
+      return FileArray::Role::types;
     default:
-      return VtuArray::Role::data;
+      return FileArray::Role::data;
   }
 }
 
-VtuArray array_of(const RawDataset& dataset, std::size_t element) {
+FileArray array_of(const RawDataset& dataset, std::size_t element) {
   // offsets: where cells end, as in a .vtu file, behind the place where the first one begins
   const Offset before = dataset.role == RawDataset::Role::offsets ? 1 : 0;
-  VtuArray array = raw_array(dataset.name, role_of(dataset.role), dataset.association, dataset.type,
-                             dataset.components, dataset.rows - before,
-                             static_cast<Offset>(dataset.place) + before * size_of_type(dataset.type));
+  FileArray array = raw_array(dataset.name, role_of(dataset.role), dataset.association, dataset.type,
+                              dataset.components, dataset.rows - before,
+                              static_cast<Offset>(dataset.place) + before * size_of_type(dataset.type));
   array.element = element;
   return array;
 }
 
 /// Whether the cells of a file begin at the first entry of its connectivity.
-bool begins_at_zero(const std::string& path, const VtuArray& offsets) {
+bool begins_at_zero(const std::string& path, const FileArray& offsets) {
   std::vector<std::byte> first(static_cast<std::size_t>(offsets.row));
   std::ifstream file(path, std::ios::binary);
   file.seekg(offsets.at - offsets.row);
@@ -87,7 +87,7 @@ std::string mold_of_grid(const RawGrid& grid) {
 
 }  // namespace
 
-std::optional<VtuHead> read_vtkhdf_head(const std::string& path) {
+std::optional<FileHead> read_vtkhdf_head(const std::string& path) {
   finish_interrupted(path);
   const FilePath file(path);
   const ReadScope scope(file);
@@ -96,8 +96,8 @@ std::optional<VtuHead> read_vtkhdf_head(const std::string& path) {
   // the order of a .vtu file: arrays of points, of cells, then the mesh
   std::stable_partition(grid->datasets.begin(), grid->datasets.end(),
                         [](const RawDataset& dataset) { return dataset.role == RawDataset::Role::data; });
-  VtuHead head;
-  head.facts.kind = VtuFacts::Kind::vtkhdf;
+  FileHead head;
+  head.facts.kind = FileFacts::Kind::vtkhdf;
   head.facts.vertices = grid->vertices;
   head.facts.cells = grid->cells;
   head.facts.entries = grid->entries;
@@ -108,8 +108,8 @@ std::optional<VtuHead> read_vtkhdf_head(const std::string& path) {
     if (dataset.role == RawDataset::Role::points) grid->metadata.float_points = dataset.type == 1;
   }
   if (!sort_by_bytes(head.arrays, head.facts.bytes)) return std::nullopt;
-  const auto offsets = std::find_if(head.arrays.begin(), head.arrays.end(), [](const VtuArray& array) {
-    return array.role == VtuArray::Role::offsets;
+  const auto offsets = std::find_if(head.arrays.begin(), head.arrays.end(), [](const FileArray& array) {
+    return array.role == FileArray::Role::offsets;
   });
   if (!begins_at_zero(path, *offsets)) return std::nullopt;
   head.blocks.resize(head.arrays.size());
@@ -117,7 +117,7 @@ std::optional<VtuHead> read_vtkhdf_head(const std::string& path) {
   return head;
 }
 #else
-std::optional<VtuHead> read_vtkhdf_head(const std::string& /*path*/) { return std::nullopt; }
+std::optional<FileHead> read_vtkhdf_head(const std::string& /*path*/) { return std::nullopt; }
 #endif
 
 }  // namespace meshorder::distributed

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "distributed/vtu_head.hpp"
+#include "distributed/file_head.hpp"
 
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@ namespace meshorder::distributed {
 /// with texts on points or cells, or with more than the format has. O(datasets + size of the fields).
 ///
 /// @throws InputError for a file that is damaged: counts and shapes that differ
-[[nodiscard]] std::optional<VtuHead> read_vtkhdf_head(const std::string& path);
+[[nodiscard]] std::optional<FileHead> read_vtkhdf_head(const std::string& path);
 
 /// Returns whether a file begins as those of HDF5 do.
 [[nodiscard]] bool is_hdf5(const std::string& path);

@@ -42,13 +42,13 @@ std::string head_of(const FilePath& path) {
   return {};
 }
 
-using Role = VtuArray::Role;
+using Role = FileArray::Role;
 
 class HeadReader {
  public:
   HeadReader(const std::string& path, int ranks) : path_(path), ranks_(ranks) {}
 
-  std::optional<VtuHead> read() {
+  std::optional<FileHead> read() {
     finish_interrupted(path_);
     std::string text = head_of(path_);
     if (text.empty()) return std::nullopt;
@@ -100,7 +100,7 @@ class HeadReader {
     constexpr std::array kNeeded{Role::points, Role::types, Role::offsets, Role::connectivity};
     return std::all_of(kNeeded.begin(), kNeeded.end(), [&](Role role) {
       return std::count_if(head_.arrays.begin(), head_.arrays.end(),
-                           [&](const VtuArray& array) { return array.role == role; }) == 1;
+                           [&](const FileArray& array) { return array.role == role; }) == 1;
     });
   }
 
@@ -111,7 +111,7 @@ class HeadReader {
     const auto* const known = type == nullptr
                                   ? vtk::kXmlTypeNames.end()
                                   : std::find(vtk::kXmlTypeNames.begin(), vtk::kXmlTypeNames.end(), *type);
-    VtuArray array{};
+    FileArray array{};
     array.element = head_.arrays.size();
     if (section == "Points") {
       array.role = Role::points;
@@ -146,7 +146,7 @@ class HeadReader {
     if (name != nullptr) copy_start(*name, array.name);
     std::vector<Offset> blocks = place(file, element, array);
     const auto behind = std::upper_bound(head_.arrays.begin(), head_.arrays.end(), array,
-                                         [](const VtuArray& a, const VtuArray& b) { return a.at < b.at; });
+                                         [](const FileArray& a, const FileArray& b) { return a.at < b.at; });
     head_.blocks.insert(head_.blocks.begin() + (behind - head_.arrays.begin()), std::move(blocks));
     head_.arrays.insert(behind, array);
     return true;
@@ -160,7 +160,7 @@ class HeadReader {
   }
 
   /// Finds the bytes of an array by its offset and the words before them; returns its blocks.
-  std::vector<Offset> place(const vtk::VtuDocument& file, const vtk::VtuElement& element, VtuArray& array) {
+  std::vector<Offset> place(const vtk::VtuDocument& file, const vtk::VtuElement& element, FileArray& array) {
     const std::string what = fmt::format("the array '{}'", array.name.data());
     const Offset offset = whole_number(file, element, "offset");
     if (offset > head_.facts.bytes - head_.facts.first_byte)
@@ -203,7 +203,7 @@ class HeadReader {
 
   /// Finds the bytes of an array that is not compressed, by the word before them; returns their number.
   std::uint64_t place_bytes(const vtk::VtuDocument& file, const vtk::VtuElement& element,
-                            const std::string& what, VtuArray& array) {
+                            const std::string& what, FileArray& array) {
     bytes_.seekg(array.at);
     const std::uint64_t size = words(file, element, what, 1).front();
     const auto left = static_cast<std::uint64_t>(head_.facts.bytes - bytes_.tellg());
@@ -217,7 +217,7 @@ class HeadReader {
   /// Finds the blocks of a compressed array by the words before them: how many there are, the bytes of each
   /// and of a shorter last one, and the compressed bytes of each. Returns how many bytes they hold.
   std::uint64_t place_blocks(const vtk::VtuDocument& file, const vtk::VtuElement& element,
-                             const std::string& what, VtuArray& array, std::vector<Offset>& blocks) {
+                             const std::string& what, FileArray& array, std::vector<Offset>& blocks) {
     bytes_.seekg(array.at);
     const std::vector<std::uint64_t> head = words(file, element, what, 3);
     const std::vector<std::uint64_t> compressed = words(file, element, what, head[0]);
@@ -248,7 +248,7 @@ class HeadReader {
 
   /// Returns whether no two arrays share bytes, and none begins within another.
   [[nodiscard]] bool are_apart() const {
-    const std::vector<VtuArray>& arrays = head_.arrays;
+    const std::vector<FileArray>& arrays = head_.arrays;
     for (std::size_t k = 1; k < arrays.size(); ++k) {
       if (arrays[k].at < arrays[k - 1].at + arrays[k - 1].stored) return false;
     }
@@ -256,7 +256,7 @@ class HeadReader {
     return std::none_of(offsets.begin(), offsets.end(), [&](Offset offset) {
       if (offset > head_.facts.bytes) return false;  // found where the array is read
       const Offset at = head_.facts.first_byte + offset;
-      return std::any_of(arrays.begin(), arrays.end(), [&](const VtuArray& array) {
+      return std::any_of(arrays.begin(), arrays.end(), [&](const FileArray& array) {
         return array.at < at && at < array.at + array.stored;
       });
     });
@@ -264,14 +264,14 @@ class HeadReader {
 
   const std::string& path_;
   int ranks_;
-  VtuHead head_;
+  FileHead head_;
   std::size_t word_ = 8;  ///< bytes of a word before an array
   std::ifstream bytes_;
 };
 
 }  // namespace
 
-std::optional<VtuHead> read_vtu_head(const std::string& path, int ranks) {
+std::optional<FileHead> read_vtu_head(const std::string& path, int ranks) {
   return HeadReader(path, ranks).read();
 }
 

@@ -1,73 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "distributed/layout.hpp"
-#include "distributed/vtu_offsets.hpp"
-#include "io/format.hpp"
-#include "io/vtu.hpp"
-#include <meshorder/mesh.hpp>
-#include <meshorder/shape.hpp>
+#include "distributed/file_head.hpp"
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
-#include <vector>
-
-namespace meshorder::xdmf {
-struct Layout;
-}
 
 namespace meshorder::distributed {
-
-/// An array of a .vtu, .vtkhdf or .xdmf file: what it holds, and where its values are.
-struct VtuArray {
-  enum class Role : std::uint8_t { points, types, offsets, connectivity, data };
-
-  std::array<char, 41> name;  ///< or how it begins, for messages; ends with a zero
-  std::size_t element = 0;    ///< which one of the arrays of the piece in the XML, from 0 on
-  Role role;
-  Association association;
-  std::uint8_t type;  ///< number type, as the alternatives of Values
-  Offset at;          ///< first byte in the file, of the words before the values
-  Offset stored;      ///< bytes in the file, those words among them
-  Offset row;         ///< bytes of a row
-  Offset size;        ///< bytes of all rows
-  Offset blocks;      ///< in which they are compressed; 0: they are not
-  Offset block;       ///< bytes of a block, but for the last one, which has the rest
-};
-
-/// What all ranks know of a .vtu, .vtkhdf or .xdmf file.
-struct VtuFacts {
-  /// In the files of HDF5 that the last two are, arrays have no words before them, and there is no XML.
-  enum class Kind : std::uint8_t { vtu, vtkhdf, xdmf };
-
-  Kind kind = Kind::vtu;
-  GlobalIndex vertices = 0;
-  GlobalIndex cells = 0;
-  GlobalIndex entries = 0;  ///< of the connectivity
-  Offset bytes = 0;         ///< size of the file
-  Offset first_byte = 0;    ///< of the appended data
-  VtuEncoding encoding;
-  // of an .xdmf file, which has no arrays of types and offsets
-  Shape shape = Shape::vertex;  ///< of all cells
-  Offset nodes = 0;             ///< of each cell
-};
-
-/// What the XML of a .vtu file says, and the words before its arrays; or what libhdf5 says of a .vtkhdf file,
-/// or of the HDF5 file of an .xdmf file.
-struct VtuHead {
-  VtuFacts facts;
-  std::vector<VtuArray> arrays;  ///< in the order of their bytes
-  std::vector<std::vector<Offset>>
-      blocks;  ///< of each array: first byte of each block, and the last one's end
-  VtuXml xml;
-  std::string mold;                            ///< of a .vtkhdf file: what `mold_of` makes of its arrays
-  std::string data;                            ///< path of an .xdmf file's HDF5 file
-  std::shared_ptr<const xdmf::Layout> layout;  ///< of an .xdmf file, whose fields are the elements of arrays
-};
 
 /// Reads the XML of a file and the tables of its compressed blocks. Returns nothing for a file that is no
 /// .vtu file of one piece with raw appended data in this machine's order of bytes, and for one whose
@@ -76,6 +15,6 @@ struct VtuHead {
 /// @param ranks  that share what the arrays take when uncompressed
 /// @throws InputError for a file of that kind that is damaged: XML, counts that differ, bytes beyond its end,
 ///         blocks that cannot hold what they are said to
-[[nodiscard]] std::optional<VtuHead> read_vtu_head(const std::string& path, int ranks);
+[[nodiscard]] std::optional<FileHead> read_vtu_head(const std::string& path, int ranks);
 
 }  // namespace meshorder::distributed

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/cell_places.hpp"
+#include "distributed/file_slices.hpp"
 #include "distributed/mold.hpp"
 #include "distributed/moved_rows.hpp"
 #include "distributed/text_store.hpp"
-#include "distributed/vtu_slices.hpp"
 #include "io/stream/base64.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/vtk/vtu_compressor.hpp"
@@ -132,7 +132,7 @@ std::string fields_with_values(const std::string& head, const std::string& path)
 
 }  // namespace
 
-GridRows VtuSlices::in_new_order(const Communicator& communicator, const DistributedOrder& order) const {
+GridRows FileSlices::in_new_order(const Communicator& communicator, const DistributedOrder& order) const {
   const auto file = std::make_shared<SharedFile>(communicator, path_, path_, SharedFile::Use::read);
   MeshSlice slice = empty_slice(communicator);
   read_shapes(communicator, *file, slice);
@@ -143,13 +143,13 @@ GridRows VtuSlices::in_new_order(const Communicator& communicator, const Distrib
   grid.vertices = slice.vertices;
   grid.cells = slice.cells;
   grid.rows = [this, &communicator, file, vertices, cells](std::size_t k) {
-    const VtuArray& array = *std::find_if(head_.arrays.begin(), head_.arrays.end(),
-                                          [&](const VtuArray& one) { return one.element == k; });
+    const FileArray& array = *std::find_if(head_.arrays.begin(), head_.arrays.end(),
+                                           [&](const FileArray& one) { return one.element == k; });
     return moved_rows(communicator, *file, array, *vertices, *cells);
   };
   grid.cell_vertices = moved_cells(communicator, *file, std::move(slice), *cells, order.new_vertices);
   communicator.at_root([&] {
-    if (head_.facts.kind == VtuFacts::Kind::vtkhdf) {
+    if (head_.facts.kind == FileFacts::Kind::vtkhdf) {
       grid.xml = head_.mold;
       grid.fields = fields_of(head_.mold);
       return;

@@ -23,27 +23,27 @@ bool is_xdmf(const std::string& path) {
 #ifdef MESHORDER_HAS_XDMF
 namespace {
 
-VtuArray::Role role_in_xdmf(xdmf::RawDataset::Role role) {
+FileArray::Role role_in_xdmf(xdmf::RawDataset::Role role) {
   switch (role) {
     case xdmf::RawDataset::Role::points:
-      return VtuArray::Role::points;
+      return FileArray::Role::points;
     case xdmf::RawDataset::Role::topology:
-      return VtuArray::Role::connectivity;
+      return FileArray::Role::connectivity;
     default:
-      return VtuArray::Role::data;
+      return FileArray::Role::data;
   }
 }
 
 }  // namespace
 
-std::optional<VtuHead> read_xdmf_head(const std::string& path) {
+std::optional<FileHead> read_xdmf_head(const std::string& path) {
   finish_interrupted(path);
   const FilePath file(path);
   const ReadScope scope(file);
   const std::optional<xdmf::RawGrid> grid = xdmf::find_raw(file);
   if (!grid) return std::nullopt;
-  VtuHead head;
-  head.facts.kind = VtuFacts::Kind::xdmf;
+  FileHead head;
+  head.facts.kind = FileFacts::Kind::xdmf;
   head.facts.shape = grid->shape;
   head.facts.bytes = static_cast<Offset>(std::filesystem::file_size(grid->data));
   for (const xdmf::RawDataset& dataset : grid->datasets) {
@@ -51,8 +51,8 @@ std::optional<VtuHead> read_xdmf_head(const std::string& path) {
     // the rows of the connectivity are entries, as in other files
     const Offset row = is_topology ? 1 : dataset.components;
     const Offset rows = is_topology ? dataset.rows * dataset.components : dataset.rows;
-    VtuArray array = raw_array(dataset.name, role_in_xdmf(dataset.role), dataset.association, dataset.type,
-                               row, rows, static_cast<Offset>(dataset.place));
+    FileArray array = raw_array(dataset.name, role_in_xdmf(dataset.role), dataset.association, dataset.type,
+                                row, rows, static_cast<Offset>(dataset.place));
     array.element = head.arrays.size();
     head.arrays.push_back(array);
     if (dataset.role == xdmf::RawDataset::Role::points) head.facts.vertices = dataset.rows;
@@ -68,28 +68,28 @@ std::optional<VtuHead> read_xdmf_head(const std::string& path) {
   return head;
 }
 
-std::string new_data_of_xdmf(const VtuHead& head, const std::string& path) {
+std::string new_data_of_xdmf(const FileHead& head, const std::string& path) {
   return FilePath(path).beside(xdmf::name_of_data(*head.layout, path)).string();
 }
 
-std::string write_xdmf_head(const VtuHead& head, const std::string& name, const std::string& data,
+std::string write_xdmf_head(const FileHead& head, const std::string& name, const std::string& data,
                             std::uint64_t checksum) {
   return xdmf::write_without_values(*head.layout, name, data, xdmf::mark_of(checksum));
 }
 
-std::vector<Offset> places_in_xdmf(const VtuHead& head, const std::string& name, const std::string& data) {
+std::vector<Offset> places_in_xdmf(const FileHead& head, const std::string& name, const std::string& data) {
   const std::vector<std::uint64_t> places =
       xdmf::places_of_values(*head.layout, data, new_data_of_xdmf(head, name));
   return {places.begin(), places.end()};
 }
 #else
-std::optional<VtuHead> read_xdmf_head(const std::string& /*path*/) { return std::nullopt; }
-std::string new_data_of_xdmf(const VtuHead& /*head*/, const std::string& /*path*/) { return {}; }
-std::string write_xdmf_head(const VtuHead& /*head*/, const std::string& /*name*/, const std::string& /*data*/,
-                            std::uint64_t /*checksum*/) {
+std::optional<FileHead> read_xdmf_head(const std::string& /*path*/) { return std::nullopt; }
+std::string new_data_of_xdmf(const FileHead& /*head*/, const std::string& /*path*/) { return {}; }
+std::string write_xdmf_head(const FileHead& /*head*/, const std::string& /*name*/,
+                            const std::string& /*data*/, std::uint64_t /*checksum*/) {
   return {};
 }
-std::vector<Offset> places_in_xdmf(const VtuHead& /*head*/, const std::string& /*name*/,
+std::vector<Offset> places_in_xdmf(const FileHead& /*head*/, const std::string& /*name*/,
                                    const std::string& /*data*/) {
   return {};
 }

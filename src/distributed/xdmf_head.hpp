@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "distributed/vtu_head.hpp"
+#include "distributed/file_head.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -17,10 +17,10 @@ namespace meshorder::distributed {
 /// whose arrays cannot be read by their bytes: see `xdmf::find_raw`. O(size of the XML + datasets).
 ///
 /// @throws InputError for a file that is damaged, and where its HDF5 file is missing or of another run
-[[nodiscard]] std::optional<VtuHead> read_xdmf_head(const std::string& path);
+[[nodiscard]] std::optional<FileHead> read_xdmf_head(const std::string& path);
 
 /// Returns the path of the HDF5 file that belongs to a new .xdmf file.
-[[nodiscard]] std::string new_data_of_xdmf(const VtuHead& head, const std::string& path);
+[[nodiscard]] std::string new_data_of_xdmf(const FileHead& head, const std::string& path);
 
 /// Writes a new HDF5 file over one on disk, with room for all arrays, and returns the new .xdmf file.
 ///
@@ -28,7 +28,7 @@ namespace meshorder::distributed {
 /// @param data      path of the HDF5 file
 /// @param checksum  of the new points and cells; see `xdmf::mark_of`
 /// @throws InputError if it cannot be written
-[[nodiscard]] std::string write_xdmf_head(const VtuHead& head, const std::string& name,
+[[nodiscard]] std::string write_xdmf_head(const FileHead& head, const std::string& name,
                                           const std::string& data, std::uint64_t checksum);
 
 /// Returns where the arrays of a file of `write_xdmf_head` begin, by their elements.
@@ -36,7 +36,7 @@ namespace meshorder::distributed {
 /// @param name  of the .xdmf file
 /// @param data  path of its HDF5 file
 /// @throws InputError if it cannot be read
-[[nodiscard]] std::vector<Offset> places_in_xdmf(const VtuHead& head, const std::string& name,
+[[nodiscard]] std::vector<Offset> places_in_xdmf(const FileHead& head, const std::string& name,
                                                  const std::string& data);
 
 }  // namespace meshorder::distributed

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/checksum.hpp"
 #include "distributed/cell_places.hpp"
+#include "distributed/file_rows.hpp"
+#include "distributed/file_slices.hpp"
 #include "distributed/moved_rows.hpp"
 #include "distributed/number_types.hpp"
 #include "distributed/rank_order.hpp"
-#include "distributed/vtu_rows.hpp"
-#include "distributed/vtu_slices.hpp"
 #include "distributed/xdmf_head.hpp"
 
 #include <cstddef>
@@ -21,8 +21,9 @@ namespace meshorder::distributed {
 namespace {
 
 /// Returns the checksum by which the writer of whole meshes marks both files, on all ranks.
-std::uint64_t checksum_of_xdmf(const Communicator& communicator, const VtuFacts& facts, const VtuArray& array,
-                               const std::vector<std::byte>& points, const Rows& cells) {
+std::uint64_t checksum_of_xdmf(const Communicator& communicator, const FileFacts& facts,
+                               const FileArray& array, const std::vector<std::byte>& points,
+                               const Rows& cells) {
   Checksum sum;
   sum.add(facts.vertices);
   add_in_rank_order(communicator, sum, [&] {
@@ -42,8 +43,8 @@ std::uint64_t checksum_of_xdmf(const Communicator& communicator, const VtuFacts&
 
 }  // namespace
 
-std::vector<GlobalIndex> VtuSlices::write_xdmf(const Communicator& communicator, const SliceFile& file,
-                                               const DistributedOrder& order) const {
+std::vector<GlobalIndex> FileSlices::write_xdmf(const Communicator& communicator, const SliceFile& file,
+                                                const DistributedOrder& order) const {
   const SharedFile in(communicator, path_, path_, SharedFile::Use::read);
   MeshSlice slice = empty_slice(communicator);
   read_shapes(communicator, in, slice);
@@ -52,23 +53,23 @@ std::vector<GlobalIndex> VtuSlices::write_xdmf(const Communicator& communicator,
   const RowMover cells(communicator, slice.cells, new_cells);
 
   // before the files are made: both begin with the mark
-  const VtuArray& points = array(VtuArray::Role::points);
+  const FileArray& points = array(FileArray::Role::points);
   const std::vector<std::byte> moved_points = moved_rows(communicator, in, points, vertices, cells);
   const Rows moved = moved_cells(communicator, in, std::move(slice), cells, order.new_vertices);
   const std::uint64_t checksum = checksum_of_xdmf(communicator, head_.facts, points, moved_points, moved);
   const std::string xml =
       communicator.at_root([&] { return write_xdmf_head(head_, file.name, file.data, checksum); });
-  const std::vector<VtuArray> arrays = written(communicator, file).head_.arrays;
+  const std::vector<FileArray> arrays = written(communicator, file).head_.arrays;
 
   SharedFile data(communicator, file.data, new_data(communicator, file.name), SharedFile::Use::write);
   for (std::size_t k = 0; k < arrays.size(); ++k) {
-    const VtuArray& array = head_.arrays[k];
+    const FileArray& array = head_.arrays[k];
     const auto write_array = [&](const std::vector<std::byte>& values) {
       write_raw(communicator, data, arrays[k].at, values);
     };
-    if (array.role == VtuArray::Role::points) {
+    if (array.role == FileArray::Role::points) {
       write_array(moved_points);
-    } else if (array.role == VtuArray::Role::connectivity) {
+    } else if (array.role == FileArray::Role::connectivity) {
       write_array(communicator.together([&] { return bytes_of(moved.entries, array.type); }));
     } else {
       write_array(moved_rows(communicator, in, array, vertices, cells));

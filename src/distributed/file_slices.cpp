@@ -1,14 +1,15 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/vtu_slices.hpp"
+#include "distributed/file_slices.hpp"
 
 #include "cells/cell_arrays.hpp"
 #include "distributed/cell_places.hpp"
+#include "distributed/file_rows.hpp"
 #include "distributed/halo.hpp"
 #include "distributed/moved_rows.hpp"
 #include "distributed/number_types.hpp"
 #include "distributed/shared_file.hpp"
 #include "distributed/vtkhdf_head.hpp"
-#include "distributed/vtu_rows.hpp"
+#include "distributed/vtu_head.hpp"
 #include "distributed/xdmf_head.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
@@ -26,7 +27,7 @@
 namespace meshorder::distributed {
 namespace {
 
-using Role = VtuArray::Role;
+using Role = FileArray::Role;
 
 constexpr Offset kChunk = Offset{1} << 24;  // bytes that are copied at a time
 
@@ -68,20 +69,20 @@ class NewPlaces {
 
 }  // namespace
 
-std::optional<VtuSlices> VtuSlices::open(const Communicator& communicator, const std::string& path) {
-  std::optional<VtuHead> at_root = communicator.at_root([&] {
+std::optional<FileSlices> FileSlices::open(const Communicator& communicator, const std::string& path) {
+  std::optional<FileHead> at_root = communicator.at_root([&] {
     if (is_xdmf(path)) return read_xdmf_head(path);
     return is_hdf5(path) ? read_vtkhdf_head(path) : read_vtu_head(path, communicator.size());
   });
-  const std::vector<VtuFacts> facts =
-      communicator.broadcast(at_root ? std::vector<VtuFacts>{at_root->facts} : std::vector<VtuFacts>{});
+  const std::vector<FileFacts> facts =
+      communicator.broadcast(at_root ? std::vector<FileFacts>{at_root->facts} : std::vector<FileFacts>{});
   if (facts.empty()) return std::nullopt;
-  VtuSlices slices;
-  const bool is_own = facts.front().kind != VtuFacts::Kind::xdmf;
+  FileSlices slices;
+  const bool is_own = facts.front().kind != FileFacts::Kind::xdmf;
   slices.path_ = communicator.broadcast(std::vector{is_own || !at_root ? path : at_root->data}).front();
   slices.head_.facts = facts.front();
   slices.head_.arrays =
-      communicator.broadcast(at_root ? std::move(at_root->arrays) : std::vector<VtuArray>{});
+      communicator.broadcast(at_root ? std::move(at_root->arrays) : std::vector<FileArray>{});
   slices.head_.blocks.resize(slices.head_.arrays.size());
   if (at_root) {
     slices.head_.blocks = std::move(at_root->blocks);
@@ -92,19 +93,19 @@ std::optional<VtuSlices> VtuSlices::open(const Communicator& communicator, const
   return slices;
 }
 
-const VtuArray& VtuSlices::array(Role role) const {
+const FileArray& FileSlices::array(Role role) const {
   return *std::find_if(head_.arrays.begin(), head_.arrays.end(),
-                       [&](const VtuArray& one) { return one.role == role; });
+                       [&](const FileArray& one) { return one.role == role; });
 }
 
-MeshSlice VtuSlices::empty_slice(const Communicator& communicator) const {
+MeshSlice FileSlices::empty_slice(const Communicator& communicator) const {
   MeshSlice slice;
   slice.vertices = Layout::even(head_.facts.vertices, communicator.size());
   slice.cells = Layout::even(head_.facts.cells, communicator.size());
   return slice;
 }
 
-MeshSlice VtuSlices::read(const Communicator& communicator) const {
+MeshSlice FileSlices::read(const Communicator& communicator) const {
   MeshSlice slice = empty_slice(communicator);
   const SharedFile file(communicator, path_, path_, SharedFile::Use::read);
   read_points(communicator, file, slice);
@@ -114,18 +115,18 @@ MeshSlice VtuSlices::read(const Communicator& communicator) const {
 }
 
 /// Returns the bytes of rows begin … end − 1 of an array of the file.
-std::vector<std::byte> VtuSlices::rows(const Communicator& communicator, const SharedFile& file,
-                                       const VtuArray& array, GlobalIndex begin, GlobalIndex end) const {
+std::vector<std::byte> FileSlices::rows(const Communicator& communicator, const SharedFile& file,
+                                        const FileArray& array, GlobalIndex begin, GlobalIndex end) const {
   const auto number = static_cast<std::size_t>(&array - head_.arrays.data());
   return read_values(communicator, file, path_, head_.facts.encoding.compressor, array, head_.blocks[number],
                      begin * array.row, end * array.row);
 }
 
-void VtuSlices::read_points(const Communicator& communicator, const SharedFile& file,
-                            MeshSlice& slice) const {
+void FileSlices::read_points(const Communicator& communicator, const SharedFile& file,
+                             MeshSlice& slice) const {
   const int rank = communicator.rank();
   const GlobalIndex first_vertex = slice.vertices.begin(rank);
-  const VtuArray& array = this->array(Role::points);
+  const FileArray& array = this->array(Role::points);
   const std::vector<std::byte> bytes =
       rows(communicator, file, array, first_vertex, slice.vertices.end(rank));
   communicator.together([&] {
@@ -145,16 +146,16 @@ void VtuSlices::read_points(const Communicator& communicator, const SharedFile& 
 }
 
 /// Returns VTK's types of this rank's cells.
-std::vector<int> VtuSlices::types(const Communicator& communicator, const SharedFile& file,
-                                  const Layout& cells) const {
+std::vector<int> FileSlices::types(const Communicator& communicator, const SharedFile& file,
+                                   const Layout& cells) const {
   const int rank = communicator.rank();
-  const VtuArray& array = this->array(Role::types);
+  const FileArray& array = this->array(Role::types);
   const std::vector<std::byte> bytes = rows(communicator, file, array, cells.begin(rank), cells.end(rank));
   return communicator.together([&] { return numbers_of<int>(bytes, array.type); });
 }
 
-bool VtuSlices::has_nodes_as_a_mesh(const Communicator& communicator) const {
-  if (head_.facts.kind == VtuFacts::Kind::xdmf) return true;  // others are not opened
+bool FileSlices::has_nodes_as_a_mesh(const Communicator& communicator) const {
+  if (head_.facts.kind == FileFacts::Kind::xdmf) return true;  // others are not opened
   const SharedFile file(communicator, path_, path_, SharedFile::Use::read);
   const std::vector<int> numbers = types(communicator, file, empty_slice(communicator).cells);
   const auto other = std::count_if(numbers.begin(), numbers.end(), [](int type) {
@@ -163,10 +164,10 @@ bool VtuSlices::has_nodes_as_a_mesh(const Communicator& communicator) const {
   return communicator.sum(static_cast<GlobalIndex>(other)) == 0;
 }
 
-void VtuSlices::read_shapes(const Communicator& communicator, const SharedFile& file,
-                            MeshSlice& slice) const {
+void FileSlices::read_shapes(const Communicator& communicator, const SharedFile& file,
+                             MeshSlice& slice) const {
   const GlobalIndex first_cell = slice.cells.begin(communicator.rank());
-  if (head_.facts.kind == VtuFacts::Kind::xdmf) {
+  if (head_.facts.kind == FileFacts::Kind::xdmf) {
     const auto count = static_cast<std::size_t>(slice.cells.end(communicator.rank()) - first_cell);
     return communicator.together([&] { slice.shapes.assign(count, head_.facts.shape); });
   }
@@ -186,14 +187,14 @@ void VtuSlices::read_shapes(const Communicator& communicator, const SharedFile& 
   });
 }
 
-Offset VtuSlices::read_offsets(const Communicator& communicator, const SharedFile& file,
-                               MeshSlice& slice) const {
+Offset FileSlices::read_offsets(const Communicator& communicator, const SharedFile& file,
+                                MeshSlice& slice) const {
   const int rank = communicator.rank();
   const GlobalIndex entries = head_.facts.entries;
   const GlobalIndex first_cell = slice.cells.begin(rank);
   const GlobalIndex end_cell = slice.cells.end(rank);
   std::vector<Offset>& offsets = slice.cell_vertices.offsets;
-  if (head_.facts.kind == VtuFacts::Kind::xdmf) {
+  if (head_.facts.kind == FileFacts::Kind::xdmf) {
     communicator.together([&] {
       offsets.resize(static_cast<std::size_t>(end_cell - first_cell) + 1);
       for (std::size_t c = 0; c < offsets.size(); ++c)
@@ -201,7 +202,7 @@ Offset VtuSlices::read_offsets(const Communicator& communicator, const SharedFil
     });
     return first_cell * head_.facts.nodes;
   }
-  const VtuArray& ends = array(Role::offsets);
+  const FileArray& ends = array(Role::offsets);
   // where the cell before ends is where the first one begins
   const GlobalIndex before = std::max<GlobalIndex>(first_cell - 1, 0);
   const std::vector<std::byte> bytes =
@@ -237,9 +238,10 @@ Offset VtuSlices::read_offsets(const Communicator& communicator, const SharedFil
 }
 
 /// Reads the vertices of the cells, whose shapes are known.
-void VtuSlices::read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const {
+void FileSlices::read_cells(const Communicator& communicator, const SharedFile& file,
+                            MeshSlice& slice) const {
   const Offset first_entry = read_offsets(communicator, file, slice);
-  const VtuArray& connectivity = array(Role::connectivity);
+  const FileArray& connectivity = array(Role::connectivity);
   const std::vector<std::byte> bytes =
       rows(communicator, file, connectivity, first_entry, first_entry + slice.cell_vertices.offsets.back());
   communicator.together([&] {
@@ -252,9 +254,9 @@ void VtuSlices::read_cells(const Communicator& communicator, const SharedFile& f
   });
 }
 
-std::vector<std::byte> VtuSlices::moved_rows(const Communicator& communicator, const SharedFile& file,
-                                             const VtuArray& array, const RowMover& vertices,
-                                             const RowMover& cells) const {
+std::vector<std::byte> FileSlices::moved_rows(const Communicator& communicator, const SharedFile& file,
+                                              const FileArray& array, const RowMover& vertices,
+                                              const RowMover& cells) const {
   const MeshSlice all = empty_slice(communicator);
   const bool on_vertices = array.association == Association::vertices;
   const Layout& layout = on_vertices ? all.vertices : all.cells;
@@ -264,8 +266,8 @@ std::vector<std::byte> VtuSlices::moved_rows(const Communicator& communicator, c
 }
 
 /// Returns the cells of this rank's places, with the new numbers of their vertices.
-Rows VtuSlices::moved_cells(const Communicator& communicator, const SharedFile& file, MeshSlice slice,
-                            const RowMover& mover, const std::vector<GlobalIndex>& new_vertices) const {
+Rows FileSlices::moved_cells(const Communicator& communicator, const SharedFile& file, MeshSlice slice,
+                             const RowMover& mover, const std::vector<GlobalIndex>& new_vertices) const {
   read_cells(communicator, file, slice);
   std::vector<GlobalIndex>& numbers = slice.cell_vertices.entries;
   {
@@ -276,26 +278,26 @@ Rows VtuSlices::moved_cells(const Communicator& communicator, const SharedFile& 
   return mover.moved(std::move(slice.cell_vertices));
 }
 
-std::string VtuSlices::new_data(const Communicator& communicator, const std::string& name) const {
-  if (head_.facts.kind != VtuFacts::Kind::xdmf) return {};
+std::string FileSlices::new_data(const Communicator& communicator, const std::string& name) const {
+  if (head_.facts.kind != FileFacts::Kind::xdmf) return {};
   return communicator
       .broadcast(communicator.at_root([&] { return std::vector{new_data_of_xdmf(head_, name)}; }))
       .front();
 }
 
-VtuSlices VtuSlices::written(const Communicator& communicator, const SliceFile& file) const {
-  if (head_.facts.kind != VtuFacts::Kind::xdmf) return *open(communicator, file.path);
-  VtuSlices result = *this;
+FileSlices FileSlices::written(const Communicator& communicator, const SliceFile& file) const {
+  if (head_.facts.kind != FileFacts::Kind::xdmf) return *open(communicator, file.path);
+  FileSlices result = *this;
   result.path_ = file.data;
   const std::vector<Offset> places = communicator.broadcast(
       communicator.at_root([&] { return places_in_xdmf(head_, file.name, file.data); }));
-  for (VtuArray& array : result.head_.arrays) array.at = places[array.element];
+  for (FileArray& array : result.head_.arrays) array.at = places[array.element];
   return result;
 }
 
-std::vector<GlobalIndex> VtuSlices::write(const Communicator& communicator, const SliceFile& file,
-                                          const DistributedOrder& order) const {
-  if (head_.facts.kind == VtuFacts::Kind::xdmf) return write_xdmf(communicator, file, order);
+std::vector<GlobalIndex> FileSlices::write(const Communicator& communicator, const SliceFile& file,
+                                           const DistributedOrder& order) const {
+  if (head_.facts.kind == FileFacts::Kind::xdmf) return write_xdmf(communicator, file, order);
   const int rank = communicator.rank();
   const SharedFile in(communicator, path_, path_, SharedFile::Use::read);
   SharedFile out(communicator, file.path, file.name, SharedFile::Use::write);
@@ -306,13 +308,13 @@ std::vector<GlobalIndex> VtuSlices::write(const Communicator& communicator, cons
   const RowMover cells(communicator, slice.cells, new_cells);
 
   // the XML comes last: it has the offsets of arrays whose compressed sizes are not known yet
-  const bool is_vtkhdf = head_.facts.kind == VtuFacts::Kind::vtkhdf;
+  const bool is_vtkhdf = head_.facts.kind == FileFacts::Kind::vtkhdf;
   const bool is_raw = head_.facts.encoding.compressor == VtuEncoding::Compressor::none;
   Offset from = head_.facts.first_byte;
   Offset to = communicator.broadcast(std::vector<Offset>{is_raw ? from : head_.xml.most_bytes()}).front();
   NewPlaces places(from, to);
   std::optional<Rows> moved;
-  for (const VtuArray& array : head_.arrays) {
+  for (const FileArray& array : head_.arrays) {
     copy_bytes(communicator, in, from, array.at, out, to);
     to += array.at - from;
     from = array.at + array.stored;

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/vtu_rows.hpp"
+#include "distributed/file_rows.hpp"
 
 #include "io/vtk/vtu_compressor.hpp"
 #include <meshorder/error.hpp>
@@ -28,7 +28,7 @@ struct BlockRange {
 };
 
 /// Returns the blocks that have bytes begin … end − 1 of an array.
-BlockRange blocks_with(const VtuArray& array, Offset begin, Offset end) {
+BlockRange blocks_with(const FileArray& array, Offset begin, Offset end) {
   if (begin == end) return {};
   // the last one may be longer than the others
   const auto block_of = [&](Offset byte) { return std::min(byte / array.block, array.blocks - 1); };
@@ -102,7 +102,7 @@ CompressedBlocks compressed(VtuEncoding::Compressor kind, std::span<const std::b
 
 std::vector<std::byte> read_values(const Communicator& communicator, const SharedFile& file,
                                    const std::string& name, VtuEncoding::Compressor compressor,
-                                   const VtuArray& array, const std::vector<Offset>& blocks, Offset begin,
+                                   const FileArray& array, const std::vector<Offset>& blocks, Offset begin,
                                    Offset end) {
   std::vector<std::byte> values =
       communicator.together([&] { return std::vector<std::byte>(static_cast<std::size_t>(end - begin)); });

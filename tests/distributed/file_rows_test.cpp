@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/vtu_rows.hpp"
+#include "distributed/file_rows.hpp"
 
 #include "io/vtk/vtu_compressor.hpp"
 
@@ -73,7 +73,7 @@ void expect_kept(const Communicator& communicator, const Kept& kept) {
     out.close();
   }
   const std::string bytes = communicator.at_root([&] { return content(path); });
-  VtuArray array{};
+  FileArray array{};
   array.at = kBefore;
   array.stored = stored;
   array.size = kept.values;
@@ -137,16 +137,16 @@ TEST(VtuRows, EndAllRanksWhereABlockOfOneIsDamaged) {
     std::ofstream(path, std::ios::binary) << packed << packed.substr(0, packed.size() / 2);
     return std::ssize(packed);
   });
-  VtuArray array{.name = {"u"},
-                 .role = VtuArray::Role::data,
-                 .association = Association::cells,
-                 .type = 0,
-                 .at = 0,
-                 .stored = 0,
-                 .row = 1,
-                 .size = 200,
-                 .blocks = 2,
-                 .block = 100};
+  FileArray array{.name = {"u"},
+                  .role = FileArray::Role::data,
+                  .association = Association::cells,
+                  .type = 0,
+                  .at = 0,
+                  .stored = 0,
+                  .row = 1,
+                  .size = 200,
+                  .blocks = 2,
+                  .block = 100};
   const SharedFile in(communicator, path, "mesh.vtu", SharedFile::Use::read);
   const bool is_last = communicator.rank() == communicator.size() - 1;
   try {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "distributed/communicator.hpp"
+#include "distributed/file_head.hpp"
 #include "distributed/layout.hpp"
 #include "distributed/shared_file.hpp"
-#include "distributed/vtu_head.hpp"
 
 #include <cstddef>
 #include <span>
@@ -22,7 +22,7 @@ namespace meshorder::distributed {
 /// @throws SharedError where a rank cannot read or a block does not hold what it should
 [[nodiscard]] std::vector<std::byte> read_values(const Communicator& communicator, const SharedFile& file,
                                                  const std::string& name, VtuEncoding::Compressor compressor,
-                                                 const VtuArray& array, const std::vector<Offset>& blocks,
+                                                 const FileArray& array, const std::vector<Offset>& blocks,
                                                  Offset begin, Offset end);
 
 /// Writes an array with the words before it, raw or in blocks that do not depend on the number of ranks.

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "distributed/communicator.hpp"
+#include "distributed/file_head.hpp"
 #include "distributed/grid_rows.hpp"
 #include "distributed/layout.hpp"
 #include "distributed/mesh_slice.hpp"
 #include "distributed/moved_rows.hpp"
 #include "distributed/order.hpp"
 #include "distributed/shared_file.hpp"
-#include "distributed/vtu_head.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -34,7 +34,7 @@ struct SliceFile {
 ///
 /// Formats: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, and
 /// "VTKHDF File Format".
-class VtuSlices {
+class FileSlices {
  public:
   /// Looks at a file; every rank has to call it. Returns nothing for a file that is no such one: of several
   /// pieces or partitions, with text, base64, chunks, the other order of bytes, or compression that this
@@ -42,8 +42,8 @@ class VtuSlices {
   ///
   /// @throws SharedError for a file of that kind that is damaged: XML, counts that differ, bytes beyond its
   ///         end, blocks that cannot hold what they are said to
-  [[nodiscard]] static std::optional<VtuSlices> open(const Communicator& communicator,
-                                                     const std::string& path);
+  [[nodiscard]] static std::optional<FileSlices> open(const Communicator& communicator,
+                                                      const std::string& path);
 
   /// Returns whether all cells have their nodes in the order in which a Mesh has them, so that the checksums
   /// of both are the same. Every rank has to call it. O(cells).
@@ -79,13 +79,13 @@ class VtuSlices {
   /// Looks at a file that this object wrote. Every rank has to call it.
   ///
   /// @throws SharedError as `open`
-  [[nodiscard]] VtuSlices written(const Communicator& communicator, const SliceFile& file) const;
+  [[nodiscard]] FileSlices written(const Communicator& communicator, const SliceFile& file) const;
 
  private:
-  [[nodiscard]] const VtuArray& array(VtuArray::Role role) const;
+  [[nodiscard]] const FileArray& array(FileArray::Role role) const;
   [[nodiscard]] MeshSlice empty_slice(const Communicator& communicator) const;
   [[nodiscard]] std::vector<std::byte> rows(const Communicator& communicator, const SharedFile& file,
-                                            const VtuArray& array, GlobalIndex begin, GlobalIndex end) const;
+                                            const FileArray& array, GlobalIndex begin, GlobalIndex end) const;
   void read_points(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
   [[nodiscard]] std::vector<int> types(const Communicator& communicator, const SharedFile& file,
                                        const Layout& cells) const;
@@ -96,7 +96,7 @@ class VtuSlices {
                                     MeshSlice& slice) const;
   /// Returns the rows of an array that are in this rank's places.
   [[nodiscard]] std::vector<std::byte> moved_rows(const Communicator& communicator, const SharedFile& file,
-                                                  const VtuArray& array, const RowMover& vertices,
+                                                  const FileArray& array, const RowMover& vertices,
                                                   const RowMover& cells) const;
   /// As `write`, for .xdmf files.
   [[nodiscard]] std::vector<GlobalIndex> write_xdmf(const Communicator& communicator, const SliceFile& file,
@@ -105,7 +105,7 @@ class VtuSlices {
                                  const RowMover& mover, const std::vector<GlobalIndex>& new_vertices) const;
 
   std::string path_;  ///< of the file that has the arrays
-  VtuHead head_;      ///< blocks and XML at the root only
+  FileHead head_;     ///< blocks and XML at the root only
 };
 
 }  // namespace meshorder::distributed
