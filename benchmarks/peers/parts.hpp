@@ -1,0 +1,35 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// What the programs that partitions.py runs under mpirun have in common: they read folders of .npy files,
+// time their partitioner, and write the part of each vertex or element. C++17, as Trilinos' headers are.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace peer {
+
+/// Reads an .npy file of whole numbers.
+std::vector<std::int64_t> read_numbers(const std::string& path);
+
+/// A range of vertices or elements.
+struct Range {
+  std::int64_t begin;
+  std::int64_t end;
+};
+
+/// Returns this rank's share of so many: ranges as equal as can be.
+Range own_range(std::int64_t count);
+
+/// Partitions, prints the processor seconds of all ranks together, in the program, and writes the parts.
+///
+/// @param path       of the .npy file
+/// @param partition  returns the parts of this rank's range
+void measure_parts(const std::string& path, const std::function<std::vector<int>()>& partition);
+
+/// Calls `solve` with errors told on stderr; an error of one rank ends all.
+void run_on_ranks(const std::function<void()>& solve);
+
+}  // namespace peer
