@@ -3,7 +3,13 @@
 
 #include "io/format.hpp"
 
+#include <array>
+#include <string_view>
+
 namespace meshorder {
+
+/// Extensions of Exodus II, also in builds without it.
+inline constexpr std::array<std::string_view, 4> kExodusExtensions{".exo", ".e", ".ex2", ".g"};
 
 // Each is defined in the file of its name; format.cpp lists them.
 Format tetgen_format();  ///< .node with .ele, .face and .edge beside it

@@ -49,7 +49,7 @@ struct LackingFormat {
 
 const std::vector<LackingFormat> kLackingFormats{
 #ifndef MESHORDER_HAS_NETCDF
-    {"Exodus", {".exo", ".e", ".ex2", ".g"}, "netCDF", "MESHORDER_NETCDF"},
+    {"Exodus", {kExodusExtensions.begin(), kExodusExtensions.end()}, "netCDF", "MESHORDER_NETCDF"},
 #endif
 #ifndef MESHORDER_HAS_XDMF
     {"XDMF", {".xdmf", ".xmf"}, "HDF5 and pugixml", "MESHORDER_HDF5"},
@@ -195,6 +195,20 @@ std::string_view format_that_begins(std::string_view bytes) {
   return {};
 }
 
+/// Returns the path of a piece of a decomposed mesh, "mesh.e.16.03", without the two numbers at its end;
+/// others as they are.
+std::filesystem::path without_piece_numbers(const std::filesystem::path& path) {
+  const auto is_number = [](const std::string& extension) {
+    return extension.size() > 1 && extension.find_first_not_of("0123456789", 1) == std::string::npos;
+  };
+  const std::filesystem::path once = path.stem();
+  if (!is_number(path.extension().string()) || !is_number(once.extension().string())) return path;
+  const std::string extension = lower_case(once.stem().extension().string());
+  const bool is_exodus_name =
+      std::find(kExodusExtensions.begin(), kExodusExtensions.end(), extension) != kExodusExtensions.end();
+  return is_exodus_name ? path.parent_path() / once.stem() : path;
+}
+
 }  // namespace
 
 std::string Format::key() const { return lower_case(std::string(name)); }
@@ -202,7 +216,7 @@ std::string Format::key() const { return lower_case(std::string(name)); }
 std::span<const Format> all_formats() { return kFormats; }
 
 const Format& format_of(const std::filesystem::path& path) {
-  const std::string extension = lower_case(without_gz(path).extension().string());
+  const std::string extension = lower_case(without_piece_numbers(without_gz(path)).extension().string());
   if (openfoam::is_case(openfoam::case_folder(path))) {
     throw InputError(path.string(), "is an OpenFOAM case",
                      "order its cells by meshorder openfoam " + openfoam::case_folder(path).string());

@@ -377,9 +377,20 @@ def test_faults_are_named_with_their_place(command, tmp_path):
     assert "side_ss1, entry 4: a hexahedron has no side 7" in broken(put("side_ss1", 3, 7))
     assert "not finite" in broken(put("coordx", 3, numpy.nan))
     assert "elements of type 'NFACED'" in broken(lambda f: f["connect4"].setncattr("elem_type", "NFACED"))
-    assert "is a piece of a decomposed mesh: node_mapi" in broken(
-        lambda f: f.createVariable("node_mapi", "i4", ("nodes_of_nothing",)))
     assert "has 1 blocks of faces" in broken(lambda f: f.createDimension("num_fa_blk", 1))
+
+
+def test_a_piece_of_a_decomposed_mesh_is_read_and_not_written_again(command, tmp_path):
+    write_all(tmp_path / "a.exo.4.1")
+    with netCDF4.Dataset(tmp_path / "a.exo.4.1", "a") as f:
+        f.createVariable("node_mapi", "i4", ("nodes_of_nothing",))
+    assert "is a piece of a decomposed mesh: its communication maps are left out" in command.ok("info", "a.exo.4.1").stderr
+    for out in ("b.exo", "b.e.4.1"):
+        assert "order the whole mesh before it is decomposed" in command.fails("order", "a.exo.4.1", "-o", out)
+        assert not (tmp_path / out).exists()
+    done = command.ok("order", "a.exo.4.1", "-o", "b.vtu")
+    assert "node_mapi" not in done.stderr
+    assert meshio.read(tmp_path / "b.vtu").points.shape == (64, 3)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -194,7 +194,7 @@ void plan_blocks(Writing& writing, bool is_own) {
       if (next < found.size()) writing.blocks.push_back(found[next++]);
     } else {
       const Index first = next < found.size() ? found[next].cells.first : writing.mesh.cell_count();
-      BlockPlan empty{Block{.first = first, .label = record.id}, &record, record.id, record.name};
+      BlockPlan empty{Block{.first = first, .label = record.label}, &record, record.id, record.name};
       writing.blocks.push_back(std::move(empty));
     }
   }
@@ -397,7 +397,7 @@ void write_blocks(Writing& writing, const std::vector<Columns>& attributes) {
     status.push_back(block.cells.count > 0 ? 1 : 0);
     labels.push_back(block.cells.label);
     names.push_back(block.name);
-    ids_are_labels = ids_are_labels && (block.cells.count == 0 || block.cells.label == block.id);
+    ids_are_labels = ids_are_labels && block.cells.label == block.id;
   }
   writing.write_integers("eb_status", count, status);
   writing.write_integers("eb_prop1", count, ids, {text_attribute("name", "ID")});
@@ -471,6 +471,7 @@ void write_maps(Writing& writing, const std::string& of, const std::string& pref
   for (std::size_t m = 0; m < maps.size(); ++m) {
     ids.push_back(maps[m].id);
     names.push_back(maps[m].name);
+    if (row_count(*maps[m].array) == 0) continue;
     writing.write_integers(fmt::format("{}_map{}", of, m + 1), dimension, whole_values(maps[m].array->values),
                            {}, maps[m].type);
   }
@@ -495,7 +496,7 @@ Columns plan_nodal_attributes(Writing& writing) {
 }
 
 void write_nodal_attributes(Writing& writing, const Columns& columns) {
-  if (columns.empty()) return;
+  if (columns.empty() || writing.mesh.points.empty()) return;
   NcOutput& file = writing.file;
   file.dimension({"num_att_in_nblk", columns.size()});
   const NcSink sink = writing.declare("nattrb", kDouble, {"num_nodes", "num_att_in_nblk"});
@@ -680,8 +681,9 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   file.dimension({"time_step", writing.steps, metadata.steps_unlimited || writing.steps == 0});
   file.dimension({"len_name", metadata.name_length});
   file.dimension({"num_dim", static_cast<std::size_t>(dimension)});
-  file.dimension({"num_nodes", mesh.points.size()});
-  file.dimension({"num_elem", mesh.cells.shapes.size()});
+  // a length of 0 would be one without a limit
+  if (!mesh.points.empty()) file.dimension({"num_nodes", mesh.points.size()});
+  if (!mesh.cells.shapes.empty()) file.dimension({"num_elem", mesh.cells.shapes.size()});
   file.dimension({"num_el_blk", writing.blocks.size()});
   write_points(writing, dimension);
   write_blocks(writing, attributes);
@@ -710,6 +712,14 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
          });
 }
 
+/// Refuses pieces of decomposed meshes: their communication maps do not follow an order.
+std::string conflict(const Mesh& mesh) {
+  const Metadata* const own = own_metadata(mesh);
+  if (own == nullptr || !own->is_piece) return {};
+  return "Exodus has communication maps in a piece of a decomposed mesh, which orders make wrong: order the "
+         "whole mesh before it is decomposed";
+}
+
 }  // namespace
 
 }  // namespace meshorder::exodus
@@ -718,11 +728,12 @@ namespace meshorder {
 
 Format exodus_format() {
   return {.name = "Exodus",
-          .extensions = {".exo", ".e", ".ex2", ".g"},
+          .extensions = {kExodusExtensions.begin(), kExodusExtensions.end()},
           .groups_cells_by_type = false,
           .read = exodus::read,
           .write = exodus::write,
           .holds = exodus::holds,
+          .conflict = exodus::conflict,
           .places = exodus::places,
           .first_number = 1};
 }

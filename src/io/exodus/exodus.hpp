@@ -157,6 +157,7 @@ struct Metadata final : FormatMetadata {
   bool packs_nodal = false;        ///< all nodal variables in one variable
   bool has_node_numbers = false;   ///< node_num_map is there, though it may be 1, 2, …
   bool has_element_numbers = false;
+  bool is_piece = false;  ///< of a decomposed mesh, whose communication maps have been left out
   bool steps_unlimited = true;
   std::size_t steps = 0;
   std::vector<BlockRecord> blocks;

@@ -81,15 +81,31 @@ void refuse_unknown_kinds(const NcInput& file) {
       }
     }
   }
-  // of a piece of a decomposed mesh (Nemesis)
+}
+
+/// Leaves out what a piece of a decomposed mesh (Nemesis) tells of the others: its numbers do not follow an
+/// order.
+void leave_out_decomposition(Reading& reading) {
   constexpr std::array<std::string_view, 9> kCommunication{"node_mapi",   "node_mapb",   "node_mape",
                                                            "elem_mapi",   "elem_mapb",   "n_comm_nids",
                                                            "n_comm_proc", "e_comm_eids", "e_comm_sids"};
-  for (const std::string_view name : kCommunication) {
-    if (file.find(std::string(name)) == nullptr) continue;
-    file.fail(fmt::format("is a piece of a decomposed mesh: {} names nodes or elements of this piece", name),
-              "order the whole mesh before it is decomposed");
+  const auto is_one_of = [](const std::string& name, const auto& words) {
+    return std::find(words.begin(), words.end(), name) != words.end();
+  };
+  const auto& variables = reading.file.variables();
+  if (std::none_of(variables.begin(), variables.end(),
+                   [&](const Variable& variable) { return is_one_of(variable.name, kCommunication); })) {
+    return;
   }
+  reading.metadata->is_piece = true;
+  for (const Variable& variable : variables) {
+    const std::string& name = variable.name;
+    const bool is_known = name == "nem_ftype" || name.ends_with("_global") || name.ends_with("_n_stat") ||
+                          name.ends_with("_e_stat") || name.find("_comm_") == 1 ||
+                          is_one_of(name, kCommunication);
+    if (is_known) reading.taken.insert(name);
+  }
+  reading.notes.emplace_back("is a piece of a decomposed mesh: its communication maps are left out");
 }
 
 void read_points(Reading& reading) {
@@ -491,6 +507,7 @@ Mesh read(const FilePath& path, Notes& notes) {
     reading.file.fail("has no blocks of elements", "it may be a file of netCDF that is not one of Exodus");
   }
   refuse_unknown_kinds(reading.file);
+  leave_out_decomposition(reading);
   read_points(reading);
   read_blocks(reading);
   read_maps(reading);
