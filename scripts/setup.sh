@@ -56,6 +56,7 @@ packages_to_test=(
   python3-netcdf4      "makes and reads Exodus II files independently"
   python3-mpi4py       "ranks of a program in Python"
   python3-h5py         "meshio's XDMF, and an independent reader of its HDF5 files"
+  libexodusii5         "Exodus II's own library, which reads Nemesis pieces independently"
   libmed-tools         "MED's own library, which makes and reads MED files independently"
   cgns-convert         "checks and compares CGNS files, and makes some of ADF"
   libglu1-mesa         "Gmsh's Python module, which pip installs"

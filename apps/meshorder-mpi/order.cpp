@@ -62,7 +62,7 @@ DistributedOptions options_of(const Arguments& arguments) {
 
 /// Returns the input as all ranks read it; nothing where rank 0 has to: for old numbers and chosen cells, for
 /// files of other kinds, for maps of cells whose nodes a Mesh has in another order, for maps without a file,
-/// and for pieces of .xdmf files.
+/// for pieces of .xdmf files and for those in Nemesis.
 std::optional<FileSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
   const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
   const std::filesystem::path kind = extension(arguments.input);
@@ -70,8 +70,9 @@ std::optional<FileSlices> slices_of(const Communicator& communicator, const Argu
   const bool with_maps = !arguments.maps.empty();
   const bool is_xdmf = distributed::is_xdmf(arguments.input);
   if ((kind != ".vtu" && kind != ".vtkhdf" && !is_xdmf) || (is_xdmf && !arguments.pieces.empty()) ||
-      (!arguments.output.empty() && extension(arguments.output) != kind) || arguments.ids != "renumber" ||
-      keeping.dimension >= 0 || keeping.strict || (with_maps && arguments.output.empty())) {
+      arguments.has_nemesis_pieces() || (!arguments.output.empty() && extension(arguments.output) != kind) ||
+      arguments.ids != "renumber" || keeping.dimension >= 0 || keeping.strict ||
+      (with_maps && arguments.output.empty())) {
     return std::nullopt;
   }
   std::optional<FileSlices> slices = FileSlices::open(communicator, arguments.input);
@@ -180,18 +181,21 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
               "FOLDER/NAME.pvtu and FOLDER/NAME_0000.vtu and so on, with numbers in the whole mesh, the\n"
               "part that owns each vertex and cell, and ghosts marked as VTK does. NAME is that of the\n"
               "output, or of MESH. The folder is made if it is missing. FILE.vtkhdf is one file with a\n"
-              "partition for each part, with the same arrays")
-          ->type_name("FOLDER|FILE.vtkhdf")
+              "partition for each part, with the same arrays. FILE.e, .exo, .ex2 or .g gives pieces in\n"
+              "Nemesis, FILE.e.4.0 to FILE.e.4.3, of Exodus II with communication maps, without ghosts")
+          ->type_name("FOLDER|FILE.vtkhdf|FILE.e")
           ->check([](const std::string& folder) {
             return folder.empty() ? std::string("a folder is needed") : std::string();
           });
-  subcommand
-      .add_option("--ghosts", arguments->ghosts,
-                  "Layers of ghost cells in pieces: 1 for the cells of other parts that use a vertex of the\n"
-                  "part, 0 for none")
-      ->check(in_range(0, 1))
-      ->needs(pieces)
-      ->capture_default_str();
+  CLI::Option* const ghosts =
+      subcommand
+          .add_option(
+              "--ghosts", arguments->ghosts,
+              "Layers of ghost cells in pieces: 1 for the cells of other parts that use a vertex of the\n"
+              "part, 0 for none, as in Nemesis")
+          ->check(in_range(0, 1))
+          ->needs(pieces)
+          ->capture_default_str();
   subcommand
       .add_option("--vertices", arguments->vertices,
                   "Method for the vertices of a part, see `meshorder methods`; `auto` is spectral; fiedler "
@@ -231,7 +235,8 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
   add_seed_option(subcommand, arguments->order.seed);
   add_reading_options(subcommand);
   add_common(subcommand, *arguments);
-  subcommand.callback([arguments, &communicator] {
+  subcommand.callback([arguments, ghosts, &communicator] {
+    if (ghosts->count() == 0 && arguments->has_nemesis_pieces()) arguments->ghosts = 0;
     const int threads = arguments->threads > 0 ? arguments->threads : share_of_cores(communicator);
     with_threads(threads, [&] { run(*arguments, communicator); });
   });

@@ -2,6 +2,7 @@
 #include "order_outputs.hpp"
 
 #include "base/text.hpp"
+#include "distributed/nemesis.hpp"
 #include "io/format.hpp"
 #include "io/kept_cells.hpp"
 #include "io/stream/output_file.hpp"
@@ -42,7 +43,7 @@ MeshFiles OrderFiles::with_output() const {
   auto result = static_cast<const MeshFiles&>(*this);
   if (!output.empty()) return result;
   result.output = pieces;
-  if (!has_pieces_in_one_file())
+  if (!has_pieces_in_one_file() && !has_nemesis_pieces())
     result.output = (std::filesystem::path(pieces) / (name_of_pieces() + ".vtu")).string();
   return result;
 }
@@ -52,6 +53,8 @@ OrderOutputs::OrderOutputs(const Communicator& communicator, const OrderFiles& f
   communicator.together([&] {
     if (files.output.empty() && files.pieces.empty())
       throw InvalidArgument("there is nothing to write; give -o FILE, --pieces FOLDER or both");
+    if (files.has_nemesis_pieces() && files.ghosts > 0)
+      throw InvalidArgument("pieces of Exodus II have no ghost cells: leave --ghosts out, or give 0");
   });
   communicator.at_root([&] {
     if (!files.output.empty()) (void)OutputFile(files.output);
@@ -62,6 +65,8 @@ OrderOutputs::OrderOutputs(const Communicator& communicator, const OrderFiles& f
       if (!files.output.empty() &&
           std::filesystem::weakly_canonical(files.output) == std::filesystem::weakly_canonical(files.pieces))
         throw InvalidArgument("the output and the pieces cannot be one file");
+    } else if (files.has_nemesis_pieces()) {
+      nemesis_.emplace(files.pieces);
     } else if (!files.pieces.empty()) {
       pieces_.emplace(files.pieces, files.name_of_pieces());
     }
@@ -70,7 +75,9 @@ OrderOutputs::OrderOutputs(const Communicator& communicator, const OrderFiles& f
 
 void OrderOutputs::check(const Mesh& mesh) const {
   communicator_.at_root([&] {
-    if (!files_.pieces.empty()) require_held_cells(mesh, all_cells(mesh), pieces_file(), format_named("vtu"));
+    if (files_.pieces.empty()) return;
+    require_held_cells(mesh, all_cells(mesh), pieces_file(),
+                       format_named(files_.has_nemesis_pieces() ? "exodus" : "vtu"));
   });
 }
 
@@ -97,11 +104,23 @@ void OrderOutputs::write(const distributed::FileSlices& slices, const distribute
 void OrderOutputs::write(const MeshToOrder& whole, const distributed::DistributedOrder& order, Notes& notes) {
   communicator_.at_root([&] { maps_ = write_ordered(whole, files_, set_, notes); });
   if (files_.pieces.empty()) return;
+  if (files_.has_nemesis_pieces()) return write_nemesis(whole, order.report, notes);
   Notes of_pieces;
   const GridRows grid = scattered_grid(communicator_, whole.mesh, of_pieces);
   communicator_.at_root([&] { refuse_losses(of_pieces); });
   write_pieces(grid, order.report, notes);
   add_new(of_pieces, notes);
+}
+
+void OrderOutputs::write_nemesis(const MeshToOrder& whole, const distributed::DistributedReport& report,
+                                 Notes& notes) {
+  communicator_.at_root([&] {
+    Notes of_pieces;
+    pieces_report_.ghost_vertices = distributed::write_nemesis_pieces(
+        whole.mesh, report.part_starts, nemesis_->open(set_, report.parts), of_pieces);
+    refuse_losses(of_pieces);
+    add_new(of_pieces, notes);
+  });
 }
 
 void OrderOutputs::write_pieces(const GridRows& grid, const distributed::DistributedReport& report,

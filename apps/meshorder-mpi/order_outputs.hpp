@@ -8,6 +8,7 @@
 #include "distributed/pieces.hpp"
 #include "io/stream/output_set.hpp"
 #include "mesh_files.hpp"
+#include "nemesis_outputs.hpp"
 #include "piece_outputs.hpp"
 
 #include <optional>
@@ -18,13 +19,15 @@ namespace meshorder::command {
 
 /// Where a mesh comes from and goes to: to a file, to pieces, or both.
 struct OrderFiles : MeshFiles {
-  std::string pieces;  ///< folder, or a .vtkhdf file; empty: none are written
+  std::string pieces;  ///< folder, a .vtkhdf file, or a name of Exodus II; empty: none are written
   int ghosts = 1;      ///< layers of ghost cells in pieces, 0 or 1
 
   /// Returns the files with an output that tells the format, also where there are pieces only.
   [[nodiscard]] MeshFiles with_output() const;
   /// Returns whether the pieces are the partitions of one file.
   [[nodiscard]] bool has_pieces_in_one_file() const;
+  /// Returns whether the pieces are files of Nemesis, which have no ghost cells.
+  [[nodiscard]] bool has_nemesis_pieces() const { return names_nemesis_pieces(pieces); }
   /// Returns the pieces' name: that of the output, or else of the input, without folder and extension.
   [[nodiscard]] std::string name_of_pieces() const;
 };
@@ -58,10 +61,13 @@ class OrderOutputs {
 
   /// Returns, at the root, the paths of all files but the output and the pieces.
   [[nodiscard]] const std::vector<std::string>& maps() const noexcept { return maps_; }
-  /// Returns the path of the file that names the pieces, or has them in it, at the root; empty without
-  /// pieces.
+  /// Returns the path of the file that names the pieces, or has them in it, or of the first piece in Nemesis,
+  /// at the root; empty without pieces.
   [[nodiscard]] std::string pieces_file() const {
-    return pieces_ ? pieces_->index().string() : files_.has_pieces_in_one_file() ? files_.pieces : "";
+    return pieces_                           ? pieces_->index().string()
+           : nemesis_                        ? nemesis_->first()
+           : files_.has_pieces_in_one_file() ? files_.pieces
+                                             : "";
   }
   /// Returns what there is to tell of the pieces.
   [[nodiscard]] const distributed::PiecesReport& pieces() const noexcept { return pieces_report_; }
@@ -69,12 +75,14 @@ class OrderOutputs {
  private:
   void write_pieces(const distributed::GridRows& grid, const distributed::DistributedReport& report,
                     Notes& notes);
+  void write_nemesis(const MeshToOrder& whole, const distributed::DistributedReport& report, Notes& notes);
   /// Throws InputError, at the root, for what pieces do not hold, where no loss is allowed.
   void refuse_losses(const Notes& losses) const;
 
   const distributed::Communicator& communicator_;
   const OrderFiles& files_;
   std::optional<PieceOutputs> pieces_;  ///< at the root; its folder is removed after what the set left there
+  std::optional<NemesisOutputs> nemesis_;  ///< at the root
   OutputSet set_;
   std::vector<std::string> maps_;
   distributed::PiecesReport pieces_report_;

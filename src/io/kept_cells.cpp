@@ -105,17 +105,7 @@ void keep_rows(DataArray& array, const std::vector<Index>& kept, const std::vect
     }
     array.indices = std::move(indices);
   }
-  std::visit(
-      [&](auto& values) {
-        std::decay_t<decltype(values)> chosen;
-        chosen.reserve(rows.size() * static_cast<std::size_t>(array.components));
-        for (const Index r : rows) {
-          const auto first = values.begin() + static_cast<std::ptrdiff_t>(r) * array.components;
-          chosen.insert(chosen.end(), first, first + array.components);
-        }
-        values = std::move(chosen);
-      },
-      array.values);
+  array.values = rows_of_values(array.values, array.components, rows);
 }
 
 void keep_blocks(std::vector<Index>& blocks, const std::vector<Index>& kept) {
@@ -128,6 +118,20 @@ void keep_blocks(std::vector<Index>& blocks, const std::vector<Index>& kept) {
 }
 
 }  // namespace
+
+Values rows_of_values(const Values& values, Index components, std::span<const Index> rows) {
+  return std::visit(
+      [&](const auto& all) {
+        std::decay_t<decltype(all)> chosen;
+        chosen.reserve(rows.size() * static_cast<std::size_t>(components));
+        for (const Index row : rows) {
+          const auto first = all.begin() + static_cast<std::ptrdiff_t>(row) * components;
+          chosen.insert(chosen.end(), first, first + components);
+        }
+        return Values(std::move(chosen));
+      },
+      values);
+}
 
 std::vector<Index> all_cells(const Mesh& mesh) { return index_range(0, mesh.cell_count()); }
 

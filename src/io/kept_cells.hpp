@@ -4,6 +4,7 @@
 #include "base/index.hpp"
 #include "io/format.hpp"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ std::string fault_of_cells(const Mesh& mesh, const Format& format);
 
 /// Returns "write .msh or .vtu", the formats that hold all cells of a mesh. O(cells · formats).
 std::string advice_on_formats(const Mesh& mesh);
+
+/// Returns the rows of values that `rows` names, `components` values each. O(values that are returned).
+Values rows_of_values(const Values& values, Index components, std::span<const Index> rows);
 
 /// Throws InputError with `fault_of_cells` of the cells at the positions `kept`, and with the formats that
 /// hold all cells of the mesh, if a file of the format cannot hold these cells. O(cells); for a format with a

@@ -1,0 +1,87 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "nemesis_outputs.hpp"
+
+#include "base/text.hpp"
+#include "distributed/nemesis.hpp"
+#include "io/all_formats.hpp"
+#include "io/format.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/stream/system_fault.hpp"
+#include <meshorder/error.hpp>
+
+#include <algorithm>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace meshorder::command {
+namespace fs = std::filesystem;
+namespace {
+
+/// Takes a dot and digits from the beginning; returns whether they were there.
+bool take_number(std::string_view& text) {
+  const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());
+  if (!text.starts_with('.') || end < 2) return false;
+  text.remove_prefix(end);
+  return true;
+}
+
+/// Returns whether a file is called as a piece: the name and two numbers.
+bool has_name_of_nemesis_piece(std::string_view file, std::string_view name) {
+  if (!file.starts_with(name)) return false;
+  file.remove_prefix(name.size());
+  for (int numbers = 0; numbers < 2; ++numbers) {
+    if (!take_number(file)) return false;
+  }
+  return file.empty();
+}
+
+}  // namespace
+
+NemesisOutputs::NemesisOutputs(std::string name) : name_(std::move(name)), first_(name_) {
+  (void)format_of(name_);   // whether this build has it
+  (void)OutputFile(name_);  // whether something can be made there
+  (void)old_pieces();
+}
+
+/// Returns the pieces that an earlier run left.
+std::vector<fs::path> NemesisOutputs::old_pieces() const {
+  const fs::path target(name_);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  std::vector<fs::path> pieces;
+  std::error_code code;
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    const fs::path file = entry->path().filename();
+    if (!has_name_of_nemesis_piece(file.string(), target.filename().string())) continue;
+    const fs::path path = target.parent_path() / file;
+    if (!distributed::is_own_nemesis_piece(path)) {
+      throw InputError(path.string(), "is called as a piece, but is none that meshorder wrote",
+                       "give --pieces another name, or remove the file");
+    }
+    pieces.push_back(path);
+  }
+  if (code) throw_system_fault(folder.string(), "cannot be listed", code.value());
+  return pieces;
+}
+
+std::vector<FilePath> NemesisOutputs::open(OutputSet& set, Index parts) {
+  std::vector<FilePath> files;
+  std::vector<fs::path> names;
+  for (Index part = 0; part < parts; ++part) {
+    names.emplace_back(distributed::nemesis_name(name_, parts, part));
+    files.emplace_back(names.back(), set);
+  }
+  for (const fs::path& old : old_pieces()) {
+    if (std::find(names.begin(), names.end(), old) == names.end()) set.remove(old);
+  }
+  first_ = names.front().string();
+  return files;
+}
+
+bool names_nemesis_pieces(const std::string& pieces) {
+  const std::string extension = fs::path(pieces).extension().string();
+  return std::any_of(kExodusExtensions.begin(), kExodusExtensions.end(),
+                     [&](std::string_view known) { return same_but_for_case(known, extension); });
+}
+
+}  // namespace meshorder::command
