@@ -1,4 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/exodus/exodus.hpp"
+
 #include "io/exodus/netcdf.hpp"
 #include "io/format.hpp"
 #include "support/files.hpp"
@@ -13,10 +15,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 namespace meshorder {
@@ -271,6 +277,113 @@ TEST(Exodus, TypesHoldWhatTheyCanTellApart) {
   EXPECT_FALSE(can_hold(exodus::kInt64, Values(std::vector<std::uint64_t>{std::uint64_t{1} << 63})));
   EXPECT_FALSE(can_hold(exodus::kDouble, Values(std::vector<std::string>{"1"})));
   EXPECT_FALSE(can_hold(exodus::kChar, whole(1)));
+}
+
+/// The values of an array as real numbers.
+std::vector<double> real_values(const DataArray& array) {
+  return std::visit(
+      [](const auto& values) {
+        std::vector<double> result;
+        if constexpr (std::is_arithmetic_v<typename std::decay_t<decltype(values)>::value_type>)
+          result.assign(values.begin(), values.end());
+        return result;
+      },
+      array.values);
+}
+
+/// The rows of an array by the vertex or cell of the whole mesh that each belongs to; NaN is −1.
+std::map<Index, std::vector<double>> rows_of(const DataArray& array, bool is_dense, Index first) {
+  const std::vector<double> values = real_values(array);
+  const auto width = static_cast<std::size_t>(array.components);
+  std::map<Index, std::vector<double>> rows;
+  for (std::size_t k = 0; k * width < values.size(); ++k) {
+    std::vector<double>& row = rows[first + (is_dense ? static_cast<Index>(k) : array.indices[k])];
+    for (std::size_t i = k * width; i < (k + 1) * width; ++i)
+      row.push_back(std::isnan(values[i]) ? -1 : values[i]);
+  }
+  return rows;
+}
+
+/// Reads a file in so many parts, and compares these with the whole.
+void expect_parts_of_the_whole(const std::filesystem::path& path, Index parts) {
+  const Mesh whole = read_mesh(path);
+  std::vector<std::map<Index, std::vector<double>>> rows(whole.data.size());
+  std::vector<std::map<Index, Index>> members(whole.sets.size());  // by their places in the file's list
+  Mesh joined;
+  const auto range = [&](Index count, Index p) {
+    return MeshRange{static_cast<Index>(Offset{count} * p / parts),
+                     static_cast<Index>(Offset{count} * (p + 1) / parts)};
+  };
+  for (Index p = 0; p < parts; ++p) {
+    const MeshRanges ranges{range(whole.vertex_count(), p), range(whole.cell_count(), p)};
+    Notes notes;
+    const MeshPart part = exodus::read_part(path, ranges, exodus::PartContent::all, notes);
+    const Mesh& mesh = part.mesh;
+    const auto first = [&](Association of) {
+      return of == Association::vertices ? ranges.vertices.first : ranges.cells.first;
+    };
+    joined.points.insert(joined.points.end(), mesh.points.begin(), mesh.points.end());
+    for (Index c = 0; c < mesh.cell_count(); ++c) joined.cells.push_back(mesh.cells.shapes[c], mesh.cells[c]);
+    joined.vertex_ids.insert(joined.vertex_ids.end(), mesh.vertex_ids.begin(), mesh.vertex_ids.end());
+    joined.cell_ids.insert(joined.cell_ids.end(), mesh.cell_ids.begin(), mesh.cell_ids.end());
+    ASSERT_EQ(mesh.data.size(), whole.data.size());
+    for (std::size_t k = 0; k < mesh.data.size(); ++k) {
+      EXPECT_EQ(mesh.data[k].name, whole.data[k].name);
+      EXPECT_EQ(part.is_partial[k] == 0, whole.data[k].is_dense());
+      rows[k].merge(rows_of(mesh.data[k], part.is_partial[k] == 0, first(mesh.data[k].association)));
+    }
+    ASSERT_EQ(mesh.sets.size(), whole.sets.size());
+    for (std::size_t s = 0; s < mesh.sets.size(); ++s) {
+      EXPECT_EQ(mesh.sets[s].name, whole.sets[s].name);
+      EXPECT_EQ(part.sets[s].size, index_size(whole.sets[s].members));
+      for (std::size_t k = 0; k < mesh.sets[s].members.size(); ++k)
+        members[s][part.sets[s].entries[k]] = first(mesh.sets[s].association) + mesh.sets[s].members[k];
+    }
+  }
+  EXPECT_EQ(joined.points, whole.points);
+  EXPECT_EQ(joined.cells, whole.cells);
+  EXPECT_EQ(joined.vertex_ids, whole.vertex_ids);
+  EXPECT_EQ(joined.cell_ids, whole.cell_ids);
+  for (std::size_t k = 0; k < whole.data.size(); ++k)
+    EXPECT_EQ(rows[k], rows_of(whole.data[k], whole.data[k].is_dense(), 0)) << whole.data[k].name;
+  for (std::size_t s = 0; s < whole.sets.size(); ++s) {
+    Index entry = 0;
+    for (const auto& [place, member] : members[s]) {
+      EXPECT_EQ(place, entry) << whole.sets[s].name;
+      EXPECT_EQ(member, whole.sets[s].members[entry++]) << whole.sets[s].name;
+    }
+  }
+}
+
+TEST(Exodus, PartsAreThoseOfTheWhole) {
+  const TemporaryFolder folder;
+  Mesh mesh = labelled();
+  write_mesh(mesh, folder.path() / "a.e");
+  Mesh mixed = test::mixed_mesh();
+  for (Index v = mixed.vertex_count(); v > 0; --v) mixed.vertex_ids.push_back(3 * v);
+  write_mesh(mixed, folder.path() / "b.e");
+  for (const Index parts : {1, 2, 3, 11}) {
+    expect_parts_of_the_whole(folder.path() / "a.e", parts);
+    expect_parts_of_the_whole(folder.path() / "b.e", parts);
+  }
+}
+
+TEST(Exodus, PartsOfLongListsAreReadPieceByPiece) {
+  constexpr Index kMany = 600'000;  // more than are read at a time
+  Mesh mesh;
+  std::vector<double> factors;
+  EntitySet all{"all", Association::vertices, {}};
+  for (Index v = 0; v < kMany; ++v) {
+    mesh.points.push_back({1.0 * v, 0, 0});
+    all.members.push_back(kMany - 1 - v);
+    factors.push_back(0.5 * v);
+  }
+  mesh.cells.push_back(Shape::line, std::array<Index, 2>{0, kMany - 1});
+  mesh.data = {{"node set all factors", Association::vertices, 1, factors, all.members, {}}};
+  mesh.sets = {all};
+  const TemporaryFolder folder;
+  write_mesh(mesh, folder.path() / "a.e");
+  expect_parts_of_the_whole(folder.path() / "a.e", 2);
 }
 
 TEST(Exodus, GoesThroughMemory) {

@@ -15,6 +15,7 @@
 #include "io/cell_division.hpp"
 #include "io/exodus/netcdf.hpp"
 #include "io/format.hpp"
+#include "io/mesh_part.hpp"
 
 #include <array>
 #include <cstddef>
@@ -179,6 +180,28 @@ std::string name_of_step(const std::string& name, std::size_t step, std::size_t 
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
+
+/// What a file says of its mesh before any of its values.
+struct Header {
+  Index vertices;
+  Index cells;
+  std::vector<std::pair<Shape, int>> types;  ///< shape and nodes of the blocks that have elements
+  std::vector<std::string> element_variables;
+};
+
+/// Reads the header of a file. Throws InputError as `read`.
+Header read_header(const FilePath& path);
+
+enum class PartContent : std::uint8_t { points_and_cells, all };
+
+/// Reads ranges of the points and cells of a file, and what they have of all that `read` makes of it. Lists
+/// of sets are read as a whole, piece by piece, and only members that are in the ranges kept. O(size of the
+/// part + entries of sets).
+///
+/// @param notes  receives what `read` notes of the part; repeated members and numbers of vertices and cells
+///               are for those to judge who know all parts, see `note_of_repeated`, `note_of_number_twice`
+/// @throws InputError as `read`, for faults of the part, and for coordinates that are not finite
+MeshPart read_part(const FilePath& path, const MeshRanges& ranges, PartContent content, Notes& notes);
 
 // ---- blocks of a mesh
 

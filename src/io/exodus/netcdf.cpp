@@ -285,19 +285,29 @@ std::string NcInput::text(const Variable& variable, const std::string& attribute
   return {};
 }
 
-void NcInput::read(const Variable& variable, std::int32_t* values) const {
+void NcInput::read(const Variable& variable, const std::vector<std::size_t>& starts,
+                   const std::vector<std::size_t>& counts, std::int32_t* values) const {
   if (!is_whole(variable.type)) fail(variable.name + " has no whole numbers", "numbers of nodes are whole");
-  const int status = nc_get_var_int(id_, variable.id, values);
+  if (product(counts) == 0) return;
+  const int status = nc_get_vara_int(id_, variable.id, starts.data(), counts.data(), values);
   if (status == NC_ERANGE)
     fail(variable.name + " has a number beyond 32 bits", "2,147,483,647 is the largest");
   check(status, variable.name);
 }
 
 std::vector<std::int64_t> NcInput::integers(const Variable& variable) const {
+  const std::vector<std::size_t> lengths = shape(variable);
+  return integers(variable, std::vector<std::size_t>(lengths.size(), 0), lengths);
+}
+
+std::vector<std::int64_t> NcInput::integers(const Variable& variable, const std::vector<std::size_t>& starts,
+                                            const std::vector<std::size_t>& counts) const {
   if (!is_whole(variable.type)) fail(variable.name + " has no whole numbers", std::string(kDamaged));
   static_assert(sizeof(long long) == sizeof(std::int64_t));
-  std::vector<long long> values(claimed(variable.name, size(variable), 2 * sizeof(long long)));
-  check(nc_get_var_longlong(id_, variable.id, values.data()), variable.name);
+  (void)size(variable);  // throws if it claims too much
+  std::vector<long long> values(claimed(variable.name, product(counts), 2 * sizeof(long long)));
+  if (values.empty()) return {};
+  check(nc_get_vara_longlong(id_, variable.id, starts.data(), counts.data(), values.data()), variable.name);
   return {values.begin(), values.end()};
 }
 

@@ -111,11 +111,16 @@ class NcInput {
   /// Returns a text that a variable has, empty if there is none.
   [[nodiscard]] std::string text(const Variable& variable, const std::string& attribute) const;
 
-  /// Reads all values, as 32-bit integers; throws InputError where one does not fit or is not whole.
-  void read(const Variable& variable, std::int32_t* values) const;
+  /// Reads a part of the values, `counts` from `starts` along each dimension, as 32-bit integers; throws
+  /// InputError where one does not fit or is not whole.
+  void read(const Variable& variable, const std::vector<std::size_t>& starts,
+            const std::vector<std::size_t>& counts, std::int32_t* values) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const Variable& variable) const;
+  [[nodiscard]] std::vector<std::int64_t> integers(const Variable& variable,
+                                                   const std::vector<std::size_t>& starts,
+                                                   const std::vector<std::size_t>& counts) const;
   [[nodiscard]] std::vector<double> reals(const Variable& variable) const;
-  /// Returns a part of them: `counts` from `starts` along each dimension.
+  /// Returns a part of them.
   [[nodiscard]] std::vector<double> reals(const Variable& variable, const std::vector<std::size_t>& starts,
                                           const std::vector<std::size_t>& counts) const;
   /// Returns the bytes of all values in the byte order of this machine.

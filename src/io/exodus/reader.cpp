@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -37,9 +38,20 @@ void Reading::require_shape(const Variable& variable, const std::vector<std::siz
             "the file may be damaged");
 }
 
-std::string Reading::add_array(DataArray array) { return add_named(mesh, std::move(array), arrays_); }
+std::string Reading::add_array(DataArray array, bool is_partial) {
+  part.is_partial.push_back(is_partial ? 1 : 0);
+  return add_named(part.mesh, std::move(array), arrays_);
+}
 
-std::string Reading::add_set(EntitySet set) { return add_named(mesh, std::move(set), sets_); }
+std::string Reading::add_set(EntitySet set, MeshPart::SetRows rows) {
+  part.sets.push_back(std::move(rows));
+  return add_named(part.mesh, std::move(set), sets_);
+}
+
+const BlockRecord& Reading::block_of(Index cell) const {
+  const auto behind = std::upper_bound(block_ends.begin(), block_ends.end(), cell);
+  return metadata->blocks[static_cast<std::size_t>(behind - block_ends.begin()) - 1];
+}
 
 std::vector<std::int64_t> read_ids(Reading& reading, const std::string& variable, std::size_t objects) {
   std::vector<std::int64_t> ids(objects);
@@ -108,64 +120,74 @@ void leave_out_decomposition(Reading& reading) {
   reading.notes.emplace_back("is a piece of a decomposed mesh: its communication maps are left out");
 }
 
-void read_points(Reading& reading) {
+/// Counts nodes and elements, and finds which of them are read.
+void read_counts(Reading& reading) {
   const NcInput& file = reading.file;
-  Metadata& metadata = *reading.metadata;
-  Mesh& mesh = reading.mesh;
-  const Index nodes = checked_length(file, "num_nodes");
+  reading.nodes = checked_length(file, "num_nodes");
+  reading.elements = checked_length(file, "num_elem");
   const std::size_t dimension = file.length("num_dim");
   if (dimension < 1 || dimension > 3) {
     file.fail(fmt::format("num_dim is {}", dimension), "1, 2 and 3 are possible");
   }
-  metadata.coordinates = static_cast<int>(dimension);
-  mesh.dimension = dimension == 3 ? 3 : 2;
-  const auto count = static_cast<std::size_t>(nodes);
+  reading.metadata->coordinates = static_cast<int>(dimension);
+  reading.part.mesh.dimension = dimension == 3 ? 3 : 2;
+  reading.part.ranges = {{0, reading.nodes}, {0, reading.elements}};
+  if (reading.is_whole()) return;
+  const MeshRanges& wanted = *reading.ranges_wanted;
+  if (wanted.vertices.end > reading.nodes || wanted.cells.end > reading.elements) {
+    file.fail(fmt::format("has {} nodes and {} elements, fewer than where it was opened first", reading.nodes,
+                          reading.elements),
+              "all processes have to see the same file, which no other may write");
+  }
+  reading.part.ranges = wanted;
+}
+
+void read_points(Reading& reading) {
+  const NcInput& file = reading.file;
+  Metadata& metadata = *reading.metadata;
+  std::vector<Point>& points = reading.part.mesh.points;
+  const auto nodes = static_cast<std::size_t>(reading.nodes);
+  const auto dimension = static_cast<std::size_t>(metadata.coordinates);
+  const MeshRange range = reading.part.ranges.vertices;
+  const auto first = static_cast<std::size_t>(range.first);
+  const auto count = static_cast<std::size_t>(range.size());
   const auto read_axis = [&](const Variable& variable, const std::vector<double>& values, std::size_t k) {
-    mesh.points.resize(count);
-    for (std::size_t v = 0; v < count; ++v) mesh.points[v][k] = values[v];
+    points.resize(count);
+    for (std::size_t v = 0; v < count; ++v) points[v][k] = values[v];
     metadata.coordinate_type = variable.type;
   };
   if (const Variable* const all = reading.take("coord")) {
-    reading.require_shape(*all, {dimension, count});
+    reading.require_shape(*all, {dimension, nodes});
     metadata.packs_coordinates = true;
-    for (std::size_t k = 0; k < dimension; ++k) read_axis(*all, file.reals(*all, {k, 0}, {1, count}), k);
+    for (std::size_t k = 0; k < dimension; ++k) read_axis(*all, file.reals(*all, {k, first}, {1, count}), k);
     return;
   }
   constexpr std::array kNames{"coordx", "coordy", "coordz"};
   for (std::size_t k = 0; k < dimension && nodes > 0; ++k) {
     const Variable* const one = reading.take(kNames[k]);
     if (one == nullptr) file.fail(fmt::format("{} is not there", kNames[k]), "the points need coordinates");
-    reading.require_shape(*one, {count});
-    read_axis(*one, file.reals(*one), k);
+    reading.require_shape(*one, {nodes});
+    read_axis(*one, file.reals(*one, {first}, {count}), k);
   }
 }
 
-/// Reserves memory for the elements of all blocks.
-void reserve_cells(Reading& reading, std::size_t blocks, Index elements) {
-  std::size_t entries = 0;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    const Variable* const connect = reading.file.find(fmt::format("connect{}", b + 1));
-    if (connect != nullptr) entries += reading.file.size(*connect);
-  }
-  (void)reading.file.claimed("the connectivity", entries, sizeof(Index));
-  // no more elements than numbers of nodes
-  reading.mesh.cells.reserve(std::min<Offset>(elements, static_cast<Offset>(entries)),
-                             static_cast<Offset>(entries));
-}
-
-/// Reads the elements of a block into the mesh.
-void read_elements(Reading& reading, const Variable& connect, BlockRecord& block, std::size_t elements) {
+/// Reads the elements of a block, those of the range, into the mesh.
+void read_elements(Reading& reading, const Variable& connect, std::size_t b) {
   const NcInput& file = reading.file;
-  Cells& cells = reading.mesh.cells;
+  const BlockRecord& block = reading.metadata->blocks[b];
+  Cells& cells = reading.part.mesh.cells;
+  const MeshRange own = reading.own_of_block(b);
+  const auto first = static_cast<std::size_t>(own.first - reading.block_ends[b]);
+  const auto elements = static_cast<std::size_t>(own.size());
   const std::size_t begin = cells.vertices.size();
   const auto nodes = static_cast<std::size_t>(block.nodes);
   if (file.size(connect) > static_cast<std::size_t>(kMaxIndex) * 64) {
     file.fail(connect.name + " is too large", "the file may be damaged");
   }
   cells.vertices.resize(begin + elements * nodes);
-  file.read(connect, cells.vertices.data() + begin);
+  file.read(connect, {first, 0}, {elements, nodes}, cells.vertices.data() + begin);
   const std::span<const int> order = file_order(block.shape, block.nodes);
-  const auto count = static_cast<std::uint32_t>(reading.mesh.points.size());
+  const auto count = static_cast<std::uint32_t>(reading.nodes);
   std::array<Index, 27> of_file{};
   for (std::size_t e = 0; e < elements; ++e) {
     Index* const row = cells.vertices.data() + begin + e * nodes;
@@ -173,7 +195,7 @@ void read_elements(Reading& reading, const Variable& connect, BlockRecord& block
       // numbers below 1 become large
       const std::uint32_t place = static_cast<std::uint32_t>(row[k]) - 1;
       if (place >= count) {
-        file.fail(fmt::format("{}, element {}: node {} does not exist", connect.name, e + 1, row[k]),
+        file.fail(fmt::format("{}, element {}: node {} does not exist", connect.name, first + e + 1, row[k]),
                   fmt::format("the nodes are 1 to {}", count));
       }
       row[k] = static_cast<Index>(place);
@@ -188,15 +210,45 @@ void read_elements(Reading& reading, const Variable& connect, BlockRecord& block
   }
 }
 
-/// Reads the columns of attributes of a block; `columns` receives the arrays by name.
-void read_attributes(Reading& reading, std::size_t b, BlockRecord& block,
-                     std::map<std::string, DataArray>& columns) {
+/// Reads the elements of all blocks.
+void read_cells(Reading& reading) {
   const NcInput& file = reading.file;
+  const std::vector<BlockRecord>& blocks = reading.metadata->blocks;
+  Mesh& mesh = reading.part.mesh;
+  std::size_t entries = 0;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    if (blocks[b].nodes == 0) continue;
+    (void)file.size(*file.find(fmt::format("connect{}", b + 1)));  // throws if it claims too much
+    entries +=
+        static_cast<std::size_t>(reading.own_of_block(b).size()) * static_cast<std::size_t>(blocks[b].nodes);
+  }
+  (void)file.claimed("the connectivity", entries, sizeof(Index));
+  mesh.cells.reserve(reading.part.ranges.cells.size(), static_cast<Offset>(entries));
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const Variable* const connect = reading.take(fmt::format("connect{}", b + 1));
+    if (blocks[b].nodes == 0) continue;
+    if (reading.is_whole() && reading.block_ends[b] > 0) mesh.cell_blocks.push_back(reading.block_ends[b]);
+    read_elements(reading, *connect, b);
+  }
+  if (!mesh.cell_blocks.empty()) mesh.cell_blocks.insert(mesh.cell_blocks.begin(), 0);
+}
+
+/// An attribute of elements.
+struct AttributeColumn {
+  DataArray array;
+  Index rows = 0;  ///< for all elements, not those of the range only
+};
+
+/// Reads the columns of attributes of a block; `columns` receives the arrays by name.
+void read_attributes(Reading& reading, std::size_t b, std::map<std::string, AttributeColumn>& columns) {
+  const NcInput& file = reading.file;
+  BlockRecord& block = reading.metadata->blocks[b];
   const std::string number = std::to_string(b + 1);
   const Variable* const variable = reading.take("attrib" + number);
   if (variable == nullptr) return;
-  const Index first = reading.block_ends[b];
-  const auto elements = static_cast<std::size_t>(reading.block_ends[b + 1] - first);
+  const auto elements = static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]);
+  const MeshRange own = reading.own_of_block(b);
+  const auto first = static_cast<std::size_t>(own.first - reading.block_ends[b]);
   const std::vector<std::size_t> shape = file.shape(*variable);
   // a single attribute may go without the second dimension
   const std::size_t count = shape.size() == 1 ? 1 : shape.size() == 2 ? shape[1] : 0;
@@ -205,22 +257,27 @@ void read_attributes(Reading& reading, std::size_t b, BlockRecord& block,
   block.names_attributes = file.find("attrib_name" + number) != nullptr;
   const std::vector<std::string> names = reading.take_names("attrib_name" + number, count);
   block.attribute_type = variable->type;
-  const std::vector<double> values = file.reals(*variable);
+  std::vector<std::size_t> starts{first, 0};
+  std::vector<std::size_t> counts{static_cast<std::size_t>(own.size()), count};
+  starts.resize(shape.size());
+  counts.resize(shape.size());
+  const std::vector<double> values = file.reals(*variable, starts, counts);
   std::set<std::string> used;
   for (std::size_t k = 0; k < count; ++k) {
     std::string name(kAttribute);
     name += names[k].empty() || used.contains(names[k]) ? std::to_string(k + 1) : names[k];
     if (!used.insert(name.substr(kAttribute.size())).second) name += " of " + number;
-    DataArray& array = columns[name];
+    auto& [array, rows] = columns[name];
+    rows += reading.block_ends[b + 1] - reading.block_ends[b];
     if (array.name.empty()) {
       array.name = name;
       array.association = Association::cells;
       array.values = std::vector<double>();
     }
     auto& column = std::get<std::vector<double>>(array.values);
-    for (std::size_t e = 0; e < elements; ++e) {
-      column.push_back(values[e * count + k]);
-      array.indices.push_back(first + static_cast<Index>(e));
+    for (Index e = 0; e < own.size(); ++e) {
+      column.push_back(values[static_cast<std::size_t>(e) * count + k]);
+      array.indices.push_back(own.first + e - reading.part.ranges.cells.first);
     }
     block.attributes.emplace_back(names[k], name);
   }
@@ -252,9 +309,9 @@ void label_cells(Reading& reading) {
     return;
   }
   std::vector<std::int64_t> labels;
-  labels.reserve(reading.mesh.cells.shapes.size());
+  labels.reserve(reading.part.mesh.cells.shapes.size());
   for (std::size_t b = 0; b < metadata.blocks.size(); ++b) {
-    labels.insert(labels.end(), static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]),
+    labels.insert(labels.end(), static_cast<std::size_t>(reading.own_of_block(b).size()),
                   metadata.blocks[b].label);
   }
   reading.add_array({.name = std::string(kLabel),
@@ -267,19 +324,57 @@ void name_blocks(Reading& reading) {
     BlockRecord& block = reading.metadata->blocks[b];
     if (block.name.empty() || block.nodes == 0) continue;
     EntitySet set{block.name, Association::cells, {}};
-    const Index cells = reading.block_ends[b + 1] - reading.block_ends[b];
-    (void)reading.file.claimed(block.name, static_cast<std::size_t>(cells), sizeof(Index));
-    set.members = index_range(reading.block_ends[b], cells);
-    block.in_mesh = reading.add_set(std::move(set));
+    const MeshRange own = reading.own_of_block(b);
+    (void)reading.file.claimed(block.name, static_cast<std::size_t>(own.size()), sizeof(Index));
+    set.members = index_range(own.first - reading.part.ranges.cells.first, own.size());
+    MeshPart::SetRows rows;
+    if (!reading.is_whole()) {
+      rows = {reading.block_ends[b + 1] - reading.block_ends[b],
+              index_range(own.first - reading.block_ends[b], own.size())};
+    }
+    block.in_mesh = reading.add_set(std::move(set), std::move(rows));
   }
 }
 
+/// Fills in the record of a block, from 0, by its variable, which may not be there.
+void read_block(Reading& reading, std::size_t b, const Variable* connect) {
+  const NcInput& file = reading.file;
+  BlockRecord& block = reading.metadata->blocks[b];
+  const std::vector<std::size_t> shape =
+      connect == nullptr ? std::vector<std::size_t>{0, 0} : file.shape(*connect);
+  block.type = connect == nullptr ? "" : file.text(*connect, "elem_type");
+  const std::string number = std::to_string(b + 1);
+  if (file.find("ebepecnt" + number) != nullptr || file.find("facconn" + number) != nullptr ||
+      file.find("edgconn" + number) != nullptr || shape.size() != 2) {
+    file.fail(fmt::format("block {} (id {}) has elements of type '{}'", b + 1, block.id, block.type),
+              "elements with a fixed number of nodes are understood");
+  }
+  if (shape[0] > static_cast<std::size_t>(reading.elements - reading.block_ends.back())) {
+    file.fail(fmt::format("connect{} has more elements than num_elem, {}, leaves", b + 1, reading.elements),
+              "the file may be damaged");
+  }
+  reading.block_ends.push_back(reading.block_ends.back() + static_cast<Index>(shape[0]));
+  if (shape[0] == 0) return;
+  const Shape* const found =
+      shape[1] > 1024 ? nullptr
+                      : shape_of(block.type, static_cast<int>(shape[1]), reading.metadata->coordinates);
+  if (found == nullptr) {
+    file.fail(
+        fmt::format("block {} (id {}) has elements of type '{}' with {} nodes", b + 1, block.id, block.type,
+                    shape[1]),
+        "spheres, bars, triangles, quadrilaterals, shells, tetrahedra, pyramids, wedges and hexahedra are "
+        "understood");
+  }
+  block.shape = *found;
+  block.nodes = static_cast<int>(shape[1]);
+  block.connect_type = connect->type;
+}
+
+/// Reads what the file says of its blocks, not their elements.
 void read_blocks(Reading& reading) {
   const NcInput& file = reading.file;
   Metadata& metadata = *reading.metadata;
-  Mesh& mesh = reading.mesh;
   const std::size_t count = file.count("num_el_blk");
-  const Index elements = checked_length(file, "num_elem");
   const std::vector<std::int64_t> ids = read_ids(reading, "eb_prop1", count);
   metadata.names_blocks = file.find("eb_names") != nullptr;
   const std::vector<std::string> names = reading.take_names("eb_names", count);
@@ -288,56 +383,29 @@ void read_blocks(Reading& reading) {
   metadata.block_properties = read_properties(reading, "eb", count, [&](std::size_t b, std::int64_t value) {
     metadata.blocks[b].properties.push_back(value);
   });
-  std::map<std::string, DataArray> attributes;
-  reading.block_ends.assign(1, 0);
-  reserve_cells(reading, count, elements);
   for (std::size_t b = 0; b < count; ++b) {
     BlockRecord& block = metadata.blocks[b];
     block.id = block.label = ids[b];
     block.name = names[b];
-    const Variable* const connect = reading.take(fmt::format("connect{}", b + 1));
-    const std::vector<std::size_t> shape =
-        connect == nullptr ? std::vector<std::size_t>{0, 0} : file.shape(*connect);
-    block.type = connect == nullptr ? "" : file.text(*connect, "elem_type");
-    const std::string numbered = std::to_string(b + 1);
-    if (file.find("ebepecnt" + numbered) != nullptr || file.find("facconn" + numbered) != nullptr ||
-        file.find("edgconn" + numbered) != nullptr || shape.size() != 2) {
-      file.fail(fmt::format("block {} (id {}) has elements of type '{}'", b + 1, block.id, block.type),
-                "elements with a fixed number of nodes are understood");
-    }
-    if (shape[0] > static_cast<std::size_t>(elements - mesh.cell_count())) {
-      file.fail(fmt::format("connect{} has more elements than num_elem, {}, leaves", b + 1, elements),
-                "the file may be damaged");
-    }
-    if (shape[0] > 0) {
-      const Shape* const found =
-          shape[1] > 1024 ? nullptr : shape_of(block.type, static_cast<int>(shape[1]), metadata.coordinates);
-      if (found == nullptr) {
-        file.fail(
-            fmt::format("block {} (id {}) has elements of type '{}' with {} nodes", b + 1, block.id,
-                        block.type, shape[1]),
-            "spheres, bars, triangles, quadrilaterals, shells, tetrahedra, pyramids, wedges and hexahedra "
-            "are understood");
-      }
-      block.shape = *found;
-      block.nodes = static_cast<int>(shape[1]);
-      block.connect_type = connect->type;
-      if (mesh.cell_count() > 0) mesh.cell_blocks.push_back(mesh.cell_count());
-      read_elements(reading, *connect, block, shape[0]);
-    }
-    reading.block_ends.push_back(mesh.cell_count());
-    read_attributes(reading, b, block, attributes);
+    read_block(reading, b, file.find(fmt::format("connect{}", b + 1)));
   }
-  if (mesh.cell_count() != elements) {
-    file.fail(fmt::format("num_elem is {}, but the blocks have {} elements", elements, mesh.cell_count()),
+  if (reading.block_ends.back() != reading.elements) {
+    file.fail(fmt::format("num_elem is {}, but the blocks have {} elements", reading.elements,
+                          reading.block_ends.back()),
               "the file may be damaged");
   }
-  if (!mesh.cell_blocks.empty()) mesh.cell_blocks.insert(mesh.cell_blocks.begin(), 0);
+}
+
+/// Reads labels, names and attributes of blocks.
+void read_data_of_blocks(Reading& reading) {
+  std::map<std::string, AttributeColumn> attributes;
+  for (std::size_t b = 0; b < reading.metadata->blocks.size(); ++b) read_attributes(reading, b, attributes);
   label_cells(reading);
   name_blocks(reading);
-  for (auto& [name, array] : attributes) {
-    if (index_size(array.indices) == elements) array.indices.clear();
-    reading.add_array(std::move(array));
+  for (auto& [name, column] : attributes) {
+    const bool is_partial = column.rows != reading.elements;
+    if (!is_partial) column.array.indices.clear();
+    reading.add_array(std::move(column.array), is_partial);
   }
 }
 
@@ -346,10 +414,12 @@ void read_nodal_attributes(Reading& reading) {
   const Variable* const variable = reading.take("nattrb");
   if (variable == nullptr) return;
   const auto count = file.count("num_att_in_nblk");
-  const auto nodes = reading.mesh.points.size();
-  reading.require_shape(*variable, {nodes, count});
+  const MeshRange own = reading.part.ranges.vertices;
+  const auto nodes = static_cast<std::size_t>(own.size());
+  reading.require_shape(*variable, {static_cast<std::size_t>(reading.nodes), count});
   const std::vector<std::string> names = reading.take_names("nattrib_name", count);
-  const std::vector<double> values = file.reals(*variable);
+  const std::vector<double> values =
+      file.reals(*variable, {static_cast<std::size_t>(own.first), 0}, {nodes, count});
   for (std::size_t k = 0; k < count; ++k) {
     std::vector<double> column(nodes);
     for (std::size_t v = 0; v < nodes; ++v) column[v] = values[v * count + k];
@@ -359,55 +429,66 @@ void read_nodal_attributes(Reading& reading) {
   }
 }
 
-/// Returns the numbers of all nodes or elements; none if they are 1, 2, … or not there.
-std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& name, std::size_t count,
+/// Returns the numbers of nodes or elements; of all of them none if they are 1, 2, … or not there.
+std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& name, Association of,
                                        bool& is_there) {
   const Variable* const variable = reading.take(name);
   is_there = variable != nullptr;
   if (variable == nullptr) return {};
-  reading.require_shape(*variable, {count});
-  std::vector<std::int64_t> numbers = reading.file.integers(*variable);
+  reading.require_shape(*variable, {static_cast<std::size_t>(reading.count(of))});
+  const MeshRange range = reading.range(of);
+  std::vector<std::int64_t> numbers = reading.file.integers(*variable, start_of(range), count_of(range));
+  if (!reading.is_whole()) return numbers;
   bool plain = true;
-  for (std::size_t i = 0; i < count && plain; ++i) plain = numbers[i] == static_cast<std::int64_t>(i) + 1;
+  for (std::size_t i = 0; i < numbers.size() && plain; ++i)
+    plain = numbers[i] == static_cast<std::int64_t>(i) + 1;
   if (plain) return {};
   std::vector<std::int64_t> sorted = numbers;
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
   if (twice == sorted.end()) return numbers;
-  reading.notes.push_back(fmt::format("{} is left out: it gives the number {} twice", name, *twice));
+  reading.notes.push_back(note_of_number_twice(name, *twice));
   is_there = false;
   return {};
 }
 
+/// Reads the named maps of nodes or elements.
+void read_named_maps(Reading& reading, const std::string& word, const char* prefix, Association of,
+                     std::vector<MapRecord>& maps) {
+  const std::size_t number = reading.file.count("num_" + word + "_maps");
+  const std::vector<std::int64_t> ids = read_ids(reading, std::string(prefix) + "_prop1", number);
+  const std::vector<std::string> names = reading.take_names(std::string(prefix) + "ap_names", number);
+  const MeshRange range = reading.range(of);
+  for (std::size_t m = 0; m < number; ++m) {
+    const Variable* const variable = reading.take(fmt::format("{}_map{}", word, m + 1));
+    if (variable == nullptr) continue;
+    reading.require_shape(*variable, {static_cast<std::size_t>(reading.count(of))});
+    const std::string name = names[m].empty() ? std::to_string(ids[m]) : names[m];
+    DataArray array{
+        .name = name == kOriginal ? name : std::string(kMap) + name,
+        .association = of,
+        .values = label_values(reading.file.integers(*variable, start_of(range), count_of(range)))};
+    maps.push_back({ids[m], names[m], reading.add_array(std::move(array)), variable->type});
+  }
+}
+
 void read_maps(Reading& reading) {
+  constexpr const char* kNodeNumbers = "node_num_map";
+  constexpr const char* kElementNumbers = "elem_num_map";
   Metadata& metadata = *reading.metadata;
-  Mesh& mesh = reading.mesh;
-  const std::size_t nodes = mesh.points.size();
-  const std::size_t elements = mesh.cells.shapes.size();
-  mesh.vertex_ids = read_numbers(reading, "node_num_map", nodes, metadata.has_node_numbers);
-  mesh.cell_ids = read_numbers(reading, "elem_num_map", elements, metadata.has_element_numbers);
+  MeshPart& part = reading.part;
+  part.mesh.vertex_ids =
+      read_numbers(reading, kNodeNumbers, Association::vertices, metadata.has_node_numbers);
+  part.mesh.cell_ids =
+      read_numbers(reading, kElementNumbers, Association::cells, metadata.has_element_numbers);
+  if (metadata.has_node_numbers) part.vertex_ids = kNodeNumbers;
+  if (metadata.has_element_numbers) part.cell_ids = kElementNumbers;
   if (reading.take("elem_map") != nullptr) {
     reading.notes.emplace_back(
         "the order map of elements, elem_map, is left out: the new order takes its place");
   }
-  const auto read_all = [&](const std::string& of, const char* prefix, Association association,
-                            std::size_t count, std::vector<MapRecord>& maps) {
-    const std::size_t number = reading.file.count("num_" + of + "_maps");
-    const std::vector<std::int64_t> ids = read_ids(reading, std::string(prefix) + "_prop1", number);
-    const std::vector<std::string> names = reading.take_names(std::string(prefix) + "ap_names", number);
-    for (std::size_t m = 0; m < number; ++m) {
-      const Variable* const variable = reading.take(fmt::format("{}_map{}", of, m + 1));
-      if (variable == nullptr) continue;
-      reading.require_shape(*variable, {count});
-      const std::string name = names[m].empty() ? std::to_string(ids[m]) : names[m];
-      DataArray array{.name = name == kOriginal ? name : std::string(kMap) + name,
-                      .association = association,
-                      .values = label_values(reading.file.integers(*variable))};
-      maps.push_back({ids[m], names[m], reading.add_array(std::move(array)), variable->type});
-    }
-  };
-  read_all("node", "nm", Association::vertices, nodes, metadata.node_maps);
-  read_all("elem", "em", Association::cells, elements, metadata.element_maps);
+  read_named_maps(reading, "node", "nm", Association::vertices, metadata.node_maps);
+  read_named_maps(reading, "elem", "em", Association::cells, metadata.element_maps);
 }
 
 /// Returns whether a dimension's length depends on which nodes or elements there are.
@@ -429,8 +510,8 @@ bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension)
   if (dimension.unlimited || std::find(kFixed.begin(), kFixed.end(), name) != kFixed.end()) return false;
   if (name.ends_with("_var") || name.ends_with("_sets") || name == "num_el_blk") return false;
   // another name for them
-  return dimension.length == reading.mesh.points.size() ||
-         dimension.length == reading.mesh.cells.shapes.size();
+  return dimension.length == static_cast<std::size_t>(reading.nodes) ||
+         dimension.length == static_cast<std::size_t>(reading.elements);
 }
 
 /// Keeps the dimensions and variables that nothing has been made of, where an order does not change them.
@@ -494,10 +575,8 @@ void read_steps(Reading& reading) {
   reading.metadata->steps_unlimited = found->unlimited;
 }
 
-}  // namespace
-
-Mesh read(const FilePath& path, Notes& notes) {
-  Reading reading(path, notes);
+/// Reads what the file says of its mesh before any of its values.
+void read_header(Reading& reading) {
   Metadata& metadata = *reading.metadata;
   metadata.storage = reading.file.storage();
   const std::size_t given = std::max(reading.file.length("len_name"), reading.file.length("len_string"));
@@ -508,15 +587,66 @@ Mesh read(const FilePath& path, Notes& notes) {
   }
   refuse_unknown_kinds(reading.file);
   leave_out_decomposition(reading);
-  read_points(reading);
+  read_counts(reading);
   read_blocks(reading);
+}
+
+/// Reads points and cells.
+void read_geometry(Reading& reading) {
+  read_points(reading);
+  read_cells(reading);
+}
+
+/// Reads all that belongs to points and cells.
+void read_data(Reading& reading) {
+  read_data_of_blocks(reading);
   read_maps(reading);
   read_nodal_attributes(reading);
   read_sets(reading);
   read_variables(reading);
   keep_others(reading);
-  reading.mesh.format_metadata = reading.metadata;
-  return std::move(reading.mesh);
+  reading.part.mesh.format_metadata = reading.metadata;
+}
+
+void require_finite_points(const Reading& reading) {
+  const std::vector<Point>& points = reading.part.mesh.points;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (std::all_of(points[v].begin(), points[v].end(), [](double x) { return std::isfinite(x); })) continue;
+    reading.file.fail(fmt::format("vertex {} has a coordinate that is not finite",
+                                  static_cast<std::size_t>(reading.part.ranges.vertices.first) + v),
+                      "the file may be damaged");
+  }
+}
+
+}  // namespace
+
+Mesh read(const FilePath& path, Notes& notes) {
+  Reading reading(path, nullptr, notes);
+  read_header(reading);
+  read_geometry(reading);
+  read_data(reading);
+  return std::move(reading.part.mesh);
+}
+
+Header read_header(const FilePath& path) {
+  Notes ignored;
+  Reading reading(path, nullptr, ignored);
+  read_header(reading);
+  Header header{reading.nodes, reading.elements, {}, {}};
+  for (const BlockRecord& block : reading.metadata->blocks) {
+    if (block.nodes > 0) header.types.emplace_back(block.shape, block.nodes);
+  }
+  header.element_variables = reading.take_names("name_elem_var", reading.file.count("num_elem_var"));
+  return header;
+}
+
+MeshPart read_part(const FilePath& path, const MeshRanges& ranges, PartContent content, Notes& notes) {
+  Reading reading(path, &ranges, notes);
+  read_header(reading);
+  read_geometry(reading);
+  require_finite_points(reading);
+  if (content == PartContent::all) read_data(reading);
+  return std::move(reading.part);
 }
 
 }  // namespace meshorder::exodus

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "io/exodus/exodus.hpp"
+#include "io/mesh_part.hpp"
 #include "io/unique_names.hpp"
 
+#include <limits>
 #include <memory>
 #include <set>
 #include <string>
@@ -11,10 +13,11 @@
 
 namespace meshorder::exodus {
 
-/// A file that is being read, and what has been found so far.
+/// A file that is being read, the whole or a part of it, and what has been found so far.
 struct Reading {
-  Reading(const FilePath& path, Notes& warnings)
-      : file(path), metadata(std::make_shared<Metadata>()), notes(warnings) {}
+  /// @param wanted  what is read; null: all. Outlives this object
+  Reading(const FilePath& path, const MeshRanges* wanted, Notes& warnings)
+      : file(path), ranges_wanted(wanted), metadata(std::make_shared<Metadata>()), notes(warnings) {}
 
   /// Returns the variable of that name, which is understood with that; null if there is none.
   const Variable* take(const std::string& name);
@@ -24,16 +27,39 @@ struct Reading {
   void require_shape(const Variable& variable, const std::vector<std::size_t>& expected) const;
 
   /// Adds an array, under a name that no other array has, and returns that name.
-  std::string add_array(DataArray array);
+  std::string add_array(DataArray array, bool is_partial = false);
   /// Adds a set likewise.
-  std::string add_set(EntitySet set);
+  std::string add_set(EntitySet set, MeshPart::SetRows rows = {});
+
+  [[nodiscard]] bool is_whole() const noexcept { return ranges_wanted == nullptr; }
+  /// Returns the vertices or cells that are read.
+  [[nodiscard]] MeshRange range(Association association) const {
+    return association == Association::vertices ? part.ranges.vertices : part.ranges.cells;
+  }
+  /// Returns how many the whole mesh has.
+  [[nodiscard]] Index count(Association association) const {
+    return association == Association::vertices ? nodes : elements;
+  }
+  /// Returns those of the cells of a block that are read.
+  [[nodiscard]] MeshRange own_of_block(std::size_t b) const {
+    return MeshRange{block_ends[b], block_ends[b + 1]}.common(part.ranges.cells);
+  }
+  /// Returns the block of a cell of the whole mesh. O(log blocks).
+  [[nodiscard]] const BlockRecord& block_of(Index cell) const;
+  /// Returns the most values of a list that are read at a time where a part of them is wanted.
+  [[nodiscard]] std::size_t values_at_once() const noexcept {
+    return is_whole() ? std::numeric_limits<std::size_t>::max() : std::size_t{1} << 18;
+  }
 
   NcInput file;
-  Mesh mesh;
+  const MeshRanges* ranges_wanted;
+  MeshPart part;
   std::shared_ptr<Metadata> metadata;
   Notes& notes;
   std::set<std::string> taken;
-  std::vector<Index> block_ends;  ///< blocks + 1: block b has the cells from entry b to entry b + 1
+  Index nodes = 0;                   ///< of the whole mesh
+  Index elements = 0;                ///< of the whole mesh
+  std::vector<Index> block_ends{0};  ///< blocks + 1: block b has the cells from entry b to entry b + 1
 
  private:
   UniqueNames arrays_;
@@ -57,6 +83,10 @@ std::vector<std::string> read_properties(Reading& reading, const std::string& pr
 
 /// Returns the ids of blocks, sets or maps; 1, 2, … where the file has none or gives one twice.
 std::vector<std::int64_t> read_ids(Reading& reading, const std::string& variable, std::size_t objects);
+
+/// Returns the place of a range in a variable: where it begins, and how much of it there is.
+inline std::vector<std::size_t> start_of(MeshRange range) { return {static_cast<std::size_t>(range.first)}; }
+inline std::vector<std::size_t> count_of(MeshRange range) { return {static_cast<std::size_t>(range.size())}; }
 
 /// Reads the sets of nodes, sides and elements.
 void read_sets(Reading& reading);

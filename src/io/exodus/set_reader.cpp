@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <optional>
 #include <tuple>
 #include <type_traits>
 
@@ -18,6 +18,22 @@
 namespace meshorder::exodus {
 namespace {
 
+/// Entries of a list of nodes or elements: those that name one which is read.
+struct Entries {
+  std::vector<Index> places;   ///< in the list, ascending
+  std::vector<Index> members;  ///< numbers in the whole mesh
+};
+
+/// Entries of a list of sides.
+struct SideEntries : Entries {
+  std::vector<int> sides;
+  // of a list of factors that has as many for each side as this has nodes
+  std::vector<Offset> first_factors;
+  std::vector<int> nodes;
+  Offset factors = 0;  ///< of all entries of the list
+  int most_nodes = 0;  ///< of any entry of the list
+};
+
 /// A set of sides, element by element.
 struct Sides {
   std::vector<Index> cells;         ///< in the order in which the file first names them
@@ -25,26 +41,51 @@ struct Sides {
   std::vector<Index>
       row_of_entry;  ///< of each entry of the file: its place in `cells`, −1 for a repeated one
   std::vector<int> rank_of_entry;  ///< its place among the sides of the cell
-  std::vector<int> side_of_entry;
-  int most_sides = 0;  ///< of a cell
+  int most_sides = 0;              ///< of a cell
 };
+
+/// Pieces of a list, ascending: lengths[i] values from begins[i] on.
+struct Pieces {
+  std::vector<Offset> begins;
+  std::vector<int> lengths;
+};
+
+Pieces single_values(const std::vector<Index>& places) {
+  return {{places.begin(), places.end()}, std::vector<int>(places.size(), 1)};
+}
+
+/// Returns the values of pieces of a list, one after another; `read(first, count)` returns values of the
+/// list.
+template <class Read>
+Values chosen(const Pieces& pieces, std::size_t most, const Read& read) {
+  Values result = read(0, 0);
+  const std::size_t count = pieces.begins.size();
+  const auto end_of = [&](std::size_t i) { return pieces.begins[i] + pieces.lengths[i]; };
+  std::size_t i = 0;
+  while (i < count) {
+    const Offset from = pieces.begins[i];
+    std::size_t end = i + 1;
+    while (end < count && static_cast<std::size_t>(end_of(end) - from) <= most) ++end;
+    const Values some =
+        read(static_cast<std::size_t>(from), static_cast<std::size_t>(end_of(end - 1) - from));
+    std::visit(
+        [&](auto& all) {
+          const auto& found = std::get<std::decay_t<decltype(all)>>(some);
+          for (std::size_t k = i; k < end; ++k) {
+            const auto begin = found.begin() + static_cast<std::ptrdiff_t>(pieces.begins[k] - from);
+            all.insert(all.end(), begin, begin + pieces.lengths[k]);
+          }
+        },
+        result);
+    i = end;
+  }
+  return result;
+}
 
 int bit_count(std::int32_t mask) {
   int count = 0;
   for (; mask != 0; mask &= mask - 1) ++count;
   return count;
-}
-
-/// Returns the rows of `values`, each of `width`, that `keep` names.
-Values chosen_rows(const Values& values, const std::vector<Index>& keep) {
-  return std::visit(
-      [&](const auto& all) -> Values {
-        std::decay_t<decltype(all)> chosen;
-        chosen.reserve(keep.size());
-        for (const Index row : keep) chosen.push_back(all[row]);
-        return chosen;
-      },
-      values);
 }
 
 /// Returns one row for each cell: the values of its sides, ascending, each filled up to `width`.
@@ -135,45 +176,53 @@ class SetReader {
     return fmt::format("vals_{}_var{}{}{}", kind_.variable, v + 1, kind_.prefix, set);
   }
 
-  /// Returns the members of a set, from 0.
-  std::vector<std::int32_t> read_members(const Variable& variable, std::size_t limit,
-                                         const char* what) const {
-    const std::vector<std::size_t> shape = reading_.file.shape(variable);
-    if (shape.size() != 1) reading_.file.fail(variable.name + " is no list", "the file may be damaged");
-    const std::size_t count = reading_.file.size(variable);
+  /// Reads the numbers that a list names, from 1 on, and calls `take(first, numbers)` for one piece of the
+  /// list after another.
+  template <class Take>
+  void for_numbers(const Variable& variable, const Take& take) const {
+    const NcInput& file = reading_.file;
+    const std::vector<std::size_t> shape = file.shape(variable);
+    if (shape.size() != 1) file.fail(variable.name + " is no list", "the file may be damaged");
     // and the set that is made of them
-    std::vector<std::int32_t> members(reading_.file.claimed(variable.name, count, 2 * sizeof(Index)));
-    if (!members.empty()) reading_.file.read(variable, members.data());
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      const std::uint32_t place = static_cast<std::uint32_t>(members[i]) - 1;
-      if (place >= limit) {
-        reading_.file.fail(
-            fmt::format("{}, entry {}: {} {} does not exist", variable.name, i + 1, what, members[i]),
-            fmt::format("the {}s are 1 to {}", what, limit));
-      }
-      members[i] = static_cast<std::int32_t>(place);
+    const std::size_t count = file.claimed(variable.name, file.size(variable), 2 * sizeof(Index));
+    std::vector<std::int32_t> numbers;
+    for (std::size_t first = 0; first < count; first += numbers.size()) {
+      numbers.resize(std::min(reading_.values_at_once(), count - first));
+      file.read(variable, {first}, {numbers.size()}, numbers.data());
+      take(first, numbers);
     }
-    return members;
+  }
+
+  /// Returns the number, from 0, for one that a list has. Throws InputError if there is none.
+  [[nodiscard]] Index place_of(std::int32_t number, const Variable& variable, std::size_t entry) const {
+    const auto limit = static_cast<std::uint32_t>(reading_.count(kind_.association));
+    const std::uint32_t place = static_cast<std::uint32_t>(number) - 1;
+    if (place >= limit) {
+      const char* const what = kind_.association == Association::vertices ? "node" : "element";
+      reading_.file.fail(
+          fmt::format("{}, entry {}: {} {} does not exist", variable.name, entry + 1, what, number),
+          fmt::format("the {}s are 1 to {}", what, limit));
+    }
+    return static_cast<Index>(place);
   }
 
   void read_set(std::size_t number, SetRecord& set) {
-    const bool of_nodes = kind_.association == Association::vertices;
     const Variable* const variable = reading_.take(fmt::format("{}{}", kind_.members, number));
     set.in_mesh = set.name.empty() ? std::string(kind_.word) + std::to_string(set.id) : set.name;
     if (variable == nullptr) return add_empty(set);
     set.type = variable->type;
-    const std::size_t limit = of_nodes ? reading_.mesh.points.size() : reading_.mesh.cells.shapes.size();
-    const std::vector<std::int32_t> members = read_members(*variable, limit, of_nodes ? "node" : "element");
     const Variable* const sides = is_sides_ ? reading_.take(fmt::format("side_ss{}", number)) : nullptr;
     if (is_sides_ && sides == nullptr) {
       reading_.file.fail(fmt::format("side_ss{} is not there", number),
                          "a side set names elements and sides");
     }
-    if (members.empty()) return add_empty(set);
+    const std::size_t size = reading_.file.size(*variable);
+    if (size == 0) return add_empty(set);
     if (is_sides_) {
-      add_sides(number, set, members, *sides);
+      reading_.require_shape(*sides, {size});
+      add_sides(number, set, size, read_sides(*variable, *sides));
     } else {
-      add_members(number, set, members);
+      add_members(number, set, size, read_members(*variable));
     }
   }
 
@@ -182,38 +231,78 @@ class SetReader {
     set.in_mesh = is_sides_ ? "" : reading_.add_set({set.in_mesh, kind_.association, {}});
   }
 
-  void note_repeated(const SetRecord& set, std::size_t repeated) {
-    if (repeated == 0) return;
-    reading_.notes.push_back(
-        fmt::format("{} names {} members twice, which are kept once", title(kind_, set.in_mesh), repeated));
+  /// Notes that entries of a list are kept once; leaves it to those who know all parts where this is one.
+  void note_repeated(const SetRecord& set, std::size_t size, std::size_t kept) {
+    const std::string name = title(kind_, set.in_mesh);
+    if (!reading_.is_whole()) {
+      reading_.part.lists.push_back({name, static_cast<Index>(size), static_cast<Index>(kept)});
+    } else if (kept < size) {
+      reading_.notes.push_back(note_of_repeated(name, size - kept));
+    }
   }
 
   // ---- nodes and elements
 
-  void add_members(std::size_t number, SetRecord& set, const std::vector<std::int32_t>& members) {
-    std::vector<Index> entries = index_range(0, index_size(members));
+  [[nodiscard]] Entries read_members(const Variable& variable) const {
+    const MeshRange range = reading_.range(kind_.association);
+    Entries own;
+    for_numbers(variable, [&](std::size_t first, const std::vector<std::int32_t>& numbers) {
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const Index member = place_of(numbers[i], variable, first + i);
+        if (!range.contains(member)) continue;
+        own.places.push_back(static_cast<Index>(first + i));
+        own.members.push_back(member);
+      }
+    });
+    return own;
+  }
+
+  /// Returns the entries without those that name a member again.
+  static Entries without_repeated(const Entries& own) {
+    std::vector<Index> entries = index_range(0, index_size(own.members));
     std::stable_sort(entries.begin(), entries.end(),
-                     [&](Index a, Index b) { return members[a] < members[b]; });
+                     [&](Index a, Index b) { return own.members[a] < own.members[b]; });
     entries.erase(std::unique(entries.begin(), entries.end(),
-                              [&](Index a, Index b) { return members[a] == members[b]; }),
+                              [&](Index a, Index b) { return own.members[a] == own.members[b]; }),
                   entries.end());
     std::sort(entries.begin(), entries.end());
-    note_repeated(set, members.size() - entries.size());
-    EntitySet added{set.in_mesh, kind_.association, {}};
-    added.members.reserve(entries.size());
-    for (const Index entry : entries) added.members.push_back(members[entry]);
-    const std::vector<Index> rows = added.members;
-    set.in_mesh = reading_.add_set(std::move(added));
+    Entries result;
+    result.places.reserve(entries.size());
+    result.members.reserve(entries.size());
+    for (const Index entry : entries) {
+      result.places.push_back(own.places[entry]);
+      result.members.push_back(own.members[entry]);
+    }
+    return result;
+  }
 
+  void add_members(std::size_t number, SetRecord& set, std::size_t size, const Entries& listed) {
+    const Entries own = without_repeated(listed);
+    note_repeated(set, size, own.members.size());
+    const std::vector<Index> rows = in_range(own.members);
+    MeshPart::SetRows places;
+    if (!reading_.is_whole()) places = {static_cast<Index>(size), own.places};
+    set.in_mesh = reading_.add_set({set.in_mesh, kind_.association, rows}, std::move(places));
+
+    const Pieces pieces = single_values(own.places);
     if (const Variable* const factors = reading_.take(fmt::format("dist_fact_{}{}", kind_.prefix, number))) {
-      reading_.require_shape(*factors, {members.size()});
+      reading_.require_shape(*factors, {size});
       set.factor_type = factors->type;
       add_rows(title(kind_, set.in_mesh) + std::string(kFactors), rows,
-               chosen_rows(reading_.file.values(*factors, {0}, {members.size()}), entries));
+               chosen(pieces, reading_.values_at_once(), [&](std::size_t first, std::size_t count) {
+                 return reading_.file.values(*factors, {first}, {count});
+               }));
     }
-    read_set_variables(number, set, members.size(), [&](const Values& values, const std::string& name) {
-      return add_rows(name, rows, chosen_rows(values, entries));
+    read_set_variables(number, set, size, pieces, [&](Values values, const std::string& name) {
+      return add_rows(name, rows, std::move(values));
     });
+  }
+
+  /// Returns members counted from the first one that is read.
+  [[nodiscard]] std::vector<Index> in_range(std::vector<Index> members) const {
+    const Index first = reading_.range(kind_.association).first;
+    for (Index& member : members) member -= first;
+    return members;
   }
 
   std::string add_rows(const std::string& name, const std::vector<Index>& rows, Values values,
@@ -222,27 +311,53 @@ class SetReader {
                                .association = kind_.association,
                                .components = components,
                                .values = std::move(values),
-                               .indices = rows});
+                               .indices = rows},
+                              true);
   }
 
   // ---- sides
 
-  Sides group(std::size_t number, const std::vector<std::int32_t>& cells,
-              const std::vector<std::int64_t>& sides) {
+  /// Throws InputError unless elements of a block have a side.
+  void require_side(const BlockRecord& block, std::int64_t side, const Variable& variable,
+                    std::size_t entry) const {
+    const bool known = side >= 1 && side <= kMostSides &&
+                       nodes_of_side(block.shape, block.nodes, static_cast<int>(side), 3) > 0;
+    if (known) return;
+    reading_.file.fail(fmt::format("{}, entry {}: a {} has no side {}", variable.name, entry + 1,
+                                   to_string(block.shape), side),
+                       "sides are counted from 1");
+  }
+
+  [[nodiscard]] SideEntries read_sides(const Variable& elements, const Variable& variable) const {
+    const MeshRange range = reading_.range(Association::cells);
+    SideEntries own;
+    for_numbers(elements, [&](std::size_t first, const std::vector<std::int32_t>& numbers) {
+      const std::vector<std::int64_t> sides = reading_.file.integers(variable, {first}, {numbers.size()});
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const Index cell = place_of(numbers[i], elements, first + i);
+        const BlockRecord& block = reading_.block_of(cell);
+        require_side(block, sides[i], variable, first + i);
+        const auto side = static_cast<int>(sides[i]);
+        const int nodes = nodes_of_side(block.shape, block.nodes, side, reading_.metadata->coordinates);
+        if (range.contains(cell)) {
+          own.places.push_back(static_cast<Index>(first + i));
+          own.members.push_back(cell);
+          own.sides.push_back(side);
+          own.first_factors.push_back(own.factors);
+          own.nodes.push_back(nodes);
+        }
+        own.factors += nodes;
+        own.most_nodes = std::max(own.most_nodes, nodes);
+      }
+    });
+    return own;
+  }
+
+  static Sides group(const SideEntries& own) {
+    const std::vector<Index>& cells = own.members;
+    const std::vector<int>& sides = own.sides;
     Sides result;
     const std::size_t count = cells.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const Index cell = cells[i];
-      const Shape shape = reading_.mesh.cells.shapes[cell];
-      const bool known =
-          sides[i] >= 1 && sides[i] <= kMostSides &&
-          nodes_of_side(shape, reading_.mesh.cells.vertex_count(cell), static_cast<int>(sides[i]), 3) > 0;
-      if (!known) {
-        reading_.file.fail(fmt::format("side_ss{}, entry {}: a {} has no side {}", number, i + 1,
-                                       to_string(shape), sides[i]),
-                           "sides are counted from 1");
-      }
-    }
     std::vector<Index> entries = index_range(0, static_cast<Index>(count));
     std::sort(entries.begin(), entries.end(), [&](Index a, Index b) {
       return std::tuple(cells[a], sides[a], a) < std::tuple(cells[b], sides[b], b);
@@ -273,88 +388,87 @@ class SetReader {
       result.masks.push_back(mask);
       result.most_sides = std::max(result.most_sides, bit_count(mask));
     }
-    result.side_of_entry.assign(sides.begin(), sides.end());
     return result;
   }
 
-  void add_sides(std::size_t number, SetRecord& set, const std::vector<std::int32_t>& cells,
-                 const Variable& variable) {
-    reading_.require_shape(variable, {cells.size()});
-    const Sides sides = group(number, cells, reading_.file.integers(variable));
-    note_repeated(set, static_cast<std::size_t>(
-                           std::count(sides.row_of_entry.begin(), sides.row_of_entry.end(), Index{-1})));
+  void add_sides(std::size_t number, SetRecord& set, std::size_t size, const SideEntries& own) {
+    Sides sides = group(own);
+    sides.cells = in_range(std::move(sides.cells));
+    const auto repeated = std::count(sides.row_of_entry.begin(), sides.row_of_entry.end(), Index{-1});
+    note_repeated(set, size, own.places.size() - static_cast<std::size_t>(repeated));
     set.in_mesh = add_rows(title(kind_, set.in_mesh), sides.cells, sides.masks);
     if (const Variable* const factors = reading_.take(fmt::format("dist_fact_ss{}", number))) {
-      add_factors(set, cells, sides, *factors);
+      add_factors(set, size, own, sides, *factors);
     }
-    read_set_variables(number, set, cells.size(), [&](const Values& values, const std::string& name) {
-      return std::visit(
-          [&](const auto& all) -> std::string {
-            using Number = typename std::decay_t<decltype(all)>::value_type;
-            if constexpr (std::is_arithmetic_v<Number>) {
-              const std::vector<int> ones(all.size(), 1);
-              return add_rows(name, sides.cells, packed(sides, all, ones, 1), sides.most_sides);
-            } else {
-              return {};
-            }
-          },
-          values);
+    const Pieces pieces = single_values(own.places);
+    read_set_variables(number, set, size, pieces, [&](const Values& values, const std::string& name) {
+      return add_packed(name, sides, values, pieces.lengths, 1);
     });
+  }
+
+  /// Adds an array of values of sides, a row for each cell; returns its name.
+  std::string add_packed(const std::string& name, const Sides& sides, const Values& values,
+                         const std::vector<int>& counts, int width) {
+    return std::visit(
+        [&](const auto& all) -> std::string {
+          using Number = typename std::decay_t<decltype(all)>::value_type;
+          if constexpr (std::is_arithmetic_v<Number>) {
+            return add_rows(name, sides.cells, packed(sides, all, counts, width), sides.most_sides * width);
+          } else {
+            return {};
+          }
+        },
+        values);
   }
 
   /// Adds the factors of the nodes of each side: as many as the side's type has nodes, or the same number for
   /// each side.
-  void add_factors(SetRecord& set, const std::vector<std::int32_t>& cells, const Sides& sides,
+  void add_factors(SetRecord& set, std::size_t size, const SideEntries& own, const Sides& sides,
                    const Variable& variable) {
     const std::size_t values = reading_.file.size(variable);
     set.factor_type = variable.type;
-    std::vector<int> counts;
-    counts.reserve(cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      counts.push_back(nodes_of_side(reading_.mesh.cells.shapes[cells[i]],
-                                     reading_.mesh.cells.vertex_count(cells[i]), sides.side_of_entry[i],
-                                     reading_.metadata->coordinates));
-    }
-    const int most = *std::max_element(counts.begin(), counts.end());
+    Pieces pieces{own.first_factors, own.nodes};
+    const int most = own.most_nodes;
     int width = most;
-    if (std::accumulate(counts.begin(), counts.end(), std::size_t{0}) != values) {
-      width = static_cast<int>(values / cells.size());
-      if (values % cells.size() != 0 || width == 0 || width == most) {
+    if (static_cast<std::size_t>(own.factors) != values) {
+      width = static_cast<int>(values / size);
+      if (values % size != 0 || width == 0 || width == most) {
         reading_.notes.push_back(fmt::format("{} is left out: {} factors do not fit the nodes of {} sides",
-                                             variable.name, values, cells.size()));
+                                             variable.name, values, size));
         return;
       }
-      counts.assign(cells.size(), width);
+      pieces.lengths.assign(own.places.size(), width);
+      for (std::size_t i = 0; i < own.places.size(); ++i) pieces.begins[i] = Offset{own.places[i]} * width;
     }
     set.factor_width = width;
     set.factors_by_nodes = width == most;
-    const std::string name = set.in_mesh + std::string(kFactors);
-    if (variable.type == kFloat) {
-      const Values read = reading_.file.values(variable, {0}, {values});
-      add_rows(name, sides.cells, packed(sides, std::get<std::vector<float>>(read), counts, width),
-               sides.most_sides * width);
-    } else {
-      add_rows(name, sides.cells, packed(sides, reading_.file.reals(variable), counts, width),
-               sides.most_sides * width);
-    }
+    const Values found =
+        chosen(pieces, reading_.values_at_once(), [&](std::size_t first, std::size_t count) -> Values {
+          if (variable.type == kFloat) return reading_.file.values(variable, {first}, {count});
+          return reading_.file.reals(variable, {first}, {count});
+        });
+    add_packed(set.in_mesh + std::string(kFactors), sides, found, pieces.lengths, width);
   }
 
   // ---- variables
 
   /// Reads all variables of a set; `add(values, name)` adds an array for one step and returns its name.
   template <class Add>
-  void read_set_variables(std::size_t number, SetRecord& set, std::size_t members, const Add& add) {
+  void read_set_variables(std::size_t number, SetRecord& set, std::size_t size, const Pieces& pieces,
+                          const Add& add) {
     for (std::size_t v = 0; v < family_.variables.size(); ++v) {
       const Variable* const variable = reading_.take(name_of_values(v, number));
       if (variable == nullptr) continue;
       const std::size_t steps = reading_.metadata->steps;
-      reading_.require_shape(*variable, {steps, members});
+      reading_.require_shape(*variable, {steps, size});
       Series& series = set.variables[v];
       series.type = variable->type;
       const std::string name = fmt::format("{} on {}", family_.variables[v], title(kind_, set.in_mesh));
       for (std::size_t step = 0; step < steps; ++step) {
-        series.arrays.push_back(
-            add(reading_.file.values(*variable, {step, 0}, {1, members}), name_of_step(name, step, steps)));
+        Values values = chosen(pieces, reading_.values_at_once(), [&](std::size_t first, std::size_t count) {
+          return reading_.file.values(*variable, {step, first}, {1, count});
+        });
+        series.arrays.push_back(add(std::move(values), name_of_step(name, step, steps)));
       }
     }
   }
@@ -385,7 +499,10 @@ std::string name_or_number(const std::string& name, std::size_t v) {
 void read_nodal(Reading& reading) {
   const NcInput& file = reading.file;
   Metadata& metadata = *reading.metadata;
-  const std::size_t nodes = reading.mesh.points.size();
+  const auto nodes = static_cast<std::size_t>(reading.nodes);
+  const MeshRange own = reading.part.ranges.vertices;
+  const auto first = static_cast<std::size_t>(own.first);
+  const auto rows = static_cast<std::size_t>(own.size());
   const std::size_t count = file.count("num_nod_var");
   const std::vector<std::string> names = reading.take_names("name_nod_var", count);
   const Variable* const together = reading.take("vals_nod_var");
@@ -405,9 +522,9 @@ void read_nodal(Reading& reading) {
     if (variable != nullptr) series.type = variable->type;
     series.declared = {variable != nullptr};
     for (std::size_t step = 0; variable != nullptr && step < metadata.steps; ++step) {
-      const Values values = together != nullptr ? file.values(*together, {step, v, 0}, {1, 1, nodes})
-                            : is_vector         ? file.values(*variable, {step, 0, 0}, {1, nodes, shape[2]})
-                                                : file.values(*variable, {step, 0}, {1, nodes});
+      const Values values = together != nullptr ? file.values(*together, {step, v, first}, {1, 1, rows})
+                            : is_vector ? file.values(*variable, {step, first, 0}, {1, rows, shape[2]})
+                                        : file.values(*variable, {step, first}, {1, rows});
       const std::string name = name_of_step(name_or_number(names[v], v), step, metadata.steps);
       series.arrays.push_back(reading.add_array({.name = name,
                                                  .components = is_vector ? static_cast<Index>(shape[2]) : 1,
@@ -418,34 +535,77 @@ void read_nodal(Reading& reading) {
   }
 }
 
-/// Appends values; as real numbers if they are not of one type.
-void append(Values& to, Values&& values) {
-  if (std::visit([](const auto& all) { return all.empty(); }, to)) {
-    to = std::move(values);
-    return;
-  }
-  const auto as_reals = [](const Values& from) {
-    return std::visit(
-        [](const auto& all) -> std::vector<double> {
-          using Number = typename std::decay_t<decltype(all)>::value_type;
-          if constexpr (std::is_arithmetic_v<Number>) {
-            return {all.begin(), all.end()};
-          } else {
-            return {};
-          }
-        },
-        from);
-  };
-  if (to.index() != values.index()) {
-    to = as_reals(to);
-    values = as_reals(values);
-  }
-  std::visit(
-      [&](auto& all) {
-        const auto& more = std::get<std::decay_t<decltype(all)>>(values);
-        all.insert(all.end(), more.begin(), more.end());
+Values as_reals(const Values& values) {
+  return std::visit(
+      [](const auto& all) -> std::vector<double> {
+        using Number = typename std::decay_t<decltype(all)>::value_type;
+        if constexpr (std::is_arithmetic_v<Number>) {
+          return {all.begin(), all.end()};
+        } else {
+          return {};
+        }
       },
-      to);
+      values);
+}
+
+/// A variable of elements, and the blocks that have values of it.
+struct ElementVariable {
+  std::string name;
+  std::vector<const Variable*> of_block;  ///< null for blocks without
+  Index rows = 0;                         ///< in the whole mesh
+  bool is_of_one_type = true;             ///< in blocks that have elements
+  std::vector<Index> indices;             ///< of the rows that are read
+};
+
+/// Returns the values of an element variable at a step: as real numbers if they are not of one type in all
+/// blocks. `keeps_digits` becomes false where real numbers do not hold them.
+Values values_at(const Reading& reading, const ElementVariable& variable, NcType type, std::size_t step,
+                 bool& keeps_digits) {
+  std::optional<Values> result;
+  for (std::size_t b = 0; b < variable.of_block.size(); ++b) {
+    if (variable.of_block[b] == nullptr || reading.block_ends[b] == reading.block_ends[b + 1]) continue;
+    const MeshRange own = reading.own_of_block(b);
+    const auto first = static_cast<std::size_t>(own.first - reading.block_ends[b]);
+    Values values =
+        reading.file.values(*variable.of_block[b], {step, first}, {1, static_cast<std::size_t>(own.size())});
+    keeps_digits = keeps_digits && (type != kDouble || can_hold(kDouble, values));
+    if (!variable.is_of_one_type) values = as_reals(values);
+    if (!result) {
+      result = std::move(values);
+      continue;
+    }
+    std::visit(
+        [&](auto& all) {
+          const auto& more = std::get<std::decay_t<decltype(all)>>(values);
+          all.insert(all.end(), more.begin(), more.end());
+        },
+        *result);
+  }
+  return result ? *std::move(result) : Values();
+}
+
+/// Finds the variables of the file that hold an element variable, the v-th, and fills in its series.
+ElementVariable find_element_variable(Reading& reading, std::size_t v, const std::vector<std::int64_t>& table,
+                                      std::size_t count, Series& series) {
+  const std::size_t blocks = reading.metadata->blocks.size();
+  ElementVariable result{.name = name_or_number(series.name, v), .of_block = {}, .indices = {}};
+  NcType first_type = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const Variable* const variable = reading.take(fmt::format("vals_elem_var{}eb{}", v + 1, b + 1));
+    result.of_block.push_back(variable);
+    series.declared.push_back(variable != nullptr);
+    series.present.push_back(table.empty() ? variable != nullptr : table[b * count + v] != 0);
+    if (variable == nullptr) continue;
+    const Index elements = reading.block_ends[b + 1] - reading.block_ends[b];
+    reading.require_shape(*variable, {reading.metadata->steps, static_cast<std::size_t>(elements)});
+    series.type = result.rows == 0 || series.type == variable->type ? variable->type : kDouble;
+    if (elements > 0 && result.rows == 0) first_type = variable->type;
+    result.is_of_one_type = result.is_of_one_type && (elements == 0 || variable->type == first_type);
+    result.rows += elements;
+    const MeshRange own = reading.own_of_block(b);
+    for (Index c = own.first; c < own.end; ++c) result.indices.push_back(c - reading.part.ranges.cells.first);
+  }
+  return result;
 }
 
 void read_elemental(Reading& reading) {
@@ -458,40 +618,21 @@ void read_elemental(Reading& reading) {
   const std::vector<std::int64_t> table = read_table(reading, "elem", blocks, count);
   for (std::size_t v = 0; v < count; ++v) {
     Series series{.name = names[v]};
-    std::vector<const Variable*> of_block(blocks, nullptr);
-    std::vector<Index> rows;
-    for (std::size_t b = 0; b < blocks; ++b) {
-      of_block[b] = reading.take(fmt::format("vals_elem_var{}eb{}", v + 1, b + 1));
-      series.declared.push_back(of_block[b] != nullptr);
-      series.present.push_back(table.empty() ? of_block[b] != nullptr : table[b * count + v] != 0);
-      if (of_block[b] == nullptr) continue;
-      const Index first = reading.block_ends[b];
-      const Index end = reading.block_ends[b + 1];
-      reading.require_shape(*of_block[b], {metadata.steps, static_cast<std::size_t>(end - first)});
-      series.type = rows.empty() || series.type == of_block[b]->type ? of_block[b]->type : kDouble;
-      for (Index c = first; c < end; ++c) rows.push_back(c);
-    }
+    const ElementVariable variable = find_element_variable(reading, v, table, count, series);
     bool keeps_digits = true;
-    const bool covers_all = index_size(rows) == reading.mesh.cell_count();
-    for (std::size_t step = 0; step < metadata.steps && !rows.empty(); ++step) {
-      DataArray array{.name = name_of_step(name_or_number(names[v], v), step, metadata.steps),
+    const bool is_partial = variable.rows != reading.elements;
+    for (std::size_t step = 0; step < metadata.steps && variable.rows > 0; ++step) {
+      DataArray array{.name = name_of_step(variable.name, step, metadata.steps),
                       .association = Association::cells};
-      for (std::size_t b = 0; b < blocks; ++b) {
-        if (of_block[b] == nullptr) continue;
-        const auto elements = static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]);
-        Values values = file.values(*of_block[b], {step, 0}, {1, elements});
-        keeps_digits = keeps_digits && (series.type != kDouble || can_hold(kDouble, values));
-        append(array.values, std::move(values));
-      }
-      array.values = as_labels(array.name, std::move(array.values));
-      if (!covers_all) array.indices = rows;
-      series.arrays.push_back(reading.add_array(std::move(array)));
+      array.values = as_labels(array.name, values_at(reading, variable, series.type, step, keeps_digits));
+      if (is_partial) array.indices = variable.indices;
+      series.arrays.push_back(reading.add_array(std::move(array), is_partial));
     }
     if (!keeps_digits) {
       reading.notes.push_back(fmt::format(
           "the variable '{}' loses digits: its blocks have whole and real numbers, which become real "
           "numbers of 53 bits",
-          name_or_number(names[v], v)));
+          variable.name));
     }
     metadata.elements.push_back(std::move(series));
   }
