@@ -4,6 +4,7 @@
 #include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "console.hpp"
+#include "distributed/exodus_slices.hpp"
 #include "distributed/file_slices.hpp"
 #include "distributed/mesh_slice.hpp"
 #include "distributed/order.hpp"
@@ -32,6 +33,7 @@ namespace {
 using distributed::Communicator;
 using distributed::DistributedOptions;
 using distributed::DistributedOrder;
+using distributed::ExodusSlices;
 using distributed::FileSlices;
 using distributed::GlobalIndex;
 
@@ -60,18 +62,22 @@ DistributedOptions options_of(const Arguments& arguments) {
   return options;
 }
 
-/// Returns the input as all ranks read it; nothing where rank 0 has to: for old numbers and chosen cells, for
-/// files of other kinds, for maps of cells whose nodes a Mesh has in another order, for maps without a file,
-/// for pieces of .xdmf files and for those in Nemesis.
+/// Whether rank 0 has to read and write: for old numbers and chosen cells, where no loss is allowed, and for
+/// pieces in Nemesis.
+bool needs_root(const Arguments& arguments) {
+  return arguments.ids != "renumber" || arguments.keeping.dimension >= 0 || arguments.keeping.strict ||
+         arguments.has_nemesis_pieces();
+}
+
+/// Returns the input as all ranks read it; nothing where rank 0 has to, for files of other kinds, for maps of
+/// cells whose nodes a Mesh has in another order, for maps without a file, and for pieces of .xdmf files.
 std::optional<FileSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
   const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
   const std::filesystem::path kind = extension(arguments.input);
-  const Keeping& keeping = arguments.keeping;
   const bool with_maps = !arguments.maps.empty();
   const bool is_xdmf = distributed::is_xdmf(arguments.input);
   if ((kind != ".vtu" && kind != ".vtkhdf" && !is_xdmf) || (is_xdmf && !arguments.pieces.empty()) ||
-      arguments.has_nemesis_pieces() || (!arguments.output.empty() && extension(arguments.output) != kind) ||
-      arguments.ids != "renumber" || keeping.dimension >= 0 || keeping.strict ||
+      (!arguments.output.empty() && extension(arguments.output) != kind) || needs_root(arguments) ||
       (with_maps && arguments.output.empty())) {
     return std::nullopt;
   }
@@ -80,29 +86,41 @@ std::optional<FileSlices> slices_of(const Communicator& communicator, const Argu
   return slices;
 }
 
+/// Returns an Exodus file as all ranks read it, where pieces alone are written, perhaps with maps.
+std::optional<ExodusSlices> exodus_slices_of(const Communicator& communicator, const Arguments& arguments) {
+  if (!arguments.output.empty() || needs_root(arguments)) return std::nullopt;
+  return ExodusSlices::open(communicator, arguments.input);
+}
+
 void run(const Arguments& arguments, const Communicator& communicator) {
   const DistributedOptions options = options_of(arguments);
   OrderOutputs outputs(communicator, arguments);
   const Stopwatch reading;
   Notes notes;
   const std::optional<FileSlices> slices = slices_of(communicator, arguments);
+  const std::optional<ExodusSlices> exodus =
+      slices ? std::nullopt : exodus_slices_of(communicator, arguments);
+  const bool by_all = slices || exodus;
   WholeMesh whole;
-  if (!slices) {
+  if (!by_all) {
     whole = read_at_root(communicator, arguments.with_output(), parse<Ids>(arguments.ids), notes);
     outputs.check(whole.mesh);
   }
-  distributed::MeshSlice slice =
-      slices ? slices->read(communicator) : distributed::scattered(communicator, whole.mesh);
+  distributed::MeshSlice slice = slices   ? slices->read(communicator)
+                                 : exodus ? exodus->read(communicator)
+                                          : distributed::scattered(communicator, whole.mesh);
   const GlobalIndex vertex_count = slice.vertices.size();
   const GlobalIndex cell_count = slice.cells.size();
   MeshChecksums before;
-  if (slices && !arguments.maps.empty()) before = checksums_of(communicator, slice);
+  if (by_all && !arguments.maps.empty()) before = checksums_of(communicator, slice);
   const double read_seconds = reading.seconds();
 
   DistributedOrder order = distributed::order_slices(communicator, std::move(slice), options);
   const Stopwatch writing;
   if (slices) {
     outputs.write(*slices, order, before, notes);
+  } else if (exodus) {
+    outputs.write(*exodus, order, before, notes);
   } else {
     move_at_root(communicator, whole, order, arguments, parse<Ids>(arguments.ids));
     outputs.write(whole, order, notes);
@@ -120,7 +138,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
     note_convergence(report.fiedler, "the vertices", notes);
     console.warn_of(notes);
     print_report(console, options, report, peaks);
-    const char* const by = slices ? ", read and written by all ranks" : "";
+    const char* const by = by_all ? ", read and written by all ranks" : "";
     if (!arguments.output.empty()) console.print("{:<10} {}{}", "wrote", arguments.output, by);
     if (!arguments.pieces.empty()) {
       console.print("{:<10} {}{}", "wrote", outputs.pieces_file(), by);
@@ -132,7 +150,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
         {"input", arguments.input},
         {"output", arguments.output.empty() ? nlohmann::ordered_json(nullptr)
                                             : nlohmann::ordered_json(arguments.output)},
-        {"files_by", slices ? "all ranks" : "rank 0"},
+        {"files_by", by_all ? "all ranks" : "rank 0"},
         {"vertices", {{"count", vertex_count}, {"method", options.vertices}}},
         {"cells", {{"count", cell_count}, {"method", "lexmax"}}}};
     result.update(to_json(options, report, peaks));
@@ -163,7 +181,8 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
       "that parts that touch are near each other. A .vtu file of one piece with raw appended data,\n"
       "compressed or not, a .vtkhdf file of one partition without chunks, and without --pieces an .xdmf\n"
       "file of one mesh of one cell type with its .h5 file, without chunks, are read and written by all\n"
-      "ranks, and their maps, unless --ids, --only or --strict are given; others by rank 0.");
+      "ranks, and their maps, unless --ids, --only or --strict are given; so are the pieces of an Exodus\n"
+      "file without -o; others by rank 0.");
   subcommand.footer(
       "Examples:\n"
       "  mpirun -n 4 meshorder order part.vtu -o ordered.vtu\n"

@@ -2,6 +2,7 @@
 #include "order_outputs.hpp"
 
 #include "base/text.hpp"
+#include "distributed/moved_part.hpp"
 #include "distributed/nemesis.hpp"
 #include "io/format.hpp"
 #include "io/kept_cells.hpp"
@@ -99,6 +100,20 @@ void OrderOutputs::write(const distributed::FileSlices& slices, const distribute
     }
   }
   if (!files_.pieces.empty()) write_pieces(slices.in_new_order(communicator_, order), order.report, notes);
+}
+
+void OrderOutputs::write(const distributed::ExodusSlices& slices, const distributed::DistributedOrder& order,
+                         const MeshChecksums& before, Notes& notes) {
+  distributed::MovedPart moved(communicator_, slices.read_part(communicator_, notes), order, notes);
+  if (!files_.maps.empty()) {
+    maps_ = write_sliced_maps(communicator_,
+                              {order.new_vertices, moved.new_cells(), order.report.part_starts,
+                               moved.ids(Association::vertices), moved.ids(Association::cells)},
+                              before, moved.slice(), files_.maps, set_);
+  }
+  Notes of_pieces;
+  write_pieces(moved.grid(of_pieces), order.report, notes);
+  add_new(of_pieces, notes);
 }
 
 void OrderOutputs::write(const MeshToOrder& whole, const distributed::DistributedOrder& order, Notes& notes) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "distributed/communicator.hpp"
+#include "distributed/exodus_slices.hpp"
 #include "distributed/file_slices.hpp"
 #include "distributed/grid_rows.hpp"
 #include "distributed/order.hpp"
@@ -51,6 +52,10 @@ class OrderOutputs {
   ///
   /// @param before  of the mesh in its old order; looked at for maps only
   void write(const distributed::FileSlices& slices, const distributed::DistributedOrder& order,
+             const MeshChecksums& before, Notes& notes);
+
+  /// Writes the pieces and the maps of a mesh that all ranks read in parts.
+  void write(const distributed::ExodusSlices& slices, const distributed::DistributedOrder& order,
              const MeshChecksums& before, Notes& notes);
 
   /// Writes a mesh that the root has, and that is in its new order, and its maps.

@@ -56,9 +56,14 @@ class MapWriter {
   MapWriter(const Communicator& communicator, OutputSet& outputs)
       : communicator_(communicator), outputs_(outputs) {}
 
-  /// Writes a list that goes on from rank to rank, as `write_npy` would.
+  /// Writes a list of places that goes on from rank to rank, as `write_npy` would.
   void write(const std::string& name, const Layout& layout, const std::vector<GlobalIndex>& own) {
-    const bool is_narrow = layout.size() <= kMaxIndex;
+    write(name, layout, own, layout.size() <= kMaxIndex);
+  }
+
+  /// Writes a list of numbers, in 32 bits if they are narrow, else in 64.
+  void write(const std::string& name, const Layout& layout, const std::vector<GlobalIndex>& own,
+             bool is_narrow) {
     const Offset width = is_narrow ? sizeof(std::int32_t) : sizeof(std::int64_t);
     const std::string header = npy_header(is_narrow ? "<i4" : "<i8", std::array{layout.size()});
     SharedOutput file(communicator_, outputs_, name, header);
@@ -79,10 +84,12 @@ class MapWriter {
     written.push_back(name);
   }
 
-  /// Writes a map and its inverse.
-  void write_both(const MapPaths& paths, const Layout& layout, const std::vector<GlobalIndex>& new_numbers) {
+  /// Writes a map, its inverse and the old numbers, which may be null.
+  void write_all(const MapPaths& paths, const Layout& layout, const std::vector<GlobalIndex>& new_numbers,
+                 const std::vector<std::int64_t>* ids) {
     write(paths.old_to_new, layout, new_numbers);
     write(paths.new_to_old, layout, inverse(communicator_, layout, new_numbers));
+    if (ids != nullptr) write(paths.ids, layout, *ids, false);
   }
 
   std::vector<std::string> written;
@@ -124,8 +131,8 @@ std::vector<std::string> write_sliced_maps(const Communicator& communicator, con
   const MapPaths vertices = map_paths(prefix, "vertices");
   const MapPaths cells = map_paths(prefix, "cells");
   MapWriter maps(communicator, outputs);
-  maps.write_both(vertices, after.vertices, order.new_vertices);
-  maps.write_both(cells, after.cells, order.new_cells);
+  maps.write_all(vertices, after.vertices, order.new_vertices, order.vertex_ids);
+  maps.write_all(cells, after.cells, order.new_cells, order.cell_ids);
 
   const int rank = communicator.rank();
   std::vector<GlobalIndex> parts;

@@ -7,6 +7,7 @@
 #include "io/stream/output_set.hpp"
 #include "maps.hpp"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct SlicedOrder {
   const std::vector<distributed::GlobalIndex>& new_vertices;  ///< new number of each vertex of the old slice
   const std::vector<distributed::GlobalIndex>& new_cells;     ///< new place of each of its cells
   const std::vector<distributed::GlobalIndex>& part_starts;   ///< as of `distributed::part_of`
+  /// Number that the file gives to each vertex and cell of the old slice; null where these are their places.
+  const std::vector<std::int64_t>* vertex_ids = nullptr;
+  const std::vector<std::int64_t>* cell_ids = nullptr;
 };
 
 /// Writes the same files as `write_maps` by all ranks, each its range of every map, as files of a set. Every

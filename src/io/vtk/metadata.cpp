@@ -82,15 +82,6 @@ class Names {
   std::set<std::pair<Association, std::string>> taken_;
 };
 
-DataArray full_copy(const DataArray& array, Index count) {
-  DataArray copy{array.name, array.association, array.components, {}, {}, array.component_names};
-  copy.values = array.is_dense()
-                    ? array.values
-                    : std::visit([&](const auto& values) { return Values(filled(array, values, count)); },
-                                 array.values);
-  return copy;
-}
-
 bool filled_with_nan(const DataArray& array) {
   return std::holds_alternative<std::vector<double>>(array.values) ||
          std::holds_alternative<std::vector<float>>(array.values);
@@ -106,6 +97,15 @@ const Metadata& metadata_of(const Mesh& mesh, Notes& notes) {
 }
 
 }  // namespace
+
+DataArray full_array(const DataArray& array, Index count) {
+  DataArray copy{array.name, array.association, array.components, {}, {}, array.component_names};
+  copy.values = array.is_dense()
+                    ? array.values
+                    : std::visit([&](const auto& values) { return Values(filled(array, values, count)); },
+                                 array.values);
+  return copy;
+}
 
 std::vector<std::string> Metadata::contents() const {
   std::vector<std::string> result;
@@ -198,7 +198,7 @@ void WriteContext::collect_arrays(NamePlace place) {
       notes.push_back(fmt::format("the array '{}' is given for some {}; the others get {}", array.name,
                                   to_string(array.association), filled_with_nan(array) ? "NaN" : "0"));
     }
-    add_made(full_copy(array, owner_count(mesh, array.association)));
+    add_made(full_array(array, owner_count(mesh, array.association)));
     made_.back()->name = name;
   }
 

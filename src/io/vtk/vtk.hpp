@@ -219,6 +219,9 @@ Mesh read_vtu(const FilePath& path, Notes& notes);
 /// their order. `count` is the number of all vertices or cells.
 Values marks_of(const EntitySet& set, Index count);
 
+/// Returns an array with a row for each of `count` vertices or cells: of NaN or 0 where it has none.
+DataArray full_array(const DataArray& array, Index count);
+
 /// Where a file has the names of its arrays, which tells the characters that they may have.
 enum class NamePlace : std::uint8_t { legacy, xml, hdf5 };
 
