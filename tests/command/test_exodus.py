@@ -253,6 +253,21 @@ def test_everything_follows_the_order(command, tmp_path, kind):
                         or text_rows(a[name]) == text_rows(c[name])), name
 
 
+def test_attributes_of_a_block_without_elements_are_nobodys(command, tmp_path):
+    with netCDF4.Dataset(tmp_path / "a.e", "w") as f:
+        for name, length in [("num_dim", 3), ("num_nodes", 4), ("num_elem", 1), ("num_el_blk", 2), ("num_el_in_blk1", 1),
+                             ("num_el_in_blk2", None), ("num_nod_per_el1", 4), ("num_att_in_blk2", 1)]:
+            f.createDimension(name, length)
+        f.createVariable("coord", "f8", ("num_dim", "num_nodes"))[:] = numpy.eye(3, 4)
+        for b in (1, 2):
+            f.createVariable(f"connect{b}", "i4", (f"num_el_in_blk{b}", "num_nod_per_el1")).elem_type = "TETRA"
+        f["connect1"][:] = [[1, 2, 3, 4]]
+        f.createVariable("attrib2", "f8", ("num_el_in_blk2", "num_att_in_blk2"))
+    command.ok("order", "a.e", "-o", "b.e")
+    with netCDF4.Dataset(tmp_path / "b.e") as f:
+        assert sorted(f["connect1"][0].tolist()) == [1, 2, 3, 4]
+
+
 def test_single_precision_and_one_step(command, tmp_path):
     write_all(tmp_path / "a.exo", steps=1, real="f4")
     command.ok("order", "a.exo", "-o", "b.exo", "--vertices", "hilbert")

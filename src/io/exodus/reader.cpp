@@ -403,6 +403,7 @@ void read_data_of_blocks(Reading& reading) {
   label_cells(reading);
   name_blocks(reading);
   for (auto& [name, column] : attributes) {
+    if (column.rows == 0) continue;  // of blocks without elements
     const bool is_partial = column.rows != reading.elements;
     if (!is_partial) column.array.indices.clear();
     reading.add_array(std::move(column.array), is_partial);
