@@ -99,8 +99,9 @@ def test_datasets_of_values_that_are_not_there(tmp_path):
 def test_dimensions_of_netcdf(tmp_path):
     netcdf = pytest.importorskip("netCDF4")
     with netcdf.Dataset(tmp_path / "a.exo", "w") as file:
-        for name, length in (("num_dim", 3), ("num_el_blk", 1), ("num_elem", 1)):
+        for name, length in (("num_dim", 3), ("num_el_blk", 1), ("num_elem", 1), ("num_el_in_blk1", 1), ("num_nod_per_el1", 1)):
             file.createDimension(name, length)
+        file.createVariable("connect1", "i4", ("num_el_in_blk1", "num_nod_per_el1")).elem_type = "SPHERE"
         file.createDimension("num_nodes", 2_000_000_000)
         file.createVariable("coord", "f8", ("num_dim", "num_nodes"), zlib=True, chunksizes=(1, 1 << 16))
     assert "coord claims more values than a file of" in refused(tmp_path, "info", "a.exo")
