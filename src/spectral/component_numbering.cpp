@@ -1,11 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/component_numbering.hpp"
 
+#include "base/parallel.hpp"
 #include "base/resize_in_steps.hpp"
 #include "base/run_scope.hpp"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -13,6 +16,7 @@ namespace {
 constexpr Index kUnseen = -1;
 constexpr Index kFound = -2;    // seen, not yet numbered
 constexpr Index kBatch = 256;   // vertices whose discoveries are sorted together
+constexpr Index kWave = 8;      // batches from which on threads share them
 constexpr Index kDegrees = 64;  // larger degrees are rare and sorted as this one
 
 /// Asks for the row that stands a few places after `k` in the order: rows lie anywhere in memory.
@@ -23,59 +27,143 @@ void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
   }
 }
 
-/// Appends the vertices to the order by rising degree, those of one degree as they come, and numbers them.
-void append_by_degree(GraphRef graph, const std::vector<Index>& found, Index component_start,
-                      ComponentNumbering& numbering, Index& tail) {
-  const auto degree = [&](Index v) { return std::min(graph.degree(v), kDegrees); };
+/// Numbers the components one after another.
+class Search {
+ public:
+  explicit Search(GraphRef graph) : graph_(graph) {
+    numbering_.order.resize(graph.size());
+    numbering_.number.assign(graph.size(), kUnseen);
+  }
+
+  ComponentNumbering number_all() {
+    for (Index v = 0; v < graph_.size(); ++v) {
+      if (numbering_.number[v] != kUnseen) continue;
+      number_component(v);
+      numbering_.starts.push_back(tail_);
+    }
+    return std::move(numbering_);
+  }
+
+ private:
+  void number_component(Index start);
+  void go_through_batch();
+  void go_through_wave(Index batches);
+  void claim_neighbours(Index batch, Index begin, Index end);
+  void settle_claims(Index batch);
+  void put_by_degree(const std::vector<Index>& found, Index tail);
+
+  GraphRef graph_;
+  ComponentNumbering numbering_;
+  Index component_start_ = 0;
+  Index head_ = 0;  ///< place in the order of the first vertex whose row is still to be read
+  Index tail_ = 0;  ///< vertices in the order
+  std::vector<std::vector<Index>> found_{1};  ///< by each batch, in the order of its rows
+  /// Of each batch: what it marked, and the marks.
+  std::vector<std::vector<std::pair<Index, Index>>> claims_;
+};
+
+/// Numbers the component of `start` from order[tail_] on.
+void Search::number_component(Index start) {
+  component_start_ = head_ = tail_;
+  numbering_.order[tail_++] = start;
+  numbering_.number[start] = 0;
+  const Index wave = thread_count() > 1 ? kWave : graph_.size();
+  while (head_ < tail_) {
+    poll();
+    const Index full_batches = (tail_ - head_) / kBatch;
+    if (full_batches >= wave) {
+      go_through_wave(full_batches);
+    } else {
+      go_through_batch();
+    }
+  }
+}
+
+/// Reads the next rows, and appends what is new in them.
+void Search::go_through_batch() {
+  std::vector<Index>& found = found_.front();
+  found.clear();
+  for (const Index end = std::min(tail_, head_ + kBatch); head_ < end; ++head_) {
+    prefetch_row(graph_, {numbering_.order.data(), numbering_.order.data() + tail_}, head_);
+    for (const Index u : graph_[numbering_.order[head_]]) {
+      if (numbering_.number[u] != kUnseen) continue;
+      numbering_.number[u] = kFound;
+      found.push_back(u);
+    }
+  }
+  put_by_degree(found, tail_);
+  tail_ += index_size(found);
+}
+
+/// Goes through several batches at once, with the result of one after another: a vertex belongs to the first
+/// row that it stands in. It is marked with that row's place, counted from head_: kFound less it.
+void Search::go_through_wave(Index batches) {
+  if (index_size(found_) < batches) {
+    found_.resize(batches);
+    claims_.resize(batches);
+  }
+  for_each_chunk(batches * kBatch, kBatch,
+                 [&](Index batch, Index begin, Index end) { claim_neighbours(batch, begin, end); });
+  for_each_chunk(batches, 1, [&](Index batch, Index, Index) { settle_claims(batch); });
+  for_each_chunk(batches, 1, [&](Index batch, Index, Index) {
+    found_[batch].clear();
+    for (const auto& [u, mark] : claims_[batch]) {
+      if (numbering_.number[u] == mark) found_[batch].push_back(u);
+    }
+  });
+  std::vector<Index> tails{tail_};
+  for (Index batch = 0; batch < batches; ++batch) tails.push_back(tails.back() + index_size(found_[batch]));
+  for_each_chunk(batches, 1, [&](Index batch, Index, Index) { put_by_degree(found_[batch], tails[batch]); });
+  head_ += batches * kBatch;
+  tail_ = tails.back();
+}
+
+/// Marks what has no number and no mark of a row before in the rows from order[head_ + begin] on. Of two
+/// threads that mark a vertex at once the later one stays: both have it among their claims, see
+/// `settle_claims`. An exchange instead would keep the processor from waiting for several vertices at a time.
+void Search::claim_neighbours(Index batch, Index begin, Index end) {
+  const std::span<const Index> order(numbering_.order.data() + head_, end);
+  claims_[batch].clear();
+  for (Index k = begin; k < end; ++k) {
+    prefetch_row(graph_, order, k);
+    const Index mark = kFound - k;
+    for (const Index u : graph_[order[k]]) {
+      const std::atomic_ref<Index> number(numbering_.number[u]);
+      const Index found = number.load(std::memory_order_relaxed);
+      if (found != kUnseen && found >= mark) continue;
+      number.store(mark, std::memory_order_relaxed);
+      claims_[batch].emplace_back(u, mark);
+    }
+  }
+}
+
+/// Marks vertices again that have the mark of a later row now.
+void Search::settle_claims(Index batch) {
+  for (const auto& [u, mark] : claims_[batch]) {
+    const std::atomic_ref<Index> number(numbering_.number[u]);
+    Index found = number.load(std::memory_order_relaxed);
+    while (found < mark && !number.compare_exchange_weak(found, mark, std::memory_order_relaxed)) {
+    }
+  }
+}
+
+/// Puts the vertices in the order from order[tail] on by rising degree, those of one degree as they come, and
+/// numbers them.
+void Search::put_by_degree(const std::vector<Index>& found, Index tail) {
+  const auto degree = [&](Index v) { return std::min(graph_.degree(v), kDegrees); };
   std::array<Index, std::size_t{kDegrees} + 2> place{};
   for (const Index v : found) ++place[degree(v) + 1];
   for (std::size_t d = 1; d < place.size(); ++d) place[d] += place[d - 1];
   for (const Index v : found) {
     const Index at = tail + place[degree(v)]++;
-    numbering.order[at] = v;
-    numbering.number[v] = at - component_start;
-  }
-  tail += index_size(found);
-}
-
-/// Numbers the component of `start` from order[tail] on.
-void number_component(GraphRef graph, Index start, std::vector<Index>& found, ComponentNumbering& numbering,
-                      Index& tail) {
-  const Index component_start = tail;
-  numbering.order[tail++] = start;
-  numbering.number[start] = 0;
-  for (Index head = component_start; head < tail;) {
-    poll();
-    const Index batch_end = std::min(tail, head + kBatch);
-    found.clear();
-    for (; head < batch_end; ++head) {
-      prefetch_row(graph, {numbering.order.data(), numbering.order.data() + tail}, head);
-      for (const Index u : graph[numbering.order[head]]) {
-        if (numbering.number[u] != kUnseen) continue;
-        numbering.number[u] = kFound;
-        found.push_back(u);
-      }
-    }
-    append_by_degree(graph, found, component_start, numbering, tail);
+    numbering_.order[at] = v;
+    numbering_.number[v] = at - component_start_;
   }
 }
 
 }  // namespace
 
-ComponentNumbering number_components(GraphRef graph) {
-  const Index n = graph.size();
-  ComponentNumbering numbering;
-  numbering.order.resize(n);
-  numbering.number.assign(n, kUnseen);
-  std::vector<Index> found;
-  Index tail = 0;
-  for (Index v = 0; v < n; ++v) {
-    if (numbering.number[v] != kUnseen) continue;
-    number_component(graph, v, found, numbering, tail);
-    numbering.starts.push_back(tail);
-  }
-  return numbering;
-}
+ComponentNumbering number_components(GraphRef graph) { return Search(graph).number_all(); }
 
 Laplacian component_laplacian(GraphRef graph, std::span<const double> weights,
                               const ComponentNumbering& numbering, Index c) {

@@ -3,9 +3,12 @@
 
 #include "graph/traversal.hpp"
 #include "support/dense.hpp"
+#include "support/graph_orders.hpp"
 #include "support/sample_graphs.hpp"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -46,6 +49,23 @@ TEST(ComponentNumbering, OfAMeshIsABandWithRowsSortedByLength) {
   EXPECT_LT(widest, 2000);  // two levels of the search
   // a batch of 256 starts anew, and has four different degrees
   EXPECT_LT(changes, 4 * (graph.size() / 100));
+}
+
+TEST(ComponentNumbering, IsTheSameOnAnyNumberOfThreads) {
+  const std::vector<CsrGraph> graphs{test::scrambled(test::grid(40, 40, 30), 1),
+                                     test::random_regular(30000, 6, 2), test::star(20000),
+                                     test::preferential_attachment(20000, 3, 3), mixed()};
+  for (const CsrGraph& graph : graphs) {
+    ComponentNumbering expected;
+    for (const int threads : {1, 2, 3, 7}) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      tbb::task_arena arena(threads);
+      const ComponentNumbering numbering = arena.execute([&] { return number_components(graph); });
+      if (threads == 1) expected = numbering;
+      EXPECT_EQ(numbering.order, expected.order) << graph.size() << " vertices, " << threads << " threads";
+      EXPECT_EQ(numbering.number, expected.number) << graph.size() << " vertices, " << threads << " threads";
+    }
+  }
 }
 
 TEST(ComponentNumbering, GivesTheLaplacianOfEachComponent) {
