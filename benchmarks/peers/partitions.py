@@ -18,7 +18,7 @@ meshorder's stage of that name, in steps of 10 ms (see ranks.py).
 Debian's packages: trilinos-all-dev for Sphynx, python3-dolfinx, and for parRSB its library and gslib's, built from their
 sources:
 
-    cmake -B build -DMESHORDER_BENCHMARKS=ON -DMESHORDER_MPI=ON "-DCMAKE_PREFIX_PATH=PARRSB/build;GSLIB/build"
+    cmake -B build -DMESHORDER_BENCHMARKS=ON -DMESHORDER_MPI=ON "-DCMAKE_PREFIX_PATH=PARRSB/install;GSLIB/build"
 
 What is missing is left out with a word.
 """

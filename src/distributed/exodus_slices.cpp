@@ -11,8 +11,6 @@
 #include "io/exodus/exodus.hpp"
 #endif
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <span>
@@ -89,10 +87,7 @@ void note_degenerate(const Communicator& communicator, const MeshPart& part, Not
   if (count == 0 || !communicator.is_root()) return;
   const auto first =
       std::find_if(all.begin(), all.end(), [](const DegenerateCells& found) { return found.count > 0; });
-  notes.push_back(fmt::format("{}: the first is cell {}, counted from 0",
-                              count == 1 ? "1 cell names a vertex twice and is kept"
-                                         : fmt::format("{} cells name a vertex twice and are kept", count),
-                              first->first));
+  notes.push_back(note_of_degenerate(count, first->first));
 }
 
 }  // namespace

@@ -469,8 +469,8 @@ void NemesisPieces::add_load_balance(Index part, Metadata& metadata) const {
       {"int_e_stat", "bor_e_stat", "elem_mapi", "num_int_elem", "elem_mapb", "num_bor_elem"});
 }
 
-/// Adds the communication maps of nodes, one for each part that shares some: in both parts by their numbers
-/// in the whole mesh.
+/// Adds the communication maps of nodes, one for each part that shares some: their places in the piece, in
+/// the order of their numbers in the whole mesh, which is the same in both parts.
 void NemesisPieces::add_node_maps(Index part, Metadata& metadata) const {
   const auto vertices = parts_.vertices(part);
   std::vector<Index> ascending = index_range(0, index_size(vertices));

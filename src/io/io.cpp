@@ -65,12 +65,7 @@ Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions&
       throw InputError(path.string(), fault.what(), "the file may be damaged");
     }
     const std::vector<Index> degenerate = degenerate_cells(mesh.cells);
-    if (!degenerate.empty()) {
-      notes.push_back(std::to_string(degenerate.size()) +
-                      (degenerate.size() == 1 ? " cell names a vertex twice and is kept"
-                                              : " cells name a vertex twice and are kept") +
-                      ": the first is cell " + std::to_string(degenerate.front()) + ", counted from 0");
-    }
+    if (!degenerate.empty()) notes.push_back(note_of_degenerate(std::ssize(degenerate), degenerate.front()));
     return mesh;
   });
 }

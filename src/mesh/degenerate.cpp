@@ -46,4 +46,10 @@ std::vector<Index> degenerate_cells(const Cells& cells) {
   return result;
 }
 
+std::string note_of_degenerate(std::int64_t count, std::int64_t first) {
+  return std::to_string(count) +
+         (count == 1 ? " cell names a vertex twice and is kept" : " cells name a vertex twice and are kept") +
+         ": the first is cell " + std::to_string(first) + ", counted from 0";
+}
+
 }  // namespace meshorder

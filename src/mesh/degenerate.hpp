@@ -3,11 +3,18 @@
 
 #include <meshorder/mesh.hpp>
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace meshorder {
 
 /// Returns the cells that name a vertex twice, ascending. O(vertex entries).
 std::vector<Index> degenerate_cells(const Cells& cells);
+
+/// Returns the note on so many such cells.
+///
+/// @param first  the smallest one
+std::string note_of_degenerate(std::int64_t count, std::int64_t first);
 
 }  // namespace meshorder
