@@ -93,7 +93,7 @@ void add_common(CLI::App& subcommand, Common& common, const std::string& quiet) 
   subcommand.add_flag("--quiet,-q", common.quiet, quiet);
   subcommand
       .add_option("--threads", common.threads,
-                  "Maximum number of threads (0 = all). The output is the same for any number")
+                  "Maximum number of threads (0 = all). Orders and meshes are the same for any number")
       ->check(whole_from(0))
       ->capture_default_str();
 }
