@@ -236,7 +236,7 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
   subcommand
       .add_option(
           "--balance", arguments->balance,
-          "What parts have equally much of: `vertices`, or `cells`: elements, each shared out among its\n"
+          "Give all parts the same number of `vertices`, or of `cells`: elements, each shared out among its\n"
           "vertices")
       ->check(CLI::IsMember({"vertices", "cells"}))
       ->capture_default_str();

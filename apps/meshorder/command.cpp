@@ -121,9 +121,9 @@ void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
   subcommand
       .add_option_function<std::string>(
           "--for", [&options](const std::string& use) { options.workload = parse_workload(use); },
-          "Which kernel the order should be best for, if `auto` chooses it:\n" +
+          "What the order should be best for, if `auto` chooses it:\n" +
               join(kWorkloads, [](Workload use) { return to_string(use); }))
-      ->type_name("KERNEL")
+      ->type_name("USE")
       ->default_str(std::string(to_string(options.workload)));
   add_seed_option(subcommand, options.seed);
   subcommand

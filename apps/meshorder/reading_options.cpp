@@ -26,9 +26,9 @@ void add_reading_options(CLI::App& subcommand) {
   subcommand
       .add_option_function<std::string>(
           "--limit-memory", [](const std::string& text) { set_memory_limit(*limit_of(text)); },
-          "Memory that a file may take for what it claims rather than holds, such as 4G: compressed or\n"
-          "repeated values, sizes without values; also that of graphs of its cells. `none`: no limit.\n"
-          "Without it 256M and 100 times the file, at most three quarters of the memory")
+          "Refuse files that would take more memory than this, such as 4G, for values that are not written\n"
+          "out in the file (compressed, repeated or only counted), or for a graph of its cells. `none`: no\n"
+          "limit. Default: 256M and 100 times the file's size, at most three quarters of the memory")
       ->check(CLI::Validator(
           [](std::string& text) {
             return limit_of(text) ? std::string() : "'" + text + "' is no size, such as 4G, and not none";
@@ -41,8 +41,8 @@ void add_reading_options(CLI::App& subcommand) {
           [](const std::vector<std::string>& folders) {
             for (const std::string& folder : folders) allow_includes_from(folder);
           },
-          "Folder where files may be that the mesh names to be read with it, besides its own; may be\n"
-          "repeated")
+          "Read files that the mesh includes also from this folder and those in it, not only from the\n"
+          "mesh's own; may be repeated")
       ->check(CLI::ExistingDirectory)
       ->type_name("FOLDER")
       ->allow_extra_args(false);

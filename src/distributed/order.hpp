@@ -38,7 +38,7 @@ struct DistributedReport {
   Index parts = 0;
   Partitioner partitioner = Partitioner::ptscotch;  ///< that made the parts
   std::string partition_reason;                     ///< why that is not the one asked for; else empty
-  double imbalance = 1;  ///< of what parts should have equally much of: the largest relative to the mean
+  double imbalance = 1;  ///< the largest part relative to the mean, in what is balanced: vertices or cells
   GlobalIndex edges = 0;
   GlobalIndex cut = 0;                   ///< edges between parts
   GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts

@@ -185,7 +185,7 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         method: vertex method of a part.
         partition: "ptscotch", which needs MPI_THREAD_MULTIPLE; "hilbert", which takes its place without that; "rsb",
             recursive spectral bisection; or "order", equal ranges of one order of the whole mesh, by the method "fiedler" only.
-        balance: what parts have equally much of, "vertices" or "cells".
+        balance: what every part gets the same number of, "vertices" or "cells".
         interface_last: True puts vertices that share an element with those of other parts behind the others.
         seed: of the method.
         threads: of this rank.
