@@ -192,11 +192,11 @@ TEST_F(StudyPage, BeginsWithTheTableOfWhatOrdersSave) {
   const std::string tables = test::content_of(folder.tables(".md"));
   const std::size_t title = tables.find("\n\n");
   EXPECT_EQ(tables.substr(title, 25), "\n\n## What the orders save");
-  const std::size_t sentence = tables.find("This is a first look");
+  const std::size_t sentence = tables.find("This study is shorter");
   EXPECT_GT(sentence, tables.find("| falling |"));
   EXPECT_LT(sentence, tables.find("## Table 2"));
   const std::string html = test::content_of(folder.page());
-  EXPECT_LT(html.find("<table id=\"summary\">"), html.find("This is a first look"));
+  EXPECT_LT(html.find("<table id=\"summary\">"), html.find("This study is shorter"));
 }
 
 TEST_F(StudyPage, IsWrittenWholeOrNotAtAll) {

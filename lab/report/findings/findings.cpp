@@ -95,17 +95,21 @@ std::string payments(const StudyResults& results) {
   return words + ".";
 }
 
-/// Returns a caution if the study is shorter than the paper's.
+/// Returns what is shorter than in the paper's study, if anything is.
 std::string caution(const StudyResults& results) {
-  const auto shorter = [](const ScenarioRecord& scenario) { return scenario.steps < kPaperSteps; };
-  const bool few_steps = std::any_of(results.scenarios.begin(), results.scenarios.end(), shorter);
-  if (results.scenarios.empty() || (!few_steps && results.runs >= 3)) return {};
-  Index least = kMaxIndex;
-  for (const ScenarioRecord& scenario : results.scenarios) least = std::min(least, scenario.steps);
-  return fmt::format(
-      "This is a first look, of {} steps and {} run{}. The paper's study has {} steps and 3 runs, and "
-      "later steps may cost more or less than the first ones.",
-      least, results.runs, results.runs == 1 ? "" : "s", kPaperSteps);
+  std::vector<std::string> shorter;
+  for (const ScenarioRecord& scenario : results.scenarios) {
+    if (scenario.steps < kPaperSteps)
+      shorter.push_back(fmt::format("{} ({} steps)", scenario.name, scenario.steps));
+  }
+  const bool few_runs = results.runs < 3;
+  if (results.scenarios.empty() || (shorter.empty() && !few_runs)) return {};
+  std::string words =
+      fmt::format("This study is shorter than the paper's of {} steps and 3 runs: ", kPaperSteps);
+  if (few_runs) words += fmt::format("{} run{}", results.runs, results.runs == 1 ? "" : "s");
+  if (shorter.empty()) return words + ".";
+  if (few_runs) words += "; ";
+  return words + in_words(shorter) + ". Later steps may cost more or less than the first ones.";
 }
 
 /// Returns the largest distance between the motions of a scenario's orders, as a share of the body's size, if
