@@ -119,6 +119,19 @@ def test_arrays_of_a_mesh_outlive_it(mesh):
     assert not points.flags.writeable
 
 
+def test_arrays_of_a_mesh_stay_when_it_is_reordered_in_place(mesh):
+    points, cells = mesh
+    ours = meshorder.make_mesh((points, cells, {"x": points[:, 0]}))
+    taken = ours.points, ours.connectivity, ours.offsets, ours.shapes, ours.point_data["x"]
+    before = [array.copy() for array in taken]
+    moved, order = meshorder.reorder(ours, vertices="rcm", elements="lexmax", inplace=True)
+    assert moved is ours
+    np.testing.assert_array_equal(ours.points, points[order.vertices.new_to_old])
+    np.testing.assert_array_equal(ours.point_data["x"], ours.points[:, 0])
+    for array, old in zip(taken, before):
+        np.testing.assert_array_equal(array, old)
+
+
 def test_comparison_and_advice(mesh):
     comparison = meshorder.compare(mesh, ["rcm", ("fiedler", "lexmax")])
     assert [candidate.vertices for candidate in comparison] == ["original", "rcm", "fiedler"]

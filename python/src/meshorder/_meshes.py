@@ -90,7 +90,10 @@ def order_arrays(
 
 
 class Mesh:
-    """A mesh of a file, with all its data. `read` makes it, and `make_mesh` from arrays."""
+    """A mesh of a file, with all its data. `read` makes it, and `make_mesh` from arrays.
+
+    Arrays that were taken from it stay as they are when it is reordered in place.
+    """
 
     __slots__ = ("_handle", "notes")
 

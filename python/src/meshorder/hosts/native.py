@@ -20,11 +20,15 @@ class NativeMesh(Host):
         self.cells = mesh.cells
 
     def reorder(self, request: Request) -> tuple[Any, MeshOrder]:
-        moved = self.given if request.inplace else self.given.copy()
+        moved = self.given.copy()
         with prepared(request.options) as given:
             made = moved._handle.reorder(
                 request.vertices, request.elements, request.ids, request.group_by or "", request.format or "", given
             )
+        if request.inplace:
+            # the arrays that were taken from the mesh keep what they are views of
+            self.given._handle = moved._handle
+            moved = self.given
         return moved, MeshOrder._of(made)
 
     def moved(self, order: MeshOrder, inplace: bool) -> NoReturn:
