@@ -205,7 +205,10 @@ def test_files_take_no_more_than_the_limit(tmp_path):
                     "*ELEMENTS\nTET\n1 4 0\n1 1 2 3 4\n")  # fmt: skip
     with pytest.raises(InputError, match="is not in the mesh's folder"):
         meshorder.read(mesh)
-    assert len(meshorder.read(mesh, include_folders=[tmp_path]).shapes) == 1
+    for allowed in ([tmp_path], tmp_path, str(tmp_path)):
+        assert len(meshorder.read(mesh, include_folders=allowed).shapes) == 1
+    with pytest.raises(InputError, match="is not in the mesh's folder"):
+        meshorder.read(mesh, include_folders="/usr")
 
 
 def test_bytes_that_are_no_text_become_escapes():

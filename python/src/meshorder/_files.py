@@ -27,7 +27,7 @@ def read(
     format: str | None = None,
     *,
     memory_limit: int | None = None,
-    include_folders: Sequence[str | os.PathLike[str]] = (),
+    include_folders: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] = (),
 ) -> Mesh:
     """Reads a mesh from a file, or from the bytes of one.
 
@@ -37,7 +37,7 @@ def read(
             ours are read by meshio, where it is installed; the mesh's notes begin with that.
         memory_limit: bytes that a file may take for what it claims rather than holds, such as compressed values; None:
             256 MiB and 100 times the file, at most three quarters of the memory. meshio knows no limit.
-        include_folders: where files may be that the mesh names to be read with it, besides its own folder.
+        include_folders: a folder, or several, where files may be that the mesh names to be read with it, besides its own.
 
     Raises:
         InputError: the file is missing or faulty, claims more than the limit or names files elsewhere; the message
@@ -51,7 +51,9 @@ def read(
     foreign = _foreign.format_of_meshio(path, format or "")
     if foreign:
         return _foreign.read(path, foreign)
-    return Mesh(*_core.read(path, format or "", memory_limit, [os.fspath(folder) for folder in include_folders]))
+    # the letters of a path are folders, too: "/", say
+    folders = [include_folders] if isinstance(include_folders, (str, os.PathLike)) else include_folders
+    return Mesh(*_core.read(path, format or "", memory_limit, [os.fspath(folder) for folder in folders]))
 
 
 def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:
