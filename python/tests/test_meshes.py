@@ -216,3 +216,12 @@ def test_bytes_that_are_no_text_become_escapes():
         meshorder.read(b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$\x8f\n", format="gmsh")
     mesh = meshorder.read(b"v 0 0 0\nv 1 0 0\nv 0 1 0\ng a\xff\nf 1 2 3\n", format="obj")
     assert list(mesh.sets) == [r"a\xff"]
+
+
+def test_sets_of_vertices_and_of_cells_may_share_a_name():
+    deck = (b"*NODE, NSET=a\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,0,0,2\n"
+            b"*ELEMENT, TYPE=C3D4, ELSET=a\n1,1,2,3,4\n*ELSET, ELSET=b\n1\n")  # fmt: skip
+    sets = meshorder.read(deck, "abaqus").sets
+    assert {name: members.tolist() for name, members in sets.items()} == {
+        "vertices:a": [0, 1, 2, 3, 4], "cells:a": [0], "b": [0],
+    }  # fmt: skip

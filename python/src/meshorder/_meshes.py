@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -154,8 +155,13 @@ class Mesh:
 
     @property
     def sets(self) -> dict[str, NDArray[np.int32]]:
-        """Named lists of vertices or cells."""
-        return {name: members for name, _, members in self._handle.sets}
+        """Named lists of vertices or cells; "vertices:NAME" and "cells:NAME" where both have a set of that name."""
+        sets = self._handle.sets
+        count_of = Counter(name for name, _, _ in sets)
+        return {
+            name if count_of[name] == 1 else f"{'vertices' if of_vertices else 'cells'}:{name}": members
+            for name, of_vertices, members in sets
+        }
 
     @property
     def vertex_ids(self) -> NDArray[np.int64]:
