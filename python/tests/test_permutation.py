@@ -2,6 +2,7 @@
 """Permutations against NumPy's and SciPy's own indexing."""
 
 import pickle
+from typing import Any
 
 import meshorder
 import numpy as np
@@ -70,6 +71,52 @@ def test_renumbers_connectivity():
     np.testing.assert_array_equal(cells, expected)
     with pytest.raises(InvalidArgument):
         p.renumber([3])
+
+
+def test_renumbers_into_another_array():
+    p = Permutation(new_to_old=[2, 0, 1])
+    for dtype in ("i4", "u4", "i8", "u8"):
+        out = np.empty(3, dtype)
+        assert p.renumber(np.array([0, 1, 2]), out=out) is out and out.tolist() == [1, 2, 0]
+    wrong: list[Any] = [np.zeros((2, 3), "i4"), np.zeros(3, "i2"), np.zeros(3), [0, 0, 0]]
+    for other in wrong:
+        with pytest.raises(InvalidArgument):
+            p.renumber(np.arange(3), out=other)
+    with pytest.raises(InvalidArgument, match="4294967297"):  # which is 1 in 32 bits
+        p.renumber(np.array([0, 1, 2**32 + 1]), out=np.zeros(3, "i4"))
+
+
+def test_moves_all_of_a_pandas_object():
+    pandas = pytest.importorskip("pandas")
+    p = Permutation(new_to_old=[2, 0, 1])
+    frame = pandas.DataFrame(np.arange(6).reshape(3, 2))
+    assert p.move(frame).index.tolist() == p.move(frame, axis=-2).index.tolist() == [2, 0, 1]
+    assert p.move(frame.T, axis=1).columns.tolist() == p.move(frame.T, axis=-1).columns.tolist() == [2, 0, 1]
+    square = pandas.DataFrame(np.eye(3))
+    wrong: list[tuple[Any, Any]] = [(pandas.Series(range(4)), 0), (pandas.Series(range(2)), 0), (frame, 1),
+                                    (square, "index"), (square, 2)]  # fmt: skip
+    for other, axis in wrong:
+        with pytest.raises(InvalidArgument):
+            p.move(other, axis=axis)
+
+
+@pytest.mark.parametrize("a", [[1, 2, 3], (1, 2, 3), sp.csr_array(np.eye(3))])
+def test_axis_and_out_are_for_arrays(a):
+    p = Permutation(new_to_old=[2, 0, 1])
+    for axis, out in ((1, None), (0, np.zeros(3))):
+        with pytest.raises(InvalidArgument, match="for arrays"):
+            p.move(a, axis=axis, out=out)
+
+
+def test_out_must_take_what_is_moved():
+    p = Permutation(new_to_old=[2, 0, 1])
+    frozen = np.zeros(3)
+    frozen.flags.writeable = False
+    wrong: list[Any] = [frozen, [0, 0, 0], np.zeros(4), np.zeros(3, "i8"), np.zeros(6)[::2]]
+    for array in (np.zeros(3), np.zeros(6)[::2]):
+        for out in wrong:
+            with pytest.raises(InvalidArgument, match="out must be"):
+                p.move(array, out=out)
 
 
 def test_degrees_of_freedom():

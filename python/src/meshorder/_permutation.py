@@ -85,33 +85,46 @@ class Permutation:
 
         Args:
             a: an array, a list, a pandas object, or a square SciPy matrix, whose rows and columns move.
-            axis: of an array, the one that the things lie along.
-            out: an array to write to, of the same shape and type; none of the others.
+            axis: of an array or a pandas object, the number of the one that the things lie along.
+            out: an array to write to, of the same shape and type; of arrays only.
 
         Returns:
             The same kind of object; ``out`` if it is given.
+
+        Raises:
+            InvalidArgument: ``a`` has not as many things as the permutation, or ``axis`` and ``out`` are not for it.
         """
         if hasattr(a, "iloc"):
-            return a.iloc[self.new_to_old] if axis == 0 else a.iloc[:, self.new_to_old]
+            return self._move_pandas(a, axis, out)
         if hasattr(a, "tocsr") and hasattr(a, "nnz"):
+            _refuse(axis, out, "a matrix")
             return self._move_matrix(a)
         if isinstance(a, (list, tuple)):
+            _refuse(axis, out, "a list")
             if len(a) != len(self):
                 raise InvalidArgument(f"move: {len(a)} entries for a permutation of {len(self)}")
             return type(a)([a[k] for k in self.new_to_old])
         array = np.asanyarray(a)
-        if array.ndim == 0 or array.shape[axis] != len(self):
-            raise InvalidArgument(f"move: the shape {array.shape} for a permutation of {len(self)}")
+        self._check_shape(array.shape, axis)
+        if out is not None and not _takes(out, array):
+            raise InvalidArgument("move: out must be contiguous and writeable, with the shape and type of the array")
         plain = array.flags.c_contiguous and not array.dtype.hasobject and not isinstance(array, np.ma.MaskedArray)
         if axis not in (0, -array.ndim) or not plain:
             return np.take(array, self.new_to_old, axis=axis, out=out)
         if out is None:
             out = np.empty_like(array)
-        elif out.shape != array.shape or out.dtype != array.dtype or not out.flags.c_contiguous:
-            raise InvalidArgument("move: out must be contiguous, with the shape and type of the array")
         if array.size:
             self._handle.move_rows(_bytes_of(array), _bytes_of(out))
         return out
+
+    def _check_shape(self, shape: tuple[int, ...], axis: int) -> None:
+        if axis not in range(-len(shape), len(shape)) or shape[axis] != len(self):
+            raise InvalidArgument(f"move: axis {axis!r} of the shape {shape} for a permutation of {len(self)}")
+
+    def _move_pandas(self, a: Any, axis: int, out: Any) -> Any:
+        _refuse(0, out, "a pandas object")
+        self._check_shape(a.shape, axis)
+        return a.iloc[self.new_to_old] if axis % a.ndim == 0 else a.iloc[:, self.new_to_old]
 
     def _move_matrix(self, a: Any) -> Any:
         matrix = a.tocsr()
@@ -130,15 +143,18 @@ class Permutation:
 
         Args:
             numbers: integers of 0 … n−1, of any shape.
-            out: an array to write to; ``out=numbers`` works in place.
+            out: an array to write to, of the same shape and of 32 or 64 bits; ``out=numbers`` works in place.
         """
         if out is None:
             out = integers(numbers, "numbers", rank=None).copy()
-        else:
-            if not out.flags.c_contiguous or not out.flags.writeable:
-                raise InvalidArgument("renumber: out must be contiguous and writeable")
-            if out is not numbers:
-                np.copyto(out, numbers)
+        elif not isinstance(out, np.ndarray) or not out.flags.c_contiguous or not out.flags.writeable:
+            raise InvalidArgument("renumber: out must be a contiguous and writeable array")
+        elif out is not numbers:
+            renumbered = self.renumber(numbers)  # before the numbers take another type
+            if out.shape != renumbered.shape or out.dtype.kind not in "iu" or out.dtype.itemsize < 4:
+                raise InvalidArgument("renumber: out must have the shape of the numbers, and 32 or 64 bits")
+            np.copyto(out, renumbered, casting="unsafe")
+            return out
         self._handle.renumber(out.reshape(-1), 0)
         return out
 
@@ -183,6 +199,19 @@ class Permutation:
 
     def _repr_html_(self) -> str:
         return _html.permutation(self)
+
+
+def _refuse(axis: int, out: Any, what: str) -> None:
+    if axis != 0 or out is not None:
+        raise InvalidArgument(f"move: {what} has no {'axis' if axis != 0 else 'out'}; it is for arrays")
+
+
+def _takes(out: Any, array: NDArray[Any]) -> bool:
+    """Whether the rows of an array can be written to another."""
+    if not isinstance(out, np.ndarray) or not out.flags.c_contiguous or not out.flags.writeable:
+        return False
+    fits: bool = out.shape == array.shape and out.dtype == array.dtype
+    return fits
 
 
 def _bytes_of(array: NDArray[Any]) -> NDArray[np.uint8]:
