@@ -176,11 +176,21 @@ def test_bad_files(tmp_path):
 @pytest.mark.parametrize(
     "cells",
     [[[0, 1, 2, 9]], [[0, 1, 2, -1]], [[0, 1, 2, 3, 4]], {"tetra": [[0, 1, 2]]}, {"blob": [[0, 1]]}, [0, 1, 2, 3],
-     ([0, 4], [0, 1, 2]), ([0, 4], [0, 1, 2, 3], [10, 10]), [[0.5, 1, 2, 3]], [[0, 1], [0, 1, 2]]],
+     ([0, 4], [0, 1, 2]), ([0, 4], [0, 1, 2, 3], [10, 10]), ([0, 4], [0, 1, 2, 3], [256 + 10]),
+     ([0, 4], [0, 1, 2, 3], [10 - 256]), ([0, 4], [0, 1, 2, 3], [10.5]), [[0.5, 1, 2, 3]], [[0, 1], [0, 1, 2]]],
 )  # fmt: skip
 def test_refuses_faulty_cells(cells):
     with pytest.raises(InvalidArgument):
         meshorder.order_mesh(np.eye(4, 3), cells)
+
+
+@pytest.mark.parametrize("width", [6, 8, 10])
+def test_cells_of_second_order_in_the_plane_need_a_type(width):
+    points = np.random.default_rng(7).random((width, 2))
+    with pytest.raises(InvalidArgument, match="name it"):
+        meshorder.make_mesh(points, [range(width)])
+    kind = {6: "triangle", 8: "quad", 10: "triangle"}[width]
+    assert meshorder.make_mesh(points, {f"{kind}{width}": [range(width)]}).cells[0][0] == kind
 
 
 def test_refuses_faulty_points(mesh):

@@ -53,6 +53,16 @@ def _block(type_name: Any, vertices: Any) -> tuple[str, NDArray[Any]]:
     return _shape(type_name), integers(vertices, f"cells of type {type_name}", rank=2)
 
 
+def _vtk_types(values: Any) -> NDArray[np.uint8]:
+    if isinstance(values, np.ndarray) and values.dtype == np.uint8 and values.ndim == 1:
+        return np.ascontiguousarray(values)
+    types = integers(values, "VTK's types")
+    if types.size and not 0 <= types.min() <= types.max() <= 255:
+        wrong = types[(types < 0) | (types > 255)][0]
+        raise InvalidArgument(f"cells: a cell has the VTK type {wrong}, which is not supported")
+    return types.astype(np.uint8)
+
+
 _SIMPLEX = {2: "line", 3: "triangle", 6: "wedge", 8: "hexahedron", 10: "tetrahedron"}
 
 
@@ -61,9 +71,7 @@ def cell_arrays(cells: Any, dimension: int) -> Any:
     if isinstance(cells, Mapping):
         return [_block(name, vertices) for name, vertices in cells.items()]
     if isinstance(cells, tuple) and 2 <= len(cells) <= 3 and not isinstance(cells[0], str):
-        types = None
-        if len(cells) == 3 and cells[2] is not None:
-            types = np.ascontiguousarray(cells[2], dtype=np.uint8)
+        types = None if len(cells) == 2 or cells[2] is None else _vtk_types(cells[2])
         return integers(cells[0], "offsets"), integers(cells[1], "connectivity"), types
     if isinstance(cells, (list, tuple)) and cells and not isinstance(cells[0], (list, np.ndarray)):
         if hasattr(cells[0], "type"):  # meshio's blocks
@@ -73,7 +81,7 @@ def cell_arrays(cells: Any, dimension: int) -> Any:
     vertices = integers(cells, "cells", rank=2)
     width = vertices.shape[1]
     name = _SIMPLEX.get(width) if width != 4 else "tetrahedron" if dimension == 3 else "quad"
-    if name is None or (width == 6 and dimension == 2):
+    if name is None or (dimension < 3 and width > 4):
         raise InvalidArgument(f"cells: {width} vertices each may be several types; name it, as in {{'triangle6': cells}}")
     return [(name, vertices)]
 

@@ -48,8 +48,8 @@ def order_mesh(
     Args:
         points: one row of one to three coordinates for each vertex; or None, with ``vertex_count``; or, without
             cells, a mesh as of `reorder`.
-        cells: an array with a row for each cell (2, 3, 8 or 10 vertices; 4 are tetrahedra in space and quads in the
-            plane), ``{type: array}``, ``[(type, array), …]`` with meshio's names of types, or ``(offsets, connectivity)``
+        cells: an array with a row for each cell (2 or 3 vertices; in space 6, 8 or 10; 4 are tetrahedra in space and quads
+            in the plane), ``{type: array}``, ``[(type, array), …]`` with meshio's names of types, or ``(offsets, connectivity)``
             with VTK's types as a third. Cells are numbered in the order in which they are given.
         vertices: method for the vertices.
         elements: method for the elements, the cells of the highest dimension.
