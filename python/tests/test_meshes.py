@@ -30,7 +30,10 @@ def test_all_forms_of_cells_give_the_same_order(mesh):
         found = meshorder.order_mesh(points, form)
         assert found.vertices.permutation == expected.vertices.permutation
         assert found.cells.permutation == expected.cells.permutation
-    for layout in (points.astype(np.float32), np.asfortranarray(points), np.pad(points, ((0, 0), (0, 1)))[:, :3]):
+    records = np.zeros(len(points), dtype=[("tag", "i1"), ("place", "f8", 3)])
+    records["place"] = points
+    for layout in (points.astype(np.float32), np.asfortranarray(points), np.pad(points, ((0, 0), (0, 1)))[:, :3],
+                   records["place"]):  # fmt: skip
         found = meshorder.order_mesh(layout, cells, vertices="hilbert")
         assert len(found.vertices.permutation) == len(points)
     strided = meshorder.order_mesh(np.asfortranarray(points), cells, vertices="hilbert")

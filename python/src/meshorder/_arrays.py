@@ -70,4 +70,5 @@ def points(values: Any, name: str = "points") -> NDArray[Any]:
         if array.dtype.kind not in "fiu":
             raise InvalidArgument(f"{name}: expected real numbers, not {array.dtype}")
         array = array.astype(np.float64)
-    return array
+    # of packed records, say, whose rows are not whole numbers apart
+    return array if array.flags.aligned else array.copy()
