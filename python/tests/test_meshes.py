@@ -138,6 +138,7 @@ def test_arrays_of_a_mesh_stay_when_it_is_reordered_in_place(mesh):
 def test_comparison_and_advice(mesh):
     comparison = meshorder.compare(mesh, ["rcm", ("fiedler", "lexmax")])
     assert [candidate.vertices for candidate in comparison] == ["original", "rcm", "fiedler"]
+    assert [candidate.vertices for candidate in meshorder.compare(mesh, "rcm")] == ["original", "rcm"]
     assert comparison[1].spans.mean_span < comparison[0].spans.mean_span and comparison[0].measured is None
     assert comparison._repr_html_().count("<tr>") == 4 and "rcm" in repr(comparison)
     measured = meshorder.compare(mesh, ["rcm"], measure=True, predict=False, budget=0)

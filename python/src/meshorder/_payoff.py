@@ -154,7 +154,8 @@ class Comparison(Sequence[Candidate]):
 
 
 def _pairs(methods: Any) -> list[tuple[str, str]]:
-    return [(method, "auto") if isinstance(method, str) else tuple(method) for method in methods or []]
+    listed = [methods] if isinstance(methods, str) else methods or []
+    return [(method, "auto") if isinstance(method, str) else tuple(method) for method in listed]
 
 
 @dataclass(frozen=True)
@@ -229,7 +230,8 @@ def compare(
 
     Args:
         mesh: as of `advise`.
-        methods: names of methods for the vertices, or pairs of those for vertices and elements; None: what "auto" takes.
+        methods: names of methods for the vertices, or pairs of those for vertices and elements; or one name; None: what
+            "auto" takes.
         measure: runs the kernels here, on one thread.
         budget: seconds for that.
         predict: by reuse distances and a cost model.
