@@ -84,6 +84,9 @@ wrong = triangles.copy()
 if comm.rank == 1:
     wrong[0, 0] = 10 ** 12
 for call in (lambda: meshorder.mpi.order_ranks(comm, own, wrong),
+             lambda: meshorder.mpi.order_ranks(comm, own if comm.rank == 0 else -1, triangles),
+             lambda: meshorder.mpi.order_ranks(comm, own, triangles + 0.5),
+             lambda: meshorder.mpi.order_parts(comm, own, triangles, places, parts=-5),
              lambda: meshorder.mpi.order_ranks(comm, own, triangles, method="nonsense"),
              lambda: meshorder.mpi.order_parts(comm, own, triangles, places, partition="nonsense")):
     try:
@@ -91,8 +94,9 @@ for call in (lambda: meshorder.mpi.order_ranks(comm, own, wrong),
     except ValueError as error:
         print(type(error).__name__, error)
 """))
-    assert said.count("InvalidArgument") == 6
+    assert said.count("InvalidArgument") == 12
     assert said.count("has the vertex 1000000000000") == 2
+    assert said.count("vertex_count: -1") == said.count("expected integers") == said.count("-5 parts") == 2
 
 
 def test_a_missing_library_is_told():

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _errors
+from ._arrays import integers
 
 __all__ = ["PartOrder", "RankOrder", "order_parts", "order_ranks"]
 
@@ -94,6 +95,15 @@ def _numbers(array: NDArray[Any]) -> Any:
     return array.ctypes.data_as(_NUMBERS)
 
 
+def _whole_numbers(values: ArrayLike) -> Numbers:
+    return np.ascontiguousarray(integers(values, "cells", rank=None), np.int64)
+
+
+def _room_for(count: int) -> Numbers:
+    """Room for so many numbers. A negative count is for the library to refuse, on all ranks."""
+    return np.empty(max(count, 0), np.int64)
+
+
 @dataclasses.dataclass
 class _Arrays:
     """The arrays of a rank, kept as long as C reads them."""
@@ -106,9 +116,9 @@ class _Arrays:
     @classmethod
     def of(cls, vertex_count: int, cells: ArrayLike | tuple[ArrayLike, ArrayLike], points: ArrayLike | None) -> _Arrays:
         if isinstance(cells, tuple):
-            offsets, vertices = (np.ascontiguousarray(part, np.int64) for part in cells)
+            offsets, vertices = (_whole_numbers(part) for part in cells)
         else:
-            rows = np.ascontiguousarray(cells, np.int64)
+            rows = _whole_numbers(cells)
             if rows.ndim != 2 and rows.size > 0:
                 raise _errors.InvalidArgument(f"cells: {rows.ndim} dimensions; give m × k numbers, or (offsets, vertices)")
             width = rows.shape[1] if rows.ndim == 2 else 0
@@ -118,7 +128,7 @@ class _Arrays:
             raise _errors.InvalidArgument(f"cells: {vertices.size} vertices do not fit the offsets")
         placed = None
         if points is not None:
-            placed = np.zeros((vertex_count, 3))
+            placed = np.zeros((max(vertex_count, 0), 3))
             given = np.asarray(points, np.float64)
             if given.ndim != 2 or len(given) != vertex_count or not 1 <= given.shape[1] <= 3:
                 raise _errors.InvalidArgument(f"points: {given.shape}, must be {vertex_count} × 1, 2 or 3")
@@ -164,7 +174,7 @@ def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
     """
     arrays = _Arrays.of(vertex_count, cells, points)
     options = _Options(ctypes.sizeof(_Options), method.encode(), None, None, seed, 0, threads, interface_last, 0)
-    order = RankOrder(np.empty(vertex_count, np.int64), np.empty(len(arrays.offsets) - 1, np.int64))
+    order = RankOrder(_room_for(vertex_count), _room_for(len(arrays.offsets) - 1))
     _call(_library().mo_mpi_order_ranks, communicator, arrays, options, order.new_numbers, order.cell_order)
     return order
 
@@ -196,8 +206,8 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
     arrays = _Arrays.of(vertex_count, cells, points)
     options = _Options(ctypes.sizeof(_Options), method.encode(), partition.encode(), balance.encode(), seed, parts, threads,
                        interface_last, 0)  # fmt: skip
-    order = PartOrder(np.empty(vertex_count, np.int64), np.empty((parts or communicator.size) + 1, np.int64),
-                      np.empty(len(arrays.offsets) - 1, np.int64))  # fmt: skip
+    order = PartOrder(_room_for(vertex_count), _room_for((parts or communicator.size) + 1),
+                      _room_for(len(arrays.offsets) - 1))  # fmt: skip
     _call(_library().mo_mpi_order_parts, communicator, arrays, options, order.new_numbers, order.part_starts,
           order.cell_parts)  # fmt: skip
     return order
