@@ -366,6 +366,15 @@ def test_methods_of_ones_own(graph):
         lambda: meshorder.order(([0, 1, 2], [1, 0]), threads=-1),
         lambda: meshorder.order(([0, 1, 2], [1, 0]), seed=-1),
         lambda: meshorder.order(([0, 1, 2], [1, 0]), time_limit=-1.0),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), time_limit="1"),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), tolerance=1j),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), threads=2**31),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), seed=2**64),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), seed=1.5),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), max_iterations=2**40),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), workload=3),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), check=True),
+        lambda: meshorder.order(([0, 1, 2], [1, 0]), progress="bar"),
     ],
 )
 def test_refuses(wrong):

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import operator
 from collections.abc import Callable, Iterator
 from typing import Any, TypedDict, Union
 
@@ -61,12 +62,18 @@ def prepared(options: Options | dict[str, Any]) -> Iterator[dict[str, Any]]:
     for name in ("groups", "cell_groups"):
         if name in given:
             given[name] = integers(given[name], name)
-    for name in ("seed", "max_iterations", "threads"):
-        if name in given and (not isinstance(given[name], int) and not hasattr(given[name], "__index__")):
-            raise InvalidArgument(f"{name}: expected a whole number, not {given[name]!r}")
-    if given.get("seed", 0) < 0:
-        raise InvalidArgument("seed: must not be negative")
+    for name, most in (("seed", 2**64 - 1), ("max_iterations", 2**31 - 1), ("threads", 2**31 - 1)):
+        if name in given:
+            given[name] = _whole(given[name], most, name)
+    for name in ("tolerance", "time_limit"):
+        if name in given:
+            given[name] = _real(given[name], name)
+    for name in ("workload", "check"):
+        if name in given and not isinstance(given[name], str):
+            raise InvalidArgument(f"{name}: expected a text, not {given[name]!r}")
     progress = given.pop("progress", None)
+    if progress is not None and not isinstance(progress, bool) and not callable(progress):
+        raise InvalidArgument(f"progress: expected a function or True, not {progress!r}")
     if progress is True:
         with _bar() as given["progress"]:
             yield given
@@ -74,6 +81,23 @@ def prepared(options: Options | dict[str, Any]) -> Iterator[dict[str, Any]]:
     if progress is not None and progress is not False:
         given["progress"] = progress
     yield given
+
+
+def _whole(value: Any, most: int, name: str) -> int:
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise InvalidArgument(f"{name}: expected a whole number, not {value!r}") from None
+    if not 0 <= number <= most:
+        raise InvalidArgument(f"{name}: {number} is outside 0 … {most}")
+    return number
+
+
+def _real(value: Any, name: str) -> float:
+    if not isinstance(value, (str, bytes)):
+        with contextlib.suppress(TypeError, ValueError, OverflowError):
+            return float(value)
+    raise InvalidArgument(f"{name}: expected a number, not {value!r}")
 
 
 @contextlib.contextmanager
