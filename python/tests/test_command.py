@@ -199,6 +199,33 @@ def test_cells_are_never_lost(mesh, tmp_path):
         assert done.returncode == 2 and done.stdout == ""
         assert done.stderr.splitlines()[-1].startswith(f"meshorder: {name}: ")
         assert sorted(os.listdir(tmp_path)) == before
+        assert run("order", "a.xmf", "-o", name, "--maps", "m", cwd=tmp_path).returncode == 2
+        assert sorted(os.listdir(tmp_path)) == before
+
+
+def test_strict_allows_meshio_no_loss_either(deck, tmp_path):
+    ok("order", "deck.inp", "-o", "sets.vtu", cwd=tmp_path)
+    before = sorted(os.listdir(tmp_path))
+    done = run("order", "sets.vtu", "-o", "back.mdpa", "--strict", "--maps", "m", cwd=tmp_path)
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.splitlines()[-1].startswith("meshorder: back.mdpa: the file does not give back the point sets")
+    assert sorted(os.listdir(tmp_path)) == before
+    ok("order", "deck.hmf", "-o", "all.hmf", "--strict", cwd=tmp_path)
+
+
+def test_maps_of_an_earlier_run_go(deck, tmp_path):
+    for name in ("m.cells.kept.npy", "m.vertices.ids.npy", "m.notes.npy"):
+        (tmp_path / name).write_bytes(b"")
+    done = ok("order", "deck.hmf", "-o", "out.hmf", "--maps", "m", cwd=tmp_path)
+    maps = sorted(path.name for path in tmp_path.glob("m.*"))
+    assert maps == ["m.cells.new_to_old.npy", "m.cells.old_to_new.npy", "m.maps.json", "m.notes.npy",
+                    "m.vertices.new_to_old.npy", "m.vertices.old_to_new.npy"]  # fmt: skip
+    assert "m.maps.json" in done.stdout.split() and "meshorder-" not in done.stdout
+    told = json.loads(ok("order", "deck.hmf", "-o", "out.hmf", "--maps", "m", "--json", cwd=tmp_path).stdout)["maps"]
+    assert sorted(told) == [name for name in maps if "notes" not in name]
+    (tmp_path / "ids.inp").write_text("*NODE\n11,0,0,0\n12,1,0,0\n13,0,1,0\n14,0,0,1\n*ELEMENT, TYPE=C3D4\n7,11,12,13,14\n")
+    ok("order", "ids.inp", "-o", "out.hmf", "--maps", "m", cwd=tmp_path)
+    assert np.load(tmp_path / "m.vertices.ids.npy").tolist() == [11, 12, 13, 14]
 
 
 def test_what_cannot_be_read_or_written_gives_one_line(tmp_path):

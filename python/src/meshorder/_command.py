@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from . import _core, _files, _foreign
 from ._errors import Error, InputError
-from .hosts.meshio import Blocks, to_meshio
+from .hosts.meshio import GROUPED, Blocks, to_meshio
 
 #: subcommands that take a mesh: its place among the arguments that are no options
 _MESH_PLACE = {"order": 0, "apply": 1, "info": 0, "compare": 0}
@@ -82,9 +82,10 @@ class _Words:
     subcommand: str
     mesh: _Word
     output: _Word | None = None
-    maps: str | None = None
+    maps: _Word | None = None
     json: bool = False
     quiet: bool = False
+    strict: bool = False
 
     def files(self) -> Iterator[str]:
         yield self.mesh.path
@@ -122,15 +123,42 @@ class _Words:
         mesh = _MESH_PLACE.get(subcommand, len(arguments)) + 1
         if mesh >= len(plain):
             return None
-        maps = values.get("--maps")
         return cls(
             subcommand,
             _Word(arguments[plain[mesh]], plain[mesh]),
             values.get("-o", values.get("--output")),
-            maps.path if maps else None,
+            values.get("--maps"),
             "--json" in flags,
             not flags.isdisjoint({"--quiet", "-q"}),
+            "--strict" in flags,
         )
+
+
+class _Maps:
+    """Files of maps, which take their places when the mesh that they are of is written.
+
+    Attributes:
+        prefix: of their names.
+        scratch: prefix of the names that they have before.
+    """
+
+    #: what only some runs write; those of an earlier one go
+    _OPTIONAL = ("vertices.ids", "cells.ids", "cells.kept", "vertices.parts", "cells.parts",
+                 "elements.old_to_new", "elements.new_to_old", "elements.ids")  # fmt: skip
+
+    def __init__(self, prefix: str, folder: str) -> None:
+        self.prefix = prefix
+        self.scratch = os.path.join(folder, os.path.basename(prefix))
+
+    def take_their_place(self) -> None:
+        folder, name = os.path.split(self.scratch)
+        written = os.listdir(folder)
+        for file in written:
+            os.replace(os.path.join(folder, file), self.prefix + file[len(name) :])
+        for what in self._OPTIONAL:
+            if f"{name}.{what}.npy" not in written:
+                with contextlib.suppress(FileNotFoundError):
+                    os.remove(f"{self.prefix}.{what}.npy")
 
 
 class _Signalled(BaseException):
@@ -167,6 +195,7 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
     dimension = 3
     names = {}
     made = ""
+    maps = None
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="meshorder-"))
         if output is not None:
@@ -174,6 +203,10 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
             made = os.path.join(folder, "out.vtu")
             output.put(arguments, made)
             names[made] = output.path
+            if words.maps is not None and words.maps.path:
+                maps = _Maps(words.maps.path, stack.enter_context(_foreign.folder_beside(words.maps.path)))
+                words.maps.put(arguments, maps.scratch)
+                names[maps.scratch] = maps.prefix
         if format:
             mesh = _foreign.read(words.mesh.path, format)
             dimension = mesh._handle.dimension
@@ -187,11 +220,15 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
         if status < 0:
             raise _Signalled(-status)
         if status == 0 and output is not None and output_format:
-            notes = _write(made, output.path, output_format, words, dimension)
+            notes = _write(made, output.path, output_format, words, dimension, maps)
             warn([f"{output.path}: {note}" for note in notes])
+            if maps is not None:
+                maps.take_their_place()
     if words.json and status == 0:
         result = json.loads(printed)
         result["notes"] = warnings + result["notes"]
+        if maps is not None:
+            result["maps"] = [path.replace(maps.scratch, maps.prefix) for path in result["maps"]]
         printed = json.dumps(result, indent=2, ensure_ascii=False) + "\n"
     _print(printed)
     return status
@@ -208,7 +245,7 @@ def _print(text: str) -> None:
             raise Error("standard output: cannot be written to the end; is the disk full?") from error
 
 
-def _write(made: str, path: str, format: str, words: _Words, dimension: int) -> list[str]:
+def _write(made: str, path: str, format: str, words: _Words, dimension: int, maps: _Maps | None) -> list[str]:
     """Writes what the command made through meshio; returns notes."""
     ordered = words.subcommand == "order"
     moved = _files.read(made)
@@ -216,16 +253,19 @@ def _write(made: str, path: str, format: str, words: _Words, dimension: int) -> 
     def write(blocks: Blocks) -> list[str]:
         mesh, order, notes = to_meshio(moved, blocks)
         mesh.points = mesh.points[:, :dimension]
-        written, *missing = _foreign.write_meshio(mesh, path, format)
-        if ordered and words.maps is not None:
-            _reorder_map_of_cells(words.maps, order)
-            _forget_mesh_after(words.maps)
+        lost = [note for note in notes if note != GROUPED]
+        if words.strict and lost:
+            raise InputError(f"{path}: {lost[0]}; no loss is allowed")
+        written, *missing = _foreign.write_meshio(mesh, path, format, words.strict)
+        if ordered and maps is not None:
+            _reorder_map_of_cells(maps.scratch, order)
+            _forget_mesh_after(maps.scratch)
         return [written, *notes, *missing]
 
     try:
         return write(Blocks.OF_TYPES_IN_RUNS if ordered else Blocks.AS_THEY_COME)
     except InputError:
-        if not ordered or words.maps is not None:  # maps must lead back
+        if not ordered or maps is not None:  # maps must lead back
             raise
         return write(Blocks.OF_TYPES)
 

@@ -103,14 +103,21 @@ def read_meshio(path: str, format: str) -> tuple[Any, list[str]]:
     return mesh, notes
 
 
-def write_meshio(mesh: Any, path: str, format: str) -> list[str]:
+def write_meshio(mesh: Any, path: str, format: str, strict: bool = False) -> list[str]:
     """Writes a meshio.Mesh, and reads it again to see what the format holds of it.
+
+    Args:
+        mesh: of meshio.
+        path: of the file.
+        format: by meshio's name.
+        strict: allows no loss of cells, arrays and sets.
 
     Returns:
         That meshio wrote it, what meshio says, and what the file does not hold.
 
     Raises:
-        InputError: meshio cannot write it, or cells would be lost. There is no file then.
+        InputError: meshio cannot write it, or cells would be lost, or anything where that is not allowed. There is no
+            file then.
         Unavailable: meshio needs another package for the format.
     """
     import meshio
@@ -124,9 +131,13 @@ def write_meshio(mesh: Any, path: str, format: str) -> list[str]:
             with _meshios_words(path, [], "read it again"):
                 again = meshio.read(made, format)
         except (InputError, Unavailable):
-            notes.append("meshio cannot read this file again: what it holds was not verified")
+            lost = ["meshio cannot read this file again: what it holds was not verified"]
         else:
-            notes += _what_is_lost(mesh, again, path)
+            lost = list(_what_is_lost(mesh, again, path))
+            notes += _what_is_rounded(mesh, again)
+        if strict and lost:
+            raise InputError(f"{path}: {lost[0]}; no loss is allowed")
+        notes += lost
         for name in os.listdir(folder):
             os.replace(os.path.join(folder, name), os.path.join(os.path.dirname(path), name))
     return notes
@@ -209,11 +220,6 @@ def _what_is_lost(mesh: Any, again: Any, path: str) -> Iterator[str]:
         yield f"cells of type {', '.join(missing)} become {', '.join(extra)}"
     if len(again.points) != len(mesh.points):
         yield f"the file has {len(again.points)} points instead of {len(mesh.points)}"
-    else:
-        width = min(mesh.points.shape[1], again.points.shape[1])
-        error = np.abs(again.points[:, :width] - mesh.points[:, :width]).max(initial=0)
-        if error > 0:
-            yield f"coordinates are rounded, by at most {error:.2g}"
     for what in ("point_data", "cell_data", "point_sets", "cell_sets", "field_data"):
         names = [f"'{name}'" for name in getattr(mesh, what) if name not in getattr(again, what)]
         if names:
@@ -223,6 +229,15 @@ def _what_is_lost(mesh: Any, again: Any, path: str) -> Iterator[str]:
             before, after = (_member_count(getattr(one, what)[name]) for one in (mesh, again))
             if before != after:
                 yield f"the {what.replace('_', ' ')[:-1]} '{name}' has {after} members in the file instead of {before}"
+
+
+def _what_is_rounded(mesh: Any, again: Any) -> Iterator[str]:
+    if len(again.points) != len(mesh.points):
+        return
+    width = min(mesh.points.shape[1], again.points.shape[1])
+    error = np.abs(again.points[:, :width] - mesh.points[:, :width]).max(initial=0)
+    if error > 0:
+        yield f"coordinates are rounded, by at most {error:.2g}"
 
 
 def _member_count(members: Any) -> int:

@@ -124,6 +124,10 @@ def _renumbered(new_places: NDArray[Any], members: Any, name: str) -> NDArray[An
     return renumbered
 
 
+#: what `to_meshio` notes that is no loss
+GROUPED = "cells were grouped by type"
+
+
 class Blocks(enum.Enum):
     """Which cells of a `Mesh` are put together in a block."""
 
@@ -151,7 +155,7 @@ def to_meshio(mesh: Mesh, blocks: Blocks = Blocks.OF_TYPES) -> tuple[Any, NDArra
             name = f"{SHAPES[mesh.shapes[cells[0]]]} of {width} vertices"
             raise InputError(f"meshio has no cells of the type {name}") from None
     old_places = np.concatenate(members) if members else np.zeros(0, dtype=np.int64)
-    notes = [] if (old_places == np.arange(len(widths))).all() else ["cells were grouped by type"]
+    notes = [] if (old_places == np.arange(len(widths))).all() else [GROUPED]
     points = mesh.points[:, : mesh._handle.dimension]
     made = meshio.Mesh(np.array(points), made_blocks)
     _attach(made, mesh, members, notes)
