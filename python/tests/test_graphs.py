@@ -179,7 +179,8 @@ def test_networkx_edges_are_taken_as_networkx_takes_them():
     zero[3][0]["weight"] = 0.0  # no edge
     signed = nx.Graph()
     signed.add_weighted_edges_from([("a", "b", -2.0), ("b", "c", 1.0), ("c", "a", 0.5), ("c", "c", 9.0)])
-    for graph in (parallel, zero, signed):
+    opposite = nx.MultiGraph([(0, 1, {"weight": 1}), (0, 1, {"weight": -1}), (1, 2)])  # each without its sign
+    for graph in (parallel, zero, signed, opposite):
         theirs = nx.algebraic_connectivity(graph)
         assert meshorder.networkx.algebraic_connectivity(graph) == pytest.approx(theirs, abs=1e-7)
     assert meshorder.networkx.algebraic_connectivity(zero, weight=None) == pytest.approx(2)

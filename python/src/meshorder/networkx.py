@@ -21,7 +21,7 @@ def _weights(graph: Any, weight: str | None) -> NDArray[np.float64] | None:
     rows = [row for _, row in graph.adjacency()]
     if graph.is_multigraph():
         parallel = itertools.chain.from_iterable(row.values() for row in rows)
-        weights = [sum(attributes.get(weight, 1) for attributes in edges.values()) for edges in parallel]
+        weights = [sum(abs(attributes.get(weight, 1)) for attributes in edges.values()) for edges in parallel]
     else:
         weights = [attributes.get(weight, 1) for row in rows for attributes in row.values()]
     return np.abs(np.array(weights, dtype=np.float64))
