@@ -175,3 +175,13 @@ def test_groups_of_universal_files_are_found_again(model, tmp_path, source, orde
     gmsh.clear()
     gmsh.open(str(tmp_path / "b.unv"))
     assert groups() == before
+
+
+def test_model_of_nodes_alone(model):
+    model.addDiscreteEntity(0, 1)
+    places = np.random.default_rng(9).random(30)
+    model.mesh.addNodes(0, 1, range(1, 11), places)
+    order = meshorder.gmsh.reorder(vertices="hilbert")
+    tags, coordinates, _ = model.mesh.getNodes()
+    by_tag = coordinates.reshape(-1, 3)[np.argsort(tags)]
+    np.testing.assert_array_equal(by_tag, places.reshape(-1, 3)[order.vertices.new_to_old])

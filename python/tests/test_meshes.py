@@ -197,6 +197,12 @@ def test_cells_of_second_order_in_the_plane_need_a_type(width):
     assert meshorder.make_mesh(points, {f"{kind}{width}": [range(width)]}).cells[0][0] == kind
 
 
+@pytest.mark.parametrize("cells", [[], (), {}, np.zeros((0, 4), int), ([0], [])])
+def test_points_without_cells(cells):
+    order = meshorder.order_mesh(np.random.default_rng(8).random((10, 3)), cells, vertices="hilbert")
+    assert len(order.vertices.permutation) == 10 and len(order.cells.permutation) == 0
+
+
 def test_refuses_faulty_points(mesh):
     with pytest.raises(InvalidArgument):
         meshorder.order_mesh(np.full((4, 3), np.nan), [[0, 1, 2, 3]], vertices="hilbert")

@@ -73,7 +73,9 @@ def cell_arrays(cells: Any, dimension: int) -> Any:
     if isinstance(cells, tuple) and 2 <= len(cells) <= 3 and not isinstance(cells[0], str):
         types = None if len(cells) == 2 or cells[2] is None else _vtk_types(cells[2])
         return integers(cells[0], "offsets"), integers(cells[1], "connectivity"), types
-    if isinstance(cells, (list, tuple)) and cells and not isinstance(cells[0], (list, np.ndarray)):
+    if isinstance(cells, (list, tuple)) and len(cells) == 0:
+        return []
+    if isinstance(cells, (list, tuple)) and not isinstance(cells[0], (list, np.ndarray)):
         if hasattr(cells[0], "type"):  # meshio's blocks
             return [_block(block.type, block.data) for block in cells]
         if isinstance(cells[0], tuple) and len(cells[0]) == 2 and isinstance(cells[0][0], str):
