@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Orders, Fiedler vectors and the quality of orders, of graphs and matrices."""
+"""Graphs and matrices: their orders, Fiedler vectors, and the quality of orders."""
 
 from __future__ import annotations
 
@@ -19,7 +19,16 @@ from ._permutation import Permutation
 
 
 class FiedlerComponent(NamedTuple):
-    """The eigensolver's report on a connected component."""
+    """The eigensolver's report on a connected component.
+
+    Attributes:
+        size: number of vertices.
+        lambda2: second-smallest eigenvalue of the component's Laplacian; 0 for a single vertex.
+        residual: ‖L x − λ x‖ / ‖x‖, absolute.
+        iterations: of LOBPCG on the component itself, its coarser levels aside; 0 where a dense eigensolver gave the
+            answer.
+        converged: whether the residual is at most ``tolerance · lambda2``.
+    """
 
     size: int
     lambda2: float
@@ -30,17 +39,19 @@ class FiedlerComponent(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Order:
-    """An order and how it was found.
+    """An order of n vertices or cells, and how it was found.
 
     Attributes:
-        permutation: the new places.
-        method: that made it; never "auto".
-        reason: why "auto" took it; empty where it was asked for.
-        fiedler: a report for each component, of methods that use Fiedler vectors.
-        vector: of "fiedler" and "minla": the next call's ``start``; else None.
+        permutation: the new place of each vertex or cell.
+        method: name of the method that made the order; never "auto".
+        reason: why "auto" chose that method; empty where it was asked for by name.
+        fiedler: the eigensolver's report for each connected component, from methods that sort by a Fiedler vector
+            ("fiedler", "minla", "fiedler-facet"); empty for others.
+        vector: the Fiedler vector, n numbers, from the same methods: pass it as ``start`` to order a similar graph;
+            None for others.
         complete: False if the time limit ended the method early.
         seconds: wall-clock time of the call.
-        notes: what was cleaned or converted: "12 loops dropped".
+        notes: what was changed in a copy of the input: "12 loops dropped", "offsets widened".
     """
 
     permutation: Permutation
@@ -60,12 +71,12 @@ class Order:
 
     @property
     def old_to_new(self) -> NDArray[np.int32]:
-        """Of the permutation."""
+        """The new place of each old vertex or cell: ``permutation.old_to_new``."""
         return self.permutation.old_to_new
 
     @property
     def new_to_old(self) -> NDArray[np.int32]:
-        """Of the permutation."""
+        """The old place of the vertex or cell at each new place, as in ``a[order.new_to_old]``."""
         return self.permutation.new_to_old
 
     def __repr__(self) -> str:
@@ -76,18 +87,20 @@ class Order:
         return _html.order(self)
 
     def plot(self, graph: Any, *, side: int = 256, axes: Any = None) -> Any:
-        """Draws the matrix's pattern before and after, by matplotlib. O(entries).
+        """Draws the sparsity pattern of a matrix before and after the order, with matplotlib. O(entries).
 
         Args:
-            graph: that was ordered, as of `order`; must be symmetric.
-            side: tiles along each side in which entries are counted.
-            axes: two of matplotlib's; None: a new figure's.
+            graph: the graph or matrix that was ordered, in a form that `meshorder.order` takes but no mesh. Its pattern
+                must be symmetric.
+            side: the entries are counted in side × side tiles, n × n where the matrix has fewer rows; ≥ 1.
+            axes: two matplotlib Axes to draw on; None: those of a new figure.
 
         Returns:
-            The two axes.
+            The two Axes.
 
         Raises:
-            ImportError: matplotlib is missing, which the extra ``plot`` brings.
+            InvalidArgument: an asymmetric pattern, a graph of another size, ``side`` below 1.
+            ImportError: matplotlib is not installed; the extra ``plot`` brings it.
         """
         offsets, neighbours = graph_arrays(graph)
         return _plots.patterns(self, offsets, neighbours, side, axes)
@@ -95,14 +108,15 @@ class Order:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Fiedler:
-    """The Fiedler vectors of all components of a graph.
+    """The Fiedler vectors of all connected components of a graph of n vertices.
 
     Attributes:
-        values: in each component of norm 1 and sum 0; 0 for vertices without neighbours.
-        components: a report for each, largest first.
-        component_of: the component of each vertex.
+        values: n numbers, the Fiedler vector of each component at its vertices: of norm 1 and sum 0 within the
+            component; 0 for vertices without neighbours. Signs are the same on every run.
+        component_of: n numbers, the position of each vertex's component in ``components``.
+        components: the eigensolver's report for each component, the largest component first.
         complete: False if the time limit ended the iteration.
-        notes: what was cleaned.
+        notes: what was changed in a copy of the graph: "12 loops dropped".
     """
 
     values: NDArray[np.float64]
@@ -113,17 +127,17 @@ class Fiedler:
 
     @property
     def lambda2(self) -> float:
-        """The second-smallest eigenvalue of the largest component's Laplacian."""
+        """The second-smallest eigenvalue of the largest component's Laplacian; 0 for the graph without vertices."""
         return self.components[0].lambda2 if self.components else 0.0
 
     @property
     def residual(self) -> float:
-        """‖L x − λ x‖ / ‖x‖, the largest of all components."""
+        """The largest residual ‖L x − λ x‖ / ‖x‖ of all components, absolute."""
         return max((component.residual for component in self.components), default=0.0)
 
     @property
     def converged(self) -> bool:
-        """Whether all components did."""
+        """Whether the eigensolver converged in all components."""
         return all(component.converged for component in self.components)
 
     def __repr__(self) -> str:
@@ -139,14 +153,16 @@ class Fiedler:
 
 @dataclass(frozen=True)
 class Quality:
-    """How near the ends of edges stand in an order. The span of an edge is the distance of its ends' places.
+    """Numbers that tell how near the two ends of edges are in an order of n vertices.
+
+    The span of an edge is the distance between the places of its ends. All numbers are 0 for a graph without edges.
 
     Attributes:
-        edges: loops not counted, repeats once.
-        mean_span: about n/3 for a random order.
-        mean_log2_span: mean of log₂ span.
-        bandwidth: the largest span, the half bandwidth of the matrix.
-        profile: sum over rows of the distance from the first neighbour before the diagonal to it.
+        edges: number of edges; loops are not counted, repeated entries once.
+        mean_span: mean of the spans: ≥ 1, about n/3 for a random order.
+        mean_log2_span: mean of log₂ of the spans, which a few long edges change little.
+        bandwidth: the largest span: the half bandwidth of the matrix.
+        profile: sum over the rows of the matrix of the distance from the first entry to the diagonal.
         histogram_log2: entry k is the number of edges with a span of 2ᵏ … 2ᵏ⁺¹ − 1.
     """
 
@@ -161,23 +177,30 @@ class Quality:
         return _html.quality(self)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws the histogram of spans, by matplotlib.
+        """Draws the histogram of spans with matplotlib.
 
         Args:
-            axes: matplotlib's; None: a new figure's.
+            axes: the matplotlib Axes to draw on; None: those of a new figure.
+
+        Returns:
+            The Axes.
 
         Raises:
-            ImportError: matplotlib is missing, which the extra ``plot`` brings.
+            ImportError: matplotlib is not installed; the extra ``plot`` brings it.
         """
         return _plots.quality(self, axes)
 
 
 def graph_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Offsets and neighbours of what users call a graph."""
+    """Returns the offsets and neighbours of a graph in one of the forms that `meshorder.order` takes.
+
+    Raises:
+        InvalidArgument: none of these forms, a matrix that is not square, arrays of other types than integers.
+    """
     if hasattr(graph, "tocsr") and hasattr(graph, "nnz"):
         matrix = graph.tocsr()
         if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
-            raise InvalidArgument(f"graph: a square matrix is needed, not one of shape {matrix.shape}")
+            raise InvalidArgument(f"graph: expected a square matrix, not one of shape {matrix.shape}")
         return integers(matrix.indptr, "indptr"), integers(matrix.indices, "indices")
     if hasattr(graph, "adjacency") and hasattr(graph, "number_of_nodes"):
         return networkx_arrays(graph)
@@ -186,12 +209,13 @@ def graph_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:
     if isinstance(graph, (tuple, list)) and len(graph) == 2:
         return integers(graph[0], "indptr"), integers(graph[1], "indices")
     raise InvalidArgument(
-        f"graph: expected a SciPy matrix, (indptr, indices) or a networkx graph, not {type(graph).__name__}"
+        "graph: expected a SciPy matrix, (indptr, indices), a networkx graph or a torch matrix in CSR form, "
+        f"not {type(graph).__name__}"
     )
 
 
 def networkx_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Offsets and neighbours of a networkx graph, vertices in the order of its nodes."""
+    """Returns the offsets and neighbours of a networkx graph, vertices in the order of its nodes."""
     place = {node: number for number, node in enumerate(graph)}
     rows = [neighbours for _, neighbours in graph.adjacency()]
     offsets = np.zeros(len(rows) + 1, dtype=np.int64)
@@ -201,7 +225,7 @@ def networkx_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def order_graph(graph: Any, method: str, points: Any, weights: Any, options: dict[str, Any]) -> Order:
-    """`order`, of what is no mesh."""
+    """Orders a graph or matrix; see `meshorder.order`."""
     offsets, neighbours = graph_arrays(graph)
     given_weights = None if weights is None else reals(weights, "weights")
     coordinates = None if points is None else as_points(points)
@@ -210,13 +234,32 @@ def order_graph(graph: Any, method: str, points: Any, weights: Any, options: dic
 
 
 def fiedler(graph: Any, *, weights: Any = None, tolerance: float = 1e-8, **options: Any) -> Fiedler:
-    """The Fiedler vector of each component: the eigenvector of the Laplacian's second-smallest eigenvalue.
+    """Computes the Fiedler vector of each connected component of a graph.
+
+    It is the eigenvector of the second-smallest eigenvalue λ₂ of the Laplacian L = D − W, where W has the weight of
+    each edge and D the sums of its rows.
 
     Args:
-        graph: as of `order`.
-        weights: > 0, one for each entry.
-        tolerance: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖.
-        **options: see `Options`.
+        graph: a graph or matrix in a form that `order` takes, but no mesh. A matrix gives its pattern only; to use its
+            values, pass them as weights.
+        weights: one for each entry of the graph, in the order of its arrays, > 0, finite, and equal in both entries of
+            an edge; None: all are 1.
+        tolerance: > 0: iterates until ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖.
+        **options: see `Options`; ``workload``, ``groups`` and ``cell_groups`` have no effect.
+
+    Returns:
+        The vectors and a report for each component. A component that has not converged after ``max_iterations`` keeps
+        its best vector, with ``converged`` False; that is no error.
+
+    Raises:
+        InvalidArgument: a faulty graph, weights that are not positive, sizes that do not match.
+        TooLarge: 2³¹ or more vertices.
+        Stopped: ``progress`` returned False.
+
+    Example:
+        >>> path = [0, 1, 3, 5, 6], [1, 0, 2, 1, 3, 2]      # the graph 0–1–2–3
+        >>> round(meshorder.fiedler(path).lambda2, 6)
+        0.585786
     """
     offsets, neighbours = graph_arrays(graph)
     given_weights = None if weights is None else reals(weights, "weights")
@@ -227,11 +270,24 @@ def fiedler(graph: Any, *, weights: Any = None, tolerance: float = 1e-8, **optio
 
 
 def quality(graph: Any, order: Order | Permutation | None = None) -> Quality:
-    """Measures the order that a graph's vertices have, or another one.
+    """Measures how near the ends of edges are in the order that a graph's vertices have, or in another one. O(entries).
 
     Args:
-        graph: as of `order`; must be symmetric.
-        order: None: the order that the vertices have.
+        graph: a graph or matrix in a form that `order` takes, but no mesh. Its pattern must be symmetric.
+        order: the order to measure, which is not carried out; None: the order that the vertices have.
+
+    Returns:
+        Spans, bandwidth and profile.
+
+    Raises:
+        InvalidArgument: a faulty graph, an asymmetric pattern, an order of another size.
+
+    Example:
+        >>> star = [0, 1, 2, 3, 6], [3, 3, 3, 0, 1, 2]
+        >>> meshorder.quality(star).bandwidth
+        3
+        >>> meshorder.quality(star, meshorder.Permutation(new_to_old=[0, 3, 1, 2])).bandwidth
+        2
     """
     offsets, neighbours = graph_arrays(graph)
     permutation = order.permutation if isinstance(order, Order) else order

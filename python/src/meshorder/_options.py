@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Options that several functions share."""
+"""Options that several functions share: their names, their checks and their form in the library."""
 
 from __future__ import annotations
 
@@ -11,28 +11,40 @@ from typing import Any, TypedDict, Union
 from ._arrays import integers, reals
 from ._errors import InvalidArgument
 
-#: see `Options`
+#: Type of the option ``progress``; see `Options`.
 ProgressFunction = Union[Callable[[str, float], Any], bool, None]
 
 
 class Options(TypedDict, total=False):
-    """Keyword arguments that orders have in common.
+    """Keyword arguments that the functions on graphs and meshes share. None stands for the default.
+
+    Another name is a TypeError; a value that is out of range is an InvalidArgument.
 
     Attributes:
-        workload: what ``auto`` chooses its method for: "all", "element", "spmv", "assembly", "springs", "bandwidth"
-            or "fill".
-        seed: of "scrambled", of METIS and of start vectors.
-        tolerance: of Fiedler vectors: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖; 0.1 suffices for orders.
-        max_iterations: of the eigensolver.
-        start: n numbers near the Fiedler vector, as the ``vector`` of an earlier result.
-        groups: a whole number for each vertex; groups stay together, ascending.
-        cell_groups: likewise for each cell.
-        symmetric: of graphs: True refuses an asymmetric pattern, None and False order A + Aᵀ.
-        check: "full", "fast" (does not refuse an asymmetric pattern) or "none" (nothing: faulty arrays crash).
-        threads: at most; None: all.
-        time_limit: seconds after which the best order so far is returned, with ``complete`` False.
-        progress: a function of the stage's name and the part that is done (0 … 1, or −1 where that is unknown), which may
-            return False to stop; or True for a bar by tqdm.
+        workload: what the method "auto" chooses for: "element", "spmv", "assembly" or "springs", the four kernels;
+            "all" of them, weighted equally (default); "bandwidth", for banded solvers; or "fill", for sparse direct
+            solvers. Other methods ignore it.
+        seed: integer ≥ 0, default 0, for the method "scrambled", METIS's methods and random start vectors.
+        tolerance: > 0: the eigensolver iterates until ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖. The default, 0.1, suffices for
+            orders; that of `fiedler` is 1e-8.
+        max_iterations: ≥ 1, default 500: the most iterations of the eigensolver on the whole graph.
+        start: n real numbers, for n vertices: an approximation of the Fiedler vector from which the eigensolver
+            starts, such as ``Order.vector`` of an earlier call.
+        groups: n integers, the group of each vertex: the vertices of a group stay together, groups ascend, and each
+            is ordered by the method.
+        cell_groups: m integers, the group of each cell, likewise. Cells stay in their block all the same, and lower
+            dimensions in their places.
+        symmetric: for graphs and matrices. True: an asymmetric pattern is an InvalidArgument. False and None
+            (default): it is replaced by that of A + Aᵀ, with the weights of (A + Aᵀ) / 2.
+        check: "full" (default) checks sizes, ranges, symmetry and that weights and coordinates are finite; "fast"
+            does the same but does not refuse an asymmetric pattern; "none" trusts the arrays, and faulty ones can
+            crash the process.
+        threads: the most threads, ≥ 0; None and 0: all. Orders do not depend on it.
+        time_limit: seconds ≥ 0 after which iterative methods return the best order so far, with ``complete`` False;
+            other methods ignore it. None (default): no limit.
+        progress: a function that is called now and then as ``progress(stage, fraction)``, with the name of the stage
+            and the share of the call that is done (0 … 1, −1 where unknown). It ends the call with `Stopped` if it
+            returns False; an exception ends it and passes through. True shows a bar by tqdm, which must be installed.
     """
 
     workload: str
@@ -51,7 +63,12 @@ class Options(TypedDict, total=False):
 
 @contextlib.contextmanager
 def prepared(options: Options | dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """The options in the library's form."""
+    """Checks the options and yields them as the dict that the functions of `_core` take.
+
+    Raises:
+        TypeError: an option of another name.
+        InvalidArgument: a value of the wrong type, a negative seed.
+    """
     unknown = options.keys() - Options.__annotations__.keys()
     if unknown:
         raise TypeError(f"unexpected keyword argument {sorted(unknown)[0]!r}")
@@ -102,6 +119,7 @@ def _real(value: Any, name: str) -> float:
 
 @contextlib.contextmanager
 def _bar() -> Iterator[Callable[[str, float], None]]:
+    """Shows a bar by tqdm and yields the progress function that moves it."""
     from tqdm.auto import tqdm
 
     with tqdm(total=100, bar_format="{desc:12} {bar} {n:3.0f} % {elapsed}") as bar:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Orders of graphs, matrices and meshes, those of other libraries among them."""
+"""Orders of graphs, matrices and meshes, also of other libraries' objects."""
 
 from __future__ import annotations
 
@@ -15,27 +15,41 @@ from .hosts.host import Request
 def order(
     graph: Any, method: str = "auto", *, points: Any = None, weights: Any = None, **options: Any
 ) -> Order:
-    """New places for the vertices of a graph, or the rows and columns of a matrix.
+    """Finds new places for the vertices of a graph, or the rows and columns of a matrix. Nothing is moved.
 
     Args:
         graph: a square SciPy matrix (CSR is read in place, others are converted), ``(indptr, indices)``, a networkx
-            graph (vertices in the order of its nodes) or a torch matrix in CSR form; or a mesh as of `reorder`, whose
-            vertices are ordered. Diagonals are ignored.
-        method: "auto" or one of `methods`.
-        points: coordinates, for geometric methods.
-        weights: > 0, one for each entry of the graph, equal on both sides of the diagonal.
+            graph (vertices in the order of its nodes) or a torch matrix in CSR form; or a mesh that `reorder` takes,
+            whose vertices are ordered. A matrix gives its pattern only: its values and diagonal are ignored, as are
+            the weights of a networkx graph.
+        method: "auto", which chooses by the size and the ``workload``, or the name of one of `methods`.
+        points: one row of one to three coordinates for each vertex, which "hilbert" and "morton" need and "auto" uses;
+            or None.
+        weights: one for each entry of the graph, in the order of its arrays, > 0, finite and equal on both sides of the
+            diagonal; None: all are 1.
         **options: see `Options`.
 
+    Returns:
+        The order: its ``permutation`` moves arrays and matrices.
+
     Raises:
-        InvalidArgument: a faulty graph, an unknown method, sizes that do not match.
+        InvalidArgument: a faulty graph, an unknown method, coordinates that are missing, sizes that do not match.
         TooLarge: 2³¹ or more vertices.
+        Unavailable: this build lacks the method.
         Stopped: ``progress`` returned False.
+
+    Example:
+        >>> import scipy.sparse
+        >>> matrix = scipy.sparse.csr_array([[2, 0, 1], [0, 2, 1], [1, 1, 2]])
+        >>> order = meshorder.order(matrix, "rcm")
+        >>> order.permutation.move(matrix).toarray().tolist()
+        [[2, 1, 0], [1, 2, 1], [0, 1, 2]]
     """
     host = find_host(graph)
     if host is None:
         return order_graph(graph, method, points, weights, options)
     if points is not None or weights is not None:
-        raise InvalidArgument("order: a mesh has points of its own, and no weights")
+        raise InvalidArgument("order: points and weights are for graphs; a mesh has its own points, and no weights")
     return host.order(method, "original", options).vertices
 
 
@@ -43,21 +57,41 @@ def order_mesh(
     points: Any, cells: Any = None, *, vertices: str = "auto", elements: str = "auto", vertex_count: int | None = None,
     **options: Any,
 ) -> MeshOrder:  # fmt: skip
-    """New places for the vertices of a mesh and for its cells. Nothing is changed.
+    """Finds new places for the vertices of a mesh and for its cells. Nothing is moved.
 
     Args:
-        points: one row of one to three coordinates for each vertex; or None, with ``vertex_count``; or, without
-            cells, a mesh as of `reorder`.
-        cells: an array with a row for each cell (2 or 3 vertices; in space 6, 8 or 10; 4 are tetrahedra in space and quads
-            in the plane), ``{type: array}``, ``[(type, array), …]`` with meshio's names of types, or ``(offsets, connectivity)``
-            with VTK's types as a third. Cells are numbered in the order in which they are given.
-        vertices: method for the vertices.
-        elements: method for the elements, the cells of the highest dimension.
-        vertex_count: where there are no points.
+        points: one row of one to three coordinates for each vertex; or None, together with ``vertex_count``; or, if no
+            cells are given, a mesh that `reorder` takes.
+        cells: vertex numbers from 0 on, in one of these forms, which number the cells in the order given:
+
+            - an array with one row for each cell, of 2 vertices (lines), 3 (triangles), 4 (quads where points have one
+              or two coordinates, else tetrahedra), and in space only 6 (wedges), 8 (hexahedra) or 10 (second-order
+              tetrahedra);
+            - ``{type: array}`` or ``[(type, array), …]``, with meshio's names of types: "tetra", "triangle6";
+            - ``(offsets, connectivity)`` or ``(offsets, connectivity, types)``, with VTK's type numbers: cell c has the
+              vertices ``connectivity[offsets[c]:offsets[c + 1]]``.
+        vertices: method for the vertices: "auto" or the name of one of `methods`.
+        elements: method for the elements, the cells of the highest dimension: "auto" or one of ``methods("elements")``.
+            Cells of lower dimension go by "lexmax", with "original" they stay. Every cell stays in its block.
+        vertex_count: the number of vertices, where there are no points.
         **options: see `Options`.
 
+    Returns:
+        The orders of the vertices and of all cells.
+
     Raises:
-        InvalidArgument: faulty cells or points, an unknown method.
+        InvalidArgument: faulty cells or points, an unknown method, sizes that do not match.
+        TooLarge: 2³¹ or more vertices or cells.
+        Unavailable: this build lacks a method.
+        Stopped: ``progress`` returned False.
+
+    Example:
+        A simulator orders its own arrays before the first step::
+
+            order = meshorder.order_mesh(points, {"tetra": tetrahedra})
+            vertices, cells = order.vertices.permutation, order.cells.permutation
+            points, velocities = vertices.move(points), vertices.move(velocities)
+            tetrahedra = cells.move(vertices.renumber(tetrahedra))
     """
     if cells is None:
         return host_of(points).order(vertices, elements, options)
@@ -68,25 +102,42 @@ def reorder(
     mesh: Any, *, vertices: str = "auto", elements: str = "auto", group_by: str | None = None, ids: str = "renumber",
     format: str | None = None, inplace: bool = False, **options: Any,
 ) -> tuple[Any, MeshOrder]:  # fmt: skip
-    """Orders a mesh and moves its vertices and cells, with all data, sets and groups that belong to them.
+    """Orders a mesh and moves its vertices and cells, together with their data, sets and groups.
 
     Args:
         mesh: a `Mesh`; a mesh of meshio, PyVista, VTK (vtkUnstructuredGrid, vtkPolyData), scikit-fem or trimesh;
-            ``gmsh.model``; or a tuple of arrays: ``(points, cells)`` with cells as of `order_mesh`, and then, where
-            there are any, a dict of arrays of the points and one of the cells (for cells in blocks, of an array for
-            each block).
-        vertices: method for the vertices.
-        elements: method for the elements.
-        group_by: name of an array of whole numbers whose groups stay together, or "sets" for the sets of cells.
-        ids: of a `Mesh`: "renumber", "keep" or "attach".
-        format: of a `Mesh`: the one that it will be written in; None: the one it was read from.
-        inplace: changes the mesh itself, and of a tuple its arrays.
+            ``gmsh.model``; or a tuple of arrays, ``(points, cells)``, ``(points, cells, point_data)`` or
+            ``(points, cells, point_data, cell_data)``. The cells have a form that `order_mesh` takes, the data are
+            dicts of arrays with a row for each point or cell; where cells are in blocks, an entry of ``cell_data`` has
+            an array for each block.
+        vertices: method for the vertices: "auto" or the name of one of `methods`.
+        elements: method for the elements, the cells of the highest dimension: "auto" or one of ``methods("elements")``.
+        group_by: name of an array of whole numbers on cells or vertices: cells and vertices with the same number stay
+            together, groups ascend. "cells:NAME" and "vertices:NAME" tell arrays of one name apart; "sets" groups by
+            the sets of cells.
+        ids: for a `Mesh` only, what becomes of the numbers that its file gives to vertices and cells: "renumber" (the
+            same numbers, ascending along the new order), "keep" (each keeps its number) or "attach" (as "renumber", and
+            arrays "original" hold the old ones).
+        format: for a `Mesh` only, name of the format that it will be written in, some of which group cells by type;
+            None: the one that it was read from.
+        inplace: True changes and returns the mesh itself, or the arrays of the tuple. Gmsh's model needs it,
+            scikit-fem's meshes refuse it.
         **options: see `Options`.
 
     Returns:
-        The mesh in its new order, of the same type, and the order.
+        The mesh in its new order, of the same type, and its orders.
 
     Raises:
-        InvalidArgument: what is no mesh, or none that can be moved; faulty arrays; an unknown method or array.
+        InvalidArgument: an object that is no mesh or cannot be reordered, faulty arrays, an unknown method or array, a
+            path (`read` makes a mesh of a file).
+        TooLarge: 2³¹ or more vertices or cells.
+        Unavailable: this build, or the mesh's library, lacks something that is needed.
+        Stopped: ``progress`` returned False.
+
+    Example:
+        Data of the vertices that are kept outside the mesh are moved by the order::
+
+            mesh, order = meshorder.reorder(meshio.read("dragon.vtu"), vertices="hilbert")
+            temperature = order.vertices.permutation.move(temperature)
     """
     return host_of(mesh).reorder(Request(vertices, elements, group_by, ids, format, inplace, options))

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Permutations, and moving what belongs to the things that they permute."""
+"""Permutations, and the moves of arrays and matrices that they stand for."""
 
 from __future__ import annotations
 
@@ -14,20 +14,33 @@ from ._errors import InvalidArgument
 
 
 class Permutation:
-    """Places of n things before and after they moved. Immutable.
+    """A permutation of n items (vertices, cells, rows): their places before and after they move. Immutable.
 
     Both directions have names, since they are easily taken for each other:
 
-    - ``old_to_new[i]`` is the new place of what stood at place i;
-    - ``new_to_old[k]`` is the old place of what stands at place k now, so that ``a[p.new_to_old]`` moves the rows
-      of an array and ``A[p.new_to_old][:, p.new_to_old]`` a matrix.
+    - ``old_to_new[i]`` is the new place of the item that was at place i;
+    - ``new_to_old[k]`` is the old place of the item that is at place k now, so that ``a[p.new_to_old]`` moves the rows
+      of an array and ``A[p.new_to_old][:, p.new_to_old]`` the rows and columns of a matrix.
+
+    Permutations can be compared, hashed and pickled; ``len(p)`` is n. Memory: 8 n bytes.
 
     Args:
-        old_to_new: makes a permutation of this map; or
-        new_to_old: of this one. Exactly one must be given.
+        old_to_new: the new place of each item: each of 0 … n−1 once.
+        new_to_old: the old place of the item at each new place: each of 0 … n−1 once. Exactly one of the two must be
+            given.
 
     Raises:
-        InvalidArgument: the map is no bijection of 0 … n−1.
+        InvalidArgument: both maps or none are given, or the map is no bijection of 0 … n−1.
+        TooLarge: 2³¹ or more items.
+
+    Example:
+        >>> p = meshorder.Permutation(new_to_old=[2, 0, 1])
+        >>> p.move(["a", "b", "c"])
+        ['c', 'a', 'b']
+        >>> p.old_to_new.tolist()
+        [1, 2, 0]
+        >>> p.renumber([[0, 1], [1, 2]]).tolist()
+        [[1, 2], [2, 0]]
     """
 
     __slots__ = ("_handle",)
@@ -35,7 +48,8 @@ class Permutation:
 
     def __init__(self, *, old_to_new: Any = None, new_to_old: Any = None) -> None:
         if (old_to_new is None) == (new_to_old is None):
-            raise InvalidArgument("Permutation: give exactly one of old_to_new and new_to_old")
+            given = "none" if old_to_new is None else "both"
+            raise InvalidArgument(f"Permutation: expected exactly one of old_to_new and new_to_old, not {given}")
         if old_to_new is not None:
             made = _core.Permutation.from_old_to_new(integers(old_to_new, "old_to_new"))
         else:
@@ -50,49 +64,64 @@ class Permutation:
 
     @classmethod
     def identity(cls, n: int) -> Permutation:
-        """The permutation of n things that moves none."""
+        """Returns the permutation of n items that moves none."""
         return cls(old_to_new=np.arange(n, dtype=np.int32))
 
     @property
     def old_to_new(self) -> NDArray[np.int32]:
-        """The new place of each old thing; read-only, without a copy."""
+        """The new place of each old item: n numbers, read-only, without a copy."""
         return self._handle.old_to_new
 
     @property
     def new_to_old(self) -> NDArray[np.int32]:
-        """The old place of what stands at each place; read-only, without a copy."""
+        """The old place of the item at each new place: n numbers, read-only, without a copy."""
         return self._handle.new_to_old
 
     def inverse(self) -> Permutation:
-        """The permutation that moves everything back."""
+        """Returns the permutation that moves everything back. O(n)."""
         return Permutation._of(self._handle.inverse())
 
     def then(self, other: Permutation) -> Permutation:
-        """This permutation followed by another."""
+        """Returns this permutation followed by another: ``old_to_new`` is ``other.old_to_new[self.old_to_new]``. O(n).
+
+        Raises:
+            InvalidArgument: the permutations have different sizes.
+        """
         return Permutation._of(self._handle.then(other._handle))
 
     def repeated(self, components: int, node_major: bool = True) -> Permutation:
-        """The permutation of degrees of freedom, some for each thing.
+        """Returns the permutation of degrees of freedom, of which each item has several.
 
         Args:
-            components: of each thing, ≥ 1.
-            node_major: component c of thing i has the number ``components * i + c``, else ``c * n + i``.
+            components: degrees of freedom of each item, ≥ 1.
+            node_major: True: component c of item i has the number ``components * i + c``; False: ``c * n + i``.
+
+        Returns:
+            A permutation of ``components * n`` degrees of freedom, each with the number that its item's new place
+            gives it.
+
+        Raises:
+            InvalidArgument: ``components`` is below 1.
+            TooLarge: 2³¹ or more degrees of freedom.
         """
         return Permutation._of(self._handle.repeated(components, node_major))
 
     def move(self, a: Any, axis: int = 0, out: NDArray[Any] | None = None) -> Any:
-        """What belongs to the things, moved with them.
+        """Moves data of the items to their new places: entry k of the result is entry ``new_to_old[k]`` of ``a``.
 
         Args:
-            a: an array, a list, a pandas object, or a square SciPy matrix, whose rows and columns move.
-            axis: of an array or a pandas object, the number of the one that the things lie along.
-            out: an array to write to, of the same shape and type; of arrays only.
+            a: an array with n entries along ``axis``, a list or tuple of n entries, a pandas Series or DataFrame with n
+                entries along ``axis``, or an n × n SciPy matrix, whose rows and columns both move. Unchanged.
+            axis: the axis of an array or of a pandas object that the items lie along.
+            out: for arrays, where to write the result: of the same shape and dtype, C-contiguous, without memory in
+                common with ``a``.
 
         Returns:
-            The same kind of object; ``out`` if it is given.
+            An object of the same kind; ``out`` if it is given.
 
         Raises:
-            InvalidArgument: ``a`` has not as many things as the permutation, or ``axis`` and ``out`` are not for it.
+            InvalidArgument: ``a`` has another number of entries, ``out`` does not fit, or ``axis`` or ``out`` is given
+                with something that is no array.
         """
         if hasattr(a, "iloc"):
             return self._move_pandas(a, axis, out)
@@ -102,12 +131,12 @@ class Permutation:
         if isinstance(a, (list, tuple)):
             _refuse(axis, out, "a list")
             if len(a) != len(self):
-                raise InvalidArgument(f"move: {len(a)} entries for a permutation of {len(self)}")
+                raise InvalidArgument(f"move: expected {len(self)} entries, not {len(a)}")
             return type(a)([a[k] for k in self.new_to_old])
         array = np.asanyarray(a)
         self._check_shape(array.shape, axis)
         if out is not None and not _takes(out, array):
-            raise InvalidArgument("move: out must be contiguous and writeable, with the shape and type of the array")
+            raise InvalidArgument(f"move: out must be C-contiguous and writeable, of shape {array.shape} and type {array.dtype}")
         plain = array.flags.c_contiguous and not array.dtype.hasobject and not isinstance(array, np.ma.MaskedArray)
         if axis not in (0, -array.ndim) or not plain:
             return np.take(array, self.new_to_old, axis=axis, out=out)
@@ -130,7 +159,7 @@ class Permutation:
         matrix = a.tocsr()
         n = len(self)
         if matrix.shape != (n, n):
-            raise InvalidArgument(f"move: a matrix of shape {matrix.shape} for a permutation of {n}")
+            raise InvalidArgument(f"move: expected a matrix of shape {(n, n)}, not {matrix.shape}")
         indptr, indices = integers(matrix.indptr, "indptr"), integers(matrix.indices, "indices")
         values = np.ascontiguousarray(matrix.data)
         moved = np.empty_like(indptr), np.empty_like(indices), np.empty_like(values)
@@ -139,16 +168,25 @@ class Permutation:
         return result.asformat(a.format)
 
     def renumber(self, numbers: Any, out: NDArray[Any] | None = None) -> NDArray[Any]:
-        """Numbers of things, as a mesh's connectivity has them, replaced by the new ones.
+        """Replaces numbers of items, such as a mesh's connectivity, by their new numbers.
+
+        Entry i of the result is ``old_to_new[numbers[i]]``. A number keeps its place; `move` changes places.
 
         Args:
-            numbers: integers of 0 … n−1, of any shape.
-            out: an array to write to, of the same shape and of 32 or 64 bits; ``out=numbers`` works in place.
+            numbers: integers in 0 … n−1, of any shape. Unchanged unless it is ``out``.
+            out: a C-contiguous array of 32- or 64-bit integers of the same shape, to write to; ``out=numbers`` works in
+                place. None: a new array.
+
+        Returns:
+            ``out``, or a new array of the type of ``numbers``, which is int32 for integers of less than 32 bits.
+
+        Raises:
+            InvalidArgument: a number outside 0 … n−1, an array of other types, an ``out`` that does not fit.
         """
         if out is None:
             out = integers(numbers, "numbers", rank=None).copy()
         elif not isinstance(out, np.ndarray) or not out.flags.c_contiguous or not out.flags.writeable:
-            raise InvalidArgument("renumber: out must be a contiguous and writeable array")
+            raise InvalidArgument("renumber: out must be a C-contiguous and writeable array")
         elif out is not numbers:
             renumbered = self.renumber(numbers)  # before the numbers take another type
             if out.shape != renumbered.shape or out.dtype.kind not in "iu" or out.dtype.itemsize < 4:
@@ -159,7 +197,11 @@ class Permutation:
         return out
 
     def as_matrix(self) -> Any:
-        """A SciPy LinearOperator P with ``P @ x == move(x)``."""
+        """Returns an n × n SciPy LinearOperator P with ``P @ x == move(x)``; its adjoint ``P.H`` moves back.
+
+        Raises:
+            ImportError: SciPy is not installed.
+        """
         from scipy.sparse.linalg import LinearOperator
 
         n = len(self)
@@ -184,7 +226,7 @@ class Permutation:
         return _unpickled, (np.asarray(self.old_to_new).copy(),)
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError("a Permutation does not change")
+        raise AttributeError("a Permutation cannot be changed")
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NoReturn:
         raise TypeError("which direction? a permutation has .new_to_old, for A[p][:, p], and .old_to_new")
@@ -215,7 +257,7 @@ def _takes(out: Any, array: NDArray[Any]) -> bool:
 
 
 def _bytes_of(array: NDArray[Any]) -> NDArray[np.uint8]:
-    """The rows of a contiguous array as bytes."""
+    """Returns the rows of a C-contiguous array as bytes, without a copy."""
     return array.view(np.ndarray).reshape(len(array), -1).view(np.uint8)
 
 
