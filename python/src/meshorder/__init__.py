@@ -1,17 +1,24 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Reorders simulation meshes and sparse matrices so that physics on them runs faster.
 
-    >>> import meshorder
-    >>> order = meshorder.order(matrix)                  # a SciPy matrix, or (indptr, indices)
-    >>> faster = order.permutation.move(matrix)
-    >>> mesh, order = meshorder.reorder(meshorder.read("dragon.msh"))
-    >>> print(meshorder.advise(mesh))
+A matrix or graph, and data of its rows::
+
+    import meshorder
+
+    order = meshorder.order(matrix)                      # a SciPy matrix, (indptr, indices) or a networkx graph
+    faster, b = order.permutation.move(matrix), order.permutation.move(b)
+
+A mesh, with its data and sets, and what its order costs before it is changed::
+
+    mesh = meshorder.read("dragon.msh")                  # or a mesh of meshio, PyVista, VTK, scikit-fem, trimesh, Gmsh
+    print(meshorder.advise(mesh))
+    mesh, order = meshorder.reorder(mesh)
 """
 
 import importlib
 from typing import Any
 
-from . import _interpreter  # noqa: F401  # before all that loads the extension module
+from . import _interpreter  # noqa: F401  # before anything loads the extension module
 from ._core import build_info
 from ._core import version as __version__
 from ._errors import Error, InputError, InternalError, InvalidArgument, Stopped, TooLarge, Unavailable
@@ -36,7 +43,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Loads the modules for other libraries when they are first used."""
+    """Imports the modules for other libraries when they are first used."""
     if name in ("csgraph", "gmsh", "mpi", "networkx", "pyvista"):
         return importlib.import_module(f"{__name__}.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

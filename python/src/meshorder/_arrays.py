@@ -1,7 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Users' arrays in the form that the library reads: contiguous, in the machine's byte order.
+"""Brings users' arrays into the form that the library reads: contiguous, in the machine's byte order.
 
-An array that has that form already is passed on as it is; others are copied.
+An array that has this form is returned as it is; others are copied. All functions raise InvalidArgument for masked
+entries, arrays on a GPU, ragged lists and wrong types and ranks.
 """
 
 from __future__ import annotations
@@ -34,10 +35,10 @@ def _native(array: NDArray[Any], dtype: Any) -> NDArray[Any]:
 
 
 def integers(values: Any, name: str, rank: int | None = 1) -> NDArray[Any]:
-    """Integers of 32 or 64 bits; smaller ones are widened."""
+    """Returns integers of 32 or 64 bits; smaller ones become int32. ``rank`` None: of any rank."""
     array = _as_array(values, name)
     if rank is not None and array.ndim != rank:
-        raise InvalidArgument(f"{name}: expected an array of rank {rank}, not {array.ndim}")
+        raise InvalidArgument(f"{name}: expected an array of rank {rank}, not of rank {array.ndim}")
     if array.dtype.kind not in "iu":
         if array.size == 0:
             return np.zeros(array.shape, dtype=np.int32)
@@ -47,10 +48,10 @@ def integers(values: Any, name: str, rank: int | None = 1) -> NDArray[Any]:
 
 
 def reals(values: Any, name: str, rank: int = 1) -> NDArray[Any]:
-    """float32 or float64; other real numbers become float64."""
+    """Returns float32 or float64 numbers; other real numbers become float64."""
     array = _as_array(values, name)
     if array.ndim != rank:
-        raise InvalidArgument(f"{name}: expected an array of rank {rank}, not {array.ndim}")
+        raise InvalidArgument(f"{name}: expected an array of rank {rank}, not of rank {array.ndim}")
     if array.dtype.kind not in "fiu":
         raise InvalidArgument(f"{name}: expected real numbers, not {array.dtype}")
     dtype = np.float32 if array.dtype == np.float32 else np.float64
@@ -58,14 +59,14 @@ def reals(values: Any, name: str, rank: int = 1) -> NDArray[Any]:
 
 
 def points(values: Any, name: str = "points") -> NDArray[Any]:
-    """One row of one to three coordinates for each point, in any regular layout."""
+    """Returns one row of one to three coordinates for each point, float32 or float64, in any regular layout."""
     array = _as_array(values, name)
     if array.ndim == 1 and array.size:
         array = array[:, np.newaxis]
     if array.ndim != 2 or not 1 <= array.shape[1] <= 3:
         if array.ndim in (1, 2) and len(array) == 0:
             return np.zeros((0, 3))
-        raise InvalidArgument(f"{name}: expected one row of 1 to 3 coordinates for each, not the shape {array.shape}")
+        raise InvalidArgument(f"{name}: expected a row of 1 to 3 coordinates for each, not the shape {array.shape}")
     if array.dtype not in (np.float32, np.float64) or not array.dtype.isnative:
         if array.dtype.kind not in "fiu":
             raise InvalidArgument(f"{name}: expected real numbers, not {array.dtype}")

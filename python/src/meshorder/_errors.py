@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What meshorder raises. Each class is also the one of Python's own that fits, so `except ValueError` works."""
+"""The exceptions of meshorder. All but the base class also derive from the built-in exception that fits best."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ __all__ = ["Error", "InputError", "InternalError", "InvalidArgument", "Stopped",
 
 
 class Error(Exception):
-    """Base class of all that meshorder raises."""
+    """Base class of meshorder's exceptions; itself raised where something cannot be stored or printed."""
 
 
 class InvalidArgument(Error, ValueError):
-    """An unknown method, a map that is no permutation, sizes that do not match, an asymmetric graph, NaN."""
+    """An argument is wrong: an unknown method, a map that is no permutation, sizes that do not match, NaN."""
 
 
 class InputError(Error, ValueError):
-    """A faulty file.
+    """A file or bytes cannot be read or written as a mesh.
 
     Attributes:
-        file: its name.
-        line: line of the fault, from 1; None for binary files.
-        byte: place of the fault, from 0; None for text.
+        file: name of the file; None where it is not known.
+        line: line of the fault in a text, from 1; None where it is not known.
+        byte: offset of the fault in binary data, from 0; None where it is not known.
     """
 
     file: str | None = None
@@ -29,19 +29,19 @@ class InputError(Error, ValueError):
 
 
 class TooLarge(Error, OverflowError):
-    """2³¹ or more vertices or cells."""
+    """Numbers do not fit: 2³¹ or more vertices, cells or degrees of freedom, or entries for a METIS of 32 bits."""
 
 
 class Unavailable(Error, RuntimeError):
-    """A method or a compression that this build lacks."""
+    """This build, or another library, lacks what the call needs: a method, a compression, a package, a version."""
 
 
 class Stopped(Error, RuntimeError):
-    """The progress function returned False."""
+    """The progress function returned False, or the interpreter ends."""
 
 
 class InternalError(Error, RuntimeError):
-    """A failure inside meshorder or a library that it uses."""
+    """Something failed inside meshorder or a library that it uses."""
 
 
 for _name in __all__:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Packages that some functions need and the rest does without."""
+"""Imports of the optional packages, which only some functions need."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Any
 
 
 def load(module: str, extra: str) -> Any:
-    """Imports a module that one of the package's extras brings.
+    """Imports and returns a module of an optional package.
 
     Raises:
-        ImportError: it is not installed; the message names the extra.
+        ImportError: the package is not installed; the message names the extra of meshorder that brings it.
     """
     package = module.partition(".")[0]
     try:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Meshes from arrays and files, and into files."""
+"""Meshes made of arrays, read from files and written to files."""
 
 from __future__ import annotations
 
@@ -13,9 +13,19 @@ from .hosts import host_of
 
 
 def make_mesh(points: Any, cells: Any = None) -> Mesh:
-    """A mesh of arrays as of `order_mesh`, which are copied.
+    """Makes a `Mesh` of arrays or of another library's mesh. Everything is copied.
 
-    Without cells: of a mesh as of `reorder`, with its data and sets; the notes tell what was left out.
+    Args:
+        points: one row of one to three coordinates for each vertex; or, if no cells are given, a mesh that `reorder`
+            takes, whose data and sets are taken over.
+        cells: cells of known types, in one of the forms that `order_mesh` takes.
+
+    Returns:
+        The mesh; its ``notes`` name the data that were left out. If ``points`` is a `Mesh`, that mesh itself.
+
+    Raises:
+        InvalidArgument: faulty arrays, an object that is no mesh, cells of unknown types.
+        TooLarge: 2³¹ or more vertices or cells.
     """
     if cells is None:
         return host_of(points).mesh()
@@ -31,17 +41,30 @@ def read(
 ) -> Mesh:
     """Reads a mesh from a file, or from the bytes of one.
 
+    Files in formats that meshorder does not have are read by meshio where it is installed; the mesh's notes say so.
+
     Args:
-        source: a path or the bytes.
-        format: name of the format; None: by the extension, of bytes by the first of them. Files of formats that are not
-            ours are read by meshio, where it is installed; the mesh's notes begin with that.
-        memory_limit: bytes that a file may take for what it claims rather than holds, such as compressed values; None:
-            256 MiB and 100 times the file, at most three quarters of the memory. meshio knows no limit.
-        include_folders: a folder, or several, where files may be that the mesh names to be read with it, besides its own.
+        source: the path of a file, or its bytes.
+        format: name of the format, "gmsh" or "vtu"; None: the extension tells it, or the first bytes.
+        memory_limit: the most bytes of memory for values of which the file holds only a shorter form or the number,
+            such as compressed ones; None: 256 MiB and 100 times the file, at most three quarters of the memory. Files
+            that meshio reads have no limit.
+        include_folders: a folder, or several, besides the file's own, that may hold files which it names to be read with
+                it.
+
+    Returns:
+        The mesh; its ``notes`` tell what the reader dropped or repaired.
 
     Raises:
-        InputError: the file is missing or faulty, claims more than the limit or names files elsewhere; the message
-            names line or byte.
+        InputError: the file is missing, faulty or without cells, has an unknown extension, needs more than the limit,
+            or names files in other folders. The message names the line or byte.
+        InvalidArgument: an unknown format.
+        Unavailable: this build, or meshio, lacks a library that the file needs.
+
+    Example:
+        >>> mesh = meshorder.read(b"OFF 3 1 0  0 0 0  1 0 0  0 1 0  3 0 1 2")
+        >>> mesh
+        <Mesh: 3 vertices, 1 cells, off>
     """
     if isinstance(source, (bytes, bytearray, memoryview)):
         return Mesh(*_core.read_bytes(bytes(source), format or "", memory_limit))
@@ -57,10 +80,19 @@ def read(
 
 
 def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:
-    """Writes a mesh as of `reorder` in the format that the extension names; by meshio where it is not ours.
+    """Writes a mesh to a file, by meshio where meshorder does not have the format.
+
+    Args:
+        mesh: a `Mesh`, or another mesh that `reorder` takes, of which a `Mesh` is made first.
+        path: the file, whose extension names the format. It is replaced when all is written.
 
     Returns:
-        What was left out, of a mesh that is no `Mesh` also on the way to one; and that meshio wrote, if it did.
+        Notes: what the format cannot hold and was left out, and, for meshio, that it wrote the file.
+
+    Raises:
+        InputError: an unknown extension, cells that the format cannot hold, a file that cannot be written.
+        InvalidArgument: an object that is no mesh, a faulty mesh.
+        Unavailable: this build, or meshio, lacks a library that the format needs.
     """
     if not isinstance(mesh, Mesh):
         made = make_mesh(mesh)
@@ -75,11 +107,21 @@ def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:
 
 
 def to_bytes(mesh: Any, format: str) -> bytes:
-    """The bytes of the file that `write` would make, in a format of our own."""
+    """Returns the bytes of the file that `write` would make. What the format cannot hold is left out without a note.
+
+    Args:
+        mesh: as `write` takes it.
+        format: name of a format of meshorder that takes one file, "gmsh" or "vtu".
+
+    Raises:
+        InvalidArgument: an unknown format or one of several files, an object that is no mesh.
+        InputError: cells that the format cannot hold.
+        Unavailable: this build lacks a library that the format needs.
+    """
     made: bytes = (mesh if isinstance(mesh, Mesh) else make_mesh(mesh))._handle.to_bytes(format, "mesh")
     return made
 
 
 def mesh_of(mesh: Any) -> Mesh:
-    """The mesh of a path, or of what `reorder` takes."""
+    """Returns the `Mesh` in a file, or made of a mesh that `reorder` takes."""
     return read(mesh) if isinstance(mesh, (str, os.PathLike)) else host_of(mesh).mesh()

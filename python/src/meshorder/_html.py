@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Results as HTML, for notebooks. All text is escaped; colours suit light and dark pages."""
+"""Shows results as HTML in notebooks. All text is escaped; colours suit light and dark pages."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ._permutation import Permutation
 
 _BAR = "rgba(76,139,205,.42)"
-_MOST_LINES = 8  # of lists that may be long
+_MOST_LINES = 8  # that a long list is cut to
 
 
 def _cell(html: str, style: str = "") -> str:
@@ -47,20 +47,20 @@ def _lines(lines: Iterable[str]) -> str:
 
 
 def _some(lines: Sequence[str]) -> list[str]:
-    """The first of many lines, and how many there are besides."""
+    """Returns the lines, of many only the first and the number of the others."""
     if len(lines) <= _MOST_LINES:
         return list(lines)
     return [*lines[: _MOST_LINES - 1], f"and {len(lines) - _MOST_LINES + 1:,} more"]
 
 
 def permutation(of: Permutation) -> str:
-    """A picture of the moves, and their mean."""
+    """Shows a picture of the moves, and their mean."""
     picture = _thumbnails.image(_thumbnails.moves(of.old_to_new), "old places from the left, new ones from the top")
     return _beside(picture, escape(repr(of)[1:-1]))
 
 
 def order(of: Order) -> str:
-    """Who made it, why, and what there is to know of it, beside a picture of the moves."""
+    """Shows a picture of the moves, and the order's method, reason and notes."""
     picture = _thumbnails.image(_thumbnails.moves(of.old_to_new), "old places from the left, new ones from the top")
     head = f"Order of {len(of.permutation):,} by <b>{escape(of.method)}</b> in {of.seconds:.3g} s"
     unfinished = "" if of.complete else "incomplete: the time limit ended it"
@@ -68,12 +68,12 @@ def order(of: Order) -> str:
 
 
 def mesh_order(of: MeshOrder) -> str:
-    """Both orders."""
+    """Shows the orders of vertices and cells."""
     return _lines([f"<b>vertices</b>{order(of.vertices)}", f"<b>cells</b>{order(of.cells)}"])
 
 
 def quality(of: Quality) -> str:
-    """Its numbers, and bars for the histogram."""
+    """Shows the numbers as a table, and the histogram as bars."""
     most = max(of.histogram_log2, default=0) or 1
     bars = "".join(
         f'<span title="spans of {2**k:,} to {2 ** (k + 1) - 1:,}: {edges:,} edges" style="display:inline-block;'
@@ -93,7 +93,7 @@ def quality(of: Quality) -> str:
 
 
 def fiedler(of: Fiedler) -> str:
-    """The eigensolver's report on the largest components."""
+    """Shows the eigensolver's report on the largest components."""
     shown = of.components[:_MOST_LINES]
     rows = [
         "".join(
@@ -114,7 +114,7 @@ def fiedler(of: Fiedler) -> str:
 
 
 def mesh(of: Mesh) -> str:
-    """What the mesh holds."""
+    """Lists what the mesh holds."""
     types, counts = np.unique(np.stack([of.shapes, np.diff(of.offsets)]), axis=1, return_counts=True)
     names = [
         f"{count:,} × {_core.shapes[shape]} of {width:,}" for (shape, width), count in zip(types.T.tolist(), counts.tolist())
@@ -133,7 +133,7 @@ def mesh(of: Mesh) -> str:
 
 
 def candidates(of: Sequence[Candidate], kernels: Sequence[str]) -> str:
-    """A row for each order: its pattern, its spans, and bars for the kernels' times."""
+    """Shows a row for each order: its sparsity pattern, its mean span, and bars for the kernels' times."""
     slowest = {kernel: max((one.milliseconds[kernel] for one in of), default=0.0) or 1.0 for kernel in kernels}
     most = max((int(one.pattern.max()) for one in of if one.pattern.size), default=1)
     rows = []
@@ -154,6 +154,6 @@ def candidates(of: Sequence[Candidate], kernels: Sequence[str]) -> str:
 
 
 def advice(of: Advice, kernels: Sequence[str]) -> str:
-    """The verdict above the candidates."""
+    """Shows the verdict above the candidates."""
     verdict = re.sub("`([^`]*)`", r"<code>\1</code>", escape(of.verdict))
     return _lines([f"<b>{verdict}</b>", candidates([of.as_is, *of.candidates], kernels)])

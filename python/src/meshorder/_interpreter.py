@@ -1,7 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Refuses other interpreters than the main one, before the extension module is loaded: it has one state in a process.
+"""Refuses to be imported in another interpreter than the main one, since the extension module has one state a process.
 
-From Python 3.12 on the import itself does.
+From Python 3.12 on the import of the extension module refuses that itself.
 """
 
 import sys
@@ -9,8 +9,8 @@ import sys
 if sys.version_info < (3, 12):
     try:
         import _xxsubinterpreters as _interpreters  # type: ignore[import-not-found,unused-ignore]
-    except ImportError:  # of other implementations of Python
+    except ImportError:  # other implementations of Python have no such module
         pass
     else:
         if _interpreters.get_current() != _interpreters.get_main():
-            raise ImportError("meshorder works in the main interpreter only, not in another one of its process")
+            raise ImportError("meshorder works in the main interpreter of a process only, not in a subinterpreter")

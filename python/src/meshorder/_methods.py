@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The methods that order, those of users among them."""
+"""The list of ordering methods, and methods written in Python."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ._arrays import integers
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
-# calls of other threads and methods in Python must be gone before the interpreter is
+# calls in other threads must end, and methods in Python be released, before the interpreter ends
 atexit.register(_core.end)
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_core.forget_calls)
@@ -25,10 +25,10 @@ class MethodInfo(NamedTuple):
     """Description of a method.
 
     Attributes:
-        name: to ask for it.
-        description: one line.
+        name: what functions take as ``method``, ``vertices`` or ``elements``.
+        description: what the method does, in one line.
         needs_points: whether it needs coordinates.
-        deterministic: whether it gives the same order on every run.
+        deterministic: whether it gives the same order on every run and for any number of threads.
         source: "built in", "Python" or a plug-in's name.
     """
 
@@ -40,22 +40,48 @@ class MethodInfo(NamedTuple):
 
 
 def methods(of: str = "vertices") -> list[MethodInfo]:
-    """Lists the methods for "vertices" or "elements"."""
+    """Lists the methods of this build and the registered ones.
+
+    Args:
+        of: "vertices" or "elements".
+
+    Raises:
+        KeyError: ``of`` is neither.
+
+    Example:
+        >>> "rcm" in [method.name for method in meshorder.methods()]
+        True
+    """
     listed = {"vertices": _core.vertex_methods, "elements": _core.element_methods}[of]()
     return [MethodInfo(*method) for method in listed]
 
 
 def register(name: str, description: str = "", *, needs_points: bool = False) -> Callable[[_Function], _Function]:
-    """Makes a function of Python's a method for vertices.
+    """Makes a Python function a vertex method, which all functions then know by its name; "auto" never chooses it.
 
-    The function gets ``(offsets, neighbours)`` and an array of points, which is empty where there are none, and
-    returns ``new_to_old``::
+    The function is called as ``function((offsets, neighbours), points)`` with copies of a clean graph (rows ascending,
+    symmetric, no loops, no repeats): n + 1 offsets (int64), the neighbours (int32), and n × 3 coordinates (float64), or
+    0 × 3 where there are none. It returns ``new_to_old``, n integers. Its exceptions pass through.
 
-        @meshorder.register("by-degree", "few neighbours first")
-        def by_degree(graph, points):
-            return np.argsort(np.diff(graph[0]), kind="stable")
+    Args:
+        name: lower-case letters, digits, "-" and "_"; not yet in the list.
+        description: one line for lists of methods.
+        needs_points: True refuses to order without coordinates, with InvalidArgument.
 
-        meshorder.order(matrix, "by-degree")
+    Returns:
+        A decorator that registers the function and returns it.
+
+    Raises:
+        InvalidArgument: when the function is decorated: a name that is taken, or that has other characters.
+
+    Example:
+        A method that puts the vertices with the fewest neighbours first::
+
+            @meshorder.register("by-degree", "few neighbours first")
+            def by_degree(graph, points):
+                return np.argsort(np.diff(graph[0]), kind="stable")
+
+            meshorder.order(matrix, "by-degree")
     """
 
     def decorate(function: _Function) -> _Function:
@@ -69,11 +95,23 @@ def register(name: str, description: str = "", *, needs_points: bool = False) ->
 
 
 def unregister(name: str) -> None:
-    """Takes a method of Python's out of the list."""
+    """Removes a method that was registered with `register` from the list.
+
+    Raises:
+        KeyError: no Python function is registered under that name.
+    """
     if not _core.unregister(name):
         raise KeyError(name)
 
 
 def load_methods(path: Any) -> None:
-    """Loads a shared library with methods (see meshorder.h). This runs its code."""
+    """Loads a shared library that registers methods. This runs its code, and it stays loaded.
+
+    Args:
+        path: a library with the function ``meshorder_plugin_v1`` (see meshorder.h).
+
+    Raises:
+        Unavailable: the library cannot be loaded, or lacks that function.
+        InvalidArgument: the function reports a failure, such as a name that is taken.
+    """
     _core.load_methods(str(path))

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The page that `meshorder.show` shows, made of the report page's viewer."""
+"""Makes the page of `meshorder.show` out of the viewer of the report page."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from ._thumbnails import pattern
 
 _VIEWER = pathlib.Path(__file__).with_name("viewer")
 _PATTERN_SIDE = 192
-_STEPS = 65535  # of coordinates, along each side of the box around the mesh
+_STEPS = 65535  # to which coordinates are rounded, along each side of the box around the mesh
 
 
 class Page:
-    """A page in HTML that needs neither files nor a network.
+    """A page in HTML that needs neither other files nor a network.
 
     A notebook shows it where it is the result of a cell, in a frame that may run scripts and nothing else.
 
     Attributes:
-        html: the page.
-        triangles: of the surface that it shows.
-        path: the file that holds it; None where there is none.
+        html: the text of the page.
+        triangles: number of triangles of the surface that it shows.
+        path: the file that it was last saved to; None if it was not saved.
     """
 
     def __init__(self, page: str, triangles: int) -> None:
@@ -44,7 +44,11 @@ class Page:
         self.path: pathlib.Path | None = None
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the page."""
+        """Writes the page to a file and sets ``path``.
+
+        Raises:
+            OSError: the file cannot be written.
+        """
         self.path = pathlib.Path(path)
         self.path.write_text(self.html, encoding="utf-8")
 
@@ -59,7 +63,7 @@ class Page:
 
 
 class _Arrays:
-    """The page's arrays, packed as its scripts unpack them (viewer/README.md)."""
+    """The page's arrays, in the form that its scripts unpack (viewer/README.md)."""
 
     def __init__(self) -> None:
         self.elements: dict[str, str] = {}
@@ -83,12 +87,16 @@ class _Arrays:
 
 
 def _sources() -> dict[str, str]:
-    """The viewer's files, as package data."""
+    """Returns the sources of the viewer's files in the package.
+
+    Raises:
+        Unavailable: three.js is not among them.
+    """
     three = _VIEWER / "three.min.js"
     if not three.is_file():
         raise Unavailable(
-            "show: this build of meshorder is without three.js, which draws the mesh; install Debian's libjs-three (or "
-            "name three.min.js of release 111 by CMake's MESHORDER_THREE_JS) and build meshorder again by pip install"
+            "show: this build of meshorder has no three.js, which draws the mesh; install Debian's libjs-three (or set "
+            "MESHORDER_THREE_JS of CMake to the path of three.min.js, release 111) and build it again by pip install"
         )
     read = {path.name: path.read_text(encoding="utf-8") for path in _VIEWER.iterdir() if path.is_file()}
     scripts = "\n".join(text for name, text in sorted(read.items()) if name.endswith(".js") and name != three.name)
@@ -106,7 +114,12 @@ def _json_element(name: str, value: Any) -> str:
 
 
 def make_page(mesh: Mesh, orders: Mapping[str, Permutation], mesh_name: str) -> Page:
-    """A page of the mesh as it is and in these orders."""
+    """Makes a page that shows a mesh as it is and in the orders given by name.
+
+    Raises:
+        InputError: the mesh has neither surfaces nor volumes.
+        Unavailable: this build lacks three.js.
+    """
     name = mesh_name or "mesh"
     corners = mesh._handle.surface()
     vertices, places = np.unique(corners, return_inverse=True)

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What other orders of a mesh are worth."""
+"""Predicts and measures how much faster four kernels of simulators run in other orders of a mesh."""
 
 from __future__ import annotations
 
@@ -18,23 +18,31 @@ from ._files import mesh_of
 from ._graphs import Quality
 from ._options import prepared
 
+#: names of the kernels: "spmv", "element", "assembly", "springs"
 KERNELS: tuple[str, ...] = _core.kernels
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """An order of the mesh, and what the kernels take in it.
+    """An order of a mesh, and the times of the kernels in it.
+
+    The kernels, which are the keys of ``predicted`` and ``measured``: "spmv" (a product of the stiffness matrix with a
+    vector), "element" (elastic forces of the elements), "assembly" (of the stiffness matrix) and "springs" (forces
+    along the edges).
 
     Attributes:
-        vertices, elements: the methods.
-        reason: why "auto" took the method for the vertices.
-        workload: what "auto" chose for.
-        spans: of the vertex graph in this order.
-        pattern: of the matrix over the vertices in this order: the number of entries, diagonal included, in each of
-            64 × 64 tiles, rows from the top; n × n where there are fewer vertices. 16 KB, counted in O(entries).
-        predicted: milliseconds of each kernel by the cost model, to be compared with each other only; or None.
-        measured: milliseconds of each kernel here, the best of interleaved rounds; or None.
-        order_seconds: cost of the order.
+        vertices: name of the method for the vertices; "original" for the order that the mesh has.
+        elements: name of the method for the elements.
+        reason: why "auto" chose the method for the vertices; empty where it was asked for by name.
+        workload: the kernels that "auto" chose for.
+        spans: spans, bandwidth and profile of the vertex graph in this order.
+        pattern: the sparsity pattern of the matrix over the vertices in this order: the number of entries, diagonal
+            included, in each of 64 × 64 tiles, n × n where there are fewer vertices; rows from the top. 16 KB.
+        predicted: milliseconds of one run of each kernel by a cost model, to be compared with each other only; None if
+            nothing was predicted.
+        measured: milliseconds of one run of each kernel on this machine, on one thread, the best of interleaved rounds;
+            None if nothing was measured.
+        order_seconds: what the order cost: the graph, both methods and moving the mesh; 0 for "original".
     """
 
     vertices: str
@@ -53,12 +61,19 @@ class Candidate:
 
     @property
     def milliseconds(self) -> dict[str, float]:
-        """The measured times, else the predicted ones."""
+        """The measured times of the kernels, else the predicted ones."""
         return self.measured or self.predicted or {}
 
 
 class KernelAdvice(NamedTuple):
-    """The best candidate for a kernel: its place, how many times faster it is, runs until it has paid."""
+    """The best candidate for a kernel.
+
+    Attributes:
+        candidate: position in ``Advice.candidates`` of the order in which the kernel runs fastest.
+        factor: the time as the mesh is, divided by the time in that order; 1 where nothing is gained.
+        runs_to_pay: runs of the kernel after which the order has saved more time than it cost; 0 where nothing is
+            gained.
+    """
 
     candidate: int
     factor: float
@@ -67,17 +82,19 @@ class KernelAdvice(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Advice:
-    """What reordering a mesh would be worth; ``str(advice)`` is the verdict in one sentence.
+    """How much faster the kernels would run if a mesh were reordered; ``str(advice)`` is the verdict.
 
     Attributes:
-        verdict: the sentence.
+        verdict: one sentence: which kernel loses most as the mesh is, which order mends it and after how many time
+            steps that has paid for itself; or that there is nothing to gain.
         as_is: the order that the mesh has.
-        candidates: other orders; the first is what `order_mesh` does without arguments.
-        kernels: the best candidate for each kernel.
-        doubt: why measured times are not to be trusted (the machine was busy or throttled); empty where they are, and
-            where nothing was measured.
-        machine: what the predicted times are those of: "this machine, calibrated 2026-11-22", "zen5", or "this machine's
-            caches at the costs of zen5"; empty where nothing was predicted.
+        candidates: other orders; the first is the one that `reorder` chooses without arguments.
+        kernels: the best candidate for each kernel, by the kernel's name. Times that differ by less than the
+            uncertainty of a measurement or prediction count as equal.
+        doubt: why the measured times are not to be trusted (the machine was busy or throttled); empty where they are,
+            and where nothing was measured.
+        machine: the machine that the predicted times are for: "this machine, calibrated 2026-11-22", "zen5", or "this
+            machine's caches at the costs of zen5"; empty where nothing was predicted.
     """
 
     verdict: str
@@ -98,7 +115,10 @@ class Advice:
 
 
 class Comparison(Sequence[Candidate]):
-    """Orders of a mesh: the one that it has, then those asked for."""
+    """A sequence of `Candidate`: the order that a mesh has, then those that were asked for.
+
+    Its text is a table; a notebook shows it with sparsity patterns and bars.
+    """
 
     def __init__(self, candidates: list[Candidate]) -> None:
         self._candidates = candidates
@@ -110,7 +130,7 @@ class Comparison(Sequence[Candidate]):
         return self._candidates[place]
 
     def rows(self) -> list[dict[str, Any]]:
-        """A flat dict for each order."""
+        """Returns a flat dict for each order: methods, mean span, seconds of the order, milliseconds of each kernel."""
         return [
             {
                 "vertices": candidate.vertices,
@@ -123,10 +143,10 @@ class Comparison(Sequence[Candidate]):
         ]
 
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame with a row for each order.
+        """Returns a pandas.DataFrame of `rows`, with a row for each order.
 
         Raises:
-            ImportError: pandas is missing, which the extra of its name brings.
+            ImportError: pandas is not installed; the extra ``pandas`` brings it.
         """
         return load("pandas", "pandas").DataFrame(self.rows())
 
@@ -142,31 +162,36 @@ class Comparison(Sequence[Candidate]):
         return _html.candidates(self._candidates, KERNELS)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws bars of each kernel for each order, by matplotlib: its time relative to that as the mesh is.
+        """Draws a bar for each kernel and order with matplotlib: the time relative to the time as the mesh is.
 
         Args:
-            axes: matplotlib's; None: a new figure's.
+            axes: the matplotlib Axes to draw on; None: those of a new figure.
+
+        Returns:
+            The Axes.
 
         Raises:
-            ImportError: matplotlib is missing, which the extra ``plot`` brings.
+            ImportError: matplotlib is not installed; the extra ``plot`` brings it.
         """
         return _plots.candidates(self._candidates, KERNELS, axes)
 
 
 def _pairs(methods: Any) -> list[tuple[str, str]]:
+    """Returns the methods as pairs of those for vertices and elements."""
     listed = [methods] if isinstance(methods, str) else methods or []
     return [(method, "auto") if isinstance(method, str) else tuple(method) for method in listed]
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """What `calibrate` found of this machine.
+    """The measurements of this machine that `calibrate` made.
 
     Attributes:
-        machine: what ``Advice.machine`` calls it.
-        figures: all that was measured: what a thread gets of the caches, latencies, bandwidths, costs of the kernels.
-        file: where it is stored; None if it is not kept.
-        doubt: why it is not to be trusted (the machine was busy or throttled); empty where it is.
+        machine: how ``Advice.machine`` names this machine from now on.
+        figures: all measured numbers: the share of the caches that a thread gets, latencies, bandwidths, costs of cache
+            misses for each kernel.
+        file: the file that stores them; None if they are not kept.
+        doubt: why they are not to be trusted (the machine was busy or throttled); empty where they are.
     """
 
     machine: str
@@ -178,12 +203,21 @@ class Calibration:
 def calibrate(seconds: float = 16, *, keep: bool = True, **options: Any) -> Calibration:
     """Measures this machine, so that `advise` and `compare` predict for it from now on.
 
-    Other work on the machine spoils it.
+    Takes about 1 GB of memory. Other work on the machine during the call spoils the measurements.
 
     Args:
-        seconds: no measurement begins that would end later, but each is made once: some 20 s in all for 16.
-        keep: stores it for this processor and this build of the library.
-        **options: see `Options`; only ``threads`` and ``progress`` matter.
+        seconds: > 0: no measurement begins that would end later, except that each is made once; 16 take some 20 s.
+        keep: True stores the measurements for this processor and this build of the library, in the user's cache folder
+            ($MESHORDER_CACHE, else $XDG_CACHE_HOME/meshorder, else ~/.cache/meshorder).
+        **options: see `Options`; only ``threads`` and ``progress`` have an effect.
+
+    Returns:
+        The measurements.
+
+    Raises:
+        InvalidArgument: ``seconds`` is not above 0.
+        Error: the measurements cannot be stored.
+        Stopped: ``progress`` returned False.
     """
     with prepared(options) as given:
         machine, figures, file, doubt = _core.calibrate(seconds, keep, given)
@@ -193,15 +227,31 @@ def calibrate(seconds: float = 16, *, keep: bool = True, **options: Any) -> Cali
 def advise(
     mesh: Any, *, measure: bool = False, budget: float = 10, machine: str = "", **options: Any
 ) -> Advice:
-    """Tells what reordering a mesh would be worth, before it is done.
+    """Tells how much faster simulators' kernels would run if a mesh were reordered. The mesh is not changed.
 
     Args:
-        mesh: a path, or a mesh as of `reorder`.
-        measure: runs the kernels here; otherwise they are predicted.
-        budget: seconds for that.
-        machine: what to predict for: "this", as `calibrate` measured it, or one that ships, as "zen5"; empty: what the
-            environment variable MESHORDER_MACHINE says, else "this".
+        mesh: the path of a file, or a mesh that `reorder` takes, with lines, surfaces or volumes.
+        measure: True runs the kernels on this machine, on one thread; False predicts their times by reuse distances and
+            a cost model.
+        budget: with ``measure``, seconds ≥ 0 from the start of the call: no round of measurements begins that would end
+            later, but two are run.
+        machine: what to predict for: "this" machine, as `calibrate` measured it, else its caches with the costs of
+            "zen5"; or "zen5" or "zen4", whose costs come with the library. Empty: the environment variable
+            MESHORDER_MACHINE names it, else "this".
         **options: see `Options`.
+
+    Returns:
+        The verdict, the times as the mesh is and in other orders, and the best order for each kernel.
+
+    Raises:
+        InvalidArgument: a mesh without lines, surfaces and volumes, an unknown machine, a negative budget.
+        InputError: the file cannot be read.
+        Stopped: ``progress`` returned False.
+
+    Example:
+        The verdict of a mesh in a file, by measurement::
+
+            print(meshorder.advise("dragon.msh", measure=True))
     """
     with prepared(options) as given:
         made = mesh_of(mesh)._handle.advise([], not measure, measure, budget, machine, given)
@@ -226,17 +276,31 @@ def compare(
     machine: str = "",
     **options: Any,
 ) -> Comparison:
-    """Compares orders of a mesh: their spans and the time of four kernels of simulators.
+    """Compares orders of a mesh by their spans and the times of four kernels of simulators. The mesh is not changed.
 
     Args:
-        mesh: as of `advise`.
-        methods: names of methods for the vertices, or pairs of those for vertices and elements; or one name; None: what
-            "auto" takes.
-        measure: runs the kernels here, on one thread.
-        budget: seconds for that.
-        predict: by reuse distances and a cost model.
-        machine: as of `advise`.
+        mesh: the path of a file, or a mesh that `reorder` takes, with lines, surfaces or volumes.
+        methods: the name of a vertex method, or a list of names, to which the element method "auto" is added, or of pairs
+            ``(vertex method, element method)``; None: what "auto" chooses for all kernels, and for springs where that
+            differs.
+        measure: True runs the kernels on this machine, on one thread.
+        budget: with ``measure``, seconds from the start of the call, as for `advise`.
+        predict: True predicts the times by reuse distances and a cost model.
+        machine: what to predict for, as for `advise`.
         **options: see `Options`.
+
+    Returns:
+        The order that the mesh has, then one for each method.
+
+    Raises:
+        InvalidArgument: as `advise`; an unknown method; neither ``measure`` nor ``predict``.
+        InputError: the file cannot be read.
+        Stopped: ``progress`` returned False.
+
+    Example:
+        A table in a notebook, or printed::
+
+            meshorder.compare("dragon.msh", ["rcm", ("hilbert", "original")])
     """
     with prepared(options) as given:
         made = mesh_of(mesh)._handle.compare(_pairs(methods), predict, measure, budget, machine, given)

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Results as matplotlib's figures."""
+"""Draws results with matplotlib."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from ._graphs import Order, Quality
     from ._payoff import Candidate
 
-_COLOURS = ("#224c8a", "#16928a", "#8cbf4a", "#e0a93b")  # told apart without colour vision, too
+_COLOURS = ("#224c8a", "#16928a", "#8cbf4a", "#e0a93b")  # can be told apart without colour vision
 
 
 def _axes(given: Any, **figure: Any) -> Any:
-    """The axes given, or those of a new figure."""
+    """Returns the Axes given, or those of a new figure."""
     return given if given is not None else load("matplotlib.pyplot", "plot").subplots(layout="constrained", **figure)[1]
 
 
 def candidates(of: Sequence[Candidate], kernels: Sequence[str], axes: Any = None) -> Any:
-    """Bars of each kernel for each order."""
+    """Draws a bar for each kernel and order; see `meshorder.Comparison.plot`."""
     axes = _axes(axes, figsize=(1.6 + 1.5 * len(of), 3.6))
     width = 0.8 / len(kernels)
     for k, (kernel, colour) in enumerate(zip(kernels, _COLOURS)):
@@ -39,7 +39,7 @@ def candidates(of: Sequence[Candidate], kernels: Sequence[str], axes: Any = None
 
 
 def patterns(of: Order, offsets: Any, neighbours: Any, side: int, axes: Any = None) -> Any:
-    """The matrix's pattern before and after."""
+    """Draws the sparsity pattern before and after an order; see `meshorder.Order.plot`."""
     axes = _axes(axes, ncols=2, figsize=(8, 4.2))
     identity = _core.Permutation.from_old_to_new(np.arange(len(of.permutation), dtype=np.int32))
     n = len(of.permutation)
@@ -53,11 +53,11 @@ def patterns(of: Order, offsets: Any, neighbours: Any, side: int, axes: Any = No
 
 
 def quality(of: Quality, axes: Any = None) -> Any:
-    """The histogram of spans."""
+    """Draws the histogram of spans; see `meshorder.Quality.plot`."""
     axes = _axes(axes, figsize=(6, 3.4))
     spans = range(len(of.histogram_log2))
     axes.bar(spans, of.histogram_log2, width=0.92, color=_COLOURS[0])
     axes.set_xticks(spans, [f"{2**k:,}" for k in spans], rotation=90)
-    axes.set_xlabel("span, from this to below the next")
+    axes.set_xlabel("span: from this number to below the next")
     axes.set_ylabel("edges")
     return axes

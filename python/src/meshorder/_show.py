@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Showing a mesh in its orders, in a notebook or the browser."""
+"""Shows a mesh coloured by its orders, in a notebook or the browser."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def _named(order: Any, mesh: Mesh) -> dict[str, Permutation]:
-    """The orders to show, each with its name."""
+    """Returns the orders to show by their names; repeated names get a number: "rcm (2)"."""
     if isinstance(order, Mapping):
         return {str(name): _permutation(one, mesh)[1] for name, one in order.items()}
     given = order if isinstance(order, (list, tuple)) else ["auto" if order is None else order]
@@ -34,6 +34,7 @@ def _named(order: Any, mesh: Mesh) -> dict[str, Permutation]:
 
 
 def _permutation(order: Any, mesh: Mesh) -> tuple[str, Permutation]:
+    """Returns the name and the permutation of the vertices that an order, or the name of a method, stands for."""
     if isinstance(order, str):
         order = reorder(mesh, vertices=order, elements="original")[1]
     if isinstance(order, MeshOrder):
@@ -42,7 +43,7 @@ def _permutation(order: Any, mesh: Mesh) -> tuple[str, Permutation]:
     if not isinstance(permutation, Permutation):
         raise InvalidArgument(f"show: expected orders or names of methods, not {type(order).__name__}")
     if len(permutation) != len(mesh.points):
-        raise InvalidArgument(f"show: an order of {len(permutation):,} for a mesh of {len(mesh.points):,} vertices")
+        raise InvalidArgument(f"show: an order of {len(permutation):,} vertices for a mesh of {len(mesh.points):,}")
     return name, permutation
 
 
@@ -52,23 +53,25 @@ def _in_notebook() -> bool:
 
 
 def show(mesh: Any, order: Any = None, *, path: str | os.PathLike[str] | None = None) -> Page:
-    """Shows a mesh's surface coloured by the places of its vertices, before and after, and both sparsity patterns.
+    """Shows a mesh's surface coloured by the places of its vertices, as the mesh is and in other orders.
 
-    In a notebook the page appears where the call is the last line of a cell; elsewhere it opens in the browser, as a
-    temporary file. It can be turned and zoomed.
+    Makes a page in HTML with a view of the mesh for each order, which can be turned and zoomed, and the sparsity
+    patterns. In a notebook the page appears where the call is the last line of a cell; elsewhere it opens in the
+    browser, as a temporary file.
 
     Args:
-        mesh: as of `advise`, with surfaces or volumes; in the order that it had before.
-        order: a `MeshOrder`, `Order` or `Permutation` of its vertices, the name of a method, several of these in a
-            list, or ``{name: order}``; None: "auto".
-        path: writes the page there and opens nothing.
+        mesh: the path of a file, or a mesh that `reorder` takes, with surfaces or volumes, before it is reordered.
+        order: a `MeshOrder`, `Order` or `Permutation` of the mesh's vertices, or the name of a method; a list of
+            these, or ``{name: order}``; None: "auto".
+        path: a file to write the page to, instead of opening it.
 
     Returns:
-        The page: 0.9 MB, and about 15 bytes for each triangle of the surface. A notebook that shows it stores it.
+        The page: an HTML text of 0.9 MB and about 15 bytes for each triangle of the surface, in its attribute ``html``;
+        ``save(path)`` writes it. A notebook that shows it stores it.
 
     Raises:
-        InputError: the mesh has neither surfaces nor volumes.
-        InvalidArgument: an order of another size, an unknown method.
+        InputError: the mesh has neither surfaces nor volumes, or the file cannot be read.
+        InvalidArgument: an order of another size, an unknown method, an object that is no mesh.
         Unavailable: this build lacks three.js.
     """
     from ._page import make_page  # takes time to import
@@ -87,5 +90,5 @@ def show(mesh: Any, order: Any = None, *, path: str | os.PathLike[str] | None = 
         os.close(handle)
         page.save(file)
         if not webbrowser.open(pathlib.Path(file).as_uri()):
-            warnings.warn(f"show: found no browser; the page is {file}", stacklevel=2)
+            warnings.warn(f"show: no browser was found; the page is in {file}", stacklevel=2)
     return page

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Small pictures of matrices, as PNG."""
+"""Draws small pictures of matrices and permutations, as PNG."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from . import _core
 
-#: tiles along each side of a thumbnail
+#: tiles, and pixels, along each side of a thumbnail
 SIDE = 64
 _PAPER = np.array([255.0, 255.0, 255.0])
 _INK = np.array([17.0, 33.0, 69.0])
@@ -24,12 +24,12 @@ _FAINTEST = 0.16  # share of ink of a tile with one entry
 def pattern(
     offsets: NDArray[Any], neighbours: NDArray[Any], order: _core.Permutation, side: int
 ) -> NDArray[np.uint32]:
-    """The number of entries of a graph's matrix, diagonal included, in side × side tiles; n × n where n is less."""
+    """Counts the entries of a graph's matrix, diagonal included, in side × side tiles; n × n where n is less."""
     return np.asarray(_core.sparsity_pattern(offsets, neighbours, order, side))
 
 
 def ink(counts: NDArray[Any], most: int) -> NDArray[np.float64]:
-    """Share of ink, 0 … 1, for each count: logarithmic, full at ``most``, and seen from one entry on."""
+    """Returns the share of ink, 0 … 1, for each count: logarithmic, 1 at ``most``, visible from one entry on."""
     shares = _FAINTEST + (1 - _FAINTEST) * np.log1p(counts) / np.log1p(max(most, 1))
     return np.where(counts > 0, np.minimum(shares, 1.0), 0.0)
 
@@ -39,10 +39,10 @@ def _chunk(kind: bytes, data: bytes) -> bytes:
 
 
 def png(shares: NDArray[Any]) -> bytes:
-    """A PNG with a pixel for each share of ink: dark blue on white, whatever the page around it.
+    """Returns a PNG with a pixel for each share of ink, dark blue on white.
 
     Args:
-        shares: two-dimensional, 0 … 1.
+        shares: an array of rank 2 of numbers in 0 … 1.
     """
     height, width = shares.shape
     rows = np.zeros((height, 1 + width), dtype=np.uint8)  # each row begins with its filter, none
@@ -56,12 +56,12 @@ def png(shares: NDArray[Any]) -> bytes:
 
 
 def image(counts: NDArray[Any], words: str, most: int | None = None) -> str:
-    """An HTML image of counts, one pixel for each, that needs no other file.
+    """Returns an HTML image of counts, one pixel for each, that needs no other file; an empty text without counts.
 
     Args:
-        counts: two-dimensional.
-        words: what the picture shows, for readers without it.
-        most: the count that is darkest; None: the largest.
+        counts: an array of rank 2.
+        words: the alternative text, which tells what the image shows.
+        most: the count that is drawn darkest; None: the largest.
     """
     if counts.size == 0:
         return ""
@@ -73,8 +73,10 @@ def image(counts: NDArray[Any], words: str, most: int | None = None) -> str:
 
 
 def moves(old_to_new: NDArray[np.int32]) -> NDArray[Any]:
-    """A permutation's moves in at most 64 × 64 tiles: how many from these old places, left to right, to those new
-    ones, top to bottom. O(n)."""
+    """Counts a permutation's moves in at most 64 × 64 tiles. O(n).
+
+    Old places go from left to right, new ones from top to bottom.
+    """
     n = len(old_to_new)
     side = min(SIDE, n)
     if n == 0:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Functions with the names and signatures of scipy.sparse.csgraph's."""
+"""Functions with the names and signatures of those of `scipy.sparse.csgraph`."""
 
 from __future__ import annotations
 
@@ -14,13 +14,27 @@ __all__ = ["reverse_cuthill_mckee"]
 
 
 def reverse_cuthill_mckee(graph: Any, symmetric_mode: bool = False) -> NDArray[np.int32]:
-    """As scipy.sparse.csgraph.reverse_cuthill_mckee: returns ``new_to_old``, to be used as ``A[p][:, p]``.
+    """Orders a matrix by reverse Cuthill–McKee, as scipy.sparse.csgraph.reverse_cuthill_mckee does.
 
-    Ties are broken otherwise, so the order differs from SciPy's.
+    Ties are broken differently, so the order differs from SciPy's, and its bandwidth a little.
 
     Args:
-        graph: a square matrix in CSR or CSC form.
-        symmetric_mode: True takes for granted that the matrix is symmetric; otherwise A + Aᵀ is ordered.
+        graph: a square SciPy matrix, or another graph that `meshorder.order` takes, but no mesh.
+        symmetric_mode: True takes for granted that the pattern is symmetric, and does not refuse another one; False
+            orders A + Aᵀ.
+
+    Returns:
+        ``new_to_old``, n numbers: the matrix in its new order is ``A[p][:, p]``.
+
+    Raises:
+        InvalidArgument: a faulty matrix, or one that is not square.
+
+    Example:
+        >>> import scipy.sparse
+        >>> matrix = scipy.sparse.csr_array([[2, 0, 1], [0, 2, 1], [1, 1, 2]])
+        >>> p = meshorder.csgraph.reverse_cuthill_mckee(matrix, symmetric_mode=True)
+        >>> matrix[p][:, p].toarray().tolist()
+        [[2, 1, 0], [1, 2, 1], [0, 1, 2]]
     """
     made = order_graph(graph, "rcm", None, None, {"symmetric": symmetric_mode, "check": "fast"})
     return np.array(made.new_to_old)

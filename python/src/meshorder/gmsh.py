@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Orders for the model that Gmsh holds, between ``gmsh.model.mesh.generate`` and ``gmsh.write``."""
+"""Reorders the mesh of Gmsh's current model, between ``gmsh.model.mesh.generate`` and ``gmsh.write``."""
 
 from __future__ import annotations
 
@@ -19,30 +19,35 @@ def _model() -> Any:
 
 
 def reorder(**options: Any) -> MeshOrder:
-    """Orders the current model's mesh, all entities together, and gives nodes and elements their new tags.
+    """Orders the current model's mesh, all entities together, and gives nodes and elements new tags.
 
-    The tags are the same as before: the vertex that comes first gets the least. Elements stay in their entity, so
-    physical groups and periodic entities hold; ``group_by="physical"`` or "entity" orders within these.
+    The set of tags stays the same: the first vertex of the new order gets the smallest tag. Elements stay in their
+    entity, so that physical groups and periodic entities stay valid; ``group_by="physical"`` or "entity" orders within
+    groups or entities.
 
-    Who takes nodes by their tags, from this model or a file in MSH 4, sees the new order. MSH files list nodes entity
-    by entity, and MSH 2.2 numbers them anew: for readers that go by the place in the file, reorder the file.
-    Views that name nodes or elements by tags are not changed.
+    Programs that take nodes by their tags, from this model or from a file in MSH 4, see the new order. MSH files list
+    nodes entity by entity, and MSH 2.2 numbers them again: for programs that go by the place in the file, reorder the
+    file with `meshorder.reorder`. Views that name nodes or elements by tags are not changed.
 
     Args:
-        **options: as of `meshorder.reorder`.
+        **options: ``vertices``, ``elements``, ``group_by`` and the options of `meshorder.reorder`.
+
+    Returns:
+        The orders. Vertices and, within their entity, elements are numbered from 0 by ascending old tags.
 
     Raises:
-        InvalidArgument: Gmsh is not initialized or has no mesh.
-        Unavailable: a Gmsh whose ``renumberNodes`` takes no tags.
+        InvalidArgument: Gmsh is not initialized, its model has no mesh or elements of a type that cannot be ordered.
+        Unavailable: the ``renumberNodes`` of this version of Gmsh takes no tags.
+        ImportError: Gmsh is not installed.
     """
     return _orders.reorder(_model(), inplace=True, **options)[1]
 
 
 def compare(methods: Any = None, **options: Any) -> Comparison:
-    """As `meshorder.compare`, of the current model's mesh."""
+    """Compares orders of the current model's mesh; see `meshorder.compare`."""
     return _payoff.compare(_model(), methods, **options)
 
 
 def advise(**options: Any) -> Advice:
-    """As `meshorder.advise`, of the current model's mesh."""
+    """Tells what reordering the current model's mesh would gain; see `meshorder.advise`."""
     return _payoff.advise(_model(), **options)

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Functions with the names and signatures of networkx's, and the backend that networkx finds them by."""
+"""Functions with the names and signatures of those of `networkx`, also as its backend "meshorder"."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["algebraic_connectivity", "fiedler_vector", "spectral_ordering"]
 
 
 def _weights(graph: Any, weight: str | None) -> NDArray[np.float64] | None:
-    """The edges' weights in the order of `networkx_arrays`, without their signs as networkx takes them; or None."""
+    """Returns the absolute weights of the edges, as networkx takes them, in the order of `networkx_arrays`; or None."""
     if weight is None and not graph.is_multigraph():
         return None
     rows = [row for _, row in graph.adjacency()]
@@ -28,13 +28,14 @@ def _weights(graph: Any, weight: str | None) -> NDArray[np.float64] | None:
 
 
 def _solved(graph: Any, weight: str | None, tol: float, seed: Any) -> Fiedler:
+    """Returns the Fiedler vectors of an undirected graph; refuses directed ones with networkx's exception."""
     import networkx
 
     if graph.is_directed():
         raise networkx.NetworkXNotImplemented("not implemented for directed type")
     offsets, neighbours = networkx_arrays(graph)
     weights = _weights(graph, weight)
-    if weights is not None and not weights.all():  # an edge of weight 0 is none
+    if weights is not None and not weights.all():  # edges of weight 0 are left out
         kept = np.flatnonzero(weights)
         offsets, neighbours, weights = np.searchsorted(kept, offsets), neighbours[kept], weights[kept]
     start = int(seed) if isinstance(seed, (int, np.integer)) else 0
@@ -44,13 +45,14 @@ def _solved(graph: Any, weight: str | None, tol: float, seed: Any) -> Fiedler:
 
 
 def _networkxs_own(name: str) -> Any:
-    """networkx's own implementation, whatever backend is in force."""
+    """Returns networkx's own implementation, whichever backend is in force."""
     import networkx
 
     return getattr(networkx, name).orig_func
 
 
 def _connected(graph: Any) -> None:
+    """Refuses graphs of fewer than two nodes with networkx's exception."""
     import networkx
 
     if len(graph) < 2:
@@ -61,7 +63,24 @@ def fiedler_vector(
     G: Any, weight: str | None = "weight", normalized: bool = False, tol: float = 1e-8, method: str = "tracemin_pcg",
     seed: Any = None,
 ) -> NDArray[np.float64]:  # fmt: skip
-    """As networkx.fiedler_vector. ``normalized=True`` is left to networkx; ``method`` is not used."""
+    """Computes the Fiedler vector of a connected graph, as networkx.fiedler_vector does.
+
+    Args:
+        G: an undirected networkx graph.
+        weight: the edge attribute with the weights, of which the absolute value is taken and which is 1 where it is
+            missing; None: all are 1.
+        normalized: True leaves the work to networkx.
+        tol: the residual ‖L x − λ x‖ relative to λ₂ ‖x‖.
+        method: not used, except by networkx.
+        seed: an integer for the eigensolver's start vector; others, such as a RandomState, stand for 0.
+
+    Returns:
+        One number for each node, in the order of ``G``'s nodes: of norm 1 and sum 0.
+
+    Raises:
+        networkx.NetworkXError: the graph has fewer than two nodes, or is not connected.
+        networkx.NetworkXNotImplemented: the graph is directed.
+    """
     import networkx
 
     if normalized:
@@ -77,7 +96,17 @@ def algebraic_connectivity(
     G: Any, weight: str | None = "weight", normalized: bool = False, tol: float = 1e-8, method: str = "tracemin_pcg",
     seed: Any = None,
 ) -> float:  # fmt: skip
-    """As networkx.algebraic_connectivity. ``normalized=True`` is left to networkx; ``method`` is not used."""
+    """Computes the second-smallest eigenvalue of a graph's Laplacian, as networkx.algebraic_connectivity does.
+
+    The arguments are those of `fiedler_vector`.
+
+    Returns:
+        The eigenvalue; 0.0 for a graph that is not connected.
+
+    Raises:
+        networkx.NetworkXError: the graph has fewer than two nodes.
+        networkx.NetworkXNotImplemented: the graph is directed.
+    """
     if normalized:
         return float(_networkxs_own("algebraic_connectivity")(G, weight, normalized, tol, method, seed))
     _connected(G)
@@ -89,7 +118,17 @@ def spectral_ordering(
     G: Any, weight: str | None = "weight", normalized: bool = False, tol: float = 1e-8, method: str = "tracemin_pcg",
     seed: Any = None,
 ) -> list[Any]:  # fmt: skip
-    """As networkx.spectral_ordering: the nodes by their Fiedler vector, component by component."""
+    """Sorts the nodes by their Fiedler vector, component after component, as networkx.spectral_ordering does.
+
+    The arguments are those of `fiedler_vector`.
+
+    Returns:
+        All nodes in their new order, the components in the order of their first nodes.
+
+    Raises:
+        networkx.NetworkXError: the graph has no nodes.
+        networkx.NetworkXNotImplemented: the graph is directed.
+    """
     import networkx
 
     if normalized:
@@ -106,7 +145,7 @@ def spectral_ordering(
 
 
 class _Backend:
-    """What networkx calls where ``backend="meshorder"`` is asked for. Graphs stay networkx's own."""
+    """The functions that networkx calls for ``backend="meshorder"``. Graphs stay networkx's own."""
 
     fiedler_vector = staticmethod(fiedler_vector)
     algebraic_connectivity = staticmethod(algebraic_connectivity)
