@@ -1,14 +1,16 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Orders of meshes that many ranks share, for programs with mpi4py or petsc4py.
 
-Needs ``libmeshorder_mpi``, which a build with ``MESHORDER_MPI=ON`` installs: it is made for the MPI of the machine, as no
-wheel can be. It is looked for where the system looks for libraries; ``MESHORDER_MPI_LIBRARY`` names another file.
+Needs the library ``libmeshorder_mpi``, which no wheel contains, since it is built for the MPI of the machine: a build
+with ``MESHORDER_MPI=ON`` installs it. It is looked for where the system looks for libraries; the environment variable
+``MESHORDER_MPI_LIBRARY`` names another file. A call::
 
-    >>> from mpi4py import MPI
-    >>> import meshorder.mpi
-    >>> order = meshorder.mpi.order_ranks(MPI.COMM_WORLD, own_vertices, tetrahedra)
+    from mpi4py import MPI
+    import meshorder.mpi
 
-Vertices are numbered across the ranks from 0 on: those that rank 0 owns, those of rank 1, and so on.
+    order = meshorder.mpi.order_ranks(MPI.COMM_WORLD, own_vertices, tetrahedra)
+
+Vertices are numbered across the ranks from 0 on: first those that rank 0 owns, then those of rank 1, and so on.
 """
 
 from __future__ import annotations
@@ -37,11 +39,13 @@ _OUT_OF_MEMORY = 8
 
 @dataclasses.dataclass(frozen=True)
 class RankOrder:
-    """Order of what a rank has.
+    """The order of one rank's vertices and elements.
 
     Attributes:
-        new_numbers: new number of each own vertex, within the rank's own range.
-        cell_order: old places of the elements in their new order, by ``lexmax``: ``cells[order.cell_order]``.
+        new_numbers: the new number, across the ranks, of each vertex that the rank owns; it stays among the numbers of
+            the rank's own vertices. int64.
+        cell_order: the old places of the rank's elements in their new order, which the element method "lexmax" makes:
+            ``cells[order.cell_order]`` moves them. int64.
     """
 
     new_numbers: Numbers
@@ -50,13 +54,13 @@ class RankOrder:
 
 @dataclasses.dataclass(frozen=True)
 class PartOrder:
-    """Parts of a mesh, and the order in which they and their vertices follow each other.
+    """The parts of a mesh, numbered one after another, and the order of the vertices in them.
 
     Attributes:
-        new_numbers: new number of each own vertex.
-        part_starts: first new number of each part, and the end of the last one's; vertices that no element uses have the
-            numbers from there on.
-        cell_parts: part of each element, that of its vertex with the largest new number.
+        new_numbers: the new number, across all parts, of each vertex that the rank owns. int64.
+        part_starts: parts + 1 numbers, the same on all ranks: part p has the new numbers from ``part_starts[p]`` to
+            below ``part_starts[p + 1]``; vertices that no element uses have those from ``part_starts[-1]`` on. int64.
+        cell_parts: the part of each element of the rank: that of its vertex with the largest new number. int64.
     """
 
     new_numbers: Numbers
@@ -82,7 +86,7 @@ class _Options(ctypes.Structure):
 def _library() -> ctypes.CDLL:
     name = os.environ.get("MESHORDER_MPI_LIBRARY", _LIBRARY)
     try:
-        # MPI is the process's own, by the name that mpi4py loaded it under
+        # it finds the MPI library that mpi4py has loaded, by its name
         library = ctypes.CDLL(name)
     except OSError as error:
         raise _errors.Unavailable(f"{name} was not found ({error}): install a build with MESHORDER_MPI=ON, or let "
@@ -106,7 +110,7 @@ def _room_for(count: int) -> Numbers:
 
 @dataclasses.dataclass
 class _Arrays:
-    """The arrays of a rank, kept as long as C reads them."""
+    """The arrays of a rank in the types that C reads, kept alive during the call."""
 
     vertex_count: int
     offsets: Numbers
@@ -120,18 +124,24 @@ class _Arrays:
         else:
             rows = _whole_numbers(cells)
             if rows.ndim != 2 and rows.size > 0:
-                raise _errors.InvalidArgument(f"cells: {rows.ndim} dimensions; give m × k numbers, or (offsets, vertices)")
+                raise _errors.InvalidArgument(
+                    f"cells: expected m × k numbers, or (offsets, vertices), not the shape {rows.shape}"
+                )
             width = rows.shape[1] if rows.ndim == 2 else 0
             offsets = width * np.arange(len(rows) + 1, dtype=np.int64)
             vertices = rows.reshape(-1)
         if offsets.size == 0 or offsets[-1] != vertices.size:
-            raise _errors.InvalidArgument(f"cells: {vertices.size} vertices do not fit the offsets")
+            raise _errors.InvalidArgument(
+                f"cells: the last of the offsets must be the length of the vertices, {vertices.size}"
+            )
         placed = None
         if points is not None:
             placed = np.zeros((max(vertex_count, 0), 3))
             given = np.asarray(points, np.float64)
             if given.ndim != 2 or len(given) != vertex_count or not 1 <= given.shape[1] <= 3:
-                raise _errors.InvalidArgument(f"points: {given.shape}, must be {vertex_count} × 1, 2 or 3")
+                raise _errors.InvalidArgument(
+                    f"points: expected {vertex_count} × 1, 2 or 3 coordinates, not the shape {given.shape}"
+                )
             placed[:, : given.shape[1]] = given
         return cls(vertex_count, offsets, vertices, placed)
 
@@ -145,6 +155,7 @@ def _call(function: Any, communicator: Any, arrays: _Arrays, options: _Options, 
     mesh = arrays.to_c()
     status = function(ctypes.c_int32(communicator.py2f()), ctypes.byref(mesh), ctypes.byref(options),
                       *(_numbers(result) for result in results))  # fmt: skip
+    # the statuses are those of mo_status in meshorder.h
     if status == 0:
         return
     message = _library().mo_mpi_last_error().decode()
@@ -156,21 +167,30 @@ def _call(function: Any, communicator: Any, arrays: _Arrays, options: _Options, 
 def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[ArrayLike, ArrayLike],
                 points: ArrayLike | None = None, *, method: str = "spectral", interface_last: bool = False,
                 seed: int = 0, threads: int = 1) -> RankOrder:  # fmt: skip
-    """Orders the vertices of every rank among themselves: each stays with its owner. Every rank has to call it.
+    """Orders the vertices of every rank among themselves: each stays with its owner.
+
+    Every rank must call this function, with the same ``method``, ``interface_last`` and ``seed``.
 
     Args:
-        communicator: of mpi4py, of the ranks that share the mesh.
-        vertex_count: vertices that this rank owns.
-        cells: elements that this rank has, by the numbers of their vertices, whichever rank owns these: m × k, or
-            (offsets, vertices). Elements may be on several ranks.
-        points: n × 1, 2 or 3 coordinates of the own vertices, on all ranks or on none.
-        method: vertex method.
-        interface_last: True puts vertices that share an element with those of other ranks behind the others.
-        seed: of the method.
-        threads: of this rank.
+        communicator: mpi4py communicator of the ranks that share the mesh.
+        vertex_count: number of vertices that this rank owns.
+        cells: the elements that this rank has, as the numbers of their vertices across the ranks, whichever rank owns
+            them: m rows of k vertices, or ``(offsets, vertices)``. An element may be on several ranks.
+        points: coordinates of the rank's own vertices, ``vertex_count`` rows of one to three, on all ranks or on none.
+            Geometric methods need them.
+        method: name of a vertex method, but not "auto", "original" or "scrambled".
+        interface_last: True numbers the vertices that share an element with vertices of other ranks after the others.
+        seed: integer ≥ 0 for the method.
+        threads: the most threads that this rank uses.
+
+    Returns:
+        New numbers of this rank's vertices, and the order of its elements.
 
     Raises:
-        Error: on all ranks where one fails, but for arrays of wrong shapes, which only their rank sees.
+        InvalidArgument: an unknown method, wrong vertex numbers, missing coordinates: on all ranks if it is true for
+            one. Arrays of wrong shapes: only on the rank that has them, while the others wait.
+        Unavailable: the library ``libmeshorder_mpi`` was not found.
+        Error: another failure; on all ranks.
     """
     arrays = _Arrays.of(vertex_count, cells, points)
     options = _Options(ctypes.sizeof(_Options), method.encode(), None, None, seed, 0, threads, interface_last, 0)
@@ -183,25 +203,33 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
                 points: ArrayLike, *, parts: int = 0, method: str = "spectral", partition: str = "ptscotch",
                 balance: str = "vertices", interface_last: bool = False, seed: int = 0,
                 threads: int = 1) -> PartOrder:  # fmt: skip
-    """Cuts the mesh into parts, orders each, and numbers them one after another, so that parts that touch are near each
-    other. Moving vertices and elements to their new owners is left to the caller. Every rank has to call it.
+    """Cuts the mesh into parts, orders the vertices of each, and numbers the parts one after another.
+
+    Parts that touch get numbers near each other. The caller moves vertices and elements to their new owners. Every rank
+    must call this function, with the same options.
 
     Args:
-        communicator: of mpi4py, of the ranks that share the mesh.
-        vertex_count: vertices that this rank owns.
-        cells: as of `order_ranks`, each on one rank.
-        points: n × 1, 2 or 3 coordinates of the own vertices.
+        communicator: mpi4py communicator of the ranks that share the mesh.
+        vertex_count: number of vertices that this rank owns.
+        cells: the elements that this rank has, in a form that `order_ranks` takes; each element is on one rank only.
+        points: coordinates of the rank's own vertices, ``vertex_count`` rows of one to three.
         parts: number of parts; 0: one for each rank.
-        method: vertex method of a part.
-        partition: "ptscotch", which needs MPI_THREAD_MULTIPLE; "hilbert", which takes its place without that; "rsb",
-            recursive spectral bisection; or "order", equal ranges of one order of the whole mesh, by the method "fiedler" only.
-        balance: what every part gets the same number of, "vertices" or "cells".
-        interface_last: True puts vertices that share an element with those of other parts behind the others.
-        seed: of the method.
-        threads: of this rank.
+        method: name of the vertex method for the parts, but not "auto", "original" or "scrambled".
+        partition: the method that makes the parts: "ptscotch", which needs MPI_THREAD_MULTIPLE and is replaced by
+            "hilbert" without it; "hilbert"; "rsb", recursive spectral bisection; or "order", which orders the whole
+            mesh and cuts the order into equal ranges, with the method "fiedler", the balance "vertices" and without
+            ``interface_last`` only.
+        balance: whether parts get the same number of "vertices" or of "cells".
+        interface_last: True numbers the vertices that share an element with vertices of other parts after the others
+            of their part.
+        seed: integer ≥ 0 for the method.
+        threads: the most threads that this rank uses.
+
+    Returns:
+        New numbers of this rank's vertices, the ranges of the parts, and the part of each of its elements.
 
     Raises:
-        Error: as `order_ranks`.
+        InvalidArgument, Unavailable, Error: as `order_ranks`; InvalidArgument also for options that do not go together.
     """
     arrays = _Arrays.of(vertex_count, cells, points)
     options = _Options(ctypes.sizeof(_Options), method.encode(), partition.encode(), balance.encode(), seed, parts, threads,
