@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """The command `meshorder` of the Python package.
 
-It runs the command in C++ that lies in the package. Where a mesh has a format that only meshio knows, it is converted
-to .vtu first, and what is written is converted from it.
+It runs the C++ command that the package contains. A mesh in a format that only meshio has is converted to .vtu first,
+and for an output in such a format the command writes .vtu, which is then converted.
 """
 
 from __future__ import annotations
@@ -27,21 +27,25 @@ from . import _core, _files, _foreign
 from ._errors import Error, InputError
 from .hosts.meshio import GROUPED, Blocks, to_meshio
 
-#: subcommands that take a mesh: its place among the arguments that are no options
+#: subcommands that take a mesh, and the place of the mesh among their arguments that are no options
 _MESH_PLACE = {"order": 0, "apply": 1, "info": 0, "compare": 0}
-#: options without a value; every other one has one
+#: options without a value; all others have one
 _FLAGS = {"--json", "--quiet", "-q", "--inverse", "--measure", "--predict", "--strict"}
 _BAD_INPUT = 2
 
 
 def program() -> str:
-    """The path of the command in C++."""
+    """Returns the path of the C++ command."""
     folder = pathlib.Path(str(_core.__file__)).parent / "bin"
     return str(folder / ("meshorder.exe" if os.name == "nt" else "meshorder"))
 
 
 def main() -> int:
-    """Runs the command with the arguments of this process; returns its exit status, or does not return."""
+    """Runs the command with the arguments of this process.
+
+    Returns:
+        Its exit status, unless the command takes the place of this process.
+    """
     arguments = sys.argv[1:]
     try:
         words = _Words.of(arguments)
@@ -58,14 +62,20 @@ def main() -> int:
 def _run_as_is(arguments: list[str]) -> int:
     if os.name == "nt":
         return subprocess.call([program(), *arguments])
-    for ignored in ("SIGPIPE", "SIGXFSZ"):  # by Python
+    for ignored in ("SIGPIPE", "SIGXFSZ"):  # Python ignores them
         signal.signal(getattr(signal, ignored), signal.SIG_DFL)
     os.execv(program(), ["meshorder", *arguments])
 
 
 @dataclass
 class _Word:
-    """An argument that names a file, or the end of one that does, as in --output=FILE."""
+    """An argument, or the part of one behind "=", that names a file, as in --output=FILE.
+
+    Attributes:
+        path: the name of the file.
+        place: position among the arguments.
+        before: the part of the argument before the name.
+    """
 
     path: str
     place: int
@@ -77,7 +87,7 @@ class _Word:
 
 @dataclass
 class _Words:
-    """What the command line says of files."""
+    """The files and the options of a command line that matter to the conversion."""
 
     subcommand: str
     mesh: _Word
@@ -94,7 +104,7 @@ class _Words:
 
     @classmethod
     def of(cls, arguments: list[str]) -> _Words | None:
-        """None where no mesh is named, or help is asked for."""
+        """Returns what the arguments name; None if they name no mesh or ask for help."""
         plain: list[int] = []
         values: dict[str, _Word] = {}
         flags: set[str] = set()
@@ -162,6 +172,8 @@ class _Maps:
 
 
 class _Signalled(BaseException):
+    """A signal that asks this process to end."""
+
     def __init__(self, number: int) -> None:
         self.number = number
 
@@ -199,7 +211,7 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="meshorder-"))
         if output is not None:
-            stack.enter_context(_foreign.folder_beside(output.path))  # fails before the work if it cannot be written
+            stack.enter_context(_foreign.folder_beside(output.path))  # fails before the work if nothing can be written
             made = os.path.join(folder, "out.vtu")
             output.put(arguments, made)
             names[made] = output.path
@@ -235,18 +247,22 @@ def _run_through_meshio(arguments: list[str], words: _Words) -> int:
 
 
 def _print(text: str) -> None:
-    """Writes text to stdout; where the reader of a pipe has gone away, drops it."""
+    """Writes text to stdout; drops it if the reader of a pipe has closed it.
+
+    Raises:
+        Error: stdout cannot be written to for another reason.
+    """
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
     except OSError as error:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes the rest when it ends
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes its buffer there when it ends
         if not isinstance(error, BrokenPipeError):
             raise Error("standard output: cannot be written to the end; is the disk full?") from error
 
 
 def _write(made: str, path: str, format: str, words: _Words, dimension: int, maps: _Maps | None) -> list[str]:
-    """Writes what the command made through meshio; returns notes."""
+    """Converts the file that the command made by meshio, and returns notes."""
     ordered = words.subcommand == "order"
     moved = _files.read(made)
 
@@ -265,13 +281,18 @@ def _write(made: str, path: str, format: str, words: _Words, dimension: int, map
     try:
         return write(Blocks.OF_TYPES_IN_RUNS if ordered else Blocks.AS_THEY_COME)
     except InputError:
-        if not ordered or maps is not None:  # maps must lead back
+        if not ordered or maps is not None:  # the cells must stay in the order of the maps
             raise
         return write(Blocks.OF_TYPES)
 
 
 def _reorder_map_of_cells(prefix: str, order: NDArray[np.int64]) -> None:
-    """Writes again where cells went, once they were sorted by type."""
+    """Rewrites the maps of cells for cells that were sorted by type after they were reordered.
+
+    Args:
+        prefix: the value of --maps.
+        order: the place that each cell of the file had in the reordered mesh.
+    """
     file = f"{prefix}.cells.new_to_old.npy"
     written = np.load(file)
     new_to_old = written[order]
@@ -282,7 +303,7 @@ def _reorder_map_of_cells(prefix: str, order: NDArray[np.int64]) -> None:
 
 
 def _forget_mesh_after(prefix: str) -> None:
-    """Removes the checksums of the maps and of the reordered mesh, whose cells and digits are those that meshio wrote."""
+    """Removes the checksums of the maps and of the reordered mesh, since meshio may write other cells and digits."""
     file = pathlib.Path(f"{prefix}.maps.json")
     identity = json.loads(file.read_text(encoding="utf-8"))
     identity["after"] = None
@@ -291,10 +312,15 @@ def _forget_mesh_after(prefix: str) -> None:
 
 
 def _run_in_other_names(arguments: list[str], names: dict[str, str], words: _Words) -> tuple[int, str]:
-    """Runs the command; what it says of the files with these names, it says of the user's.
+    """Runs the command and replaces the names of temporary files in its output by those of the user's files.
+
+    Args:
+        arguments: of the command.
+        names: the user's file for each temporary one.
+        words: the files and options of the command line.
 
     Returns:
-        Its exit status, negative if a signal ended it; and what it printed on stdout.
+        The exit status, negative if a signal ended the command; and what it printed on stdout.
     """
     with subprocess.Popen(
         [program(), *arguments],
@@ -327,7 +353,7 @@ def _run_in_other_names(arguments: list[str], names: dict[str, str], words: _Wor
             child.wait()
             errors.join()
     printed = renamed(printed, lambda name: json.dumps(name, ensure_ascii=False)) if words.json else renamed(printed)
-    if words.subcommand == "info":  # names the format that it read
+    if words.subcommand == "info":  # it names the format of the file that it read
         printed = printed.replace('"format": "VTU"', '"format": "meshio"')
         printed = printed.replace(f"{words.mesh.path}, VTU", words.mesh.path)
     return status, printed

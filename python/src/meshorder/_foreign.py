@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Files of formats that meshorder does not read or write itself: meshio does, where it is installed.
+"""Reads and writes files in formats that meshorder does not have, by meshio where it is installed.
 
-Nothing is lost in silence: what a format does not give back, once it is written, is named; where cells would be lost,
-no file is written.
+Each written file is read again: notes name the data that do not come back, and where cells would be lost, no file is
+written.
 """
 
 from __future__ import annotations
@@ -26,10 +26,14 @@ from .hosts.meshio import MeshioMesh, to_meshio
 
 
 def format_of_meshio(path: str, format: str = "") -> str | None:
-    """meshio's name of the format that it must read or write a file in; None for formats of our own and unknown ones.
+    """Returns meshio's name of the format of a file; None for formats that meshorder has and for unknown ones.
+
+    Args:
+        path: the file, whose extension tells the format.
+        format: name of the format, which counts instead of the extension; empty: none.
 
     Raises:
-        InputError: the format is not ours, and meshio is not installed.
+        InputError: meshorder does not have the format, and meshio is not installed.
     """
     ours = _core.formats()
     name = PurePath(path).name.lower()
@@ -44,7 +48,7 @@ def format_of_meshio(path: str, format: str = "") -> str | None:
     except ImportError:
         what = f"format '{format}'" if format else f"extension '{PurePath(name).suffix}'"
         raise InputError(
-            f"{path}: unknown {what}; meshio knows more than meshorder itself: pip install meshio"
+            f"{path}: unknown {what}; with meshio, meshorder takes more formats: pip install meshio"
         ) from None
     found = [kinds for end, kinds in meshio.extension_to_filetypes.items() if name.endswith(end)]
     if format:
@@ -53,10 +57,10 @@ def format_of_meshio(path: str, format: str = "") -> str | None:
 
 
 def read(path: str, format: str) -> Mesh:
-    """Reads a file by meshio. The mesh's notes begin with that, and tell what was left out.
+    """Reads a file by meshio and returns a mesh whose notes say so and name what was left out.
 
     Raises:
-        InputError: meshio cannot read the file, or it holds cells that meshorder does not know.
+        InputError: meshio cannot read the file, or it holds no cells or cells of a type that meshorder does not know.
         Unavailable: meshio needs another package for the format.
     """
     found, notes = read_meshio(path, format)
@@ -71,7 +75,7 @@ def read(path: str, format: str) -> Mesh:
 
 
 def write(mesh: Mesh, path: str, format: str) -> list[str]:
-    """Writes a file by meshio. Returns that, and what is missing from the file.
+    """Writes a file by meshio and returns notes that say so and name what is missing from the file.
 
     Raises:
         InputError, Unavailable: as `write_meshio`.
@@ -82,7 +86,10 @@ def write(mesh: Mesh, path: str, format: str) -> list[str]:
 
 
 def read_meshio(path: str, format: str) -> tuple[Any, list[str]]:
-    """A meshio.Mesh of a file; that meshio read it, and what meshio says of it.
+    """Reads a file by meshio.
+
+    Returns:
+        The meshio.Mesh, and notes: that meshio read the file, and what meshio printed.
 
     Raises:
         InputError: the file is missing, or meshio cannot read it.
@@ -104,20 +111,20 @@ def read_meshio(path: str, format: str) -> tuple[Any, list[str]]:
 
 
 def write_meshio(mesh: Any, path: str, format: str, strict: bool = False) -> list[str]:
-    """Writes a meshio.Mesh, and reads it again to see what the format holds of it.
+    """Writes a meshio.Mesh to a file and reads the file again to find what is missing from it.
 
     Args:
-        mesh: of meshio.
-        path: of the file.
-        format: by meshio's name.
-        strict: allows no loss of cells, arrays and sets.
+        mesh: the mesh to write.
+        path: where to write it.
+        format: meshio's name of the format.
+        strict: True refuses to lose cells, arrays or sets.
 
     Returns:
-        That meshio wrote it, what meshio says, and what the file does not hold.
+        Notes: that meshio wrote the file, what meshio printed, and what the file does not hold.
 
     Raises:
-        InputError: meshio cannot write it, or cells would be lost, or anything where that is not allowed. There is no
-            file then.
+        InputError: meshio cannot write the mesh, or cells would be lost, or anything if ``strict``; the file is not
+            made then.
         Unavailable: meshio needs another package for the format.
     """
     import meshio
@@ -131,7 +138,7 @@ def write_meshio(mesh: Any, path: str, format: str, strict: bool = False) -> lis
             with _meshios_words(path, [], "read it again"):
                 again = meshio.read(made, format)
         except (InputError, Unavailable):
-            lost = ["meshio cannot read this file again: what it holds was not verified"]
+            lost = ["meshio cannot read the file that it wrote: its contents were not verified"]
         else:
             lost = list(_what_is_lost(mesh, again, path))
             notes += _what_is_rounded(mesh, again)
@@ -145,10 +152,10 @@ def write_meshio(mesh: Any, path: str, format: str, strict: bool = False) -> lis
 
 @contextlib.contextmanager
 def folder_beside(path: str) -> Iterator[str]:
-    """A folder to write in, which is gone at the end; on the disk of the file that is to be written.
+    """Makes a temporary folder in the folder of a file that will be written, and removes it at the end.
 
     Raises:
-        InputError: nothing can be written there.
+        InputError: the folder cannot be made.
     """
     target = os.path.dirname(path) or os.curdir
     try:
@@ -163,10 +170,10 @@ def folder_beside(path: str) -> Iterator[str]:
 
 @contextlib.contextmanager
 def _meshios_words(path: str, notes: list[str], what: str) -> Iterator[None]:
-    """Turns what meshio prints into notes, and its many ways to fail into an InputError."""
+    """Runs meshio: adds what it prints to the notes, and raises InputError or Unavailable for all its failures."""
     printed = io.StringIO()
     width = os.environ.get("COLUMNS")
-    os.environ["COLUMNS"] = "1000"  # its lines are not broken then
+    os.environ["COLUMNS"] = "1000"  # so that meshio breaks no lines
     try:
         with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
             yield
@@ -174,7 +181,7 @@ def _meshios_words(path: str, notes: list[str], what: str) -> Iterator[None]:
         raise Unavailable(f"{path}: meshio needs the package {error.name} to {what}; install that, too") from None
     except MemoryError:
         raise
-    except (Exception, SystemExit) as error:  # meshio ends the process on some faults
+    except (Exception, SystemExit) as error:  # meshio calls sys.exit for some faults
         words = "" if isinstance(error, SystemExit) else str(error)
         reason = " ".join((words or printed.getvalue() or type(error).__name__).split())
         raise InputError(f"{path}: meshio cannot {what}: {reason}") from None
@@ -189,7 +196,7 @@ def _meshios_words(path: str, notes: list[str], what: str) -> Iterator[None]:
 
 
 def _shallow_copy(mesh: Any) -> Any:
-    """A mesh with the same arrays; meshio's writers change the lists and dictionaries of the one that they write."""
+    """Returns a mesh with the same arrays in lists and dictionaries of its own, which meshio's writers change."""
     return type(mesh)(
         mesh.points,
         list(mesh.cells),
@@ -204,6 +211,7 @@ def _shallow_copy(mesh: Any) -> Any:
 
 
 def _counts(mesh: Any) -> Counter[str]:
+    """Returns the number of cells of each type."""
     counts: Counter[str] = Counter()
     for block in mesh.cells:
         counts[block.type] += len(block.data)
@@ -211,11 +219,16 @@ def _counts(mesh: Any) -> Counter[str]:
 
 
 def _what_is_lost(mesh: Any, again: Any, path: str) -> Iterator[str]:
+    """Yields a note for each difference between a mesh and the same mesh read from the file.
+
+    Raises:
+        InputError: cells are missing.
+    """
     missing = _counts(mesh) - _counts(again)
     extra = _counts(again) - _counts(mesh)
     if missing.total() > extra.total():
         listed = ", ".join(f"{count} of type {name}" for name, count in missing.items())
-        raise InputError(f"{path}: the format would lose cells: {listed}; choose another")
+        raise InputError(f"{path}: the format would lose cells: {listed}; choose another format")
     if missing:
         yield f"cells of type {', '.join(missing)} become {', '.join(extra)}"
     if len(again.points) != len(mesh.points):
@@ -241,7 +254,7 @@ def _what_is_rounded(mesh: Any, again: Any) -> Iterator[str]:
 
 
 def _member_count(members: Any) -> int:
-    """Of a set of points, or of one of cells, which has a list for each block."""
+    """Returns the number of members of a set of points, or of cells, which has a list for each block."""
     if isinstance(members, list):
         return sum(len(part) for part in members if part is not None)
     return len(members)

@@ -33,7 +33,8 @@ def reorder(**options: Any) -> MeshOrder:
         **options: ``vertices``, ``elements``, ``group_by`` and the options of `meshorder.reorder`.
 
     Returns:
-        The orders. Vertices and, within their entity, elements are numbered from 0 by ascending old tags.
+        The orders. Their numbers count vertices from 0 by ascending old tags, and elements from 0 as Gmsh listed them,
+        entity by entity.
 
     Raises:
         InvalidArgument: Gmsh is not initialized, its model has no mesh or elements of a type that cannot be ordered.

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Meshes of other libraries, recognised by the modules of their classes, without an import of the library."""
+"""Finds the host of a mesh of another library by the module of its class, without an import of the library."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from .._errors import InvalidArgument
 from .host import Host
 
-#: module here that knows the meshes of a library
+#: the module of this package for the meshes of each library
 _MODULES = {
     "meshorder": "native",
     "meshio": "meshio",
@@ -23,10 +23,10 @@ _MODULES = {
 
 
 def find_host(mesh: Any) -> Host | None:
-    """The host of a mesh; None for what is no mesh of a library that is known.
+    """Returns the host of a mesh; None for objects of other libraries.
 
     Raises:
-        InvalidArgument: an object of a known library that is no mesh, or a mesh that cannot be ordered.
+        InvalidArgument: an object of one of the libraries that is no mesh, or a mesh that cannot be ordered.
     """
     kind = mesh if isinstance(mesh, type) else type(mesh)
     for base in kind.__mro__[:-1]:
@@ -38,7 +38,11 @@ def find_host(mesh: Any) -> Host | None:
 
 
 def host_of(mesh: Any) -> Host:
-    """As `find_host`, but refuses what is no mesh."""
+    """Returns the host of a mesh.
+
+    Raises:
+        InvalidArgument: as `find_host`, and objects of other libraries.
+    """
     found = find_host(mesh)
     if found is None:
         raise InvalidArgument(

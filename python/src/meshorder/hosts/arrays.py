@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Meshes as tuples of the caller's own arrays."""
+"""Meshes that are tuples of the caller's own arrays."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from .host import Host, moved_rows, parts
 class ArrayMesh(Host):
     """``(points, cells)``, ``(points, cells, point_data)`` or ``(points, cells, point_data, cell_data)``.
 
-    Data are dicts of arrays. An array of ``cell_data`` has the form of the cells: a dict or list of blocks where these
-    are one, else one row for each cell.
+    The data are dicts of arrays. Those of ``cell_data`` have the form of the cells: where the cells are a dict or list
+    of blocks, a dict or list with an array for each block, else one array with a row for each cell.
     """
 
     def __init__(self, mesh: tuple[Any, ...]) -> None:
@@ -85,7 +85,7 @@ class ArrayMesh(Host):
         return new if isinstance(values, list) and _is_list_of_blocks(self.cells) else new[0]
 
     def _values_of_blocks(self, values: Any, name: str) -> list[NDArray[Any]]:
-        """The values of each block of cells."""
+        """Returns the values of each block of cells."""
         if isinstance(values, Mapping):
             fits = isinstance(self.cells, Mapping) and list(values) == list(self.cells)
             blocks = list(values.values())
@@ -95,14 +95,14 @@ class ArrayMesh(Host):
             fits, blocks = len(self._sizes) == 1, [values]
         arrays = [np.asarray(block) for block in blocks]
         if not fits or [array.shape[:1] for array in arrays] != [(size,) for size in self._sizes]:
-            raise InvalidArgument(f"cell_data '{name}': expected blocks of {self._sizes} rows, as the cells have")
+            raise InvalidArgument(f"cell_data '{name}': expected blocks of {self._sizes} rows, as of the cells")
         return arrays
 
 
 def _rows(permutation: Permutation, values: Any, name: str) -> Any:
     array = np.asarray(values)
     if array.ndim == 0 or len(array) != len(permutation):
-        raise InvalidArgument(f"data '{name}': the shape {array.shape} where {len(permutation)} rows are needed")
+        raise InvalidArgument(f"data '{name}': expected {len(permutation)} rows, not the shape {array.shape}")
     return permutation.move(array)
 
 
@@ -115,7 +115,7 @@ def _check_writeable(part: Any, name: str) -> None:
             _check_writeable(inner, name)
     elif part is not None and not isinstance(part, str):
         if not isinstance(part, np.ndarray) or not part.flags.writeable:
-            raise InvalidArgument(f"inplace: {name} must hold NumPy arrays only that may be written to")
+            raise InvalidArgument(f"inplace: {name} must be made of NumPy arrays that are writeable")
 
 
 def _copy_into(part: Any, moved: Any) -> None:
@@ -130,7 +130,7 @@ def _copy_into(part: Any, moved: Any) -> None:
 
 
 def _with_types(cells: Any) -> Any:
-    """Blocks of meshio, which have a type and data, as pairs of these; other cells as they are."""
+    """Returns meshio's blocks of cells as pairs of their type and data; other cells as they are."""
     if isinstance(cells, list) and cells and all(hasattr(block, "type") and hasattr(block, "data") for block in cells):
         return [(block.type, block.data) for block in cells]
     return cells
@@ -145,7 +145,7 @@ def _is_list_of_blocks(cells: Any) -> bool:
 
 
 def _blocks(cells: Any) -> list[Any]:
-    """The rows of each block of cells; empty for cells as offsets and connectivity."""
+    """Returns the rows of each block of cells; an empty list for cells as offsets and connectivity."""
     if isinstance(cells, Mapping):
         return list(cells.values())
     if _is_list_of_blocks(cells):
@@ -156,7 +156,7 @@ def _blocks(cells: Any) -> list[Any]:
 
 
 def host(mesh: Any) -> Host | None:
-    """The host of a tuple of arrays that begins with points; None for other tuples, ``(indptr, indices)`` say."""
+    """Returns the host of a tuple of arrays that begins with points; None for others, such as ``(indptr, indices)``."""
     if not isinstance(mesh, tuple) or not 2 <= len(mesh) <= 4:
         return None
     first = mesh[0]

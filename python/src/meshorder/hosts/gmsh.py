@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Gmsh's running model."""
+"""The current model of Gmsh."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .._errors import InvalidArgument, Unavailable
 from .._meshes import MeshOrder
 from .host import Host, parts
 
-#: Gmsh's names of shapes, as in "Tetrahedron 10"
+#: shapes by the first word of Gmsh's names of element types: "Tetrahedron 10"
 _SHAPES = {
     "Point": "vertex",
     "Line": "line",
@@ -28,7 +28,7 @@ _SHAPES = {
 
 
 class _Block(NamedTuple):
-    """The elements of one type of an entity."""
+    """The elements of one type in an entity."""
 
     dimension: int
     entity: int
@@ -37,16 +37,18 @@ class _Block(NamedTuple):
 
 
 class GmshModel(Host):
-    """The current model of the module gmsh. Vertices and elements are numbered by their tags, ascending.
+    """The current model of the module gmsh.
 
-    Tags are given anew, the same ones in the new order. Elements stay in their entity.
+    Vertices are numbered from 0 by ascending tags, elements as Gmsh lists them: entity by entity, type by type.
+    Elements stay in their entity. Nodes get the same set of tags in the new order, elements those of their type and
+    entity.
     """
 
     def __init__(self, model: Any) -> None:
         import gmsh
 
         if not gmsh.isInitialized():
-            raise InvalidArgument("gmsh: no model is there; gmsh.initialize() and generate a mesh first")
+            raise InvalidArgument("gmsh: Gmsh is not initialized; call gmsh.initialize() and generate a mesh first")
         self.given = model
         self._mesh = gmsh.model.mesh
         tags, coordinates, _ = self._mesh.getNodes()
@@ -74,7 +76,7 @@ class GmshModel(Host):
         return places.astype(np.int32)
 
     def cell_data(self) -> Mapping[str, Any]:
-        """The entity of each element, and its first physical group (0: none)."""
+        """Returns the entity and the first physical group (0: none) of each element, as "entity" and "physical"."""
         import gmsh
 
         groups = {}
@@ -91,7 +93,7 @@ class GmshModel(Host):
         if not inplace:
             raise InvalidArgument("inplace: Gmsh has one running model, which can only be changed; pass inplace=True")
         if "oldTags" not in inspect.signature(self._mesh.renumberNodes).parameters:
-            raise Unavailable("gmsh: this version cannot give nodes tags of choice; a later one is needed")
+            raise Unavailable("gmsh: renumberNodes of this version of Gmsh takes no tags; Gmsh 4.13 does")
         self._mesh.renumberNodes(self._tags, self._tags[order.vertices.old_to_new])
         old_tags, new_tags = [], []
         sizes = [len(block.tags) for block in self._blocks]
@@ -105,7 +107,7 @@ class GmshModel(Host):
 
 
 def host(mesh: Any) -> Host:
-    """The host of ``gmsh.model``."""
+    """Returns the host of ``gmsh.model``."""
     if not isinstance(mesh, type) or mesh.__name__ != "model":
-        raise InvalidArgument("mesh: of Gmsh, pass gmsh.model")
+        raise InvalidArgument("mesh: expected gmsh.model, not another object of the module gmsh")
     return GmshModel(mesh)

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What the functions on meshes need of a mesh of another library."""
+"""The interface by which the functions on meshes use the meshes of other libraries."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _VTK_WEDGE = 13
 
 @dataclass(frozen=True)
 class Request:
-    """What `meshorder.reorder` is asked for, apart from the mesh."""
+    """The arguments of `meshorder.reorder`, apart from the mesh."""
 
     vertices: str = "auto"
     elements: str = "auto"
@@ -36,12 +36,12 @@ class Request:
 
 
 class Host(abc.ABC):
-    """A mesh of another library.
+    """A mesh of another library, as the functions on meshes use it.
 
     Attributes:
         given: the mesh itself.
-        points: a row of one to three coordinates for each vertex.
-        cells: in one of the forms of `meshorder.order_mesh`.
+        points: one row of one to three coordinates for each vertex.
+        cells: the cells, in one of the forms that `meshorder.order_mesh` takes.
     """
 
     given: Any
@@ -50,32 +50,32 @@ class Host(abc.ABC):
 
     @abc.abstractmethod
     def moved(self, order: MeshOrder, inplace: bool) -> Any:
-        """The mesh in another order, with all that belongs to its vertices and cells; or the mesh itself, changed."""
+        """Returns the mesh with vertices, cells and their data in another order: a new one, or ``given`` changed."""
 
     def point_data(self) -> Mapping[str, Any]:
-        """Arrays with a row for each vertex."""
+        """Returns the arrays with a row for each vertex, by name."""
         return {}
 
     def cell_data(self) -> Mapping[str, Any]:
-        """Arrays with a row for each cell."""
+        """Returns the arrays with a row for each cell, by name."""
         return {}
 
     def point_sets(self) -> Mapping[str, Any]:
-        """Named lists of vertices."""
+        """Returns the sets of vertices by name: arrays of vertex numbers."""
         return {}
 
     def cell_sets(self) -> Mapping[str, Any]:
-        """Named lists of cells."""
+        """Returns the sets of cells by name: arrays of cell numbers."""
         return {}
 
     def order(self, vertices: str, elements: str, options: dict[str, Any]) -> MeshOrder:
-        """New places for the vertices and cells."""
+        """Finds new places for the vertices and cells; see `meshorder.order_mesh`."""
         return order_arrays(self.points, self.cells, vertices, elements, None, options)
 
     def reorder(self, request: Request) -> tuple[Any, MeshOrder]:
-        """See `meshorder.reorder`."""
+        """Returns the mesh in a new order, and its orders; see `meshorder.reorder`."""
         if request.ids != "renumber" or request.format:
-            raise InvalidArgument("reorder: ids and format are for a meshorder.Mesh only")
+            raise InvalidArgument("reorder: ids and format can be given for a meshorder.Mesh only")
         if request.group_by:
             order = self.grouped_order(request)
         else:
@@ -83,7 +83,7 @@ class Host(abc.ABC):
         return self.moved(order, request.inplace), order
 
     def grouped_order(self, request: Request) -> MeshOrder:
-        """The order that keeps the groups of an array together: that of a `meshorder.Mesh` with the same arrays."""
+        """Finds the order that keeps the groups of an array together, by a `meshorder.Mesh` with the same arrays."""
         handle = self.mesh()._handle
         with prepared(request.options) as given:
             return MeshOrder._of(
@@ -91,7 +91,7 @@ class Host(abc.ABC):
             )
 
     def mesh(self) -> Mesh:
-        """A `meshorder.Mesh` with the same data and sets; its notes tell what it cannot hold."""
+        """Returns a `meshorder.Mesh` with the same data and sets; its notes name the data that it cannot hold."""
         coordinates = as_points(self.points)
         cells = wedges_inward(coordinates, cell_arrays(self.cells, coordinates.shape[1]))
         made = Mesh(_core.make_mesh(coordinates, cells))
@@ -113,7 +113,12 @@ class Host(abc.ABC):
 
 
 def parts(cells: Permutation, sizes: Sequence[int]) -> list[Permutation]:
-    """The permutation of the cells of each block, for cells that stay in their block."""
+    """Returns the permutation of the cells of each block, for cells that stay in their block.
+
+    Args:
+        cells: permutation of all cells, which are numbered block after block.
+        sizes: number of cells of each block.
+    """
     if len(sizes) == 1:
         return [cells]
     ends = np.cumsum(sizes, dtype=np.int64)
@@ -126,7 +131,7 @@ def parts(cells: Permutation, sizes: Sequence[int]) -> list[Permutation]:
 def moved_rows(
     offsets: NDArray[Any], entries: NDArray[Any], rows: Permutation
 ) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Rows of any size in their new order, as offsets and entries; both are new arrays."""
+    """Returns the offsets and entries of rows of any size in their new order; both are new arrays."""
     widths = np.diff(offsets)
     if len(widths) and (widths == widths[0]).all():
         return offsets.copy(), rows.move(entries.reshape(len(widths), -1)).reshape(-1)
@@ -139,7 +144,7 @@ def moved_rows(
 
 
 def _numbers(values: Any) -> NDArray[Any] | None:
-    """An array of real numbers of rank 1 or 2; None for other values. What is masked becomes NaN."""
+    """Returns values as an array of real numbers of rank 1 or 2, masked ones as NaN; None for values of other types."""
     if np.ma.is_masked(values):
         values = np.ma.filled(values.astype(np.float64), np.nan)
     array = np.asarray(values)
@@ -157,7 +162,10 @@ def _numbers(values: Any) -> NDArray[Any] | None:
 
 
 def wedges_inward(points: NDArray[Any], cells: Any) -> Any:
-    """Linear wedges with the first triangle facing inward, as a `meshorder.Mesh` has them; VTK's faces outward."""
+    """Returns the cells, in the form given, with the first triangle of linear wedges facing inward.
+
+    A `meshorder.Mesh` has them so; VTK's first triangle faces outward.
+    """
     if isinstance(cells, list):
         return [
             (shape, _inward(points, rows) if shape == "wedge" and rows.shape[1] == 6 else rows) for shape, rows in cells
@@ -175,6 +183,7 @@ def wedges_inward(points: NDArray[Any], cells: Any) -> Any:
 
 
 def _inward(points: NDArray[Any], wedges: NDArray[Any]) -> NDArray[Any]:
+    """Returns wedges, one of six vertices in each row, with the first triangle facing inward."""
     if points.shape[1] != 3 or len(wedges) == 0 or wedges.min() < 0 or wedges.max() >= len(points):
         return wedges
     corners = points[wedges]

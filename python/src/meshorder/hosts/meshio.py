@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""meshio's meshes."""
+"""The meshes of meshio, and meshes made for it."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class MeshioMesh(Host):
         return moved
 
     def _periodic(self, old_to_new: NDArray[Any]) -> Any:
-        """Gmsh's pairs of periodic points: [dimension, entities, transformation, pairs] for each entity."""
+        """Returns Gmsh's periodic points with new numbers: [dimension, entities, transformation, pairs] an entity."""
         if not self.given.gmsh_periodic:
             return self.given.gmsh_periodic
         return [
@@ -110,16 +110,20 @@ def _moved_block(block: Any, by_vertex: Permutation, by_cell: Permutation) -> An
 
 
 def _joined(blocks: Any) -> Any:
-    """The values of all blocks, masked where one is."""
+    """Returns the values of all blocks in one array, a masked one where a block is masked."""
     library: Any = np.ma if any(map(np.ma.is_masked, blocks)) else np
     return library.concatenate(blocks)
 
 
 def _renumbered(new_places: NDArray[Any], members: Any, name: str) -> NDArray[Any]:
-    """The new numbers of the members of a set, in their type."""
+    """Returns the new numbers of the members of a set, in the type of the old ones.
+
+    Raises:
+        InvalidArgument: a member that does not exist.
+    """
     numbers = integers(members, f"set '{name}'", rank=None)
     if numbers.size and (numbers.min() < 0 or numbers.max() >= len(new_places)):
-        raise InvalidArgument(f"set '{name}' names what is outside 0 … {len(new_places) - 1}")
+        raise InvalidArgument(f"set '{name}' has a member outside 0 … {len(new_places) - 1}")
     renumbered: NDArray[Any] = new_places[numbers].astype(numbers.dtype)
     return renumbered
 
@@ -129,18 +133,25 @@ GROUPED = "cells were grouped by type"
 
 
 class Blocks(enum.Enum):
-    """Which cells of a `Mesh` are put together in a block."""
+    """Which cells of a `Mesh` become one block of meshio."""
 
-    #: those of a type that follow each other
+    #: consecutive cells of one type
     AS_THEY_COME = enum.auto()
-    #: those of a type among cells of one dimension that follow each other
+    #: all cells of one type among consecutive cells of one dimension
     OF_TYPES_IN_RUNS = enum.auto()
-    #: all of a type
+    #: all cells of one type
     OF_TYPES = enum.auto()
 
 
 def to_meshio(mesh: Mesh, blocks: Blocks = Blocks.OF_TYPES) -> tuple[Any, NDArray[np.int64], list[str]]:
-    """A meshio.Mesh with the same data and sets; for each of its cells the place that it had; and what it cannot hold."""
+    """Makes a meshio.Mesh of a `Mesh`, with its data and sets.
+
+    Returns:
+        The meshio.Mesh; the old place of each of its cells, in their order; and notes that name what it cannot hold.
+
+    Raises:
+        InputError: cells of a type that meshio does not have.
+    """
     import meshio
 
     widths = np.diff(mesh.offsets)
@@ -166,7 +177,7 @@ def to_meshio(mesh: Mesh, blocks: Blocks = Blocks.OF_TYPES) -> tuple[Any, NDArra
 
 
 def _members(mesh: Mesh, widths: NDArray[Any], blocks: Blocks) -> list[NDArray[np.int64]]:
-    """The cells of each block, the blocks by their first cells."""
+    """Returns the cells of each block; blocks are sorted by their first cells."""
     if len(widths) == 0:
         return []
     kinds = np.stack([mesh.shapes.astype(np.int64), widths])
@@ -183,15 +194,16 @@ def _members(mesh: Mesh, widths: NDArray[Any], blocks: Blocks) -> list[NDArray[n
 
 
 def _attach(made: Any, mesh: Mesh, members: list[NDArray[Any]], notes: list[str]) -> None:
+    """Adds data and sets to a meshio.Mesh whose blocks have these cells; notes name what is left out."""
     for name, of_vertices, values, indices in mesh._handle.data:
         if isinstance(values, list) or len(indices):
-            why = "its values are texts" if isinstance(values, list) else "it covers only some"
+            why = "its values are texts" if isinstance(values, list) else "it has values for some only"
             notes.append(f"{'point' if of_vertices else 'cell'} data '{name}' was left out: {why}")
         elif of_vertices:
             made.point_data[name] = np.array(values)
         else:
             made.cell_data[name] = [values[cells] for cells in members]
-    places = np.empty(len(mesh.shapes), dtype=np.int64)  # of each cell within its block
+    places = np.empty(len(mesh.shapes), dtype=np.int64)  # place of each cell within its block
     block_of = np.empty(len(mesh.shapes), dtype=np.int64)
     for block, cells in enumerate(members):
         places[cells], block_of[cells] = np.arange(len(cells)), block
@@ -209,7 +221,7 @@ def _type_name(shape: str, width: int) -> str:
 
 
 def host(mesh: Any) -> Host:
-    """The host of a meshio.Mesh."""
+    """Returns the host of a meshio.Mesh."""
     if not hasattr(mesh, "cell_sets"):
         raise InvalidArgument(f"mesh: expected a meshio.Mesh, not meshio's {type(mesh).__name__}")
     return MeshioMesh(mesh)

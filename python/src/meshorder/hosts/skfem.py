@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""scikit-fem's meshes."""
+"""The meshes of scikit-fem."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .._meshes import MeshOrder
 from .._permutation import Permutation
 from .host import Host
 
-#: shape, and places of the corners in VTK's order, by dimension and number of corners
+#: shape, and rows of ``mesh.t`` in VTK's order of corners, by dimension and number of corners
 _SHAPES = {
     (1, 2): ("line", [0, 1]),
     (2, 3): ("triangle", [0, 1, 2]),
@@ -27,7 +27,7 @@ _SHAPES = {
 
 
 class SkfemMesh(Host):
-    """A skfem.Mesh. Of quadratic meshes the corners are ordered; the nodes between follow scikit-fem's numbering."""
+    """A skfem.Mesh. In quadratic meshes only the corners are ordered; scikit-fem numbers the nodes between them."""
 
     def __init__(self, mesh: Any) -> None:
         if any(base.__name__ == "MeshDG" for base in type(mesh).__mro__):
@@ -35,7 +35,7 @@ class SkfemMesh(Host):
         refdom = mesh.elem.refdom
         shape = _SHAPES.get((refdom.dim(), mesh.t.shape[0]))
         if shape is None:
-            raise InvalidArgument(f"mesh: scikit-fem's {type(mesh).__name__} is not known")
+            raise InvalidArgument(f"mesh: scikit-fem's meshes of the type {type(mesh).__name__} cannot be ordered")
         self.given = mesh
         self._is_quadratic = len(mesh.elem.doflocs) > mesh.t.shape[0]
         self._corners = int(mesh.t.max(initial=-1)) + 1 if self._is_quadratic else mesh.p.shape[1]
@@ -47,13 +47,13 @@ class SkfemMesh(Host):
 
     def moved(self, order: MeshOrder, inplace: bool) -> Any:
         if inplace:
-            raise InvalidArgument("inplace: scikit-fem's meshes do not change; take the one that is returned")
+            raise InvalidArgument("inplace: scikit-fem's meshes cannot be changed; use the one that reorder returns")
         mesh = self.given
         vertices, cells = order.vertices.permutation, order.cells.permutation
         t = vertices.renumber(mesh.t)[:, cells.new_to_old]
         doflocs = vertices.move(self.points).T
         if self._is_quadratic:
-            # scikit-fem takes nodes between corners as further rows of t, and numbers them anew
+            # scikit-fem takes the nodes between corners as further rows of t, and numbers them again
             between = mesh.dofs.element_dofs[mesh.t.shape[0] :, cells.new_to_old]
             t = np.vstack([t, between])
             doflocs = np.hstack([doflocs, mesh.doflocs[:, self._corners :]])
@@ -70,7 +70,7 @@ class SkfemMesh(Host):
 
 
 def _moved_boundaries(mesh: Any, moved: Any, vertices: Permutation, cells: Permutation) -> dict[str, Any]:
-    """Named facets by their new numbers, each on the same side as before."""
+    """Returns the boundaries with the new numbers of their facets, each with the same element on its side."""
     new_facet = _new_facets(vertices.renumber(mesh.facets), moved.facets)
     boundaries = {}
     for name, facets in mesh.boundaries.items():
@@ -85,7 +85,7 @@ def _moved_boundaries(mesh: Any, moved: Any, vertices: Permutation, cells: Permu
 
 
 def _new_facets(facets: NDArray[Any], new_facets: NDArray[Any]) -> NDArray[Any]:
-    """The place of each facet, a column of vertices, among the new ones."""
+    """Returns the number that each facet, a column of new vertex numbers, has among the new facets."""
     old, new = (np.lexsort(np.sort(columns, axis=0)) for columns in (facets, new_facets))
     places = np.empty(facets.shape[1], dtype=np.int64)
     places[old] = new
@@ -93,7 +93,7 @@ def _new_facets(facets: NDArray[Any], new_facets: NDArray[Any]) -> NDArray[Any]:
 
 
 def host(mesh: Any) -> Host:
-    """The host of a skfem.Mesh."""
+    """Returns the host of a skfem.Mesh."""
     if isinstance(mesh, type) or not hasattr(mesh, "doflocs") or not hasattr(mesh, "t"):
         name = mesh.__name__ if isinstance(mesh, type) else type(mesh).__name__
         raise InvalidArgument(f"mesh: expected a mesh of scikit-fem, not its {name}")

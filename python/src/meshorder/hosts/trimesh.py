@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""trimesh's surfaces."""
+"""The surfaces of trimesh."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .host import Host
 
 
 class TrimeshSurface(Host):
-    """A trimesh.Trimesh, which moves itself, colours, normals and texture coordinates among it."""
+    """A trimesh.Trimesh. Its own functions move its attributes, colours and texture coordinates."""
 
     def __init__(self, mesh: Any) -> None:
         self.given = mesh
@@ -31,7 +31,7 @@ class TrimeshSurface(Host):
         for name, values in (*self.point_data().items(), *self.cell_data().items()):
             if isinstance(values, (list, tuple)):
                 raise InvalidArgument(f"mesh: attribute '{name}' must be an array, not a list, to be moved")
-        # normals of the caller's own are nowhere but here, and do not outlive a change of faces
+        # normals that the caller set are kept in the cache only, which a change of faces clears
         normals = [self.given._cache[name] for name in ("face_normals", "vertex_normals")]
         mesh = self.given if inplace else self.given.copy()
         if not inplace:  # versions before 4.5 copy no attributes
@@ -59,12 +59,12 @@ def _with_rows(attributes: Mapping[str, Any], count: int) -> dict[str, Any]:
 def _length(values: Any) -> int:
     try:
         return len(values)
-    except TypeError:  # no rows at all
+    except TypeError:  # values without a length
         return -1
 
 
 def host(mesh: Any) -> Host:
-    """The host of a trimesh.Trimesh."""
+    """Returns the host of a trimesh.Trimesh."""
     if isinstance(mesh, type) or not hasattr(mesh, "face_attributes"):
         name = mesh.__name__ if isinstance(mesh, type) else type(mesh).__name__
         raise InvalidArgument(f"mesh: expected a trimesh.Trimesh, not trimesh's {name}")

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""VTK's unstructured grids and surfaces, and PyVista's, which are VTK's."""
+"""The unstructured grids and surfaces of VTK, and of PyVista, whose classes derive from VTK's."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from .._permutation import Permutation
 from .host import Host, Request, moved_rows, parts
 
 _POLYHEDRON = 42
-#: pentagonal and hexagonal prisms, quadratic polygons and convex point sets: ordered by their points alone
+#: VTK's numbers of pentagonal and hexagonal prisms, quadratic polygons and convex point sets; a grid with such cells is
+#: ordered by the vertices of its cells, without their types
 _WITHOUT_SHAPE = (15, 16, 36, 41)
 
 
@@ -54,7 +55,7 @@ class _Dataset(Host):
             mesh.Modified()
             return mesh
         moved.GetInformation().Copy(mesh.GetInformation())
-        if hasattr(mesh, "copy_meta_from"):  # PyVista's own
+        if hasattr(mesh, "copy_meta_from"):  # a dataset of PyVista
             moved.copy_meta_from(mesh, deep=True)
         return moved
 
@@ -87,7 +88,7 @@ class Grid(_Dataset):
 
 
 class Surface(_Dataset):
-    """A vtkPolyData: vertices, lines, polygons and strips, each kept in an array of its own, in this order."""
+    """A vtkPolyData. Its cells are numbered in the order of its four arrays: vertices, lines, polygons, strips."""
 
     def __init__(self, mesh: Any) -> None:
         super().__init__(mesh)
@@ -116,7 +117,7 @@ class Surface(_Dataset):
         return super().grouped_order(request)
 
     def _has_polygons_and_strips(self) -> bool:
-        """Whether an order could mix cells of two arrays: those of equal dimension."""
+        """Tells whether an order could mix cells of two arrays: polygons and strips have the same dimension."""
         return self._counts[2] > 0 and self._counts[3] > 0
 
     def _move_cells(self, moved: Any, vertices: Permutation, cells: Permutation) -> None:
@@ -133,7 +134,7 @@ def _support() -> Any:
 
 
 def _array(values: Any) -> NDArray[Any]:
-    """The numbers of a VTK array; a view where they lie in memory."""
+    """Returns the numbers of a VTK array, as a view if they are stored row after row."""
     if not values.HasStandardMemoryLayout():
         plain = values.CreateDataArray(values.GetDataType())
         plain.DeepCopy(values)
@@ -151,14 +152,14 @@ def _cell_types(grid: Any) -> NDArray[np.uint8]:
 
 
 def _rows(cells: Any) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Offsets and connectivity of a vtkCellArray."""
+    """Returns the offsets and connectivity of a vtkCellArray."""
     if cells is None or cells.GetNumberOfCells() == 0:
         return np.zeros(1, dtype=np.int64), np.zeros(0, dtype=np.int64)
     return _array(cells.GetOffsetsArray()), _array(cells.GetConnectivityArray())
 
 
 def _moved_cell_array(given: Any, vertices: Permutation | None, cells: Permutation | None) -> Any:
-    """A vtkCellArray with its numbers renewed, its rows moved, or both."""
+    """Returns a vtkCellArray with new vertex numbers, with its rows in a new order, or both."""
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     offsets, connectivity = _rows(given)
@@ -174,12 +175,12 @@ def _moved_cell_array(given: Any, vertices: Permutation | None, cells: Permutati
 
 
 def _ids(numbers: NDArray[Any]) -> Any:
-    """A vtkIdTypeArray with memory of its own: a vtkCellArray may keep this memory, but not the array."""
+    """Returns a vtkIdTypeArray that owns its memory, since a vtkCellArray may keep the memory without the array."""
     return _support().numpy_to_vtkIdTypeArray(np.ascontiguousarray(numbers, dtype=np.int64), deep=True)
 
 
 def _arrays_of(data: Any) -> dict[str, Any]:
-    """The arrays by their names."""
+    """Returns the arrays that have a name, by their names."""
     arrays = (data.GetAbstractArray(number) for number in range(data.GetNumberOfArrays()))
     return {array.GetName(): _values(array) for array in arrays if array.GetName()}
 
@@ -198,14 +199,14 @@ def _move_attributes(given: Any, moved: Any, permutation: Permutation) -> None:
     for number in range(given.GetNumberOfArrays()):
         array = given.GetAbstractArray(number)
         if array.GetNumberOfTuples() != n:
-            raise InvalidArgument(f"data '{array.GetName()}': {array.GetNumberOfTuples()} rows where {n} are needed")
+            raise InvalidArgument(f"data '{array.GetName()}': expected {n} rows, not {array.GetNumberOfTuples()}")
     moved.CopyAllOn()
     moved.CopyAllocate(given, n)
     moved.CopyData(given, _id_list(permutation.new_to_old), 0)
 
 
 def _id_list(numbers: NDArray[Any]) -> Any:
-    """A vtkIdList, filled by way of a cell with these points, since it takes no array."""
+    """Returns a vtkIdList with these numbers, by way of a cell, since it takes no array."""
     from vtkmodules.vtkCommonCore import vtkIdList
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
@@ -217,7 +218,7 @@ def _id_list(numbers: NDArray[Any]) -> Any:
 
 
 def host(mesh: Any) -> Host:
-    """The host of a vtkUnstructuredGrid or vtkPolyData."""
+    """Returns the host of a vtkUnstructuredGrid or vtkPolyData."""
     is_a = getattr(mesh, "IsA", None)
     if isinstance(mesh, type) or is_a is None:
         raise InvalidArgument(f"mesh: expected a dataset of VTK or PyVista, not {mesh!r}")
