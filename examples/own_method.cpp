@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// A vertex method of one's own. Built as a shared library it is a plug-in, which the command's comparison
-// shows beside the built-in methods: meshorder --plugin ./libdegree.so compare mesh.msh
+// Adds a vertex method. Built as a shared library this file is a plug-in, whose method the command compares
+// with the built-in ones: meshorder --plugin ./libdegree.so compare mesh.msh
 #include <meshorder.h>
 
 #include <algorithm>

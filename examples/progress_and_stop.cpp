@@ -13,7 +13,8 @@ namespace mo = meshorder;
 
 namespace {
 
-// Stand-ins for a window's progress bar and button; the button counts as pressed after some calls.
+// They stand for a window's progress bar and button. The button counts as pressed after `presses_after`
+// calls.
 struct Bar {
   int shown = 0;
   bool cleared = false;
@@ -33,7 +34,8 @@ struct Button {
   [[nodiscard]] bool pressed() { return presses_after-- <= 0; }
 };
 
-// A grid of side × side vertices, in base 1 and unsigned 64-bit numbers, as some callers have them.
+// The graph of a grid of side × side vertices, numbered from 1 in unsigned 64-bit integers, as some callers'
+// arrays are.
 struct Grid {
   std::vector<std::uint64_t> offsets{1};
   std::vector<std::uint64_t> neighbours;

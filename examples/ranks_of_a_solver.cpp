@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // mpirun -n 4 ./ranks_of_a_solver
 //
-// A solver that has shared out its mesh gives each rank's vertices and elements a better order. Here the mesh
-// is a square of triangles, of which each rank owns some columns, numbered in a poor order.
+// Orders the vertices and elements of each rank of a solver that has distributed its mesh. Here the mesh is a
+// rectangle of triangles, of which each rank owns some columns, numbered in a poor order.
 #include <meshorder/distributed.hpp>
 
 #include <algorithm>
@@ -15,18 +15,18 @@
 
 namespace {
 
-constexpr std::int64_t kRows = 60;     // of vertices
-constexpr std::int64_t kColumns = 20;  // of vertices that a rank owns
+constexpr std::int64_t kRows = 60;     // rows of vertices
+constexpr std::int64_t kColumns = 20;  // columns of vertices that a rank owns
 
-/// Number of the vertex in row i and column j, of those of all ranks: the vertices of a rank are numbered in
-/// leaps of seven.
+/// Returns the number, across the ranks, of the vertex in row i and column j. The vertices of a rank are
+/// numbered in steps of seven, modulo their count.
 std::int64_t number_of(std::int64_t i, std::int64_t j) {
   const std::int64_t owner = j / kColumns;
   const std::int64_t place = j % kColumns * kRows + i;
   return owner * kRows * kColumns + 7 * place % (kRows * kColumns);
 }
 
-/// The triangles that this rank computes: those left of its columns' vertices.
+/// Returns the triangles that a rank computes, three vertices each: those to the left of its columns.
 std::vector<std::int64_t> triangles_of(int rank) {
   std::vector<std::int64_t> vertices;
   const std::int64_t first = std::max<std::int64_t>(1, rank * kColumns);
@@ -40,7 +40,7 @@ std::vector<std::int64_t> triangles_of(int rank) {
   return vertices;
 }
 
-/// Mean distance between own vertices of a common triangle.
+/// Returns the mean difference of the numbers of own vertices that share an edge, over the triangles' edges.
 double mean_span(const std::vector<std::int64_t>& vertices, std::int64_t first,
                  const std::vector<std::int64_t>& number) {
   double sum = 0;
@@ -57,7 +57,7 @@ double mean_span(const std::vector<std::int64_t>& vertices, std::int64_t first,
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-/// Orders what this rank has. Returns whether neighbours are nearer to each other than before.
+/// Orders this rank's vertices and elements. Returns true if the mean difference is smaller than before.
 bool improves(int rank) {
   const std::vector<std::int64_t> vertices = triangles_of(rank);
   std::vector<std::int64_t> offsets;
@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
     const bool better = improves(rank);
     MPI_Finalize();
     return better ? 0 : 1;
-  } catch (const std::exception& error) {  // on all ranks
+  } catch (const std::exception& error) {  // thrown on all ranks
     if (rank == 0) std::fprintf(stderr, "%s\n", error.what());
     MPI_Abort(MPI_COMM_WORLD, 2);
     return 2;

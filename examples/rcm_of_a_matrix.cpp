@@ -19,8 +19,8 @@ struct Matrix {
   std::vector<double> value;
 };
 
-// The Laplacian of a grid of side × side points whose rows stand in an unfortunate order: point i in row 7 i
-// mod n. The first row misses an entry that its column has, as matrices with boundary conditions do.
+// Returns the Laplacian of a grid of side × side points, in a poor order: point i is in row 7 i mod n. The
+// first row lacks an entry that its column has, as in matrices with boundary conditions.
 Matrix sample(int side) {
   const int n = side * side;
   std::vector<int> point_of_row(static_cast<std::size_t>(n));

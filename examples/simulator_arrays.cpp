@@ -32,8 +32,8 @@ void reorder(Body& b) {
   cells.permutation.move_in_place(std::span(b.tets));
 }
 
-// A bar of side × side × 4 side cubes, cut into five tetrahedra each. Vertex i of the grid is number 7 i mod
-// n.
+// Returns a bar of side × side × 4 side cubes, each cut into five tetrahedra. Point i of the grid is vertex
+// 7 i mod n, a poor order.
 Body sample(int side) {
   const int nx = side + 1;
   const int nz = 4 * side + 1;
@@ -68,7 +68,7 @@ Body sample(int side) {
   return body;
 }
 
-// Volume-weighted mass: the same in every order, but for rounding.
+// Returns the sum of mass times volume over the tetrahedra, which the order changes by rounding only.
 double moment(const Body& body) {
   double sum = 0;
   for (const auto& tet : body.tets) {
@@ -90,7 +90,7 @@ double moment(const Body& body) {
   return sum;
 }
 
-// Mean distance in memory between the first and the other corners of a tetrahedron.
+// Returns the mean distance in memory, in vertices, from the first corner of a tetrahedron to the others.
 double mean_reach(const Body& body) {
   double sum = 0;
   for (const auto& tet : body.tets) {

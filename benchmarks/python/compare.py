@@ -1,13 +1,13 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What calls from Python cost, as ratios, in one run that measures both sides in turns.
+"""Measures the cost of calls from Python, in turns with those of another library or of C++, and prints the ratios.
 
     cmake -B build -DMESHORDER_BENCHMARKS=ON && ninja -C build calls
     build/venv/bin/python benchmarks/python/compare.py build/bin/calls [--rounds 15] [--sizes 35 65] [--only PART]
 
-Parts: `calls` from NumPy against the same calls from C++, in time and in how far the process grows; `rcm` against
-SciPy; `fiedler` against networkx; `import`. Meshes are cubes of SIZE³ lattice cells, six tetrahedra each, shuffled:
-35 makes 46,656 vertices, 65 makes 287,496. A ratio is that of the medians; beside it stand the quartiles of the ratios
-of single rounds.
+Parts: `calls` with NumPy arrays against the same calls from C++, in time and in the growth of the process; `rcm`
+against SciPy; `fiedler` against networkx; `import`, the time of importing meshorder. Meshes are shuffled cubes of SIZE³
+lattice cells, six tetrahedra each: 35 makes 46,656 vertices, 65 makes 287,496. A ratio is that of the medians; the
+quartiles of the ratios of single rounds follow it in brackets.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def seconds(call: Callable[[], object]) -> float:
 
 
 def growth(call: Callable[[], object]) -> float:
-    """By how many bytes the process grows; Linux, with glibc."""
+    """Returns by how many bytes the process grows during the call; needs Linux with glibc."""
 
     def memory(key: str) -> int:
         with open("/proc/self/status") as file:
@@ -57,7 +57,7 @@ def growth(call: Callable[[], object]) -> float:
 
 
 def tell(what: str, ours: list[float], theirs: list[float], unit: str = "s") -> None:
-    """Prints how many times theirs the medians of ours are."""
+    """Prints both medians, their ratio, and the quartiles of the ratios of single rounds."""
     middle = statistics.median(ours), statistics.median(theirs)
     ratios = [a / b for a, b in zip(ours, theirs)]
     quartiles = statistics.quantiles(ratios, n=4) if len(ratios) > 1 else ratios * 3
@@ -69,7 +69,7 @@ def tell(what: str, ours: list[float], theirs: list[float], unit: str = "s") -> 
 
 
 def in_turns(rounds: int, ours: Callable[[], float], theirs: Callable[[], float]) -> tuple[list[float], list[float]]:
-    """Each goes first in half of the rounds; one round before is not counted."""
+    """Measures both sides in turns, each first in half of the rounds, after one round that is not counted."""
     measured: tuple[list[float], list[float]] = ([], [])
     for turn in range(rounds + 1):
         for side in (0, 1) if turn % 2 else (1, 0):
@@ -163,10 +163,10 @@ def compare_import(rounds: int) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", help="the C++ side: build/bin/calls")
-    parser.add_argument("--rounds", type=int, default=15)
-    parser.add_argument("--sizes", type=int, nargs="+", default=[35, 65])
-    parser.add_argument("--only", choices=["calls", "rcm", "fiedler", "import"])
+    parser.add_argument("program", help="the program that makes the calls from C++: build/bin/calls")
+    parser.add_argument("--rounds", type=int, default=15, help="measurements of each side (default: %(default)s)")
+    parser.add_argument("--sizes", type=int, nargs="+", default=[35, 65], help="lattice cells along a cube's side")
+    parser.add_argument("--only", choices=["calls", "rcm", "fiedler", "import"], help="the part to run (default: all)")
     given = parser.parse_args()
     if given.only in (None, "calls", "rcm"):
         for size in given.sizes:
