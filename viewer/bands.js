@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 "use strict";
-// A surface coloured by the order of its vertices: bands from dark to light, so that they read without colour vision.
+// A surface coloured by the order of its vertices: bands from dark to light, which need no colour vision.
 
 const bandCount = 24;
 // first to last in memory, of steadily growing brightness
 const rampStops = [[38, 24, 92], [34, 76, 138], [22, 122, 138], [62, 165, 112], [158, 203, 72], [250, 226, 92]];
 
-/** The ramp's colour at a share of the order, 0 to 1, as "rgb(…)"; every second band is lighter. */
+/** Returns the ramp's colour at a share of the order, 0 to 1, as "rgb(…)"; every second band is lighter. */
 function bandColour(share) {
   const place = Math.min(Math.max(share, 0), 1) * (rampStops.length - 1);
   const low = Math.min(Math.floor(place), rampStops.length - 2);
@@ -71,7 +71,7 @@ function bandMaterial() {
   });
 }
 
-/** The ramp as a strip, first to last. */
+/** Makes a legend: the ramp as a strip, from first to last. */
 function makeLegend() {
   const strip = make("span", { className: "strip", ariaHidden: "true" });
   for (let band = 0; band < bandCount; ++band) {

@@ -5,7 +5,7 @@
 const numberTypes = { uint8: Uint8Array, uint16: Uint16Array, uint32: Uint32Array };
 const unpackedBlobs = new Map();
 
-/** The JSON of a script element; null where there is none. */
+/** Returns the JSON in a script element; null where there is none. */
 function embeddedJson(id) {
   const element = document.getElementById(id);
   return element && element.textContent.trim() ? JSON.parse(element.textContent) : null;
@@ -19,7 +19,7 @@ async function unpackBlob(id) {
   return new Response(stream).arrayBuffer();
 }
 
-/** Turns the differences between frames into the frames, modulo what the type holds. */
+/** Turns the differences between frames into frames, in place; sums wrap around at the range of the type. */
 function addUpFrames(numbers, frames) {
   const length = numbers.length / frames;
   for (let i = length; i < numbers.length; ++i) numbers[i] += numbers[i - length];
@@ -37,7 +37,7 @@ function loadNumbers(array) {
   return unpackedBlobs.get(array.blob);
 }
 
-/** Places from an array's numbers: x, y, z of `count` vertices, from vertex `first` on. */
+/** Returns the coordinates x, y, z of `count` vertices from vertex `first` on, computed from an array's numbers. */
 function placesOf(array, numbers, first, count, places = new Float32Array(3 * count)) {
   for (let i = 0; i < 3 * count; ++i) places[i] = array.offset[i % 3] + array.scale[i % 3] * numbers[3 * first + i];
   return places;

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 "use strict";
-// Small pieces of which the views' controls are made.
+// Elements of the views' controls: choices, sliders.
 
-/** An element with attributes and children. */
+/** Makes an element with attributes and children. */
 function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -15,7 +15,7 @@ function make(tag, attributes = {}, ...children) {
 
 let choicesMade = 0;
 
-/** One of several, as a row of radio buttons. `options` are [value, title]; the first is chosen. */
+/** Makes a row of radio buttons. `options` are [value, title]; the first is chosen. Hidden for fewer than two. */
 function makeChoices(legend, options, onChoice) {
   const name = `choice-${++choicesMade}`;
   const row = make("div", { className: "choices" });
@@ -27,7 +27,7 @@ function makeChoices(legend, options, onChoice) {
   return make("fieldset", { className: "control", hidden: options.length < 2 }, make("legend", {}, legend), row);
 }
 
-/** A slider with its words; `onInput` gets its number and returns the words for it. */
+/** Makes a slider with a text beside it; `onInput` gets the slider's number and returns the text. */
 function makeSlider(title, range, onInput) {
   const words = make("output", {});
   const input = make("input", { type: "range", min: range.min, max: range.max, step: range.step });
@@ -40,12 +40,12 @@ function makeSlider(title, range, onInput) {
   return { element: make("label", { className: "control slider" }, make("span", {}, title), input, words), input, tell };
 }
 
-/** 46736 as "46,736". */
+/** Returns a number as text, 46736 as "46,736". */
 function grouped(number) {
   return Math.round(number).toLocaleString("en-US");
 }
 
-/** Runs `draw` once before the next picture, however often the function that it returns is called. */
+/** Returns a function that runs `draw` before the next frame, once however often it is called until then. */
 function coalesced(draw) {
   let waiting = false;
   return () => {

@@ -2,7 +2,7 @@
 "use strict";
 // Beside the findings: the first mesh in its worst and its best order.
 
-/** How far apart in memory the corners of a surface's triangles are, on average. */
+/** Returns a measure, to compare orders by, of the distance in memory of the corners of a surface's triangles. */
 function roughness(ranks, surface) {
   const corners = surface.index.array;
   let sum = 0;

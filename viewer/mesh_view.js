@@ -18,7 +18,7 @@ class MeshView {
     this.stage = theStage();
     if (!this.stage) {
       this.root.replaceChildren(make("p", { className: "notice" },
-        "This browser has no WebGL, which the meshes in 3-D need. The tables and figures do without."));
+        "This browser has no WebGL, which the meshes in 3-D need. The tables and figures work without it."));
       return;
     }
     this.material = bandMaterial();
@@ -71,7 +71,7 @@ class MeshView {
     for (const { canvas, scene } of this.pictures) this.stage.draw(canvas, scene, this.orbit, this.view);
   }
 
-  /** Lets the colour run through the order, from the first vertex to the last. */
+  /** Moves the slider to the end, so that colour runs through the order; stops it if it moves already. */
   sweep() {
     if (this.sweeping) {
       this.sweeping = false;

@@ -44,7 +44,7 @@ class MotionScene {
     return placesOf(this.motion.frames, this.numbers, frame * this.vertices, this.vertices, places);
   }
 
-  /** A ball around all that the body passes, and around an obstacle that is not much larger: some frames will do. */
+  /** Returns a ball around the body in some of the frames, and around an obstacle that is not much larger. */
   wholeView(obstacle) {
     const frames = this.motion.frames.shape[0];
     const some = [];
@@ -56,7 +56,7 @@ class MotionScene {
     return withAll.radius < 1.5 * view.radius ? withAll : view;
   }
 
-  /** Places the body as it was after so many steps, which need not be whole. */
+  /** Moves the body to where it was after `step` steps, which may be a fraction. */
   set(step) {
     const steps = this.motion.steps;
     let next = steps.findIndex((one) => one >= step);

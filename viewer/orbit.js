@@ -5,7 +5,7 @@
 const startYaw = 0.5;
 const startPitch = 0.22;
 
-/** How far a body has to be turned about its height to face the reader: of our models, one looks away. */
+/** Returns the turn about the vertical axis that makes a mesh face the reader: half a turn for the armadillo. */
 function frontOf(mesh) {
   return mesh && mesh.startsWith("armadillo") ? Math.PI : 0;
 }
@@ -52,7 +52,7 @@ class Orbit {
       canvas.addEventListener(end, (event) => this.pointers.delete(event.pointerId));
     }
     canvas.addEventListener("wheel", (event) => {
-      // a canvas that was not touched leaves the wheel to the page
+      // a canvas without the focus leaves the wheel to the page
       if (!event.ctrlKey && document.activeElement !== canvas) return;
       event.preventDefault();
       this.change(0, 0, Math.exp(-event.deltaY * (event.ctrlKey ? 0.01 : 0.0015)));

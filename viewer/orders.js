@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 "use strict";
-// What a mesh looks like in each order, with orders that come to the same shown once.
+// Pictures of a mesh in each order. Orders with the same numbers share a picture.
 
 function sameNumbers(a, b) {
   return a === b || (a.length === b.length && a.every((number, i) => number === b[i]));
 }
 
-/** Promises the orders' arrays as [{titles, names, numbers, array}]; equal ones are one entry. */
+/** Promises the orders' arrays as [{titles, names, numbers, array}]; orders with equal numbers share an entry. */
 async function loadByOrder(orderings, arrays) {
   const groups = [];
   for (const { name, title } of orderings) {
@@ -23,7 +23,7 @@ async function loadByOrder(orderings, arrays) {
   return groups;
 }
 
-/** A picture with the names of its orders below. */
+/** Returns a picture with the names of its orders below. */
 function orderFigure(canvas, group, words) {
   const caption = make("figcaption", {}, make("strong", {}, group.titles.join(", ")));
   if (words) caption.append(make("span", {}, words));
@@ -42,7 +42,7 @@ async function loadOrderedMesh(manifest, name) {
   };
 }
 
-/** A surface coloured by one of its orders, ready to be drawn: {geometry, scene, canvas, figure}. */
+/** Returns a surface coloured by one of its orders, ready to be drawn: {geometry, scene, canvas, figure}. */
 function orderPicture({ mesh, surface }, group, material, words) {
   const geometry = new THREE.BufferGeometry();
   geometry.setIndex(surface.index);

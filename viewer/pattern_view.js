@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 "use strict";
-// Where the entries of a matrix over the vertices lie, for each order.
+// Sparsity patterns of the matrix over the vertices, a picture for each order.
 
-/** Draws tiles × tiles counts, the more the darker, on a logarithmic scale that ends at `most`. */
+/** Draws side × side counts, the larger the darker, on a logarithmic scale that ends at `most`. */
 function drawPattern(canvas, counts, side, most) {
   Object.assign(canvas, { width: side, height: side });
   const picture = canvas.getContext("2d");

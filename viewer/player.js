@@ -2,7 +2,7 @@
 "use strict";
 // Plays the motions of the scenarios.
 
-const posterShare = 0.4;  // what is shown before anyone plays
+const posterShare = 0.4;  // share of a motion at which it is shown before it is played
 const stills = 6;
 
 class Player {
@@ -20,7 +20,7 @@ class Player {
     this.stage = theStage();
     if (!this.stage) {
       this.root.replaceChildren(make("p", { className: "notice" },
-        "This browser has no WebGL, which the player needs. The tables and figures do without."));
+        "This browser has no WebGL, which the player needs. The tables and figures work without it."));
       return;
     }
     const motions = this.manifest.motions.map(({ scenario }) => [scenario, scenario]);
@@ -80,7 +80,7 @@ class Player {
     this.drawStills();
   }
 
-  /** Some frames side by side, each a way to its step. */
+  /** Draws some frames side by side, as buttons that go to their step. */
   drawStills() {
     this.strip.replaceChildren();
     for (let i = 0; i < stills; ++i) {
@@ -119,7 +119,7 @@ class Player {
     this.button.textContent = "Play";
   }
 
-  /** Goes on by some steps; after the last one from the start. */
+  /** Advances by some steps; after the last one starts again. */
   advance(steps) {
     const next = this.step + steps;
     this.slider.input.value = Math.round(next > this.motion.lastStep ? 0 : next);

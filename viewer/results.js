@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 "use strict";
-// What the page takes from results.json itself, beyond its tables.
+// The parts of the page that are made of results.json, besides its tables.
 
-/** One line below the title: what was measured where and when. */
+/** Returns the line below the title: processor, threads, date and version. */
 function bylineWords(results) {
   const machine = results.machine || {};
   const threads = results.threads && `${results.threads} thread${results.threads === 1 ? "" : "s"}`;
@@ -11,7 +11,7 @@ function bylineWords(results) {
   return parts.filter((part) => part).join(" · ");
 }
 
-/** The mean edge span of a mesh in an order, in words; empty where the results do not say. */
+/** Returns the mean edge span of a mesh in an order, in words; empty where the results have none. */
 function spanWords(results, mesh, ordering) {
   const record = ((results && results.meshes) || []).find((one) => one.name === mesh);
   const order = record && (record.orders || []).find((one) => one.ordering === ordering);
@@ -19,7 +19,7 @@ function spanWords(results, mesh, ordering) {
   return mean > 0 ? `mean span ${grouped(mean)}` : "";
 }
 
-/** Lets the reader keep the results that the page was made from. */
+/** Makes the button that saves the results.json that the page contains; hides it where there is none. */
 function startSaving() {
   const button = document.getElementById("save-results");
   const source = document.getElementById("results");

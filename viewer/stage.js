@@ -6,7 +6,7 @@ const fieldOfView = 28;  // degrees
 
 let sharedStage;
 
-/** The page's stage; null where the browser has no WebGL. */
+/** Returns the page's stage; null where the browser has no WebGL. */
 function theStage() {
   if (sharedStage === undefined) {
     const canvas = document.createElement("canvas");
@@ -57,7 +57,7 @@ class Stage {
   }
 }
 
-/** The middle of places and the radius of the ball around it that holds them. */
+/** Returns the middle of the box around places, and the radius of the ball around that middle that holds them. */
 function ballAround(places) {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
@@ -74,7 +74,7 @@ function ballAround(places) {
   return { center, radius: Math.sqrt(square) || 1 };
 }
 
-/** Places and triangles as three.js has them, with normals. */
+/** Returns a geometry of three.js with places, triangles and normals. */
 function surfaceGeometry(places, triangles) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(places, 3));

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 "use strict";
-// Starts everything: tabs and tables at once, what needs data when the data are there and somebody looks.
+// Starts the page: tabs and tables at once, each view of the data when its part is first shown.
 
 const views = {};
 
-/** Makes a part's view the first time that it is called for, and draws it each time. */
+/** Makes the view of that name when it is first shown, and draws it again each later time. */
 function showView(name, makeView) {
   if (!views[name]) views[name] = makeView();
   else if (views[name].redraw) views[name].redraw();
@@ -24,7 +24,7 @@ function startViews() {
   ].filter(([id, root]) => (manifest[id === "motion" ? "motions" : "meshes"] || []).length && at(root));
   for (const [id, , makeView] of parts) whenShown(id, () => showView(id, makeView));
 
-  // what was never looked at is to be on paper, too
+  // makes the views that were never shown, too, so that they can be printed
   const prepare = async () => {
     for (const [id, , makeView] of parts) {
       await new Promise((idle) => (window.requestIdleCallback || setTimeout)(idle));

@@ -1,17 +1,17 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 "use strict";
-// Tables that are sorted by a click on a heading: up, down, and back to how they came. Long ones can be filtered.
+// Tables that a click on a heading sorts: ascending, descending, and as they were. Long ones can be filtered.
 
 const sortStates = ["none", "ascending", "descending"];
 const longTable = 16;  // rows from which on a table can be filtered
 
-/** What a cell is sorted by: its number, or its words. */
+/** Returns the key by which a cell is sorted: its number, or its words. */
 function cellKey(cell) {
   if (cell.dataset.value !== undefined && cell.dataset.value !== "") return Number(cell.dataset.value);
   return cell.textContent.trim();
 }
 
-/** Numbers before words; cells without anything last, whichever way round. */
+/** Compares two keys: numbers before words, empty cells last in both directions. */
 function compareKeys(a, b, direction) {
   if (a === "" || b === "") return (a === "") - (b === "");
   if (typeof a !== typeof b) return typeof a === "number" ? -1 : 1;
@@ -32,7 +32,7 @@ function sortTable(table, column, state) {
   markGroups(table, state === "none" || column === 0);
 }
 
-/** Draws rows together whose heads have all but their last word in common: "falling, Original", "falling, Fiedler". */
+/** Marks as a group the rows whose heads differ only in the part after the last comma: "falling, Original". */
 function markGroups(table, wanted) {
   let last = null;
   for (const row of table.tBodies[0].rows) {
@@ -66,7 +66,7 @@ function makeSortable(table) {
   });
 }
 
-/** A caption stays within sight while its table is scrolled. */
+/** Keeps a caption in sight while its table is scrolled. */
 function holdCaption(table) {
   if (!table.caption) return;
   const words = make("div", { className: "caption" });
@@ -74,7 +74,7 @@ function holdCaption(table) {
   table.caption.append(words);
 }
 
-/** A field above a long table that leaves the rows with all of its words. */
+/** Adds a field above a long table; only the rows that contain all words in it are shown. */
 function makeFilter(table) {
   const rows = table.tBodies[0] ? [...table.tBodies[0].rows] : [];
   if (rows.length < longTable || !table.querySelector(".number")) return;

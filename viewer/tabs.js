@@ -4,7 +4,7 @@
 
 const shownListeners = new Map();
 
-/** Calls `listener` each time that the part of that id comes into sight. */
+/** Calls `listener` now if the part of that id is shown, and each time that it is shown later. */
 function whenShown(id, listener) {
   shownListeners.set(id, listener);
   const panel = document.getElementById(id);
@@ -35,7 +35,7 @@ function startTabs() {
   const tabs = [];
   for (const tab of list.querySelectorAll("a")) {
     const panel = document.getElementById(tab.hash.slice(1));
-    panel.classList.add("current");  // what is hidden cannot tell whether it is empty
+    panel.classList.add("current");  // a hidden part seems to be empty
     const kept = getComputedStyle(tab).display !== "none" && holdsSomething(panel);
     panel.classList.remove("current");
     if (!kept) {
