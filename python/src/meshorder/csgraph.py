@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Functions with the names and signatures of those of `scipy.sparse.csgraph`."""
+"""Functions with the names and signatures of those of ``scipy.sparse.csgraph``."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Functions with the names and signatures of those of `networkx`, also as its backend "meshorder"."""
+"""Functions with the names and signatures of those of networkx, also as its backend "meshorder"."""
 
 from __future__ import annotations
 
