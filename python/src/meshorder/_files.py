@@ -87,7 +87,7 @@ def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:
         path: the file, whose extension names the format. It is replaced when all is written.
 
     Returns:
-        Notes: what the format cannot hold and was left out, and, for meshio, that it wrote the file.
+        Notes that name what the format cannot hold and was left out, and say so if meshio wrote the file.
 
     Raises:
         InputError: an unknown extension, cells that the format cannot hold, a file that cannot be written.

@@ -120,7 +120,7 @@ def write_meshio(mesh: Any, path: str, format: str, strict: bool = False) -> lis
         strict: True refuses to lose cells, arrays or sets.
 
     Returns:
-        Notes: that meshio wrote the file, what meshio printed, and what the file does not hold.
+        Notes that say that meshio wrote the file, what it printed, and what the file does not hold.
 
     Raises:
         InputError: meshio cannot write the mesh, or cells would be lost, or anything if ``strict``; the file is not

@@ -71,7 +71,7 @@ class Order:
 
     @property
     def old_to_new(self) -> NDArray[np.int32]:
-        """The new place of each old vertex or cell: ``permutation.old_to_new``."""
+        """The new place of each old vertex or cell, as in ``numbers = order.old_to_new[numbers]``."""
         return self.permutation.old_to_new
 
     @property
@@ -162,7 +162,7 @@ class Quality:
         mean_span: mean of the spans: ≥ 1, about n/3 for a random order.
         mean_log2_span: mean of log₂ of the spans, which a few long edges change little.
         bandwidth: the largest span: the half bandwidth of the matrix.
-        profile: sum over the rows of the matrix of the distance from the first entry to the diagonal.
+        profile: sum over the rows of the matrix of the distance from the first entry before the diagonal to it.
         histogram_log2: entry k is the number of edges with a span of 2ᵏ … 2ᵏ⁺¹ − 1.
     """
 

@@ -30,7 +30,7 @@ def order(
         **options: see `Options`.
 
     Returns:
-        The order: its ``permutation`` moves arrays and matrices.
+        The order, whose ``permutation`` moves arrays and matrices.
 
     Raises:
         InvalidArgument: a faulty graph, an unknown method, coordinates that are missing, sizes that do not match.

@@ -89,8 +89,10 @@ class Advice:
             steps that has paid for itself; or that there is nothing to gain.
         as_is: the order that the mesh has.
         candidates: other orders; the first is the one that `reorder` chooses without arguments.
-        kernels: the best candidate for each kernel, by the kernel's name. Times that differ by less than the
-            uncertainty of a measurement or prediction count as equal.
+        kernels: the best candidate for each kernel, by the kernel's name: its position ``candidate`` in ``candidates``;
+            ``factor``, the time as the mesh is divided by the time in that order; and ``runs_to_pay``, the runs of the
+            kernel after which the order has saved more time than it cost. Times that differ by less than the
+            uncertainty of a measurement or prediction count as equal; ``factor`` is 1 then, and ``runs_to_pay`` 0.
         doubt: why the measured times are not to be trusted (the machine was busy or throttled); empty where they are,
             and where nothing was measured.
         machine: the machine that the predicted times are for: "this machine, calibrated 2026-11-22", "zen5", or "this

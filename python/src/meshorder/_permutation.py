@@ -69,12 +69,12 @@ class Permutation:
 
     @property
     def old_to_new(self) -> NDArray[np.int32]:
-        """The new place of each old item: n numbers, read-only, without a copy."""
+        """The new place of each old item; n numbers, read-only, without a copy."""
         return self._handle.old_to_new
 
     @property
     def new_to_old(self) -> NDArray[np.int32]:
-        """The old place of the item at each new place: n numbers, read-only, without a copy."""
+        """The old place of the item at each new place; n numbers, read-only, without a copy."""
         return self._handle.new_to_old
 
     def inverse(self) -> Permutation:
@@ -82,7 +82,9 @@ class Permutation:
         return Permutation._of(self._handle.inverse())
 
     def then(self, other: Permutation) -> Permutation:
-        """Returns this permutation followed by another: ``old_to_new`` is ``other.old_to_new[self.old_to_new]``. O(n).
+        """Returns this permutation followed by another. O(n).
+
+        Its ``old_to_new`` is ``other.old_to_new[self.old_to_new]``.
 
         Raises:
             InvalidArgument: the permutations have different sizes.

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Shows a mesh coloured by its orders, in a notebook or the browser."""
+"""Showing a mesh coloured by its orders, in a notebook or the browser."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def show(mesh: Any, order: Any = None, *, path: str | os.PathLike[str] | None = 
         path: a file to write the page to, instead of opening it.
 
     Returns:
-        The page: an HTML text of 0.9 MB and about 15 bytes for each triangle of the surface, in its attribute ``html``;
+        The page, an HTML text of 0.9 MB and about 15 bytes for each triangle of the surface, in its attribute ``html``;
         ``save(path)`` writes it. A notebook that shows it stores it.
 
     Raises:

@@ -24,7 +24,7 @@ def reverse_cuthill_mckee(graph: Any, symmetric_mode: bool = False) -> NDArray[n
             orders A + Aᵀ.
 
     Returns:
-        ``new_to_old``, n numbers: the matrix in its new order is ``A[p][:, p]``.
+        ``new_to_old``, n numbers p for which ``A[p][:, p]`` is the matrix in its new order.
 
     Raises:
         InvalidArgument: a faulty matrix, or one that is not square.

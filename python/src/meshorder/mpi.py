@@ -187,8 +187,8 @@ def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         New numbers of this rank's vertices, and the order of its elements.
 
     Raises:
-        InvalidArgument: an unknown method, wrong vertex numbers, missing coordinates: on all ranks if it is true for
-            one. Arrays of wrong shapes: only on the rank that has them, while the others wait.
+        InvalidArgument: an unknown method, wrong vertex numbers or missing coordinates, on all ranks if one has them;
+            arrays of wrong shapes, only on the rank that has them, while the others wait for it.
         Unavailable: the library ``libmeshorder_mpi`` was not found.
         Error: another failure; on all ranks.
     """
@@ -217,8 +217,8 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         method: name of the vertex method for the parts, but not "auto", "original" or "scrambled".
         partition: the method that makes the parts: "ptscotch", which needs MPI_THREAD_MULTIPLE and is replaced by
             "hilbert" without it; "hilbert"; "rsb", recursive spectral bisection; or "order", which orders the whole
-            mesh and cuts the order into equal ranges, with the method "fiedler", the balance "vertices" and without
-            ``interface_last`` only.
+            mesh and cuts the order into equal ranges. "order" needs the method "fiedler", the balance "vertices" and
+            ``interface_last=False``.
         balance: whether parts get the same number of "vertices" or of "cells".
         interface_last: True numbers the vertices that share an element with vertices of other parts after the others
             of their part.

@@ -75,7 +75,7 @@ def fiedler_vector(
         seed: an integer for the eigensolver's start vector; others, such as a RandomState, stand for 0.
 
     Returns:
-        One number for each node, in the order of ``G``'s nodes: of norm 1 and sum 0.
+        One number for each node, in the order of ``G``'s nodes, of norm 1 and sum 0.
 
     Raises:
         networkx.NetworkXError: the graph has fewer than two nodes, or is not connected.
