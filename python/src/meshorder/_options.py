@@ -32,8 +32,8 @@ class Options(TypedDict, total=False):
             starts, such as ``Order.vector`` of an earlier call.
         groups: n integers, the group of each vertex: the vertices of a group stay together, groups ascend, and each
             is ordered by the method.
-        cell_groups: m integers, the group of each cell, likewise. Cells stay in their block all the same, and lower
-            dimensions in their places.
+        cell_groups: m integers, the group of each cell, likewise. Cells stay in their block all the same, and each
+            dimension keeps its places there.
         symmetric: for graphs and matrices. True: an asymmetric pattern is an InvalidArgument. False and None
             (default): it is replaced by that of A + Aᵀ, with the weights of (A + Aᵀ) / 2.
         check: "full" (default) checks sizes, ranges, symmetry and that weights and coordinates are finite; "fast"

@@ -47,6 +47,6 @@ def host_of(mesh: Any) -> Host:
     if found is None:
         raise InvalidArgument(
             "mesh: expected (points, cells) or a mesh of meshorder, meshio, PyVista, VTK, scikit-fem, trimesh or Gmsh, "
-            f"not {type(mesh).__name__}"
+            f"not {type(mesh).__name__}{'; meshorder.read makes a mesh of a file' if isinstance(mesh, str) else ''}"
         )
     return found

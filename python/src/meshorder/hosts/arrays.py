@@ -95,7 +95,7 @@ class ArrayMesh(Host):
             fits, blocks = len(self._sizes) == 1, [values]
         arrays = [np.asarray(block) for block in blocks]
         if not fits or [array.shape[:1] for array in arrays] != [(size,) for size in self._sizes]:
-            raise InvalidArgument(f"cell_data '{name}': expected blocks of {self._sizes} rows, as of the cells")
+            raise InvalidArgument(f"cell_data '{name}': expected blocks of {self._sizes} rows, one for each cell")
         return arrays
 
 
