@@ -37,8 +37,8 @@ class Options(TypedDict, total=False):
         symmetric: for graphs and matrices. True: an asymmetric pattern is an InvalidArgument. False and None
             (default): it is replaced by that of A + Aᵀ, with the weights of (A + Aᵀ) / 2.
         check: "full" (default) checks sizes, ranges, symmetry and that weights and coordinates are finite; "fast"
-            does the same but does not refuse an asymmetric pattern; "none" trusts the arrays, and faulty ones can
-            crash the process.
+            does the same but does not refuse an asymmetric pattern; "none" trusts the arrays, those of a graph only
+            with ``symmetric=True``, and faulty ones can crash the process.
         threads: the most threads, ≥ 0; None and 0: all. Orders do not depend on it.
         time_limit: seconds ≥ 0 after which iterative methods return the best order so far, with ``complete`` False;
             other methods ignore it. None (default): no limit.

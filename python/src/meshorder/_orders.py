@@ -68,8 +68,8 @@ def order_mesh(
               or two coordinates, else tetrahedra), and in space only 6 (wedges), 8 (hexahedra) or 10 (second-order
               tetrahedra);
             - ``{type: array}`` or ``[(type, array), …]``, with meshio's names of types: "tetra", "triangle6";
-            - ``(offsets, connectivity)`` or ``(offsets, connectivity, types)``, with VTK's type numbers: cell c has the
-              vertices ``connectivity[offsets[c]:offsets[c + 1]]``.
+            - ``(offsets, connectivity, types)``, with VTK's type numbers: cell c has the vertices
+              ``connectivity[offsets[c]:offsets[c + 1]]``; or ``(offsets, connectivity)``: all cells are elements then.
         vertices: method for the vertices: "auto" or the name of one of `methods`.
         elements: method for the elements, the cells of the highest dimension: "auto" or one of ``methods("elements")``.
             Cells of lower dimension go by "lexmax", with "original" they stay. Every cell stays in its block.
@@ -117,7 +117,7 @@ def reorder(
             the sets of cells.
         ids: for a `Mesh` only, what becomes of the numbers that its file gives to vertices and cells: "renumber" (the
             same numbers, ascending along the new order), "keep" (each keeps its number) or "attach" (as "renumber", and
-            arrays "original" hold the old ones).
+            arrays "original" hold the old numbers, or the old places from 0 where there are none).
         format: for a `Mesh` only, name of the format that it will be written in, some of which group cells by type;
             None: the one that it was read from.
         inplace: True changes and returns the mesh itself, or the arrays of the tuple. Gmsh's model needs it,
