@@ -303,6 +303,19 @@ TEST(Ply, WritesOtherMeshesExactlySo) {
             (DataArray{"pair", Association::cells, 2, std::vector<double>{0.5, 1}, {0}, {}}));
 }
 
+TEST(Ply, SaysWhichWholeNumbersLoseDigits) {
+  const TemporaryFolder folder;
+  Mesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.cells.push_back(Shape::triangle, std::vector<Index>{0, 1, 2});
+  constexpr std::int64_t kExact = std::int64_t{1} << 53;
+  mesh.data.push_back({"exact", Association::cells, 1, std::vector<std::int64_t>{kExact}, {}, {}});
+  mesh.data.push_back({"large", Association::cells, 1, std::vector<std::int64_t>{kExact + 1}, {}, {}});
+  Notes notes;
+  write_mesh(mesh, folder.path() / "a.ply", &notes);
+  EXPECT_EQ(notes, (Notes{"the array 'large' loses digits: PLY has no whole numbers of 64 bits"}));
+}
+
 TEST(Ply, LeavesOutWhatOtherReadersDoNotFind) {
   const TemporaryFolder folder;
   const Mesh mesh = test::triangles_and_line(2);

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/large_pages.hpp"
+#include "io/exact_values.hpp"
 #include "io/gmsh/gmsh.hpp"
 #include "io/names.hpp"
 #include "io/unsupported.hpp"
@@ -305,17 +306,7 @@ bool add_view(Metadata& layout, const DataArray& array, Notes& notes) {
     notes.push_back("the array '" + array.name +
                     "' is filled up with zeros: Gmsh's data have 1, 3 or 9 components");
   }
-  const bool inexact = std::visit(
-      [](const auto& values) {
-        using T = typename std::decay_t<decltype(values)>::value_type;
-        if constexpr (std::is_integral_v<T> && sizeof(T) == 8) {
-          return std::any_of(values.begin(), values.end(),
-                             [](T value) { return std::abs(static_cast<double>(value)) > kExact; });
-        }
-        return false;
-      },
-      array.values);
-  if (inexact) {
+  if (!are_exact<double>(array.values)) {
     notes.push_back("the array '" + array.name + "' loses digits: Gmsh's data are real numbers of 53 bits");
   }
   View view;

@@ -4,6 +4,7 @@
 // https://paulbourke.net/dataformats/ply/, as text and binary in either byte order. Vertices, faces, edges
 // and tetrahedra are understood with all their properties.
 #include "io/all_formats.hpp"
+#include "io/exact_values.hpp"
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/surface/ply_parts.hpp"
@@ -297,6 +298,9 @@ class Columns {
         property.type.type != Type::int8) {
       property.type = {"double", Type::float64};  // lists of whole numbers are taken for indices
       note(fmt::format("the array '{}' is written as real numbers", array.name));
+    }
+    if (property.type.type == Type::float64 && !are_exact<double>(array.values)) {
+      note(fmt::format("the array '{}' loses digits: PLY has no whole numbers of 64 bits", array.name));
     }
     property.count_type =
         array.components <= 255 ? TypeWord{"uchar", Type::uint8} : TypeWord{"int", Type::int32};
