@@ -319,6 +319,40 @@ def test_everything_moves_with_its_vertices_and_cells(command, tmp_path, whole, 
         checked(tmp_path, "b.cgns")
 
 
+@pytest.mark.parametrize("named", [False, True])
+def test_data_of_ranges_stay_with_their_elements(command, tmp_path, named):
+    points, tetrahedra, triangles = box(2, 1)
+    of_faces = points[triangles].mean(1) @ [1, 10, 100]
+    with new_file(tmp_path / "a.cgns") as file:
+        base = put(file, "Base", "CGNSBase_t", numpy.array([3, 3], "int32"))
+        zone = put_zone(base, "A", points, len(tetrahedra))
+        put_section(zone, "cells", 10, 1, len(tetrahedra), tetrahedra + 1)
+        put_section(zone, "faces", 5, len(tetrahedra) + 1, len(triangles), triangles + 1)
+        span = (len(tetrahedra) + 1, len(tetrahedra) + len(triangles))
+        put_condition(zone, "bare", "FaceCenter", span)
+        wall = put_condition(zone, "wall", "FaceCenter", span)
+        if named:
+            region = put(zone, "Region", "ZoneSubRegion_t", numpy.array([2], "int32"))
+            put(region, "BCRegionName", "Descriptor_t", text("wall"))
+            put(region, "Heat", "DataArray_t", of_faces)
+        else:
+            values = put(put(wall, "Data", "BCDataSet_t", text("BCDirichlet")), "DirichletData", "BCData_t")
+            put(values, "Heat", "DataArray_t", of_faces)
+        part = put(zone, "Part", "FlowSolution_t")
+        put(part, "GridLocation", "GridLocation_t", text("Vertex"))
+        put(part, "PointRange", "IndexRange_t", numpy.array([[1], [9]], "int32"))
+        put(part, "Pressure", "DataArray_t", points[:9] @ [1, 10, 100])
+    before = content(tmp_path / "a.cgns")
+    command.ok("order", "a.cgns", "-o", "b.cgns", "--vertices", "scrambled", "--elements", "scrambled")
+    assert content(tmp_path / "b.cgns") == before
+    with h5py.File(tmp_path / "b.cgns") as file:
+        zone = file["Base/A"]
+        heat = (zone["Region/Heat"] if named else zone["ZoneBC/wall/Data/DirichletData/Heat"])[" data"][...]
+        faces = [numpy.mean(face, 0) @ [1, 10, 100] for _, face in Zone(zone).items(zone["ZoneBC/wall"])]
+        assert numpy.allclose(heat, faces)
+        assert ("PointRange" in zone["ZoneBC/bare"]) == (not named)
+
+
 def test_arrays_sets_and_steps_get_names(command, tmp_path):
     write_rich(tmp_path / "a.cgns")
     info = command.ok("info", "a.cgns").stdout

@@ -52,8 +52,10 @@ class AttachmentReader {
   void read() {
     for (std::size_t z = 0; z < reading_.zones.size(); ++z) {
       zone_ = static_cast<int>(z);
+      has_named_part_ = false;
       read_steps();
       for (Node& node : zone().node->children) read_node(node, zone().path + "/" + node.name);
+      if (has_named_part_) mark_lists_of_zone();
     }
     name_sets();
     add_section_sets();
@@ -166,7 +168,23 @@ class AttachmentReader {
       place =
           read_list(child, zone_, of_elements ? Association::cells : association, path + "/" + child.name);
     }
+    if (place >= 0) metadata_.lists[place].orders_data = has_data_of_list(node);
     return place;
+  }
+
+  /// Returns whether a node may have values for what it lists, one after another.
+  static bool has_data_of_list(const Node& node) {
+    constexpr std::array<std::string_view, 5> kLabels{"BCDataSet_t", "BCData_t", "DataArray_t",
+                                                      "InwardNormalList_t", "UserDefinedData_t"};
+    constexpr std::array<std::string_view, 3> kNames{"InwardNormalList", "PointListDonor", "CellListDonor"};
+    return std::any_of(node.children.begin(), node.children.end(), [&](const Node& child) {
+      return is_one_of(child.label, kLabels) || is_one_of(child.name, kNames);
+    });
+  }
+
+  /// Marks the lists of a zone as those that may have data in a part of the zone that names one of them.
+  void mark_lists_of_zone() {
+    for (PointList& list : metadata_.lists) list.orders_data = list.orders_data || list.zone == zone_;
   }
 
   void refuse_ghosts(const Node& node, const std::string& path) const {
@@ -196,7 +214,10 @@ class AttachmentReader {
     const Association association = location_of(node, Association::vertices);
     const int list = read_own_list(node, association, path);
     if (node.label == "ZoneSubRegion_t") {
-      if (list < 0) return;  // it is that of a boundary condition or a connectivity
+      if (list < 0) {  // it is that of a boundary condition or a connectivity
+        has_named_part_ = has_named_part_ || has_data_of_list(node);
+        return;
+      }
       sets_.push_back({list, node.name});
     }
     std::shared_ptr<const std::vector<Index>> rows;
@@ -525,6 +546,7 @@ class AttachmentReader {
   Reading& reading_;
   Metadata& metadata_;
   int zone_ = 0;
+  bool has_named_part_ = false;  // whether a part of the zone has data for a list that it names
   std::map<std::pair<int, Association>, std::shared_ptr<const std::vector<Index>>> rows_;
   std::vector<FoundSet> sets_;
   std::vector<std::int64_t> labels_;

@@ -110,6 +110,7 @@ struct PointList {
   bool is_range = false;            ///< the file gave the first and the last number
   std::string number_type = "I4";
   bool is_shortened = false;  ///< members were left out
+  bool orders_data = false;   ///< something has values for the members in their order
 };
 
 /// Cells on both sides of the elements of a section.

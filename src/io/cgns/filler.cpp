@@ -339,7 +339,8 @@ void Filler::fill_list(Node& node, const PointList& list) const {
   }
   if (list.is_range) {
     const auto [first, last] = std::minmax_element(numbers.begin(), numbers.end());
-    if (*last - *first + 1 == static_cast<std::int64_t>(numbers.size())) {
+    const bool in_order = !list.orders_data || std::is_sorted(numbers.begin(), numbers.end());
+    if (in_order && *last - *first + 1 == static_cast<std::int64_t>(numbers.size())) {
       return put_whole(node, list.number_type, {1, 2}, {*first, *last});
     }
     node.label = "IndexArray_t";
