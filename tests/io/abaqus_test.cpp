@@ -311,6 +311,25 @@ TEST(Abaqus, ReadsIncludedFiles) {
   }
 }
 
+TEST(Abaqus, ReadsDataLinesOfIncludedFiles) {
+  const TemporaryFolder folder;
+  (void)folder.file("nodes.txt", "3, 0, 1, 0\n4, 0, 0, 1\n5, 1, 1, 1");
+  (void)folder.file("cells.txt", "8, 2, 3, 4, 5\n");
+  (void)folder.file("set.txt", "3, 4");
+  const Mesh mesh = read_mesh(folder.file("m.inp",
+                                          "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n*INCLUDE, INPUT=nodes.txt\n"
+                                          "6, 2, 2, 2\n*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 4\n"
+                                          "*Include,\n input=cells.txt\n9, 3, 4, 5, 6\n"
+                                          "*NSET, NSET=a\n1\n*INCLUDE, INPUT=set.txt\n"));
+  EXPECT_EQ(mesh.vertex_count(), 6);
+  EXPECT_EQ(mesh.cell_count(), 3);
+  EXPECT_THAT(set_of(mesh, "a").members, ElementsAre(0, 2, 3));
+  EXPECT_EQ(deck_of(mesh),
+            "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n5, 1, 1, 1\n6, 2, 2, 2\n"
+            "*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 4\n8, 2, 3, 4, 5\n9, 3, 4, 5, 6\n"
+            "*NSET, NSET=a\n1\n3, 4\n");
+}
+
 TEST(Abaqus, ReadsOnePartInOneInstance) {
   constexpr std::string_view kParts =
       "*Part, name=beam\n*Node\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*Element, type=C3D4\n"

@@ -175,6 +175,18 @@ class DeckReader {
     lines_.include(std::string(name), line_);
   }
 
+  /// Gives the next line of the present card, not yet taken, those of an *INCLUDE among them; returns false
+  /// at the next keyword.
+  bool peek_in_card(std::string_view& line) {
+    while (lines_.peek(line)) {
+      if (!is_keyword(line)) return true;
+      if (parse_card(line).keyword != "INCLUDE") return false;
+      line_ = lines_.at().line();
+      include(parse_card(take_keyword()).value("INPUT"));
+    }
+    return false;
+  }
+
   /// Opens the file of the parameter INPUT, whose lines come inline. Returns the keyword's lines without it.
   std::string with_input(const Card& card, std::string text) {
     if (!card.has("INPUT")) return text;
@@ -187,13 +199,13 @@ class DeckReader {
   /// Gives the next data line of nodes or elements, not yet taken; returns false at the next keyword.
   /// Comments go to `comments`, blank lines nowhere.
   bool peek_data(std::string_view& line, std::string& comments) {
-    while (lines_.peek(line)) {
+    while (peek_in_card(line)) {
       if (line.empty()) {
         (void)lines_.take();
       } else if (is_comment(line)) {
         comments += lines_.take();
       } else {
-        return line.front() != '*';
+        return true;
       }
     }
     return false;
@@ -351,7 +363,7 @@ class DeckReader {
     }
     std::string_view line;
     bool goes_on = false;
-    while (lines_.peek(line) && !is_keyword(line)) {
+    while (peek_in_card(line)) {
       if (!line.empty() && !is_comment(line)) {
         const bool ends_with_comma = line.ends_with(',');
         if (!goes_on) other_elements_.insert(take_number(line, "the number of an element"));
@@ -379,7 +391,7 @@ class DeckReader {
     sets_.begin_card(of_nodes ? Association::vertices : Association::cells, card, std::move(place));
     if (has_other_file(card)) return;
     std::string_view line;
-    while (lines_.peek(line) && !is_keyword(line)) {
+    while (peek_in_card(line)) {
       if (!is_comment(line)) {
         if (const std::string fault = sets_.add_line(line); !fault.empty()) {
           lines_.at().fail(fault, "numbers and names of sets are possible");
