@@ -608,12 +608,22 @@ TEST(Abaqus, FindsNumbersInCards) {
   EXPECT_EQ(numbers("*SURFACE, NAME=a, TYPE=NODE\n12\n"), "n12 ");
   EXPECT_EQ(numbers("*SURFACE, NAME=a, TYPE=CUTTING SURFACE\n12\n"), "unknown");
   EXPECT_EQ(numbers("*EQUATION\n3\n1,2,0.5,2,2,\n0.5,3,2,1\n2\n4,1,1,5,1,1"), "n1 n2 n3 n4 n5 ");
+  EXPECT_EQ(numbers("*EQUATION\n4\n1,1,1., 2,1,-1., \n3,1,1., 4,1,2.\n"), "n1 n2 n3 n4 ")
+      << "a blank behind the comma at the end of a line";
+  EXPECT_EQ(numbers("*EQUATION, REMOVE\n5, 1, 3\n6, 1\n"), "n5 n6 ");
   EXPECT_EQ(numbers("*MPC\nTIE, 12, left, 4\n"), "n12 n4 ");
   EXPECT_EQ(numbers("*INITIAL CONDITIONS, TYPE=TEMPERATURE\n12, 20\n"), "n12 ");
   EXPECT_EQ(numbers("*INITIAL CONDITIONS, TYPE=STRESS\n12, 1, 20\n"), "e12 ");
   EXPECT_EQ(numbers("*INITIAL CONDITIONS, TYPE=SOLUTION\n12, 1, 20\n"), "unknown");
   EXPECT_EQ(numbers("*DLOAD\n12, P1NP, 7\n3, P1, 7\n"), "e12 n7 e3 ");
   EXPECT_EQ(numbers("*PRE-TENSION SECTION, SURFACE=a, NODE=7\n1, 0, 0\n"), "n7 ");
+  EXPECT_EQ(numbers("*PRE-TENSION SECTION, ELEMENT=12, NODE=7\n"), "e12 n7 ");
+  EXPECT_EQ(numbers("*STATIC, RIKS\n1., 1., , , , 5, 1, 2.\n"), "n5 ");
+  EXPECT_EQ(numbers("*STATIC\n1., 1., , , 5, 5\n"), "");
+  EXPECT_EQ(numbers("*CLEARANCE, MASTER=a, SLAVE=b, TABULAR\n12, 0.1\n"), "n12 ");
+  EXPECT_EQ(numbers("*CLEARANCE, MASTER=a, SLAVE=b, VALUE=12\n"), "");
+  EXPECT_EQ(numbers("*SECTION PRINT, SURFACE=a, NAME=b\nSOF, SOM\n"), "");
+  EXPECT_EQ(numbers("*SECTION PRINT, SURFACE=a, NAME=b, AXES=LOCAL\n12, 0., 0., 0.\nSOF\n"), "unknown");
   EXPECT_EQ(numbers("*RIGIDBODY, NSET=a,\n REFNODE = 7, ROTNODE=8\n"), "n7 n8 ");
   EXPECT_EQ(numbers("*NODE PRINT, NSET=a\n1\n"), "");
   EXPECT_EQ(numbers("*NORMAL\n12, 7, 1, 0, 0\n"), "e12 n7 ");

@@ -200,6 +200,14 @@ constexpr std::array<std::string_view, 115> kPlain{
     // clang-format on
 };
 
+/// Returns the fields of cards that name nodes only if they have some parameter; none for others.
+std::optional<std::string_view> fields_with_parameter(const Card& card) {
+  if (card.keyword == "CLEARANCE" && card.has("TABULAR")) return "n";
+  if (card.keyword == "EQUATION" && card.has("REMOVE")) return "n";
+  if (card.keyword == "STATIC" && card.has("RIKS")) return "-----n";  // whose displacement ends the step
+  return {};
+}
+
 /// Returns the fields of the cards whose parameters decide them; none for other cards.
 std::optional<std::string_view> fields_by_parameters(const Card& card) {
   const std::string type = compact(card.value("TYPE"));
@@ -222,8 +230,11 @@ std::optional<std::string_view> fields_by_parameters(const Card& card) {
 }
 
 std::optional<std::string_view> fields_of(const Card& card) {
-  if (std::find(kPlain.begin(), kPlain.end(), card.keyword) != kPlain.end()) return "";
+  const auto with_parameter = fields_with_parameter(card);
+  const bool is_plain = std::find(kPlain.begin(), kPlain.end(), card.keyword) != kPlain.end();
+  if (is_plain && !with_parameter) return "";
   if (has_other_file(card)) return {};
+  if (with_parameter) return with_parameter;
   if (const auto fields = fields_by_parameters(card)) return fields;
   for (const Layout& layout : kLayouts) {
     if (layout.keyword == card.keyword) return layout.fields;
@@ -247,7 +258,8 @@ class ReferenceFinder {
   std::optional<std::vector<Reference>> find() {
     const std::size_t begin = keyword_lines(lines_).size();
     add_parameters(lines_.substr(0, begin));
-    if (card_.keyword == "EQUATION") {
+    if (card_.keyword == "SECTIONPRINT" && has_numbers_in_front(begin)) return {};  // points of its axes
+    if (card_.keyword == "EQUATION" && !card_.has("REMOVE")) {
       if (has_other_file(card_)) return {};
       for_lines(begin, [this](std::string_view line) { add_terms(line); });
       return std::move(found_);
@@ -268,6 +280,13 @@ class ReferenceFinder {
     }
   }
 
+  /// Returns whether a line below the keyword begins with a whole number.
+  [[nodiscard]] bool has_numbers_in_front(std::size_t begin) const {
+    bool any = false;
+    for_lines(begin, [&](std::string_view line) { any = any || number_of(next_field(line)) > 0; });
+    return any;
+  }
+
   void add(char kind, std::string_view field) {
     const std::int64_t number = kind == '-' ? 0 : number_of(field);
     if (number == 0) return;
@@ -277,7 +296,7 @@ class ReferenceFinder {
                       static_cast<std::size_t>(field.data() - lines_.data()), field.size(), number});
   }
 
-  /// REF NODE=17 and the like.
+  /// REF NODE=17 and the like, and the element of a pre-tension section.
   void add_parameters(std::string_view keyword) {
     for (const Piece piece : pieces_of(keyword)) {
       const std::string_view text = keyword.substr(piece.begin, piece.end - piece.begin);
@@ -286,6 +305,8 @@ class ReferenceFinder {
       const std::string name = parameter_of(text).name;
       if (name == "NODE" || name == "REFNODE" || name == "ROTNODE") {
         add('n', trimmed_of_ends(text.substr(equals + 1)));
+      } else if (name == "ELEMENT" && card_.keyword == "PRE-TENSIONSECTION") {
+        add('e', trimmed_of_ends(text.substr(equals + 1)));
       }
     }
   }
@@ -312,7 +333,7 @@ class ReferenceFinder {
       terms_left_ = number_of(next_field(line));
       return;
     }
-    while (!line.empty() && terms_left_ > 0) {
+    while (!trimmed(line).empty() && terms_left_ > 0) {
       const std::string_view field = next_field(line);
       if (in_term_ == 0) add('n', field);
       if (in_term_ == 2) --terms_left_;
