@@ -267,6 +267,9 @@ TEST(Abaqus, KeepsNumbersWhereACardMayNameThem) {
   EXPECT_THAT(test::write_error(mesh, folder.path() / "m.inp"), HasSubstr("*NEW LOAD (line 65); keep them"));
 
   notes.clear();
+  (void)read_deck(with(std::string(kDeck), "BEAM, 1, 2\n", "TIE, ends, nall\n"), &notes);
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("*MPC (line 54)")));
+  notes.clear();
   (void)read_deck(with(std::string(kDeck), "*FILM\n20, F2FC, 13, 5", "*NEW LOAD\n200, F2FC, 1000"), &notes);
   EXPECT_THAT(notes, IsEmpty()) << "no node or element has such a number";
 }
@@ -612,6 +615,9 @@ TEST(Abaqus, FindsNumbersInCards) {
       << "a blank behind the comma at the end of a line";
   EXPECT_EQ(numbers("*EQUATION, REMOVE\n5, 1, 3\n6, 1\n"), "n5 n6 ");
   EXPECT_EQ(numbers("*MPC\nTIE, 12, left, 4\n"), "n12 n4 ");
+  EXPECT_EQ(numbers("*MPC\nTIE, left, right\n"), "unknown") << "pairs by the order of the numbers";
+  EXPECT_EQ(numbers("*EQUATION\n2\nleft, 1, 1., right, 1, -1.\n"), "unknown");
+  EXPECT_EQ(numbers("*EQUATION\n2\nleft, 1, 1., beam-1.12, 1, -1.\n"), "n12 ");
   EXPECT_EQ(numbers("*INITIAL CONDITIONS, TYPE=TEMPERATURE\n12, 20\n"), "n12 ");
   EXPECT_EQ(numbers("*INITIAL CONDITIONS, TYPE=STRESS\n12, 1, 20\n"), "e12 ");
   EXPECT_EQ(numbers("*INITIAL CONDITIONS, TYPE=SOLUTION\n12, 1, 20\n"), "unknown");

@@ -255,7 +255,26 @@ class ReferenceFinder {
  public:
   ReferenceFinder(const Card& card, std::string_view lines) : card_(card), lines_(lines) {}
 
+  /// See the function of that name.
+  [[nodiscard]] bool pairs_sets() const {
+    const bool is_mpc = card_.keyword == "MPC";
+    if (!is_mpc && card_.keyword != "EQUATION") return false;
+    int names = 0;
+    for_lines(keyword_lines(lines_).size(), [&](std::string_view line) {
+      if (is_mpc) (void)next_field(line);  // its type
+      while (!line.empty()) {
+        const std::string_view field = next_field(line);
+        const char first = field.empty() ? '0' : field.front();
+        const bool is_name =
+            std::isalpha(static_cast<unsigned char>(first)) != 0 || first == '_' || first == '"';
+        if (is_name && number_of(field) == 0) ++names;
+      }
+    });
+    return names > 1;
+  }
+
   std::optional<std::vector<Reference>> find() {
+    if (pairs_sets()) return {};
     const std::size_t begin = keyword_lines(lines_).size();
     add_parameters(lines_.substr(0, begin));
     if (card_.keyword == "SECTIONPRINT" && has_numbers_in_front(begin)) return {};  // points of its axes
@@ -354,6 +373,10 @@ bool has_other_file(const Card& card) { return card.has("INPUT") || card.has("FI
 
 std::optional<std::vector<Reference>> references(const Card& card, std::string_view lines) {
   return ReferenceFinder(card, lines).find();
+}
+
+bool pairs_sets(const Card& card, std::string_view lines) {
+  return ReferenceFinder(card, lines).pairs_sets();
 }
 
 std::vector<std::int64_t> numbers_in(std::string_view lines) {

@@ -66,6 +66,10 @@ bool has_other_file(const Card& card);
 /// if the card is not known.
 std::optional<std::vector<Reference>> references(const Card& card, std::string_view lines);
 
+/// Returns whether a card, given with its lines, ties the nodes of several sets to each other: the first of
+/// one set, by its number, to the first of another. Other numbers would tie other nodes.
+bool pairs_sets(const Card& card, std::string_view lines);
+
 /// Returns all whole numbers above 0 that are the value of a parameter of a card, given with its lines, or
 /// stand alone in a field below its keyword.
 std::vector<std::int64_t> numbers_in(std::string_view lines);

@@ -470,6 +470,7 @@ class DeckReader {
       if (references(card, section.text)) continue;
       const std::vector<std::int64_t> numbers = numbers_in(section.text);
       const bool names_any = card.keyword == "PARAMETER" || has_other_file(card) ||
+                             pairs_sets(card, section.text) ||
                              std::any_of(numbers.begin(), numbers.end(), [&](std::int64_t number) {
                                return deck_->nodes.find(number) >= 0 || deck_->elements.find(number) >= 0;
                              });
