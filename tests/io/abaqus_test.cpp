@@ -221,14 +221,22 @@ TEST(Abaqus, RenumbersAllThatNamesNodesAndElements) {
 }
 
 TEST(Abaqus, ListsARangeThatIsNoneAnyMore) {
-  Mesh mesh = read_deck(kDeck);
+  Mesh mesh = read_deck(with(std::string(kDeck), "2, 20, 2\n", "2, 20, 2\n** behind it\n"));
   std::vector<Index> cells(mesh.cells.shapes.size());
   std::iota(cells.begin(), cells.end(), Index{0});
   std::swap(cells[2], cells[3]);
   apply_reordering(mesh, Permutation::identity(mesh.vertex_count()),
                    Permutation::from_old_to_new(std::move(cells)));
   const std::string text = deck_of(mesh);
-  EXPECT_THAT(text, HasSubstr("*ELSET, ELSET=even\n2, 11, 20\n"));
+  EXPECT_THAT(text, HasSubstr("*ELSET, ELSET=even\n2, 11, 20\n** behind it\n"));
+}
+
+TEST(Abaqus, KeepsTheOrderOfUnsortedRanges) {
+  Mesh mesh = read_deck(
+      "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n"
+      "*NSET, NSET=a, UNSORTED, GENERATE\n1, 3\n*NSET, NSET=b, GENERATE\n1, 3\n");
+  apply_reordering(mesh, Permutation::from_old_to_new({1, 0, 2, 3}), Permutation::identity(1));
+  EXPECT_THAT(deck_of(mesh), HasSubstr("*NSET, NSET=a, UNSORTED\n2, 1, 3\n*NSET, NSET=b, GENERATE\n1, 3\n"));
 }
 
 TEST(Abaqus, ComesBackFromAnyOrder) {

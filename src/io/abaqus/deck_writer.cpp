@@ -115,7 +115,7 @@ class DeckWriter {
     const Card card = parse_card(text);
     if ((card.keyword == "NSET" || card.keyword == "ELSET") && card.has("GENERATE")) {
       const Association association = card.keyword == "NSET" ? Association::vertices : Association::cells;
-      return write_generated(text, numbers_of(association));
+      return write_generated(text, numbers_of(association), card.has("UNSORTED"));
     }
     std::size_t done = 0;
     for (const Reference& reference : references(card, text).value_or(std::vector<Reference>())) {
@@ -126,14 +126,17 @@ class DeckWriter {
     out_.text(std::string_view(text).substr(done));
   }
 
-  /// Writes a set of ranges: as it is if the ranges hold the same items still, else as a list.
-  void write_generated(const std::string& text, const FileNumbers& numbers) {
+  /// Writes a set of ranges: as it is if the ranges hold the same items still, else as a list before the
+  /// comments. `is_path`: the order of the items matters.
+  void write_generated(const std::string& text, const FileNumbers& numbers, bool is_path) {
     std::vector<std::int64_t> now;
+    std::string comments;
     bool same = true;
     const std::string_view keyword = keyword_lines(text);
     std::string_view lines = std::string_view(text).substr(keyword.size());
     while (!lines.empty()) {
       std::string_view line = next_word(lines, "\r\n");
+      if (trimmed(line).starts_with("**")) comments.append(line).append(deck_.line_end);
       if (line.empty() || trimmed(line).starts_with("**")) continue;
       std::array<std::int64_t, 3> range{0, 0, 1};
       for (std::int64_t& value : range) {
@@ -148,13 +151,14 @@ class DeckWriter {
         before.push_back(numbers.of_file().id(k));
         of_range.push_back(numbers.at(numbers.place(k)));
       }
-      std::sort(of_range.begin(), of_range.end());
+      if (!is_path) std::sort(of_range.begin(), of_range.end());
       same = same && of_range == before;
       now.insert(now.end(), of_range.begin(), of_range.end());
     }
     if (same) return out_.text(text);
     out_.text(without_parameter(keyword, "GENERATE"));
     out_.list(now);
+    out_.text(comments);
   }
 
   void write_new_sets() {
