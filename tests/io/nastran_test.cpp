@@ -234,6 +234,18 @@ TEST(Nastran, KeepsNumbersWhereACardIsNotKnown) {
   }
 }
 
+TEST(Nastran, TakesPropertiesOfBarsFromBaror) {
+  const std::string deck =
+      "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\n"
+      "CBAR,7,,1,2\nCBAR,8,,2,3\nCBAR,9,5,3,1\n"
+      "CBEAM,17,,1,2,0.,0.,1.\n"
+      "BAROR,,1001,,,0.,0.,1.\n";
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(folder.file("a.bdf", deck));
+  EXPECT_THAT(labels_of(mesh, Association::cells).values, ElementsAre(1001, 1001, 5, 17));
+  EXPECT_THAT(moved(deck, {2, 1, 0}, {1, 0, 2, 3}), HasSubstr("CBAR,7,,2,1\nCBAR,8,,3,2\nCBAR,9,5,1,3\n"));
+}
+
 TEST(Nastran, ReadsBulkDataAloneAndIncludedFiles) {
   const TemporaryFolder folder;
   (void)folder.file("nodes.inc", "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.");

@@ -129,7 +129,7 @@ class BulkWriter {
     edits_.clear();
     const ElementType& type = *element.type;
     edit(1, elements_.at(c));
-    if (type.has_property) edit_property(c);
+    if (type.has_property) edit_property(type, c);
     const auto cell = mesh_.cells[c];
     std::array<std::int64_t, kMostNodes> nodes{};
     for (std::size_t k = 0; k < cell.size(); ++k) {
@@ -153,7 +153,7 @@ class BulkWriter {
     if (number > 0) edit(field, nodes_.now(number));
   }
 
-  void edit_property(Index c) {
+  void edit_property(const ElementType& type, Index c) {
     const std::int64_t before = number_of(fields_.text(2));
     const bool given = labels_.any() && labels_.given[c];
     const std::int64_t label = given ? labels_.values[c] : before;
@@ -161,9 +161,12 @@ class BulkWriter {
       lost_labels_ = lost_labels_ || given;
       return;
     }
-    // a blank field stays where the element keeps its number
-    const bool is_default = before == 0 && label == number_of(fields_.text(1)) && edits_.empty();
-    if (!is_default) edit(2, label);
+    // a blank field stays where it still means the property: that of BAROR, or the element's own number
+    const auto found = deck_.default_properties.find(type.name);
+    const bool is_meant = found != deck_.default_properties.end()
+                              ? label == found->second
+                              : label == number_of(fields_.text(1)) && edits_.empty();
+    if (before != 0 || !is_meant) edit(2, label);
   }
 
   /// The node of an orientation and the points of warping, of beams.

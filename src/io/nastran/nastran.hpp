@@ -11,7 +11,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshorder::nastran {
@@ -34,8 +36,10 @@ struct Deck {
   std::vector<ElementCard> elements;
   IdMap node_numbers;
   IdMap element_numbers;
-  std::vector<Point> points;                 ///< of the nodes, in the basic system
-  bool has_default_system = false;           ///< for nodes that name none: GRDSET
+  std::vector<Point> points;        ///< of the nodes, in the basic system
+  bool has_default_system = false;  ///< for nodes that name none: GRDSET
+  /// Properties of elements that name none, by their cards: those of BAROR and BEAMOR.
+  std::map<std::string_view, std::int64_t> default_properties;
   std::vector<std::int64_t> other_points;    ///< numbers of points that are no nodes, ascending
   std::vector<std::int64_t> other_elements;  ///< of elements that are no cells, ascending
   std::vector<EntitySet> sets;               ///< of the cards SET3; members are positions in the file

@@ -148,7 +148,7 @@ class DeckReader {
     begin_block();
     mesh_.cells.push_back(type.shape, {cell.data(), static_cast<std::size_t>(nodes)});
     deck_->elements.push_back({card_, &type, nodes});
-    add_property(type, id);
+    add_property(type);
     note_other_fields(type);
     return true;
   }
@@ -179,11 +179,10 @@ class DeckReader {
     other_since_ = false;
   }
 
-  void add_property(const ElementType& type, std::int64_t id) {
+  void add_property(const ElementType& type) {
     if (!type.has_property) return;
-    // a blank field is the number of the element
-    const std::int64_t property = fields_.text(2).empty() ? id : number(2, "the property of an element");
-    labels_.push_back(property);
+    // a blank field is told when all cards are known
+    labels_.push_back(fields_.text(2).empty() ? 0 : number(2, "the property of an element"));
     labelled_.push_back(mesh_.cell_count() - 1);
   }
 
@@ -206,6 +205,9 @@ class DeckReader {
     if (name == "GRDSET" && !fields_.text(2).empty() && fields_.text(2) != "0") {
       default_system_ = number(2, "the system of nodes");
       has_systems_ = deck_->has_default_system = true;
+    }
+    if ((name == "BAROR" || name == "BEAMOR") && !fields_.text(2).empty()) {
+      deck_->default_properties[name == "BAROR" ? "CBAR" : "CBEAM"] = number(2, "the property of elements");
     }
     systems_.add(name, fields_, card_.begin);
     if (!found) {
@@ -250,6 +252,7 @@ class DeckReader {
     mesh_.cell_ids = deck_->element_numbers.ids_unless_from(1);
     sort_once(deck_->other_points);
     sort_once(deck_->other_elements);
+    complete_properties();
     add_labels();
     read_sets();
     list_contents();
@@ -292,6 +295,17 @@ class DeckReader {
     };
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       mesh_.points[v] = systems_.in_basic(system_of_[v], given[v], deck_->nodes[v].begin, in_basic);
+    }
+  }
+
+  /// Gives elements that name no property that of BAROR or BEAMOR, or else their own number.
+  void complete_properties() {
+    for (std::size_t k = 0; k < labels_.size(); ++k) {
+      if (labels_[k] != 0) continue;
+      const Index c = labelled_[k];
+      const auto found = deck_->default_properties.find(deck_->elements[c].type->name);
+      const bool has_default = found != deck_->default_properties.end();
+      labels_[k] = has_default ? found->second : deck_->element_numbers.id(c);
     }
   }
 

@@ -99,6 +99,8 @@ constexpr std::array kLayouts{
     Layout{"CVISC", "x-nn"},
     Layout{"PLOTEL", "xnn"},
     // points, systems, others
+    Layout{"BAROR", "----G"},
+    Layout{"BEAMOR", "----G"},
     Layout{"BLSEG", "-N"},
     Layout{"BSURF", "-E"},
     Layout{"CORD1C", "-nnn-nnn"},
