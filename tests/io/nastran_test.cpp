@@ -246,6 +246,15 @@ TEST(Nastran, TakesPropertiesOfBarsFromBaror) {
   EXPECT_THAT(moved(deck, {2, 1, 0}, {1, 0, 2, 3}), HasSubstr("CBAR,7,,2,1\nCBAR,8,,3,2\nCBAR,9,5,1,3\n"));
 }
 
+TEST(Nastran, TakesTabsForColumnsBeforeACommentWithAComma) {
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(folder.file("a.bdf",
+                                          "GRID\t1\t\t0.\t2.\t0.\t$ the first, at 0, 2\n"
+                                          "GRID\t2\t\t1.\t0.\t0.\n"
+                                          "CROD\t1\t1\t1\t2\t$ one, of steel\n"));
+  EXPECT_THAT(mesh.points, ElementsAre(Point{0, 2, 0}, Point{1, 0, 0}));
+}
+
 TEST(Nastran, ReadsBulkDataAloneAndIncludedFiles) {
   const TemporaryFolder folder;
   (void)folder.file("nodes.inc", "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.");

@@ -98,7 +98,8 @@ void DeckText::take_line(std::string_view line) {
     }
   }
   const bool starts_bulk = section_ == Section::control && begins_bulk(line);
-  const bool is_fixed = !line.starts_with('$') && line.find(',') == std::string_view::npos;
+  const std::string_view content = line.substr(0, line.find('$'));
+  const bool is_fixed = !content.empty() && content.find(',') == std::string_view::npos;
   const std::string_view taken = lines_.take();
   if (section_ == Section::bulk && is_fixed && taken.find('\t') != std::string_view::npos) {
     append_without_tabs(text_, taken);
