@@ -213,6 +213,8 @@ TEST(Nastran, KeepsNumbersWhereACardIsNotKnown) {
       {"SPC = 4\n", "SET 7 = 1 THRU 9000\n"},
       {"$ between\n", "$HMMOVE 4\n"},
       {"SPOINT  50\n", "SPC1,4,1,1,THRU,9,EXCEPT,3\n"},
+      {"SPC = 4\n", "GROUNDCHECK(GRID=3,SET=ALL) = YES\n"},
+      {"SPC = 4\n", "PARAM,GRDPNT,3\n"},
   };
   const std::vector<Index> vertices{1, 0, 2, 8, 4, 5, 6, 7, 3, 9, 10, 11, 12};
   for (const auto& [old, fresh] : changes) {

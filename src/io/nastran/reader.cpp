@@ -384,7 +384,7 @@ class DeckReader {
     }
   }
 
-  /// Finds sets and curves of case control, which are numbers of nodes or elements.
+  /// Finds what names nodes or elements in case control: sets, curves, and grid points of commands.
   template <class Add>
   void find_in_control(std::string_view control, const Add& add) const {
     bool in_set = false;
@@ -397,6 +397,7 @@ class DeckReader {
       std::string_view rest = line;
       const std::string_view word = next_word(rest, " \t=");
       const bool is_curve = word.size() > 1 && same_but_for_case(word.substr(0, 2), "XY");
+      if (names_grid_point(line)) add(shown(word.substr(0, word.find('('))), byte);
       const bool goes_on = in_set;
       const bool is_set = word.size() == 3 && same_but_for_case(word, "SET");
       if (is_set) (void)next_word(rest, " \t=");  // its number
@@ -407,6 +408,16 @@ class DeckReader {
         in_set = false;
       }
     }
+  }
+
+  /// Returns whether a line of case control names a node: GROUNDCHECK(GRID=17) or PARAM,GRDPNT,17.
+  [[nodiscard]] bool names_grid_point(std::string_view line) const {
+    std::string_view last;
+    for (std::string_view word; !(word = next_word(line, " \t,=()")).empty(); last = word) {
+      const bool is_point = same_but_for_case(last, "GRID") || same_but_for_case(last, "GRDPNT");
+      if (is_point && deck_->node_numbers.find(number_of(word)) >= 0) return true;
+    }
+    return false;
   }
 
   [[nodiscard]] bool names_items(std::string_view list) const {
