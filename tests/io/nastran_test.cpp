@@ -213,6 +213,9 @@ TEST(Nastran, KeepsNumbersWhereACardIsNotKnown) {
       {"SPC = 4\n", "SET 7 = 1 THRU 9000\n"},
       {"$ between\n", "$HMMOVE 4\n"},
       {"SPOINT  50\n", "SPC1,4,1,1,THRU,9,EXCEPT,3\n"},
+      {"SPOINT  50\n", "PLOTEL,60,1000,1000,,61,1,2\n"},
+      {"SPOINT  50\n", "BLSEG,60,1,THRU,4\n"},
+      {"SPOINT  50\n", "RBE3,60,,1000,123,1.,123,1,THRU,+\n+,4\n"},
       {"SPC = 4\n", "GROUNDCHECK(GRID=3,SET=ALL) = YES\n"},
       {"SPC = 4\n", "PARAM,GRDPNT,3\n"},
   };
@@ -234,6 +237,17 @@ TEST(Nastran, KeepsNumbersWhereACardIsNotKnown) {
     (void)read_mesh(folder.file("a.bdf", with(std::string(kBulk), "SPOINT  50\n", fresh)), {.notes = &notes});
     EXPECT_THAT(notes, IsEmpty()) << fresh;
   }
+}
+
+TEST(Nastran, RenumbersPointsOfConvection) {
+  const std::string deck = with(std::string(kBulk), "SPOINT  50\n",
+                                "CONV,60,70,1,2,3,4\n"
+                                "PCONV,70,9,,,,,,,+\n"
+                                "+,,2\n");
+  EXPECT_THAT(moved(deck, {1, 0, 2, 8, 4, 5, 6, 7, 3, 9, 10, 11, 12}, {1, 0, 2, 3}),
+              HasSubstr("CONV,60,70,2,1,3,9\n"
+                        "PCONV,70,9,,,,,,,+\n"
+                        "+,,1\n"));
 }
 
 TEST(Nastran, TakesPropertiesOfBarsFromBaror) {

@@ -13,7 +13,8 @@ namespace {
 
 /// What the fields behind the name are: nodes (n), elements (e), the number of an element that is no cell
 /// (x), and neither (-). Letters in parentheses repeat to the end of the card. A capital letter begins a list
-/// of nodes (N), elements (E) or points that are no nodes (S). A card that ends with "." has no further ones.
+/// of nodes (N), elements (E) or points that are no nodes (S). Where a "." stands, the card may have nothing
+/// more: some programs give a second element there.
 struct Layout {
   std::string_view name;
   std::string_view fields;
@@ -79,25 +80,25 @@ constexpr std::array kLayouts{
     Layout{"CBUSH1D", "x-nn"},
     Layout{"CDAMP1", "x-n-n"},
     Layout{"CDAMP2", "x-n-n"},
-    Layout{"CDAMP3", "x-nn"},
-    Layout{"CDAMP4", "x-nn"},
-    Layout{"CDAMP5", "x-nn"},
+    Layout{"CDAMP3", "x-nn."},
+    Layout{"CDAMP4", "x-nn."},
+    Layout{"CDAMP5", "x-nn."},
     Layout{"CELAS1", "x-n-n"},
     Layout{"CELAS2", "x-n-n"},
-    Layout{"CELAS3", "x-nn"},
-    Layout{"CELAS4", "x-nn"},
+    Layout{"CELAS3", "x-nn."},
+    Layout{"CELAS4", "x-nn."},
     Layout{"CGAP", "x-nnG"},
     Layout{"CHBDYE", "xe"},
     Layout{"CHBDYG", "x-------nnnnnnnn"},
     Layout{"CMASS1", "x-n-n"},
     Layout{"CMASS2", "x-n-n"},
-    Layout{"CMASS3", "x-nn"},
-    Layout{"CMASS4", "x-nn"},
+    Layout{"CMASS3", "x-nn."},
+    Layout{"CMASS4", "x-nn."},
     Layout{"CONM1", "xn"},
     Layout{"CONM2", "xn"},
-    Layout{"CONV", "---nnnnnnnnn"},
-    Layout{"CVISC", "x-nn"},
-    Layout{"PLOTEL", "xnn"},
+    Layout{"CONV", "--nnnnnnnnnn"},
+    Layout{"CVISC", "x-nn."},
+    Layout{"PLOTEL", "xnn."},
     // points, systems, others
     Layout{"BAROR", "----G"},
     Layout{"BEAMOR", "----G"},
@@ -111,12 +112,13 @@ constexpr std::array kLayouts{
     Layout{"EIGC", "---n"},
     Layout{"EIGR", "---------n"},
     Layout{"EPOINT", "S"},
+    Layout{"PCONV", "---------n"},
     Layout{"RADBC", "n-nE"},
     Layout{"SPOINT", "S"},
 };
 
 /// Cards that name no nodes and no elements.
-constexpr std::array<std::string_view, 125> kPlain{
+constexpr std::array<std::string_view, 124> kPlain{
     // clang-format off
     "ACCEL", "BCPROP", "BCTADD", "BCTPARM", "BFRIC", "CORD2C", "CORD2R", "CORD2S", "CREEP",
     "DAMPING", "DCONADD", "DCONSTR", "DEQATN", "DESVAR", "DLINK", "DLOAD", "DOPTPRM", "DTABLE", "DVMREL1",
@@ -125,7 +127,7 @@ constexpr std::array<std::string_view, 125> kPlain{
     "MAT5", "MAT8", "MAT9", "MATEP", "MATG", "MATHE", "MATHP", "MATORT", "MATS1", "MATT1",
     "MATT2", "MATT3", "MATT4", "MATT5", "MATT8", "MATT9", "MDLPRM", "MPCADD", "NLPARM", "NLPCI",
     "NSMADD", "PBAR", "PBARL", "PBCOMP", "PBEAM", "PBEAML", "PBEND", "PBUSH", "PBUSH1D", "PBUSHT",
-    "PCOMP", "PCOMPG", "PCOMPP", "PCONV", "PDAMP", "PDAMPT", "PELAS", "PELAST", "PFAST", "PGAP",
+    "PCOMP", "PCOMPG", "PCOMPP", "PDAMP", "PDAMPT", "PELAS", "PELAST", "PFAST", "PGAP",
     "PHBDY", "PLCOMP", "PLPLANE", "PLSOLID", "PLY", "PMASS", "PROD", "PSHEAR", "PSHELL", "PSHLN1",
     "PSLDN1", "PSOLID", "PTUBE", "PVISC", "PWELD", "RADM", "RADMT", "RADSET", "RANDPS", "RANDT1",
     "RFORCEADD", "RLOAD1", "RLOAD2", "SPCADD", "STACK", "TABDMP1", "TABLED1", "TABLED2", "TABLED3",
@@ -156,6 +158,7 @@ class Finder {
       const std::size_t k = field - 1;
       if (k >= begin.size() && repeated.empty()) break;
       const char letter = k < begin.size() ? begin[k] : repeated[(k - begin.size()) % repeated.size()];
+      if (letter == '.') return ends_at(field) ? std::optional(found_) : std::nullopt;
       if (letter == 'N' || letter == 'E' || letter == 'S') return with_list(letter, field);
       add(letter, field);
     }
@@ -178,13 +181,16 @@ class Finder {
         continue;
       }
       const bool is_real = text.find('.') != std::string_view::npos;
-      if (in_dependent) {
-        if (since++ % 2 == 0) add('n', field);
-      } else if (is_real) {
+      if (is_real && !in_dependent) {
         since = 0;
-      } else if (++since > 1) {
-        add('n', field);
+        continue;
       }
+      // behind a weight or UM: components or a point first
+      const bool is_point = in_dependent ? since % 2 == 0 : since > 0;
+      ++since;
+      if (!is_point) continue;
+      if (number_of(text) == 0) return {};
+      add('n', field);
     }
     return found_;
   }
@@ -216,6 +222,12 @@ class Finder {
   }
 
  private:
+  /// Returns whether the card has nothing from a field on.
+  [[nodiscard]] bool ends_at(std::size_t field) const {
+    while (field < card_.fields.size() && card_.text(field).empty()) ++field;
+    return field >= card_.fields.size();
+  }
+
   void add(char letter, std::size_t field) {
     if (letter == 'x' && field == 1) found_.defines_element = true;
     if (letter == 'G') letter = card_.text(field + 1).empty() ? 'n' : '-';
@@ -251,7 +263,10 @@ std::optional<References> references(std::string_view name, const CardFields& ca
   if (name == "PARAM") return finder.of_param();
   if (name == "SET3") return finder.of_set3();
   for (const Layout& layout : kLayouts) {
-    if (layout.name == name) return finder.by_layout(layout.fields);
+    if (layout.name != name) continue;
+    const auto found = finder.by_layout(layout.fields);
+    const bool is_path = name == "BLSEG" && found && found->is_range;  // a line of nodes in their order
+    return is_path ? std::nullopt : found;
   }
   if (std::find(kPlain.begin(), kPlain.end(), name) != kPlain.end()) return References();
   return {};
