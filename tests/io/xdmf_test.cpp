@@ -25,6 +25,7 @@ using test::with;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 // as XDMF 2 has it: a triangle, two points, a line of three and a quadrilateral, axis by axis, from number 1
 // on
@@ -222,6 +223,52 @@ TEST(Xdmf, PointsThatMoveInASeriesAreAnArrayOfEachStep) {
   EXPECT_EQ(moved.find("0 1 2"), std::string::npos);
   const std::string other = with(text, "\"Temporal\"", "\"Spatial\"");
   EXPECT_THAT(fault_of(other), HasSubstr("m.xdmf:1: a spatial collection holds several meshes"));
+}
+
+// two triangles, a line and points that Grids refer to
+constexpr std::string_view kReferredTo = R"(<Xdmf Version="2.0">
+ <Domain>
+  <DataItem Name="points" Dimensions="4 2">0 0 1 0 1 1 0 1</DataItem>
+  <DataItem Name="cells" Dimensions="12" NumberType="Int">4 0 1 2 2 2 3 0 4 0 2 3</DataItem>
+  <Topology TopologyType="Mixed" NumberOfElements="3">
+   <DataItem Reference="XML">/Xdmf/Domain/DataItem[2]</DataItem>
+  </Topology>
+  <Grid GridType="Collection" CollectionType="Temporal">
+   <Grid Name="first">
+    <Topology Reference="/Xdmf/Domain/Topology[1]"/>
+    <Geometry GeometryType="XY"><DataItem Reference="XML">/Xdmf/Domain/DataItem[@Name="points"]</DataItem></Geometry>
+   </Grid>
+   <Grid Name="second">
+    <Topology TopologyType="Mixed" NumberOfElements="3">
+     <DataItem Reference="XML">/Xdmf/Domain/DataItem[2]</DataItem>
+    </Topology>
+    <Geometry GeometryType="XY"><DataItem Reference="XML">/Xdmf/Domain/DataItem[@Name="points"]</DataItem></Geometry>
+   </Grid>
+  </Grid>
+ </Domain>
+</Xdmf>
+)";
+
+TEST(Xdmf, WritesValuesThatGridsReferTo) {
+  Mesh mesh = read_xdmf(kReferredTo);
+  apply_reordering(mesh, Permutation::from_old_to_new({2, 0, 1, 3}), Permutation::from_old_to_new({2, 1, 0}));
+  mesh.data.push_back(
+      {.name = "u", .association = Association::vertices, .values = std::vector<double>{1, 2, 3, 4}});
+  const Files files = files_of(mesh);
+  const std::string& text = files.at("m.xdmf");
+  EXPECT_THAT(text, HasSubstr(" <Domain>\n  <DataItem Name=\"points\" Dimensions=\"4 2\">\n1 0\n1 1\n0 0\n"));
+  EXPECT_LT(text.find("<Grid Name=\"first\">"), text.find("<Attribute Name=\"u\""));
+  EXPECT_LT(text.find("<Attribute Name=\"u\""), text.find("<Grid Name=\"second\">"));
+  test::expect_same(read_files(files), mesh);
+}
+
+TEST(Xdmf, AnnouncesTheCellsThatStayInEachStep) {
+  Mesh mesh = read_xdmf(kReferredTo);
+  (void)keep_cells(mesh, {.dimension = 2});
+  const std::string text = files_of(mesh).at("m.xdmf");
+  EXPECT_THAT(text, HasSubstr("<Topology TopologyType=\"Mixed\" NumberOfElements=\"2\">\n   <DataItem"));
+  EXPECT_THAT(text, HasSubstr("<Topology TopologyType=\"Mixed\" NumberOfElements=\"2\">\n     <DataItem"));
+  EXPECT_THAT(text, Not(HasSubstr("NumberOfElements=\"3\"")));
 }
 
 TEST(Xdmf, FaultsNameTheLine) {

@@ -118,6 +118,7 @@ std::pair<std::string, std::string> split_hdf5_name(std::string_view text) {
 }
 
 DataPlace DataReader::place_of(pugi::xml_node item) {
+  const std::size_t named_by = document_.number(item);
   item = document_.resolved(item);
   const std::string kind = attribute(item, "ItemType", "Type");
   if (!kind.empty() && !same_but_for_case(kind, "Uniform")) {
@@ -126,6 +127,7 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
   }
   DataPlace place;
   place.item = document_.number(item);
+  place.named_by = named_by;
 
   const std::string dimensions = attribute(item, "Dimensions");
   std::string_view rest = dimensions;

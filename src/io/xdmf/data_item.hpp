@@ -31,6 +31,8 @@ struct DataPlace {
   std::endian order = std::endian::native;  ///< in a binary file
   std::uint64_t seek = 0;                   ///< first byte in a binary file
   std::vector<std::uint64_t> shape = {};
+  /// Number of the DataItem in the Topology, Geometry, Attribute or Set: the same, or one that refers to it.
+  std::size_t named_by = 0;
 };
 
 /// Names an array: two DataItems with one key have the same values.

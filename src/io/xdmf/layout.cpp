@@ -46,6 +46,7 @@ Layout layout_of(const Mesh& mesh, const FilePath& path) {
   const auto add_item = [&](Field::Role role, const std::string& dataset, std::size_t alternative, int part) {
     DataPlace place{DataPlace::Format::hdf, item++, file, dataset, alternative};
     place.shape = {0};
+    place.named_by = place.item;
     layout.fields.push_back({role, std::move(place), part});
     layout.xml += "<DataItem Dimensions=\"0\" Format=\"HDF\"/>";
   };
@@ -54,7 +55,7 @@ Layout layout_of(const Mesh& mesh, const FilePath& path) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto part = static_cast<int>(i);
     const std::string name(kGridNames[static_cast<std::size_t>(dimensions.front() - dimensions[i])]);
-    layout.parts.push_back({name, i == 0 ? "" : name});
+    layout.parts.push_back({.name = name, .set = i == 0 ? "" : name, .grid = i});
     layout.xml += fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\"><Topology TopologyType=\"\">", name);
     add_item(Field::Role::topology, fmt::format("/{}/{}/topology", i == 0 ? "Mesh" : "MeshTags", name),
              kInt32, part);

@@ -98,7 +98,7 @@ class TopologyReader {
   std::vector<Index> append(pugi::xml_node topology, Piece piece);
 
   Reading& reading_;
-  std::map<std::string, int> known_topologies_;  ///< parts by key
+  std::map<std::string, std::size_t> known_topologies_;  ///< places of fields in the layout, by key
   std::map<int, int> series_parts_;
   std::size_t fault_at_ = 0;
 };

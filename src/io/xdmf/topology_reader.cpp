@@ -52,11 +52,16 @@ int TopologyReader::read(const GridElement& grid, pugi::xml_node topology) {
   const pugi::xml_node item = item_of_topology(topology);
   Field field{Field::Role::topology, reading_.data.place_of(item)};
   const std::string key = key_of(field.place);
-  if (const auto known = known_topologies_.find(key); known != known_topologies_.end()) return known->second;
+  std::vector<Field>& fields = reading_.layout->fields;
+  if (const auto known = known_topologies_.find(key); known != known_topologies_.end()) {
+    Field& same = fields[known->second];
+    if (field.place.named_by != same.place.named_by) same.also_named_by.push_back(field.place.named_by);
+    return same.part;
+  }
   field.base = topology.attribute("BaseOffset").as_int(0);
   field.part = part_of(grid, topology, piece_of(topology, item, field.place, field.base));
-  known_topologies_.emplace(key, field.part);
-  reading_.layout->fields.push_back(field);
+  known_topologies_.emplace(key, fields.size());
+  fields.push_back(field);
   return field.part;
 }
 
@@ -232,6 +237,7 @@ int TopologyReader::part_of(const GridElement& grid, pugi::xml_node topology, Pi
   const auto number = static_cast<int>(reading_.layout->parts.size());
   if (grid.series >= 0) series_parts_[grid.series] = number;
   Part part;
+  part.grid = reading_.document.number(grid.element);
   part.name = grid.element.attribute("Name").value();
   if (part.name.empty()) part.name = fmt::format("grid {}", number);
   std::vector<Index> rows;

@@ -100,6 +100,7 @@ class XdmfWriter {
         rows_(std::move(rows)) {
     parse(xml_, layout.xml);
     items_ = elements_named(xml_, "DataItem");
+    grids_ = elements_named(xml_, "Grid");
   }
 
   void write() {
@@ -352,6 +353,11 @@ class XdmfWriter {
 
   // ---- fields of the layout
 
+  /// Returns the Topology, Geometry, Attribute or Set whose values a field is.
+  [[nodiscard]] pugi::xml_node element_of(const Field& field) const {
+    return items_[field.place.named_by].parent();
+  }
+
   void write_field(const Field& field) {
     switch (field.role) {
       case Field::Role::points:
@@ -387,7 +393,7 @@ class XdmfWriter {
   }
 
   [[nodiscard]] int dimension_of(const Field& field) const {
-    const std::string type = attribute(items_[field.place.item].parent(), "GeometryType", "Type");
+    const std::string type = attribute(element_of(field), "GeometryType", "Type");
     return type == "XY" || type == "xy" ? 2 : 3;
   }
 
@@ -400,7 +406,7 @@ class XdmfWriter {
 
   void write_topology(const Field& field) {
     const std::vector<Index>& rows = rows_[static_cast<std::size_t>(field.part)];
-    pugi::xml_node topology = items_[field.place.item].parent();
+    pugi::xml_node topology = element_of(field);
     const bool was_mixed = attribute(topology, "TopologyType", "Type") == "Mixed";
     const TopologyType* const type = was_mixed ? nullptr : common_type(rows);
     const auto nodes =
@@ -415,6 +421,7 @@ class XdmfWriter {
       }
     }
     announce_cells(topology, rows.size());
+    for (const std::size_t item : field.also_named_by) announce_cells(items_[item].parent(), rows.size());
     if (type != nullptr && field.base == 0 && is_identity(rows, mesh_.cell_count()) &&
         !is_turned(rows.front())) {
       return put_indices(field.place, mesh_.cells.vertices, nodes);
@@ -424,7 +431,7 @@ class XdmfWriter {
 
   /// Says how many cells, of a type with so many nodes, the Topology of a field has.
   void announce_cells_of(const Field& field) const {
-    pugi::xml_node topology = items_[field.place.item].parent();
+    const pugi::xml_node topology = element_of(field);
     const auto nodes =
         static_cast<std::uint64_t>(topology_type(attribute(topology, "TopologyType", "Type"))->nodes);
     announce_cells(topology, hdf5::DatasetInfo{field.place.shape, 0}.size() / nodes);
@@ -511,18 +518,18 @@ class XdmfWriter {
 
   /// Marks the Attribute or the Set of a field that the mesh has no longer; see `remove_gone`.
   void remove_element(const Field& field) {
-    if (field.place.format == Format::hdf) {
-      gone_datasets_.insert(field.place.file + ":" + field.place.dataset);
-    } else {
-      gone_.push_back(items_[field.place.item].parent());
-    }
+    const bool is_hdf = field.place.format == Format::hdf;
+    if (is_hdf) gone_datasets_.insert(field.place.file + ":" + field.place.dataset);
+    if (!is_hdf || field.place.named_by != field.place.item) gone_.push_back(element_of(field));
   }
 
   /// Removes what the mesh has no longer, also where several time steps name one dataset.
   void remove_gone() {
     for (const pugi::xml_node item : gone_datasets_.empty() ? std::vector<pugi::xml_node>() : items_) {
       const auto [file, dataset] = split_hdf5_name(item.text().get());
-      if (gone_datasets_.contains(fmt::format("{}:{}", file, dataset))) gone_.push_back(item.parent());
+      if (!gone_datasets_.contains(fmt::format("{}:{}", file, dataset))) continue;
+      const std::string_view name = item.parent().name();
+      gone_.push_back(name == "Attribute" || name == "Set" ? item.parent() : item);
     }
     for (const std::string& name : gone_datasets_) {
       const auto [file, dataset] = split_hdf5_name(name);
@@ -716,11 +723,7 @@ class XdmfWriter {
 
   /// Returns the Grid in which the Topology of a part stands.
   [[nodiscard]] pugi::xml_node grid_of(int part) const {
-    const auto field =
-        std::find_if(layout_.fields.begin(), layout_.fields.end(), [&](const Field& candidate) {
-          return candidate.role == Field::Role::topology && candidate.part == part;
-        });
-    return items_[field->place.item].parent().parent();
+    return grids_[layout_.parts[static_cast<std::size_t>(part)].grid];
   }
 
   const Mesh& mesh_;
@@ -731,6 +734,7 @@ class XdmfWriter {
   std::vector<std::vector<Index>> rows_;  // cells of each part
   pugi::xml_document xml_;
   std::vector<pugi::xml_node> items_;
+  std::vector<pugi::xml_node> grids_;
   std::map<std::string, Hdf5Output> files_;  // by their names in the old XML
   std::map<std::string, std::vector<std::uint64_t>>
       shapes_;  // that have changed, by the new name of a dataset

@@ -56,6 +56,7 @@ struct Part {
   std::string set;            ///< of the cells, in the order of the file; empty for the first part
   bool has_own_cells = true;  ///< false: its cells are those of parts before it
   bool is_ascending = true;   ///< whether its cells are in the order of the mesh
+  std::size_t grid = 0;       ///< number of its Grid; see `Document::number`
 };
 
 /// What the values of a DataItem are.
@@ -68,6 +69,8 @@ struct Field {
   std::string name = {};  ///< of the array or the set
   int axis = -1;          ///< of points in separate arrays
   int base = 0;           ///< number of the first point in a topology
+  /// Numbers of the DataItems by which further Topologies name these cells.
+  std::vector<std::size_t> also_named_by = {};
 };
 
 /// Data of XDMF's files beyond the mesh.
