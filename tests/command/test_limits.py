@@ -212,3 +212,17 @@ def test_repeated_names_take_linear_time(tmp_path, name, text):
     run_within(8, tmp_path, "info", name)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 5
+
+
+@pytest.mark.parametrize(("name", "sets"), [
+    ("a.inp", 60_000), ("a.unv", 60_000), ("a.xdmf", 12_000), ("a.med", 12_000)])
+def test_many_sets_are_written_in_linear_time(tmp_path, name, sets):
+    """Each of these took 8 to 15 s but the last one, which took 3 GB."""
+    (tmp_path / "sets.inp").write_text(
+        "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n"
+        + "".join(f"*NSET,NSET=set_{k}\n1\n" for k in range(sets)))
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = run_within(2, tmp_path, "order", "sets.inp", "-o", name, "--vertices", "scrambled")
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert done.returncode == 0, done.stderr
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 5

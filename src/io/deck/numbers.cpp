@@ -48,13 +48,6 @@ std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::in
 
 namespace {
 
-const EntitySet* find(const std::vector<EntitySet>& sets, const EntitySet& like) {
-  const auto found = std::find_if(sets.begin(), sets.end(), [&](const EntitySet& set) {
-    return set.association == like.association && set.name == like.name;
-  });
-  return found == sets.end() ? nullptr : &*found;
-}
-
 /// Returns whether a set of the mesh has the members that the deck says.
 bool is_as_in_deck(const EntitySet& set, const EntitySet& of_deck, const FileNumbers& numbers) {
   if (set.members.size() != of_deck.members.size()) return false;
@@ -72,11 +65,13 @@ std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
                                    const std::vector<EntitySet>& of_mesh, const FileNumbers& nodes,
                                    const FileNumbers& elements, Notes& notes) {
   std::vector<EntitySet> added;
+  const SetsByName in_deck(of_deck);
   for (const EntitySet& set : of_mesh) {
-    if (find(of_deck, set) == nullptr) added.push_back(set);
+    if (in_deck.find(set.association, set.name) == nullptr) added.push_back(set);
   }
+  const SetsByName in_mesh(of_mesh);
   for (const EntitySet& wanted : of_deck) {
-    const EntitySet* const set = find(of_mesh, wanted);
+    const EntitySet* const set = in_mesh.find(wanted.association, wanted.name);
     const bool of_nodes = wanted.association == Association::vertices;
     if (set != nullptr && is_as_in_deck(*set, wanted, of_nodes ? nodes : elements)) continue;
     notes.push_back(fmt::format("the set '{}' of {} is written as the deck has it; changes of it are lost",

@@ -9,9 +9,11 @@
 #include <meshorder/mesh.hpp>
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
@@ -56,6 +58,24 @@ class FileNumbers {
   const IdMap& of_file_;
   const std::vector<Index>& places_;
   const std::vector<std::int64_t>& ids_;
+};
+
+/// The sets of a mesh by their names, which must stay where they are; of one name the first.
+class SetsByName {
+ public:
+  explicit SetsByName(const std::vector<EntitySet>& sets) {
+    for (const EntitySet& set : sets)
+      sets_.try_emplace(std::pair(set.association, std::string_view(set.name)), &set);
+  }
+
+  /// Returns the set of that name, null if there is none. O(log sets).
+  [[nodiscard]] const EntitySet* find(Association association, std::string_view name) const {
+    const auto found = sets_.find({association, name});
+    return found == sets_.end() ? nullptr : found->second;
+  }
+
+ private:
+  std::map<std::pair<Association, std::string_view>, const EntitySet*> sets_;
 };
 
 /// Returns the sets of a mesh that its deck does not have. Notes those that are no longer as the deck has

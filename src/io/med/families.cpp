@@ -121,9 +121,9 @@ class Combinations {
     std::unordered_map<std::int64_t, std::size_t> known;
     std::size_t last = 0;  // neighbours are mostly of one family
     for (const std::int64_t family : families) {
-      if (all_.empty() || all_[last].number != family) {
+      if (all_.empty() || all_[last].family != family) {
         const auto [found, is_new] = known.try_emplace(family, all_.size());
-        if (is_new) all_.push_back({family});
+        if (is_new) all_.push_back({family, kNone, kNone});
         last = found->second;
       }
       of_item_.push_back(last);
@@ -136,39 +136,55 @@ class Combinations {
     for (const Index member : members) {
       std::size_t& own = of_item_[static_cast<std::size_t>(member)];
       const auto [found, is_new] = with_group.try_emplace(own, all_.size());
-      if (is_new) {
-        all_.push_back(all_[own]);
-        all_.back().groups.push_back(group);
-      }
+      if (is_new) all_.push_back({all_[own].family, own, groups_.size()});
       own = found->second;
     }
+    groups_.push_back(group);
   }
 
-  [[nodiscard]] const std::vector<Family>& all() const noexcept { return all_; }
+  [[nodiscard]] std::size_t size() const noexcept { return all_.size(); }
+  /// Returns the family that the items of a combination had, with the groups that were added to them.
+  [[nodiscard]] Family family_of(std::size_t combination) const {
+    Family result{all_[combination].family};
+    for (std::size_t c = combination; all_[c].without_last != kNone; c = all_[c].without_last) {
+      result.groups.push_back(groups_[all_[c].last_group]);
+    }
+    std::reverse(result.groups.begin(), result.groups.end());
+    return result;
+  }
   [[nodiscard]] const std::vector<std::size_t>& of_item() const noexcept { return of_item_; }
 
  private:
-  std::vector<Family> all_;
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  /// A family with groups, of which only the last is here: thousands of groups may have an item in common.
+  struct Combination {
+    std::int64_t family;
+    std::size_t without_last;  ///< the combination before the last group; kNone for a family alone
+    std::size_t last_group;
+  };
+
+  std::vector<Combination> all_;
+  std::vector<std::string> groups_;
   std::vector<std::size_t> of_item_;
 };
 
 class FamilyWriter {
  public:
-  FamilyWriter(Writing& writing, Association association)
-      : writing_(writing),
-        association_(association),
-        families_(writing.layout.families[place_of(association)]) {}
+  FamilyWriter(Writing& writing, Association association) : writing_(writing), association_(association) {
+    for (const Family& family : writing.layout.families[place_of(association)]) remember(family);
+  }
 
   std::vector<std::int64_t> write() {
     const Mesh& mesh = writing_.mesh;
     std::vector<std::int64_t> numbers = start();
     Combinations combinations(numbers);
     add_sets(combinations);
-    std::vector<bool> is_used(combinations.all().size(), false);
+    std::vector<bool> is_used(combinations.size(), false);
     for (const std::size_t combination : combinations.of_item()) is_used[combination] = true;
-    std::vector<std::int64_t> number_of(combinations.all().size(), 0);
+    std::vector<std::int64_t> number_of(combinations.size(), 0);
     for (std::size_t c = 0; c < number_of.size(); ++c) {
-      if (is_used[c]) number_of[c] = number_for(combinations.all()[c]);
+      if (is_used[c]) number_of[c] = number_for(combinations.family_of(c));
     }
     if (std::all_of(number_of.begin(), number_of.end(), [](std::int64_t number) { return number == 0; })) {
       return {};
@@ -233,14 +249,12 @@ class FamilyWriter {
   std::int64_t number_for(const Family& wanted) {
     std::vector<std::string> groups = wanted.groups;
     std::sort(groups.begin(), groups.end());
-    const auto fits = [&](const Family& family) { return family.groups == groups; };
-    const auto own = std::find_if(families_.begin(), families_.end(),
-                                  [&](const Family& family) { return family.number == wanted.number; });
-    if (own != families_.end() && fits(*own)) return own->number;
-    const bool may_keep = own == families_.end() && groups.empty() && has_sign(wanted.number);
+    const auto own = groups_of_.find(wanted.number);
+    if (own != groups_of_.end() && own->second == groups) return own->first;
+    const bool may_keep = own == groups_of_.end() && groups.empty() && has_sign(wanted.number);
     if (wanted.number == 0 ? groups.empty() : may_keep) return wanted.number;
-    const auto other = std::find_if(families_.begin(), families_.end(), fits);
-    if (other != families_.end()) return other->number;
+    const auto other = number_of_.find(groups);
+    if (other != number_of_.end()) return other->second;
     if (groups.empty()) return 0;
     return add_family(groups, wanted.groups);
   }
@@ -249,17 +263,20 @@ class FamilyWriter {
     return association_ == Association::vertices ? number > 0 : number < 0;
   }
 
+  /// Takes a family among those that the file has; of the same groups, the first one is used.
+  void remember(const Family& family) {
+    constexpr std::int64_t kMost = 2147483647;
+    groups_of_.try_emplace(family.number, family.groups);
+    number_of_.try_emplace(family.groups, family.number);
+    if (family.number < -kMost || family.number > kMost) return;
+    last_ = association_ == Association::vertices ? std::max(last_, family.number)
+                                                  : std::min(last_, family.number);
+  }
+
   /// Writes a new family.
   std::int64_t add_family(const std::vector<std::string>& sorted, const std::vector<std::string>& groups) {
-    const bool on_vertices = association_ == Association::vertices;
-    constexpr std::int64_t kMost = 2147483647;
-    std::int64_t number = 0;
-    for (const Family& family : families_) {
-      if (family.number < -kMost || family.number > kMost) continue;
-      number = on_vertices ? std::max(number, family.number) : std::min(number, family.number);
-    }
-    number += on_vertices ? 1 : -1;
-    families_.push_back({number, sorted});
+    const std::int64_t number = association_ == Association::vertices ? last_ + 1 : last_ - 1;
+    remember({number, sorted});
     hdf5::File& file = writing_.file;
     const std::string root = writing_.layout.families_path(association_);
     std::string name = fmt::format("FAM_{}_{}", number, fmt::join(groups, "_")).substr(0, kLongestName);
@@ -276,7 +293,9 @@ class FamilyWriter {
 
   Writing& writing_;
   Association association_;
-  std::vector<Family> families_;
+  std::map<std::int64_t, std::vector<std::string>> groups_of_;  // each family, by its number
+  std::map<std::vector<std::string>, std::int64_t> number_of_;  // the first family with these groups
+  std::int64_t last_ = 0;                                       // number farthest from 0
 };
 
 }  // namespace

@@ -142,6 +142,7 @@ class UnvWriter {
         elements_(file_.elements, own_ != nullptr ? own_->cell_of : none_, cell_ids_),
         labels_(labels_of(mesh, Association::cells)),
         materials_(materials_of(mesh)),
+        sets_(mesh.sets),
         out_(path),
         lines_(out_, file_.line_end) {
     if (own_ == nullptr) return;
@@ -288,13 +289,6 @@ class UnvWriter {
 
   // ---- groups
 
-  const EntitySet* find_set(std::string_view name, Association association) const {
-    const auto found = std::find_if(mesh_.sets.begin(), mesh_.sets.end(), [&](const EntitySet& set) {
-      return set.association == association && set.name == name;
-    });
-    return found == mesh_.sets.end() ? nullptr : &*found;
-  }
-
   void add_members(const EntitySet* set, std::vector<std::array<std::int64_t, 4>>& members) {
     if (set == nullptr) return;
     written_.insert(set);
@@ -310,8 +304,8 @@ class UnvWriter {
     for (Index g = section.first; g < section.first + section.count; ++g) {
       const Group& group = file_.groups[g];
       std::vector<std::array<std::int64_t, 4>> members;
-      const EntitySet* const nodes = find_set(group.set, Association::vertices);
-      const EntitySet* const elements = find_set(group.set, Association::cells);
+      const EntitySet* const nodes = sets_.find(Association::vertices, group.set);
+      const EntitySet* const elements = sets_.find(Association::cells, group.set);
       // a group whose sets were removed goes with them
       const bool is_gone = nodes == nullptr && elements == nullptr && (group.has_nodes || group.has_elements);
       if (is_gone && group.others.empty()) continue;
@@ -356,8 +350,8 @@ class UnvWriter {
     for (const EntitySet& set : mesh_.sets) {
       if (written_.contains(&set)) continue;
       std::vector<std::array<std::int64_t, 4>> members;
-      const EntitySet* const nodes = find_set(set.name, Association::vertices);
-      const EntitySet* const elements = find_set(set.name, Association::cells);
+      const EntitySet* const nodes = sets_.find(Association::vertices, set.name);
+      const EntitySet* const elements = sets_.find(Association::cells, set.name);
       if (nodes != nullptr && !written_.contains(nodes)) add_members(nodes, members);
       if (elements != nullptr && !written_.contains(elements)) add_members(elements, members);
       if (!written_.contains(&set)) add_members(&set, members);  // another set of that name
@@ -535,6 +529,7 @@ class UnvWriter {
   FileNumbers elements_;
   Labels labels_;
   std::vector<std::int64_t> materials_;
+  SetsByName sets_;
   OutputFile out_;
   Lines lines_;
   std::vector<Index> file_node_;     // of each vertex; empty if they are in the file's order

@@ -85,6 +85,7 @@ struct Hdf5Output {
   std::unique_ptr<OutputFile> out;
   std::unique_ptr<hdf5::File> file;
   std::set<std::string> datasets;
+  int next_array = 0;  ///< lowest number that an array without a name of its own may have
 };
 
 class XdmfWriter {
@@ -716,12 +717,17 @@ class XdmfWriter {
 
   static std::string unused_dataset(Hdf5Output& output, int part, const std::string& name) {
     const bool is_tags = part > 0 && name.ends_with("_tags");
-    std::string path = is_tags ? "/MeshTags/" + name + "/Values" : "/Attributes/0";
-    for (int k = 1; !output.datasets.insert(path).second; ++k) path = fmt::format("/Attributes/{}", k);
-    return path;
+    if (is_tags) {
+      std::string path = "/MeshTags/" + name + "/Values";
+      if (output.datasets.insert(path).second) return path;
+    }
+    while (true) {
+      std::string path = fmt::format("/Attributes/{}", output.next_array++);
+      if (output.datasets.insert(path).second) return path;
+    }
   }
 
-  /// Returns the Grid in which the Topology of a part stands.
+  /// Returns the Grid of a part, or the first one of a series.
   [[nodiscard]] pugi::xml_node grid_of(int part) const {
     return grids_[layout_.parts[static_cast<std::size_t>(part)].grid];
   }
