@@ -135,7 +135,8 @@ std::string to_json_text(const Calibration& calibration) {
 Calibration parse_calibration(const std::string& text) {
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) throw InvalidArgument("is no JSON");
-  if (!json.is_object() || json.value("schema", "") != kSchema) throw InvalidArgument("is no calibration");
+  const bool has_schema = json.is_object() && json.contains("schema") && json.at("schema") == kSchema;
+  if (!has_schema) throw InvalidArgument("is no calibration");
   try {
     Calibration calibration;
     calibration.processor = json.at("processor").get<std::string>();

@@ -109,7 +109,7 @@ def test_measuring_does_not_wait_for_a_calibration(here):
     assert not (here.folder / "cache").exists()
 
 
-@pytest.mark.parametrize("content", ["", "{", "[]", '{"schema": "another"}'])
+@pytest.mark.parametrize("content", ["", "{", "[]", '{"schema": "another"}', '{"schema": 3}', '{"schema": null}'])
 def test_a_damaged_calibration_is_measured_anew_with_one_warning(here, stored, content):
     stored.write_text(content)
     done = here.run("info", "mesh.node", "--json")

@@ -247,6 +247,7 @@ TEST(CalibrationStore, NoDamagedFileIsTaken) {
   EXPECT_THAT(fault_of(""), HasSubstr("is empty"));
   EXPECT_THAT(fault_of("{}"), HasSubstr("is no calibration"));
   EXPECT_THAT(fault_of("[1]"), HasSubstr("is no calibration"));
+  EXPECT_THAT(fault_of(R"({"schema": 3})"), HasSubstr("is no calibration"));
   EXPECT_THAT(fault_of(test::with(text, "calibration 3", "calibration 2")), HasSubstr("is no calibration"));
   EXPECT_THAT(fault_of(test::with(text, "\"spmv\"", "\"smpv\"")), HasSubstr("is damaged"));
   EXPECT_THAT(fault_of(test::with(text, "\"date\": \"2026-01-02\"", "\"date\": 7")), HasSubstr("is damaged"));
