@@ -49,6 +49,13 @@ void list(const Common& common) {
   console.print_json({{"models", models}});
 }
 
+/// Adds the options that stand before `make`, which mean the same there.
+void add_options_before(const Common& common, MakeArguments& arguments) {
+  arguments.json = arguments.json || common.json;
+  arguments.quiet = arguments.quiet || common.quiet;
+  if (arguments.threads == 0) arguments.threads = common.threads;
+}
+
 void make(const MakeArguments& arguments) {
   const Console console(arguments);
   std::vector<std::string> names;
@@ -118,7 +125,10 @@ void add_models(CLI::App& subcommand) {
       ->capture_default_str();
   make_command->add_flag("--force", arguments->options.force, "Build it again");
   add_common(*make_command, *arguments);
-  make_command->callback([arguments] { with_threads(arguments->threads, [&] { make(*arguments); }); });
+  make_command->callback([arguments, common] {
+    add_options_before(*common, *arguments);
+    with_threads(arguments->threads, [&] { make(*arguments); });
+  });
 
   subcommand.callback([&subcommand, common] {
     if (subcommand.get_subcommands().empty()) list(*common);

@@ -93,6 +93,12 @@ def test_quiet_still_lists(command, line):
     assert command.ok(*line.split(), "--quiet").stdout == command.ok(*line.split()).stdout != ""
 
 
+def test_options_may_stand_before_make(command):
+    made = json.loads(command.ok("models", "--json", "make", "torus", "--size", "2").stdout)["models"]
+    assert [model["name"] for model in made] == ["torus-2"]
+    assert command.ok("models", "-q", "make", "torus", "--size", "2").stdout == ""
+
+
 @pytest.mark.parametrize("line", ["order mesh.node -o a.veg", "apply m mesh.node -o b.veg", "info mesh.node",
                                   "compare mesh.node --methods rcm --budget 0.1", "methods", "models list",
                                   "report mesh.node --budget 0.1", "simulate falling --mesh mesh.node --steps 1"])
