@@ -49,6 +49,7 @@ int run(const Communicator& communicator, std::vector<std::string> arguments) {
   app.require_subcommand(1);
   app.formatter(meshorder::command::help_format());
   meshorder::command::add_distributed_order(*app.add_subcommand("order"), communicator);
+  meshorder::command::refuse_empty_values(app);
   if (arguments.empty()) arguments.emplace_back("--help");
   arguments = meshorder::command::with_words_as_options(std::move(arguments));
   const std::string first = arguments.front();

@@ -84,6 +84,7 @@ void describe(CLI::App& app) {
       ->trigger_on_parse();
   app.formatter(meshorder::command::help_format());
   for (const auto& [name, add] : kSubcommands) add(*app.add_subcommand(name));
+  meshorder::command::refuse_empty_values(app);
 }
 
 /// Runs what the arguments ask for; returns the exit status.

@@ -67,6 +67,18 @@ std::vector<std::string> with_words_as_options(std::vector<std::string> argument
   return arguments;
 }
 
+void refuse_empty_values(CLI::App& command) {
+  const CLI::Validator not_empty(
+      [](const std::string& text) {
+        return text.empty() ? std::string("the value is empty") : std::string();
+      },
+      "");
+  for (CLI::Option* const option : command.get_options()) {
+    if (option->get_items_expected_min() > 0) option->check(not_empty);
+  }
+  for (CLI::App* const subcommand : command.get_subcommands({})) refuse_empty_values(*subcommand);
+}
+
 std::optional<std::string> unknown_command(const CLI::App& app) {
   const Place place = place_of(app);
   const std::vector<std::string> names = subcommands_of(*place.command);

@@ -15,6 +15,10 @@ namespace meshorder::command {
 /// Returns the arguments with `help WORDS…` and `version` as the options that mean the same.
 std::vector<std::string> with_words_as_options(std::vector<std::string> arguments);
 
+/// Has the options of a command and of its subcommands refuse an empty text: more often than a value, it is a
+/// variable of a script that is not set.
+void refuse_empty_values(CLI::App& command);
+
 /// Returns "unknown command 'ordr'; did you mean 'order'?" if the parsed arguments name a command that there
 /// is not.
 std::optional<std::string> unknown_command(const CLI::App& app);

@@ -168,6 +168,21 @@ def test_numbers_out_of_range_name_the_range(command, line, says):
     assert command.fails(*line.split()) == f"meshorder: {says}; see meshorder {words} --help"
 
 
+@pytest.mark.parametrize("words, option", [
+    (["order", "mesh.node", "-o", "a.vtu", "--maps", ""], "--maps"),
+    (["order", "mesh.node", "-o", ""], "--output"),
+    (["order", "", "-o", "a.vtu"], "MESH"),
+    (["info", "mesh.node", "--cache", ""], "--cache"),
+    (["compare", "mesh.node", "--methods", ""], "--methods"),
+    (["simulate", "falling", "--mesh", "mesh.node", "--resume", ""], "--resume"),
+    (["reproduce", "-o", ""], "--output"),
+    (["models", "make", ""], "NAME"),
+])
+def test_empty_values_are_refused(command, mesh, words, option):
+    assert command.fails(*words).startswith(f"meshorder: {option}: the value is empty; see meshorder ")
+    assert sorted(os.listdir(command.folder)) == sorted(["mesh.node", "mesh.ele"])
+
+
 def widths(text):
     return [len(line) for line in text.splitlines() if not line.startswith(("Verdict", "auto takes"))]
 

@@ -272,6 +272,7 @@ def test_small_meshes_are_cut_along_the_curve_with_a_note(tmp_path):
     (["order", "BALL", "-o", "out.vtu", "--vertices", "fiedler", "--interface", "last"], "--partition ptscotch"),
     (["order", "BALL", "-o", "out.vtu", "--vertices", "fiedler", "--balance", "cells"], "--partition ptscotch"),
     (["order", "BALL", "-o", "out.vtu", "--part", "2"], "unknown option '--part'"),
+    (["order", "BALL", "-o", "out.vtu", "--maps", ""], "--maps: the value is empty"),
     (["info", "BALL"], "start `info` without mpirun"),
 ])
 def test_what_fails_ends_all_ranks_with_one_line(tmp_path, monkeypatch, ball, arguments, part):
