@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
 #include "command.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
@@ -133,8 +134,18 @@ std::string title_of(const Page& page) {
   return fmt::format("What the order of {} is worth", fmt::join(names, ", "));
 }
 
+/// Throws InvalidArgument for the name of another kind of file, a mesh say, over which the page would be
+/// written.
+void check_name_of_page(const std::string& output) {
+  const std::string extension = fs::path(output).extension().string();
+  if (extension.empty() || same_but_for_case(extension, ".html") || same_but_for_case(extension, ".htm"))
+    return;
+  throw InvalidArgument("-o " + output + " names the page on meshes: give a name that ends in .html");
+}
+
 void report_on_meshes(Console& console, const ReportArguments& arguments) {
   const std::string output = arguments.output.empty() ? "report.html" : arguments.output;
+  check_name_of_page(output);
   (void)OutputFile(output);  // fail before the work if it cannot be written
   Progress progress(!console.quiet());
   Page page;

@@ -139,6 +139,9 @@ def test_bad_meshes_end_in_one_line_and_no_page(command):
     assert "missing.msh" in command.fails("report", mesh, "missing.msh", "--budget", 0.1)
     assert "lines.obj" in command.fails("report", "lines.obj")
     assert "its folder does not exist" in command.fails("report", mesh, "-o", "none/a.html")
+    before = (command.folder / mesh).read_bytes()
+    assert "ends in .html" in command.fails("report", mesh, "-o", mesh)
+    assert (command.folder / mesh).read_bytes() == before
     assert not list(command.folder.glob("**/*.html"))
 
 
