@@ -90,11 +90,13 @@ void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
     require(given.cell_offsets != nullptr && given.cell_vertices != nullptr, "cells: an array is null");
     require(given.cell_offsets[0] == 0, "cell_offsets: the first must be 0");
   }
+  // all of them before any is followed: the last one tells how many vertices there are
   for (std::int64_t c = 0; c < given.cell_count; ++c) {
-    const std::int64_t begin = given.cell_offsets[c];
-    const std::int64_t end = given.cell_offsets[c + 1];
-    require(begin < end, "cell_offsets: element " + std::to_string(c) + " has no vertices");
-    for (std::int64_t k = begin; k < end; ++k) {
+    require(given.cell_offsets[c] < given.cell_offsets[c + 1],
+            "cell_offsets: element " + std::to_string(c) + " has no vertices");
+  }
+  for (std::int64_t c = 0; c < given.cell_count; ++c) {
+    for (std::int64_t k = given.cell_offsets[c]; k < given.cell_offsets[c + 1]; ++k) {
       const std::int64_t vertex = given.cell_vertices[k];
       require(vertex >= 0 && vertex < n, "cell_vertices: element " + std::to_string(c) + " has the vertex " +
                                              std::to_string(vertex) + ", and there are " + std::to_string(n));

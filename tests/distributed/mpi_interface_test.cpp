@@ -188,6 +188,9 @@ TEST(RankMeshes, AFaultOfOneRankIsToldOnAll) {
   offsets[1] = 0;
   mesh.cell_offsets = offsets;
   expect_fault(mesh, "element 0 has no vertices");
+  offsets[1] = std::int64_t{1} << 40;
+  mesh.cell_offsets = offsets;
+  expect_fault(mesh, "element 1 has no vertices");
   mesh = solver.view();
   mesh.vertex_count = -1;
   expect_fault(mesh, "vertex_count: -1");
