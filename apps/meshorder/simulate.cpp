@@ -122,6 +122,7 @@ class Run {
     if (!arguments_.checkpoint.empty()) interruption.emplace();
     Progress progress(!console.quiet());
     const Index last = simulation_.scenario.steps;
+    if (interruption && resumed_from_ == last) keep(simulation_.body->state());
     const double share = 1.0 / std::max(1, last - resumed_from_);
     for (Index step = resumed_from_ + 1; step <= last; ++step) {
       const double from = share * (step - resumed_from_ - 1);
@@ -134,7 +135,7 @@ class Run {
       if (frames_ && frames_->is_due(step)) frames_->write(state);
       const bool interrupted = interruption && Interruption::signal() != 0;
       if (interruption && (step == last || interrupted || step % arguments_.checkpoint_every == 0))
-        write_checkpoint({simulation_.fingerprint, state, record_}, arguments_.checkpoint);
+        keep(state);
       if (interrupted && step < last) {
         progress.finish();
         throw CommandError(fmt::format("stopped after step {} of {}; --resume {} goes on from there", step,
@@ -149,6 +150,10 @@ class Run {
   [[nodiscard]] const FrameWriter* frames() const noexcept { return frames_ ? &*frames_ : nullptr; }
 
  private:
+  void keep(const MotionState& state) const {
+    write_checkpoint({simulation_.fingerprint, state, record_}, arguments_.checkpoint);
+  }
+
   const SimulateArguments& arguments_;
   Simulation& simulation_;
   MotionRecord record_;

@@ -297,8 +297,10 @@ def test_resumed_run_is_the_same_to_the_last_bit(command, tmp_path):
     for key in ("energy", "momentum", "angular_momentum", "cg_iterations", "newton_iterations"):
         assert parts[key] == whole[key]
     assert contents(tmp_path / "whole") == contents(tmp_path / "parts")
-    again = command.json("simulate", scenario, "--order", "scrambled", "--resume", "state", "--steps", "3")
-    assert again["energy"] == whole["energy"][:4]
+    again = command.json("simulate", scenario, "--order", "scrambled", "--resume", "state", "--steps", "3",
+                         "--checkpoint", "same")
+    assert again["energy"] == whole["energy"][:4] and again["checkpoint"] == "same"
+    assert (tmp_path / "same").read_bytes() == (tmp_path / "state").read_bytes()
 
 
 @pytest.mark.parametrize("change", [{}, {"integrator": {**FALLING["integrator"], "duals": "kept"}},
