@@ -146,8 +146,9 @@ Identity read_identity(const std::string& path) {
   }
 }
 
-/// Throws Error if the mesh is not in the order that the maps start from.
-void require_order(const Identity& identity, const Mesh& mesh, const std::string& mesh_path,
+/// Throws Error if the mesh is not in the order that the maps start from; if they move nothing, both orders
+/// are one.
+void require_order(const Identity& identity, const Maps& maps, const Mesh& mesh, const std::string& mesh_path,
                    const std::string& path, bool inverse) {
   const std::optional<MeshChecksums>& start = inverse ? identity.after : identity.before;
   const std::optional<MeshChecksums>& goal = inverse ? identity.before : identity.after;
@@ -157,6 +158,7 @@ void require_order(const Identity& identity, const Mesh& mesh, const std::string
   };
   // the points may have been moved since, or rounded by a format
   if (found == start || (has_cells_of(start) && found != goal)) return;
+  if (has_cells_of(goal) && maps.vertices.is_identity() && maps.cells.is_identity()) return;
   if (has_cells_of(goal) && inverse)
     throw InputError(mesh_path, "is in its old order already, by " + path,
                      "leave out --inverse to reorder it");
@@ -245,7 +247,7 @@ Maps read_maps(const std::string& prefix, const Mesh& mesh, const std::string& m
   const std::string path = identity_path(prefix);
   if (!std::filesystem::exists(path)) return maps;
   const Identity identity = read_identity(path);
-  require_order(identity, mesh, mesh_path, path, inverse);
+  require_order(identity, maps, mesh, mesh_path, path, inverse);
   if (identity.maps && *identity.maps != checksums_of_maps(maps))
     throw InputError(path, "was not written together with these maps",
                      "give all files of one run of `order`");

@@ -203,6 +203,17 @@ def test_an_unknown_side_of_maps_is_not_checked(command, tmp_path):
     assert "not in the order that the maps start from" in command.fails("apply", "m", "b.vtu", "-o", "c.vtu")
 
 
+def test_maps_that_move_nothing_lead_back_without_checksums_of_the_mesh_after(command, tmp_path):
+    write_boxes(tmp_path)
+    command.ok("order", "a.vtu", "-o", "b.vtu", "--vertices", "original", "--elements", "original", "--maps", "m")
+    identity = json.loads((tmp_path / "m.maps.json").read_text())
+    (tmp_path / "m.maps.json").write_text(json.dumps({**identity, "after": None}))
+    for direction in ([], ["--inverse"]):
+        command.ok("apply", "m", "b.vtu", "-o", "c.vtu", *direction)
+        assert (tmp_path / "c.vtu").read_bytes() == (tmp_path / "b.vtu").read_bytes()
+    assert "not in the order" in command.fails("apply", "m", "other.vtu", "-o", "c.vtu")
+
+
 def test_maps_of_cells_with_their_old_name_are_applied(command, tmp_path):
     write_boxes(tmp_path)
     command.ok("order", "a.vtu", "-o", "b.vtu", "--vertices", "rcm", "--elements", "scrambled", "--maps", "m")
