@@ -34,6 +34,7 @@ struct ReportArguments : Common {
   std::string output;  ///< empty: report.html, report.html in the study's folder, or comparison.html
   double budget_seconds = TimingOptions{}.budget_seconds;
   OrderOptions ordering;
+  std::string option_of_meshes;  ///< one that was given and is without effect on studies; empty: none
 };
 
 constexpr std::string_view kAsItIs = "original";
@@ -270,6 +271,9 @@ void run(const ReportArguments& arguments) {
   const bool all = std::all_of(arguments.inputs.begin(), arguments.inputs.end(), is_study);
   if (!all || arguments.inputs.size() > 2)
     throw InvalidArgument(*study + " is a study: report on one by itself, or compare two");
+  if (!arguments.option_of_meshes.empty())
+    throw InvalidArgument(arguments.option_of_meshes + " is for a report on meshes; " + *study +
+                          " is a study, which was measured before");
   if (arguments.inputs.size() == 2) return compare_studies(console, arguments);
   report_on_study(console, arguments);
 }
@@ -303,7 +307,12 @@ void add_report(CLI::App& subcommand) {
   add_ordering_options(subcommand, arguments->ordering);
   add_reading_options(subcommand);
   add_common(subcommand, *arguments);
-  subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
+  subcommand.callback([arguments, &subcommand] {
+    for (const char* const option : {"--budget", "--for", "--seed", "--tolerance"}) {
+      if (subcommand.count(option) > 0) arguments->option_of_meshes = option;
+    }
+    with_threads(arguments->threads, [&] { run(*arguments); });
+  });
 }
 
 }  // namespace meshorder::command

@@ -192,6 +192,8 @@ def test_a_study_is_reported_by_itself_and_in_its_folder(command, study):
     for inputs in ((study, mesh), (mesh, study / "results.json"), (study, study, study)):
         assert "report on one by itself, or compare two" in command.fails("report", *inputs)
     assert "-o" in command.fails("report", study, "-o", "a.html")
+    for option in (["--budget", "3"], ["--for", "spmv"], ["--seed", "0"], ["--tolerance", "0.1"]):
+        assert f"{option[0]} is for a report on meshes" in command.fails("report", study, *option)
     (study / "mine.json").write_bytes((study / "results.json").read_bytes())
     assert "not called results.json" in command.fails("report", study / "mine.json")
 
