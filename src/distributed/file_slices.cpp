@@ -21,7 +21,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <span>
+#include <system_error>
 #include <utility>
 
 namespace meshorder::distributed {
@@ -70,7 +72,9 @@ class NewPlaces {
 }  // namespace
 
 std::optional<FileSlices> FileSlices::open(const Communicator& communicator, const std::string& path) {
-  std::optional<FileHead> at_root = communicator.at_root([&] {
+  std::optional<FileHead> at_root = communicator.at_root([&]() -> std::optional<FileHead> {
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(path, code)) return std::nullopt;  // a pipe is read once
     if (is_xdmf(path)) return read_xdmf_head(path);
     return is_hdf5(path) ? read_vtkhdf_head(path) : read_vtu_head(path, communicator.size());
   });

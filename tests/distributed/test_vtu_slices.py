@@ -274,6 +274,18 @@ def test_maps_of_cells_that_a_mesh_has_in_another_order_are_written_by_rank_0(tm
     assert (tmp_path / "again.vtu").read_bytes() == (tmp_path / "b.vtu").read_bytes()
 
 
+@pytest.mark.parametrize("extension", ["vtu", "vtkhdf"])
+def test_pipes_are_read_by_rank_0(tmp_path, extension):
+    write(tmp_path / "a.vtu", grid())
+    serial("order", tmp_path / "a.vtu", "-o", tmp_path / f"b.{extension}", "-q")
+    os.mkfifo(tmp_path / f"pipe.{extension}")
+    with subprocess.Popen(["cp", tmp_path / f"b.{extension}", tmp_path / f"pipe.{extension}"]):
+        done = order(2, tmp_path / f"pipe.{extension}", "-o", tmp_path / f"c.{extension}", "--json")
+    assert json.loads(done.stdout)["files_by"] == "rank 0"
+    order(2, tmp_path / f"b.{extension}", "-o", tmp_path / f"d.{extension}", "--strict")  # by rank 0 as well
+    assert (tmp_path / f"c.{extension}").read_bytes() == (tmp_path / f"d.{extension}").read_bytes()
+
+
 def test_maps_that_cannot_be_written_leave_nothing(tmp_path):
     write(tmp_path / "a.vtu", grid())
     done = launch(3, "order", tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--maps", tmp_path / "nowhere" / "m")
