@@ -146,12 +146,25 @@ class Case {
         meshes_.push_back(fmt::format("processor{}", p));
       }
       if (meshes_.empty()) refuse_parallel();
+      check_processors();
     } else {
       meshes_.emplace_back();
     }
     const auto missing = std::find_if(meshes_.begin(), meshes_.end(),
                                       [&](const std::string& mesh) { return !has_owners(poly_mesh(mesh)); });
     if (missing != meshes_.end()) refuse_missing(poly_mesh(*missing));
+  }
+
+  /// Throws InputError for a processor's folder behind one that is missing.
+  void check_processors() const {
+    constexpr std::string_view kProcessor = "processor";
+    for (const std::string& name : folders_in(folder_)) {
+      const bool is_numbered = name.starts_with(kProcessor) && name.size() > kProcessor.size() &&
+                               name.find_first_not_of("0123456789", kProcessor.size()) == std::string::npos;
+      if (!is_numbered || std::find(meshes_.begin(), meshes_.end(), name) != meshes_.end()) continue;
+      throw InputError((folder_ / fmt::format("{}{}", kProcessor, meshes_.size())).string(),
+                       "there is no such folder, but " + name, "run decomposePar again");
+    }
   }
 
   [[noreturn]] void refuse_parallel() const {

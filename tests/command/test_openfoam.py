@@ -191,6 +191,9 @@ def test_decomposed_cases(command, case):
     for processor, n in (("processor0", 120), ("processor1", 6)):
         assert len(foam_cases.read_labels(case / processor / "constant" / "cellOrder")) == n
     assert not (case / "constant" / "cellOrder").exists()
+    shutil.copytree(case / "processor1", case / "processor3")
+    assert "processor2: there is no such folder, but processor3" in command.fails("openfoam", "case", "--parallel")
+    shutil.rmtree(case / "processor3")
     text = command.ok("openfoam", "case", "--parallel").stdout
     assert "processor0   120 cells, rcm (auto): band " in text and "processor1   6 cells, " in text
     shutil.rmtree(mesh)
