@@ -11,10 +11,13 @@
 #include <meshorder/error.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -58,6 +61,14 @@ void move_with_ids(Mesh& mesh, const Permutation& vertices, const Permutation& c
   }
 }
 
+/// Returns the numbers of cells in the order in which these were arranged.
+std::vector<std::int64_t> in_new_order(const IndexView& numbers, const Permutation& arranged) {
+  std::vector<std::int64_t> moved;
+  moved.reserve(numbers.size());
+  for (const Index old : arranged.new_to_old()) moved.push_back(numbers[static_cast<std::size_t>(old)]);
+  return moved;
+}
+
 }  // namespace
 
 Permutation arrange_cells(Mesh& mesh, const Format& to) {
@@ -99,7 +110,13 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
                                                         : arrange_cells(mesh, format_named(options.format));
     try {
       if (!graph) graph = vertex_graph(mesh);
-      MeshOrder order = compute_reordering(mesh, *graph, options);
+      ReorderOptions of_arranged = options;
+      std::vector<std::int64_t> groups;
+      if (options.order.cell_groups.size() == mesh.cells.shapes.size()) {
+        groups = in_new_order(options.order.cell_groups, arranged);
+        of_arranged.order.cell_groups = groups;
+      }
+      MeshOrder order = compute_reordering(mesh, *graph, of_arranged);
       move_with_ids(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
       order.cells.permutation = arranged.then(order.cells.permutation);
       return order;

@@ -11,8 +11,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -140,6 +143,22 @@ TEST(MeshOrdering, TakesTheVertexGraphThatItIsGiven) {
   mesh = original;
   EXPECT_NE(reorder(mesh, options, graph).vertices.permutation, computed.vertices.permutation);
   EXPECT_NE(graph, vertex_graph(original));
+}
+
+TEST(MeshOrdering, GroupsOfCellsStayTheirsWhereTheFormatSortsCells) {
+  Mesh mesh = bar_with_boundary();
+  std::vector<int> groups;
+  for (Index c = 0; c < mesh.cell_count(); ++c) groups.push_back(c % 3);
+  ReorderOptions options = methods("rcm", "lexmax");
+  options.format = "tetgen";
+  options.order.cell_groups = groups;
+  const MeshOrder order = reorder(mesh, options);
+  std::map<Shape, int> last;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const int group = groups[order.cells.permutation.new_to_old()[c]];
+    EXPECT_LE(last[mesh.cells.shapes[c]], group) << c;
+    last[mesh.cells.shapes[c]] = group;
+  }
 }
 
 TEST(MeshOrdering, EveryPairOfMethodsGivesASoundMeshThatTheInverseRestores) {
