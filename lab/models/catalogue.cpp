@@ -91,6 +91,9 @@ std::vector<Index> made_sizes(const Rule& rule) {
 
 // ---- making
 
+/// Lattice cubes across a procedural model if no size is given.
+constexpr Index kUsualSize = 20;
+
 using Report = std::function<void(std::string_view, double)>;
 
 // Both write a .node and .ele file into `folder` and return their path without extension.
@@ -154,6 +157,13 @@ void make_kept(const std::string& name, bool force, const Report& progress, cons
                                     join(kRecipes, name_of), join(kRules, name_of)));
 }
 
+/// Throws InvalidArgument if a size is given for a model that has one.
+void check_size(std::string_view name, const MakeOptions& options) {
+  if (!options.size) return;
+  throw InvalidArgument(fmt::format("model {}: has a size of its own; leave out --size, which is for {}",
+                                    name, join(kRules, [](const Rule& rule) { return rule.name; })));
+}
+
 }  // namespace
 
 fs::path models_folder() { return models::cache_folder() / "models"; }
@@ -184,13 +194,15 @@ Model make_model(std::string_view name, const MakeOptions& options) {
 
   for (const Recipe& recipe : kRecipes) {
     if (name != recipe.name) continue;
+    check_size(name, options);
     return kept_or_made(look_up(std::string(name), recipe.description, false),
                         [&](const fs::path& folder) { return make_by_recipe(recipe, folder, progress); });
   }
   for (const Rule& rule : kRules) {
     const std::optional<Index> own_size = size_in(name, rule);
     if (name != rule.name && !own_size) continue;
-    const Index size = own_size.value_or(options.size);
+    if (own_size) check_size(name, options);
+    const Index size = own_size.value_or(options.size.value_or(kUsualSize));
     return kept_or_made(look_up(fmt::format("{}-{}", rule.name, size),
                                 fmt::format("the {} in size {}", rule.name, size), true),
                         [&](const fs::path& folder) { return make_by_rule(rule, size, folder, progress); });

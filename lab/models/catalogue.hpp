@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,21 +32,22 @@ std::filesystem::path models_folder();
 std::vector<Model> list_models();
 
 struct MakeOptions {
-  Index size = 20;     ///< of procedural models: lattice cubes across the shape
+  /// Lattice cubes across a procedural model whose name has no size; if none is given, 20. Others take none.
+  std::optional<Index> size = {};
   bool force = false;  ///< make it again if it exists
   /// Called with each step as it begins and the fraction of the time that has passed (below 0: unknown).
   std::function<void(std::string_view step, double fraction)> progress = {};
 };
 
 /// Makes a model and stores it, unless it is stored already, and returns it. The name of a procedural model
-/// may include its size, "grid-40", which then overrides `options.size`.
+/// may include its size, "grid-40".
 ///
 /// The other models are made from surfaces in Debian's package libcgal-demo (downloaded once, 24 MB),
 /// prepared by `meshorder-models` and filled by `tetgen`. If two processes make the same model, one waits for
 /// the other. An interruption never leaves an incomplete model under its name.
 ///
-/// Throws InvalidArgument for an unknown name or an invalid size; Error, with a remedy, if a program is not
-/// installed or fails, or if the folder cannot be written.
+/// Throws InvalidArgument for an unknown name, an invalid size or one that the model does not take; Error,
+/// with a remedy, if a program is not installed or fails, or if the folder cannot be written.
 Model make_model(std::string_view name, const MakeOptions& options = {});
 
 }  // namespace meshorder

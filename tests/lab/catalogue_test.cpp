@@ -166,6 +166,8 @@ TEST_F(Catalogue, RefusesUnknownNamesAndListsTheKnownOnes) {
     EXPECT_NE(message.find("armadillo-300k, grid"), std::string::npos) << message;
   }
   EXPECT_NE(error_of<InvalidArgument>("grid", {.size = 0}).find("at least 1"), std::string::npos);
+  for (const std::string name : {"dragon", "grid-3"})
+    EXPECT_NE(error_of<InvalidArgument>(name, {.size = 4}).find("leave out --size"), std::string::npos);
   EXPECT_TRUE(kept().empty());
 }
 
