@@ -50,7 +50,10 @@ int run(const Communicator& communicator, std::vector<std::string> arguments) {
   app.formatter(meshorder::command::help_format());
   meshorder::command::add_distributed_order(*app.add_subcommand("order"), communicator);
   meshorder::command::refuse_empty_values(app);
-  if (arguments.empty()) arguments.emplace_back("--help");
+  if (arguments.empty()) {
+    if (communicator.is_root()) meshorder::command::write_stderr(app.help());
+    return kBadInput;
+  }
   arguments = meshorder::command::with_words_as_options(std::move(arguments));
   const std::string first = arguments.front();
   std::reverse(arguments.begin(), arguments.end());  // as the parser takes them

@@ -288,6 +288,12 @@ def test_what_fails_ends_all_ranks_with_one_line(tmp_path, monkeypatch, ball, ar
     assert sorted(os.listdir()) == before
 
 
+def test_without_arguments_it_ends_as_one_process_does():
+    done = launch(2)
+    assert done.returncode == 2 and done.stdout == "" and "SUBCOMMAND" in done.stderr
+    assert launch(2, "--help").returncode == 0
+
+
 def is_running(process):
     """Whether a process is there, and not ended and only waiting for its parent."""
     try:
