@@ -115,6 +115,8 @@ def test_flags_are_those_that_help_shows(tmp_path):
         ("order a.mdpa -o b.hmf --json", "a.mdpa", "b.hmf"),
         ("--plugin x.so order -q --vertices rcm a.mdpa --output=b.hmf", "a.mdpa", "b.hmf"),
         ("apply m.mdpa a.mdpa -ob.hmf", "a.mdpa", "b.hmf"),
+        ("order -qo b.hmf a.mdpa", "a.mdpa", "b.hmf"),
+        ("order a.mdpa -qob.hmf", "a.mdpa", "b.hmf"),
         ("order --maps c.mdpa -- a.mdpa", "a.mdpa", None),
         ("info a.mdpa --measure", "a.mdpa", None),
     ],
@@ -123,6 +125,10 @@ def test_files_are_found_among_the_arguments(line, mesh, output):
     words = _command._Words.of(line.split())
     assert words and words.mesh.path == mesh
     assert (words.output and words.output.path) == output
+    if words.output:
+        arguments = line.split()
+        words.output.put(arguments, "c.vtu")
+        assert " ".join(arguments) == line.replace("b.hmf", "c.vtu")
 
 
 @pytest.mark.parametrize("line", ["", "info", "methods a.mdpa", "order --help", "apply m", "simulate a.mdpa"])

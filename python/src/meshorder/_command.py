@@ -112,6 +112,10 @@ class _Words:
         while place < len(arguments):
             word = arguments[place]
             name, equals, value = word.partition("=")
+            option = word
+            if word.startswith("-q") and len(word) > 2:  # with another one, as in -qo FILE
+                flags.add("-q")
+                option = f"-{word[2:]}"
             if word == "--":
                 plain += range(place + 1, len(arguments))
                 break
@@ -123,11 +127,11 @@ class _Words:
                 values[name] = _Word(value, place, name + equals)
             elif word in _FLAGS:
                 flags.add(word)
-            elif word.startswith("-o") and len(word) > 2:
-                values["-o"] = _Word(word[2:], place, "-o")
+            elif option.startswith("-o") and len(option) > 2:
+                values["-o"] = _Word(option[2:], place, word[: -len(option) + 2])
             elif place + 1 < len(arguments):
                 place += 1
-                values[word] = _Word(arguments[place], place)
+                values[option] = _Word(arguments[place], place)
             place += 1
         subcommand = arguments[plain[0]] if plain else ""
         mesh = _MESH_PLACE.get(subcommand, len(arguments)) + 1
