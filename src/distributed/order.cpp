@@ -139,6 +139,13 @@ void check_one_order(const DistributedOptions& options) {
     throw InvalidArgument("the partition 'order' leaves interfaces at their places in the order" + remedy);
 }
 
+/// Throws InvalidArgument for more parts than vertices, unless each rank would have one.
+void check_parts(Index parts, GlobalIndex vertices, int ranks) {
+  if (parts <= std::max<GlobalIndex>(vertices, ranks)) return;
+  throw InvalidArgument("parts: the mesh has " + std::to_string(vertices) + " vertices, too few for " +
+                        std::to_string(parts) + " parts");
+}
+
 }  // namespace
 
 void check_options(const DistributedOptions& options) {
@@ -155,13 +162,16 @@ void check_options(const DistributedOptions& options) {
                           join(
                               methods, [](const MethodInfo& method) -> const auto& { return method.name; }));
   }
-  if (options.parts < 0) throw InvalidArgument("parts: " + std::to_string(options.parts) + " of them");
+  if (options.parts < 0) {
+    throw InvalidArgument("parts: expected 0 or more, not " + std::to_string(options.parts));
+  }
 }
 
 DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
                               const DistributedOptions& options) {
   communicator.together([&] {
     check_options(options);
+    check_parts(options.parts, slice.vertices.size(), communicator.size());
     if (options.partitioner == Partitioner::order) check_one_order(options);
   });
   DistributedOrder order;

@@ -272,6 +272,7 @@ def test_small_meshes_are_cut_along_the_curve_with_a_note(tmp_path):
     (["order", "BALL", "-o", "out.vtu", "--vertices", "fiedler", "--interface", "last"], "--partition ptscotch"),
     (["order", "BALL", "-o", "out.vtu", "--vertices", "fiedler", "--balance", "cells"], "--partition ptscotch"),
     (["order", "BALL", "-o", "out.vtu", "--part", "2"], "unknown option '--part'"),
+    (["order", "BALL", "-o", "out.vtu", "--parts", "100000000"], "too few for 100000000 parts"),
     (["order", "BALL", "-o", "out.vtu", "--maps", ""], "--maps: the value is empty"),
     (["info", "BALL"], "start `info` without mpirun"),
 ])
