@@ -186,6 +186,12 @@ def test_networkx_edges_are_taken_as_networkx_takes_them():
     assert meshorder.networkx.algebraic_connectivity(zero, weight=None) == pytest.approx(2)
 
 
+def test_a_bar_says_what_it_needs(graph, monkeypatch):
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with pytest.raises(meshorder.Unavailable, match="needs the package tqdm"):
+        meshorder.order(graph, "rcm", progress=True)
+
+
 def test_progress_and_stop(graph):
     heard = []
     large = lattice(60, 60, 40)
@@ -319,6 +325,12 @@ print(meshorder.order(([0, 1, 2], [1, 0]), "rcm").permutation.new_to_old)
     assert ended.returncode == 0 and ended.stdout.startswith("["), ended.stderr
 
 
+def test_methods_are_of_vertices_or_elements():
+    assert "lexmax" in [method.name for method in meshorder.methods("elements")]
+    with pytest.raises(InvalidArgument, match="'vertices' or 'elements', not 'faces'"):
+        meshorder.methods("faces")
+
+
 def test_methods_of_ones_own(graph):
     @meshorder.register("few-first", "vertices with few neighbours first")
     def few_first(given, points):
@@ -331,6 +343,8 @@ def test_methods_of_ones_own(graph):
         np.testing.assert_array_equal(order.new_to_old, np.argsort(np.diff(graph.indptr), kind="stable"))
         with pytest.raises(InvalidArgument):
             meshorder.register("few-first")(few_first)
+        with pytest.raises(InvalidArgument, match="expected a function, not None"):
+            meshorder.register("none")(None)
     finally:
         meshorder.unregister("few-first")
     with pytest.raises(InvalidArgument, match="unknown"):

@@ -158,3 +158,9 @@ def test_asks_for_the_direction():
     with pytest.raises(InvalidArgument):
         p.move(np.zeros(3), out=np.zeros(3, dtype=int))
     assert meshorder.Permutation is Permutation
+
+
+def test_no_permutation_has_fewer_than_no_items():
+    assert len(Permutation.identity(0)) == 0
+    with pytest.raises(InvalidArgument, match="0 or more items, not -1"):
+        Permutation.identity(-1)

@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _core
 from ._arrays import integers
+from ._errors import InvalidArgument
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -46,14 +47,16 @@ def methods(of: str = "vertices") -> list[MethodInfo]:
         of: "vertices" or "elements".
 
     Raises:
-        KeyError: ``of`` is neither.
+        InvalidArgument: ``of`` is neither.
 
     Example:
         >>> "rcm" in [method.name for method in meshorder.methods()]
         True
     """
-    listed = {"vertices": _core.vertex_methods, "elements": _core.element_methods}[of]()
-    return [MethodInfo(*method) for method in listed]
+    lists = {"vertices": _core.vertex_methods, "elements": _core.element_methods}
+    if of not in lists:
+        raise InvalidArgument(f"of: expected 'vertices' or 'elements', not {of!r}")
+    return [MethodInfo(*method) for method in lists[of]()]
 
 
 def register(name: str, description: str = "", *, needs_points: bool = False) -> Callable[[_Function], _Function]:
@@ -72,7 +75,8 @@ def register(name: str, description: str = "", *, needs_points: bool = False) ->
         A decorator that registers the function and returns it.
 
     Raises:
-        InvalidArgument: when the function is decorated: a name that is taken, or that has other characters.
+        InvalidArgument: when the function is decorated: a name that is taken, or that has other characters; something
+            that cannot be called.
 
     Example:
         A method that puts the vertices with the fewest neighbours first::
@@ -85,6 +89,9 @@ def register(name: str, description: str = "", *, needs_points: bool = False) ->
     """
 
     def decorate(function: _Function) -> _Function:
+        if not callable(function):
+            raise InvalidArgument(f"register: expected a function, not {function!r}")
+
         def call(offsets: Any, neighbours: Any, points: Any) -> Any:
             return integers(function((offsets, neighbours), np.asarray(points).reshape(-1, 3)), "new_to_old")
 

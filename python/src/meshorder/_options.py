@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, TypedDict, Union
 
 from ._arrays import integers, reals
-from ._errors import InvalidArgument
+from ._errors import InvalidArgument, Unavailable
 
 #: Type of the option ``progress``; see `Options`.
 ProgressFunction = Union[Callable[[str, float], Any], bool, None]
@@ -120,7 +120,10 @@ def _real(value: Any, name: str) -> float:
 @contextlib.contextmanager
 def _bar() -> Iterator[Callable[[str, float], None]]:
     """Shows a bar by tqdm and yields the progress function that moves it."""
-    from tqdm.auto import tqdm
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        raise Unavailable("progress: the bar needs the package tqdm; install it, or give a function") from None
 
     with tqdm(total=100, bar_format="{desc:12} {bar} {n:3.0f} % {elapsed}") as bar:
 

@@ -64,7 +64,9 @@ class Permutation:
 
     @classmethod
     def identity(cls, n: int) -> Permutation:
-        """Returns the permutation of n items that moves none."""
+        """Returns the permutation of n ≥ 0 items that moves none."""
+        if n < 0:
+            raise InvalidArgument(f"identity: expected 0 or more items, not {n}")
         return cls(old_to_new=np.arange(n, dtype=np.int32))
 
     @property
