@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 import tracemalloc
+import typing
 
 import meshorder
 import networkx as nx
@@ -344,7 +345,7 @@ def test_methods_of_ones_own(graph):
         with pytest.raises(InvalidArgument):
             meshorder.register("few-first")(few_first)
         with pytest.raises(InvalidArgument, match="expected a function, not None"):
-            meshorder.register("none")(None)
+            meshorder.register("none")(typing.cast(typing.Any, None))
     finally:
         meshorder.unregister("few-first")
     with pytest.raises(InvalidArgument, match="unknown"):
