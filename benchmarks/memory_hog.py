@@ -2,7 +2,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Copies memory on one processor until it is ended, and says at which rate.
 
-What runs on another processor then shares the last cache and the memory's bandwidth with it:
+What runs on another processor then has less of the memory's bandwidth, and of the last cache if both share one:
 
     benchmarks/memory_hog.py --processor 0 & hog=$!
     meshorder reproduce -o beside-a-hog ...
@@ -32,7 +32,7 @@ def main() -> None:
         copies += 1
         seconds = time.perf_counter() - since
         if seconds >= options.every:
-            # read and written once; a write that first reads the line counts once more
+            # counts each byte once as read and once as written, not the lines that are fetched before a write
             print(f"{2 * copies * source.nbytes / seconds / 1e9:.1f} GB/s", flush=True)
             copies, since = 0, time.perf_counter()
 

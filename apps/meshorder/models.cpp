@@ -122,7 +122,7 @@ void add_models(CLI::App& subcommand) {
   make_command
       ->add_option("--size", arguments->options.size, "Procedural models: number of lattice cubes across")
       ->check(whole_from(1))
-      ->default_str("20");
+      ->default_str(std::to_string(kUsualSize));
   make_command->add_flag("--force", arguments->options.force, "Build it again");
   add_common(*make_command, *arguments);
   make_command->callback([arguments, common] {

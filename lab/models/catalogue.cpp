@@ -91,9 +91,6 @@ std::vector<Index> made_sizes(const Rule& rule) {
 
 // ---- making
 
-/// Lattice cubes across a procedural model if no size is given.
-constexpr Index kUsualSize = 20;
-
 using Report = std::function<void(std::string_view, double)>;
 
 // Both write a .node and .ele file into `folder` and return their path without extension.

@@ -31,8 +31,11 @@ std::filesystem::path models_folder();
 /// the sizes that are made. Reads only the first lines of files.
 std::vector<Model> list_models();
 
+/// Lattice cubes across a procedural model if no size is given.
+inline constexpr Index kUsualSize = 20;
+
 struct MakeOptions {
-  /// Lattice cubes across a procedural model whose name has no size; if none is given, 20. Others take none.
+  /// Lattice cubes across a procedural model whose name has no size, else kUsualSize. Other models take none.
   std::optional<Index> size = {};
   bool force = false;  ///< make it again if it exists
   /// Called with each step as it begins and the fraction of the time that has passed (below 0: unknown).
