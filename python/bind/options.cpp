@@ -15,6 +15,12 @@ namespace {
 
 std::atomic<int> running_calls = 0;
 std::atomic<bool> interpreter_ends = false;
+std::thread::id ending_thread;  // set before `interpreter_ends`
+
+/// Lets the calling thread sleep until the process is gone.
+[[noreturn]] void sleep_for_ever() {
+  while (true) std::this_thread::sleep_for(std::chrono::hours(1));
+}
 
 /// Reports to a Python function, or to none, and lets signals through: Ctrl-C ends the call as
 /// KeyboardInterrupt. Only the function's False stops; its None goes on.
@@ -68,14 +74,27 @@ Options::Options(const nb::dict& given) {
   order_.run.progress = reporter(value("progress"));
 }
 
-RunningCall::RunningCall() {
-  if (interpreter_ends) throw Stopped("the interpreter ends");
+UnlockedCall::UnlockedCall() {
+  if (interpreter_ends) {
+    if (std::this_thread::get_id() == ending_thread) throw Stopped("the interpreter ends");
+    const nb::gil_scoped_release release;
+    sleep_for_ever();
+  }
   ++running_calls;
+  release_.emplace();
 }
 
-RunningCall::~RunningCall() { --running_calls; }
+UnlockedCall::~UnlockedCall() {
+  if (interpreter_ends) {
+    --running_calls;
+    sleep_for_ever();
+  }
+  release_.reset();
+  --running_calls;
+}
 
 void wait_for_calls() {
+  ending_thread = std::this_thread::get_id();
   interpreter_ends = true;
   const nb::gil_scoped_release release;
   while (running_calls > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));

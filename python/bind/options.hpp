@@ -4,6 +4,7 @@
 #include "arrays.hpp"
 #include <meshorder/options.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace meshorder::python {
@@ -21,20 +22,25 @@ class Options {
   std::vector<Array> arrays_;
 };
 
-/// Counts a call that works without Python's lock, from before it gives the lock up until it has it again.
+/// A call that works without Python's lock: gives the lock up, and is counted until it has it again.
 ///
 /// A thread that asks for the lock of an interpreter that ends is ended in the middle of C++, which ends the
 /// process. So the interpreter waits at its exit for all calls, which stop as if their progress function had
-/// said so (`wait_for_calls`).
-class RunningCall {
+/// said so (`wait_for_calls`). By then all other threads of Python are daemons: they never return to it, as
+/// it may be gone, and an exception there would be written to a closed file.
+class UnlockedCall {
  public:
-  /// Throws Stopped if the interpreter ends.
-  RunningCall();
-  RunningCall(const RunningCall&) = delete;
-  RunningCall(RunningCall&&) = delete;
-  RunningCall& operator=(const RunningCall&) = delete;
-  RunningCall& operator=(RunningCall&&) = delete;
-  ~RunningCall();
+  /// If the interpreter ends, throws Stopped in the thread that ends it and does not return in others.
+  UnlockedCall();
+  UnlockedCall(const UnlockedCall&) = delete;
+  UnlockedCall(UnlockedCall&&) = delete;
+  UnlockedCall& operator=(const UnlockedCall&) = delete;
+  UnlockedCall& operator=(UnlockedCall&&) = delete;
+  /// Does not return if the interpreter ends.
+  ~UnlockedCall();
+
+ private:
+  std::optional<nb::gil_scoped_release> release_;
 };
 
 /// Stops all calls and waits for their end. No call begins afterwards.
@@ -45,8 +51,7 @@ void forget_calls();
 /// Calls `work()` without Python's lock and returns its result. Other Python threads go on meanwhile.
 template <class Work>
 auto unlocked(const Work& work) {
-  const RunningCall call;
-  const nb::gil_scoped_release release;
+  const UnlockedCall call;
   return work();
 }
 
