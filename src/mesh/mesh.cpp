@@ -4,6 +4,7 @@
 #include "base/large_pages.hpp"
 #include "base/point.hpp"
 #include "cells/cell_arrays.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/mesh.hpp>
 
@@ -49,10 +50,6 @@ void check_cells(const Mesh& mesh) {
   check_members(cells.vertices, mesh.vertex_count(), "a cell");
 }
 
-std::size_t value_count(const DataArray& array) {
-  return std::visit([](const auto& values) { return values.size(); }, array.values);
-}
-
 void check_data(const Mesh& mesh) {
   for (const DataArray& array : mesh.data) {
     const Index count = array.association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
@@ -60,7 +57,7 @@ void check_data(const Mesh& mesh) {
     const Index expected = array.is_dense() ? count : index_size(array.indices);
     if (array.components < 1) fail(owner + " has " + std::to_string(array.components) + " components");
     if (row_count(array) != expected ||
-        value_count(array) % static_cast<std::size_t>(array.components) != 0) {
+        size_of(array.values) % static_cast<std::size_t>(array.components) != 0) {
       fail(owner + " has " + std::to_string(row_count(array)) + " rows for " + std::to_string(expected));
     }
     check_members(array.indices, count, owner);
@@ -116,7 +113,7 @@ std::string_view to_string(Association association) {
 }
 
 Index row_count(const DataArray& array) {
-  return static_cast<Index>(value_count(array) / static_cast<std::size_t>(array.components));
+  return static_cast<Index>(size_of(array.values) / static_cast<std::size_t>(array.components));
 }
 
 const DataArray* find_array(const Mesh& mesh, std::string_view name, Association association) {

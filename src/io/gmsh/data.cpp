@@ -4,6 +4,7 @@
 #include "io/gmsh/gmsh.hpp"
 #include "io/names.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -298,7 +299,7 @@ std::string name_in_quotes(std::string_view name) {
 
 bool add_view(Metadata& layout, const DataArray& array, Notes& notes) {
   const Index components = gmsh_components(array.components);
-  if (std::holds_alternative<std::vector<std::string>>(array.values) || components == 0) {
+  if (are_texts(array.values) || components == 0) {
     note_array_unsupported(array, "Gmsh", notes);
     return false;
   }

@@ -7,6 +7,7 @@
 // otherwise: every function here holds one lock for the whole program and keeps the library quiet meanwhile.
 // Code of others that calls the same library at the same time is not kept out.
 
+#include "io/hdf5/handle.hpp"
 #include "io/hdf5/library.hpp"
 #include "io/stream/file_path.hpp"
 #include <meshorder/mesh.hpp>
@@ -24,34 +25,6 @@
 #include <vector>
 
 namespace meshorder::hdf5 {
-
-/// A handle of libhdf5, closed at the end of its life. Negative: none, as the library returns for a failure.
-class Handle {
- public:
-  using Close = herr_t (*)(hid_t);
-
-  Handle() = default;
-  Handle(hid_t id, Close closing) : id_(id), close_(closing) {}
-  ~Handle();
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Handle& operator=(Handle&& other) noexcept {
-    std::swap(id_, other.id_);
-    std::swap(close_, other.close_);
-    return *this;
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-
-  [[nodiscard]] hid_t id() const noexcept { return id_; }
-  [[nodiscard]] bool is_open() const noexcept { return id_ >= 0; }
-
-  /// Closes it now. Returns a negative number if that fails; then nothing closes it any more.
-  [[nodiscard]] herr_t close();
-
- private:
-  hid_t id_ = -1;
-  Close close_ = nullptr;
-};
 
 /// Size and number type of a dataset.
 struct DatasetInfo {

@@ -2,6 +2,7 @@
 #include "io/matrix/matrix.hpp"
 
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -17,8 +18,7 @@ bool is_entry(const Mesh& /*mesh*/, Shape shape, int vertices) {
 
 const DataArray* dense_array(const Mesh& mesh, std::string_view name, Association association) {
   const DataArray* const array = find_array(mesh, name, association);
-  const bool usable = array != nullptr && array->is_dense() &&
-                      !std::holds_alternative<std::vector<std::string>>(array->values);
+  const bool usable = array != nullptr && array->is_dense() && !are_texts(array->values);
   return usable ? array : nullptr;
 }
 

@@ -5,6 +5,7 @@
 #include "io/all_formats.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -324,7 +325,7 @@ const DataArray* Writing::take(std::string_view name, Association association) {
 }
 
 void Writing::put(const std::string& path, const Values& values, std::size_t rows) {
-  const std::size_t size = std::visit([](const auto& numbers) { return numbers.size(); }, values);
+  const std::size_t size = size_of(values);
   file.write(path, values, {size});
   file.set_attribute(path, "CGT", std::int64_t{1});
   file.set_attribute(path, "NBR", static_cast<std::int64_t>(rows));

@@ -5,6 +5,7 @@
 #include "io/labels.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -155,7 +156,7 @@ void print_value(OutputFile& out, const Values& values, Offset at) {
 /// Writes an array as the table of its name, if the mesh came from this format.
 void write_array(OutputFile& out, const WriteContext& from, const DataArray& array, Notes& notes) {
   const ListKind* kind = nullptr;
-  const bool numbers = !std::holds_alternative<std::vector<std::string>>(array.values);
+  const bool numbers = !are_texts(array.values);
   if (from.own && numbers && !array.is_dense()) {
     kind = fitting_kind(kTableKinds, from, array.name, array.association, array.indices);
   }

@@ -8,6 +8,7 @@
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -396,8 +397,7 @@ class UnvWriter {
   void write_results(const Section& section) {
     const Results& results = file_.results[section.first];
     const DataArray* const array = find_array(mesh_, results.array, results.association);
-    if (array == nullptr || array->components != results.components ||
-        std::holds_alternative<std::vector<std::string>>(array->values)) {
+    if (array == nullptr || array->components != results.components || are_texts(array->values)) {
       return;
     }
     written_arrays_.insert(array);
@@ -453,7 +453,7 @@ class UnvWriter {
           &array == label_array(mesh_, Association::cells) ||
           (array.association == Association::cells && array.name == kMaterial && !materials_.empty());
       if (is_field || written_arrays_.contains(&array)) continue;
-      if (std::holds_alternative<std::vector<std::string>>(array.values) || row_count(array) == 0) {
+      if (are_texts(array.values) || row_count(array) == 0) {
         note_array_unsupported(array, kName, notes_);
         continue;
       }

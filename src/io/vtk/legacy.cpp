@@ -7,6 +7,7 @@
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/vtk/vtk.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -189,7 +190,7 @@ class LegacyWriter {
     }
     const bool kept =
         (is("unsigned_long") && std::holds_alternative<std::vector<std::uint64_t>>(array.values)) ||
-        (is("utf8_string") && std::holds_alternative<std::vector<std::string>>(array.values)) ||
+        (is("utf8_string") && are_texts(array.values)) ||
         (is("signed_char") && std::holds_alternative<std::vector<std::int8_t>>(array.values));
     return kept ? facts->type : usual;
   }
@@ -353,7 +354,7 @@ class LegacyWriter {
         from_.metadata.roles.begin(), from_.metadata.roles.end(),
         [&](const ArrayRole& r) { return r.association == array.association && r.array == array.name; });
     if (role == from_.metadata.roles.end()) return {};
-    const bool text = std::holds_alternative<std::vector<std::string>>(array.values);
+    const bool text = are_texts(array.values);
     if (text && role->role != Role::pedigree_ids) return {};
     if (role->role == Role::texture_coordinates && array.components > 3) return {};
     if (role->role == Role::color_scalars) {

@@ -5,6 +5,7 @@
 #include "base/text.hpp"
 #include "io/stream/byte_order.hpp"
 #include "io/vtk/vtk.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -188,7 +189,7 @@ DataArray LegacyInput::array(const std::string& name, std::optional<Association>
                                      : other->alternative);
 
   // tuples begin on the next line; in a binary file at its first byte
-  const bool text = std::holds_alternative<std::vector<std::string>>(result.values);
+  const bool text = are_texts(result.values);
   const std::int64_t count = tuples * components;
   if (count > 0 && (binary || text)) scanner.raw_line();
   if (type == "bit") {

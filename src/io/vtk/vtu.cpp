@@ -11,6 +11,7 @@
 #include "io/stream/output_file.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -133,7 +134,7 @@ class VtuWriter {
 
   Array array_of(const DataArray& array, std::optional<Association> association) {
     Array result;
-    const bool text = std::holds_alternative<std::vector<std::string>>(array.values);
+    const bool text = are_texts(array.values);
     const ArrayFacts* facts = find_facts(from_.metadata, association, array.name);
     result.tag =
         fmt::format("<{} type=\"{}\"", text ? "Array" : "DataArray", kXmlTypeNames[array.values.index()]);

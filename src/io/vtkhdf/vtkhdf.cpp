@@ -5,6 +5,7 @@
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -27,10 +28,6 @@
 namespace meshorder::vtkhdf {
 namespace {
 
-bool is_text(const DataArray& array) {
-  return std::holds_alternative<std::vector<std::string>>(array.values);
-}
-
 /// The bytes of a file without datasets.
 std::string empty_file() {
   hdf5::File file = hdf5::File::in_memory({}, "");
@@ -48,7 +45,7 @@ void write_field(hdf5::File& file, const DataArray& field, const std::string& pa
   if (const auto* const texts = std::get_if<std::vector<std::string>>(&field.values)) {
     file.write_strings(path, *texts);
   } else {
-    const auto size = std::visit([](const auto& values) { return values.size(); }, field.values);
+    const auto size = size_of(field.values);
     file.write(path, field.values, {size});
   }
   if (field.components != 1)
@@ -93,7 +90,7 @@ class VtkHdfWriter {
     put("Connectivity", std::vector<std::int64_t>(cells.vertices.begin(), cells.vertices.end()));
     put("Types", from_.types);
     for (const DataArray* const array : from_.arrays) {
-      if (!is_text(*array)) put_rows(data_group(array->association) + "/" + array->name, *array);
+      if (!are_texts(array->values)) put_rows(data_group(array->association) + "/" + array->name, *array);
     }
     for (const Association association : {Association::vertices, Association::cells}) name_roles(association);
     write_fields(file_, from_.metadata.fields, from_.notes);
@@ -160,7 +157,7 @@ std::string place_array(const RawDataset& dataset,
 
 void note_lacking(const vtk::WriteContext& from, Notes& notes) {
   for (const DataArray* const array : from.arrays) {
-    if (is_text(*array)) {
+    if (are_texts(array->values)) {
       note_array_unsupported(*array, "VTKHDF", notes);
     } else if (!array->component_names.empty()) {
       notes.push_back(fmt::format(

@@ -2,6 +2,7 @@
 #include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/xdmf/reading.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -93,7 +94,7 @@ void ArrayReader::read_attribute(const GridElement& grid, int part, pugi::xml_no
   array.values = reading_.data.read(field.place);
   const Index rows =
       on_vertices ? reading_.mesh.vertex_count() : index_size(reading_.rows[static_cast<std::size_t>(part)]);
-  const std::size_t values = count_of(array.values);
+  const std::size_t values = size_of(array.values);
   if (rows == 0 ? values != 0 : (values == 0 || values % static_cast<std::size_t>(rows) != 0)) {
     throw reading_.document.error(element, fmt::format("the attribute '{}' has {} values", name, values),
                                   fmt::format("the Grid has {} {}", rows, on_vertices ? "points" : "cells"));

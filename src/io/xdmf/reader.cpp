@@ -5,6 +5,7 @@
 #include "io/hdf5/session.hpp"
 #include "io/xdmf/raw.hpp"
 #include "io/xdmf/reading.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -28,10 +29,6 @@ std::vector<pugi::xml_node> items_of(pugi::xml_node element) {
 }
 
 std::string shortened(const std::string& text) { return text.substr(0, 60); }
-
-std::size_t count_of(const Values& values) {
-  return std::visit([](const auto& numbers) { return numbers.size(); }, values);
-}
 
 pugi::xml_node Reading::item_of(pugi::xml_node element) const {
   const std::vector<pugi::xml_node> items = items_of(element);
@@ -307,9 +304,9 @@ class XdmfReader {
       Field field{Field::Role::points, reading_.data.place_of(items[i])};
       field.axis = separate ? static_cast<int>(i) : -1;
       const Values values = reading_.data.read(field.place);
-      const std::size_t count = count_of(values) / width;
-      if (count_of(values) % width != 0 || (i > 0 && count != points.size())) {
-        throw reading_.document.error(items[i], fmt::format("the Geometry has {} values", count_of(values)),
+      const std::size_t count = size_of(values) / width;
+      if (size_of(values) % width != 0 || (i > 0 && count != points.size())) {
+        throw reading_.document.error(items[i], fmt::format("the Geometry has {} values", size_of(values)),
                                       fmt::format("{} for each point are needed", dimension));
       }
       if (count > static_cast<std::size_t>(kMaxIndex)) {

@@ -63,9 +63,6 @@ struct Reading {
 std::vector<pugi::xml_node> items_of(pugi::xml_node element);
 /// Returns the beginning of a text of the file, for messages.
 std::string shortened(const std::string& text);
-/// Returns the number of values.
-std::size_t count_of(const Values& values);
-
 /// Reads Topologies: the cells of Grids, each once.
 class TopologyReader {
  public:

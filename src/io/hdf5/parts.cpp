@@ -1,0 +1,62 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/hdf5/parts.hpp"
+
+#include "io/hdf5/visitor.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace meshorder::hdf5 {
+
+std::array<hid_t, 10> native_types() {
+  return {H5T_NATIVE_DOUBLE, H5T_NATIVE_FLOAT, H5T_NATIVE_INT8,   H5T_NATIVE_UINT8, H5T_NATIVE_INT16,
+          H5T_NATIVE_UINT16, H5T_NATIVE_INT32, H5T_NATIVE_UINT32, H5T_NATIVE_INT64, H5T_NATIVE_UINT64};
+}
+
+std::size_t alternative_of(hid_t type) {
+  // the library trusts the bit fields of others, which a damaged file may have put anywhere
+  const std::array<std::array<hid_t, 2>, 10> known{{{H5T_IEEE_F64LE, H5T_IEEE_F64BE},
+                                                    {H5T_IEEE_F32LE, H5T_IEEE_F32BE},
+                                                    {H5T_STD_I8LE, H5T_STD_I8BE},
+                                                    {H5T_STD_U8LE, H5T_STD_U8BE},
+                                                    {H5T_STD_I16LE, H5T_STD_I16BE},
+                                                    {H5T_STD_U16LE, H5T_STD_U16BE},
+                                                    {H5T_STD_I32LE, H5T_STD_I32BE},
+                                                    {H5T_STD_U32LE, H5T_STD_U32BE},
+                                                    {H5T_STD_I64LE, H5T_STD_I64BE},
+                                                    {H5T_STD_U64LE, H5T_STD_U64BE}}};
+  const auto found = std::find_if(known.begin(), known.end(), [&](const std::array<hid_t, 2>& orders) {
+    return std::any_of(orders.begin(), orders.end(), [&](hid_t one) { return H5Tequal(type, one) > 0; });
+  });
+  return static_cast<std::size_t>(found - known.begin());
+}
+
+std::uint64_t most_bytes(hid_t dataset) {
+  constexpr std::uint64_t kMostFromOneByte = 4096;
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  const std::uint64_t stored = H5Dget_storage_size(dataset);
+  return H5Pget_layout(creation.id()) == H5D_CHUNKED ? kMostFromOneByte * (stored + 1) : stored;
+}
+
+void forget_times(const Handle& creation) { H5Pset_obj_track_times(creation.id(), false); }
+
+std::vector<std::string> names_in(hid_t group, H5_index_t index) {
+  std::vector<std::pair<std::int64_t, std::string>> links;
+  Visitor<H5L_info_t> visitor([&](hid_t /*group*/, const char* name, const H5L_info_t& info) {
+    links.emplace_back(info.corder, name);
+  });
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, decltype(visitor)::visit, &visitor);
+  visitor.rethrow();
+  if (index == H5_INDEX_NAME) {
+    for (auto& [order, name] : links) order = 0;
+  }
+  std::sort(links.begin(), links.end());
+  std::vector<std::string> names;
+  names.reserve(links.size());
+  for (auto& [order, name] : links) names.push_back(std::move(name));
+  return names;
+}
+
+}  // namespace meshorder::hdf5

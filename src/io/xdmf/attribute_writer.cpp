@@ -1,0 +1,170 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
+#include "io/unsupported.hpp"
+#include "io/vtk/vtk.hpp"
+#include "io/xdmf/writer.hpp"
+#include "mesh/values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace meshorder::xdmf {
+namespace {
+
+constexpr std::string_view kSetName = "set:";
+
+/// Returns the name of an AttributeType for values of so many components.
+std::string_view attribute_type(Index components) {
+  switch (components) {
+    case 1:
+      return "Scalar";
+    case 2:
+    case 3:
+      return "Vector";
+    case 6:
+      return "Tensor6";
+    case 9:
+      return "Tensor";
+    default:
+      return "Matrix";
+  }
+}
+
+}  // namespace
+
+std::optional<DataArray> Writer::marks_named(const std::string& name, Association association) const {
+  if (!name.starts_with(kSetName)) return {};
+  for (const EntitySet& set : mesh_.sets) {
+    if (set.association == association && kSetName.size() + set.name.size() == name.size() &&
+        name.ends_with(set.name)) {
+      return marks_of(set);
+    }
+  }
+  return {};
+}
+
+DataArray Writer::marks_of(const EntitySet& set) const {
+  const Index count = set.association == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count();
+  return {.name = std::string(kSetName) + set.name,
+          .association = set.association,
+          .values = vtk::marks_of(set, count)};
+}
+
+void Writer::add_others() {
+  for (const Field& field : layout_.fields) {
+    if (field.role == Field::Role::array) names_.emplace(field.association, field.name);
+  }
+  const std::set<std::pair<Association, std::string>> covered = names_;
+  for (const DataArray& array : mesh_.data) {
+    if (!covered.contains({array.association, array.name})) add_array(array);
+  }
+  for (const EntitySet& set : mesh_.sets) {
+    if (has_place(set) || covered.contains({set.association, std::string(kSetName) + set.name})) continue;
+    const DataArray marks = marks_of(set);
+    notes_.push_back(fmt::format("the set '{}' of {} is written as the array '{}'", set.name,
+                                 to_string(set.association), marks.name));
+    add_array(marks);
+  }
+  add_ids(mesh_.vertex_ids, "vertex_id", Association::vertices);
+  add_ids(mesh_.cell_ids, "cell_id", Association::cells);
+}
+
+bool Writer::has_place(const EntitySet& set) const {
+  if (layout_.is_made) return false;
+  const bool is_part = set.association == Association::cells &&
+                       std::any_of(layout_.parts.begin(), layout_.parts.end(), [&](const Part& part) {
+                         return part.set == set.name && !part.set.empty();
+                       });
+  return is_part || std::any_of(layout_.fields.begin(), layout_.fields.end(), [&](const Field& field) {
+           return field.role == Field::Role::set && field.association == set.association &&
+                  field.name == set.name;
+         });
+}
+
+void Writer::add_ids(const std::vector<std::int64_t>& ids, const char* name, Association association) {
+  if (ids.empty()) return;
+  notes_.push_back(fmt::format("the ids of {} are written as the array '{}'", to_string(association), name));
+  add_array({.name = name, .association = association, .values = ids});
+}
+
+std::string Writer::unused_name(const DataArray& array) {
+  const std::string wanted = array.name.empty() ? "array" : array.name;
+  const std::string clean = meshorder::xml_text(wanted);
+  std::string name = clean;
+  for (int k = 2; !names_.emplace(array.association, name).second; ++k) name = fmt::format("{}_{}", clean, k);
+  if (name != array.name) {
+    notes_.push_back(fmt::format("the array '{}' on {} is written as '{}'", array.name,
+                                 to_string(array.association), name));
+  }
+  return name;
+}
+
+void Writer::add_array(const DataArray& array) {
+  if (are_texts(array.values)) return note_array_unsupported(array, "XDMF", notes_);
+  if (!array.component_names.empty()) {
+    notes_.push_back(fmt::format(
+        "the names of the components of '{}' are not written: XDMF has no place for them", array.name));
+  }
+  const std::string name = unused_name(array);
+  if (array.association == Association::vertices) {
+    const std::optional<Values> values = values_of(array, array.association, 0);
+    add_attribute(0, array, name, values ? *values : array.values);
+    return;
+  }
+  for (std::size_t p = 0; p < rows_.size(); ++p) {
+    if (!layout_.parts[p].has_own_cells || rows_[p].empty() || !has_rows(array, rows_[p])) continue;
+    const auto part = static_cast<int>(p);
+    const std::optional<Values> values = values_of(array, array.association, part);
+    const bool is_label = name == kLabel && part > 0;
+    add_attribute(part, array, is_label ? layout_.parts[p].name : name, values ? *values : array.values);
+  }
+}
+
+bool Writer::has_rows(const DataArray& array, const std::vector<Index>& cells) const {
+  if (array.is_dense()) return true;
+  const std::vector<Index> place = places_in(cells);
+  return std::any_of(array.indices.begin(), array.indices.end(),
+                     [&](Index c) { return place[static_cast<std::size_t>(c)] >= 0; });
+}
+
+void Writer::add_attribute(int part, const DataArray& array, const std::string& name, const Values& values) {
+  pugi::xml_node element = grid_of(part).append_child("Attribute");
+  set_attribute(element, "Name", name);
+  set_attribute(element, "AttributeType", std::string(attribute_type(array.components)));
+  set_attribute(element, "Center", array.association == Association::vertices ? "Node" : "Cell");
+  pugi::xml_node item = element.append_child("DataItem");
+  const auto components = static_cast<std::size_t>(array.components);
+  std::vector<std::uint64_t> shape{size_of(values) / components};
+  if (components > 1) shape.push_back(components);
+  set_shape(item, shape);
+  set_number_type(item, values.index());
+  set_attribute(item, "Format", files_.empty() ? "XML" : "HDF");
+  if (files_.empty()) {
+    set_text(item, text_of_values(values, components));
+    return;
+  }
+  auto& [old_name, output] = *files_.begin();
+  const std::string dataset = unused_dataset(output, part, name);
+  output.file->write(dataset, values, shape);
+  set_text(item, old_name + ":" + dataset);
+}
+
+std::string Writer::unused_dataset(Hdf5Output& output, int part, const std::string& name) {
+  const bool is_tags = part > 0 && name.ends_with("_tags");
+  if (is_tags) {
+    std::string path = "/MeshTags/" + name + "/Values";
+    if (output.datasets.insert(path).second) return path;
+  }
+  while (true) {
+    std::string path = fmt::format("/Attributes/{}", output.next_array++);
+    if (output.datasets.insert(path).second) return path;
+  }
+}
+
+pugi::xml_node Writer::grid_of(int part) const {
+  return grids_[layout_.parts[static_cast<std::size_t>(part)].grid];
+}
+
+}  // namespace meshorder::xdmf

@@ -1,0 +1,258 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/index.hpp"
+#include "io/xdmf/writer.hpp"
+#include "mesh/values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string_view>
+#include <type_traits>
+
+namespace meshorder::xdmf {
+namespace {
+
+/// Returns what stands for a value that an array does not give.
+template <class Number>
+Number nothing() {
+  if constexpr (std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();
+  return Number{};
+}
+
+bool is_identity(const std::vector<Index>& rows, Index count) {
+  if (index_size(rows) != count) return false;
+  for (Index i = 0; i < count; ++i) {
+    if (rows[static_cast<std::size_t>(i)] != i) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+pugi::xml_node Writer::element_of(const Field& field) const { return items_[field.place.named_by].parent(); }
+
+void Writer::write_field(const Field& field) {
+  switch (field.role) {
+    case Field::Role::points:
+      return write_points(field);
+    case Field::Role::topology:
+      return write_topology(field);
+    case Field::Role::array:
+      return write_array(field);
+    case Field::Role::set:
+      return write_set(field);
+  }
+}
+
+void Writer::write_points(const Field& field) {
+  const auto width = static_cast<std::size_t>(field.axis >= 0 ? 1 : dimension_of(field));
+  const auto coordinate = [&](std::size_t v, std::size_t k) {
+    return mesh_.points[v][field.axis >= 0 ? static_cast<std::size_t>(field.axis) : k];
+  };
+  const std::size_t count = mesh_.points.size() * width;
+  constexpr std::size_t kFloatAlternative = 1;
+  const bool floats = field.place.alternative == kFloatAlternative && are_floats();
+  const Values values = values_as(floats ? kFloatAlternative : 0, [&](auto& numbers) {
+    using Number = typename std::decay_t<decltype(numbers)>::value_type;
+    if constexpr (std::is_floating_point_v<Number>) {
+      numbers.resize(count);
+      for (std::size_t v = 0; v < mesh_.points.size(); ++v) {
+        for (std::size_t k = 0; k < width; ++k)
+          numbers[v * width + k] = static_cast<Number>(coordinate(v, k));
+      }
+    }
+  });
+  put(field.place, values, width);
+}
+
+int Writer::dimension_of(const Field& field) const {
+  const std::string type = attribute(element_of(field), "GeometryType", "Type");
+  return type == "XY" || type == "xy" ? 2 : 3;
+}
+
+bool Writer::are_floats() const {
+  return std::all_of(mesh_.points.begin(), mesh_.points.end(), [](const Point& point) {
+    return std::all_of(point.begin(), point.end(),
+                       [](double x) { return double{static_cast<float>(x)} == x; });
+  });
+}
+
+void Writer::write_topology(const Field& field) {
+  const std::vector<Index>& rows = rows_[static_cast<std::size_t>(field.part)];
+  pugi::xml_node topology = element_of(field);
+  const bool was_mixed = attribute(topology, "TopologyType", "Type") == "Mixed";
+  const TopologyType* const type = was_mixed ? nullptr : common_type(rows);
+  const auto nodes =
+      type == nullptr ? std::size_t{1} : static_cast<std::size_t>(mesh_.cells.vertex_count(rows.front()));
+  if (!was_mixed && !rows.empty()) {
+    const std::string name = attribute(topology, "TopologyType", "Type");
+    if (type == nullptr || topology_type(name) != type) {
+      set_either(topology, "TopologyType", "Type", std::string(type == nullptr ? "Mixed" : type->name));
+    }
+    if (type != nullptr && (layout_.is_made || type->nodes == 0)) {
+      set_attribute(topology, "NodesPerElement", std::to_string(nodes));
+    }
+  }
+  announce_cells(topology, rows.size());
+  for (const std::size_t item : field.also_named_by) announce_cells(items_[item].parent(), rows.size());
+  if (type != nullptr && field.base == 0 && is_identity(rows, mesh_.cell_count()) &&
+      !is_turned(rows.front())) {
+    return put_indices(field.place, mesh_.cells.vertices, nodes);
+  }
+  put_indices(field.place, numbers_of(rows, type == nullptr, field.base), nodes);
+}
+
+void Writer::announce_cells_of(const Field& field) const {
+  const pugi::xml_node topology = element_of(field);
+  const auto nodes =
+      static_cast<std::uint64_t>(topology_type(attribute(topology, "TopologyType", "Type"))->nodes);
+  announce_cells(topology, hdf5::DatasetInfo{field.place.shape, 0}.size() / nodes);
+}
+
+void Writer::announce_cells(pugi::xml_node topology, std::uint64_t cells) const {
+  if (layout_.is_made || topology.attribute("NumberOfElements")) {
+    set_attribute(topology, "NumberOfElements", std::to_string(cells));
+  } else if (topology.attribute("Dimensions")) {
+    set_attribute(topology, "Dimensions", std::to_string(cells));
+  }
+}
+
+bool Writer::is_turned(Index c) const {
+  constexpr int kCorners = 6;
+  return !layout_.inward_wedges && mesh_.cells.shapes[c] == Shape::wedge &&
+         mesh_.cells.vertex_count(c) == kCorners;
+}
+
+const TopologyType* Writer::common_type(const std::vector<Index>& rows) const {
+  if (rows.empty()) return nullptr;
+  const Shape shape = mesh_.cells.shapes[rows.front()];
+  const int vertices = mesh_.cells.vertex_count(rows.front());
+  const bool common = std::all_of(rows.begin(), rows.end(), [&](Index c) {
+    return mesh_.cells.shapes[c] == shape && mesh_.cells.vertex_count(c) == vertices;
+  });
+  return common ? topology_type_of(shape, vertices) : nullptr;
+}
+
+std::vector<Index> Writer::numbers_of(const std::vector<Index>& rows, bool mixed, int base) const {
+  constexpr std::array<std::size_t, 6> kTurned{0, 2, 1, 3, 5, 4};
+  std::size_t size = 0;
+  for (const Index c : rows) size += static_cast<std::size_t>(mesh_.cells.vertex_count(c)) + (mixed ? 2 : 0);
+  std::vector<Index> numbers;
+  numbers.reserve(size);
+  for (const Index c : rows) {
+    const auto cell = mesh_.cells[c];
+    if (mixed) {
+      const TopologyType& type = *topology_type_of(mesh_.cells.shapes[c], static_cast<int>(cell.size()));
+      numbers.push_back(type.number);
+      if (type.nodes == 0) numbers.push_back(static_cast<Index>(cell.size()));
+    }
+    if (is_turned(c)) {
+      for (const std::size_t k : kTurned) numbers.push_back(cell[k] + base);
+    } else {
+      for (const Index v : cell) numbers.push_back(v + base);
+    }
+  }
+  return numbers;
+}
+
+void Writer::write_array(const Field& field) {
+  const DataArray* array = find_array(mesh_, field.name, field.association);
+  std::optional<DataArray> made;
+  if (array == nullptr) {
+    made = marks_named(field.name, field.association);
+    array = made ? &*made : nullptr;
+  }
+  if (array == nullptr || are_texts(array->values)) return remove_element(field);
+  const std::optional<Values> values = values_of(*array, field.association, field.part);
+  put(field.place, values ? *values : array->values, static_cast<std::size_t>(array->components));
+}
+
+void Writer::write_set(const Field& field) {
+  const auto set = std::find_if(mesh_.sets.begin(), mesh_.sets.end(), [&](const EntitySet& candidate) {
+    return candidate.association == field.association && candidate.name == field.name;
+  });
+  if (set == mesh_.sets.end()) return remove_element(field);
+  const bool on_cells = field.association == Association::cells;
+  std::vector<Index> place;
+  if (on_cells) place = places_in(rows_[static_cast<std::size_t>(field.part)]);
+  std::vector<Index> numbers;
+  for (const Index member : set->members) {
+    const Index row = on_cells ? place[static_cast<std::size_t>(member)] : member;
+    if (row >= 0) numbers.push_back(row);
+  }
+  put_indices(field.place, numbers, 1);
+}
+
+void Writer::remove_element(const Field& field) {
+  const bool is_hdf = field.place.format == DataPlace::Format::hdf;
+  if (is_hdf) gone_datasets_.insert(field.place.file + ":" + field.place.dataset);
+  if (!is_hdf || field.place.named_by != field.place.item) gone_.push_back(element_of(field));
+}
+
+void Writer::remove_gone() {
+  for (const pugi::xml_node item : gone_datasets_.empty() ? std::vector<pugi::xml_node>() : items_) {
+    const auto [file, dataset] = split_hdf5_name(item.text().get());
+    if (!gone_datasets_.contains(fmt::format("{}:{}", file, dataset))) continue;
+    const std::string_view name = item.parent().name();
+    gone_.push_back(name == "Attribute" || name == "Set" ? item.parent() : item);
+  }
+  for (const std::string& name : gone_datasets_) {
+    const auto [file, dataset] = split_hdf5_name(name);
+    files_.at(file).file->remove(dataset);
+  }
+  for (pugi::xml_node element : gone_) element.parent().remove_child(element);
+}
+
+std::vector<Index> Writer::places_in(const std::vector<Index>& rows) const {
+  std::vector<Index> place(mesh_.cells.shapes.size(), -1);
+  for (Index r = 0; r < index_size(rows); ++r)
+    place[static_cast<std::size_t>(rows[static_cast<std::size_t>(r)])] = r;
+  return place;
+}
+
+std::optional<Values> Writer::values_of(const DataArray& array, Association association, int part) {
+  const bool on_vertices = association == Association::vertices;
+  const Index count = on_vertices ? mesh_.vertex_count() : mesh_.cell_count();
+  std::vector<Index> all;
+  if (on_vertices && array.is_dense()) return {};
+  if (on_vertices) all = index_range(0, count);
+  const std::vector<Index>& rows = on_vertices ? all : rows_[static_cast<std::size_t>(part)];
+  if (array.is_dense() && is_identity(rows, count)) return {};
+  std::vector<Index> row_of;  // of the array, by vertex or cell
+  if (!array.is_dense()) {
+    row_of.assign(static_cast<std::size_t>(count), -1);
+    for (Index r = 0; r < index_size(array.indices); ++r) {
+      row_of[static_cast<std::size_t>(array.indices[static_cast<std::size_t>(r)])] = r;
+    }
+  }
+  const auto width = static_cast<std::size_t>(array.components);
+  bool filled = false;
+  Values result = values_as(array.values.index(), [&](auto& numbers) {
+    using Number = typename std::decay_t<decltype(numbers)>::value_type;
+    const auto& values = std::get<std::decay_t<decltype(numbers)>>(array.values);
+    numbers.reserve(rows.size() * width);
+    for (const Index item : rows) {
+      const Index row = row_of.empty() ? item : row_of[static_cast<std::size_t>(item)];
+      if (row < 0) {
+        numbers.insert(numbers.end(), width, nothing<Number>());
+        filled = true;
+      } else {
+        const auto first = values.begin() + static_cast<Offset>(static_cast<std::size_t>(row) * width);
+        numbers.insert(numbers.end(), first, first + static_cast<Offset>(width));
+      }
+    }
+  });
+  if (filled) note_filled(array);
+  return result;
+}
+
+void Writer::note_filled(const DataArray& array) {
+  const bool real = array.values.index() <= 1;
+  const std::string note = fmt::format("the array '{}' is given for some {}; the others get {}", array.name,
+                                       to_string(array.association), real ? "NaN" : "0");
+  if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
+}
+
+}  // namespace meshorder::xdmf

@@ -1,0 +1,132 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/large_pages.hpp"
+#include "io/xdmf/writer.hpp"
+#include "mesh/values.hpp"
+
+#include <fmt/compile.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <type_traits>
+
+namespace meshorder::xdmf {
+
+void set_either(pugi::xml_node element, const char* name, const char* other, const std::string& value) {
+  set_attribute(element, element.attribute(other) && !element.attribute(name) ? other : name, value);
+}
+
+void Writer::set_shape(pugi::xml_node item, const std::vector<std::uint64_t>& shape) {
+  std::string text;
+  for (const std::uint64_t n : shape) text += (text.empty() ? "" : " ") + std::to_string(n);
+  set_attribute(item, "Dimensions", text);
+}
+
+void Writer::set_number_type(pugi::xml_node item, std::size_t alternative) {
+  const auto [name, precision] = number_type_of(alternative);
+  set_either(item, "NumberType", "DataType", name);
+  set_attribute(item, "Precision", std::to_string(precision));
+}
+
+std::vector<std::uint64_t> Writer::shape_at(const DataPlace& place, std::size_t count,
+                                            std::size_t components) {
+  std::vector<std::uint64_t> shape = place.shape;
+  if (hdf5::DatasetInfo{shape, 0}.size() == count && !layout_.is_made) return shape;
+  shape = {count / components};
+  if (components > 1) shape.push_back(components);
+  set_shape(items_[place.item], shape);
+  if (place.format == DataPlace::Format::hdf)
+    shapes_[files_.at(place.file).name + ":" + place.dataset] = shape;
+  return shape;
+}
+
+void Writer::put(const DataPlace& place, const Values& values, std::size_t components) {
+  pugi::xml_node item = items_[place.item];
+  const std::vector<std::uint64_t> shape = shape_at(place, size_of(values), components);
+  const bool same_type = values.index() == place.alternative;
+  if (!same_type || layout_.is_made) set_number_type(item, values.index());
+  switch (place.format) {
+    case DataPlace::Format::xml:
+      set_text(item, text_of_values(values, components));
+      return;
+    case DataPlace::Format::hdf:
+      if (!same_type) files_.at(place.file).file->remove(place.dataset);
+      files_.at(place.file).file->write(place.dataset, values, shape);
+      return name_dataset(place);
+    case DataPlace::Format::binary:
+      put_binary(item, place, values);
+  }
+}
+
+void Writer::put_indices(const DataPlace& place, std::span<const Index> indices, std::size_t components) {
+  constexpr std::size_t kInt32 = 6;
+  if (place.format != DataPlace::Format::hdf || place.alternative < kInt32) {
+    const Values values = values_as(std::max(place.alternative, kInt32), [&](auto& numbers) {
+      using Number = typename std::decay_t<decltype(numbers)>::value_type;
+      if constexpr (std::is_integral_v<Number>) {
+        numbers.reserve(indices.size());
+        for (const Index index : indices) numbers.push_back(static_cast<Number>(index));
+      }
+    });
+    return put(place, values, components);
+  }
+  if (layout_.is_made) set_number_type(items_[place.item], place.alternative);
+  files_.at(place.file).file->write(place.dataset, indices, shape_at(place, indices.size(), components));
+  name_dataset(place);
+}
+
+void Writer::name_dataset(const DataPlace& place) {
+  files_.at(place.file).datasets.insert(place.dataset);
+  if (layout_.is_made) set_text(items_[place.item], place.file + ":" + place.dataset);
+}
+
+void Writer::put_binary(pugi::xml_node item, const DataPlace& place, const Values& values) {
+  const std::string name = fmt::format("{}{}.bin", stem_, binaries_.size());
+  OutputFile& out = binaries_.emplace_back(path_.beside(name));
+  std::visit(
+      [&](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_arithmetic_v<Number>) {
+          for (const Number number : numbers) out.binary(number, place.order);
+        }
+      },
+      values);
+  item.remove_attribute("Seek");
+  set_text(item, name);
+}
+
+std::string Writer::text_of_values(const Values& values, std::size_t components) {
+  constexpr std::size_t kMostCharacters = 32;  // of a number and what follows it
+  constexpr std::size_t kUsualCharacters = 20;
+  std::string text;
+  std::visit(
+      [&](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_arithmetic_v<Number>) {
+          resize_large(text, kUsualCharacters * numbers.size() + kMostCharacters);
+          char* at = text.data();
+          *at++ = '\n';
+          std::size_t in_row = 0;
+          for (const Number number : numbers) {
+            const auto used = static_cast<std::size_t>(at - text.data());
+            if (text.size() - used < kMostCharacters) {
+              text.resize(text.size() + text.size() / 4 + kMostCharacters);
+              at = text.data() + used;
+            }
+            if constexpr (std::is_integral_v<Number>) {
+              at = std::to_chars(at, at + kMostCharacters, number).ptr;
+            } else {
+              at = fmt::format_to(at, FMT_COMPILE("{}"), number);
+            }
+            const bool ends_row = ++in_row == components;
+            *at++ = ends_row ? '\n' : ' ';
+            if (ends_row) in_row = 0;
+          }
+          text.resize(static_cast<std::size_t>(at - text.data()));
+        }
+      },
+      values);
+  return text;
+}
+
+}  // namespace meshorder::xdmf

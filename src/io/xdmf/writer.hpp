@@ -1,0 +1,143 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Writes .xdmf files and the files of values that they name: what the layout has a place for goes there, the
+// rest is added.
+
+#include "io/hdf5/hdf5_file.hpp"
+#include "io/stream/file_path.hpp"
+#include "io/stream/output_file.hpp"
+#include "io/xdmf/data_item.hpp"
+#include "io/xdmf/document.hpp"
+#include "io/xdmf/xdmf.hpp"
+#include <meshorder/mesh.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace meshorder::xdmf {
+
+/// An HDF5 file that is being written.
+struct Hdf5Output {
+  std::string name;  ///< in the new XML
+  std::unique_ptr<OutputFile> out;
+  std::unique_ptr<hdf5::File> file;
+  std::set<std::string> datasets;
+  int next_array = 0;  ///< lowest number that an array without a name of its own may have
+};
+
+/// See `write` and `write_without_values`.
+class Writer {
+ public:
+  /// `rows`: the cells of each part.
+  Writer(const Mesh& mesh, const Layout& layout, std::vector<std::vector<Index>> rows, const FilePath& path,
+         Notes& notes);
+  /// Writes the file and those that it names.
+  void write();
+  /// See the function of that name.
+  std::string write_without_values(const std::filesystem::path& data, const std::string& mark);
+  /// Returns the name of the file that takes the place of one of the old XML: both named after their .xdmf.
+  [[nodiscard]] std::string new_name(const std::string& old_name) const;
+
+ private:
+  // files
+  void open_files();
+  void finish(Hdf5Output& output) const;
+  void rename_files();
+  [[nodiscard]] std::string mark_of_mesh() const;
+  /// Marks the files as those of one mesh.
+  void mark_files(const std::string& mark);
+  void put_xml(const TakeText& take) const;
+
+  // values of one DataItem: value_writer.cpp
+  static void set_shape(pugi::xml_node item, const std::vector<std::uint64_t>& shape);
+  static void set_number_type(pugi::xml_node item, std::size_t alternative);
+  /// Returns the shape of values at a place, in rows of so many components: the old one if it fits.
+  std::vector<std::uint64_t> shape_at(const DataPlace& place, std::size_t count, std::size_t components);
+  /// Writes values to a place in their own number type: rows of so many components.
+  void put(const DataPlace& place, const Values& values, std::size_t components);
+  /// Writes indices to a place in the number type that it has, unless that is too narrow.
+  void put_indices(const DataPlace& place, std::span<const Index> indices, std::size_t components);
+  /// Writes the name of a dataset that a made layout does not have yet; `rename_files` replaces its file.
+  void name_dataset(const DataPlace& place);
+  void put_binary(pugi::xml_node item, const DataPlace& place, const Values& values);
+  static std::string text_of_values(const Values& values, std::size_t components);
+
+  // fields of the layout: field_writer.cpp
+  /// Returns the Topology, Geometry, Attribute or Set whose values a field is.
+  [[nodiscard]] pugi::xml_node element_of(const Field& field) const;
+  void write_field(const Field& field);
+  void write_points(const Field& field);
+  [[nodiscard]] int dimension_of(const Field& field) const;
+  [[nodiscard]] bool are_floats() const;
+  void write_topology(const Field& field);
+  /// Says how many cells, of a type with so many nodes, the Topology of a field has.
+  void announce_cells_of(const Field& field) const;
+  /// Says how many cells a Topology has.
+  void announce_cells(pugi::xml_node topology, std::uint64_t cells) const;
+  /// Whether the cell is a linear wedge that the file has the other way round.
+  [[nodiscard]] bool is_turned(Index c) const;
+  /// Returns the type of all these cells, null if they have several.
+  [[nodiscard]] const TopologyType* common_type(const std::vector<Index>& rows) const;
+  /// Returns the entries of a Topology.
+  [[nodiscard]] std::vector<Index> numbers_of(const std::vector<Index>& rows, bool mixed, int base) const;
+  void write_array(const Field& field);
+  void write_set(const Field& field);
+  /// Marks the Attribute or the Set of a field that the mesh has no longer; see `remove_gone`.
+  void remove_element(const Field& field);
+  /// Removes what the mesh has no longer, also where several time steps name one dataset.
+  void remove_gone();
+  /// Returns the row of each cell in a part, −1 for those of other parts.
+  [[nodiscard]] std::vector<Index> places_in(const std::vector<Index>& rows) const;
+  /// Returns the values of an array for all vertices or for the cells of a part; none if they are those of
+  /// the array. Rows that the array does not give are noted.
+  std::optional<Values> values_of(const DataArray& array, Association association, int part);
+  void note_filled(const DataArray& array);
+
+  // what the layout has no place for: attribute_writer.cpp
+  /// Returns the array of marks that stands for a set, by the name of the array.
+  [[nodiscard]] std::optional<DataArray> marks_named(const std::string& name, Association association) const;
+  [[nodiscard]] DataArray marks_of(const EntitySet& set) const;
+  void add_others();
+  [[nodiscard]] bool has_place(const EntitySet& set) const;
+  void add_ids(const std::vector<std::int64_t>& ids, const char* name, Association association);
+  /// Returns a name that no other attribute has.
+  std::string unused_name(const DataArray& array);
+  void add_array(const DataArray& array);
+  [[nodiscard]] bool has_rows(const DataArray& array, const std::vector<Index>& cells) const;
+  void add_attribute(int part, const DataArray& array, const std::string& name, const Values& values);
+  static std::string unused_dataset(Hdf5Output& output, int part, const std::string& name);
+  /// Returns the Grid of a part, or the first one of a series.
+  [[nodiscard]] pugi::xml_node grid_of(int part) const;
+
+  const Mesh& mesh_;
+  const Layout& layout_;
+  FilePath path_;
+  std::string stem_;
+  Notes& notes_;
+  std::vector<std::vector<Index>> rows_;  // cells of each part
+  pugi::xml_document xml_;
+  std::vector<pugi::xml_node> items_;
+  std::vector<pugi::xml_node> grids_;
+  std::map<std::string, Hdf5Output> files_;  // by their names in the old XML
+  std::map<std::string, std::vector<std::uint64_t>>
+      shapes_;  // that have changed, by the new name of a dataset
+  std::vector<OutputFile> binaries_;
+  std::set<std::string> gone_datasets_;  // with their files
+  std::vector<pugi::xml_node> gone_;
+  std::set<std::pair<Association, std::string>> names_;  // of arrays
+};
+
+/// Sets the one of two attributes that is there, else adds the first.
+void set_either(pugi::xml_node element, const char* name, const char* other, const std::string& value);
+
+}  // namespace meshorder::xdmf
