@@ -52,6 +52,15 @@ std::string in_columns(const KernelCosts& costs) {
   return fmt::format("{:>7.3g}{}{}{:>8.3g}{:>7.3g}", costs.access, misses, jumps, costs.repeat, costs.wait);
 }
 
+/// Prints two lines for each kernel, of tetrahedra and of triangles.
+void print_costs(const Console& console, const CostModel& model, const FitQuality& quality) {
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    console.print("{:<14}{}{:>10.0f}{:>6.1f}%{:>6.1f}%", kKernelTitles[k], in_columns(model.solid[k]),
+                  quality.condition[k], 100 * quality.error[k], 100 * quality.floor[k]);
+    console.print("{:<14}{}", "", in_columns(model.flat[k]));
+  }
+}
+
 void print_calibration(const Console& console, const Calibration& calibration) {
   console.print("{}", calibration.processor);
   console.print("{:<10} {:>10} {:>10} {:>10} {:>12}", "", "reported", "found", "used", "latency");
@@ -79,11 +88,10 @@ void print_calibration(const Console& console, const Calibration& calibration) {
       "the last one that are close together. The second line of each kernel is of triangles");
   console.print("{:<14}{:>7}{:>28}{:>28}{:>8}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps",
                 "repeat", "wait", "condition", "error", "floor");
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    console.print("{:<14}{}{:>10.0f}{:>6.1f}%{:>6.1f}%", kKernelTitles[k],
-                  in_columns(calibration.model.solid[k]), calibration.condition[k],
-                  100 * calibration.error[k], 100 * calibration.floor[k]);
-    console.print("{:<14}{}", "", in_columns(calibration.model.flat[k]));
+  print_costs(console, calibration.model, calibration.quality);
+  if (calibration.threads > 1) {
+    console.print("on {} threads, in elapsed ns:", calibration.threads);
+    print_costs(console, calibration.all_threads, calibration.all_threads_quality);
   }
   console.print(
       "condition: how many times errors of measured times can grow in these numbers; error: of the times\n"
@@ -153,10 +161,10 @@ void run(const CalibrateArguments& arguments) {
 void add_calibrate(CLI::App& subcommand) {
   subcommand.description(
       "Measure this machine, so that `info` predicts times for it: what a thread gets of the caches,\n"
-      "latencies, bandwidths, and what misses cost each kernel. The result is kept for this processor\n"
-      "and this build in $MESHORDER_CACHE, else in $XDG_CACHE_HOME/meshorder, else in\n"
-      "~/.cache/meshorder. `info` does it by itself the first time, some 20 s, unless --machine or\n"
-      "$MESHORDER_MACHINE names another machine.");
+      "latencies, bandwidths, and what misses cost each kernel on one thread and on all. The result is\n"
+      "kept for this processor and this build in $MESHORDER_CACHE, else in $XDG_CACHE_HOME/meshorder,\n"
+      "else in ~/.cache/meshorder. `info` does it by itself the first time, some 20 s, unless --machine\n"
+      "or $MESHORDER_MACHINE names another machine.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder calibrate\n"

@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "command.hpp"
@@ -36,6 +37,7 @@ struct InfoArguments : Common {
   std::string input;
   std::string caches;  ///< empty: the machine's, unless that takes long
   std::string machine;
+  bool all_threads = false;
   bool measure = false;
 };
 
@@ -58,9 +60,11 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
   const Offset simplices = mesh.cells.highest_dimension() < 1 ? 0 : cut_into_simplices(mesh).size();
   AdviceOptions options;
   options.machine = machine;
+  if (arguments.all_threads) options.threads = thread_count();
   if (!arguments.caches.empty()) options.caches = parse_caches(arguments.caches);
   options.graph_seconds = graph_seconds;
-  options.predict = simplices <= kMaxPredicted || !arguments.caches.empty();
+  options.predict =
+      (simplices <= kMaxPredicted || !arguments.caches.empty()) && machine.model.threads == options.threads;
   if (simplices == 0 || !(options.predict || arguments.measure)) return std::nullopt;
   if (arguments.measure) {
     options.measure_within = kMeasureWithin - since_start.seconds();
@@ -146,14 +150,14 @@ void run(const InfoArguments& arguments) {
   const Stopwatch since_start;
   // refused before anything takes time
   if (!arguments.caches.empty()) (void)parse_caches(arguments.caches);
-  MachineChoice machine = choose_machine(arguments.machine);
+  MachineChoice machine = choose_machine(arguments.machine, arguments.all_threads && !arguments.measure);
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.3);
   const Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
 
   // who asks for measured times does not wait for what they would be predicted by
   if (!arguments.measure && is_predicted(arguments, mesh)) {
-    machine = calibrated(std::move(machine), progress, console.quiet(), notes);
+    machine = calibrated(std::move(machine), arguments.all_threads, progress, console.quiet(), notes);
   }
   const Caches caches = arguments.caches.empty() ? machine.model.caches : parse_caches(arguments.caches);
   progress.stage("measuring", 0.3, 0.6);
@@ -240,6 +244,7 @@ void add_info(CLI::App& subcommand) {
   subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
   add_cache_option(subcommand, arguments->caches);
   add_machine_option(subcommand, arguments->machine);
+  add_all_threads_option(subcommand, arguments->all_threads);
   subcommand.add_flag(
       "--measure", arguments->measure,
       "Run the kernels for a few seconds, in the mesh's order and in a better one, instead of\n"

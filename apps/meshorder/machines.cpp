@@ -20,6 +20,12 @@ void add_machine_option(CLI::App& subcommand, std::string& machine) {
       ->type_name("NAME");
 }
 
+void add_all_threads_option(CLI::App& subcommand, bool& all_threads) {
+  subcommand.add_flag("--all-threads", all_threads,
+                      "Judge the kernels as all threads share each run, not as one thread runs them; see\n"
+                      "--threads. Predictions need a calibration of this machine");
+}
+
 namespace {
 
 /// What MESHORDER_CALIBRATION_SECONDS says, else what `meshorder calibrate` takes.
@@ -31,7 +37,8 @@ double seconds_to_calibrate() {
 
 }  // namespace
 
-MachineChoice calibrated(MachineChoice choice, Progress& progress, bool quiet, Notes& notes) {
+MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progress, bool quiet,
+                         Notes& notes) {
   if (!choice.stands_in) return choice;
   if (!choice.fault.empty()) notes.push_back(choice.fault + "; this machine is measured anew");
   if (!quiet) {
@@ -54,7 +61,7 @@ MachineChoice calibrated(MachineChoice choice, Progress& progress, bool quiet, N
   } catch (const Error& error) {
     notes.push_back(std::string(error.what()) + "; every prediction measures this machine again");
   }
-  return chosen(calibration);
+  return chosen(calibration, all_threads);
 }
 
 }  // namespace meshorder::command

@@ -13,9 +13,13 @@ namespace meshorder::command {
 /// Adds --machine, whose value choose_machine reads.
 void add_machine_option(CLI::App& subcommand, std::string& machine);
 
+/// Adds --all-threads, likewise.
+void add_all_threads_option(CLI::App& subcommand, bool& all_threads);
+
 /// Returns the machine to predict for. Where it only stands in for this machine, which is not calibrated,
 /// this machine is calibrated and the result is kept for the next time. A line on stderr says so, unless
 /// quiet; `notes` receives a sentence where something went wrong.
-MachineChoice calibrated(MachineChoice choice, Progress& progress, bool quiet, Notes& notes);
+MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progress, bool quiet,
+                         Notes& notes);
 
 }  // namespace meshorder::command

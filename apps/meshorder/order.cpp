@@ -36,6 +36,7 @@ struct OrderArguments : Common, MeshFiles {
   bool measure = false;
   bool predict = false;
   std::string machine;
+  bool all_threads = false;
 };
 
 /// Throws InvalidArgument unless the arguments leave a race anything to decide.
@@ -120,11 +121,12 @@ void run(const OrderArguments& arguments) {
   options.format = output_format_of(arguments.output).key();
   const bool in_race = arguments.measure || arguments.predict;
   if (in_race) check_race(arguments);
-  if (!in_race && !arguments.machine.empty()) {
-    throw InvalidArgument("--machine is for --predict and --measure, which choose by predicted times");
+  if (!in_race && (!arguments.machine.empty() || arguments.all_threads)) {
+    throw InvalidArgument(fmt::format("{} is for --predict and --measure, which choose by predicted times",
+                                      arguments.machine.empty() ? "--all-threads" : "--machine"));
   }
   std::optional<MachineChoice> machine;
-  if (in_race) machine = choose_machine(arguments.machine);
+  if (in_race) machine = choose_machine(arguments.machine, arguments.all_threads);
   check_can_write(arguments);  // fail before the work
 
   Progress progress(!console.quiet());
@@ -135,7 +137,10 @@ void run(const OrderArguments& arguments) {
   Mesh& mesh = job.mesh;
   const double read_seconds = reading.seconds();
 
-  if (arguments.predict) machine = calibrated(*std::move(machine), progress, console.quiet(), notes);
+  // a race on all threads has no other costs to choose by
+  if (arguments.predict || (arguments.measure && arguments.all_threads)) {
+    machine = calibrated(*std::move(machine), arguments.all_threads, progress, console.quiet(), notes);
+  }
   progress.stage("ordering", 0.4, 0.7);
   const Stopwatch ordering;
   std::optional<Grouping> groups;
@@ -239,6 +244,7 @@ void add_order(CLI::App& subcommand) {
           "go into calibrating it")
       ->excludes("--measure");
   add_machine_option(subcommand, arguments->machine);
+  add_all_threads_option(subcommand, arguments->all_threads);
   add_moving_options(subcommand, *arguments, arguments->ids);
   add_ordering_options(subcommand, arguments->reordering.order);
   add_reading_options(subcommand);

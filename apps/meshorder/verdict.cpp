@@ -3,6 +3,7 @@
 
 #include "payoff/advice.hpp"
 #include "payoff/kernel_bench.hpp"
+#include "payoff/machine_choice.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -43,9 +44,8 @@ void print_verdict(const Console& console, const Advice& advice) {
   const bool predicted = advice.as_is.costs.predicted.has_value();
   const bool measured = advice.as_is.costs.measured.has_value();
   console.print("\nKernels: time in the mesh's order, and how many times faster they run in another,\n{}",
-                predicted && measured ? "measured here (predicted)"
-                : measured            ? "measured here"
-                                      : "predicted for " + advice.machine);
+                measured ? "measured here" + on_threads(advice.threads) + (predicted ? " (predicted)" : "")
+                         : "predicted for " + advice.machine);
   std::string header = fmt::format("{:<14}{:>10}", "", "as it is");
   for (const Candidate& candidate : advice.candidates) header += fmt::format("{:>18}", methods_of(candidate));
   console.print("{}", header);
@@ -103,6 +103,7 @@ nlohmann::ordered_json to_json(const Advice& advice) {
           {"by", advice.as_is.costs.measured ? "measurement" : "prediction"},
           {"machine",
            advice.machine.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(advice.machine)},
+          {"threads", advice.threads},
           {"kernels", kernels},
           {"as_it_is", costs_json(advice.as_is.costs)},
           {"orders", orders},

@@ -8,7 +8,8 @@
 // measure judge MESH BUDGET THREADS MACHINES VERTICES/ELEMENTS…: times the kernels in these orders, and in
 // those that `auto` takes for each kernel, in interleaved rounds, twice over, the second time on other pages
 // of memory, and predicts them for machines whose names are separated by commas ("zen5", "this"; "prior":
-// zen5 with the caches of this machine; with a slash: the file of a calibration). Prints mesh, vertices,
+// zen5 with the caches of this machine; with a slash: the file of a calibration, whose costs of all threads
+// are taken where THREADS are as many; with a colon behind it, those of one). Prints mesh, vertices,
 // order, kernel, the best milliseconds of each half, then the milliseconds predicted for each machine; and
 // mesh, vertices, "auto", kernel, the order that `auto` takes.
 //
@@ -24,6 +25,7 @@
 #include "payoff/kernel_timing.hpp"
 #include "payoff/machine.hpp"
 #include "payoff/machine_choice.hpp"
+#include "payoff/shared_work.hpp"
 
 #include <fmt/format.h>
 
@@ -150,12 +152,14 @@ void time(const std::string& name, double budget, const std::string& folder,
   }
 }
 
-/// What a name of `judge` stands for.
-mo::CostModel machine_named(const std::string& name) {
+/// What a name of `judge` stands for: a calibration's costs of one thread or of all.
+mo::CostModel machine_named(const std::string& name, int threads) {
+  if (name.ends_with(':')) return machine_named(name.substr(0, name.size() - 1), 1);
   if (name.find('/') != std::string::npos) {
     std::ifstream in(name);
-    return mo::parse_calibration({std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()})
-        .model;
+    const mo::Calibration calibration =
+        mo::parse_calibration({std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()});
+    return threads == calibration.threads ? calibration.all_threads : calibration.model;
   }
   if (name != "prior") return mo::choose_machine(name).model;
   mo::CostModel model = mo::zen5_costs();
@@ -180,12 +184,13 @@ void judge(const std::string& name, double budget, int threads, const std::strin
            std::vector<std::string> orders) {
   std::vector<mo::CostModel> models;
   std::istringstream words(machines);
-  for (std::string word; std::getline(words, word, ',');) models.push_back(machine_named(word));
+  for (std::string word; std::getline(words, word, ',');) models.push_back(machine_named(word, threads));
   const mo::Mesh mesh = mesh_of(name);
   const mo::CsrGraph graph = mo::vertex_graph(mesh);
   add_auto(name, mesh, graph, orders);
   std::vector<mo::Mesh> meshes;
   std::vector<mo::KernelReuse> reuse;
+  std::vector<std::array<double, mo::kKernels.size()>> computed;  // by so many threads
   for (const std::string& order : orders) {
     const auto slash = order.find('/');
     meshes.push_back(mesh);
@@ -193,8 +198,11 @@ void judge(const std::string& name, double budget, int threads, const std::strin
         meshes.back(),
         mo::compute_reordering(mesh, graph, {.methods = {order.substr(0, slash), order.substr(slash + 1)}}));
     const mo::Simplices simplices = mo::cut_into_simplices(meshes.back());
-    reuse.push_back(mo::reuse_of_kernels(mo::vertex_graph(meshes.back()), simplices,
-                                         simplices.size() < 50'000 ? 0 : kHalvings));
+    const mo::CsrGraph ordered = mo::vertex_graph(meshes.back());
+    reuse.push_back(mo::reuse_of_kernels(ordered, simplices, simplices.size() < 50'000 ? 0 : kHalvings));
+    auto& times = computed.emplace_back();
+    for (std::size_t k = 0; k < mo::kKernels.size(); ++k)
+      times[k] = mo::times_computed(mo::kKernels[k], ordered, simplices, threads);
   }
   std::array<mo::Timings, 2> timings;
   for (mo::Timings& half : timings) {
@@ -214,7 +222,8 @@ void judge(const std::string& name, double budget, int threads, const std::strin
                  mo::to_string(mo::kKernels[k]), timings[0].orders[i][mo::kKernels[k]].best_ms,
                  timings[1].orders[i][mo::kKernels[k]].best_ms);
       for (const mo::CostModel& model : models) {
-        fmt::print(",{:.6f}", mo::predicted_ms(mo::kKernels[k], reuse[i][k], model.caches, model));
+        const double times = model.threads == 1 ? 1 : computed[i][k];
+        fmt::print(",{:.6f}", times * mo::predicted_ms(mo::kKernels[k], reuse[i][k], model.caches, model));
       }
       fmt::print("\n");
     }

@@ -35,7 +35,7 @@ inline constexpr std::array kKernels{Kernel::spmv, Kernel::element, Kernel::asse
 /// Returns "spmv", "element", "assembly" or "springs". Valid for the life of the program.
 MESHORDER_API std::string_view to_string(Kernel kernel);
 
-/// Milliseconds of one run of each kernel, when it is repeated on one thread.
+/// Milliseconds of one run of each kernel, when it is repeated.
 using KernelMilliseconds = std::array<double, kKernels.size()>;
 
 /// Times of the kernels in one order.
@@ -84,6 +84,7 @@ struct Advice {
   /// By kernel, the share by which two times of the same problem differ on that machine, below which no
   /// difference counts; 0 where that is not known.
   std::array<double, kKernels.size()> floor = {};
+  int threads = 1;  ///< that shared each run
 };
 
 /// Returns the verdict in one English sentence: which kernel loses most as the mesh is, which order mends it
@@ -99,7 +100,10 @@ struct PayoffOptions {
   /// `calibrate` measured it, else its caches with the costs of the first of those. Empty: what the
   /// environment variable MESHORDER_MACHINE says, else "this".
   std::string machine = {};
-  bool measure = false;  ///< runs the kernels here, on one thread
+  bool measure = false;  ///< runs the kernels here
+  /// Judge the kernels as all threads share their runs, not as one runs them. To predict this needs a
+  /// calibration of this machine on as many threads; the costs that ship are those of one.
+  bool all_threads = false;
   /// Seconds after the call, ≥ 0: no round of measurements begins that would end later, but two are run.
   double budget_seconds = 10;
   OrderOptions order = {};  ///< `groups` has n entries or none, `cell_groups` m or none
@@ -114,7 +118,8 @@ struct PayoffOptions {
 ///         less than `Advice::floor`, count as equal
 /// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for types and machines that
 /// are
-///         not known, and where neither prediction nor measurement is asked for
+///         not known, where neither prediction nor measurement is asked for, and where the costs of all
+///         threads are asked for and not known
 /// @note Orders and, to predict, about a second for a million tetrahedra and candidate; to measure, the
 ///       budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex of a
 ///       tetrahedral mesh, and while it is measured 2.5 KB a vertex more. Stages of progress: those of
@@ -143,8 +148,9 @@ struct CalibrationReport {
 };
 
 /// Measures this machine: what a thread gets of the caches, latencies, bandwidths, and what misses cost each
-/// kernel, on lattices made for that. Stored in the user's cache folder ($MESHORDER_CACHE, else
-/// $XDG_CACHE_HOME/meshorder, else ~/.cache/meshorder) for this processor and this build of the library.
+/// kernel on one thread and on all, on lattices made for that. Stored in the user's cache folder
+/// ($MESHORDER_CACHE, else $XDG_CACHE_HOME/meshorder, else ~/.cache/meshorder) for this processor and this
+/// build of the library.
 ///
 /// @param options  see `CalibrationOptions`
 /// @throws InvalidArgument for a time that is not above 0; Error with Code::io if it cannot be stored;

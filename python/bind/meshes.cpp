@@ -105,9 +105,13 @@ nb::dict described(const Candidate& candidate) {
 using MethodPairs = std::vector<std::pair<std::string, std::string>>;
 
 PayoffOptions payoff_options(const MethodPairs& methods, bool predict, bool measure, double budget,
-                             const std::string& machine, const OrderOptions& order) {
-  PayoffOptions options{
-      .predict = predict, .machine = machine, .measure = measure, .budget_seconds = budget, .order = order};
+                             const std::string& machine, bool all_threads, const OrderOptions& order) {
+  PayoffOptions options{.predict = predict,
+                        .machine = machine,
+                        .measure = measure,
+                        .all_threads = all_threads,
+                        .budget_seconds = budget,
+                        .order = order};
   for (const auto& [vertices, elements] : methods) options.methods.push_back({vertices, elements});
   return options;
 }
@@ -122,7 +126,7 @@ nb::tuple advise_mesh(const MeshView& mesh, const PayoffOptions& options) {
     kernels[text(to_string(kernel))] = nb::make_tuple(best.candidate, best.factor, best.runs_to_pay);
   }
   return nb::make_tuple(to_string(advice), described(advice.as_is), candidates, kernels, advice.doubt,
-                        advice.machine);
+                        advice.machine, advice.threads);
 }
 
 nb::list compare_mesh(const MeshView& mesh, const PayoffOptions& options) {
@@ -144,10 +148,10 @@ nb::tuple calibrated(double seconds, bool keep, const nb::dict& options) {
 template <class Answer>
 auto answering(Answer (*question)(const MeshView&, const PayoffOptions&)) {
   return [question](const Mesh& self, const MethodPairs& methods, bool predict, bool measure, double budget,
-                    const std::string& machine, const nb::dict& options) {
+                    const std::string& machine, bool all_threads, const nb::dict& options) {
     const Options given_options(options);
-    return question(view(self),
-                    payoff_options(methods, predict, measure, budget, machine, given_options.order()));
+    return question(view(self), payoff_options(methods, predict, measure, budget, machine, all_threads,
+                                               given_options.order()));
   };
 }
 

@@ -161,6 +161,12 @@ def test_calibration(mesh, tmp_path, monkeypatch):
     kept = meshorder.calibrate(0.5)
     assert kept.file is not None and kept.file.is_file()
     assert meshorder.advise(mesh, machine="this").machine == kept.machine
+    threads = found.figures["threads"]
+    on_all = meshorder.advise(mesh, machine="this", all_threads=True, threads=threads)
+    assert on_all.threads == threads and on_all.machine.startswith("this machine")
+    assert len(meshorder.compare(mesh, "rcm", measure=True, predict=False, budget=0, all_threads=True)) == 2
+    with pytest.raises(meshorder.InvalidArgument, match="those of one thread"):
+        meshorder.advise(mesh, machine="zen5", all_threads=True, threads=2)
     with pytest.raises(InvalidArgument):
         meshorder.calibrate(0)
 

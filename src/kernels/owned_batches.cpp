@@ -41,6 +41,16 @@ std::vector<Index> balanced_ranges(std::span<const Offset> offsets, Index parts)
   return bounds;
 }
 
+void owners_of(std::span<const Index> vertices, std::span<const Index> bounds, std::vector<Index>& owners) {
+  owners.clear();
+  for (const Index v : vertices) {
+    owners.push_back(
+        static_cast<Index>(std::upper_bound(bounds.begin() + 1, bounds.end(), v) - bounds.begin()) - 1);
+  }
+  std::sort(owners.begin(), owners.end());
+  owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
+}
+
 std::vector<OwnedBatches> owned_batches(std::span<const Index> vertices, Index corners,
                                         std::span<const Index> bounds) {
   const Index parts = index_size(bounds) - 1;
@@ -54,13 +64,7 @@ std::vector<OwnedBatches> owned_batches(std::span<const Index> vertices, Index c
   std::vector<Index> owners;
   for (std::size_t first = 0; first < vertices.size(); first += size) {
     const std::span<const Index> of_batch = vertices.subspan(first, size);
-    owners.clear();
-    for (const Index v : of_batch) {
-      owners.push_back(
-          static_cast<Index>(std::upper_bound(bounds.begin() + 1, bounds.end(), v) - bounds.begin()) - 1);
-    }
-    std::sort(owners.begin(), owners.end());
-    owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
+    owners_of(of_batch, bounds, owners);
     for (const Index part : owners) {
       append(shares[part], static_cast<Index>(first / size), of_batch, first_spare(bounds.back(), part));
     }

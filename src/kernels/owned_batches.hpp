@@ -35,6 +35,10 @@ struct OwnedBatches {
 /// `offsets` are those of compressed rows. O(parts · log rows).
 std::vector<Index> balanced_ranges(std::span<const Offset> offsets, Index parts);
 
+/// Puts the ranges of `bounds` that vertices are in into `owners`, each once, ascending. O(vertices · log
+/// parts).
+void owners_of(std::span<const Index> vertices, std::span<const Index> bounds, std::vector<Index>& owners);
+
 /// Returns one share for each range of `bounds` (see balanced_ranges), the last bound being the number of
 /// vertices, of the batches of `corners` · kBatch vertices each: RestShapes::vertices with D + 1 corners,
 /// Springs::ends with 2. Each share has its own spare vertices behind those of the mesh. O(entries · log

@@ -10,6 +10,7 @@
 #include "metrics/sparsity_pattern.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/cost_model.hpp"
+#include "payoff/shared_work.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -43,7 +44,8 @@ std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
     const Index i = task % index_size(orders);
     const Index k = task / index_size(orders);
     const RunReuse reuse = reuse_of(kKernels[k], orders[i].graph, simplices[i], halvings);
-    result[i][k] = predicted_ms(kKernels[k], reuse, caches, options.machine.model);
+    result[i][k] = predicted_ms(kKernels[k], reuse, caches, options.machine.model) *
+                   times_computed(kKernels[k], orders[i].graph, simplices[i], options.threads);
   });
   return result;
 }
@@ -53,10 +55,11 @@ TimingOptions for_seconds(double seconds) {
 }
 
 /// In rounds that end by `seconds` on the stopwatch.
-Timings measured(const std::vector<Ordered>& orders, const Stopwatch& stopwatch, double seconds) {
+Timings measured(const std::vector<Ordered>& orders, int threads, const Stopwatch& stopwatch,
+                 double seconds) {
   std::vector<std::optional<KernelBench>> benches(orders.size());
   for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
-    benches[i].emplace(orders[i].mesh, orders[i].graph);
+    benches[i].emplace(orders[i].mesh, orders[i].graph, threads);
   });
   std::vector<KernelBench*> pointers;
   pointers.reserve(benches.size());
@@ -65,9 +68,9 @@ Timings measured(const std::vector<Ordered>& orders, const Stopwatch& stopwatch,
 }
 
 /// For half a second an order, as many at a time as memory allows.
-Timings raced(const std::vector<Ordered>& orders, const OrderTimer& timer) {
+Timings raced(const std::vector<Ordered>& orders, int threads, const OrderTimer& timer) {
   constexpr double kSeconds = 0.5;
-  const auto prepare = [&](Index i) { return KernelBench(orders[i].mesh, orders[i].graph); };
+  const auto prepare = [&](Index i) { return KernelBench(orders[i].mesh, orders[i].graph, threads); };
   return timer(index_size(orders), prepare, for_seconds(kSeconds * static_cast<double>(orders.size())));
 }
 
@@ -158,9 +161,14 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   if (!options.predict && !options.measure_within) {
     throw InvalidArgument("advice: neither predicted nor measured");
   }
+  if (options.predict && options.machine.model.threads != options.threads) {
+    throw InvalidArgument(fmt::format("advice: the costs are of {} threads, not of {}",
+                                      options.machine.model.threads, options.threads));
+  }
   if (options.race_of > 0 && !options.predict) throw InvalidArgument("advice: a race without predictions");
   const Stopwatch since_call;
   Advice advice;
+  advice.threads = options.threads;
   advice.as_is.vertices.name = advice.as_is.elements.name = "original";
   std::vector<Ordered> orders(1);
   orders.front().mesh.points = mesh.points;
@@ -200,8 +208,8 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   const bool in_race = options.race_of > 0 && options.race_timer;
   if (in_race || options.measure_within) {
     report("measure");
-    const Timings timings =
-        in_race ? raced(orders, options.race_timer) : measured(orders, since_call, *options.measure_within);
+    const Timings timings = in_race ? raced(orders, options.threads, options.race_timer)
+                                    : measured(orders, options.threads, since_call, *options.measure_within);
     advice.doubt = reason_to_doubt(timings.steadiness);
     for (std::size_t i = 0; i < orders.size(); ++i) {
       KernelMilliseconds& milliseconds = candidate(i).costs.measured.emplace();

@@ -14,6 +14,7 @@
 #include "payoff/kernel_timing.hpp"
 #include "payoff/least_squares.hpp"
 #include "payoff/machine.hpp"
+#include "payoff/shared_work.hpp"
 
 #include <fmt/format.h>
 
@@ -28,12 +29,13 @@
 namespace meshorder {
 namespace {
 
-/// What kernels took, by kernel.
+/// What kernels took on a number of threads, by kernel.
 struct Runs {
-  std::array<std::vector<TimedReuse>, kKernels.size()> timed;
+  int threads = 1;
+  std::array<std::vector<TimedReuse>, kKernels.size()> timed = {};
   /// By what share two timings of the same problem differ.
-  std::array<std::vector<double>, kKernels.size()> apart;
-  std::vector<Steadiness> steadiness;  ///< of each measurement
+  std::array<std::vector<double>, kKernels.size()> apart = {};
+  std::vector<Steadiness> steadiness = {};  ///< of each measurement
 };
 
 /// What `advise` estimates from a sample of the lines is estimated here.
@@ -41,6 +43,8 @@ int halvings_for(const Mesh& mesh) { return mesh.cell_count() < 50'000 ? 0 : 3; 
 
 /// Orders of a lattice, prepared to be timed.
 struct Prepared {
+  std::vector<Mesh> meshes;
+  std::vector<CsrGraph> graphs;
   std::vector<KernelReuse> reuse;
   std::vector<std::optional<KernelBench>> benches;
 
@@ -48,44 +52,57 @@ struct Prepared {
 
   /// Orders, predicts and prepares on all threads.
   void add(const CalibrationLattice& lattice, std::span<const LatticeOrder> orders) {
-    std::vector<Mesh> meshes(orders.size());
-    std::vector<CsrGraph> graphs(orders.size());
-    for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
-      meshes[i] = in_order(lattice, orders[i]);
-      graphs[i] = vertex_graph(meshes[i]);
-    });
     const std::size_t first = benches.size();
-    reuse.resize(first + orders.size());
-    benches.resize(first + orders.size());
+    const std::size_t all = first + orders.size();
+    meshes.resize(all);
+    graphs.resize(all);
+    reuse.resize(all);
+    benches.resize(all);
+    for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
+      meshes[first + i] = in_order(lattice, orders[i]);
+      graphs[first + i] = vertex_graph(meshes[first + i]);
+    });
     for_each_chunk(2 * index_size(orders), 1, [&](Index task, Index /*begin*/, Index /*end*/) {
-      const std::size_t i = static_cast<std::size_t>(task) / 2;
+      const std::size_t i = first + static_cast<std::size_t>(task) / 2;
       if (task % 2 == 0) {
-        benches[first + i].emplace(meshes[i], graphs[i]);
+        benches[i].emplace(meshes[i], graphs[i]);
       } else {
-        reuse[first + i] =
-            reuse_of_kernels(graphs[i], cut_into_simplices(meshes[i]), halvings_for(meshes[i]));
+        reuse[i] = reuse_of_kernels(graphs[i], cut_into_simplices(meshes[i]), halvings_for(meshes[i]));
       }
     });
   }
 
-  /// Times all in interleaved rounds.
-  [[nodiscard]] Timings timed(double seconds) {
+  /// Shares the kernels' runs from now on among so many threads.
+  void share(int threads) {
+    for_each_chunk(index_size(benches), 1,
+                   [&](Index i, Index /*begin*/, Index /*end*/) { benches[i]->share(threads); });
+  }
+
+  /// Times all in interleaved rounds: on one thread by its processor time, on several by elapsed time.
+  [[nodiscard]] Timings timed(int threads, double seconds) {
     std::vector<KernelBench*> pointers;
     for (std::optional<KernelBench>& bench : benches) pointers.push_back(&bench.value());
     return time_interleaved(pointers, {.budget_seconds = seconds,
                                        .min_rounds = 3,
                                        .max_rounds = 40,
                                        .sample_seconds = 0.003,
-                                       .processor_time = true});
+                                       .processor_time = threads == 1});
   }
 };
 
-void add_runs(const Prepared& prepared, const Timings& timings, Runs& runs) {
+/// Times all orders of a lattice in interleaved rounds, on the threads of `runs`, and adds what they took.
+Timings time_all(Prepared& prepared, double seconds, Runs& runs) {
+  if (runs.threads > 1) prepared.share(runs.threads);
+  Timings timings = prepared.timed(runs.threads, seconds);
   for (std::size_t i = 0; i < prepared.reuse.size(); ++i) {
+    const Simplices simplices = cut_into_simplices(prepared.meshes[i]);
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
-      runs.timed[k].push_back({prepared.reuse[i][k], timings.orders[i][kKernels[k]].best_ms});
+      const double times = times_computed(kKernels[k], prepared.graphs[i], simplices, runs.threads);
+      runs.timed[k].push_back({prepared.reuse[i][k], timings.orders[i][kKernels[k]].best_ms / times});
     }
   }
+  runs.steadiness.push_back(timings.steadiness);
+  return timings;
 }
 
 /// What disturbed several measurements: the worst of it, and for how well timings repeat the middle, as a
@@ -144,24 +161,25 @@ void measure_memory(const CalibrationEffort& effort, Calibration& calibration) {
 }
 
 /// Times all orders of a lattice side by side, the last but one of them twice, at other addresses.
-void time_small(const CalibrationLattice& lattice, double seconds, Runs& runs) {
+void time_small(const CalibrationLattice& lattice, double seconds, std::span<Runs> runs) {
   const std::size_t twice = lattice.orders.size() - 2;
   std::vector<LatticeOrder> orders = lattice.orders;
   orders.push_back(orders[twice]);
   Prepared prepared(lattice, orders);
-  const Timings timings = prepared.timed(seconds);
-  add_runs(prepared, timings, runs);
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const double one = timings.orders[twice][kKernels[k]].best_ms;
-    const double other = timings.orders.back()[kKernels[k]].best_ms;
-    runs.apart[k].push_back(std::max(one, other) / std::min(one, other) - 1);
+  for (Runs& some : runs) {
+    const Timings timings = time_all(prepared, some.threads == 1 ? seconds : seconds / 4, some);
+    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+      const double one = timings.orders[twice][kKernels[k]].best_ms;
+      const double other = timings.orders.back()[kKernels[k]].best_ms;
+      some.apart[k].push_back(std::max(one, other) / std::min(one, other) - 1);
+    }
   }
-  runs.steadiness.push_back(timings.steadiness);
 }
 
 /// Times the orders of a lattice one after another, as long as there is time, but at least the best and the
-/// worst.
-void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double seconds, Runs& runs) {
+/// worst, and these also on all threads.
+void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double seconds,
+                std::span<Runs> runs) {
   std::vector<LatticeOrder>& orders = lattice.orders;
   // the most that an order can cost is what meshes are predicted by that are larger than all of these
   std::swap(orders[1], orders.back());
@@ -171,11 +189,28 @@ void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double
     if (i >= 2 && begin + longest > seconds) break;
     report("lattices", std::min(0.98, 0.6 + 0.4 * (begin / seconds - 0.5)));
     Prepared prepared(lattice, std::span(orders).subspan(i, 1));
-    const Timings timings = prepared.timed(0.3);
-    add_runs(prepared, timings, runs);
-    runs.steadiness.push_back(timings.steadiness);
+    for (Runs& some : runs.first(i < 2 ? runs.size() : 1)) (void)time_all(prepared, 0.3, some);
     longest = std::max(longest, since_start.seconds() - begin);
   }
+}
+
+/// Puts the costs that fit the runs best into a model whose caches are known. Returns how well they do.
+FitQuality fit_all(const Runs& runs, CostModel& model) {
+  FitQuality quality;
+  model.threads = runs.threads;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    const std::vector<TimedReuse>& all = runs.timed[k];
+    std::vector<TimedReuse> of_solids;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(of_solids),
+                 [](const TimedReuse& run) { return run.reuse.dimension == 3; });
+    const FittedCosts fitted = fit_costs(of_solids, model.caches);
+    model.solid[k] = fitted.costs;
+    model.flat[k] = fit_costs(all, model.caches).costs;
+    quality.condition[k] = fitted.condition;
+    quality.error[k] = fitted.error;
+    quality.floor[k] = median(runs.apart[k]);
+  }
+  return quality;
 }
 
 }  // namespace
@@ -229,7 +264,8 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   model.caches = effective_caches(calibration.found, calibration.reported);
   model.machine = fmt::format("{} ({})", calibration.processor, to_string(model.caches));
 
-  Runs runs;
+  std::vector<Runs> runs(1);
+  if (calibration.threads > 1) runs.push_back({.threads = calibration.threads});
   constexpr Offset kBytesOfVertex = 4096;
   const Offset fitting = static_cast<Offset>(usable_memory() / 4) / kBytesOfVertex;
   const auto largest = static_cast<Index>(std::clamp<Offset>(fitting, 1000, effort.vertices));
@@ -241,42 +277,35 @@ Calibration measure_machine(const CalibrationEffort& effort) {
     return static_cast<Index>(std::clamp<Offset>(rows, 300, largest / 4));
   };
   const std::array<Offset, 4> sizes = sizes_that_cost(model.caches);
-  /// A lattice, and its share of the time.
+  /// A lattice, and its share of the time. It is also timed on all threads where it adds to what they cost:
+  /// to wake them takes as long as a run on the smallest.
   struct Step {
     Index vertices;
     bool flat;
     std::size_t orders;
     double share;
+    bool on_all_threads;
   };
-  const std::array steps{Step{rows_in(sizes[1], 0.6), false, 3, 0.03},
-                         Step{rows_in(sizes[3], 0.35), false, 5, 0.06},
-                         Step{rows_in(sizes[3], 0.75), false, 5, 0.06},
-                         Step{largest / 8, false, 7, 0.15},
-                         Step{largest / 8, true, 4, 0.06},
-                         Step{largest / 3, false, 3, 0.1}};
+  const std::array steps{Step{rows_in(sizes[1], 0.6), false, 3, 0.03, false},
+                         Step{rows_in(sizes[3], 0.35), false, 5, 0.04, true},
+                         Step{rows_in(sizes[3], 0.75), false, 3, 0.03, false},
+                         Step{largest / 8, false, 7, 0.1, true},
+                         Step{largest / 8, true, 4, 0.04, true},
+                         Step{largest / 3, false, 3, 0.07, true}};
   double done = 0.25;
   for (const Step& step : steps) {
     report("lattices", done);
-    const Stopwatch stopwatch;
     const CalibrationLattice lattice =
         make_calibration_lattice(step.vertices, step.flat, model.caches, step.orders);
-    time_small(lattice, step.share * effort.seconds, runs);
+    time_small(lattice, step.share * effort.seconds,
+               std::span(runs).first(step.on_all_threads ? runs.size() : 1));
     done += step.share;
   }
   time_large(make_calibration_lattice(largest, false, model.caches, 6), since_start, effort.seconds, runs);
-  calibration.steadiness = steadiness_of(runs.steadiness);
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const std::vector<TimedReuse>& all = runs.timed[k];
-    std::vector<TimedReuse> of_solids;
-    std::copy_if(all.begin(), all.end(), std::back_inserter(of_solids),
-                 [](const TimedReuse& run) { return run.reuse.dimension == 3; });
-    const FittedCosts fitted = fit_costs(of_solids, model.caches);
-    model.solid[k] = fitted.costs;
-    model.flat[k] = fit_costs(all, model.caches).costs;
-    calibration.condition[k] = fitted.condition;
-    calibration.error[k] = fitted.error;
-    calibration.floor[k] = median(runs.apart[k]);
-  }
+  calibration.steadiness = steadiness_of(runs.front().steadiness);
+  calibration.all_threads = model;
+  calibration.quality = fit_all(runs.front(), model);
+  calibration.all_threads_quality = fit_all(runs.back(), calibration.all_threads);
   calibration.seconds = since_start.seconds();
   return calibration;
 }
@@ -293,7 +322,7 @@ Recheck recheck(const Calibration& calibration) {
   const CalibrationLattice large = make_calibration_lattice(30'000, false, caches, 3);
   prepared.add(large, ends(large));
   report("recheck", 0.5);
-  const Timings timings = prepared.timed(1.0);
+  const Timings timings = prepared.timed(1, 1.0);
   Recheck result;
   std::vector<std::string> moved;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
@@ -303,7 +332,7 @@ Recheck recheck(const Calibration& calibration) {
       ratios.push_back(timings.orders[i][kKernels[k]].best_ms / std::max(predicted, 1e-9));
     }
     result.ratio[k] = median(std::move(ratios));
-    const double most = std::max(0.15, 3 * (calibration.error[k] + calibration.floor[k]));
+    const double most = std::max(0.15, 3 * (calibration.quality.error[k] + calibration.quality.floor[k]));
     if (std::abs(std::log(result.ratio[k])) <= std::log(1 + most)) continue;
     moved.push_back(
         fmt::format("{} takes {:.2f} times as long as it did", kKernelTitles[k], result.ratio[k]));

@@ -12,24 +12,33 @@
 
 namespace meshorder {
 
+/// How well costs are determined, by kernel as kKernels lists them.
+struct FitQuality {
+  std::array<double, kKernels.size()> condition{};  ///< of the fit's equations, see condition_number
+  /// By what share predicted times of the problems differ from measured ones, the median.
+  std::array<double, kKernels.size()> error{};
+  /// By what share two timings of the same problem at other addresses differ, the median of some: no smaller
+  /// difference of two times tells anything.
+  std::array<double, kKernels.size()> floor{};
+
+  bool operator==(const FitQuality&) const = default;
+};
+
 /// What was measured of a machine, so that times can be predicted for it.
 struct Calibration {
-  CostModel model;  ///< its caches are those found, the first ones as reported where they agree
+  CostModel
+      model;  ///< on one thread; its caches are those found, the first ones as reported where they agree
+  FitQuality quality;
+  CostModel all_threads;  ///< on `threads` threads; the same as `model` where that is one
+  FitQuality all_threads_quality;
   std::string processor;
   std::string build;  ///< version, compiler and options of the program
   std::string date;   ///< "2026-11-22", in UTC
   Caches reported;    ///< by the system; empty where it reports none
   FoundCaches found;
-  int threads = 1;            ///< "all threads"
+  int threads = 1;            ///< all that there were
   double read_bandwidth = 0;  ///< GB/s, one thread
   double read_bandwidth_all = 0;
-  /// By kernel, as kKernels lists them: of the fit's equations, see condition_number; by what share predicted
-  /// times of the problems differ from measured ones, the median; and by what share two timings of the same
-  /// problem at other addresses differ, the median of some. The last is the floor below which no difference
-  /// of two times tells anything.
-  std::array<double, kKernels.size()> condition{};
-  std::array<double, kKernels.size()> error{};
-  std::array<double, kKernels.size()> floor{};
   Steadiness steadiness;
   double seconds = 0;  ///< that it took
 
@@ -50,10 +59,11 @@ CalibrationEffort effort_of(double seconds);
 /// Measures this machine: its caches, latencies and bandwidths, and the kernels themselves on small lattices
 /// whose vertices are scrambled within windows of half of each cache, so that each level's misses vary on
 /// their own. Kernels run on the calling thread, and are timed by its processor time, the least of several
-/// rounds. Costs are the non-negative least squares of relative errors. Reports its progress and polls.
+/// rounds; and then on all threads, by elapsed time. Costs are the non-negative least squares of relative
+/// errors. Reports its progress and polls.
 Calibration measure_machine(const CalibrationEffort& effort = {});
 
-/// A run of a kernel: the levels of reuse, and what it took.
+/// A run of a kernel: the levels of reuse, and what it took; on several threads, divided by `times_computed`.
 struct TimedReuse {
   RunReuse reuse;
   double milliseconds = 0;
@@ -63,7 +73,7 @@ struct TimedReuse {
 struct FittedCosts {
   KernelCosts costs;
   double condition = 1;
-  double error = 0;  ///< see Calibration::error
+  double error = 0;  ///< see FitQuality
 };
 
 /// Fits the costs of a kernel on a machine with such caches.

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "meshorder calibration 3";
+constexpr const char* kSchema = "meshorder calibration 4";
 
 std::string sizes_text(const Caches& caches) { return caches.level_bytes.empty() ? "" : to_string(caches); }
 
@@ -74,6 +74,23 @@ KernelCosts costs_from(const Json& json) {
   return costs;
 }
 
+/// The costs of a kernel on a number of threads, and how well they are determined.
+Json kernel_json(const CostModel& model, const FitQuality& quality, std::size_t k) {
+  return {{"solid", to_json(model.solid[k])},
+          {"flat", to_json(model.flat[k])},
+          {"condition", finite_json(quality.condition[k])},
+          {"error", quality.error[k]},
+          {"floor", quality.floor[k]}};
+}
+
+void kernel_from(const Json& json, std::size_t k, CostModel& model, FitQuality& quality) {
+  model.solid[k] = costs_from(json.at("solid"));
+  model.flat[k] = costs_from(json.at("flat"));
+  quality.condition[k] = condition_from(json.at("condition"));
+  quality.error[k] = number_from(json.at("error"));
+  quality.floor[k] = number_from(json.at("floor"));
+}
+
 }  // namespace
 
 CalibrationKey key_of_this_machine() {
@@ -100,11 +117,9 @@ fs::path calibration_file(const CalibrationKey& key) {
 std::string to_json_text(const Calibration& calibration) {
   Json kernels;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    kernels[std::string(to_string(kKernels[k]))] = {{"solid", to_json(calibration.model.solid[k])},
-                                                    {"flat", to_json(calibration.model.flat[k])},
-                                                    {"condition", finite_json(calibration.condition[k])},
-                                                    {"error", calibration.error[k]},
-                                                    {"floor", calibration.floor[k]}};
+    Json& kernel = kernels[std::string(to_string(kKernels[k]))];
+    kernel = kernel_json(calibration.model, calibration.quality, k);
+    kernel["all_threads"] = kernel_json(calibration.all_threads, calibration.all_threads_quality, k);
   }
   auto found = Json::array();
   for (const FoundCache& level : calibration.found.levels) {
@@ -152,15 +167,16 @@ Calibration parse_calibration(const std::string& text) {
     }
     calibration.found.memory_nanoseconds = number_from(json.at("memory_nanoseconds"));
     calibration.threads = json.at("threads").get<int>();
+    if (calibration.threads < 1) throw InvalidArgument("has no threads");
+    calibration.all_threads.machine = calibration.model.machine;
+    calibration.all_threads.caches = calibration.model.caches;
+    calibration.all_threads.threads = calibration.threads;
     calibration.read_bandwidth = number_from(json.at("read_bandwidth").at("one_thread"));
     calibration.read_bandwidth_all = number_from(json.at("read_bandwidth").at("all"));
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
       const Json& kernel = json.at("kernels").at(std::string(to_string(kKernels[k])));
-      calibration.model.solid[k] = costs_from(kernel.at("solid"));
-      calibration.model.flat[k] = costs_from(kernel.at("flat"));
-      calibration.condition[k] = condition_from(kernel.at("condition"));
-      calibration.error[k] = number_from(kernel.at("error"));
-      calibration.floor[k] = number_from(kernel.at("floor"));
+      kernel_from(kernel, k, calibration.model, calibration.quality);
+      kernel_from(kernel.at("all_threads"), k, calibration.all_threads, calibration.all_threads_quality);
     }
     const Json& steadiness = json.at("steadiness");
     calibration.steadiness = {number_from(steadiness.at("waiting")), number_from(steadiness.at("pace")),

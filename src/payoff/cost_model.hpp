@@ -33,10 +33,13 @@ using CostRow = std::array<double, 11>;
 CostRow as_row(const KernelCosts& costs);
 KernelCosts as_costs(const CostRow& row);
 
-/// Costs of the kernels on a machine, with one thread.
+/// Costs of the kernels on a machine.
 struct CostModel {
-  std::string machine;                             ///< in words, "2-core Zen 5, 48 KB L1, 1 MB L2, 32 MB L3"
-  Caches caches;                                   ///< what the costs belong to
+  std::string machine;  ///< in words, "2-core Zen 5, 48 KB L1, 1 MB L2, 32 MB L3"
+  Caches caches;        ///< what the costs belong to
+  /// That share each run, as KernelBench does. With several the costs are those of elapsed time, for the
+  /// accesses that one thread would make, times `times_computed`.
+  int threads = 1;
   std::array<KernelCosts, kKernels.size()> solid;  ///< of meshes of tetrahedra
   std::array<KernelCosts, kKernels.size()> flat;   ///< of meshes of triangles and edges
 

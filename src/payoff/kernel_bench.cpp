@@ -72,14 +72,15 @@ KernelBench::KernelBench(const Mesh& mesh, const CsrGraph& graph, int threads) {
       positions_[kPaddedStride * v + c] += moves[v][c];
     }
   }
-  if (threads > 1) share_out(threads);
+  if (threads > 1) share(threads);
   // the matrix that spmv multiplies by
   run(Kernel::assembly);
 }
 
 KernelBench::KernelBench(const Mesh& mesh, int threads) : KernelBench(mesh, vertex_graph(mesh), threads) {}
 
-void KernelBench::share_out(int threads) {
+void KernelBench::share(int threads) {
+  shares_.clear();
   const std::vector<Index> bounds = balanced_ranges(matrix_.offsets, threads);
   std::vector<OwnedBatches> of_elements = owned_batches(rest_.vertices, rest_.dimension + 1, bounds);
   std::vector<OwnedBatches> of_springs = owned_batches(springs_.ends, 2, bounds);

@@ -39,6 +39,9 @@ class KernelBench {
   KernelBench(const Mesh& mesh, const CsrGraph& graph, int threads = 1);
   explicit KernelBench(const Mesh& mesh, int threads = 1);
 
+  /// Shares the work of all runs from now on among so many threads, ≥ 2, in place of one.
+  void share(int threads);
+
   /// Runs a kernel once; clears its results first.
   void run(Kernel kernel);
 
@@ -67,7 +70,6 @@ class KernelBench {
     OwnedBatches springs;
   };
 
-  void share_out(int threads);
   void run_shared(Kernel kernel);
 
   BlockCsr matrix_;

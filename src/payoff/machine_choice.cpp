@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/machine_choice.hpp"
 
+#include "base/parallel.hpp"
 #include "base/suggestion.hpp"
 #include "base/text.hpp"
 #include "payoff/calibration_store.hpp"
@@ -27,25 +28,33 @@ std::string asked_name(std::string_view name) {
 
 }  // namespace
 
+std::string on_threads(int threads) {
+  return threads == 1 ? std::string() : " on " + std::to_string(threads) + " threads";
+}
+
 std::span<const ShippedMachine> shipped_machines() { return kShipped; }
 
 std::string MachineChoice::in_words() const {
-  if (!calibrated.empty()) return "this machine, calibrated " + calibrated;
+  if (!calibrated.empty()) return "this machine" + on_threads(model.threads) + ", calibrated " + calibrated;
   return stands_in ? "this machine's caches at the costs of " + name : name;
 }
 
-MachineChoice choose_machine(std::string_view name) {
+MachineChoice choose_machine(std::string_view name, bool all_threads) {
   const std::string asked = asked_name(name);
   MachineChoice choice;
   if (asked == kThis) {
     StoredCalibration stored = load_calibration(key_of_this_machine());
-    if (stored.calibration) return chosen(*stored.calibration);
+    if (stored.calibration) return chosen(*stored.calibration, all_threads);
     choice = {std::string(kShipped.front().name), kShipped.front().costs(), {}, true, {}, stored.fault};
     choice.model.caches = caches_of_this_machine();
     return choice;
   }
   for (const ShippedMachine& machine : kShipped) {
     if (machine.name != asked) continue;
+    if (all_threads && thread_count() > 1) {
+      throw InvalidArgument("the costs of '" + asked +
+                            "' are those of one thread; a calibration of this machine knows all its threads");
+    }
     choice.name = asked;
     choice.model = machine.costs();
     return choice;
@@ -57,10 +66,20 @@ MachineChoice choose_machine(std::string_view name) {
                         (nearest.empty() ? "; known are " + join(names) : nearest));
 }
 
-MachineChoice chosen(const Calibration& calibration) {
+MachineChoice chosen(const Calibration& calibration, bool all_threads) {
+  if (all_threads && calibration.threads != thread_count()) {
+    throw InvalidArgument("this machine was calibrated on " + std::to_string(calibration.threads) +
+                          " threads, and now there are " + std::to_string(thread_count()) +
+                          "; `meshorder calibrate` measures it anew");
+  }
   const bool steady = reason_to_doubt(calibration.steadiness).empty();
   const std::string calibrated = calibration.date + (steady ? "" : " while it was busy");
-  return {std::string(kThis), calibration.model, calibrated, false, calibration.floor, {}};
+  return {std::string(kThis),
+          all_threads ? calibration.all_threads : calibration.model,
+          calibrated,
+          false,
+          (all_threads ? calibration.all_threads_quality : calibration.quality).floor,
+          {}};
 }
 
 }  // namespace meshorder

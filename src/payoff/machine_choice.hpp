@@ -20,10 +20,13 @@ struct ShippedMachine {
 /// All of them; the first one stands for machines that are not calibrated.
 std::span<const ShippedMachine> shipped_machines();
 
+/// Returns " on 2 threads", nothing for one.
+std::string on_threads(int threads);
+
 /// The machine that times are predicted for.
 struct MachineChoice {
-  std::string name;  ///< a shipped machine's, or "this"
-  CostModel model;
+  std::string name;        ///< a shipped machine's, or "this"
+  CostModel model;         ///< of one thread, or of all
   std::string calibrated;  ///< "2026-11-22" if the costs were measured here; empty if they are shipped ones
   /// Shipped costs are used with the caches that this machine reports, because it is not calibrated.
   bool stands_in = false;
@@ -31,8 +34,8 @@ struct MachineChoice {
   std::array<double, kKernels.size()> floor{};
   std::string fault;  ///< see StoredCalibration
 
-  /// Returns what times are predicted for: "this machine, calibrated 2026-11-22" (perhaps "while it was
-  /// busy"), "zen5" or "this machine's caches at the costs of zen5".
+  /// Returns what times are predicted for: "this machine, calibrated 2026-11-22" (perhaps "this machine on 2
+  /// threads", and "while it was busy"), "zen5" or "this machine's caches at the costs of zen5".
   [[nodiscard]] std::string in_words() const;
 };
 
@@ -40,9 +43,13 @@ struct MachineChoice {
 /// build, else the first shipped machine with this machine's caches. An empty name stands for what the
 /// environment variable MESHORDER_MACHINE says, and "this" where it is not set. Throws InvalidArgument, which
 /// names the nearest one, for unknown names.
-MachineChoice choose_machine(std::string_view name = {});
+///
+/// With `all_threads` the costs are those of kernels that all threads share, which only a calibration of this
+/// machine has: throws InvalidArgument for a shipped machine and where this one was calibrated on another
+/// number of threads than there are now; a machine that stands in keeps the costs of one thread.
+MachineChoice choose_machine(std::string_view name = {}, bool all_threads = false);
 
 /// Returns what choose_machine returns for a calibrated machine.
-MachineChoice chosen(const Calibration& calibration);
+MachineChoice chosen(const Calibration& calibration, bool all_threads = false);
 
 }  // namespace meshorder

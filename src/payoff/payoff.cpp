@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/arena.hpp"
+#include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "kernels/simplices.hpp"
 #include "mesh/graphs.hpp"
@@ -31,7 +32,12 @@ Advice advise(const MeshView& mesh, const PayoffOptions& options) {
     if (!(options.budget_seconds >= 0)) {
       throw InvalidArgument("advise: a budget of " + std::to_string(options.budget_seconds) + " s");
     }
-    const MachineChoice machine = choose_machine(options.machine);
+    const int threads = options.all_threads ? thread_count() : 1;
+    const MachineChoice machine = choose_machine(options.machine, options.all_threads && options.predict);
+    if (options.predict && machine.model.threads != threads) {
+      throw InvalidArgument(
+          "advise: what misses cost on all threads is not known; calibrate() measures it on this machine");
+    }
     report("check");
     const Mesh copy = make_mesh(mesh);
     if (options.order.check != Check::none) check_mesh(copy);
@@ -41,6 +47,7 @@ Advice advise(const MeshView& mesh, const PayoffOptions& options) {
     const CsrGraph graph = vertex_graph(copy);
     AdviceOptions inside{.methods = options.methods,
                          .machine = machine,
+                         .threads = threads,
                          .ordering = options.order,
                          .graph_seconds = stopwatch.seconds(),
                          .predict = options.predict};

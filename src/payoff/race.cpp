@@ -63,6 +63,7 @@ Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options) {
   result.advice = advise(mesh, graph,
                          {.methods = contenders(),
                           .machine = options.machine,
+                          .threads = options.machine.model.threads,
                           .ordering = options.ordering,
                           .graph_seconds = options.graph_seconds,
                           .race_of = kInRace,

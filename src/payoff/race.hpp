@@ -16,7 +16,7 @@ namespace meshorder {
 struct RaceOptions {
   OrderOptions ordering = {};                ///< the race is for `ordering.workload`
   double graph_seconds = 0;                  ///< time that the vertex graph took
-  MachineChoice machine = choose_machine();  ///< whose predictions choose what is timed
+  MachineChoice machine = choose_machine();  ///< whose predictions choose what is timed, on as many threads
   OrderTimer timer = time_orders;            ///< nothing: predictions decide
 };
 

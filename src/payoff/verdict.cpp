@@ -58,7 +58,7 @@ std::string to_string(const Advice& advice) {
   if (kernels[k].factor <= 1) {
     return fmt::format(
         "nothing to gain: no kernel runs faster in another order, beyond the uncertainty of {}",
-        measured ? "the measurement" : "the prediction" + of_machine);
+        measured ? "the measurement" + on_threads(advice.threads) : "the prediction" + of_machine);
   }
   // the order for all kernels, unless only another one makes this kernel faster
   const double with_first =
@@ -76,8 +76,9 @@ std::string to_string(const Advice& advice) {
                             "run"),
                       kKernelTitles[k]);
   return fmt::format(
-      "as it is, the {} kernel runs {:.1f}× slower than it could{}; `{}` takes {} and pays for itself {}{}",
-      kKernelTitles[k], factor, measured ? "" : " (predicted" + of_machine + ")", command_for(candidate),
+      "as it is, the {} kernel runs{} {:.1f}× slower than it could{}; `{}` takes {} and pays for itself {}{}",
+      kKernelTitles[k], measured ? on_threads(advice.threads) : "", factor,
+      measured ? "" : " (predicted" + of_machine + ")", command_for(candidate),
       duration(candidate.order_seconds), pays, losses(advice, taken));
 }
 

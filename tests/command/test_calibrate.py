@@ -54,8 +54,9 @@ def test_a_calibration_says_what_it_measured(measured):
     assert latencies == sorted(latencies) and latencies[0] > 0
     assert list(measured["kernels"]) == KERNELS
     for kernel in measured["kernels"].values():
-        assert list(kernel) == ["solid", "flat", "condition", "error", "floor"]
-        for costs in kernel["solid"], kernel["flat"]:
+        assert list(kernel) == ["solid", "flat", "condition", "error", "floor", "all_threads"]
+        assert list(kernel["all_threads"]) == ["solid", "flat", "condition", "error", "floor"]
+        for costs in kernel["solid"], kernel["flat"], kernel["all_threads"]["solid"], kernel["all_threads"]["flat"]:
             assert list(costs) == ["access", "miss", "jump", "repeat", "wait"]
             assert len(costs["miss"]) == len(costs["jump"]) == 4
             assert min([costs["access"], *costs["miss"], *costs["jump"], costs["repeat"], costs["wait"]]) >= 0
@@ -101,6 +102,33 @@ def test_the_first_prediction_calibrates_and_the_next_one_does_not(here):
     second = here.run("info", "mesh.node")
     assert second.returncode == 0 and second.stderr == ""
     assert "predicted for this machine, calibrated 20" in second.stdout
+
+
+def test_kernels_are_judged_as_all_threads_share_them(here, measured):
+    threads = ["--threads", str(measured["threads"])]
+    on = "" if measured["threads"] == 1 else f" on {measured['threads']} threads"
+    assert here.json("info", "mesh.node", *threads)["verdict"]["threads"] == 1
+    for words in ["info", "mesh.node"], ["info", "mesh.node", "--measure"], ["order", "mesh.node", "-o", "out.node", "--predict"]:
+        result = here.json(*words, "--all-threads", *threads)
+        verdict = result["verdict"] if words[0] == "info" else result["race"]
+        assert verdict["threads"] == measured["threads"]
+        if "--measure" in words:
+            assert verdict["machine"] is None and verdict["as_it_is"]["measured_milliseconds"]["spmv"] > 0
+        else:
+            assert verdict["machine"].startswith(f"this machine{on}, calibrated ")
+    assert f"measured here{on}" in here.ok("info", "mesh.node", "--measure", "--all-threads", *threads).stdout
+
+
+def test_costs_of_all_threads_that_are_not_known_are_refused(here, stored):
+    content = json.loads(stored.read_text())
+    if content["threads"] > 1:
+        fault = here.fails("info", "mesh.node", "--machine", "zen5", "--all-threads")
+        assert "the costs of 'zen5' are those of one thread; a calibration of this machine knows all its threads" in fault
+    stored.write_text(json.dumps({**content, "threads": content["threads"] + 1}))
+    fault = here.fails("order", "mesh.node", "-o", "out.node", "--predict", "--all-threads")
+    assert f"was calibrated on {content['threads'] + 1} threads, and now there are" in fault
+    assert not (here.folder / "out.node").exists()
+    assert "--all-threads is for --predict and --measure" in here.fails("order", "mesh.node", "-o", "out.node", "--all-threads")
 
 
 def test_measuring_does_not_wait_for_a_calibration(here):

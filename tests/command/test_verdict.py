@@ -31,8 +31,8 @@ def test_the_order_that_was_advised_has_nothing_to_gain(command, scrambled):
 
 def test_verdict_keys(command, scrambled):
     result = command.json("info", scrambled)["verdict"]
-    assert set(result) == {"sentence", "by", "machine", "kernels", "as_it_is", "orders", "time_step"}
-    assert result["by"] == "prediction" and result["machine"] == "zen5"
+    assert set(result) == {"sentence", "by", "machine", "threads", "kernels", "as_it_is", "orders", "time_step"}
+    assert result["by"] == "prediction" and result["machine"] == "zen5" and result["threads"] == 1
     assert "(predicted for zen5)" in result["sentence"]
     assert set(result["kernels"]) == set(result["time_step"]) == KERNELS
     assert set(result["as_it_is"]["predicted_milliseconds"]) == KERNELS

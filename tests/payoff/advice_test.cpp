@@ -107,6 +107,27 @@ TEST(Advice, MeasuresWhereItIsAskedTo) {
   }
 }
 
+TEST(Advice, OnSeveralThreadsCountsWhatTheyComputeTwice) {
+  const Mesh mesh = grid_in_order("scrambled", "scrambled");
+  AdviceOptions options = quick();
+  const Advice alone = advice_on(mesh, options);
+  EXPECT_EQ(alone.threads, 1);
+  options.threads = 2;
+  EXPECT_THROW((void)advice_on(mesh, options), InvalidArgument);
+  options.machine.model.threads = 2;  // with the costs of one, so that only what is computed twice differs
+  options.measure_within = 0.0;
+  const Advice shared = advice_on(mesh, options);
+  EXPECT_EQ(shared.threads, 2);
+  const auto ratio = [&](std::size_t k) {
+    return (*shared.as_is.costs.predicted)[k] / (*alone.as_is.costs.predicted)[k];
+  };
+  EXPECT_EQ(ratio(kSpmv), 1);
+  EXPECT_NEAR(ratio(kElement), 2, 0.01);
+  EXPECT_NEAR(ratio(kAssembly), 2, 0.01);
+  EXPECT_GT((*shared.as_is.costs.measured)[kElement], 0);
+  EXPECT_NE(to_string(shared).find("runs on 2 threads "), std::string::npos) << to_string(shared);
+}
+
 TEST(Advice, ARaceTimesTheFirstAndThoseThatArePredictedToBeTheBest) {
   AdviceOptions options = quick();
   options.methods = {{"scrambled", "scrambled"},

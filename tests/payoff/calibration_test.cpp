@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/calibration.hpp"
 
+#include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "mesh/graphs.hpp"
 #include "payoff/calibration_lattices.hpp"
@@ -61,7 +62,11 @@ Calibration made_up() {
   calibration.model.caches = parse_cache_sizes("48K,1M,20M");
   double number = 0.25;
   const auto next = [&] { return number += 0.125; };
-  for (auto* const kernels : {&calibration.model.solid, &calibration.model.flat}) {
+  calibration.all_threads.machine = calibration.model.machine;
+  calibration.all_threads.caches = calibration.model.caches;
+  calibration.all_threads.threads = calibration.threads = 7;
+  for (auto* const kernels : {&calibration.model.solid, &calibration.model.flat,
+                              &calibration.all_threads.solid, &calibration.all_threads.flat}) {
     for (KernelCosts& costs : *kernels) {
       CostRow row;
       for (double& cost : row) cost = next();
@@ -73,11 +78,12 @@ Calibration made_up() {
   calibration.reported = reported_caches();
   calibration.date = "2026-01-02";
   calibration.found = {{{48 << 10, next()}, {21 << 20, next()}}, next()};
-  calibration.threads = 7;
   calibration.read_bandwidth = next();
   calibration.read_bandwidth_all = next();
-  for (auto* array : {&calibration.condition, &calibration.error, &calibration.floor}) {
-    for (double& value : *array) value = next() / 100;
+  for (FitQuality* const quality : {&calibration.quality, &calibration.all_threads_quality}) {
+    for (auto* const array : {&quality->condition, &quality->error, &quality->floor}) {
+      for (double& value : *array) value = next() / 100;
+    }
   }
   calibration.steadiness = {0.01, 0.02, 0.03};
   calibration.seconds = next();
@@ -173,13 +179,20 @@ TEST(Calibration, MeasuresThisMachineInSmall) {
   EXPECT_GT(calibration.read_bandwidth_all, 0);
   EXPECT_EQ(calibration.date.size(), 10U);
   EXPECT_GT(calibration.seconds, 0);
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    for (const int dimension : {2, 3}) {
-      const CostRow costs = as_row(calibration.model.costs(kKernels[k], dimension));
-      EXPECT_GT(std::accumulate(costs.begin(), costs.end(), 0.0), 0);
+  EXPECT_EQ(calibration.model.threads, 1);
+  EXPECT_EQ(calibration.all_threads.threads, calibration.threads);
+  EXPECT_EQ(calibration.all_threads.caches, calibration.model.caches);
+  for (const auto& [model, quality] :
+       {std::pair(&calibration.model, &calibration.quality),
+        std::pair(&calibration.all_threads, &calibration.all_threads_quality)}) {
+    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+      for (const int dimension : {2, 3}) {
+        const CostRow costs = as_row(model->costs(kKernels[k], dimension));
+        EXPECT_GT(std::accumulate(costs.begin(), costs.end(), 0.0), 0);
+      }
+      EXPECT_GE(quality->condition[k], 1);
+      EXPECT_LT(quality->error[k], 1);
     }
-    EXPECT_GE(calibration.condition[k], 1);
-    EXPECT_LT(calibration.error[k], 1);
   }
   EXPECT_EQ(parse_calibration(to_json_text(calibration)), calibration);
 }
@@ -203,7 +216,7 @@ TEST(CalibrationStore, GivesBackWhatItWasGiven) {
 
 TEST(CalibrationStore, KeepsInfiniteConditions) {
   Calibration calibration = made_up();
-  calibration.condition[2] = std::numeric_limits<double>::infinity();
+  calibration.quality.condition[2] = std::numeric_limits<double>::infinity();
   EXPECT_EQ(parse_calibration(to_json_text(calibration)), calibration);
 }
 
@@ -248,11 +261,13 @@ TEST(CalibrationStore, NoDamagedFileIsTaken) {
   EXPECT_THAT(fault_of("{}"), HasSubstr("is no calibration"));
   EXPECT_THAT(fault_of("[1]"), HasSubstr("is no calibration"));
   EXPECT_THAT(fault_of(R"({"schema": 3})"), HasSubstr("is no calibration"));
-  EXPECT_THAT(fault_of(test::with(text, "calibration 3", "calibration 2")), HasSubstr("is no calibration"));
+  EXPECT_THAT(fault_of(test::with(text, "calibration 4", "calibration 3")), HasSubstr("is no calibration"));
   EXPECT_THAT(fault_of(test::with(text, "\"spmv\"", "\"smpv\"")), HasSubstr("is damaged"));
   EXPECT_THAT(fault_of(test::with(text, "\"date\": \"2026-01-02\"", "\"date\": 7")), HasSubstr("is damaged"));
   EXPECT_THAT(fault_of(test::with(text, "\"access\": ", "\"access\": -")), HasSubstr("negative"));
   EXPECT_THAT(fault_of(test::with(text, "20971520", "1")), HasSubstr("sizes of no caches"));
+  EXPECT_THAT(fault_of(test::with(text, "\"threads\": 7", "\"threads\": 0")), HasSubstr("has no threads"));
+  EXPECT_THAT(fault_of(test::with(text, "\"all_threads\"", "\"some_threads\"")), HasSubstr("is damaged"));
   for (std::size_t size = 0; size + 2 < text.size(); size += 37)
     EXPECT_NE(fault_of(text.substr(0, size)), "");
 }
@@ -286,10 +301,34 @@ TEST(MachineChoice, IsTheOneNamedThenTheVariableThenThisMachine) {
   const MachineChoice calibrated = choose_machine("this");
   EXPECT_EQ(calibrated.in_words(), "this machine, calibrated 2026-01-02");
   EXPECT_EQ(calibrated.model, made_up().model);
-  EXPECT_EQ(calibrated.floor, made_up().floor);
+  EXPECT_EQ(calibrated.floor, made_up().quality.floor);
   Calibration busy = made_up();
   busy.steadiness.waiting = 0.5;
   EXPECT_EQ(chosen(busy).in_words(), "this machine, calibrated 2026-01-02 while it was busy");
+}
+
+TEST(MachineChoice, OnAllThreadsIsACalibrationOnAsMany) {
+  const test::TemporaryFolder folder;
+  const Variable cache("MESHORDER_CACHE", folder.path().string());
+  EXPECT_EQ(choose_machine("this", true).model.threads, 1);  // stands in
+  if (thread_count() > 1) {
+    EXPECT_THROW((void)choose_machine("zen5", true), InvalidArgument);
+  }
+  Calibration calibration = made_up();
+  calibration.threads = calibration.all_threads.threads = thread_count();
+  (void)save_calibration(calibration);
+  const MachineChoice all = choose_machine("this", true);
+  EXPECT_EQ(all.model, calibration.all_threads);
+  EXPECT_EQ(all.floor, calibration.all_threads_quality.floor);
+  EXPECT_EQ(all.in_words(), "this machine" + on_threads(thread_count()) + ", calibrated 2026-01-02");
+  calibration.threads = calibration.all_threads.threads = thread_count() + 1;
+  (void)save_calibration(calibration);
+  try {
+    (void)choose_machine("this", true);
+    FAIL();
+  } catch (const InvalidArgument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("; `meshorder calibrate` measures it anew"));
+  }
 }
 
 TEST(MachineChoice, UnknownNamesGetTheNearest) {

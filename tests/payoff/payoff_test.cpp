@@ -70,6 +70,19 @@ TEST(PublicAdvise, PredictsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(one.candidates.front().costs.predicted, two.candidates.front().costs.predicted);
 }
 
+TEST(PublicAdvise, MeasuresOnAllThreadsWithoutACalibrationButDoesNotPredict) {
+  const Mesh mesh = make_grid({.size = 6});
+  PayoffOptions options{.machine = "zen5", .all_threads = true, .order = {.run = {.threads = 2}}};
+  EXPECT_THROW((void)advise(view(mesh), options), InvalidArgument);
+  options.predict = false;
+  options.measure = true;
+  options.budget_seconds = 0;
+  const Advice advice = advise(view(mesh), options);
+  EXPECT_EQ(advice.threads, 2);
+  EXPECT_TRUE(advice.as_is.costs.measured);
+  EXPECT_EQ(advice.machine, "");
+}
+
 TEST(PublicAdvise, HasNothingToSayForTheOrderThatItAdvises) {
   Mesh mesh = scrambled_grid(16);
   (void)reorder(mesh);

@@ -40,7 +40,7 @@ class Candidate:
             included, in each of 64 × 64 tiles, n × n where there are fewer vertices; rows from the top. 16 KB.
         predicted: milliseconds of one run of each kernel by a cost model, to be compared with each other only; None if
             nothing was predicted.
-        measured: milliseconds of one run of each kernel on this machine, on one thread, the best of interleaved rounds;
+        measured: milliseconds of one run of each kernel on this machine, the best of interleaved rounds;
             None if nothing was measured.
         order_seconds: what the order cost: the graph, both methods and moving the mesh; 0 for "original".
     """
@@ -97,6 +97,7 @@ class Advice:
             and where nothing was measured.
         machine: the machine that the predicted times are for: "this machine, calibrated 2026-11-22", "zen5", or "this
             machine's caches at the costs of zen5"; empty where nothing was predicted.
+        threads: how many threads shared each run of a kernel.
     """
 
     verdict: str
@@ -105,6 +106,7 @@ class Advice:
     kernels: dict[str, KernelAdvice]
     doubt: str = ""
     machine: str = ""
+    threads: int = 1
 
     def __str__(self) -> str:
         return self.verdict
@@ -227,26 +229,34 @@ def calibrate(seconds: float = 16, *, keep: bool = True, **options: Any) -> Cali
 
 
 def advise(
-    mesh: Any, *, measure: bool = False, budget: float = 10, machine: str = "", **options: Any
+    mesh: Any,
+    *,
+    measure: bool = False,
+    budget: float = 10,
+    machine: str = "",
+    all_threads: bool = False,
+    **options: Any,
 ) -> Advice:
     """Tells how much faster simulators' kernels would run if a mesh were reordered. The mesh is not changed.
 
     Args:
         mesh: the path of a file, or a mesh that `reorder` takes, with lines, surfaces or volumes.
-        measure: True runs the kernels on this machine, on one thread; False predicts their times by reuse distances and
-            a cost model.
+        measure: True runs the kernels on this machine; False predicts their times by reuse distances and a cost model.
         budget: with ``measure``, seconds ≥ 0 from the start of the call: no round of measurements begins that would end
             later, but two are run.
         machine: what to predict for: "this" machine, as `calibrate` measured it, else its caches with the costs of
             "zen5"; or "zen5" or "zen4", whose costs come with the library. Empty: the environment variable
             MESHORDER_MACHINE names it, else "this".
+        all_threads: True judges the kernels as all threads (those of the option ``threads``) share each run, False as
+            one thread runs them. To predict the former needs a calibration of this machine on as many threads.
         **options: see `Options`.
 
     Returns:
         The verdict, the times as the mesh is and in other orders, and the best order for each kernel.
 
     Raises:
-        InvalidArgument: a mesh without lines, surfaces and volumes, an unknown machine, a negative budget.
+        InvalidArgument: a mesh without lines, surfaces and volumes, an unknown machine, a negative budget; times on
+            all threads of a machine that are not known.
         InputError: the file cannot be read.
         Stopped: ``progress`` returned False.
 
@@ -256,8 +266,8 @@ def advise(
             print(meshorder.advise("dragon.msh", measure=True))
     """
     with prepared(options) as given:
-        made = mesh_of(mesh)._handle.advise([], not measure, measure, budget, machine, given)
-    verdict, as_is, candidates, kernels, doubt, predicted_for = made
+        made = mesh_of(mesh)._handle.advise([], not measure, measure, budget, machine, all_threads, given)
+    verdict, as_is, candidates, kernels, doubt, predicted_for, threads = made
     return Advice(
         verdict,
         Candidate._of(as_is),
@@ -265,6 +275,7 @@ def advise(
         {kernel: KernelAdvice(*best) for kernel, best in kernels.items()},
         doubt,
         predicted_for,
+        threads,
     )
 
 
@@ -276,6 +287,7 @@ def compare(
     budget: float = 10,
     predict: bool = True,
     machine: str = "",
+    all_threads: bool = False,
     **options: Any,
 ) -> Comparison:
     """Compares orders of a mesh by their spans and the times of four kernels of simulators. The mesh is not changed.
@@ -285,10 +297,11 @@ def compare(
         methods: the name of a vertex method, or a list of names, to which the element method "auto" is added, or of pairs
             ``(vertex method, element method)``; None: what "auto" chooses for all kernels, and for springs where that
             differs.
-        measure: True runs the kernels on this machine, on one thread.
+        measure: True runs the kernels on this machine.
         budget: with ``measure``, seconds from the start of the call, as for `advise`.
         predict: True predicts the times by reuse distances and a cost model.
         machine: what to predict for, as for `advise`.
+        all_threads: whether all threads share each run, as for `advise`.
         **options: see `Options`.
 
     Returns:
@@ -305,5 +318,7 @@ def compare(
             meshorder.compare("dragon.msh", ["rcm", ("hilbert", "original")])
     """
     with prepared(options) as given:
-        made = mesh_of(mesh)._handle.compare(_pairs(methods), predict, measure, budget, machine, given)
+        made = mesh_of(mesh)._handle.compare(
+            _pairs(methods), predict, measure, budget, machine, all_threads, given
+        )
     return Comparison([Candidate._of(candidate) for candidate in made])
