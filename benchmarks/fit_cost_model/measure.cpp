@@ -206,15 +206,13 @@ void judge(const std::string& name, double budget, int threads, const std::strin
   }
   std::array<mo::Timings, 2> timings;
   for (mo::Timings& half : timings) {
-    std::vector<mo::KernelBench> benches;
-    for (const mo::Mesh& ordered : meshes) benches.emplace_back(ordered, threads);
-    std::vector<mo::KernelBench*> pointers;
-    for (mo::KernelBench& bench : benches) pointers.push_back(&bench);
-    half = mo::time_interleaved(pointers, {.budget_seconds = budget / 2,
-                                           .min_rounds = 3,
-                                           .max_rounds = 200,
-                                           .sample_seconds = 0.005,
-                                           .processor_time = threads == 1});
+    half = mo::time_orders(mo::index_size(meshes),
+                           [&](mo::Index i) { return mo::KernelBench(meshes[i], threads); },
+                           {.budget_seconds = budget / 2,
+                            .min_rounds = 3,
+                            .max_rounds = 200,
+                            .sample_seconds = 0.005,
+                            .processor_time = threads == 1});
   }
   for (std::size_t i = 0; i < orders.size(); ++i) {
     for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
