@@ -76,8 +76,8 @@ std::string to_string(const Advice& advice) {
                             "run"),
                       kKernelTitles[k]);
   return fmt::format(
-      "as it is, the {} kernel runs{} {:.1f}× slower than it could{}; `{}` takes {} and pays for itself {}{}",
-      kKernelTitles[k], measured ? on_threads(advice.threads) : "", factor,
+      "as it is, the {} kernel runs {:.1f}× slower{} than it could{}; `{}` takes {} and pays for itself {}{}",
+      kKernelTitles[k], factor, measured ? on_threads(advice.threads) : "",
       measured ? "" : " (predicted" + of_machine + ")", command_for(candidate),
       duration(candidate.order_seconds), pays, losses(advice, taken));
 }
