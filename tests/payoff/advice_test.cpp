@@ -125,7 +125,8 @@ TEST(Advice, OnSeveralThreadsCountsWhatTheyComputeTwice) {
   EXPECT_NEAR(ratio(kElement), 2, 0.01);
   EXPECT_NEAR(ratio(kAssembly), 2, 0.01);
   EXPECT_GT((*shared.as_is.costs.measured)[kElement], 0);
-  EXPECT_NE(to_string(shared).find("× slower on 2 threads than it could"), std::string::npos) << to_string(shared);
+  EXPECT_NE(to_string(shared).find("× slower on 2 threads than it could"), std::string::npos)
+      << to_string(shared);
 }
 
 TEST(Advice, ARaceTimesTheFirstAndThoseThatArePredictedToBeTheBest) {
