@@ -270,6 +270,22 @@ TEST(Vtu, FolderOrEmptyFileIsAnError) {
   EXPECT_NE(read_error(folder.file("d.vtu", "")).find("is empty"), std::string::npos);
 }
 
+TEST(Vtu, ValuesStandAfterCommentsAndInformationToo) {
+  const TemporaryFolder folder;
+  std::string text = with(kSmallVtu, "NaN -inf", "3 4");
+  const Mesh plain = read_mesh(folder.file("a.vtu", text));
+  // in every array: its values come after both
+  for (std::size_t at = text.find("<DataArray"); at != std::string::npos;
+       at = text.find("<DataArray", at + 1)) {
+    const std::size_t end = text.find('>', at) + 1;
+    text.insert(
+        end,
+        "\n <!-- by hand -->\n <InformationKey name=\"UNITS\" location=\"vtkDataArray\">9</InformationKey>"
+        "\n <!-- 1 2 3 -->");
+  }
+  expect_same(read_mesh(folder.file("b.vtu", text)), plain);
+}
+
 TEST(Vtu, MixedLineEndsAreRead) {
   std::string text = kSmallVtu;
   int i = 0;

@@ -19,6 +19,8 @@ bool is_name_character(char c) {
          c == '-' || c == '.';
 }
 
+bool is_blank(std::string_view text) { return text.find_first_not_of(kXmlBlanks) == std::string_view::npos; }
+
 /// Decodes one entity of XML, "lt" or "#65"; empty if it is none.
 std::string entity(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, char>, 5> kNamed{
@@ -174,7 +176,8 @@ void VtuDocument::parse() {
       throw error_at(all.size(), "unexpected end of file in <" + open.back().name + ">",
                      "it may be cut short");
     }
-    if (!open.empty() && open.back().text.data() == nullptr) open.back().text = all.substr(p, tag - p);
+    // comments and children can stand before the text
+    if (!open.empty() && is_blank(open.back().text)) open.back().text = all.substr(p, tag - p);
     const std::string_view rest = all.substr(tag);
     const auto skip_to = [&](std::string_view end) {
       const std::size_t found = all.find(end, tag);

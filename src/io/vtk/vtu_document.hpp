@@ -23,7 +23,7 @@ struct VtuElement {
   std::vector<std::pair<std::string, std::string>> attributes;
   std::size_t at = 0;     ///< byte of its <
   std::size_t end = 0;    ///< byte after it
-  std::string_view text;  ///< its text up to its first child
+  std::string_view text;  ///< its first text that is not blank, up to the next child or comment
   std::vector<VtuElement> children;
 
   /// Returns the value of an attribute, or nullptr.
