@@ -116,4 +116,4 @@ class Browser:
         messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         asked = [message["params"]["request"]["url"] for message in messages
                  if message["method"] == "Network.requestWillBeSent"]
-        return [url for url in asked if not url.startswith(("data:", "about:", "chrome:"))]
+        return [url for url in asked if not url.startswith(("data:", "about:", "chrome:", "chrome-untrusted:"))]
