@@ -154,6 +154,10 @@ def test_networkx_refusals():
     with pytest.raises(nx.NetworkXNotImplemented):
         meshorder.networkx.fiedler_vector(nx.DiGraph([(0, 1)]))
     assert meshorder.networkx.algebraic_connectivity(nx.empty_graph(3)) == 0
+    out_of_reach = nx.grid_2d_graph(40, 40)  # its residual is above this
+    for function in ("fiedler_vector", "algebraic_connectivity", "spectral_ordering"):
+        with pytest.raises(nx.ExceededMaxIterations, match="did not reach the tolerance 1e-30 in 2000 iterations"):
+            getattr(meshorder.networkx, function)(out_of_reach, tol=1e-30)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from typing import Any
 
 from . import _core
 from ._meshes import Mesh, mesh_of_arrays
+from ._options import whole
 from .hosts import host_of
 
 
@@ -58,7 +59,7 @@ def read(
     Raises:
         InputError: the file is missing, faulty or without cells, has an unknown extension, needs more than the limit,
             or names files in other folders. The message names the line or byte.
-        InvalidArgument: an unknown format.
+        InvalidArgument: an unknown format, a limit that is not a whole number of bytes.
         Unavailable: this build, or meshio, lacks a library that the file needs.
 
     Example:
@@ -66,8 +67,9 @@ def read(
         >>> mesh
         <Mesh: 3 vertices, 1 cells, off>
     """
+    limit = None if memory_limit is None else whole(memory_limit, 2**64 - 1, "memory_limit")
     if isinstance(source, (bytes, bytearray, memoryview)):
-        return Mesh(*_core.read_bytes(bytes(source), format or "", memory_limit))
+        return Mesh(*_core.read_bytes(bytes(source), format or "", limit))
     from . import _foreign  # takes time to import
 
     path = os.fspath(source)
@@ -76,7 +78,7 @@ def read(
         return _foreign.read(path, foreign)
     # the letters of a path are folders, too: "/", say
     folders = [include_folders] if isinstance(include_folders, (str, os.PathLike)) else include_folders
-    return Mesh(*_core.read(path, format or "", memory_limit, [os.fspath(folder) for folder in folders]))
+    return Mesh(*_core.read(path, format or "", limit, [os.fspath(folder) for folder in folders]))
 
 
 def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:

@@ -17,7 +17,7 @@ from ._arrays import integers
 from ._arrays import points as as_points
 from ._errors import InvalidArgument
 from ._graphs import Order
-from ._options import prepared
+from ._options import prepared, whole
 
 #: names of shapes, by the library's number
 SHAPES: tuple[str, ...] = _core.shapes
@@ -95,9 +95,10 @@ def order_arrays(
     coordinates = None if points is None else as_points(points)
     if coordinates is None and vertex_count is None:
         raise InvalidArgument("order_mesh: without points vertex_count must be given")
+    count = 0 if vertex_count is None else whole(vertex_count, 2**63 - 1, "vertex_count")
     arrays = cell_arrays(cells, 3 if coordinates is None else coordinates.shape[1])
     with prepared(options) as given:
-        return MeshOrder._of(_core.order_mesh(coordinates, arrays, vertex_count or 0, vertices, elements, given))
+        return MeshOrder._of(_core.order_mesh(coordinates, arrays, count, vertices, elements, given))
 
 
 class Mesh:

@@ -81,7 +81,7 @@ def prepared(options: Options | dict[str, Any]) -> Iterator[dict[str, Any]]:
             given[name] = integers(given[name], name)
     for name, most in (("seed", 2**64 - 1), ("max_iterations", 2**31 - 1), ("threads", 2**31 - 1)):
         if name in given:
-            given[name] = _whole(given[name], most, name)
+            given[name] = whole(given[name], most, name)
     for name in ("tolerance", "time_limit"):
         if name in given:
             given[name] = _real(given[name], name)
@@ -100,7 +100,8 @@ def prepared(options: Options | dict[str, Any]) -> Iterator[dict[str, Any]]:
     yield given
 
 
-def _whole(value: Any, most: int, name: str) -> int:
+def whole(value: Any, most: int, name: str) -> int:
+    """Returns a whole number, 0 … ``most``; raises InvalidArgument for others."""
     try:
         number = operator.index(value)
     except TypeError:

@@ -13,6 +13,8 @@ from ._graphs import Fiedler, fiedler, networkx_arrays
 
 __all__ = ["algebraic_connectivity", "fiedler_vector", "spectral_ordering"]
 
+_MOST_ITERATIONS = 2000
+
 
 def _weights(graph: Any, weight: str | None) -> NDArray[np.float64] | None:
     """Returns the absolute weights of the edges, as networkx takes them, in the order of `networkx_arrays`; or None."""
@@ -28,7 +30,10 @@ def _weights(graph: Any, weight: str | None) -> NDArray[np.float64] | None:
 
 
 def _solved(graph: Any, weight: str | None, tol: float, seed: Any) -> Fiedler:
-    """Returns the Fiedler vectors of an undirected graph; refuses directed ones with networkx's exception."""
+    """Returns the Fiedler vectors of an undirected graph.
+
+    Raises networkx's exceptions for directed graphs and where the eigensolver does not converge.
+    """
     import networkx
 
     if graph.is_directed():
@@ -39,9 +44,14 @@ def _solved(graph: Any, weight: str | None, tol: float, seed: Any) -> Fiedler:
         kept = np.flatnonzero(weights)
         offsets, neighbours, weights = np.searchsorted(kept, offsets), neighbours[kept], weights[kept]
     start = int(seed) if isinstance(seed, (int, np.integer)) else 0
-    return fiedler(
-        (offsets, neighbours), weights=weights, tolerance=tol, seed=abs(start), max_iterations=2000
+    solved = fiedler(
+        (offsets, neighbours), weights=weights, tolerance=tol, seed=abs(start), max_iterations=_MOST_ITERATIONS
     )
+    if not solved.converged:
+        raise networkx.ExceededMaxIterations(
+            f"the eigensolver did not reach the tolerance {tol:g} in {_MOST_ITERATIONS} iterations; a larger tol may do"
+        )
+    return solved
 
 
 def _networkxs_own(name: str) -> Any:
@@ -80,6 +90,7 @@ def fiedler_vector(
     Raises:
         networkx.NetworkXError: the graph has fewer than two nodes, or is not connected.
         networkx.NetworkXNotImplemented: the graph is directed.
+        networkx.ExceededMaxIterations: the eigensolver does not reach ``tol`` in 2,000 iterations.
     """
     import networkx
 
@@ -106,6 +117,7 @@ def algebraic_connectivity(
     Raises:
         networkx.NetworkXError: the graph has fewer than two nodes.
         networkx.NetworkXNotImplemented: the graph is directed.
+        networkx.ExceededMaxIterations: the eigensolver does not reach ``tol`` in 2,000 iterations.
     """
     if normalized:
         return float(_networkxs_own("algebraic_connectivity")(G, weight, normalized, tol, method, seed))
@@ -128,6 +140,7 @@ def spectral_ordering(
     Raises:
         networkx.NetworkXError: the graph has no nodes.
         networkx.NetworkXNotImplemented: the graph is directed.
+        networkx.ExceededMaxIterations: the eigensolver does not reach ``tol`` in 2,000 iterations.
     """
     import networkx
 
