@@ -22,6 +22,7 @@
 #include <cmath>
 #include <ctime>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -194,28 +195,8 @@ void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double
   }
 }
 
-/// Puts the costs that fit the runs best into a model whose caches are known. Returns how well they do.
-FitQuality fit_all(const Runs& runs, CostModel& model) {
-  FitQuality quality;
-  model.threads = runs.threads;
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const std::vector<TimedReuse>& all = runs.timed[k];
-    std::vector<TimedReuse> of_solids;
-    std::copy_if(all.begin(), all.end(), std::back_inserter(of_solids),
-                 [](const TimedReuse& run) { return run.reuse.dimension == 3; });
-    const FittedCosts fitted = fit_costs(of_solids, model.caches);
-    model.solid[k] = fitted.costs;
-    model.flat[k] = fit_costs(all, model.caches).costs;
-    quality.condition[k] = fitted.condition;
-    quality.error[k] = fitted.error;
-    quality.floor[k] = median(runs.apart[k]);
-  }
-  return quality;
-}
-
-}  // namespace
-
-FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches) {
+/// Of each run, the share of its time that each of its counts takes at a nanosecond each.
+Rows shares_of(std::span<const TimedReuse> runs, const Caches& caches) {
   const std::array<Offset, 4> sizes = sizes_that_cost(caches);
   Rows rows{.columns = CostRow{}.size()};
   for (const TimedReuse& run : runs) {
@@ -223,21 +204,80 @@ FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches) {
     for (double& count : row) count *= 1e-6 / run.milliseconds;
     rows.push_back(row);
   }
+  return rows;
+}
+
+/// The times that costs predict, as shares of those that were measured.
+std::vector<double> predicted_shares(const Rows& rows, const CostRow& costs) {
+  std::vector<double> predicted;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    predicted.push_back(std::inner_product(costs.begin(), costs.end(), rows[i].begin(), 0.0));
+  return predicted;
+}
+
+double median_error(std::vector<double> predicted) {
+  for (double& share : predicted) share = std::abs(share - 1);
+  return median(std::move(predicted));
+}
+
+std::vector<TimedReuse> of_solids(std::span<const TimedReuse> runs) {
+  std::vector<TimedReuse> result;
+  std::copy_if(runs.begin(), runs.end(), std::back_inserter(result),
+               [](const TimedReuse& run) { return run.reuse.dimension == 3; });
+  return result;
+}
+
+/// Puts the costs that fit the runs best into a model whose caches are known. Returns how well they do.
+FitQuality fit_all(const Runs& runs, CostModel& model) {
+  FitQuality quality;
+  model.threads = runs.threads;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    const FittedCosts fitted = fit_costs(of_solids(runs.timed[k]), model.caches);
+    model.solid[k] = fitted.costs;
+    model.flat[k] = fit_costs(runs.timed[k], model.caches).costs;
+    quality.condition[k] = fitted.condition;
+    quality.error[k] = fitted.error;
+    quality.floor[k] = median(runs.apart[k]);
+  }
+  return quality;
+}
+
+/// As above, for runs on all threads, where costs on one thread are known. Threads that share a product with
+/// the matrix never wait for each other: all its costs change by one factor, which these few runs determine
+/// better than each cost.
+FitQuality fit_all_threads(const Runs& runs, const CostModel& one_thread, CostModel& model) {
+  FitQuality quality = fit_all(runs, model);
+  constexpr auto kProduct = static_cast<std::size_t>(Kernel::spmv);
+  const FittedCosts fitted =
+      scale_costs(of_solids(runs.timed[kProduct]), one_thread.solid[kProduct], model.caches);
+  model.solid[kProduct] = fitted.costs;
+  model.flat[kProduct] = scale_costs(runs.timed[kProduct], one_thread.flat[kProduct], model.caches).costs;
+  quality.condition[kProduct] = fitted.condition;
+  quality.error[kProduct] = fitted.error;
+  return quality;
+}
+
+}  // namespace
+
+FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches) {
+  const Rows rows = shares_of(runs, caches);
   const std::vector<double> ones(runs.size(), 1.0);
   const std::vector<double> costs = non_negative_least_squares(rows, ones);
-  FittedCosts result;
   CostRow row;
   std::copy(costs.begin(), costs.end(), row.begin());
-  result.costs = as_costs(row);
-  result.condition = condition_number(rows);
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    double predicted = 0;
-    for (std::size_t j = 0; j < row.size(); ++j) predicted += rows[i][j] * costs[j];
-    errors.push_back(std::abs(predicted - 1));
-  }
-  result.error = median(std::move(errors));
-  return result;
+  return {.costs = as_costs(row),
+          .condition = condition_number(rows),
+          .error = median_error(predicted_shares(rows, row))};
+}
+
+FittedCosts scale_costs(std::span<const TimedReuse> runs, const KernelCosts& costs, const Caches& caches) {
+  std::vector<double> predicted = predicted_shares(shares_of(runs, caches), as_row(costs));
+  const double factor = std::accumulate(predicted.begin(), predicted.end(), 0.0) /
+                        std::inner_product(predicted.begin(), predicted.end(), predicted.begin(), 0.0);
+  CostRow row = as_row(costs);
+  for (double& cost : row) cost *= factor;
+  for (double& share : predicted) share *= factor;
+  return {.costs = as_costs(row), .condition = 1, .error = median_error(std::move(predicted))};
 }
 
 CalibrationEffort effort_of(double seconds) {
@@ -305,7 +345,9 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   calibration.steadiness = steadiness_of(runs.front().steadiness);
   calibration.all_threads = model;
   calibration.quality = fit_all(runs.front(), model);
-  calibration.all_threads_quality = fit_all(runs.back(), calibration.all_threads);
+  calibration.all_threads_quality = calibration.threads > 1
+                                        ? fit_all_threads(runs.back(), model, calibration.all_threads)
+                                        : fit_all(runs.back(), calibration.all_threads);
   calibration.seconds = since_start.seconds();
   return calibration;
 }

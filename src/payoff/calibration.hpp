@@ -60,7 +60,8 @@ CalibrationEffort effort_of(double seconds);
 /// whose vertices are scrambled within windows of half of each cache, so that each level's misses vary on
 /// their own. Kernels run on the calling thread, and are timed by its processor time, the least of several
 /// rounds; and then on all threads, by elapsed time. Costs are the non-negative least squares of relative
-/// errors. Reports its progress and polls.
+/// errors; those of products with the matrix on all threads are those on one, times one factor. Reports its
+/// progress and polls.
 Calibration measure_machine(const CalibrationEffort& effort = {});
 
 /// A run of a kernel: the levels of reuse, and what it took; on several threads, divided by `times_computed`.
@@ -78,6 +79,9 @@ struct FittedCosts {
 
 /// Fits the costs of a kernel on a machine with such caches.
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches);
+
+/// Fits one factor to the runs, by which all of the costs are multiplied.
+FittedCosts scale_costs(std::span<const TimedReuse> runs, const KernelCosts& costs, const Caches& caches);
 
 /// What a quick look at a machine finds changed since it was calibrated.
 struct Recheck {
