@@ -13,14 +13,13 @@
 namespace meshorder {
 namespace {
 
-constexpr std::size_t kMostBlocks = 10000;
-
 /// Returns the labels of cells if they can be ids of blocks; else none.
-std::vector<std::int64_t> usable_labels(const Mesh& mesh) {
+std::vector<std::int64_t> usable_labels(const Mesh& mesh, bool with_wide_ones) {
   Labels labels = labels_of(mesh, Association::cells);
-  const bool small = std::all_of(labels.values.begin(), labels.values.end(),
-                                 [](std::int64_t x) { return std::in_range<std::int32_t>(x); });
-  return small ? std::move(labels.values) : std::vector<std::int64_t>();
+  const bool are_usable =
+      with_wide_ones || std::all_of(labels.values.begin(), labels.values.end(),
+                                    [](std::int64_t x) { return std::in_range<std::int32_t>(x); });
+  return are_usable ? std::move(labels.values) : std::vector<std::int64_t>();
 }
 
 /// Returns the set that each cell belongs to, from 1, where the sets have no cell in common with an earlier
@@ -67,13 +66,13 @@ bool divide_by(const Mesh& mesh, const std::vector<std::int64_t>& values, CellDi
 
 }  // namespace
 
-CellDivision divide_cells(const Mesh& mesh, bool by_sets) {
+CellDivision divide_cells(const Mesh& mesh, DividedBy divided_by) {
   CellDivision division;
-  std::vector<std::int64_t> values = usable_labels(mesh);
+  std::vector<std::int64_t> values = usable_labels(mesh, divided_by.wide_labels);
   division.by_labels =
       std::any_of(values.begin(), values.end(), [](std::int64_t label) { return label != 0; });
   if (!division.by_labels) {
-    values = by_sets ? sets_of_cells(mesh) : std::vector<std::int64_t>();
+    values = divided_by.sets ? sets_of_cells(mesh) : std::vector<std::int64_t>();
     division.by_sets = !values.empty();
   }
   if (!divide_by(mesh, values, division)) {

@@ -4,6 +4,7 @@
 #include <meshorder/mesh.hpp>
 #include <meshorder/permutation.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct CellPart {
   std::int64_t label = 0;
 };
 
+/// Labels of more kinds are no labels of blocks.
+inline constexpr std::size_t kMostBlocks = 10000;
+
 /// How cells are divided into blocks: by label, by sets where there are no labels, and by type.
 struct CellDivision {
   bool by_labels = false;
@@ -26,9 +30,14 @@ struct CellDivision {
   std::vector<CellPart> keys;      ///< in the order in which they appear; `first` is not used
 };
 
-/// Returns the division of a mesh. Labels of more than 10,000 kinds are no labels of blocks; `by_sets` allows
-/// sets in place of labels. O(cells · log blocks).
-CellDivision divide_cells(const Mesh& mesh, bool by_sets);
+/// What may divide cells into blocks, beside labels of 32 bits.
+struct DividedBy {
+  bool sets = false;         ///< where there are no labels
+  bool wide_labels = false;  ///< labels of 64 bits
+};
+
+/// Returns the division of a mesh. O(cells · log blocks).
+CellDivision divide_cells(const Mesh& mesh, DividedBy divided_by);
 
 /// Returns the places of cells block by block, cells of the highest dimension first; `blocks` receives the
 /// first cell of each. O(cells).

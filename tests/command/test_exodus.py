@@ -230,6 +230,24 @@ def content(path):
                 "side sets": side_sets, "element sets": element_sets, "plain": plain}
 
 
+def write_blocks_of_one(path, ids):
+    """Writes two tetrahedra, each a block with an id of 64 bits."""
+    with netCDF4.Dataset(path, "w", format="NETCDF4") as f:
+        f.api_version, f.version, f.floating_point_word_size = numpy.float32(5.22), numpy.float32(5.22), numpy.int32(8)
+        sizes = {"num_dim": 3, "num_nodes": 5, "num_elem": 2, "num_el_blk": 2, "num_el_in_blk1": 1, "num_nod_per_el1": 4,
+                 "num_el_in_blk2": 1, "num_nod_per_el2": 4}
+        for name, size in sizes.items():
+            f.createDimension(name, size)
+        for name, values in (("x", [0, 1, 0, 0, 1]), ("y", [0, 0, 1, 0, 1]), ("z", [0, 0, 0, 1, 1])):
+            f.createVariable("coord" + name, "f8", ("num_nodes",))[:] = values
+        f.createVariable("eb_prop1", "i8", ("num_el_blk",)).setncattr("name", "ID")
+        f["eb_prop1"][:] = ids
+        for block in (1, 2):
+            connect = f.createVariable(f"connect{block}", "i4", (f"num_el_in_blk{block}", f"num_nod_per_el{block}"))
+            connect.elem_type = "TETRA"
+            connect[:] = [[1, 2, 3, 4], [2, 3, 4, 5]][block - 1]
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_everything_follows_the_order(command, tmp_path, kind):
     write_all(tmp_path / "a.exo", kind)
@@ -544,6 +562,17 @@ def test_types_of_variables_stay(command, tmp_path):
     with netCDF4.Dataset(tmp_path / "a.exo") as a, netCDF4.Dataset(tmp_path / "c.exo") as c:
         for name in ("vals_nod_var", "vals_nset_var1ns1", "vals_sset_var1ss1", "vals_elem_var1eb1"):
             assert c[name].dtype == a[name].dtype and c[name][:].tolist() == a[name][:].tolist(), name
+
+
+@pytest.mark.parametrize("ids", [[2**40, 2**31], [7, 2**62], [-1, 2**31 - 1]])
+def test_ids_of_64_bits_stay(command, tmp_path, ids):
+    write_blocks_of_one(tmp_path / "a.exo", ids)
+    command.ok("order", "a.exo", "-o", "b.exo", "--vertices", "scrambled", "--elements", "scrambled", "--maps", "m")
+    command.ok("apply", "m", "b.exo", "-o", "c.exo", "--inverse")
+    with netCDF4.Dataset(tmp_path / "a.exo") as a, netCDF4.Dataset(tmp_path / "c.exo") as c:
+        for name in ("eb_prop1", "connect1", "connect2", "coordx", "coordy", "coordz"):
+            assert c[name][:].tolist() == a[name][:].tolist(), name
+        assert "vals_elem_var1eb1" not in c.variables and len(c.dimensions["num_el_blk"]) == 2
 
 
 def test_digits_that_no_type_of_all_blocks_has_are_told(command, tmp_path):

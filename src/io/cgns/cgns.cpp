@@ -165,7 +165,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
 
 /// Cells of lower dimensions, with which sets name boundaries, follow the others.
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
-  return places_by_division(divide_cells(mesh, true), blocks);
+  return places_by_division(divide_cells(mesh, {.sets = true}), blocks);
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ class Layout {
 
   /// Makes a section of each run of cells of one label, or set, and type.
   void add_sections(Node& zone) {
-    const CellDivision division = divide_cells(mesh_, true);
+    const CellDivision division = divide_cells(mesh_, {.sets = true});
     const Labels labels = labels_of(mesh_, Association::cells);
     metadata_->has_labels =
         labels.any() && (division.by_labels || std::all_of(labels.values.begin(), labels.values.end(),
