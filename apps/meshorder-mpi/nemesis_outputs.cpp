@@ -5,7 +5,6 @@
 #include "distributed/nemesis.hpp"
 #include "io/all_formats.hpp"
 #include "io/format.hpp"
-#include "io/stream/output_file.hpp"
 #include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
 
@@ -38,7 +37,7 @@ bool has_name_of_nemesis_piece(std::string_view file, std::string_view name) {
 
 }  // namespace
 
-NemesisOutputs::NemesisOutputs(std::string name) : name_(std::move(name)), first_(name_) {
+NemesisOutputs::NemesisOutputs(std::string name) : name_(std::move(name)) {
   (void)format_of(name_);   // whether this build has it
   (void)OutputFile(name_);  // whether something can be made there
   (void)old_pieces();
@@ -64,18 +63,23 @@ std::vector<fs::path> NemesisOutputs::old_pieces() const {
   return pieces;
 }
 
-std::vector<FilePath> NemesisOutputs::open(OutputSet& set, Index parts) {
-  std::vector<FilePath> files;
-  std::vector<fs::path> names;
+std::vector<std::string> NemesisOutputs::open(Index parts) {
+  std::vector<std::string> paths;
   for (Index part = 0; part < parts; ++part) {
-    names.emplace_back(distributed::nemesis_name(name_, parts, part));
-    files.emplace_back(names.back(), set);
+    names_.push_back(distributed::nemesis_name(name_, parts, part));
+    OutputFile& file = files_.emplace_back(names_.back());
+    file.close();
+    paths.push_back(file.temporary().string());
   }
+  return paths;
+}
+
+void NemesisOutputs::add_to(OutputSet& set) {
   for (const fs::path& old : old_pieces()) {
-    if (std::find(names.begin(), names.end(), old) == names.end()) set.remove(old);
+    if (std::find(names_.begin(), names_.end(), old.string()) == names_.end()) set.remove(old);
   }
-  first_ = names.front().string();
-  return files;
+  for (OutputFile& file : files_) set.add(std::move(file));
+  files_.clear();
 }
 
 bool names_nemesis_pieces(const std::string& pieces) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/index.hpp"
-#include "io/stream/file_path.hpp"
+#include "io/stream/output_file.hpp"
 #include "io/stream/output_set.hpp"
 
 #include <filesystem>
@@ -22,20 +22,24 @@ class NemesisOutputs {
   ///         meshorder did not write as one; Unavailable in a build without netCDF
   explicit NemesisOutputs(std::string name);
 
-  /// Returns the files of so many pieces, which the set puts in place, and has it remove pieces of an earlier
-  /// run that are none of these.
-  ///
-  /// @param set  outlives the result
-  [[nodiscard]] std::vector<FilePath> open(OutputSet& set, Index parts);
+  /// Makes the files of so many pieces, and returns the paths by which they are written.
+  [[nodiscard]] std::vector<std::string> open(Index parts);
+  /// Returns the names of the files that `open` made.
+  [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
+
+  /// Has the set put the files, which are written by now, in place, and remove pieces of an earlier run that
+  /// are none of these.
+  void add_to(OutputSet& set);
 
   /// Returns the file of the first piece; without the numbers before `open`.
-  [[nodiscard]] const std::string& first() const noexcept { return first_; }
+  [[nodiscard]] const std::string& first() const noexcept { return names_.empty() ? name_ : names_.front(); }
 
  private:
   [[nodiscard]] std::vector<std::filesystem::path> old_pieces() const;
 
   std::string name_;
-  std::string first_;
+  std::vector<std::string> names_;
+  std::vector<OutputFile> files_;
 };
 
 /// Returns whether --pieces asks for pieces in Nemesis: the name is that of a file of Exodus II.

@@ -62,23 +62,22 @@ DistributedOptions options_of(const Arguments& arguments) {
   return options;
 }
 
-/// Whether rank 0 has to read and write: for old numbers and chosen cells, where no loss is allowed, and for
-/// pieces in Nemesis.
+/// Whether rank 0 has to read and write: for old numbers and chosen cells, and where no loss is allowed.
 bool needs_root(const Arguments& arguments) {
-  return arguments.ids != "renumber" || arguments.keeping.dimension >= 0 || arguments.keeping.strict ||
-         arguments.has_nemesis_pieces();
+  return arguments.ids != "renumber" || arguments.keeping.dimension >= 0 || arguments.keeping.strict;
 }
 
 /// Returns the input as all ranks read it; nothing where rank 0 has to, for files of other kinds, for maps of
-/// cells whose nodes a Mesh has in another order, for maps without a file, and for pieces of .xdmf files.
+/// cells whose nodes a Mesh has in another order, for maps without a file, for pieces of .xdmf files, and for
+/// pieces in Nemesis.
 std::optional<FileSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
   const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
   const std::filesystem::path kind = extension(arguments.input);
   const bool with_maps = !arguments.maps.empty();
   const bool is_xdmf = distributed::is_xdmf(arguments.input);
   if ((kind != ".vtu" && kind != ".vtkhdf" && !is_xdmf) || (is_xdmf && !arguments.pieces.empty()) ||
-      (!arguments.output.empty() && extension(arguments.output) != kind) || needs_root(arguments) ||
-      (with_maps && arguments.output.empty())) {
+      arguments.has_nemesis_pieces() || (!arguments.output.empty() && extension(arguments.output) != kind) ||
+      needs_root(arguments) || (with_maps && arguments.output.empty())) {
     return std::nullopt;
   }
   std::optional<FileSlices> slices = FileSlices::open(communicator, arguments.input);
@@ -89,7 +88,9 @@ std::optional<FileSlices> slices_of(const Communicator& communicator, const Argu
 /// Returns an Exodus file as all ranks read it, where pieces alone are written, perhaps with maps.
 std::optional<ExodusSlices> exodus_slices_of(const Communicator& communicator, const Arguments& arguments) {
   if (!arguments.output.empty() || needs_root(arguments)) return std::nullopt;
-  return ExodusSlices::open(communicator, arguments.input);
+  std::optional<ExodusSlices> slices = ExodusSlices::open(communicator, arguments.input);
+  if (slices && arguments.has_nemesis_pieces() && !slices->has_blocks_of_pieces()) slices.reset();
+  return slices;
 }
 
 void run(const Arguments& arguments, const Communicator& communicator) {

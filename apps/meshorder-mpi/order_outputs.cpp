@@ -2,6 +2,7 @@
 #include "order_outputs.hpp"
 
 #include "base/text.hpp"
+#include "distributed/moved_grid.hpp"
 #include "distributed/moved_part.hpp"
 #include "distributed/nemesis.hpp"
 #include "io/format.hpp"
@@ -104,15 +105,25 @@ void OrderOutputs::write(const distributed::FileSlices& slices, const distribute
 
 void OrderOutputs::write(const distributed::ExodusSlices& slices, const distributed::DistributedOrder& order,
                          const MeshChecksums& before, Notes& notes) {
-  distributed::MovedPart moved(communicator_, slices.read_part(communicator_, notes), order, notes);
+  std::optional<distributed::MovedPart> moved(
+      std::in_place, communicator_, slices.read_part(communicator_, notes), order,
+      files_.has_nemesis_pieces() ? slices.block_ends() : std::vector<distributed::GlobalIndex>(), notes);
   if (!files_.maps.empty()) {
-    maps_ = write_sliced_maps(communicator_,
-                              {order.new_vertices, moved.new_cells(), order.report.part_starts,
-                               moved.ids(Association::vertices), moved.ids(Association::cells)},
-                              before, moved.slice(), files_.maps, set_);
+    maps_ = write_sliced_maps(
+        communicator_,
+        {order.new_vertices, moved->new_places(Association::cells), order.report.part_starts,
+         moved->ids(Association::vertices), moved->ids(Association::cells)},
+        before, moved->slice(), files_.maps, set_);
+  }
+  if (files_.has_nemesis_pieces()) {
+    const distributed::NemesisShare share =
+        nemesis_share(communicator_, *moved, slices.block_ends(), order.report.part_starts);
+    moved.reset();
+    return write_nemesis(share, order.report);
   }
   Notes of_pieces;
-  write_pieces(moved.grid(of_pieces), order.report, notes);
+  distributed::MovedGrid grid(communicator_, *moved);
+  write_pieces(grid.rows(of_pieces), order.report, notes);
   add_new(of_pieces, notes);
 }
 
@@ -131,11 +142,24 @@ void OrderOutputs::write_nemesis(const MeshToOrder& whole, const distributed::Di
                                  Notes& notes) {
   communicator_.at_root([&] {
     Notes of_pieces;
-    pieces_report_.ghost_vertices = distributed::write_nemesis_pieces(
-        whole.mesh, report.part_starts, nemesis_->open(set_, report.parts), of_pieces);
+    const std::vector<std::string> paths = nemesis_->open(report.parts);
+    pieces_report_.ghost_vertices = distributed::write_nemesis_pieces(whole.mesh, report.part_starts, paths,
+                                                                      nemesis_->names(), of_pieces);
+    nemesis_->add_to(set_);
     refuse_losses(of_pieces);
     add_new(of_pieces, notes);
   });
+}
+
+void OrderOutputs::write_nemesis(const distributed::NemesisShare& share,
+                                 const distributed::DistributedReport& report) {
+  const std::vector<std::string> paths =
+      communicator_.broadcast(communicator_.at_root([&] { return nemesis_->open(report.parts); }));
+  const std::vector<std::string> names =
+      communicator_.broadcast(nemesis_ ? nemesis_->names() : std::vector<std::string>{});
+  pieces_report_.ghost_vertices =
+      distributed::write_nemesis_pieces(communicator_, share, report.part_starts, paths, names);
+  communicator_.at_root([&] { nemesis_->add_to(set_); });
 }
 
 void OrderOutputs::write_pieces(const GridRows& grid, const distributed::DistributedReport& report,

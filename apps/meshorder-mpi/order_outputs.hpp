@@ -5,6 +5,7 @@
 #include "distributed/exodus_slices.hpp"
 #include "distributed/file_slices.hpp"
 #include "distributed/grid_rows.hpp"
+#include "distributed/nemesis.hpp"
 #include "distributed/order.hpp"
 #include "distributed/pieces.hpp"
 #include "io/stream/output_set.hpp"
@@ -81,6 +82,7 @@ class OrderOutputs {
   void write_pieces(const distributed::GridRows& grid, const distributed::DistributedReport& report,
                     Notes& notes);
   void write_nemesis(const MeshToOrder& whole, const distributed::DistributedReport& report, Notes& notes);
+  void write_nemesis(const distributed::NemesisShare& share, const distributed::DistributedReport& report);
   /// Throws InputError, at the root, for what pieces do not hold, where no loss is allowed.
   void refuse_losses(const Notes& losses) const;
 

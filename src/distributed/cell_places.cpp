@@ -4,7 +4,9 @@
 #include "distributed/halo.hpp"
 #include <meshorder/shape.hpp>
 
+#include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace meshorder::distributed {
 
@@ -51,6 +53,39 @@ std::vector<GlobalIndex> places_by_dimension(const Communicator& communicator, c
     for (std::size_t k = 0; k < cells.size(); ++k) places[cells[k]] = found[halo.position(wanted[k])];
   }
   return delivered<GlobalIndex>(communicator, slice.cells, in_order, places, GlobalIndex{-1});
+}
+
+std::vector<GlobalIndex> places_by_block(const Communicator& communicator, const Layout& cells,
+                                         const std::vector<GlobalIndex>& block_ends,
+                                         const std::vector<GlobalIndex>& in_order) {
+  const std::size_t blocks = block_ends.size() - 1;
+  const auto block_of = [&](GlobalIndex cell) {
+    const auto end = std::upper_bound(block_ends.begin() + 1, block_ends.end(), cell);
+    return static_cast<std::size_t>(end - block_ends.begin()) - 1;
+  };
+  const std::vector<GlobalIndex> counts = communicator.together([&] {
+    std::vector<GlobalIndex> result(blocks, 0);
+    for (const GlobalIndex cell : in_order) ++result[block_of(cell)];
+    return result;
+  });
+  // the first free place of each block for each rank
+  std::vector<GlobalIndex> next = communicator.gathered_at_root(counts);
+  communicator.at_root([&] {
+    std::vector<GlobalIndex> free(block_ends.begin(), block_ends.end() - 1);
+    for (std::size_t k = 0; k < next.size(); ++k)
+      free[k % blocks] += std::exchange(next[k], free[k % blocks]);
+  });
+  std::vector<Offset> starts;
+  for (int rank = 0; rank <= communicator.size(); ++rank)
+    starts.push_back(static_cast<Offset>(blocks) * rank);
+  next = communicator.scattered_from_root(next, starts);
+  const std::vector<GlobalIndex> places = communicator.together([&] {
+    std::vector<GlobalIndex> result;
+    result.reserve(in_order.size());
+    for (const GlobalIndex cell : in_order) result.push_back(next[block_of(cell)]++);
+    return result;
+  });
+  return delivered<GlobalIndex>(communicator, cells, in_order, places, GlobalIndex{-1});
 }
 
 }  // namespace meshorder::distributed

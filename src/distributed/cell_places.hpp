@@ -17,4 +17,15 @@ namespace meshorder::distributed {
                                                            const MeshSlice& slice,
                                                            const std::vector<GlobalIndex>& in_order);
 
+/// Returns the new place of each cell of this rank where cells stay in their blocks: those of a block take
+/// its places in the order in which `in_order` lists them. Every rank has to call it. O(cells · log blocks),
+/// O(blocks · ranks) at the root.
+///
+/// @param cells       who has which cells
+/// @param block_ends  0 and the end of each block, the same on all ranks
+/// @throws as `Communicator::exchange`
+[[nodiscard]] std::vector<GlobalIndex> places_by_block(const Communicator& communicator, const Layout& cells,
+                                                       const std::vector<GlobalIndex>& block_ends,
+                                                       const std::vector<GlobalIndex>& in_order);
+
 }  // namespace meshorder::distributed

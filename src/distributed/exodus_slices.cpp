@@ -12,6 +12,7 @@
 #endif
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <utility>
@@ -22,7 +23,13 @@ namespace meshorder::distributed {
 #ifdef MESHORDER_HAS_NETCDF
 namespace {
 
-/// Returns the numbers of vertices and cells of a file that all ranks may read; nothing for others.
+/// Returns whether pieces may have the blocks of a file.
+bool are_blocks_of_pieces(const exodus::Header& header) {
+  return !header.is_piece && header.blocks.size() <= kMostBlocks;
+}
+
+/// Returns the number of vertices of a file that all ranks may read, whether pieces may have its blocks, and
+/// the ends of these; nothing for others.
 std::vector<GlobalIndex> counts_of(const std::string& path) {
   std::error_code code;
   if (format_of(path).key() != "exodus" || without_gz(path) != path ||
@@ -33,14 +40,17 @@ std::vector<GlobalIndex> counts_of(const std::string& path) {
   const FilePath file(path);
   const ReadScope scope(file);
   const exodus::Header header = exodus::read_header(file);
-  const bool are_held = std::all_of(header.types.begin(), header.types.end(), [](const auto& type) {
-    return vtk::holds(Mesh{}, type.first, type.second);
-  });
+  const bool are_held =
+      std::all_of(header.blocks.begin(), header.blocks.end(), [](const exodus::BlockRecord& block) {
+        return block.nodes == 0 || vtk::holds(Mesh{}, block.shape, block.nodes);
+      });
   // numbers of VTK's types, by which cells may be others than their shapes and nodes tell
   const bool have_types = std::find(header.element_variables.begin(), header.element_variables.end(),
                                     vtk::kCellTypes) != header.element_variables.end();
   if (!are_held || have_types || header.vertices == 0 || header.cells == 0) return {};
-  return {header.vertices, header.cells};
+  std::vector<GlobalIndex> counts{header.vertices, are_blocks_of_pieces(header) ? 1 : 0};
+  counts.insert(counts.end(), header.block_ends.begin(), header.block_ends.end());
+  return counts;
 }
 
 /// Reads a part of a file by this rank.
@@ -99,7 +109,9 @@ std::optional<ExodusSlices> ExodusSlices::open(const Communicator& communicator,
   ExodusSlices slices;
   slices.path_ = path;
   slices.vertices_ = Layout::even(counts[0], communicator.size());
-  slices.cells_ = Layout::even(counts[1], communicator.size());
+  slices.cells_ = Layout::even(counts.back(), communicator.size());
+  slices.has_blocks_of_pieces_ = counts[1] != 0;
+  slices.block_ends_.assign(counts.begin() + 2, counts.end());
   return slices;
 }
 

@@ -9,6 +9,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace meshorder::distributed {
 
@@ -23,6 +24,12 @@ class ExodusSlices {
   /// @throws SharedError for a file of that kind that is damaged
   [[nodiscard]] static std::optional<ExodusSlices> open(const Communicator& communicator,
                                                         const std::string& path);
+
+  /// Returns 0 and the end of each block of elements.
+  [[nodiscard]] const std::vector<GlobalIndex>& block_ends() const noexcept { return block_ends_; }
+  /// Returns whether pieces in Nemesis may have these blocks: there are not too many of them, and the file is
+  /// not a piece itself.
+  [[nodiscard]] bool has_blocks_of_pieces() const noexcept { return has_blocks_of_pieces_; }
 
   /// Reads this rank's points and cells. Every rank has to call it. O(size of the slice).
   ///
@@ -43,6 +50,8 @@ class ExodusSlices {
   std::string path_;
   Layout vertices_;
   Layout cells_;
+  std::vector<GlobalIndex> block_ends_;
+  bool has_blocks_of_pieces_ = false;
 };
 
 }  // namespace meshorder::distributed

@@ -3,6 +3,8 @@
 
 #include "base/index.hpp"
 #include "distributed/parts.hpp"
+#include "distributed/piece_contents.hpp"
+#include "distributed/rows.hpp"
 #include "io/kept_cells.hpp"
 
 #include <algorithm>
@@ -29,6 +31,17 @@ Incidence items_of_parts(Index parts, Index items, const ForParts& for_parts) {
       result.vertices[static_cast<std::size_t>(next[static_cast<std::size_t>(part)]++)] = item;
     });
   }
+  return result;
+}
+
+/// Returns the first vertex of each part among those that a rank has, and behind them the end of the last
+/// one's.
+std::vector<GlobalIndex> local_starts(const std::vector<GlobalIndex>& vertices,
+                                      const std::vector<GlobalIndex>& part_starts) {
+  std::vector<GlobalIndex> result;
+  result.reserve(part_starts.size());
+  for (const GlobalIndex start : part_starts)
+    result.push_back(std::lower_bound(vertices.begin(), vertices.end(), start) - vertices.begin());
   return result;
 }
 
@@ -63,7 +76,13 @@ Incidence vertices_of_parts(const Mesh& mesh, const Incidence& cells,
 
 }  // namespace
 
-MeshParts::MeshParts(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts) {
+MeshParts::MeshParts(const Communicator& communicator, const Mesh& mesh, const ShareNumbers& numbers,
+                     const std::vector<GlobalIndex>& part_starts) {
+  communicator.together([&] { find_own(mesh, local_starts(numbers.vertices, part_starts)); });
+  find_sharing_parts(communicator, numbers);
+}
+
+void MeshParts::find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts) {
   const auto parts = static_cast<Index>(part_starts.size()) - 1;
   part_of_cells_.reserve(static_cast<std::size_t>(mesh.cell_count()));
   for (Index c = 0; c < mesh.cell_count(); ++c)
@@ -80,6 +99,68 @@ MeshParts::MeshParts(const Mesh& mesh, const std::vector<GlobalIndex>& part_star
     const auto own = std::find_if(begin, end, is_own);
     std::rotate(begin, own, std::find_if_not(own, end, is_own));
   }
+}
+
+/// Adds the parts of other ranks to those that have a vertex: the ranks that answer for vertices ask which
+/// parts have them, and tell all ranks that have one of several.
+void MeshParts::find_sharing_parts(const Communicator& communicator, const ShareNumbers& numbers) {
+  if (communicator.size() == 1) return;
+  struct Letter {
+    GlobalIndex vertex;
+    Index part;
+  };
+  const Parcels<Letter> sent = communicator.together([&] {
+    // numbers and so ranks ascend
+    Parcels<Letter> letters;
+    letters.starts.assign(static_cast<std::size_t>(communicator.size()) + 1, 0);
+    for (Index v = 0; v < index_size(numbers.vertices); ++v) {
+      const GlobalIndex vertex = numbers.vertices[static_cast<std::size_t>(v)];
+      for (const Index part : parts_with(v)) letters.values.push_back({vertex, part});
+      letters.starts[static_cast<std::size_t>(numbers.layout.owner(vertex)) + 1] += std::ssize(parts_with(v));
+    }
+    std::partial_sum(letters.starts.begin(), letters.starts.end(), letters.starts.begin());
+    return letters;
+  });
+  std::vector<Letter> asked = communicator.exchange(sent).values;
+  Rows shared;  // a vertex and its parts
+  std::vector<Dispatch> dispatches;
+  communicator.together([&] {
+    std::sort(asked.begin(), asked.end(), [](const Letter& a, const Letter& b) {
+      return std::pair(a.vertex, a.part) < std::pair(b.vertex, b.part);
+    });
+    const Layout ranks = ranks_of_parts(size(), communicator.size());
+    for (auto begin = asked.begin(), end = begin; begin != asked.end(); begin = end) {
+      end = std::find_if(begin, asked.end(), [&](const Letter& one) { return one.vertex != begin->vertex; });
+      if (end - begin == 1) continue;
+      shared.entries.push_back(begin->vertex);
+      int last_rank = -1;
+      for (auto one = begin; one != end; ++one) {
+        shared.entries.push_back(one->part);
+        const int rank = ranks.owner(one->part);
+        if (rank != last_rank) dispatches.push_back({rank, shared.size()});
+        last_rank = rank;
+      }
+      shared.end_row();
+    }
+  });
+  const Rows told = send_rows(communicator, std::move(shared), std::move(dispatches));
+  communicator.together([&] {
+    // vertices of all rows ascend
+    Incidence all;
+    all.vertex_count = parts_of_vertices_.vertex_count;
+    Offset row = 0;
+    for (Index v = 0; v < index_size(numbers.vertices); ++v) {
+      if (row < told.size() && told[row].front() == numbers.vertices[static_cast<std::size_t>(v)]) {
+        for (const GlobalIndex part : told[row++].subspan(1))
+          all.vertices.push_back(static_cast<Index>(part));
+      } else {
+        const auto own = parts_with(v);
+        all.vertices.insert(all.vertices.end(), own.begin(), own.end());
+      }
+      all.offsets.push_back(static_cast<Offset>(all.vertices.size()));
+    }
+    parts_of_vertices_ = std::move(all);
+  });
 }
 
 PartCutter::PartCutter(const Mesh& mesh, const MeshParts& parts)

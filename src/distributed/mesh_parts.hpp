@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "distributed/communicator.hpp"
 #include "distributed/layout.hpp"
+#include "distributed/mesh_share.hpp"
 #include "graph/incidence.hpp"
 #include <meshorder/mesh.hpp>
 
@@ -10,15 +12,20 @@
 
 namespace meshorder::distributed {
 
-/// Which cells and vertices the parts of a whole mesh have, without ghost cells: a cell is in the part of its
-/// last vertex, a vertex in each part whose cells use it; one that no cell uses is in its own.
+/// Which cells and vertices the parts of a mesh have, without ghost cells: a cell is in the part of its last
+/// vertex, a vertex in each part whose cells use it; one that no cell uses is in its own. A rank knows its
+/// own parts, and which others share their vertices; others have no cells here. Vertices and cells are
+/// numbered as in what the rank has of the mesh.
 class MeshParts {
  public:
-  /// O(entries · log parts).
+  /// Every rank has to call it. O(entries · log parts).
   ///
-  /// @param mesh         in its new order
+  /// @param mesh         what this rank has of the mesh, as in `MeshShare`
+  /// @param numbers      of its vertices and cells
   /// @param part_starts  as of `part_of`
-  MeshParts(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts);
+  /// @throws as `Communicator::exchange`
+  MeshParts(const Communicator& communicator, const Mesh& mesh, const ShareNumbers& numbers,
+            const std::vector<GlobalIndex>& part_starts);
 
   [[nodiscard]] Index size() const noexcept { return cells_.size(); }
   /// Returns the cells of a part, ascending.
@@ -26,12 +33,15 @@ class MeshParts {
   /// Returns the vertices of a part: the own ones, ascending, then those of other parts, ascending, by which
   /// those of a part follow each other.
   [[nodiscard]] std::span<const Index> vertices(Index part) const { return vertices_[part]; }
-  /// Returns the parts that have a vertex, ascending.
+  /// Returns the parts that have a vertex, on any rank, ascending.
   [[nodiscard]] std::span<const Index> parts_with(Index vertex) const { return parts_of_vertices_[vertex]; }
   /// Returns the part that has a cell.
   [[nodiscard]] Index part_with(Index cell) const { return part_of_cells_[static_cast<std::size_t>(cell)]; }
 
  private:
+  void find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts);
+  void find_sharing_parts(const Communicator& communicator, const ShareNumbers& numbers);
+
   std::vector<Index> part_of_cells_;
   Incidence cells_;              ///< of each part
   Incidence vertices_;           ///< of each part

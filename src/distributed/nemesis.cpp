@@ -5,6 +5,7 @@
 #include "base/text.hpp"
 #include "distributed/mesh_parts.hpp"
 #include "distributed/part_borders.hpp"
+#include "distributed/piece_contents.hpp"
 #include "distributed/text_store.hpp"
 #include "io/exodus/exodus.hpp"
 #include "io/format.hpp"
@@ -78,11 +79,12 @@ bool knows_all(const Mesh& mesh, const Metadata& metadata) {
 
 // ---- what pieces have beside the mesh
 
-/// Returns the bytes of numbers of 32 bits.
+/// Returns the bytes of numbers of a type.
+template <class Number>
 std::string bytes_of_numbers(const std::vector<std::int64_t>& values) {
   std::string bytes;
   for (const std::int64_t value : values) {
-    const auto number = static_cast<std::int32_t>(value);
+    const auto number = static_cast<Number>(value);
     bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
   }
   return bytes;
@@ -99,9 +101,15 @@ void add_integers(Metadata& metadata, std::string_view name, std::string_view di
   if (values.empty()) return;
   std::vector<exodus::Dimension> dimensions;
   if (!dimension.empty()) dimensions.push_back({std::string(dimension), values.size()});
-  // as the library of Exodus has them in files that are not of 64-bit numbers throughout
+  // as the library of Exodus has them: of 64 bits only where a file has such ids
+  const bool fit = std::all_of(values.begin(), values.end(),
+                               [](std::int64_t value) { return std::in_range<std::int32_t>(value); });
   metadata.plain.push_back(
-      {std::string(name), exodus::kInt, std::move(dimensions), {}, bytes_of_numbers(values)});
+      {std::string(name),
+       fit ? exodus::kInt : exodus::kInt64,
+       std::move(dimensions),
+       {},
+       fit ? bytes_of_numbers<std::int32_t>(values) : bytes_of_numbers<std::int64_t>(values)});
 }
 
 exodus::Attribute version_attribute(std::string name, float version) {
@@ -197,6 +205,25 @@ SideCounts counts_of_sides(const Mesh& mesh, const SetRecord& record) {
   return counts;
 }
 
+/// Returns what all pieces tell of the sets of nodes and sides: of each set of nodes the members and the
+/// distribution factors, then of each set of sides.
+std::vector<std::int64_t> counts_of_sets(const Mesh& mesh, const Metadata& metadata) {
+  std::vector<std::int64_t> counts;
+  for (const SetRecord& record : metadata.sets[exodus::kNodeSets].sets) {
+    const auto set = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& one) {
+      return one.association == Association::vertices && one.name == record.in_mesh;
+    });
+    counts.push_back(std::ssize(set->members));
+    counts.push_back(factors_of_nodes(mesh, record));
+  }
+  for (const SetRecord& record : metadata.sets[exodus::kSideSets].sets) {
+    const SideCounts of_set = counts_of_sides(mesh, record);
+    counts.push_back(of_set.sides);
+    counts.push_back(of_set.factors);
+  }
+  return counts;
+}
+
 /// Returns the number in Exodus II of a facet of an element.
 ///
 /// @param facet  place in `facets(shape, …)`
@@ -224,63 +251,15 @@ int side_of_facet(Shape shape, int facet, int coordinates, std::string_view type
   }
 }
 
-/// The parts of a mesh, the borders between them and what their files have in common.
-class NemesisPieces {
- public:
-  /// Finds the parts and their borders.
-  ///
-  /// @param mesh         outlives this object
-  /// @param part_starts  as of `part_of`
-  /// @param notes        receives what Exodus II holds in another way
-  NemesisPieces(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts, Notes& notes);
-  NemesisPieces(const NemesisPieces&) = delete;
-  NemesisPieces(NemesisPieces&&) = delete;
-  NemesisPieces& operator=(const NemesisPieces&) = delete;
-  NemesisPieces& operator=(NemesisPieces&&) = delete;
-  ~NemesisPieces() = default;
-
-  /// Returns how many parts there are.
-  [[nodiscard]] Index size() const noexcept { return parts_.size(); }
-  /// Returns how often pieces have a vertex that another has, too, the first time not counted.
-  [[nodiscard]] GlobalIndex repeated_vertices() const;
-
-  /// Writes the file of a part. O(size of the part · log).
-  ///
-  /// @throws InputError where it cannot be written
-  void write(Index part, const FilePath& path);
-
- private:
-  /// The mesh as a file of Exodus II holds it, and the places of its cells in the given one.
-  struct Held {
-    Mesh copy;  ///< not used where the given mesh is as a file holds it
-    std::vector<Index> given_cells;
-  };
-  /// The records of the blocks that have cells, in the order of these, and the first cell behind each; none
-  /// where the cells are not in blocks that the metadata know, in their order.
-  struct Blocks {
-    std::vector<const exodus::BlockRecord*> records;
-    std::vector<Index> ends;
-  };
-  [[nodiscard]] static Held held(const Mesh& mesh, Notes& notes);
-  [[nodiscard]] static Blocks blocks_of(const Mesh& mesh, const exodus::Metadata& metadata);
-  void count_whole();
-  [[nodiscard]] exodus::Metadata metadata_of(const Mesh& piece) const;
-  void add_numbers(Index part, Mesh& piece) const;
-  void add_load_balance(Index part, exodus::Metadata& metadata) const;
-  void add_node_maps(Index part, exodus::Metadata& metadata) const;
-  void add_element_maps(Index part, exodus::Metadata& metadata) const;
-
-  Held held_;
-  const Mesh& mesh_;
-  const exodus::Metadata& metadata_;
-  Blocks blocks_;
-  MeshParts parts_;
-  std::vector<std::vector<BorderFacet>> borders_;
-  PartCutter cutter_;
-  exodus::Metadata whole_;  ///< what all pieces tell of the whole mesh
+/// The blocks of a mesh that have cells, in the order of these.
+struct Blocks {
+  std::vector<const BlockRecord*> records;
+  std::vector<GlobalIndex> ends;  ///< number of the first cell behind each
 };
 
-NemesisPieces::Blocks NemesisPieces::blocks_of(const Mesh& mesh, const Metadata& metadata) {
+/// Returns the blocks of a whole mesh; none where its cells are not in blocks that the metadata know, in
+/// their order.
+Blocks blocks_of(const Mesh& mesh, const Metadata& metadata) {
   Blocks blocks;
   const CellDivision division = exodus::divide(mesh);
   const BlockRecord* next = metadata.blocks.data();
@@ -303,87 +282,130 @@ NemesisPieces::Blocks NemesisPieces::blocks_of(const Mesh& mesh, const Metadata&
   return blocks;
 }
 
-NemesisPieces::Held NemesisPieces::held(const Mesh& mesh, Notes& notes) {
-  const Metadata* const own = exodus_metadata(mesh);
-  if (own != nullptr && !blocks_of(mesh, *own).records.empty() && knows_all(mesh, *own))
-    return {{}, index_range(0, mesh.cell_count())};
-  TextStore store;
-  std::vector<Index> given_cells;
-  {
-    Mesh arranged = mesh;
-    arranged.format.clear();  // its cells may be in the order of another file
-    given_cells = arrange_cells(arranged, format_named("exodus")).new_to_old();
-    exodus::write(arranged, FilePath("the pieces", store), notes);
+/// Returns the blocks of a file that have cells.
+Blocks blocks_of(const Metadata& metadata, const std::vector<GlobalIndex>& ends) {
+  Blocks blocks;
+  for (std::size_t b = 0; b < metadata.blocks.size(); ++b) {
+    if (ends[b + 1] == ends[b]) continue;
+    blocks.records.push_back(&metadata.blocks[b]);
+    blocks.ends.push_back(ends[b + 1]);
   }
-  Notes ignored;
-  return {exodus::read(FilePath("the pieces", store), ignored), std::move(given_cells)};
+  return blocks;
 }
 
-NemesisPieces::NemesisPieces(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts, Notes& notes)
-    : held_(held(mesh, notes)),
-      mesh_(held_.copy.cell_count() > 0 ? held_.copy : mesh),
-      metadata_(*exodus_metadata(mesh_)),
-      blocks_(blocks_of(mesh_, metadata_)),
-      parts_(mesh_, part_starts),
-      borders_(facets_between(mesh_, parts_)),
-      cutter_(mesh_, parts_) {
-  if (blocks_.records.empty())
-    throw TooLarge("pieces of Exodus II have up to 10,000 blocks of elements; give a folder for .vtu pieces");
+/// What a rank has of a mesh of Exodus II in its new order.
+struct Source {
+  const Mesh& mesh;  ///< with metadata of Exodus II
+  const ShareNumbers& numbers;
+  const std::vector<GlobalIndex>& element_numbers;  ///< of the cells in the file of the whole mesh, from 0 on
+  Blocks blocks;                                    ///< of the whole mesh
+  std::vector<std::int64_t> set_counts;             ///< of the whole mesh
+  bool has_vertex_ids;
+  bool has_cell_ids;
+};
+
+/// The parts of a mesh that a rank has, the borders between them and what their files have in common.
+class NemesisPieces {
+ public:
+  /// Finds the parts and their borders. Every rank has to call it.
+  ///
+  /// @param source       what it refers to outlives this object
+  /// @param part_starts  as of `part_of`
+  NemesisPieces(const Communicator& communicator, Source source, const std::vector<GlobalIndex>& part_starts);
+  NemesisPieces(const NemesisPieces&) = delete;
+  NemesisPieces(NemesisPieces&&) = delete;
+  NemesisPieces& operator=(const NemesisPieces&) = delete;
+  NemesisPieces& operator=(NemesisPieces&&) = delete;
+  ~NemesisPieces() = default;
+
+  /// Writes the files of this rank's parts. Every rank has to call it. O(size of the parts · log).
+  ///
+  /// @return how often pieces have a vertex that another has, too, the first time not counted
+  /// @throws SharedError where one cannot be written
+  GlobalIndex write(const std::vector<std::string>& paths, const std::vector<std::string>& names);
+
+ private:
+  void count_whole();
+  void write_piece(Index part, const exodus::UnfinishedFile& file);
+  [[nodiscard]] exodus::Metadata metadata_of(const Mesh& piece) const;
+  void add_numbers(Index part, Mesh& piece) const;
+  void add_load_balance(Index part, exodus::Metadata& metadata) const;
+  void add_node_maps(Index part, exodus::Metadata& metadata) const;
+  void add_element_maps(Index part, exodus::Metadata& metadata) const;
+
+  const Communicator& communicator_;
+  Source source_;
+  const exodus::Metadata& metadata_;
+  MeshParts parts_;
+  std::vector<std::vector<BorderFacet>> borders_;
+  PartCutter cutter_;
+  exodus::Metadata whole_;  ///< what all pieces tell of the whole mesh
+};
+
+NemesisPieces::NemesisPieces(const Communicator& communicator, Source source,
+                             const std::vector<GlobalIndex>& part_starts)
+    : communicator_(communicator),
+      source_(std::move(source)),
+      metadata_(*exodus_metadata(source_.mesh)),
+      parts_(communicator, source_.mesh, source_.numbers, part_starts),
+      borders_(facets_between(communicator, source_.mesh, source_.numbers, parts_)),
+      cutter_(source_.mesh, parts_) {
   count_whole();
-}
-
-GlobalIndex NemesisPieces::repeated_vertices() const {
-  GlobalIndex count = 0;
-  for (Index part = 0; part < size(); ++part) count += std::ssize(parts_.vertices(part));
-  return count - mesh_.vertex_count();
 }
 
 /// Fills in what all pieces tell of the whole mesh.
 void NemesisPieces::count_whole() {
-  whole_.dimensions = {{"num_processors", static_cast<std::size_t>(size())}, {"num_procs_file", 1}};
-  add_dimension(whole_, "num_nodes_global", mesh_.points.size());
-  add_dimension(whole_, "num_elems_global", mesh_.cells.shapes.size());
+  whole_.dimensions = {{"num_processors", static_cast<std::size_t>(parts_.size())}, {"num_procs_file", 1}};
+  const Blocks& blocks = source_.blocks;
+  add_dimension(whole_, "num_nodes_global", static_cast<std::size_t>(source_.numbers.layout.size()));
+  add_dimension(whole_, "num_elems_global", static_cast<std::size_t>(blocks.ends.back()));
   add_integers(whole_, "nem_ftype", "", {0});  // 'p', parallel
   std::vector<std::int64_t> ids;
   std::vector<std::int64_t> counts;
   for (const BlockRecord& block : metadata_.blocks) {
-    const auto found = std::find(blocks_.records.begin(), blocks_.records.end(), &block);
-    const auto b = static_cast<std::size_t>(found - blocks_.records.begin());
+    const auto found = std::find(blocks.records.begin(), blocks.records.end(), &block);
+    const auto b = static_cast<std::size_t>(found - blocks.records.begin());
     ids.push_back(block.id);
-    counts.push_back(found == blocks_.records.end() ? 0
-                                                    : blocks_.ends[b] - (b == 0 ? 0 : blocks_.ends[b - 1]));
+    counts.push_back(found == blocks.records.end() ? 0 : blocks.ends[b] - (b == 0 ? 0 : blocks.ends[b - 1]));
   }
   add_integers(whole_, "el_blk_ids_global", "num_el_blk_global", ids);
   add_integers(whole_, "el_blk_cnt_global", "num_el_blk_global", counts);
-  std::vector<std::int64_t> factors;
-  ids.clear();
-  counts.clear();
-  for (const SetRecord& record : metadata_.sets[exodus::kNodeSets].sets) {
-    const auto set = std::find_if(mesh_.sets.begin(), mesh_.sets.end(), [&](const EntitySet& one) {
-      return one.association == Association::vertices && one.name == record.in_mesh;
-    });
-    ids.push_back(record.id);
-    counts.push_back(std::ssize(set->members));
-    factors.push_back(factors_of_nodes(mesh_, record));
-  }
-  add_integers(whole_, "ns_ids_global", "num_ns_global", ids);
-  add_integers(whole_, "ns_node_cnt_global", "num_ns_global", counts);
-  add_integers(whole_, "ns_df_cnt_global", "num_ns_global", factors);
-  ids.clear();
-  counts.clear();
-  factors.clear();
-  for (const SetRecord& record : metadata_.sets[exodus::kSideSets].sets) {
-    const SideCounts of_set = counts_of_sides(mesh_, record);
-    ids.push_back(record.id);
-    counts.push_back(of_set.sides);
-    factors.push_back(of_set.factors);
-  }
-  add_integers(whole_, "ss_ids_global", "num_ss_global", ids);
-  add_integers(whole_, "ss_side_cnt_global", "num_ss_global", counts);
-  add_integers(whole_, "ss_df_cnt_global", "num_ss_global", factors);
+  auto count = source_.set_counts.begin();
+  const auto add_sets = [&](std::size_t kind, const std::string& prefix, const std::string& members) {
+    std::vector<std::int64_t> factors;
+    ids.clear();
+    counts.clear();
+    for (const SetRecord& record : metadata_.sets[kind].sets) {
+      ids.push_back(record.id);
+      counts.push_back(*count++);
+      factors.push_back(*count++);
+    }
+    const std::string dimension = "num_" + prefix + "_global";
+    add_integers(whole_, prefix + "_ids_global", dimension, ids);
+    add_integers(whole_, prefix + "_" + members + "_cnt_global", dimension, counts);
+    add_integers(whole_, prefix + "_df_cnt_global", dimension, factors);
+  };
+  add_sets(exodus::kNodeSets, "ns", "node");
+  add_sets(exodus::kSideSets, "ss", "side");
 }
 
-void NemesisPieces::write(Index part, const FilePath& path) {
+GlobalIndex NemesisPieces::write(const std::vector<std::string>& paths,
+                                 const std::vector<std::string>& names) {
+  const Layout ranks = ranks_of_parts(parts_.size(), communicator_.size());
+  const int rank = communicator_.rank();
+  const GlobalIndex vertices = communicator_.together([&] {
+    GlobalIndex count = 0;
+    for (GlobalIndex p = ranks.begin(rank); p < ranks.end(rank); ++p) {
+      const auto place = static_cast<std::size_t>(p);
+      write_piece(static_cast<Index>(p), {paths[place], names[place]});
+      count += std::ssize(parts_.vertices(static_cast<Index>(p)));
+    }
+    return count;
+  });
+  return communicator_.sum(vertices) - source_.numbers.layout.size();
+}
+
+void NemesisPieces::write_piece(Index part, const exodus::UnfinishedFile& file) {
   Mesh piece = cutter_.cut(part);
   // a block that has no cells here has no set of them either: it would become one of elements
   const auto& element_sets = metadata_.sets[exodus::kElementSets].sets;
@@ -405,23 +427,25 @@ void NemesisPieces::write(Index part, const FilePath& path) {
   add_element_maps(part, metadata);
   piece.format_metadata = std::make_shared<const Metadata>(std::move(metadata));
   Notes ignored;  // they are those of the whole
-  exodus::write(piece, path, ignored);
+  exodus::write(piece, file, ignored);
 }
 
 /// Gives nodes and elements their numbers in the file of the whole mesh, and keeps those that this one has as
 /// a map, unless they are the same.
 void NemesisPieces::add_numbers(Index part, Mesh& piece) const {
   const auto number = [&](Association association, bool has_ids, std::vector<std::int64_t>& ids,
-                          std::span<const Index> numbers, const std::vector<Index>& given) {
+                          std::span<const Index> own, const std::vector<GlobalIndex>& numbers) {
     if (has_ids) {
       piece.data.push_back({.name = std::string(exodus::kMap) + "ids of the whole",
                             .association = association,
                             .values = std::exchange(ids, {})});
     }
-    for (const Index k : numbers) ids.push_back(std::int64_t{given.empty() ? k : given[k]} + 1);
+    for (const Index k : own) ids.push_back(numbers[static_cast<std::size_t>(k)] + 1);
   };
-  number(Association::vertices, !mesh_.vertex_ids.empty(), piece.vertex_ids, parts_.vertices(part), {});
-  number(Association::cells, !mesh_.cell_ids.empty(), piece.cell_ids, parts_.cells(part), held_.given_cells);
+  number(Association::vertices, source_.has_vertex_ids, piece.vertex_ids, parts_.vertices(part),
+         source_.numbers.vertices);
+  number(Association::cells, source_.has_cell_ids, piece.cell_ids, parts_.cells(part),
+         source_.element_numbers);
 }
 
 /// Returns the metadata of a piece: those of the whole mesh, less arrays that it has no rows of.
@@ -492,21 +516,88 @@ void NemesisPieces::add_element_maps(Index part, Metadata& metadata) const {
   for (const BorderFacet& facet : borders_[part]) {
     const auto place = std::lower_bound(cells.begin(), cells.end(), facet.cell) - cells.begin();
     maps[facet.part].push_back(place + 1);
-    const auto block = std::upper_bound(blocks_.ends.begin(), blocks_.ends.end(), facet.cell);
-    const BlockRecord& record = *blocks_.records[static_cast<std::size_t>(block - blocks_.ends.begin())];
+    const Blocks& blocks = source_.blocks;
+    const GlobalIndex number = source_.numbers.cells[static_cast<std::size_t>(facet.cell)];
+    const auto block = std::upper_bound(blocks.ends.begin(), blocks.ends.end(), number);
+    const BlockRecord& record = *blocks.records[static_cast<std::size_t>(block - blocks.ends.begin())];
     sides.push_back(side_of_facet(record.shape, facet.facet, metadata_.coordinates, record.type));
   }
   add_maps(metadata, {"e", "num_e_cmaps", "ecnt_cmap", "e_comm_eids"}, maps);
   add_integers(metadata, "e_comm_sids", "ecnt_cmap", sides);
 }
 
+/// A mesh as a file of Exodus II holds it, and the places of its cells in the given one.
+struct Held {
+  Mesh mesh;
+  std::vector<GlobalIndex> given_cells;
+};
+
+/// Writes a mesh to memory, and reads it from there.
+Held held(const Mesh& mesh, Notes& notes) {
+  TextStore store;
+  std::vector<GlobalIndex> given_cells;
+  {
+    Mesh arranged = mesh;
+    arranged.format.clear();  // its cells may be in the order of another file
+    const Permutation places = arrange_cells(arranged, format_named("exodus"));
+    given_cells.assign(places.new_to_old().begin(), places.new_to_old().end());
+    exodus::write(arranged, FilePath("the pieces", store), notes);
+  }
+  Notes ignored;
+  return {exodus::read(FilePath("the pieces", store), ignored), std::move(given_cells)};
+}
+
+/// Writes the pieces of a mesh that is as a file of Exodus II holds it.
+///
+/// @param element_numbers  of its cells in the file of the whole mesh
+GlobalIndex write_held(const Mesh& mesh, const ShareNumbers& numbers,
+                       const std::vector<GlobalIndex>& element_numbers,
+                       const std::vector<GlobalIndex>& part_starts, const std::vector<std::string>& paths,
+                       const std::vector<std::string>& names) {
+  const Metadata& metadata = *exodus_metadata(mesh);
+  Blocks blocks = blocks_of(mesh, metadata);
+  if (blocks.records.empty())
+    throw TooLarge("pieces of Exodus II have up to 10,000 blocks of elements; give a folder for .vtu pieces");
+  const Communicator alone(MPI_COMM_SELF);
+  NemesisPieces pieces(alone,
+                       {mesh, numbers, element_numbers, std::move(blocks), counts_of_sets(mesh, metadata),
+                        !mesh.vertex_ids.empty(), !mesh.cell_ids.empty()},
+                       part_starts);
+  return pieces.write(paths, names);
+}
+
 }  // namespace
 
 GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts,
-                                 const std::vector<FilePath>& files, Notes& notes) {
-  NemesisPieces pieces(mesh, part_starts, notes);
-  for (Index part = 0; part < index_size(files); ++part) pieces.write(part, files[part]);
-  return pieces.repeated_vertices();
+                                 const std::vector<std::string>& paths, const std::vector<std::string>& names,
+                                 Notes& notes) {
+  const ShareNumbers numbers = ShareNumbers::of_whole(mesh);
+  const Metadata* const own = exodus_metadata(mesh);
+  if (own != nullptr && !blocks_of(mesh, *own).records.empty() && knows_all(mesh, *own))
+    return write_held(mesh, numbers, numbers.cells, part_starts, paths, names);
+  const Held as_held = held(mesh, notes);
+  return write_held(as_held.mesh, numbers, as_held.given_cells, part_starts, paths, names);
+}
+
+NemesisShare nemesis_share(const Communicator& communicator, const MovedPart& moved,
+                           const std::vector<GlobalIndex>& block_ends,
+                           const std::vector<GlobalIndex>& part_starts) {
+  const Mesh& part = moved.part().mesh;
+  std::vector<std::int64_t> counts =
+      communicator.together([&] { return counts_of_sets(part, *exodus_metadata(part)); });
+  return {share_of(communicator, moved, part_starts), block_ends, communicator.sums(std::move(counts))};
+}
+
+GlobalIndex write_nemesis_pieces(const Communicator& communicator, const NemesisShare& share,
+                                 const std::vector<GlobalIndex>& part_starts,
+                                 const std::vector<std::string>& paths,
+                                 const std::vector<std::string>& names) {
+  const auto& [mesh, numbers, has_vertex_ids, has_cell_ids] = share.share;
+  NemesisPieces pieces(communicator,
+                       {mesh, numbers, numbers.cells, blocks_of(*exodus_metadata(mesh), share.block_ends),
+                        share.set_counts, has_vertex_ids, has_cell_ids},
+                       part_starts);
+  return pieces.write(paths, names);
 }
 
 bool is_own_nemesis_piece(const std::filesystem::path& path) {
@@ -525,7 +616,21 @@ bool is_own_nemesis_piece(const std::filesystem::path& path) {
 
 #else
 GlobalIndex write_nemesis_pieces(const Mesh& /*mesh*/, const std::vector<GlobalIndex>& /*part_starts*/,
-                                 const std::vector<FilePath>& /*files*/, Notes& /*notes*/) {
+                                 const std::vector<std::string>& /*paths*/,
+                                 const std::vector<std::string>& /*names*/, Notes& /*notes*/) {
+  throw Unavailable("pieces of Exodus II need netCDF, which this build of meshorder lacks");
+}
+
+NemesisShare nemesis_share(const Communicator& /*communicator*/, const MovedPart& /*moved*/,
+                           const std::vector<GlobalIndex>& /*block_ends*/,
+                           const std::vector<GlobalIndex>& /*part_starts*/) {
+  return {};
+}
+
+GlobalIndex write_nemesis_pieces(const Communicator& /*communicator*/, const NemesisShare& /*share*/,
+                                 const std::vector<GlobalIndex>& /*part_starts*/,
+                                 const std::vector<std::string>& /*paths*/,
+                                 const std::vector<std::string>& /*names*/) {
   throw Unavailable("pieces of Exodus II need netCDF, which this build of meshorder lacks");
 }
 

@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "distributed/communicator.hpp"
 #include "distributed/mesh_parts.hpp"
+#include "distributed/mesh_share.hpp"
 #include <meshorder/mesh.hpp>
 
 #include <vector>
@@ -19,9 +21,17 @@ struct BorderFacet {
 
 /// Finds the facets of volumes and surfaces that cells of two parts have, those with the same corners. Two
 /// parts have as many at each other, in the same order: the k-th of one is the k-th of the other. Of a facet
-/// of more than two cells each pair is one. O(entries + facets between parts · log of these).
+/// of more than two cells each pair is one. Every rank has to call it. O(entries + facets between parts · log
+/// of these).
 ///
-/// @return of each part, by the other part
-[[nodiscard]] std::vector<std::vector<BorderFacet>> facets_between(const Mesh& mesh, const MeshParts& parts);
+/// @param mesh     what this rank has of the mesh, as in `MeshShare`
+/// @param numbers  of its vertices and cells
+/// @param parts    of that
+/// @return of each part, of which this rank knows its own, by the other part
+/// @throws as `Communicator::exchange`
+[[nodiscard]] std::vector<std::vector<BorderFacet>> facets_between(const Communicator& communicator,
+                                                                   const Mesh& mesh,
+                                                                   const ShareNumbers& numbers,
+                                                                   const MeshParts& parts);
 
 }  // namespace meshorder::distributed

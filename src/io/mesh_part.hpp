@@ -45,13 +45,19 @@ struct MeshPart {
     Index kept;       ///< those of this part, without repeated ones
   };
 
+  /// Which rows of an array of `mesh` these are.
+  struct ArrayRows {
+    bool is_partial = false;  ///< rows for some vertices or cells only, perhaps for none of this part
+    /// Place in the file's list of each row, ascending; none where rows ascend by vertex or cell.
+    std::vector<Index> entries = {};
+  };
+
   MeshRanges ranges;
   /// Cells name vertices by their numbers in the whole mesh. Rows of arrays and members of sets are counted
   /// from the first vertex or cell of the range on. Ids are those of the file, though they may be 1, 2, …
   Mesh mesh;
-  /// Of each array of the mesh: it has rows for some vertices or cells only, perhaps for none of this part.
-  std::vector<char> is_partial;
-  std::vector<SetRows> sets;  ///< of each set of the mesh
+  std::vector<ArrayRows> arrays;  ///< of each array of the mesh
+  std::vector<SetRows> sets;      ///< of each set of the mesh
   std::vector<List> lists;
   std::string vertex_ids;  ///< name that the file has for these numbers; empty where it has none
   std::string cell_ids;

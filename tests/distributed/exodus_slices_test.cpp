@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/exodus_slices.hpp"
 
+#include "distributed/moved_grid.hpp"
 #include "distributed/moved_part.hpp"
 #include "distributed/pieces.hpp"
 #include "io/format.hpp"
@@ -119,7 +120,7 @@ void expect_alike(const Communicator& communicator, const std::string& path,
   const DistributedOrder order = order_slices(communicator, std::move(slice), options);
   Notes notes;
   Notes of_grid;
-  MovedPart moved(communicator, slices->read_part(communicator, notes), order, notes);
+  MovedPart moved(communicator, slices->read_part(communicator, notes), order, {}, notes);
   const std::vector<std::int64_t> vertex_ids = whole.vertex_ids;
   const std::vector<std::int64_t> cell_ids = whole.cell_ids;
   const auto ids_at_root = [&](Association of) {
@@ -132,7 +133,8 @@ void expect_alike(const Communicator& communicator, const std::string& path,
   expect_equal(moved.slice(), scattered(communicator, whole));
   Notes expected_notes;
   const GridRows expected = scattered_grid(communicator, whole, expected_notes);
-  expect_equal(communicator, moved.grid(of_grid), expected);
+  MovedGrid grid(communicator, moved);
+  expect_equal(communicator, grid.rows(of_grid), expected);
   EXPECT_EQ(of_grid, expected_notes);
 }
 
@@ -216,12 +218,13 @@ TEST(ExodusSlices, IdsStayWhereNothingMoves) {
   order.cells.resize(slice.shapes.size());
   std::iota(order.cells.begin(), order.cells.end(), slice.cells.begin(rank));
   Notes notes;
-  MovedPart moved(communicator, slices->read_part(communicator, notes), order, notes);
+  MovedPart moved(communicator, slices->read_part(communicator, notes), order, {}, notes);
   Mesh whole;
   communicator.at_root([&] { whole = read_for_vtu(file.path()); });
   move(communicator, whole, order);
   const GridRows expected = scattered_grid(communicator, whole, notes);
-  expect_equal(communicator, moved.grid(notes), expected);
+  MovedGrid grid(communicator, moved);
+  expect_equal(communicator, grid.rows(notes), expected);
 }
 
 TEST(ExodusSlices, LeaveOtherFilesToRank0) {

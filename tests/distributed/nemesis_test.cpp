@@ -4,6 +4,7 @@
 #include "base/index.hpp"
 #include "distributed/mesh_parts.hpp"
 #include "distributed/part_borders.hpp"
+#include "support/files.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
@@ -11,10 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <map>
-#include <span>
 #include <string>
-#include <utility>
+#include <vector>
 
 namespace meshorder::distributed {
 namespace {
@@ -34,9 +33,17 @@ Mesh mesh_of(Shape shape, Index vertices, const std::vector<std::vector<Index>>&
 Mesh edges() { return mesh_of(Shape::line, 9, {{0, 1}, {1, 2}, {0, 4}, {5, 6}, {4, 7}}); }
 const std::vector<GlobalIndex> kStarts{0, 2, 4, 6, 8};
 
+/// The parts of a mesh that this rank has alone, as others have it.
+MeshParts parts_of(const Mesh& mesh, const std::vector<GlobalIndex>& starts) {
+  return {Communicator(MPI_COMM_SELF), mesh, ShareNumbers::of_whole(mesh), starts};
+}
+std::vector<std::vector<BorderFacet>> borders_of(const Mesh& mesh, const MeshParts& parts) {
+  return facets_between(Communicator(MPI_COMM_SELF), mesh, ShareNumbers::of_whole(mesh), parts);
+}
+
 TEST(MeshParts, HaveACellOnceAndAVertexWhereCellsUseIt) {
   const Mesh mesh = edges();
-  const MeshParts parts(mesh, kStarts);
+  const MeshParts parts = parts_of(mesh, kStarts);
   ASSERT_EQ(parts.size(), 4);
   EXPECT_THAT(parts.cells(0), ElementsAre(0));
   EXPECT_THAT(parts.cells(1), ElementsAre(1));
@@ -65,7 +72,7 @@ TEST(PartCutter, TakesArraysSetsAndIdsAlong) {
        .indices = {4, 1, 3}},
       {.name = "texts", .values = std::vector<std::string>{"a", "b"}, .indices = {1, 7}}};
   mesh.sets = {{"some", Association::vertices, {7, 4, 1}}, {"one", Association::cells, {4}}};
-  const MeshParts parts(mesh, kStarts);
+  const MeshParts parts = parts_of(mesh, kStarts);
   PartCutter cutter(mesh, parts);
   const Mesh last = cutter.cut(3);
   check_mesh(last);
@@ -91,15 +98,15 @@ TEST(PartCutter, TakesArraysSetsAndIdsAlong) {
 TEST(FacetsBetween, ArePairedInOneOrder) {
   // three triangles at the edge of 0 and 1, of which two are of one part, and one beyond
   const Mesh mesh = mesh_of(Shape::triangle, 6, {{1, 0, 4}, {0, 1, 2}, {5, 0, 1}, {2, 1, 3}});
-  const MeshParts parts(mesh, {0, 4, 6});
-  const auto borders = facets_between(mesh, parts);
+  const MeshParts parts = parts_of(mesh, {0, 4, 6});
+  const auto borders = borders_of(mesh, parts);
   EXPECT_THAT(borders[0], ElementsAre(BorderFacet{1, 1, 0}, BorderFacet{1, 1, 0}));
   EXPECT_THAT(borders[1], ElementsAre(BorderFacet{0, 0, 0}, BorderFacet{0, 2, 1}));
 }
 
 TEST(FacetsBetween, AreNotEndsOfLines) {
   const Mesh mesh = edges();
-  for (const auto& of_part : facets_between(mesh, MeshParts(mesh, kStarts))) EXPECT_THAT(of_part, IsEmpty());
+  for (const auto& of_part : borders_of(mesh, parts_of(mesh, kStarts))) EXPECT_THAT(of_part, IsEmpty());
 }
 
 TEST(NemesisName, HasAsManyDigitsAsThereAreInTheNumberOfParts) {
@@ -109,37 +116,20 @@ TEST(NemesisName, HasAsManyDigitsAsThereAreInTheNumberOfParts) {
 }
 
 #ifdef MESHORDER_HAS_NETCDF
-/// Files in memory.
-class Files : public FileStore {
- public:
-  [[nodiscard]] bool has(const std::filesystem::path& path) const override {
-    return files_.contains(path.string());
-  }
-  [[nodiscard]] std::string read(const std::filesystem::path& path) const override {
-    return files_.at(path.string());
-  }
-  void write(const std::filesystem::path& path, std::string bytes) override {
-    files_[path.string()] = std::move(bytes);
-  }
-
- private:
-  std::map<std::string, std::string> files_;
-};
-
 TEST(NemesisPieces, HaveAllCellsOfEveryShapeOnce) {
   const Mesh mesh = test::mixed_mesh();
   const std::vector<GlobalIndex> starts{0, mesh.vertex_count() / 3, mesh.vertex_count() / 2,
                                         mesh.vertex_count()};
-  Files store;
-  std::vector<FilePath> files;
-  for (Index part = 0; part < 3; ++part) files.emplace_back(nemesis_name("a.e", 3, part), store);
+  const test::TemporaryFolder folder;
+  std::vector<std::string> files;
+  for (Index part = 0; part < 3; ++part)
+    files.push_back((folder.path() / nemesis_name("a.e", 3, part)).string());
   Notes notes;
-  const GlobalIndex repeated = write_nemesis_pieces(mesh, starts, files, notes);
+  const GlobalIndex repeated = write_nemesis_pieces(mesh, starts, files, files, notes);
   std::vector<int> seen(static_cast<std::size_t>(mesh.cell_count()), 0);
   GlobalIndex vertices = 0;
-  for (const FilePath& file : files) {
-    const std::string bytes = store.read(file.path());
-    const Mesh piece = read_mesh(std::as_bytes(std::span(bytes)), {.format = "exodus"});
+  for (const std::string& file : files) {
+    const Mesh piece = read_mesh(file, {.format = "exodus"});
     vertices += piece.vertex_count();
     for (Index c = 0; c < piece.cell_count(); ++c) {
       const auto cell = static_cast<Index>(piece.cell_ids[c] - 1);

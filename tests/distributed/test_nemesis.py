@@ -15,7 +15,7 @@ from test_mpi import ROOT, ball, launch, order, own_lines, serial
 from vtkmodules.vtkIOExodus import vtkExodusIIReader
 
 sys.path.insert(0, str(ROOT / "tests" / "command"))
-from test_exodus import SIDES_OF_HEX, lattice, text_rows, write_all
+from test_exodus import SIDES_OF_HEX, lattice, text_rows, write_all, write_blocks_of_one
 
 netCDF4 = pytest.importorskip("netCDF4")
 
@@ -264,6 +264,35 @@ def test_pieces_follow_the_options(tmp_path, options):
     assert_maps(whole, pieces)
 
 
+@pytest.mark.parametrize("kind, ranks, parts", [("NETCDF3_64BIT_OFFSET", 2, 4), ("NETCDF4", 3, 7), ("NETCDF3_CLASSIC", 1, 1),
+                                                ("NETCDF3_64BIT_DATA", 3, 11), ("NETCDF3_64BIT_OFFSET", 5, 2)])
+def test_all_ranks_write_what_one_writes(tmp_path, kind, ranks, parts):
+    """Where no loss is allowed rank 0 reads and writes."""
+    write_all(tmp_path / "a.exo", kind)
+    for name, options in (("all", []), ("one", ["--strict"])):
+        (tmp_path / name).mkdir()
+        done = order(ranks, tmp_path / "a.exo", "--pieces", tmp_path / name / "out.e", "--maps", tmp_path / name / "m",
+                     "--parts", parts, "--partition", "hilbert", "--json", *options)
+        assert own_lines(done) == []
+        result = json.loads(done.stdout)
+        assert result["files_by"] == {"all": "all ranks", "one": "rank 0"}[name]
+        assert result["pieces"]["file"] == str(paths_of(tmp_path / name / "out.e", parts)[0])
+    assert sorted(os.listdir(tmp_path / "all")) == sorted(os.listdir(tmp_path / "one"))
+    for path in [*paths_of("out.e", parts), *(path for path in os.listdir(tmp_path / "one") if path.endswith(".npy"))]:
+        assert (tmp_path / "all" / path).read_bytes() == (tmp_path / "one" / path).read_bytes(), path
+
+
+@pytest.mark.parametrize("ids", [[7, 2**31 - 1], [7, 2**40]])
+def test_ids_of_blocks(tmp_path, ids):
+    write_blocks_of_one(tmp_path / "a.exo", ids)
+    for options in ([], ["--strict"]):
+        order(2, tmp_path / "a.exo", "--pieces", tmp_path / "out.e", "--parts", "2", *options)
+        for path in paths_of(tmp_path / "out.e", 2):
+            with netCDF4.Dataset(path) as piece:
+                assert [piece[name][:].tolist() for name in ("eb_prop1", "el_blk_ids_global")] == [ids, ids]
+                assert piece["el_blk_cnt_global"][:].tolist() == [1, 1]
+
+
 def test_the_same_bytes_on_every_number_of_ranks(tmp_path):
     write_all(tmp_path / "a.exo")
     for ranks in (1, 2, 3):
@@ -404,6 +433,9 @@ def test_the_command_reads_a_piece_and_does_not_order_it(tmp_path):
     done = launch(1, "order", piece, "-o", tmp_path / "c.e")
     assert done.returncode == 2 and "order the whole mesh before it is decomposed" in own_lines(done)[0], done.stderr
     assert not (tmp_path / "c.e").exists()
+    done = launch(2, "order", piece, "--pieces", tmp_path / "d.e")
+    assert done.returncode == 2 and "order the whole mesh before it is decomposed" in own_lines(done)[0], done.stderr
+    assert not [*tmp_path.glob("d.e*")]
     order(1, piece, "-o", tmp_path / "c.vtu")
     assert len(meshio.read(tmp_path / "c.vtu").points) == len(expected.nodes)
 

@@ -308,7 +308,9 @@ std::map<Index, std::vector<double>> rows_of(const DataArray& array, bool is_den
 void expect_parts_of_the_whole(const std::filesystem::path& path, Index parts) {
   const Mesh whole = read_mesh(path);
   std::vector<std::map<Index, std::vector<double>>> rows(whole.data.size());
-  std::vector<std::map<Index, Index>> members(whole.sets.size());  // by their places in the file's list
+  // by their places in the file's list
+  std::vector<std::map<Index, Index>> members(whole.sets.size());
+  std::vector<std::map<Index, Index>> listed(whole.data.size());
   Mesh joined;
   const auto range = [&](Index count, Index p) {
     return MeshRange{static_cast<Index>(Offset{count} * p / parts),
@@ -329,8 +331,10 @@ void expect_parts_of_the_whole(const std::filesystem::path& path, Index parts) {
     ASSERT_EQ(mesh.data.size(), whole.data.size());
     for (std::size_t k = 0; k < mesh.data.size(); ++k) {
       EXPECT_EQ(mesh.data[k].name, whole.data[k].name);
-      EXPECT_EQ(part.is_partial[k] == 0, whole.data[k].is_dense());
-      rows[k].merge(rows_of(mesh.data[k], part.is_partial[k] == 0, first(mesh.data[k].association)));
+      EXPECT_EQ(part.arrays[k].is_partial, !whole.data[k].is_dense());
+      rows[k].merge(rows_of(mesh.data[k], !part.arrays[k].is_partial, first(mesh.data[k].association)));
+      for (std::size_t i = 0; i < part.arrays[k].entries.size(); ++i)
+        listed[k][part.arrays[k].entries[i]] = first(mesh.data[k].association) + mesh.data[k].indices[i];
     }
     ASSERT_EQ(mesh.sets.size(), whole.sets.size());
     for (std::size_t s = 0; s < mesh.sets.size(); ++s) {
@@ -344,8 +348,14 @@ void expect_parts_of_the_whole(const std::filesystem::path& path, Index parts) {
   EXPECT_EQ(joined.cells, whole.cells);
   EXPECT_EQ(joined.vertex_ids, whole.vertex_ids);
   EXPECT_EQ(joined.cell_ids, whole.cell_ids);
-  for (std::size_t k = 0; k < whole.data.size(); ++k)
+  for (std::size_t k = 0; k < whole.data.size(); ++k) {
     EXPECT_EQ(rows[k], rows_of(whole.data[k], whole.data[k].is_dense(), 0)) << whole.data[k].name;
+    std::vector<Index> in_order;
+    for (const auto& [place, member] : listed[k]) in_order.push_back(member);
+    if (!in_order.empty()) {
+      EXPECT_EQ(in_order, whole.data[k].indices) << whole.data[k].name;
+    }
+  }
   for (std::size_t s = 0; s < whole.sets.size(); ++s) {
     Index entry = 0;
     for (const auto& [place, member] : members[s]) {

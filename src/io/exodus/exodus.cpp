@@ -638,10 +638,14 @@ std::vector<std::string> Metadata::contents() const {
   return result;
 }
 
-void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
+namespace {
+
+/// Writes a mesh to a file on disk or in a store, or to one that others put in place.
+template <class Target>
+void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
   const Metadata* const own = own_metadata(mesh);
   Metadata metadata = own != nullptr ? *own : new_metadata(mesh);
-  NcOutput file(path, metadata.storage);
+  NcOutput file(target, metadata.storage);
   Writing writing(mesh, metadata, file, notes);
 
   // what each part of the mesh becomes
@@ -702,8 +706,6 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   file.finish();
 }
 
-namespace {
-
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
   if (!type_of(shape, vertices).empty()) return true;
   const Metadata* const own = own_metadata(mesh);
@@ -721,6 +723,10 @@ std::string conflict(const Mesh& mesh) {
 }
 
 }  // namespace
+
+void write(const Mesh& mesh, const FilePath& path, Notes& notes) { write_to(path, mesh, notes); }
+
+void write(const Mesh& mesh, const UnfinishedFile& to, Notes& notes) { write_to(to, mesh, notes); }
 
 }  // namespace meshorder::exodus
 

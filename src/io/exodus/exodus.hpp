@@ -180,13 +180,16 @@ std::string name_of_step(const std::string& name, std::size_t step, std::size_t 
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
+void write(const Mesh& mesh, const UnfinishedFile& to, Notes& notes);
 
 /// What a file says of its mesh before any of its values.
 struct Header {
   Index vertices;
   Index cells;
-  std::vector<std::pair<Shape, int>> types;  ///< shape and nodes of the blocks that have elements
+  std::vector<BlockRecord> blocks;  ///< without names and properties
+  std::vector<Index> block_ends;    ///< blocks + 1: block b has the cells from entry b to entry b + 1
   std::vector<std::string> element_variables;
+  bool is_piece;  ///< of a decomposed mesh
 };
 
 /// Reads the header of a file. Throws InputError as `read`.

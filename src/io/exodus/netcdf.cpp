@@ -428,19 +428,32 @@ int creation_mode(int kind) {
 }  // namespace
 
 NcOutput::NcOutput(const FilePath& path, const Storage& storage)
-    : lock_(hdf5::library_mutex()), path_(path), out_(path), storage_(storage) {
-  const int mode = NC_CLOBBER | creation_mode(storage.kind);
-  if (path.store() != nullptr) {
+    : lock_(hdf5::library_mutex()),
+      name_(path.string()),
+      out_(path),
+      is_in_memory_(path.store() != nullptr),
+      storage_(storage) {
+  if (is_in_memory_) {
     // an initial size would be the least that the file gets
-    check(nc_create_mem(path.string().c_str(), mode, 0, &id_), "");
+    check(nc_create_mem(name_.c_str(), NC_CLOBBER | creation_mode(storage.kind), 0, &id_), "");
     // filled at first: bytes between variables, which the library does not write, would be what memory held
   } else {
-    out_.close();
-    std::size_t buffer = kBuffer;
-    check(nc__create(out_.temporary().c_str(), mode, 0, &buffer, &id_), "");
-    int old = 0;
-    nc_set_fill(id_, NC_NOFILL, &old);
+    out_->close();
+    create(out_->temporary());
   }
+}
+
+NcOutput::NcOutput(const UnfinishedFile& file, const Storage& storage)
+    : lock_(hdf5::library_mutex()), name_(file.name), is_in_memory_(false), storage_(storage) {
+  create(file.path);
+}
+
+/// Makes the file on disk.
+void NcOutput::create(const std::filesystem::path& path) {
+  std::size_t buffer = kBuffer;
+  check(nc__create(path.c_str(), NC_CLOBBER | creation_mode(storage_.kind), 0, &buffer, &id_), "");
+  int old = 0;
+  nc_set_fill(id_, NC_NOFILL, &old);
 }
 
 NcOutput::~NcOutput() {
@@ -451,8 +464,7 @@ void NcOutput::check(int status, const std::string& what) const {
   if (status == NC_NOERR) return;
   const bool is_full = status == ENOSPC || status == NC_EHDFERR;
   throw InputError(
-      path_.string(),
-      fmt::format("{}cannot be written: {}", what.empty() ? "" : what + " ", nc_strerror(status)),
+      name_, fmt::format("{}cannot be written: {}", what.empty() ? "" : what + " ", nc_strerror(status)),
       is_full ? "is the disk full?" : "another format, such as .vtu, may hold the mesh");
 }
 
@@ -502,7 +514,7 @@ NcSink NcOutput::variable(const std::string& name, NcType type, const std::vecto
 void NcOutput::finish() {
   check(nc_enddef(id_), "");
   for (const auto& put : puts_) put();
-  if (path_.store() == nullptr) {
+  if (!is_in_memory_) {
     const int status = nc_close(std::exchange(id_, -1));
     check(status, "");
   } else {
@@ -510,9 +522,9 @@ void NcOutput::finish() {
     const int status = nc_close_memio(std::exchange(id_, -1), &bytes);
     const std::unique_ptr<void, decltype(&std::free)> memory(bytes.memory, &std::free);
     check(status, "");
-    out_.write({static_cast<const char*>(bytes.memory), bytes.size});
+    out_->write({static_cast<const char*>(bytes.memory), bytes.size});
   }
-  out_.commit();
+  if (out_) out_->commit();
 }
 
 void NcSink::integers(const std::vector<std::int32_t>& values) const {

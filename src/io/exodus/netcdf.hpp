@@ -8,9 +8,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -182,10 +184,17 @@ class NcSink {
   int variable_;
 };
 
+/// A file that exists, and that somebody else puts in place once it is written.
+struct UnfinishedFile {
+  std::filesystem::path path;
+  std::string name;  ///< in messages
+};
+
 /// A file that is written: first all is declared, then `finish` writes the values.
 class NcOutput {
  public:
   NcOutput(const FilePath& path, const Storage& storage);
+  NcOutput(const UnfinishedFile& file, const Storage& storage);
   ~NcOutput();
   NcOutput(const NcOutput&) = delete;
   NcOutput& operator=(const NcOutput&) = delete;
@@ -205,17 +214,19 @@ class NcOutput {
   /// Returns whether the file can hold 64-bit integers.
   [[nodiscard]] bool holds_wide_integers() const noexcept;
 
-  /// Writes all values and replaces the target.
+  /// Writes all values and replaces the target, or leaves that to others.
   void finish();
 
  private:
+  void create(const std::filesystem::path& path);
   void check(int status, const std::string& what) const;
   void put_attribute(int variable, const Attribute& attribute, const std::string& of) const;
 
   friend class NcSink;
   std::lock_guard<std::recursive_mutex> lock_;
-  FilePath path_;
-  OutputFile out_;
+  std::string name_;
+  std::optional<OutputFile> out_;  ///< none: others put the file in place
+  bool is_in_memory_;
   Storage storage_;
   int id_ = -1;
   std::map<std::string, std::pair<int, std::size_t>> dimensions_;

@@ -38,8 +38,8 @@ void Reading::require_shape(const Variable& variable, const std::vector<std::siz
             "the file may be damaged");
 }
 
-std::string Reading::add_array(DataArray array, bool is_partial) {
-  part.is_partial.push_back(is_partial ? 1 : 0);
+std::string Reading::add_array(DataArray array, MeshPart::ArrayRows rows) {
+  part.arrays.push_back(std::move(rows));
   return add_named(part.mesh, std::move(array), arrays_);
 }
 
@@ -406,7 +406,7 @@ void read_data_of_blocks(Reading& reading) {
     if (column.rows == 0) continue;  // of blocks without elements
     const bool is_partial = column.rows != reading.elements;
     if (!is_partial) column.array.indices.clear();
-    reading.add_array(std::move(column.array), is_partial);
+    reading.add_array(std::move(column.array), {is_partial});
   }
 }
 
@@ -633,12 +633,12 @@ Header read_header(const FilePath& path) {
   Notes ignored;
   Reading reading(path, nullptr, ignored);
   read_header(reading);
-  Header header{reading.nodes, reading.elements, {}, {}};
-  for (const BlockRecord& block : reading.metadata->blocks) {
-    if (block.nodes > 0) header.types.emplace_back(block.shape, block.nodes);
-  }
-  header.element_variables = reading.take_names("name_elem_var", reading.file.count("num_elem_var"));
-  return header;
+  return {reading.nodes,
+          reading.elements,
+          reading.metadata->blocks,
+          reading.block_ends,
+          reading.take_names("name_elem_var", reading.file.count("num_elem_var")),
+          reading.metadata->is_piece};
 }
 
 MeshPart read_part(const FilePath& path, const MeshRanges& ranges, PartContent content, Notes& notes) {

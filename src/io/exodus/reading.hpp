@@ -27,7 +27,7 @@ struct Reading {
   void require_shape(const Variable& variable, const std::vector<std::size_t>& expected) const;
 
   /// Adds an array, under a name that no other array has, and returns that name.
-  std::string add_array(DataArray array, bool is_partial = false);
+  std::string add_array(DataArray array, MeshPart::ArrayRows rows = {});
   /// Adds a set likewise.
   std::string add_set(EntitySet set, MeshPart::SetRows rows = {});
 

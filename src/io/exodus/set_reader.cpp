@@ -36,7 +36,7 @@ struct SideEntries : Entries {
 
 /// A set of sides, element by element.
 struct Sides {
-  std::vector<Index> cells;         ///< in the order in which the file first names them
+  Entries cells;                    ///< by the entries that name them first
   std::vector<std::int32_t> masks;  ///< their sides: bit s − 1 for side s
   std::vector<Index>
       row_of_entry;  ///< of each entry of the file: its place in `cells`, −1 for a repeated one
@@ -95,7 +95,7 @@ std::vector<Number> packed(const Sides& sides, const std::vector<Number>& values
   const auto row_width = static_cast<std::size_t>(sides.most_sides) * static_cast<std::size_t>(width);
   Number nothing{};
   if constexpr (std::is_floating_point_v<Number>) nothing = std::numeric_limits<Number>::quiet_NaN();
-  std::vector<Number> result(sides.cells.size() * row_width, nothing);
+  std::vector<Number> result(sides.cells.members.size() * row_width, nothing);
   std::size_t from = 0;
   for (std::size_t i = 0; i < sides.row_of_entry.size(); ++i) {
     const auto length = static_cast<std::size_t>(counts[i]);
@@ -277,42 +277,41 @@ class SetReader {
   }
 
   void add_members(std::size_t number, SetRecord& set, std::size_t size, const Entries& listed) {
-    const Entries own = without_repeated(listed);
+    const Entries own = in_range(without_repeated(listed));
     note_repeated(set, size, own.members.size());
-    const std::vector<Index> rows = in_range(own.members);
-    MeshPart::SetRows places;
-    if (!reading_.is_whole()) places = {static_cast<Index>(size), own.places};
-    set.in_mesh = reading_.add_set({set.in_mesh, kind_.association, rows}, std::move(places));
+    MeshPart::SetRows rows;
+    if (!reading_.is_whole()) rows = {static_cast<Index>(size), own.places};
+    set.in_mesh = reading_.add_set({set.in_mesh, kind_.association, own.members}, std::move(rows));
 
     const Pieces pieces = single_values(own.places);
     if (const Variable* const factors = reading_.take(fmt::format("dist_fact_{}{}", kind_.prefix, number))) {
       reading_.require_shape(*factors, {size});
       set.factor_type = factors->type;
-      add_rows(title(kind_, set.in_mesh) + std::string(kFactors), rows,
+      add_rows(title(kind_, set.in_mesh) + std::string(kFactors), own,
                chosen(pieces, reading_.values_at_once(), [&](std::size_t first, std::size_t count) {
                  return reading_.file.values(*factors, {first}, {count});
                }));
     }
     read_set_variables(number, set, size, pieces, [&](Values values, const std::string& name) {
-      return add_rows(name, rows, std::move(values));
+      return add_rows(name, own, std::move(values));
     });
   }
 
-  /// Returns members counted from the first one that is read.
-  [[nodiscard]] std::vector<Index> in_range(std::vector<Index> members) const {
+  /// Returns the entries with members counted from the first one that is read.
+  [[nodiscard]] Entries in_range(Entries entries) const {
     const Index first = reading_.range(kind_.association).first;
-    for (Index& member : members) member -= first;
-    return members;
+    for (Index& member : entries.members) member -= first;
+    return entries;
   }
 
-  std::string add_rows(const std::string& name, const std::vector<Index>& rows, Values values,
-                       Index components = 1) {
+  /// Adds an array with a row for each member that the entries name.
+  std::string add_rows(const std::string& name, const Entries& rows, Values values, Index components = 1) {
     return reading_.add_array({.name = name,
                                .association = kind_.association,
                                .components = components,
                                .values = std::move(values),
-                               .indices = rows},
-                              true);
+                               .indices = rows.members},
+                              {true, reading_.is_whole() ? std::vector<Index>() : rows.places});
   }
 
   // ---- sides
@@ -380,11 +379,12 @@ class SetReader {
       for (std::size_t i = begin; i < count && cells[entries[i]] == cell; ++i) {
         const std::int32_t bit = 1 << (sides[entries[i]] - 1);
         if ((mask & bit) != 0) continue;
-        result.row_of_entry[entries[i]] = index_size(result.cells);
+        result.row_of_entry[entries[i]] = index_size(result.cells.members);
         result.rank_of_entry[entries[i]] = bit_count(mask);
         mask |= bit;
       }
-      result.cells.push_back(cell);
+      result.cells.members.push_back(cell);
+      result.cells.places.push_back(own.places[first]);
       result.masks.push_back(mask);
       result.most_sides = std::max(result.most_sides, bit_count(mask));
     }
@@ -626,7 +626,7 @@ void read_elemental(Reading& reading) {
                       .association = Association::cells};
       array.values = as_labels(array.name, values_at(reading, variable, series.type, step, keeps_digits));
       if (is_partial) array.indices = variable.indices;
-      series.arrays.push_back(reading.add_array(std::move(array), is_partial));
+      series.arrays.push_back(reading.add_array(std::move(array), {is_partial}));
     }
     if (!keeps_digits) {
       reading.notes.push_back(fmt::format(
