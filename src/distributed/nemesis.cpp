@@ -175,7 +175,7 @@ struct SideCounts {
   std::int64_t factors = 0;
 };
 
-SideCounts counts_of_sides(const Mesh& mesh, const SetRecord& record) {
+SideCounts counts_of_sides(const Mesh& mesh, const SetRecord& record, const exodus::SideNodes& nodes) {
   SideCounts counts;
   const DataArray* const array =
       record.in_mesh.empty() ? nullptr : find_array(mesh, record.in_mesh, Association::cells);
@@ -192,11 +192,7 @@ SideCounts counts_of_sides(const Mesh& mesh, const SetRecord& record) {
               if ((static_cast<std::uint64_t>(masks[row]) >> (side - 1) & 1U) == 0) continue;
               ++counts.sides;
               if (!has_factors) continue;
-              counts.factors +=
-                  record.factors_by_nodes
-                      ? exodus::nodes_of_side(mesh.cells.shapes[cell], mesh.cells.vertex_count(cell), side,
-                                              mesh.dimension == 3 ? 3 : 2)
-                      : record.factor_width;
+              counts.factors += record.factors_by_nodes ? nodes.count(cell, side) : record.factor_width;
             }
           }
         }
@@ -209,6 +205,7 @@ SideCounts counts_of_sides(const Mesh& mesh, const SetRecord& record) {
 /// distribution factors, then of each set of sides.
 std::vector<std::int64_t> counts_of_sets(const Mesh& mesh, const Metadata& metadata) {
   std::vector<std::int64_t> counts;
+  const exodus::SideNodes nodes(mesh, metadata);
   for (const SetRecord& record : metadata.sets[exodus::kNodeSets].sets) {
     const auto set = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& one) {
       return one.association == Association::vertices && one.name == record.in_mesh;
@@ -217,7 +214,7 @@ std::vector<std::int64_t> counts_of_sets(const Mesh& mesh, const Metadata& metad
     counts.push_back(factors_of_nodes(mesh, record));
   }
   for (const SetRecord& record : metadata.sets[exodus::kSideSets].sets) {
-    const SideCounts of_set = counts_of_sides(mesh, record);
+    const SideCounts of_set = counts_of_sides(mesh, record, nodes);
     counts.push_back(of_set.sides);
     counts.push_back(of_set.factors);
   }
@@ -232,7 +229,6 @@ int side_of_facet(Shape shape, int facet, int coordinates, std::string_view type
   constexpr std::array<int, 5> kPyramid{5, 1, 2, 3, 4};
   constexpr std::array<int, 5> kWedge{4, 5, 1, 2, 3};
   constexpr std::array<int, 6> kHexahedron{4, 2, 1, 3, 5, 6};
-  constexpr std::string_view kShell = "SHELL";
   const auto k = static_cast<std::size_t>(facet);
   switch (shape) {
     case Shape::pyramid:
@@ -241,13 +237,8 @@ int side_of_facet(Shape shape, int facet, int coordinates, std::string_view type
       return kWedge[k];
     case Shape::hexahedron:
       return kHexahedron[k];
-    case Shape::triangle:
-      return coordinates == 3 ? facet + 3 : facet + 1;  // behind the two faces
-    case Shape::quad:
-      return coordinates == 3 && same_but_for_case(type.substr(0, kShell.size()), kShell) ? facet + 3
-                                                                                          : facet + 1;
     default:
-      return facet + 1;
+      return exodus::faces_of(shape, type, coordinates) + facet + 1;
   }
 }
 

@@ -392,6 +392,59 @@ def test_side_sets_go_through_vtu(command, tmp_path):
     assert sides(tmp_path / "c.exo") == sides(tmp_path / "a.exo")
 
 
+def nodes_of_sides(dimension):
+    """Returns the numbers of nodes of an element and of its sides by type, as ex_get_side_set_node_count tells them."""
+    found = {"QUAD4": (4, [2] * 4), "SHELL4": (4, [4, 4, 2, 2, 2, 2]), "QUAD8": (8, [3] * 4), "SHELL9": (9, [9, 9, 3, 3, 3, 3]),
+             "TRI3": (3, [2] * 3)}
+    if dimension == 3:
+        found |= {"TRI3": (3, [3, 3, 2, 2, 2]), "HEX8": (8, [4] * 6), "WEDGE": (6, [4, 4, 4, 3, 3])}
+    return found
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_factors_stay_at_the_nodes_of_sides(command, tmp_path, dimension):
+    types, each = nodes_of_sides(dimension), 3
+    elements = [(name, nodes, sides) for name, (nodes, sides) in types.items() for _ in range(each)]
+    nodes = sum(count for _, count, _ in elements)
+    entries = [(e, side, width) for e, (_, _, sides) in enumerate(elements) for side, width in enumerate(sides)]
+    entries = [entries[k] for k in numpy.random.default_rng(3).permutation(len(entries))]
+    factors = sum(width for _, _, width in entries)
+    with netCDF4.Dataset(tmp_path / "a.exo", "w", format="NETCDF3_CLASSIC") as f:
+        sizes = {"num_dim": dimension, "num_nodes": nodes, "num_elem": len(elements), "num_el_blk": len(types),
+                 "num_side_sets": 1, "num_side_ss1": len(entries), "num_df_ss1": factors}
+        for name, size in sizes.items():
+            f.createDimension(name, size)
+        for axis, values in zip("xyz", numpy.random.default_rng(4).uniform(size=(dimension, nodes))):
+            f.createVariable("coord" + axis, "f8", ("num_nodes",))[:] = values
+        first = 1
+        for b, (name, (width, _)) in enumerate(types.items(), 1):
+            f.createDimension(f"num_el_in_blk{b}", each)
+            f.createDimension(f"num_nod_per_el{b}", width)
+            connect = f.createVariable(f"connect{b}", "i4", (f"num_el_in_blk{b}", f"num_nod_per_el{b}"))
+            connect.elem_type = name
+            connect[:] = numpy.arange(first, first + each * width).reshape(each, width)
+            first += each * width
+        f.createVariable("elem_ss1", "i4", ("num_side_ss1",))[:] = [e + 1 for e, _, _ in entries]
+        f.createVariable("side_ss1", "i4", ("num_side_ss1",))[:] = [side + 1 for _, side, _ in entries]
+        f.createVariable("dist_fact_ss1", "f8", ("num_df_ss1",))[:] = numpy.arange(factors)
+    command.ok("order", "a.exo", "-o", "b.exo", "--vertices", "scrambled", "--elements", "scrambled")
+
+    def factors_of_sides(path):
+        with netCDF4.Dataset(path) as f:
+            x = f["coordx"][:].tolist()
+            rows = [(x[row[0] - 1], f[f"connect{b}"].elem_type) for b in range(1, len(types) + 1)
+                    for row in f[f"connect{b}"][:].tolist()]
+            values, result = f["dist_fact_ss1"][:].tolist(), {}
+            for e, side in zip(f["elem_ss1"][:].tolist(), f["side_ss1"][:].tolist()):
+                width = types[rows[e - 1][1]][1][side - 1]
+                result[(*rows[e - 1], side)] = values[:width]
+                values = values[width:]
+            assert not values
+            return result
+
+    assert factors_of_sides(tmp_path / "b.exo") == factors_of_sides(tmp_path / "a.exo")
+
+
 def test_faults_are_named_with_their_place(command, tmp_path):
     def broken(change, kind="NETCDF3_CLASSIC"):
         write_all(tmp_path / "a.exo", kind)

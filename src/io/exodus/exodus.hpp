@@ -24,6 +24,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -49,9 +50,15 @@ std::span<const int> file_order(Shape shape, int nodes);
 
 inline constexpr int kMostSides = 6;
 
-/// Returns the number of nodes of a side, from 1, 0 if there is no such side. Elements of surfaces have two
-/// faces before their edges where points have three coordinates.
-int nodes_of_side(Shape shape, int nodes, int side, int dimension);
+/// Returns the number of faces that elements of surfaces have as sides before their edges, as the library of
+/// Exodus II counts them: 2 for triangles in three dimensions and for shells of four corners, none for
+/// quadrilaterals of another type. 0 for other shapes.
+int faces_of(Shape shape, std::string_view type, int dimension);
+
+/// Returns the number of nodes of a side, from 1, 0 if there is no such side.
+///
+/// @param faces  as of `faces_of`
+int nodes_of_side(Shape shape, int nodes, int side, int faces);
 
 // ---- what a file has besides the mesh
 
@@ -212,6 +219,21 @@ using Block = CellPart;
 
 /// Returns the division of a mesh, by sets for one of another format only.
 CellDivision divide(const Mesh& mesh);
+
+/// Counts the nodes of sides of cells, which depend on the type of the block that a cell is in.
+class SideNodes {
+ public:
+  /// Takes the blocks of a file that the mesh came from. O(cells). The mesh has to outlive this object.
+  SideNodes(const Mesh& mesh, const Metadata& metadata);
+
+  /// Returns the number of nodes of a side, from 1, 0 if there is no such side. O(log blocks).
+  [[nodiscard]] int count(Index cell, int side) const;
+
+ private:
+  const Mesh& mesh_;
+  std::vector<std::int64_t> labels_;                                   ///< of the cells; empty if all are 0
+  std::map<std::tuple<std::int64_t, Shape, int>, std::string> types_;  ///< by label, shape and nodes
+};
 
 /// Returns the places of cells block by block, cells of the highest dimension first; `blocks` receives the
 /// first cell of each.

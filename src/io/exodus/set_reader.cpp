@@ -320,7 +320,7 @@ class SetReader {
   void require_side(const BlockRecord& block, std::int64_t side, const Variable& variable,
                     std::size_t entry) const {
     const bool known = side >= 1 && side <= kMostSides &&
-                       nodes_of_side(block.shape, block.nodes, static_cast<int>(side), 3) > 0;
+                       nodes_of_side(block.shape, block.nodes, static_cast<int>(side), 2) > 0;
     if (known) return;
     reading_.file.fail(fmt::format("{}, entry {}: a {} has no side {}", variable.name, entry + 1,
                                    to_string(block.shape), side),
@@ -337,7 +337,8 @@ class SetReader {
         const BlockRecord& block = reading_.block_of(cell);
         require_side(block, sides[i], variable, first + i);
         const auto side = static_cast<int>(sides[i]);
-        const int nodes = nodes_of_side(block.shape, block.nodes, side, reading_.metadata->coordinates);
+        const int faces = faces_of(block.shape, block.type, reading_.metadata->coordinates);
+        const int nodes = nodes_of_side(block.shape, block.nodes, side, faces);
         if (range.contains(cell)) {
           own.places.push_back(static_cast<Index>(first + i));
           own.members.push_back(cell);

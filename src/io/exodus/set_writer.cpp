@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <optional>
 #include <utility>
 
 // Writes the sets of nodes, sides and elements.
@@ -152,11 +153,9 @@ class FamilyPlanner {
     if (factors == nullptr || plan.members.empty()) return;
     std::vector<int> counts;
     counts.reserve(plan.members.size());
-    for (std::size_t i = 0; i < plan.members.size(); ++i) {
-      const Index cell = plan.members[i] - 1;
-      counts.push_back(nodes_of_side(writing_.mesh.cells.shapes[cell], writing_.mesh.cells.vertex_count(cell),
-                                     plan.sides[i], writing_.mesh.dimension == 3 ? 3 : 2));
-    }
+    if (!nodes_) nodes_.emplace(writing_.mesh, writing_.metadata);
+    for (std::size_t i = 0; i < plan.members.size(); ++i)
+      counts.push_back(nodes_->count(plan.members[i] - 1, plan.sides[i]));
     const int most_nodes = *std::max_element(counts.begin(), counts.end());
     const Index most_sides = *std::max_element(plan.ranks.begin(), plan.ranks.end()) + 1;
     int width = 0;
@@ -180,6 +179,7 @@ class FamilyPlanner {
   const SetKind& kind_;
   const SetFamily& family_;
   std::vector<SetPlan> plans_;
+  std::optional<SideNodes> nodes_;  ///< of sides with factors, if there are any
 };
 
 /// Returns the values of an array for the members of a set: `counts` of each, or one. Members without a row

@@ -26,6 +26,7 @@ constexpr std::array kTypeNames{
     TypeName{"WEDGE", Shape::wedge}, TypeName{"PRISM", Shape::wedge},     TypeName{"HEX", Shape::hexahedron},
 };
 
+constexpr std::string_view kShell = "SHELL";
 constexpr std::array kShellShapes{Shape::line, Shape::triangle, Shape::quad};
 
 struct WrittenType {
@@ -54,6 +55,10 @@ constexpr std::array kWedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15
 constexpr std::array kHexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
                                  18, 19, 12, 13, 14, 15, 23, 24, 25, 26, 21, 22, 20};
 
+bool begins_with(std::string_view type, std::string_view word) {
+  return same_but_for_case(type.substr(0, word.size()), word);
+}
+
 /// Returns the nodes of a face of `corners` corners in an element of that order.
 int nodes_of_face(int corners, bool quadratic, bool has_centre) {
   return (quadratic ? 2 * corners : corners) + (has_centre ? 1 : 0);
@@ -62,17 +67,15 @@ int nodes_of_face(int corners, bool quadratic, bool has_centre) {
 }  // namespace
 
 const Shape* shape_of(std::string_view type, int nodes, int dimension) {
-  const auto begins = [&](std::string_view word) {
-    return same_but_for_case(type.substr(0, word.size()), word);
-  };
   const Shape* shape = nullptr;
-  if (begins("SHELL")) {
+  if (begins_with(type, kShell)) {
     // in a plane a shell is a line
     const int corners = dimension < 3 && nodes <= 3 ? 2 : nodes == 3 || nodes == 6 || nodes == 7 ? 3 : 4;
     shape = &kShellShapes[static_cast<std::size_t>(corners) - 2];
   } else {
-    const auto* const found = std::find_if(kTypeNames.begin(), kTypeNames.end(),
-                                           [&](const TypeName& name) { return begins(name.begin); });
+    const auto* const found = std::find_if(kTypeNames.begin(), kTypeNames.end(), [&](const TypeName& name) {
+      return begins_with(type, name.begin);
+    });
     if (found != kTypeNames.end()) shape = &found->shape;
   }
   const bool fits =
@@ -93,7 +96,13 @@ std::span<const int> file_order(Shape shape, int nodes) {
   return {};
 }
 
-int nodes_of_side(Shape shape, int nodes, int side, int dimension) {
+int faces_of(Shape shape, std::string_view type, int dimension) {
+  const bool has_faces =
+      (shape == Shape::triangle && dimension == 3) || (shape == Shape::quad && begins_with(type, kShell));
+  return has_faces ? 2 : 0;
+}
+
+int nodes_of_side(Shape shape, int nodes, int side, int faces) {
   if (side < 1) return 0;
   switch (shape) {
     case Shape::tetrahedron:
@@ -110,7 +119,6 @@ int nodes_of_side(Shape shape, int nodes, int side, int dimension) {
     case Shape::triangle:
     case Shape::quad: {
       const int edges = corners(shape, nodes);
-      const int faces = dimension == 3 ? 2 : 0;
       if (side <= faces) return nodes;
       return side <= faces + edges ? (nodes >= 2 * edges ? 3 : 2) : 0;
     }
