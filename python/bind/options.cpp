@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <thread>
 
 namespace meshorder::python {
@@ -22,6 +23,13 @@ std::thread::id ending_thread;  // set before `interpreter_ends`
   while (true) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
+/// Returns whether an object is False, Python's or NumPy's, as a comparison of its numbers gives it.
+bool is_false(const nb::object& answer) {
+  const std::string_view type = Py_TYPE(answer.ptr())->tp_name;  // numpy.bool_ before NumPy 2
+  return answer.is(Py_False) ||
+         ((type == "numpy.bool" || type == "numpy.bool_") && !nb::cast<bool>(answer.attr("item")()));
+}
+
 /// Reports to a Python function, or to none, and lets signals through: Ctrl-C ends the call as
 /// KeyboardInterrupt. Only the function's False stops; its None goes on.
 std::function<bool(const Progress&)> reporter(const nb::object& function) {
@@ -32,7 +40,7 @@ std::function<bool(const Progress&)> reporter(const nb::object& function) {
     if (function.is_none()) return true;
     const nb::object answer =
         function(nb::str(progress.stage.data(), progress.stage.size()), progress.fraction);
-    return !answer.is(Py_False);
+    return !is_false(answer);
   };
 }
 

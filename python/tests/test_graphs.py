@@ -203,8 +203,11 @@ def test_progress_and_stop(graph):
     meshorder.order(large, "spectral", progress=lambda stage, fraction: heard.append((stage, fraction)))
     assert heard and all(isinstance(stage, str) for stage, _ in heard)
     assert [f for _, f in heard] == sorted(f for _, f in heard)
-    with pytest.raises(Stopped):
-        meshorder.order(large, "spectral", progress=lambda stage, fraction: False)
+    for stop in (False, np.float64(1) < 0):
+        with pytest.raises(Stopped):
+            meshorder.order(large, "spectral", progress=lambda stage, fraction, answer=stop: answer)
+    for go_on in (True, None, np.float64(1) > 0, 0):
+        meshorder.order(large, "hilbert", points=np.zeros((144000, 3)), progress=lambda stage, fraction, answer=go_on: answer)
     with pytest.raises(ZeroDivisionError):
         meshorder.order(large, "spectral", progress=lambda stage, fraction: 1 / 0)
 

@@ -86,6 +86,11 @@ if comm.rank == 1:
 for call in (lambda: meshorder.mpi.order_ranks(comm, own, wrong),
              lambda: meshorder.mpi.order_ranks(comm, own if comm.rank == 0 else -1, triangles),
              lambda: meshorder.mpi.order_ranks(comm, own, triangles + 0.5),
+             lambda: meshorder.mpi.order_ranks(comm, own, triangles if comm.rank == 0 else triangles + 0.5),
+             lambda: meshorder.mpi.order_ranks(comm, own, triangles, places[comm.rank:]),
+             lambda: meshorder.mpi.order_ranks(comm, "many" if comm.rank == 0 else own, triangles),
+             lambda: meshorder.mpi.order_ranks(comm, own, triangles, method=None if comm.rank == 0 else "rcm"),
+             lambda: meshorder.mpi.order_parts(comm, own, triangles, places, seed=comm.rank - 1),
              lambda: meshorder.mpi.order_parts(comm, own, triangles, places, parts=-5),
              lambda: meshorder.mpi.order_ranks(comm, own, triangles, method="nonsense"),
              lambda: meshorder.mpi.order_parts(comm, own, triangles, places, partition="nonsense")):
@@ -94,9 +99,12 @@ for call in (lambda: meshorder.mpi.order_ranks(comm, own, wrong),
     except ValueError as error:
         print(type(error).__name__, error)
 """))
-    assert said.count("InvalidArgument") == 12
+    assert said.count("InvalidArgument") == 22
     assert said.count("has the vertex 1000000000000") == 2
-    assert said.count("vertex_count: -1") == said.count("expected integers") == said.count("-5 parts") == 2
+    assert said.count("expected integers") == 4 and said.count("rank 1: cells: expected integers") == 1
+    for words in ("vertex_count: -1", "vertex_count: expected a whole number, not 'many'", "parts: -5", "seed: -1",
+                  "points: expected 500 of them, not 499", "method: expected a text, not None"):
+        assert said.count(words) == 2, words
 
 
 def test_a_missing_library_is_told():

@@ -20,13 +20,16 @@ import ctypes.util
 import dataclasses
 import functools
 import os
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _errors
 from ._arrays import integers
+from ._arrays import points as as_points
+from ._options import whole
 
 __all__ = ["PartOrder", "RankOrder", "order_parts", "order_ranks"]
 
@@ -35,6 +38,8 @@ _LIBRARY = "libmeshorder_mpi.so.1"
 _KINDS = {1: _errors.InvalidArgument, 2: _errors.InputError, 3: _errors.TooLarge, 4: _errors.Unavailable,
           5: _errors.Stopped, 7: _errors.InternalError}  # fmt: skip
 _OUT_OF_MEMORY = 8
+_MOST_VERTICES = 2**63 - 1
+_Prepared = TypeVar("_Prepared")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -104,8 +109,13 @@ def _whole_numbers(values: ArrayLike) -> Numbers:
 
 
 def _room_for(count: int) -> Numbers:
-    """Room for so many numbers. A negative count is for the library to refuse, on all ranks."""
-    return np.empty(max(count, 0), np.int64)
+    return np.empty(count, np.int64)
+
+
+def _text(value: Any, name: str) -> bytes:
+    if not isinstance(value, str):
+        raise _errors.InvalidArgument(f"{name}: expected a text, not {value!r}")
+    return value.encode()
 
 
 @dataclasses.dataclass
@@ -136,12 +146,10 @@ class _Arrays:
             )
         placed = None
         if points is not None:
-            placed = np.zeros((max(vertex_count, 0), 3))
-            given = np.asarray(points, np.float64)
-            if given.ndim != 2 or len(given) != vertex_count or not 1 <= given.shape[1] <= 3:
-                raise _errors.InvalidArgument(
-                    f"points: expected {vertex_count} × 1, 2 or 3 coordinates, not the shape {given.shape}"
-                )
+            placed = np.zeros((vertex_count, 3))
+            given = as_points(points)
+            if len(given) != vertex_count:
+                raise _errors.InvalidArgument(f"points: expected {vertex_count} of them, not {len(given)}")
             placed[:, : given.shape[1]] = given
         return cls(vertex_count, offsets, vertices, placed)
 
@@ -149,6 +157,26 @@ class _Arrays:
         points = None if self.points is None else self.points.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
         return _Mesh(ctypes.sizeof(_Mesh), self.vertex_count, len(self.offsets) - 1, _numbers(self.offsets),
                      _numbers(self.vertices), points)  # fmt: skip
+
+
+def _on_all_ranks(communicator: Any, prepare: Callable[[], _Prepared]) -> _Prepared:
+    """Returns what this rank prepares, or raises on all ranks what one of them raises: none waits for it."""
+    prepared: _Prepared | None = None
+    failure: Exception | None = None
+    try:
+        prepared = prepare()
+    except Exception as error:  # noqa: BLE001, which the others have to hear of
+        failure = error
+    failures = communicator.allgather(None if failure is None else (type(failure).__name__, str(failure)))
+    if failure is not None:
+        raise failure
+    for rank, found in enumerate(failures):
+        if found is not None:
+            kind, message = found
+            known = {MemoryError.__name__: MemoryError, **{name: getattr(_errors, name) for name in _errors.__all__}}
+            raise known.get(kind, _errors.Error)(f"rank {rank}: {message}")
+    assert prepared is not None
+    return prepared
 
 
 def _call(function: Any, communicator: Any, arrays: _Arrays, options: _Options, *results: Numbers) -> None:
@@ -187,14 +215,22 @@ def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         New numbers of this rank's vertices, and the order of its elements.
 
     Raises:
-        InvalidArgument: an unknown method, wrong vertex numbers or missing coordinates, on all ranks if one has them;
-            arrays of wrong shapes, only on the rank that has them, while the others wait for it.
+        InvalidArgument: an unknown method, wrong vertex numbers, missing coordinates, arrays of wrong shapes.
         Unavailable: the library ``libmeshorder_mpi`` was not found.
-        Error: another failure; on all ranks.
+        Error: another failure.
+
+    What one rank raises, all do.
     """
-    arrays = _Arrays.of(vertex_count, cells, points)
-    options = _Options(ctypes.sizeof(_Options), method.encode(), None, None, seed, 0, threads, interface_last, 0)
-    order = RankOrder(_room_for(vertex_count), _room_for(len(arrays.offsets) - 1))
+
+    def prepare() -> tuple[_Arrays, _Options, RankOrder]:
+        _library()
+        own = whole(vertex_count, _MOST_VERTICES, "vertex_count")
+        arrays = _Arrays.of(own, cells, points)
+        options = _Options(ctypes.sizeof(_Options), _text(method, "method"), None, None, whole(seed, 2**64 - 1, "seed"), 0,
+                           whole(threads, 2**31 - 1, "threads"), bool(interface_last), 0)  # fmt: skip
+        return arrays, options, RankOrder(_room_for(own), _room_for(len(arrays.offsets) - 1))
+
+    arrays, options, order = _on_all_ranks(communicator, prepare)
     _call(_library().mo_mpi_order_ranks, communicator, arrays, options, order.new_numbers, order.cell_order)
     return order
 
@@ -231,11 +267,19 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
     Raises:
         InvalidArgument, Unavailable, Error: as `order_ranks`; InvalidArgument also for options that do not go together.
     """
-    arrays = _Arrays.of(vertex_count, cells, points)
-    options = _Options(ctypes.sizeof(_Options), method.encode(), partition.encode(), balance.encode(), seed, parts, threads,
-                       interface_last, 0)  # fmt: skip
-    order = PartOrder(_room_for(vertex_count), _room_for((parts or communicator.size) + 1),
-                      _room_for(len(arrays.offsets) - 1))  # fmt: skip
+
+    def prepare() -> tuple[_Arrays, _Options, PartOrder]:
+        _library()
+        own = whole(vertex_count, _MOST_VERTICES, "vertex_count")
+        count = whole(parts, 2**31 - 1, "parts")
+        arrays = _Arrays.of(own, cells, points)
+        options = _Options(ctypes.sizeof(_Options), _text(method, "method"), _text(partition, "partition"),
+                           _text(balance, "balance"), whole(seed, 2**64 - 1, "seed"), count,
+                           whole(threads, 2**31 - 1, "threads"), bool(interface_last), 0)  # fmt: skip
+        return arrays, options, PartOrder(_room_for(own), _room_for((count or communicator.size) + 1),
+                                          _room_for(len(arrays.offsets) - 1))  # fmt: skip
+
+    arrays, options, order = _on_all_ranks(communicator, prepare)
     _call(_library().mo_mpi_order_parts, communicator, arrays, options, order.new_numbers, order.part_starts,
           order.cell_parts)  # fmt: skip
     return order
