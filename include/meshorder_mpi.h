@@ -30,6 +30,8 @@ typedef struct mo_mpi_mesh {
   const int64_t* cell_offsets;  /**< cell_count + 1, ascending from 0; null without elements */
   const int64_t* cell_vertices; /**< numbers of their vertices, whichever rank owns these */
   const double* points;         /**< x y z of each own vertex; or null, on all ranks */
+  int64_t cell_vertex_count;    /**< length of cell_vertices: where the offsets end */
+  int64_t coordinate_count;     /**< length of points: 3 * vertex_count, 0 without points */
 } mo_mpi_mesh;
 
 /** Options of a call. `mo_mpi_options_init` fills in the defaults; a null pointer stands for them. The same

@@ -65,7 +65,9 @@ inline mo_mpi_mesh to_c(const RankMesh& mesh) {
           static_cast<std::int64_t>(cells),
           mesh.cell_offsets.data(),
           mesh.cell_vertices.data(),
-          mesh.points.empty() ? nullptr : mesh.points.data()};
+          mesh.points.empty() ? nullptr : mesh.points.data(),
+          static_cast<std::int64_t>(mesh.cell_vertices.size()),
+          static_cast<std::int64_t>(mesh.points.size())};
 }
 
 inline mo_mpi_options to_c(const RankOptions& options) {

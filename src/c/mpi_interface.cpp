@@ -26,6 +26,9 @@ using distributed::GlobalIndex;
 using distributed::Layout;
 using distributed::OwnedMesh;
 
+/// The most vertices of a rank; no sum over ranks overflows.
+constexpr std::int64_t kMostVertices = std::int64_t{1} << 40;
+
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the error of each thread
 thread_local std::string last_mpi_error;
 
@@ -95,6 +98,10 @@ void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
     require(given.cell_offsets[c] < given.cell_offsets[c + 1],
             "cell_offsets: element " + std::to_string(c) + " has no vertices");
   }
+  const std::int64_t end = given.cell_count == 0 ? 0 : given.cell_offsets[given.cell_count];
+  require(given.cell_vertex_count == end, "cell_vertices: there are " +
+                                              std::to_string(given.cell_vertex_count) +
+                                              ", and cell_offsets end at " + std::to_string(end));
   for (std::int64_t c = 0; c < given.cell_count; ++c) {
     for (std::int64_t k = given.cell_offsets[c]; k < given.cell_offsets[c + 1]; ++k) {
       const std::int64_t vertex = given.cell_vertices[k];
@@ -104,6 +111,10 @@ void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
     }
     mesh.cells.end_row();
   }
+  const std::int64_t coordinates = given.points == nullptr ? 0 : 3 * given.vertex_count;
+  require(given.coordinate_count == coordinates,
+          "points: there are " + std::to_string(given.coordinate_count) + " coordinates instead of " +
+              std::to_string(coordinates));
   if (given.points == nullptr) return;
   mesh.points.resize(static_cast<std::size_t>(given.vertex_count));
   std::memcpy(mesh.points.data(), given.points, mesh.points.size() * sizeof(Point));
@@ -118,7 +129,8 @@ OwnedMesh mesh_of(const Communicator& communicator, const mo_mpi_mesh* given) {
   communicator.together([&] {
     require(given != nullptr, "mesh: null");
     require(given->struct_size >= sizeof *given, "mesh: struct_size must be the size of the structure");
-    require(given->vertex_count >= 0, "vertex_count: " + std::to_string(given->vertex_count));
+    require(given->vertex_count >= 0 && given->vertex_count <= kMostVertices,
+            "vertex_count: " + std::to_string(given->vertex_count));
   });
   const std::vector<std::int64_t> counts = communicator.gathered(given->vertex_count);
   OwnedMesh mesh;

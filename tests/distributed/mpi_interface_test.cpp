@@ -194,6 +194,21 @@ TEST(RankMeshes, AFaultOfOneRankIsToldOnAll) {
   mesh = solver.view();
   mesh.vertex_count = -1;
   expect_fault(mesh, "vertex_count: -1");
+  mesh.vertex_count = std::numeric_limits<std::int64_t>::max();
+  // the room for the result would not be had before the library is asked
+  expect_error(
+      [&] {
+        const mo_mpi_mesh given = detail::to_c(is_last ? mesh : solver.view());
+        detail::throw_unless_ok(
+            mo_mpi_order_ranks(MPI_Comm_c2f(MPI_COMM_WORLD), &given, nullptr, nullptr, nullptr));
+      },
+      Code::invalid_argument, "vertex_count: 9223372036854775807");
+  mesh = solver.view();
+  mesh.cell_vertices = mesh.cell_vertices.first(mesh.cell_vertices.size() - 1);
+  expect_fault(mesh, "and cell_offsets end at");
+  mesh = solver.view();
+  mesh.points = mesh.points.first(mesh.points.size() - 1);
+  expect_fault(mesh, "coordinates instead of");
   mesh = solver.view();
   std::vector<double> points(mesh.points.begin(), mesh.points.end());
   points.back() = std::numeric_limits<double>::quiet_NaN();

@@ -78,7 +78,8 @@ _NUMBERS = ctypes.POINTER(ctypes.c_int64)
 
 class _Mesh(ctypes.Structure):
     _fields_ = (("struct_size", ctypes.c_size_t), ("vertex_count", ctypes.c_int64), ("cell_count", ctypes.c_int64),
-                ("cell_offsets", _NUMBERS), ("cell_vertices", _NUMBERS), ("points", ctypes.POINTER(ctypes.c_double)))  # fmt: skip
+                ("cell_offsets", _NUMBERS), ("cell_vertices", _NUMBERS), ("points", ctypes.POINTER(ctypes.c_double)),
+                ("cell_vertex_count", ctypes.c_int64), ("coordinate_count", ctypes.c_int64))  # fmt: skip
 
 
 class _Options(ctypes.Structure):
@@ -156,7 +157,8 @@ class _Arrays:
     def to_c(self) -> _Mesh:
         points = None if self.points is None else self.points.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
         return _Mesh(ctypes.sizeof(_Mesh), self.vertex_count, len(self.offsets) - 1, _numbers(self.offsets),
-                     _numbers(self.vertices), points)  # fmt: skip
+                     _numbers(self.vertices), points, self.vertices.size,
+                     0 if self.points is None else self.points.size)  # fmt: skip
 
 
 def _on_all_ranks(communicator: Any, prepare: Callable[[], _Prepared]) -> _Prepared:
