@@ -8,19 +8,22 @@
 #include "distributed/piece_contents.hpp"
 #include "distributed/shared_file.hpp"
 #include "distributed/text_store.hpp"
+#include "io/stream/descriptor.hpp"
+#include "io/stream/system_fault.hpp"
 #include "io/vtk/vtk.hpp"
 #ifdef MESHORDER_HAS_HDF5
 #include "io/vtkhdf/vtkhdf.hpp"
 #endif
 #include <meshorder/error.hpp>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <span>
@@ -169,11 +172,11 @@ class RankPieces {
 /// Appends bytes to a file that exists.
 void append(const std::string& path, const std::string& name, std::string_view text,
             std::span<const std::byte> bytes = {}) {
-  std::ofstream file(path, std::ios::binary | std::ios::in | std::ios::out | std::ios::ate);
-  file.write(text.data(), std::ssize(text));
-  file.write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
-  file.close();
-  if (!file) throw InputError(name, "cannot be written", "the disk may be full");
+  Descriptor file(path, O_WRONLY | O_APPEND);
+  int fault = file.is_open() ? file.write(text) : errno;
+  if (fault == 0) fault = file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  if (fault == 0) fault = file.close();
+  if (fault != 0) throw_system_fault(name, "cannot be written", fault);
 }
 
 PiecesReport report_on(const Communicator& communicator, const std::vector<PieceContents>& own) {

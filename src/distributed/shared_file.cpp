@@ -1,8 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/shared_file.hpp"
 
+#include "io/stream/descriptor.hpp"
+
+#include <fcntl.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <system_error>
 #include <utility>
 
 namespace meshorder::distributed {
@@ -22,12 +28,20 @@ std::string words_of_mpi(int fault) {
 
 SharedFile::SharedFile(const Communicator& communicator, const std::string& path, std::string name, Use use)
     : communicator_(communicator), name_(std::move(name)) {
+  // Open MPI 4.1.4 waits for ever where only some of the ranks see the file
+  communicator.together([&] {
+    const Descriptor file(path, use == Use::read ? O_RDONLY : O_WRONLY);
+    if (!file.is_open()) throw cannot_be_opened(std::generic_category().message(errno));
+  });
   const int mode = use == Use::read ? MPI_MODE_RDONLY : MPI_MODE_WRONLY;
   const int fault = MPI_File_open(communicator.handle(), path.c_str(), mode, MPI_INFO_NULL, &handle_);
   communicator.together([&] {
-    if (fault != MPI_SUCCESS)
-      throw InputError(name_, "cannot be opened: " + words_of_mpi(fault), "every rank has to see the file");
+    if (fault != MPI_SUCCESS) throw cannot_be_opened(words_of_mpi(fault));
   });
+}
+
+InputError SharedFile::cannot_be_opened(const std::string& reason) const {
+  return {name_, "cannot be opened: " + reason, "every rank has to see the file"};
 }
 
 SharedFile::~SharedFile() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "distributed/communicator.hpp"
+#include <meshorder/error.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -49,6 +50,8 @@ class SharedFile {
     std::string_view too_short;  ///< before the byte where it should have ended
     std::string_view remedy;
   };
+
+  [[nodiscard]] InputError cannot_be_opened(const std::string& reason) const;
 
   /// Moves the rank's own bytes by a function of MPI, chunk by chunk.
   template <class Byte, class Call>

@@ -289,6 +289,27 @@ def test_what_fails_ends_all_ranks_with_one_line(tmp_path, monkeypatch, ball, ar
     assert sorted(os.listdir()) == before
 
 
+@pytest.mark.parametrize("kind, unseen, options", [
+    *((kind, "input", ["-o", "{all}/b.{kind}"]) for kind in ("vtu", "vtkhdf", "xdmf")),
+    *((kind, "output", ["-o", "out/b.{kind}"]) for kind in ("vtu", "vtkhdf", "xdmf")),
+    *((kind, "maps", ["-o", "{all}/b.{kind}", "--maps", "out/m"]) for kind in ("vtu", "vtkhdf", "xdmf")),
+    *((kind, "pieces", ["--pieces", f"out/p{end}"]) for kind in ("vtu", "vtkhdf") for end in ("", ".vtkhdf")),
+])
+def test_what_only_rank_0_sees_ends_all_ranks(tmp_path, ball, kind, unseen, options):
+    for folder in ("here", "there"):
+        (tmp_path / folder).mkdir()
+        if unseen != "input" or folder == "here":
+            subprocess.run([MESHORDER, "order", ball, "-q", "-o", tmp_path / folder / f"a.{kind}"], check=True)
+    (tmp_path / "here" / "out").mkdir()
+    before = sorted(str(path) for path in tmp_path.rglob("*"))
+    command = [str(MESHORDER), "order", f"a.{kind}", *(option.format(kind=kind, all=tmp_path) for option in options)]
+    start = [*MPIRUN, "-n", "1", "--wdir", tmp_path / "here", *command, ":", "-n", "2", "--wdir", tmp_path / "there", *command]
+    done = subprocess.run(start, env=environment(), capture_output=True, text=True, timeout=SECONDS, check=False)
+    assert done.returncode == 2 and len(own_lines(done)) == 1, done.stderr
+    assert "rank 1: " in own_lines(done)[0] and "o such file" in own_lines(done)[0], done.stderr
+    assert sorted(str(path) for path in tmp_path.rglob("*")) == before
+
+
 def test_without_arguments_it_ends_as_one_process_does():
     done = launch(2)
     assert done.returncode == 2 and done.stdout == "" and "SUBCOMMAND" in done.stderr
