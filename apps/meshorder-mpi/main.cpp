@@ -2,6 +2,7 @@
 #include "distributed/communicator.hpp"
 #include "help_format.hpp"
 #include "interruption.hpp"
+#include "launcher.hpp"
 #ifdef MESHORDER_HAS_HDF5
 #include "io/hdf5/process_end.hpp"
 #endif
@@ -73,6 +74,17 @@ int run(const Communicator& communicator, std::vector<std::string> arguments) {
   return 0;
 }
 
+/// Says that MPI knows nothing of the others that were started with this process, and returns the status.
+int tell_of_launcher(bool is_first_process) {
+  return is_first_process
+             ? report_failure(
+                   "the launcher started several processes, but MPI sees each of them alone: start "
+                   "them by mpirun of " +
+                       meshorder::distributed::name_of_mpi(),
+                   kBadInput)
+             : kBadInput;
+}
+
 /// Ends all ranks for a failure of this one that the others do not know of: they may wait for it.
 [[noreturn]] void abort_all(const std::string& message) noexcept {
   meshorder::remove_unfinished_outputs();
@@ -87,10 +99,14 @@ int main(int argc, char** argv) {
 #ifdef MESHORDER_HAS_HDF5
   meshorder::hdf5::close_nothing_at_exit();
 #endif
+  // MPI changes these variables
+  const bool is_one_of_several = meshorder::command::is_one_of_several();
+  const bool is_first_process = meshorder::command::is_first_process();
   try {
     const meshorder::distributed::Session session(argc, argv);
     try {
       const Communicator communicator;
+      if (communicator.size() == 1 && is_one_of_several) return tell_of_launcher(is_first_process);
       try {
         return run(communicator, {argv + std::min(argc, 1), argv + argc});
       } catch (const meshorder::distributed::SharedError& error) {

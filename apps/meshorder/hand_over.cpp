@@ -1,44 +1,34 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "hand_over.hpp"
 
+#include "launcher.hpp"
 #include "standard_streams.hpp"
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace meshorder::command {
 namespace {
 
-// of Open MPI, of MPICH and its like, of Slurm for the step that a process is part of
-constexpr std::array kSizes{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
-constexpr std::array kRanks{"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"};
+constexpr std::array<std::string_view, 6> kOptionsOfParts{"--parts",     "--pieces",  "--ghosts",
+                                                          "--partition", "--balance", "--interface"};
 
-/// The first of these variables that is set; null if none is.
-template <class Names>
-const char* first_set(const Names& names) {
-  const char* value = nullptr;
-  for (const char* const name : names) {
-    if (value == nullptr) value = std::getenv(name);
+/// Returns the first option of `order` that only `meshorder-mpi` has; empty if there is none.
+std::string_view option_of_parts(char** arguments) {
+  if (arguments[0] == nullptr || arguments[1] == nullptr || std::string_view(arguments[1]) != "order")
+    return {};
+  for (char** argument = arguments + 2; *argument != nullptr; ++argument) {
+    const std::string_view word = *argument;
+    const std::string_view name = word.substr(0, word.find('='));
+    if (std::find(kOptionsOfParts.begin(), kOptionsOfParts.end(), name) != kOptionsOfParts.end()) return name;
   }
-  return value;
-}
-
-/// Whether a launcher started this process with others. PMIx says of a process only which one it is.
-bool is_one_of_several() {
-  const char* const size = first_set(kSizes);
-  if (size != nullptr) return std::atoi(size) > 1;
-  return std::getenv("PMIX_RANK") != nullptr;
-}
-
-bool is_first_rank() {
-  const char* const rank = first_set(kRanks);
-  return rank == nullptr || std::atoi(rank) == 0;
+  return {};
 }
 
 std::string program_beside_this_one() {
@@ -51,13 +41,16 @@ std::string program_beside_this_one() {
 std::optional<int> hand_over_to_mpi(char** arguments) noexcept {
   constexpr int kBadInput = 2;
   try {
-    if (!is_one_of_several()) return std::nullopt;
+    const bool is_launched = is_one_of_several();
+    const std::string option(option_of_parts(arguments));
+    if (!is_launched && option.empty()) return std::nullopt;
     ::execv(program_beside_this_one().c_str(), arguments);
-    if (is_first_rank()) {
-      report_failure(
-          "started by mpirun, it needs meshorder-mpi beside it, which a build with -DMESHORDER_MPI=ON makes; "
-          "without mpirun it runs as one process",
-          kBadInput);
+    if (is_first_process()) {
+      const std::string needs = "needs meshorder-mpi beside it, which a build with -DMESHORDER_MPI=ON makes";
+      report_failure(is_launched
+                         ? "started by mpirun, it " + needs + "; without mpirun it runs as one process"
+                         : option + " " + needs,
+                     kBadInput);
     }
     return kBadInput;
   } catch (const std::exception& error) {

@@ -5,13 +5,13 @@
 
 namespace meshorder::command {
 
-/// Where this process is one of several that `mpirun` or `srun` started together, executes `meshorder-mpi`
-/// from beside this program with the same arguments, and does not return. A batch script's variables alone
-/// are no such start.
+/// Where this process is one of several that `mpirun` or `srun` started together, or `order` is given an
+/// option of parts, executes `meshorder-mpi` from beside this program with the same arguments, and does not
+/// return.
 ///
 /// @param arguments  as of `main`
-/// @return exit status where there is no such program, which the first rank has said; nothing for a process
-///         of its own
+/// @return exit status where there is no such program, which the first process has said; nothing where this
+///         program does the work
 std::optional<int> hand_over_to_mpi(char** arguments) noexcept;
 
 }  // namespace meshorder::command

@@ -208,7 +208,8 @@ void add_order(CLI::App& subcommand) {
       "Examples:\n"
       "  meshorder order dragon.veg -o ordered.veg\n"
       "  meshorder order part.msh -o part.vtu --for spmv --maps part\n"
-      "  meshorder order dragon.veg -o ordered.veg --measure");
+      "  meshorder order dragon.veg -o ordered.veg --measure\n"
+      "Parts and pieces for programs of many ranks: see meshorder-mpi order --help");
   const auto arguments = std::make_shared<OrderArguments>();
   subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
   subcommand.add_option("-o,--output", arguments->output, "File to write; may be the input")->required();

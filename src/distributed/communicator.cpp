@@ -2,6 +2,7 @@
 #include "distributed/communicator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <new>
 #include <utility>
 
@@ -40,6 +41,15 @@ Session::~Session() { MPI_Finalize(); }
 void Session::abort(int status) noexcept {
   MPI_Abort(MPI_COMM_WORLD, status);
   std::_Exit(status);
+}
+
+std::string name_of_mpi() {
+  std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
+  int length = 0;
+  MPI_Get_library_version(text.data(), &length);
+  // its packager and date follow, or lines of settings
+  const std::string name(text.data(), static_cast<std::size_t>(length));
+  return name.substr(0, name.find_first_of(",\n"));
 }
 
 Communicator::Communicator(MPI_Comm ranks) {

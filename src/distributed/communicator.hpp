@@ -33,6 +33,9 @@ class Session {
   [[noreturn]] static void abort(int status) noexcept;
 };
 
+/// Returns the name and version of the MPI library, as "Open MPI v4.1.4".
+std::string name_of_mpi();
+
 /// An exception of one rank, thrown on all of them. None of them waits for another.
 struct SharedError : Error {
   using Error::Error;

@@ -372,3 +372,23 @@ def test_one_process_orders_by_itself(tmp_path, ball, variables):
     done = subprocess.run([MESHORDER, "order", ball, "-o", tmp_path / "out.vtu", "--json"], env=environment(**variables),
                           capture_output=True, text=True, check=True)
     assert "ranks" not in json.loads(done.stdout)
+
+
+def test_one_process_makes_the_same_parts(tmp_path, ball):
+    for start in ([], [*MPIRUN, "-n", "1"], [*MPIRUN, "-n", "3"]):
+        name = str(tmp_path / f"{len(start)}{start[-1:]}")
+        words = [*start, MESHORDER, "order", ball, "-o", f"{name}.vtu", "--maps", name, "--parts=5", "--partition", "hilbert"]
+        subprocess.run(words, env=environment(), check=True, timeout=SECONDS, capture_output=True)
+    for end in (".vtu", ".vertices.old_to_new.npy", ".cells.parts.npy"):
+        assert len({path.read_bytes() for path in tmp_path.glob(f"*{end}")}) == 1, end
+
+
+@pytest.mark.parametrize("size, rank", [("PMI_SIZE", "PMI_RANK"), ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID")])
+def test_a_launcher_of_another_mpi_is_told(tmp_path, ball, size, rank):
+    """Each process would order the mesh by itself and write the same file."""
+    for k, lines in ((0, 1), (1, 0)):
+        done = subprocess.run([MESHORDER, "order", ball, "-o", tmp_path / "out.vtu"], capture_output=True, text=True, check=False,
+                              env=environment(**{size: "2", rank: str(k)}), timeout=SECONDS)
+        assert done.returncode == 2 and len(own_lines(done)) == lines, done.stderr
+        assert not lines or "MPI sees each of them alone" in own_lines(done)[0], done.stderr
+    assert os.listdir(tmp_path) == []

@@ -1,0 +1,37 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "launcher.hpp"
+
+#include <array>
+#include <cstdlib>
+
+namespace meshorder::command {
+namespace {
+
+// of Open MPI, of MPICH and its like, of Slurm for the step that a process is part of
+constexpr std::array kSizes{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
+constexpr std::array kRanks{"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"};
+
+/// The first of these variables that is set; null if none is.
+template <class Names>
+const char* first_set(const Names& names) {
+  const char* value = nullptr;
+  for (const char* const name : names) {
+    if (value == nullptr) value = std::getenv(name);
+  }
+  return value;
+}
+
+}  // namespace
+
+bool is_one_of_several() {
+  const char* const size = first_set(kSizes);
+  // PMIx says of a process only which one it is
+  return size != nullptr ? std::atoi(size) > 1 : std::getenv("PMIX_RANK") != nullptr;
+}
+
+bool is_first_process() {
+  const char* const rank = first_set(kRanks);
+  return rank == nullptr || std::atoi(rank) == 0;
+}
+
+}  // namespace meshorder::command
