@@ -79,7 +79,10 @@ void handle_endings(void (*handler)(int)) {
 
 void clean_up_at_signals() { handle_endings(clean_up); }
 
-void clean_up_quietly_at_signals() { handle_endings(clean_up_quietly); }
+void clean_up_quietly_at_signals() {
+  std::signal(SIGXFSZ, SIG_IGN);  // the write fails instead, which the other processes are told of
+  handle_endings(clean_up_quietly);
+}
 
 Interruption::Interruption() {
   caught = 0;

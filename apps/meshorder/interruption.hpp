@@ -7,7 +7,8 @@ namespace meshorder::command {
 /// with a line on stderr, SIGPIPE silently. Those that are ignored stay so.
 void clean_up_at_signals();
 
-/// The same without lines, for one of several processes, whose launcher says why it ends them.
+/// The same without lines, for one of several processes, whose launcher says why it ends them. A file that
+/// exceeds the limit on the size of files ends none: writing it fails.
 void clean_up_quietly_at_signals();
 
 /// While alive, the first Ctrl-C (SIGINT) or SIGTERM sets a flag; a second one does what it did before. Only

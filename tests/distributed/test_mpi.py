@@ -310,6 +310,28 @@ def test_what_only_rank_0_sees_ends_all_ranks(tmp_path, ball, kind, unseen, opti
     assert sorted(str(path) for path in tmp_path.rglob("*")) == before
 
 
+@pytest.mark.parametrize("limited", [0, 1])
+@pytest.mark.parametrize("options", [["-o", "b.vtu"], ["-o", "b.vtkhdf"], ["-o", "b.msh"], ["--pieces", "p"],
+                                     ["--pieces", "p.vtkhdf"], ["--pieces", "p.e"]])
+def test_one_rank_that_cannot_write_ends_all(tmp_path, ball, options, limited):
+    """A limit on the size of one rank's files stands for its full disk."""
+    kind = options[1].partition(".")[2] if "-o" in options else "e"
+    subprocess.run([MESHORDER, "order", ball, "-q", "-o", tmp_path / f"a.{kind}"], check=True)
+    words = [MESHORDER, "order", tmp_path / f"a.{kind}", options[0], tmp_path / options[1]]
+    start = [*MPIRUN]
+    for rank in range(3):
+        limit = ["bash", "-c", 'ulimit -f 40; exec "$@"', "-"] if rank == limited else []
+        start += [":"] * (rank > 0) + ["-n", "1", *limit, *words]
+    began = time.monotonic()
+    done = subprocess.run(start, env=environment(), capture_output=True, text=True, timeout=SECONDS, check=False)
+    if done.returncode == 0:  # what this rank writes is shorter, or nothing
+        assert limited == 1, done.stderr
+        return
+    assert time.monotonic() - began < 20
+    assert done.returncode == 2 and len(own_lines(done)) == 1, done.stderr
+    assert os.listdir(tmp_path) == [f"a.{kind}"]
+
+
 def test_without_arguments_it_ends_as_one_process_does():
     done = launch(2)
     assert done.returncode == 2 and done.stdout == "" and "SUBCOMMAND" in done.stderr

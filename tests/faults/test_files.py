@@ -3,6 +3,7 @@
 import errno
 import gzip
 import itertools
+import json
 import os
 import resource
 import signal
@@ -98,6 +99,28 @@ def test_a_limit_on_file_sizes_is_told(tmp_path, name, bytes_, ignored):
     told = done.returncode == -signal.SIGXFSZ and "SIGXFSZ" in done.stderr  # it cleans up, then ends by the signal
     ending = interposed.Ending(2 if told else done.returncode, "", done.stderr, {}, 0, "")
     assert not list(case.faults_of(ending))
+
+
+@pytest.mark.parametrize("given", [".exo", ".med", ".cgns"])
+@pytest.mark.parametrize("wanted", [".vtkhdf", ".xdmf", ".med", ".cgns", ".exo"])
+def test_libraries_that_cannot_complete_a_file_end_well(tmp_path, given, wanted):
+    """libhdf5 crashes where it tries again at the end of the process, whichever library entered it first."""
+    made = subprocess.run([interposed.MESHORDER, "models", "make", "ball", "--size", "6", "--json"], check=True, capture_output=True)
+    ball = json.loads(made.stdout)["models"][0]["path"]
+    for name in ("a" + given, "whole" + wanted):
+        subprocess.run([interposed.MESHORDER, "order", ball, "-o", tmp_path / name, "-q"], check=True)
+    size = max(path.stat().st_size for path in tmp_path.glob("whole*"))
+    before = sorted(path.name for path in tmp_path.iterdir())
+    for share in (0.05, 0.3, 0.6, 0.9):
+        def limit(most=int(share * size)):
+            resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+
+        done = subprocess.run([interposed.MESHORDER, "order", "a" + given, "-o", "b" + wanted], cwd=tmp_path, preexec_fn=limit,
+                              text=True, capture_output=True, timeout=interposed.SECONDS, check=False)
+        assert done.returncode == 2, (share, done.returncode, done.stderr)
+        assert len([line for line in done.stderr.splitlines() if "b." in line]) == 1, done.stderr
+        assert sorted(path.name for path in tmp_path.iterdir()) == before
 
 
 def mounted(folder, size):

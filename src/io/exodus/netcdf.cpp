@@ -3,7 +3,6 @@
 
 #include "base/memory.hpp"
 #include "io/exact_values.hpp"
-#include "io/hdf5/mutex.hpp"
 #include "io/stream/read_limits.hpp"
 
 #include <fmt/format.h>
@@ -113,7 +112,7 @@ Storage plain_storage(bool large) { return {large ? NC_FORMAT_CDF5 : NC_FORMAT_6
 
 // ---- reading
 
-NcInput::NcInput(const FilePath& path) : lock_(hdf5::library_mutex()), name_(path.string()) {
+NcInput::NcInput(const FilePath& path) : lock_(hdf5::enter_library()), name_(path.string()) {
   constexpr std::size_t kStart = 8;
   std::error_code code;
   const bool on_disk = path.store() == nullptr && std::filesystem::is_regular_file(path.path(), code) &&
@@ -428,7 +427,7 @@ int creation_mode(int kind) {
 }  // namespace
 
 NcOutput::NcOutput(const FilePath& path, const Storage& storage)
-    : lock_(hdf5::library_mutex()),
+    : lock_(hdf5::enter_library()),
       name_(path.string()),
       out_(path),
       is_in_memory_(path.store() != nullptr),
@@ -444,7 +443,7 @@ NcOutput::NcOutput(const FilePath& path, const Storage& storage)
 }
 
 NcOutput::NcOutput(const UnfinishedFile& file, const Storage& storage)
-    : lock_(hdf5::library_mutex()), name_(file.name), is_in_memory_(false), storage_(storage) {
+    : lock_(hdf5::enter_library()), name_(file.name), is_in_memory_(false), storage_(storage) {
   create(file.path);
 }
 

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/hdf5/mutex.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/output_file.hpp"
 #include <meshorder/error.hpp>
@@ -11,7 +12,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -143,7 +143,7 @@ class NcInput {
   void check(int status, const std::string& what) const;
   void inquire();
 
-  std::lock_guard<std::recursive_mutex> lock_;
+  hdf5::LibraryLock lock_;
   std::string name_;
   std::string memory_;  // of a file that is not on disk
   std::uint64_t size_ = 0;
@@ -223,7 +223,7 @@ class NcOutput {
   void put_attribute(int variable, const Attribute& attribute, const std::string& of) const;
 
   friend class NcSink;
-  std::lock_guard<std::recursive_mutex> lock_;
+  hdf5::LibraryLock lock_;
   std::string name_;
   std::optional<OutputFile> out_;  ///< none: others put the file in place
   bool is_in_memory_;

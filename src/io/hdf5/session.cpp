@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/hdf5/session.hpp"
 
-#include "io/hdf5/mutex.hpp"
 #include "io/hdf5/process_end.hpp"
 #include <meshorder/error.hpp>
 
@@ -25,10 +24,6 @@ struct Faults {
 /// Guarded by the library's mutex.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): libhdf5 has one state, too
 Faults faults;
-
-/// Set before the first call of the library.
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process, as the library's own
-bool closes_nothing_at_exit = false;
 
 /// Returns the system's words for a failed call, which the library gives among other things in several lines;
 /// otherwise an empty text.
@@ -55,8 +50,7 @@ herr_t note_failure(hid_t stack, void* /*data*/) {
 
 }  // namespace
 
-Session::Session() : lock_(library_mutex()) {
-  if (std::exchange(closes_nothing_at_exit, false)) H5dont_atexit();
+Session::Session() : lock_(enter_library()) {
   if (faults.sessions++ == 0) {
     faults = {.sessions = 1};
     errno = 0;
@@ -103,6 +97,8 @@ std::string last_cause() {
   return cause.empty() ? "it gives no cause" : cause.substr(0, cause.find('\n'));
 }
 
-void close_nothing_at_exit() { closes_nothing_at_exit = true; }
+void close_nothing_at_exit() {
+  at_first_entry = [] { H5dont_atexit(); };
+}
 
 }  // namespace meshorder::hdf5

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "io/hdf5/library.hpp"
+#include "io/hdf5/mutex.hpp"
 
-#include <mutex>
 #include <string>
 
 namespace meshorder::hdf5 {
@@ -27,7 +27,7 @@ class Session {
   void require_no_fault(const std::string& file) const;
 
  private:
-  std::unique_lock<std::recursive_mutex> lock_;
+  LibraryLock lock_;
   H5E_auto2_t handler_ = nullptr;
   void* data_ = nullptr;
 };
