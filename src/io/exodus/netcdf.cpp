@@ -4,6 +4,7 @@
 #include "base/memory.hpp"
 #include "io/exact_values.hpp"
 #include "io/stream/read_limits.hpp"
+#include "io/stream/system_fault.hpp"
 
 #include <fmt/format.h>
 #include <netcdf.h>
@@ -461,10 +462,11 @@ NcOutput::~NcOutput() {
 
 void NcOutput::check(int status, const std::string& what) const {
   if (status == NC_NOERR) return;
-  const bool is_full = status == ENOSPC || status == NC_EHDFERR;
+  const std::string of = what.empty() ? "" : what + " ";
+  if (status > 0) throw_system_fault(name_, of + "cannot be written", status);
   throw InputError(
-      name_, fmt::format("{}cannot be written: {}", what.empty() ? "" : what + " ", nc_strerror(status)),
-      is_full ? "is the disk full?" : "another format, such as .vtu, may hold the mesh");
+      name_, fmt::format("{}cannot be written: {}", of, nc_strerror(status)),
+      status == NC_EHDFERR ? "is the disk full?" : "another format, such as .vtu, may hold the mesh");
 }
 
 bool NcOutput::holds_wide_integers() const noexcept {
