@@ -2,6 +2,8 @@
 #include "spectral/coarsening.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <iterator>
 #include <numeric>
 
 namespace meshorder {
@@ -176,16 +178,21 @@ SparseRows smoothed_prolongation(const Laplacian& fine, const Aggregation& aggre
   return result;
 }
 
-Laplacian galerkin_product(const Laplacian& fine, const SparseRows& prolongation) {
+std::optional<Laplacian> galerkin_product(const Laplacian& fine, const SparseRows& prolongation,
+                                          Offset most) {
   const SparseRows restriction = transposed(prolongation);
   constexpr Index kRows = 256;
   const Index coarse_size = prolongation.columns_count;
   std::vector<LaplacianRows> parts(chunk_count(coarse_size, kRows));
+  std::atomic<Offset> entries = 0;
   for_each_chunk(coarse_size, kRows, [&](Index chunk, Index begin, Index end) {
+    if (entries > most) return;
     LaplacianRows& rows = parts[chunk];
     RowSum through(fine.size());  // a row of Pᵀ L
     RowSum row(coarse_size);
-    for (Index a = begin; a < end; ++a) {
+    for (Index a = begin; a < end && entries <= most; ++a) {
+      poll_in_loop(a);
+      const Offset before = std::ssize(rows.neighbours);
       for (Offset i = restriction.offsets[a]; i < restriction.offsets[a + 1]; ++i) {
         const Index v = restriction.columns[i];
         through.add(v, restriction.values[i] * fine.diagonal[v]);
@@ -207,8 +214,10 @@ Laplacian galerkin_product(const Laplacian& fine, const SparseRows& prolongation
         sum -= value;
       });
       rows.end_row(sum);
+      entries += std::ssize(rows.neighbours) - before;
     }
   });
+  if (entries > most) return std::nullopt;
   return joined(std::move(parts));
 }
 

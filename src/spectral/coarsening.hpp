@@ -4,6 +4,7 @@
 #include "base/index.hpp"
 #include "spectral/aggregation.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace meshorder {
@@ -36,7 +37,8 @@ Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggreg
 /// those of P₀ do. O(n + edges).
 SparseRows smoothed_prolongation(const Laplacian& fine, const Aggregation& aggregation);
 
-/// Pᵀ L P. O(multiplications).
-Laplacian galerkin_product(const Laplacian& fine, const SparseRows& prolongation);
+/// Pᵀ L P; nothing where it has more entries than `most`, as at a vertex that very many others have for a
+/// neighbour. O(multiplications), in the last case O(most + n) for each thread beside the rows that fit.
+std::optional<Laplacian> galerkin_product(const Laplacian& fine, const SparseRows& prolongation, Offset most);
 
 }  // namespace meshorder

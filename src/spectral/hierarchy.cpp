@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -25,9 +28,11 @@ bool coarsen(Level& fine, bool smoothed, Level& coarse) {
   if (aggregation.count() > kWorthwhile * n) return false;
   if (smoothed) {
     fine.prolongation = smoothed_prolongation(fine.laplacian, aggregation);
-    coarse.laplacian = galerkin_product(fine.laplacian, fine.prolongation);
     // where smoothing fills the coarse graph it is left out
-    smoothed = coarse.laplacian.neighbours.size() <= 2 * fine.laplacian.neighbours.size();
+    const Offset most = 2 * std::ssize(fine.laplacian.neighbours);
+    std::optional<Laplacian> product = galerkin_product(fine.laplacian, fine.prolongation, most);
+    smoothed = product.has_value();
+    if (smoothed) coarse.laplacian = *std::move(product);
   }
   coarse.masses.assign(aggregation.count(), 0);
   if (smoothed) {

@@ -226,3 +226,15 @@ def test_many_sets_are_written_in_linear_time(tmp_path, name, sets):
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     assert done.returncode == 0, done.stderr
     assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 5
+
+
+@pytest.mark.parametrize("method", ["fiedler", "spectral", "minla", "rcm"])
+def test_a_vertex_with_a_million_neighbours(tmp_path, method):
+    """A fan of triangles, whose hub would fill matrices of the solver's coarser graphs."""
+    count = 1_000_000
+    rim = "".join(f"3 0 {k} {k + 1}\n" for k in range(1, count))
+    points = "".join(f"{k} {k % 7} 0\n" for k in range(count + 1))
+    (tmp_path / "fan.off").write_text(f"OFF\n{count + 1} {count - 1} 0\n{points}{rim}")
+    done = run_within(3, tmp_path, "order", "fan.off", "-o", "b.off", "--vertices", method, "--json")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "b.off").stat().st_size > 10 * count

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <random>
 #include <set>
 
@@ -79,6 +80,45 @@ TEST(Collapsed, HasTheSameRowsWhereItSeesOnlySomeOfAGraph) {
   EXPECT_TRUE(std::equal(some.weights.begin(), some.weights.end(), whole.weights.begin()));
   EXPECT_TRUE(std::equal(some.diagonal.begin(), some.diagonal.end(), whole.diagonal.begin()));
   EXPECT_TRUE(std::equal(some.offsets.begin(), some.offsets.end(), whole.offsets.begin()));
+}
+
+TEST(GalerkinProduct, IsThatOfDenseMatricesAndNoneWhereItHasTooManyEntries) {
+  // a hub, 0, and a rim of 600 vertices around it: aggregates of three meet in its row
+  constexpr Index kRim = 600;
+  Laplacian wheel;
+  const auto end_row = [&] {
+    wheel.diagonal.push_back(static_cast<double>(std::ssize(wheel.neighbours) - wheel.offsets.back()));
+    wheel.offsets.push_back(std::ssize(wheel.neighbours));
+  };
+  Aggregation aggregation{.aggregate_of = {0}, .first_of_chunk = {0, kRim / 3}};
+  for (Index v = 1; v <= kRim; ++v) wheel.neighbours.push_back(v);
+  end_row();
+  for (Index v = 1; v <= kRim; ++v) {
+    wheel.neighbours.insert(wheel.neighbours.end(), {0, v == 1 ? kRim : v - 1, v == kRim ? 1 : v + 1});
+    end_row();
+    aggregation.aggregate_of.push_back((v - 1) / 3);
+  }
+  const SparseRows p = smoothed_prolongation(wheel, aggregation);
+  const std::optional<Laplacian> product = galerkin_product(wheel, p, kRim * kRim);
+  ASSERT_TRUE(product);
+  Eigen::MatrixXd fine = Eigen::MatrixXd::Zero(kRim + 1, kRim + 1);
+  for (Index v = 0; v <= kRim; ++v) {
+    fine(v, v) = wheel.diagonal[v];
+    for (Offset k = wheel.offsets[v]; k < wheel.offsets[v + 1]; ++k) fine(v, wheel.neighbours[k]) = -1;
+  }
+  const Eigen::MatrixXd expected = dense(p).transpose() * fine * dense(p);
+  Eigen::MatrixXd found = Eigen::MatrixXd::Zero(product->size(), product->size());
+  for (Index a = 0; a < product->size(); ++a) {
+    found(a, a) = product->diagonal[a];
+    for (Offset k = product->offsets[a]; k < product->offsets[a + 1]; ++k)
+      found(a, product->neighbours[k]) = -product->weights[k];
+  }
+  EXPECT_LT((found - expected).norm(), 1e-12 * expected.norm());
+  const auto entries = std::ssize(product->neighbours);
+  EXPECT_GT(entries, 2 * std::ssize(wheel.neighbours));
+  EXPECT_TRUE(galerkin_product(wheel, p, entries));
+  EXPECT_FALSE(galerkin_product(wheel, p, entries - 1));
+  EXPECT_FALSE(galerkin_product(wheel, p, 2 * std::ssize(wheel.neighbours)));
 }
 
 }  // namespace

@@ -414,3 +414,14 @@ def test_a_launcher_of_another_mpi_is_told(tmp_path, ball, size, rank):
         assert done.returncode == 2 and len(own_lines(done)) == lines, done.stderr
         assert not lines or "MPI sees each of them alone" in own_lines(done)[0], done.stderr
     assert os.listdir(tmp_path) == []
+
+
+def test_a_vertex_with_a_million_neighbours(tmp_path):
+    count = 1_000_000
+    points = numpy.zeros((count + 1, 3))
+    points[1:, 0], points[1:, 1] = numpy.arange(count), numpy.arange(count) % 7
+    rim = numpy.arange(1, count)
+    meshio.Mesh(points, [("triangle", numpy.column_stack([0 * rim, rim, rim + 1]))]).write(tmp_path / "fan.vtu", binary=True)
+    done = json.loads(order(3, tmp_path / "fan.vtu", "-o", tmp_path / "b.vtu", "--partition", "hilbert", "--json").stdout)
+    assert max(done["memory_bytes"]) < 1 << 30
+    assert sorted(meshio.read(tmp_path / "b.vtu").points[:, 0]) == sorted(points[:, 0])
