@@ -1,16 +1,20 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/quotient.hpp"
 
+#include "ordering/arrangement_graph.hpp"
+#include "ordering/insertions.hpp"
 #include <meshorder/order.hpp>
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 namespace meshorder::distributed {
 namespace {
 
 constexpr double kTolerance = 1e-6;  // of a vector that costs nothing beside the rest
+constexpr int kPasses = 20;          // over all parts; a few are enough until none moves
 
 /// Edges between two parts, of which `a` is the smaller number.
 struct Border {
@@ -54,30 +58,45 @@ std::vector<Border> borders_of(const GlobalGraph& graph, const HaloValues<Index>
   return merged(std::move(borders));
 }
 
-/// The places of the parts along the Fiedler vector of their graph; parts that touch no other come last.
-std::vector<Index> places_of(const std::vector<Border>& borders, Index parts) {
-  std::vector<Offset> offsets(static_cast<std::size_t>(parts) + 1, 0);
+/// The graph of the parts, each of them one place long: they are about equally large.
+ArrangementGraph graph_of(const std::vector<Border>& borders, Index parts) {
+  ArrangementGraph graph;
+  graph.offsets.assign(static_cast<std::size_t>(parts) + 1, 0);
+  graph.volumes.assign(static_cast<std::size_t>(parts), 1);
   for (const Border& border : borders) {
-    ++offsets[static_cast<std::size_t>(border.a) + 1];
-    ++offsets[static_cast<std::size_t>(border.b) + 1];
+    ++graph.offsets[static_cast<std::size_t>(border.a) + 1];
+    ++graph.offsets[static_cast<std::size_t>(border.b) + 1];
   }
-  for (std::size_t p = 0; p < static_cast<std::size_t>(parts); ++p) offsets[p + 1] += offsets[p];
-  std::vector<Index> neighbours(2 * borders.size());
-  std::vector<double> weights(2 * borders.size());
-  std::vector<Offset> next(offsets.begin(), offsets.end() - 1);
+  std::partial_sum(graph.offsets.begin(), graph.offsets.end(), graph.offsets.begin());
+  graph.neighbours.resize(2 * borders.size());
+  graph.weights.resize(2 * borders.size());
+  std::vector<Offset> next(graph.offsets.begin(), graph.offsets.end() - 1);
   const auto add = [&](Index part, Index neighbour, GlobalIndex edges) {
     const auto place = static_cast<std::size_t>(next[static_cast<std::size_t>(part)]++);
-    neighbours[place] = neighbour;
-    weights[place] = static_cast<double>(edges);
+    graph.neighbours[place] = neighbour;
+    graph.weights[place] = edges;
   };
   for (const Border& border : borders) {
     add(border.a, border.b, border.edges);
     add(border.b, border.a, border.edges);
   }
-  const Order order = order_vertices({.offsets = offsets, .neighbours = neighbours, .weights = weights},
-                                     "fiedler", {.tolerance = kTolerance});
-  const std::span<const Index> places = order.permutation.old_to_new();
-  return {places.begin(), places.end()};
+  return graph;
+}
+
+/// The places of the parts along the Fiedler vector of their graph, each then moved to where the edges
+/// between parts are shortest; parts that touch no other come last.
+std::vector<Index> places_of(const std::vector<Border>& borders, Index parts) {
+  const ArrangementGraph graph = graph_of(borders, parts);
+  const std::vector<double> weights(graph.weights.begin(), graph.weights.end());
+  const Order start =
+      order_vertices({.offsets = graph.offsets, .neighbours = graph.neighbours, .weights = weights},
+                     "fiedler", {.tolerance = kTolerance});
+  std::vector<Index> part_at(start.permutation.new_to_old().begin(), start.permutation.new_to_old().end());
+  improve_by_insertions(graph, part_at, kPasses);
+  std::vector<Index> places(part_at.size());
+  for (std::size_t place = 0; place < part_at.size(); ++place)
+    places[static_cast<std::size_t>(part_at[place])] = static_cast<Index>(place);
+  return places;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace meshorder::distributed {
 namespace {
@@ -133,6 +134,40 @@ TEST(Quotient, NumbersPartsAlongAChain) {
   if (along_the_path.front() > along_the_path.back())
     std::reverse(along_the_path.begin(), along_the_path.end());
   EXPECT_EQ(along_the_path, index_range(0, 10));
+}
+
+TEST(Quotient, BringsPartsWithManyEdgesBetweenThemNearest) {
+  const Communicator communicator;
+  constexpr Index kParts = 7;
+  constexpr Index kInPart = 30;
+  // a part in the middle, and 6, 10, 14 … edges from it to each of the others
+  const auto edges_to = [](Index part) { return 4 * part + 2; };
+  const Layout layout = Layout::even(kParts * kInPart, communicator.size());
+  GlobalGraph graph{layout, {}};
+  std::vector<Index> part_of;
+  for (GlobalIndex v = layout.begin(communicator.rank()); v < layout.end(communicator.rank()); ++v) {
+    const auto part = static_cast<Index>(v / kInPart);
+    const auto place = static_cast<Index>(v % kInPart);
+    for (Index other = 1; other < kParts; ++other) {
+      if (part == 0 && place < edges_to(other)) graph.rows.entries.push_back(other * kInPart + place);
+    }
+    if (part > 0 && place < edges_to(part)) graph.rows.entries.push_back(place);
+    graph.rows.end_row();
+    part_of.push_back(part);
+  }
+  const Halo halo(communicator, layout, ghosts(graph, communicator.rank()));
+  const Quotient quotient =
+      order_of_parts(communicator, graph, {halo, layout.begin(communicator.rank()), part_of}, kParts);
+  const auto span = [&](const std::vector<Index>& places) {
+    Index sum = 0;
+    for (Index part = 1; part < kParts; ++part)
+      sum += edges_to(part) * std::abs(places[static_cast<std::size_t>(part)] - places.front());
+    return sum;
+  };
+  std::vector<Index> places = index_range(0, kParts);
+  Index least = span(places);
+  while (std::next_permutation(places.begin(), places.end())) least = std::min(least, span(places));
+  EXPECT_LE(span(quotient.place_of), least + least / 20);  // the Fiedler vector alone: half as much again
 }
 
 }  // namespace
