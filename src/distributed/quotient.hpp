@@ -15,9 +15,9 @@ struct Quotient {
   GlobalIndex cut = 0;          ///< edges between parts
 };
 
-/// Numbers the parts by the Fiedler vector of their graph, and moves single parts as long as that brings those
-/// with many edges between them nearer. Every rank has to call it; the root solves.
-/// O(entries + edges between parts · log).
+/// Numbers the parts by the Fiedler vector of their graph, and moves single parts as long as that brings
+/// those with many edges between them nearer. Every rank has to call it; the root solves. O(entries + edges
+/// between parts · log).
 ///
 /// @param part_of  part of each vertex in the graph's rows, 0 … parts − 1
 /// @throws as `Communicator::exchange`
