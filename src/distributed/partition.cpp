@@ -1,9 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/partition.hpp"
 
+#include "distributed/halo.hpp"
+
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder::distributed {
@@ -13,6 +16,8 @@ namespace {
 // well.
 constexpr GlobalIndex kLeastPerRank = 100;
 constexpr GlobalIndex kLeastPerPart = 16;
+// Graphs of up to as many vertices are cut twice, which takes some tenths of a second.
+constexpr GlobalIndex kCutTwice = 100'000;
 
 /// Equal ranges of the vertices' numbers.
 std::vector<Index> cut_by_numbers(const Communicator& communicator, const GlobalGraph& graph, Index parts) {
@@ -58,6 +63,34 @@ std::string too_small(const GlobalGraph& graph, Index parts) {
   return "";
 }
 
+/// Edges between parts.
+GlobalIndex cut_between(const Communicator& communicator, const GlobalGraph& graph, const Halo& halo,
+                        const std::vector<Index>& part_of) {
+  const HaloValues<Index> parts(halo, graph.layout.begin(communicator.rank()), part_of);
+  GlobalIndex entries = 0;
+  for (Offset row = 0; row < graph.rows.size(); ++row) {
+    const auto neighbours = graph.rows[row];
+    entries += std::count_if(neighbours.begin(), neighbours.end(),
+                             [&](GlobalIndex neighbour) { return parts[neighbour] != parts.own(row); });
+  }
+  return communicator.sum(entries) / 2;
+}
+
+/// Cuts the graph by PT-Scotch, small graphs by both of its strategies. Returns whether it did.
+bool cut_by_best_strategy(const Communicator& communicator, const GlobalGraph& graph, Index parts,
+                          const std::vector<GlobalIndex>& weights, std::vector<Index>& part_of) {
+  if (!cut_by_ptscotch(communicator, graph, parts, weights, ScotchStrategy::speed, part_of)) return false;
+  std::vector<Index> other;
+  if (graph.layout.size() > kCutTwice ||
+      !cut_by_ptscotch(communicator, graph, parts, weights, ScotchStrategy::quality, other))
+    return true;
+  const Halo halo(communicator, graph.layout,
+                  communicator.together([&] { return ghosts(graph, communicator.rank()); }));
+  if (cut_between(communicator, graph, halo, other) < cut_between(communicator, graph, halo, part_of))
+    part_of = std::move(other);
+  return true;
+}
+
 }  // namespace
 
 Partition partitioned(const Communicator& communicator, const GlobalGraph& graph, Index parts, Partitioner by,
@@ -67,7 +100,7 @@ Partition partitioned(const Communicator& communicator, const GlobalGraph& graph
   if (by == Partitioner::ptscotch && parts > 1) {
     partition.reason = too_small(graph, parts);
     if (partition.reason.empty()) {
-      if (cut_by_ptscotch(communicator, graph, parts, weights, partition.part_of)) return partition;
+      if (cut_by_best_strategy(communicator, graph, parts, weights, partition.part_of)) return partition;
       partition.reason = "PT-Scotch failed";
     }
     partition.by = Partitioner::hilbert;

@@ -53,7 +53,8 @@ bool all(const Communicator& communicator, bool done) {
 }  // namespace
 
 bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph, Index parts,
-                     const std::vector<GlobalIndex>& weights, std::vector<Index>& part_of) {
+                     const std::vector<GlobalIndex>& weights, ScotchStrategy strategy,
+                     std::vector<Index>& part_of) {
   if (SCOTCH_numSizeof() != static_cast<int>(sizeof(SCOTCH_Num))) {
     throw SharedError(Code::unavailable, "this program runs with a PT-Scotch of " +
                                              std::to_string(8 * SCOTCH_numSizeof()) +
@@ -81,11 +82,12 @@ bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph,
   SCOTCH_Strat strategy_memory;
   if (!all(communicator, make_deterministic(context.get()) && SCOTCH_stratInit(&strategy_memory) == 0))
     return false;
-  const Strategy strategy(&strategy_memory);
+  const Strategy how(&strategy_memory);
+  const SCOTCH_Num flags = strategy == ScotchStrategy::speed ? SCOTCH_STRATSPEED : SCOTCH_STRATQUALITY;
   SCOTCH_Dgraph graph_memory;
-  if (!all(communicator, SCOTCH_stratDgraphMapBuild(strategy.get(), SCOTCH_STRATSPEED, communicator.size(),
-                                                    parts, kImbalance) == 0 &&
-                             SCOTCH_dgraphInit(&graph_memory, communicator.handle()) == 0))
+  if (!all(communicator,
+           SCOTCH_stratDgraphMapBuild(how.get(), flags, communicator.size(), parts, kImbalance) == 0 &&
+               SCOTCH_dgraphInit(&graph_memory, communicator.handle()) == 0))
     return false;
   const Graph own(&graph_memory);
   if (!all(communicator, SCOTCH_dgraphBuild(own.get(), 0, vertices, vertices, starts.data(),
@@ -96,8 +98,7 @@ bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph,
   if (!all(communicator, SCOTCH_contextBindDgraph(context.get(), own.get(), &bound_memory) == 0))
     return false;
   const Graph bound(&bound_memory);
-  if (!all(communicator, SCOTCH_dgraphPart(bound.get(), parts, strategy.get(), result.data()) == 0))
-    return false;
+  if (!all(communicator, SCOTCH_dgraphPart(bound.get(), parts, how.get(), result.data()) == 0)) return false;
   communicator.together([&] { part_of.assign(result.begin(), result.begin() + vertices); });
   return true;
 }

@@ -51,6 +51,21 @@ TEST_P(Partitions, OfPtScotchAreBalancedAndCutFewerEdges) {
             cut_of(communicator, graph, ranges.part_of, parts));
 }
 
+TEST_P(Partitions, OfPtScotchAreThoseOfTheBetterStrategy) {
+  const Communicator communicator;
+  const GlobalGraph graph = test::graph_in_file(communicator, make_ball({.size = 18}));
+  const Partition best = partitioned(communicator, graph, GetParam(), Partitioner::ptscotch);
+  const GlobalIndex cut = cut_of(communicator, graph, best.part_of, GetParam());
+  bool is_of_one = false;
+  for (const ScotchStrategy strategy : {ScotchStrategy::speed, ScotchStrategy::quality}) {
+    std::vector<Index> part_of;
+    ASSERT_TRUE(cut_by_ptscotch(communicator, graph, GetParam(), {}, strategy, part_of));
+    EXPECT_LE(cut, cut_of(communicator, graph, part_of, GetParam()));
+    is_of_one = is_of_one || communicator.sum(GlobalIndex{part_of == best.part_of ? 0 : 1}) == 0;
+  }
+  EXPECT_TRUE(is_of_one);
+}
+
 TEST_P(Partitions, OfPtScotchAreTheSameAgain) {
   const Communicator communicator;
   const GlobalGraph graph = test::graph_in_file(communicator, make_ball({.size = 16}));
