@@ -5,8 +5,8 @@
 // interleaved rounds, with the matrix in double and in float, on one and two threads, and how many per cent
 // of the measured bandwidth that is (over 100: caches hold something from pass to pass). "band" is the ideal
 // order (see ideal_band). With --solve: iterations and seconds to 1e-6 with each preconditioner. With --half:
-// the product and the iteration with the matrix stored once and by half (see HalfBlockCsr), in turns; on one
-// thread processor time.
+// the product and the iteration with the whole matrix and with half of it (see HalfBlockCsrOf), in double and
+// in float, in turns; on one thread processor time.
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"
@@ -55,6 +55,7 @@ struct System {
   mo::BlockCsr matrix;
   mo::BlockCsrOf<float> rounded;
   mo::HalfBlockCsr half;
+  mo::HalfBlockCsrOf<float> rounded_half;
   std::vector<double> b, x;
   std::vector<mo::Point> points;
   std::unique_ptr<mo::Preconditioner> jacobi;
@@ -91,6 +92,7 @@ System make_system(const std::string& order, const mo::Mesh& mesh) {
   system.matrix = std::move(elastic.matrix());
   mo::round_to_single(system.matrix, system.rounded);
   mo::store_half(system.matrix, system.half);
+  mo::store_half(system.matrix, system.rounded_half);
   system.b.assign(3 * mesh.points.size(), kStep * kForce);
   system.x.assign(system.b.size(), 0.0);
   system.jacobi = mo::make_preconditioner(mo::PreconditionerKind::jacobi, system.matrix, mesh.points);
@@ -145,50 +147,66 @@ void take_best(double& best, int threads, int repeats, Work work) {
   best = std::min(best, 1e3 * (threads == 1 ? thread.seconds() : wall.seconds()) / repeats);
 }
 
-void print_halves(std::vector<System>& systems, const Settings& settings) {
+/// Best times of the product and of an iteration, with the whole matrix and with half of it.
+struct HalfTimes {
+  double product = std::numeric_limits<double>::infinity();
+  double half_product = product, iteration = product, half_iteration = product;
+};
+
+template <class Value>
+void take_best_of_halves(HalfTimes& best, System& system, const mo::BlockCsrOf<Value>& matrix,
+                         const mo::HalfBlockCsrOf<Value>& half, int threads) {
   constexpr int kRepeats = 10;
-  constexpr std::size_t kColumns = 4;  // product, half; iteration, half
-  fmt::print("{:<11}{:>8}{:>9}{:>9}{:>9}{:>8}{:>11}{:>9}{:>8}\n", "order", "threads", "twice %", "product",
-             "half", "", "iteration", "half", "");
+  std::vector<double> y(system.x.size());
+  const std::vector<mo::Index> parts = mo::balanced_ranges(matrix.offsets, threads);
+  const auto whole = [&] {
+    mo::for_each_part(threads, [&](mo::Index part) {
+      mo::multiply_rows(matrix, system.b, y, parts[part], parts[part + 1]);
+    });
+  };
+  const auto repeated = [&](auto product) {
+    product();
+    return [product] {
+      for (int k = 0; k < kRepeats; ++k) product();
+    };
+  };
+  const auto iterations = [&](const auto& of) {
+    return [&] {
+      std::fill(system.x.begin(), system.x.end(), 0.0);
+      (void)mo::conjugate_gradients(of, *system.jacobi, system.b, system.x,
+                                    {.tolerance = 0.0, .max_iterations = kIterations});
+    };
+  };
+  take_best(best.product, threads, kRepeats, repeated(whole));
+  take_best(best.half_product, threads, kRepeats, repeated([&] { mo::multiply(half, system.b, y); }));
+  // the residual at the start takes another product
+  take_best(best.iteration, threads, kIterations + 1, iterations(matrix));
+  take_best(best.half_iteration, threads, kIterations + 1, iterations(half));
+}
+
+void print_halves(std::vector<System>& systems, const Settings& settings) {
+  fmt::print("{:<11}{:>8}{:>9}{:>8}{:>9}{:>9}{:>8}{:>11}{:>9}{:>8}\n", "order", "threads", "twice %", "",
+             "product", "half", "", "iteration", "half", "");
   for (const int threads : kThreads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    std::vector<std::array<double, kColumns>> best(systems.size());
-    for (auto& row : best) row.fill(std::numeric_limits<double>::infinity());
+    std::vector<HalfTimes> in_double(systems.size());
+    std::vector<HalfTimes> in_float(systems.size());
     for (int round = 0; round < settings.rounds; ++round) {
       for (std::size_t i = 0; i < systems.size(); ++i) {
         System& system = systems[i];
-        const mo::BlockCsr& matrix = system.matrix;
-        std::vector<double> y(system.x.size());
-        const std::vector<mo::Index> parts = mo::balanced_ranges(matrix.offsets, threads);
-        const auto whole = [&] {
-          mo::for_each_part(threads, [&](mo::Index part) {
-            mo::multiply_rows(matrix, system.b, y, parts[part], parts[part + 1]);
-          });
-        };
-        const auto repeated = [&](auto product) {
-          product();
-          return [product] {
-            for (int k = 0; k < kRepeats; ++k) product();
-          };
-        };
-        take_best(best[i][0], threads, kRepeats, repeated(whole));
-        take_best(best[i][1], threads, kRepeats, repeated([&] { mo::multiply(system.half, system.b, y); }));
-        const auto iterations = [&](const auto& of) {
-          return [&] {
-            std::fill(system.x.begin(), system.x.end(), 0.0);
-            (void)mo::conjugate_gradients(of, *system.jacobi, system.b, system.x,
-                                          {.tolerance = 0.0, .max_iterations = kIterations});
-          };
-        };
-        // the residual at the start takes another product
-        take_best(best[i][2], threads, kIterations + 1, iterations(system.matrix));
-        take_best(best[i][3], threads, kIterations + 1, iterations(system.half));
+        take_best_of_halves(in_double[i], system, system.matrix, system.half, threads);
+        take_best_of_halves(in_float[i], system, system.rounded, system.rounded_half, threads);
       }
     }
+    const auto print = [&](const System& system, const char* value, const HalfTimes& best) {
+      fmt::print("{:<11}{:>8}{:>9.1f}{:>8}{:>9.3f}{:>9.3f}{:>7.2f}x{:>11.3f}{:>9.3f}{:>7.2f}x\n",
+                 system.order, threads, 100 * mo::share_between_slabs(system.matrix), value, best.product,
+                 best.half_product, best.product / best.half_product, best.iteration, best.half_iteration,
+                 best.iteration / best.half_iteration);
+    };
     for (std::size_t i = 0; i < systems.size(); ++i) {
-      fmt::print("{:<11}{:>8}{:>9.1f}{:>9.3f}{:>9.3f}{:>7.2f}x{:>11.3f}{:>9.3f}{:>7.2f}x\n", systems[i].order,
-                 threads, 100 * mo::share_between_slabs(systems[i].matrix), best[i][0], best[i][1],
-                 best[i][0] / best[i][1], best[i][2], best[i][3], best[i][2] / best[i][3]);
+      print(systems[i], "double", in_double[i]);
+      print(systems[i], "float", in_float[i]);
     }
   }
 }

@@ -56,7 +56,7 @@ struct BackwardEuler::Iterate {
 BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, ImplicitOptions options)
     : options_(std::move(options)),
       system_(points, body, options_.mass),
-      stores_half_(options_.precision == MatrixPrecision::double_ && half_storage_pays(system_.matrix())),
+      stores_half_(half_storage_pays(system_.matrix())),
       positions_(padded_positions(points)),
       velocities_(3 * points.size()),
       loads_(velocities_.size()),
@@ -223,17 +223,23 @@ double BackwardEuler::potential(std::span<const double> velocities) {
 SolveReport BackwardEuler::solve_once(Iterate& iterate, StepReport& report) {
   const Stopwatch stopwatch;
   preconditioner_->update(system_.matrix());
+  const auto solve_with = [&](const auto& matrix) {
+    return conjugate_gradients(matrix, *preconditioner_, iterate.right_side, iterate.step, options_.solve);
+  };
+  const auto solve_with_rounded = [&](const auto& rounded) {
+    return refined_conjugate_gradients(system_.matrix(), rounded, *preconditioner_, iterate.right_side,
+                                       iterate.step, options_.solve);
+  };
   SolveReport solved;
-  if (options_.precision == MatrixPrecision::single) {
-    round_to_single(system_.matrix(), rounded_);
-    solved = refined_conjugate_gradients(system_.matrix(), rounded_, *preconditioner_, iterate.right_side,
-                                         iterate.step, options_.solve);
+  if (options_.precision == MatrixPrecision::double_) {
+    if (stores_half_) store_half(system_.matrix(), half_);
+    solved = stores_half_ ? solve_with(half_) : solve_with(system_.matrix());
   } else if (stores_half_) {
-    store_half(system_.matrix(), half_);
-    solved = conjugate_gradients(half_, *preconditioner_, iterate.right_side, iterate.step, options_.solve);
+    store_half(system_.matrix(), rounded_half_);
+    solved = solve_with_rounded(rounded_half_);
   } else {
-    solved = conjugate_gradients(system_.matrix(), *preconditioner_, iterate.right_side, iterate.step,
-                                 options_.solve);
+    round_to_single(system_.matrix(), rounded_);
+    solved = solve_with_rounded(rounded_);
   }
   report.cg_iterations += solved.iterations;
   report.residual = solved.residual;
@@ -306,7 +312,8 @@ Balance BackwardEuler::balance() const {
 }
 
 Offset BackwardEuler::blocks_read() const noexcept {
-  return half_.block_count() > 0 ? half_.block_count() : system_.matrix().block_count();
+  const Offset half = std::max(half_.block_count(), rounded_half_.block_count());
+  return half > 0 ? half : system_.matrix().block_count();
 }
 
 std::size_t BackwardEuler::bytes() const {
@@ -314,7 +321,8 @@ std::size_t BackwardEuler::bytes() const {
   // CG keeps three vectors, a step four more
   return system_.bytes() + preconditioner_->bytes() + of(damping_.values) + of(damping_.columns) +
          of(rounded_.values) + of(rounded_.columns) + of(half_.values) + of(half_.columns) +
-         of(half_.offsets) + of(damping_.offsets) + of(positions_) + of(moved_) + of(velocities_) +
+         of(half_.offsets) + of(rounded_half_.values) + of(rounded_half_.columns) +
+         of(rounded_half_.offsets) + of(damping_.offsets) + of(positions_) + of(moved_) + of(velocities_) +
          of(loads_) + of(scratch_) + 7 * of(velocities_);
 }
 

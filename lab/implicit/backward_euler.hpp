@@ -76,8 +76,10 @@ class BackwardEuler final : public Integrator {
   ImplicitOptions options_;
   ElasticSystem system_;
   std::unique_ptr<Preconditioner> preconditioner_;
-  BlockCsrOf<float> rounded_;  ///< the matrix in single precision, where CG reads that
-  HalfBlockCsr half_;          ///< half of the matrix, where CG reads that
+  // one of these is the copy of the matrix that CG reads, unless that is the matrix itself
+  BlockCsrOf<float> rounded_;
+  HalfBlockCsr half_;
+  HalfBlockCsrOf<float> rounded_half_;
   bool stores_half_ = false;
   BlockCsr damping_;  ///< hβK of the step's start; empty but for several Newton iterations with β > 0
   HeldVertices held_;

@@ -9,12 +9,14 @@
 
 #include <hwy/highway.h>
 
+#include <type_traits>
+
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-// doubles from a prefetch of a block to its use; hardware prefetches less far ahead
-constexpr Offset kDoublesAhead = 384;
+// bytes from a prefetch of a block to its use; hardware prefetches less far ahead
+constexpr Offset kBytesAhead = 3072;
 
 #if HWY_MAX_BYTES >= 32
 namespace hn = hwy::HWY_NAMESPACE;
@@ -27,20 +29,22 @@ class HalfRow {
       : p0_(hn::Set(Tag(), p[0])), p1_(hn::Set(Tag(), p[1])), p2_(hn::Set(Tag(), p[2])) {}
 
   /// Adds a block that counts in this row.
-  HWY_INLINE void add(const double* block, const double* p) {
+  template <class Value>
+  HWY_INLINE void add(const Value* block, const double* p) {
     const auto factors = load_three(p);
-    row0_ = hn::MulAdd(hn::LoadU(Tag(), block), factors, row0_);
-    row1_ = hn::MulAdd(hn::LoadU(Tag(), block + 3), factors, row1_);
-    row2_ = hn::MulAdd(hn::LoadU(Tag(), block + 6), factors, row2_);
+    row0_ = hn::MulAdd(load_four(block), factors, row0_);
+    row1_ = hn::MulAdd(load_four(block + 3), factors, row1_);
+    row2_ = hn::MulAdd(load_four(block + 6), factors, row2_);
   }
 
   /// Adds a block that counts in this row and in that of its column, whose sum is padded.
-  HWY_INLINE void add_both(const double* block, const double* p, double* column_sum) {
+  template <class Value>
+  HWY_INLINE void add_both(const Value* block, const double* p, double* column_sum) {
     const Tag d;
     const auto factors = load_three(p);
-    const auto block0 = hn::LoadU(d, block);
-    const auto block1 = hn::LoadU(d, block + 3);
-    const auto block2 = hn::LoadU(d, block + 6);
+    const auto block0 = load_four(block);
+    const auto block1 = load_four(block + 3);
+    const auto block2 = load_four(block + 6);
     row0_ = hn::MulAdd(block0, factors, row0_);
     row1_ = hn::MulAdd(block1, factors, row1_);
     row2_ = hn::MulAdd(block2, factors, row2_);
@@ -72,6 +76,10 @@ class HalfRow {
   static HWY_INLINE hn::Vec<Tag> load_three(const double* p) {
     return hn::MaskedLoad(hn::FirstN(Tag(), 3), Tag(), p);
   }
+  static HWY_INLINE hn::Vec<Tag> load_four(const double* p) { return hn::LoadU(Tag(), p); }
+  static HWY_INLINE hn::Vec<Tag> load_four(const float* p) {
+    return hn::PromoteTo(Tag(), hn::LoadU(hn::FixedTag<float, 4>(), p));
+  }
 
   hn::Vec<Tag> p0_, p1_, p2_;
   hn::Vec<Tag> row0_ = hn::Zero(Tag());
@@ -84,12 +92,14 @@ class HalfRow {
  public:
   HWY_INLINE explicit HalfRow(const double* p) : p_(p) {}
 
-  HWY_INLINE void add(const double* block, const double* p) {
+  template <class Value>
+  HWY_INLINE void add(const Value* block, const double* p) {
     for (int i = 0; i < 3; ++i) {
       sums_[i] += block[3 * i] * p[0] + block[3 * i + 1] * p[1] + block[3 * i + 2] * p[2];
     }
   }
-  HWY_INLINE void add_both(const double* block, const double* p, double* column_sum) {
+  template <class Value>
+  HWY_INLINE void add_both(const Value* block, const double* p, double* column_sum) {
     add(block, p);
     for (int i = 0; i < 3; ++i) {
       column_sum[i] += block[i] * p_[0] + block[3 + i] * p_[1] + block[6 + i] * p_[2];
@@ -110,16 +120,19 @@ class HalfRow {
 
 /// `sums` has kPaddedStride zeros for each row of the slab, before and afterwards. With `Gather` the entries
 /// of x are prefetched too.
-template <bool Gather>
-double half_product_rows(const HalfBlockCsr& matrix, const double* x, double* sums, double* y, Index begin,
-                         Index end) {
-  const double* const values = matrix.values.data();
+template <bool Gather, class Value>
+double half_product_rows(const HalfBlockCsrOf<Value>& matrix, const double* x, double* sums, double* y,
+                         Index begin, Index end) {
+  constexpr Offset kValuesAhead = kBytesAhead / static_cast<Offset>(sizeof(Value));
+  const Value* const values = matrix.values.data();
   const Index* const columns = matrix.columns.data();
   const Offset* const offsets = matrix.offsets.data();
   const auto sum_of = [&](Offset row) { return sums + kPaddedStride * (row - begin); };
   const auto ask_for = [&](Offset k) {
-    __builtin_prefetch(values + 9 * k + kDoublesAhead);
-    if constexpr (Gather) __builtin_prefetch(x + Offset{3} * columns[k + HalfBlockCsr::kSpareColumns]);
+    __builtin_prefetch(values + 9 * k + kValuesAhead);
+    if constexpr (Gather) {
+      __builtin_prefetch(x + Offset{3} * columns[k + HalfBlockCsrOf<Value>::kSpareColumns]);
+    }
   };
   double dot = 0.0;
   Offset k = offsets[Offset{2} * begin];
@@ -141,12 +154,23 @@ double half_product_rows(const HalfBlockCsr& matrix, const double* x, double* su
   return dot;
 }
 
-double half_product(const HalfBlockCsr& matrix, const double* x, double* sums, double* y, Index begin,
-                    Index end) {
+template <class Value>
+double half_product(const HalfBlockCsrOf<Value>& matrix, const double* x, double* sums, double* y,
+                    Index begin, Index end) {
   // a vector that fits into the second-level cache needs no prefetch
   constexpr Index kNearVertices = (Index{3} << 20) / (2 * 3 * sizeof(double));
   return matrix.size() <= kNearVertices ? half_product_rows<false>(matrix, x, sums, y, begin, end)
                                         : half_product_rows<true>(matrix, x, sums, y, begin, end);
+}
+
+double half_product_of_doubles(const HalfBlockCsr& matrix, const double* x, double* sums, double* y,
+                               Index begin, Index end) {
+  return half_product(matrix, x, sums, y, begin, end);
+}
+
+double half_product_of_floats(const HalfBlockCsrOf<float>& matrix, const double* x, double* sums, double* y,
+                              Index begin, Index end) {
+  return half_product(matrix, x, sums, y, begin, end);
 }
 
 }  // namespace
@@ -161,7 +185,8 @@ HWY_AFTER_NAMESPACE();
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(half_product);
+HWY_EXPORT(half_product_of_doubles);
+HWY_EXPORT(half_product_of_floats);
 
 constexpr Index kSlabs = 16;
 
@@ -216,7 +241,8 @@ double share_between_slabs(const BlockCsr& matrix) {
   return static_cast<double>(between) / static_cast<double>(matrix.block_count());
 }
 
-void store_half(const BlockCsr& matrix, HalfBlockCsr& result) {
+template <class Value>
+void store_half(const BlockCsr& matrix, HalfBlockCsrOf<Value>& result) {
   result.slabs = slabs_of(matrix);
   const Index n = matrix.size();
   result.offsets.resize(2 * static_cast<std::size_t>(n) + 1);
@@ -231,10 +257,10 @@ void store_half(const BlockCsr& matrix, HalfBlockCsr& result) {
   });
   for (std::size_t i = 1; i < result.offsets.size(); ++i) result.offsets[i] += result.offsets[i - 1];
   const auto blocks = static_cast<std::size_t>(result.block_count());
-  result.columns.resize(blocks + HalfBlockCsr::kSpareColumns);
+  result.columns.resize(blocks + HalfBlockCsrOf<Value>::kSpareColumns);
   std::fill(result.columns.begin() + result.block_count(), result.columns.end(), 0);
   result.values.resize(9 * blocks + 1);
-  result.values.back() = 0.0;
+  result.values.back() = 0;
   for_each_part(result.slab_count(), [&](Index slab) {
     const Index begin = result.slabs[slab];
     const Index end = result.slabs[slab + 1];
@@ -246,13 +272,16 @@ void store_half(const BlockCsr& matrix, HalfBlockCsr& result) {
         if (column >= begin && column < v) continue;
         const Offset to = column > v && column < end ? both++ : alone++;
         result.columns[to] = column;
-        std::copy_n(matrix.values.begin() + 9 * k, 9, result.values.begin() + 9 * to);
+        std::transform(matrix.values.begin() + 9 * k, matrix.values.begin() + 9 * k + 9,
+                       result.values.begin() + 9 * to,
+                       [](double value) { return static_cast<Value>(value); });
       }
     }
   });
 }
 
-double multiply_slab_dot(const HalfBlockCsr& matrix, std::span<const double> x, std::span<double> y,
+template <class Value>
+double multiply_slab_dot(const HalfBlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y,
                          Index slab) {
   const auto entries = 3 * static_cast<std::size_t>(matrix.size());
   if (x.size() != entries || y.size() != entries) {
@@ -262,12 +291,25 @@ double multiply_slab_dot(const HalfBlockCsr& matrix, std::span<const double> x, 
   const Index end = matrix.slabs[slab + 1];
   if (begin == end) return 0.0;
   double* const sums = sums_of_thread(static_cast<std::size_t>(end - begin));
-  return HWY_DYNAMIC_DISPATCH(half_product)(matrix, x.data(), sums, y.data(), begin, end);
+  if constexpr (std::is_same_v<Value, double>) {
+    return HWY_DYNAMIC_DISPATCH(half_product_of_doubles)(matrix, x.data(), sums, y.data(), begin, end);
+  } else {
+    return HWY_DYNAMIC_DISPATCH(half_product_of_floats)(matrix, x.data(), sums, y.data(), begin, end);
+  }
 }
 
-void multiply(const HalfBlockCsr& matrix, std::span<const double> x, std::span<double> y) {
+template <class Value>
+void multiply(const HalfBlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y) {
   for_each_part(matrix.slab_count(), [&](Index slab) { (void)multiply_slab_dot(matrix, x, y, slab); });
 }
+
+template void store_half(const BlockCsr&, HalfBlockCsr&);
+template void store_half(const BlockCsr&, HalfBlockCsrOf<float>&);
+template double multiply_slab_dot(const HalfBlockCsr&, std::span<const double>, std::span<double>, Index);
+template double multiply_slab_dot(const HalfBlockCsrOf<float>&, std::span<const double>, std::span<double>,
+                                  Index);
+template void multiply(const HalfBlockCsr&, std::span<const double>, std::span<double>);
+template void multiply(const HalfBlockCsrOf<float>&, std::span<const double>, std::span<double>);
 
 }  // namespace meshorder
 #endif

@@ -17,12 +17,13 @@ namespace meshorder {
 ///
 /// Block k holds `values[9 k] … values[9 k + 8]`, row by row. Of row v, blocks `offsets[2 v] … offsets[2 v +
 /// 1] − 1` count in this row, blocks `offsets[2 v + 1] … offsets[2 v + 2] − 1` also in that of their column.
-/// Columns ascend in both parts.
-struct HalfBlockCsr {
+/// Columns ascend in both parts. With its column a block takes 76 bytes in double, 40 in float.
+template <class Value>
+struct HalfBlockCsrOf {
   std::vector<Index> slabs{0};     ///< bounds of the slabs
   std::vector<Offset> offsets{0};  ///< 2 n + 1
   std::vector<Index> columns;      ///< and kSpareColumns zeros, which are asked for early
-  AlignedVector<double> values;    ///< and one more number, since vector loads read past the end
+  AlignedVector<Value> values;     ///< and one more number, since vector loads read past the end
 
   static constexpr Offset kSpareColumns = 64;
 
@@ -32,6 +33,8 @@ struct HalfBlockCsr {
   [[nodiscard]] Offset block_count() const noexcept { return offsets.back(); }
 };
 
+using HalfBlockCsr = HalfBlockCsrOf<double>;
+
 /// Returns the bounds of the slabs of a matrix, by its pattern alone: 16 of them, or as many as it has rows.
 std::vector<Index> slabs_of(const BlockCsr& matrix);
 
@@ -40,16 +43,21 @@ std::vector<Index> slabs_of(const BlockCsr& matrix);
 double share_between_slabs(const BlockCsr& matrix);
 
 /// Copies a matrix that is symmetric to the last bit, its pattern too, to `result`, reusing the memory of
-/// `result`. Blocks below the diagonal within a slab are not read. On all threads. O(blocks).
-void store_half(const BlockCsr& matrix, HalfBlockCsr& result);
+/// `result`; in float its values are rounded. Blocks below the diagonal within a slab are not read. On all
+/// threads. O(blocks).
+template <class Value>
+void store_half(const BlockCsr& matrix, HalfBlockCsrOf<Value>& result);
 
 /// y = A x for the rows of one slab; returns their part of xᵀA x. x and y hold 3 doubles for each vertex and
-/// must not overlap; x is read everywhere. Each product by a block is rounded as that by the full matrix, the
-/// sums in another order. Throws InvalidArgument if a size differs. O(blocks).
-double multiply_slab_dot(const HalfBlockCsr& matrix, std::span<const double> x, std::span<double> y,
+/// must not overlap; x is read everywhere. All sums are in double, also with a matrix in float. Each product
+/// by a block is rounded as that by the full matrix, the sums in another order. Throws InvalidArgument if a
+/// size differs. O(blocks).
+template <class Value>
+double multiply_slab_dot(const HalfBlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y,
                          Index slab);
 
 /// y = A x on all threads, with the same bits for any number of them.
-void multiply(const HalfBlockCsr& matrix, std::span<const double> x, std::span<double> y);
+template <class Value>
+void multiply(const HalfBlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y);
 
 }  // namespace meshorder

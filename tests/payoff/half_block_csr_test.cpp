@@ -59,8 +59,9 @@ std::vector<double> random_entries(Index n, std::uint64_t seed) {
   return x;
 }
 
-HalfBlockCsr half_of(const BlockCsr& matrix) {
-  HalfBlockCsr half;
+template <class Value = double>
+HalfBlockCsrOf<Value> half_of(const BlockCsr& matrix) {
+  HalfBlockCsrOf<Value> half;
   store_half(matrix, half);
   return half;
 }
@@ -72,8 +73,8 @@ double norm_of(std::span<const double> x) {
 }
 
 /// With every instruction set, also where y held something else before.
-void expect_product_of(const BlockCsr& matrix) {
-  const HalfBlockCsr half = half_of(matrix);
+template <class Value>
+void expect_same_product(const HalfBlockCsrOf<Value>& half, const BlockCsrOf<Value>& matrix) {
   ASSERT_EQ(half.size(), matrix.size());
   // allocated at their exact size, so that a sanitizer detects reads past the end
   const std::vector<double> x = random_entries(matrix.size(), 6);
@@ -94,6 +95,14 @@ void expect_product_of(const BlockCsr& matrix) {
     EXPECT_EQ(by_slabs, y);
     EXPECT_NEAR(dot, expected_dot, 1e-13 * norm_of(x) * norm_of(expected));
   });
+}
+
+/// In double and in float.
+void expect_product_of(const BlockCsr& matrix) {
+  expect_same_product(half_of(matrix), matrix);
+  BlockCsrOf<float> rounded;
+  round_to_single(matrix, rounded);
+  expect_same_product(half_of<float>(matrix), rounded);
 }
 
 TEST(HalfBlockCsr, HasEveryPairOfASlabOnceAndThoseBetweenSlabsTwice) {
@@ -226,18 +235,23 @@ TEST(MultiplyHalf, LeavesTheNextProductNothingOfNumbersThatAreNotFinite) {
   EXPECT_EQ(y, expected);
 }
 
-TEST(MultiplyHalf, KeepsWhatIsNotFiniteToTheRowsThatHaveIt) {
-  BlockCsr matrix = symmetric_matrix(row_with_chords(200, 0, 15));
-  // on the diagonal, where loads of the row before would read it as well
-  matrix.values[9 * matrix.find(100, 100)] = std::numeric_limits<double>::infinity();
-  const std::vector<double> x = random_entries(200, 16);
-  const HalfBlockCsr half = half_of(matrix);
+template <class Value>
+void expect_infinity_in_one_row(const HalfBlockCsrOf<Value>& half) {
+  const std::vector<double> x = random_entries(half.size(), 16);
   test::for_each_target([&](const char* target) {
     SCOPED_TRACE(target);
     std::vector<double> y(x.size());
     multiply(half, x, y);
     for (std::size_t i = 0; i < y.size(); ++i) EXPECT_EQ(std::isfinite(y[i]), i != 300) << i;
   });
+}
+
+TEST(MultiplyHalf, KeepsWhatIsNotFiniteToTheRowsThatHaveIt) {
+  BlockCsr matrix = symmetric_matrix(row_with_chords(200, 0, 15));
+  // on the diagonal, where loads of the row before would read it as well
+  matrix.values[9 * matrix.find(100, 100)] = std::numeric_limits<double>::infinity();
+  expect_infinity_in_one_row(half_of(matrix));
+  expect_infinity_in_one_row(half_of<float>(matrix));
 }
 
 TEST(MultiplyHalf, RefusesVectorsOfAnotherSize) {

@@ -76,6 +76,8 @@ TEST_P(ConjugateGradients, GiveTheSameBitsOnAnyNumberOfThreads) {
   const BlockCsr matrix = test::elastic_system(make_grid({.size = 22}), 1.0);
   HalfBlockCsr half;
   store_half(matrix, half);
+  HalfBlockCsrOf<float> rounded_half;
+  store_half(matrix, rounded_half);
   const std::vector<double> b = test::random_vector(matrix.size(), 3);
   const auto preconditioner = updated(GetParam(), matrix);
   const auto solution = [&](const auto& of, int threads) {
@@ -87,9 +89,11 @@ TEST_P(ConjugateGradients, GiveTheSameBitsOnAnyNumberOfThreads) {
   };
   const std::vector<double> one = solution(matrix, 1);
   const std::vector<double> one_by_half = solution(half, 1);
+  const std::vector<double> one_by_rounded_half = solution(rounded_half, 1);
   for (const int threads : {2, 3, 8}) {
     EXPECT_EQ(solution(matrix, threads), one);
     EXPECT_EQ(solution(half, threads), one_by_half);
+    EXPECT_EQ(solution(rounded_half, threads), one_by_rounded_half);
   }
 }
 

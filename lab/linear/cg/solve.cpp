@@ -81,7 +81,10 @@ std::vector<Index> chunks_of(const BlockCsrOf<Value>& matrix) {
   return balanced_ranges(matrix.offsets, static_cast<Index>(1 + matrix.block_count() / kChunkBlocks));
 }
 
-std::vector<Index> chunks_of(const HalfBlockCsr& matrix) { return matrix.slabs; }
+template <class Value>
+std::vector<Index> chunks_of(const HalfBlockCsrOf<Value>& matrix) {
+  return matrix.slabs;
+}
 
 /// q = A p in the rows of a chunk; returns their part of pᵀA p.
 template <class Value>
@@ -90,7 +93,8 @@ double multiply_chunk(const BlockCsrOf<Value>& matrix, const RowSweeps& rows, In
   return multiply_rows_dot(matrix, p, q, rows.begin(chunk), rows.end(chunk));
 }
 
-double multiply_chunk(const HalfBlockCsr& matrix, const RowSweeps& /*rows*/, Index chunk,
+template <class Value>
+double multiply_chunk(const HalfBlockCsrOf<Value>& matrix, const RowSweeps& /*rows*/, Index chunk,
                       std::span<const double> p, std::span<double> q) {
   return multiply_slab_dot(matrix, p, q, chunk);
 }
@@ -250,20 +254,6 @@ class ConjugateGradients {
   int iterations_ = 0;
 };
 
-template <class Matrix>
-SolveReport checked_solve(const Matrix& matrix, const Preconditioner& preconditioner,
-                          std::span<const double> b, std::span<double> x, const SolveOptions& options) {
-  const auto entries = 3 * static_cast<std::size_t>(matrix.size());
-  if (b.size() != entries || x.size() != entries) {
-    throw InvalidArgument("conjugate_gradients: b and x must hold 3 doubles for each of the matrix's " +
-                          std::to_string(matrix.size()) + " vertices");
-  }
-  if (!(options.tolerance >= 0.0) || options.max_iterations < 0) {
-    throw InvalidArgument("conjugate_gradients: tolerance and max_iterations must not be negative");
-  }
-  return ConjugateGradients(matrix, preconditioner, b, x, options).run();
-}
-
 /// r = b − A x; its norm.
 double compute_residual(const BlockCsr& matrix, std::span<const double> b, std::span<const double> x,
                         std::span<double> r) {
@@ -289,22 +279,22 @@ Index largest_vertex(std::span<const double> vector) {
   return vertex;
 }
 
-SolveReport conjugate_gradients(const BlockCsr& matrix, const Preconditioner& preconditioner,
+template <class Matrix>
+SolveReport conjugate_gradients(const Matrix& matrix, const Preconditioner& preconditioner,
                                 std::span<const double> b, std::span<double> x, const SolveOptions& options) {
-  return checked_solve(matrix, preconditioner, b, x, options);
+  const auto entries = 3 * static_cast<std::size_t>(matrix.size());
+  if (b.size() != entries || x.size() != entries) {
+    throw InvalidArgument("conjugate_gradients: b and x must hold 3 doubles for each of the matrix's " +
+                          std::to_string(matrix.size()) + " vertices");
+  }
+  if (!(options.tolerance >= 0.0) || options.max_iterations < 0) {
+    throw InvalidArgument("conjugate_gradients: tolerance and max_iterations must not be negative");
+  }
+  return ConjugateGradients(matrix, preconditioner, b, x, options).run();
 }
 
-SolveReport conjugate_gradients(const HalfBlockCsr& matrix, const Preconditioner& preconditioner,
-                                std::span<const double> b, std::span<double> x, const SolveOptions& options) {
-  return checked_solve(matrix, preconditioner, b, x, options);
-}
-
-SolveReport conjugate_gradients(const BlockCsrOf<float>& matrix, const Preconditioner& preconditioner,
-                                std::span<const double> b, std::span<double> x, const SolveOptions& options) {
-  return checked_solve(matrix, preconditioner, b, x, options);
-}
-
-SolveReport refined_conjugate_gradients(const BlockCsr& matrix, const BlockCsrOf<float>& rounded,
+template <class Rounded>
+SolveReport refined_conjugate_gradients(const BlockCsr& matrix, const Rounded& rounded,
                                         const Preconditioner& preconditioner, std::span<const double> b,
                                         std::span<double> x, const SolveOptions& options) {
   constexpr int kCorrections = 10;
@@ -331,5 +321,20 @@ SolveReport refined_conjugate_gradients(const BlockCsr& matrix, const BlockCsrOf
   total.status = SolveStatus::iteration_limit;
   return total;
 }
+
+template SolveReport conjugate_gradients(const BlockCsr&, const Preconditioner&, std::span<const double>,
+                                         std::span<double>, const SolveOptions&);
+template SolveReport conjugate_gradients(const BlockCsrOf<float>&, const Preconditioner&,
+                                         std::span<const double>, std::span<double>, const SolveOptions&);
+template SolveReport conjugate_gradients(const HalfBlockCsr&, const Preconditioner&, std::span<const double>,
+                                         std::span<double>, const SolveOptions&);
+template SolveReport conjugate_gradients(const HalfBlockCsrOf<float>&, const Preconditioner&,
+                                         std::span<const double>, std::span<double>, const SolveOptions&);
+template SolveReport refined_conjugate_gradients(const BlockCsr&, const BlockCsrOf<float>&,
+                                                 const Preconditioner&, std::span<const double>,
+                                                 std::span<double>, const SolveOptions&);
+template SolveReport refined_conjugate_gradients(const BlockCsr&, const HalfBlockCsrOf<float>&,
+                                                 const Preconditioner&, std::span<const double>,
+                                                 std::span<double>, const SolveOptions&);
 
 }  // namespace meshorder

@@ -53,28 +53,23 @@ Index largest_vertex(std::span<const double> vector);
 /// search direction. The same bits for any number of threads. O(blocks) an iteration; vectors of 4 times the
 /// size of b. Numbers whose squares are too small for a double count as 0. Throws InvalidArgument when sizes
 /// differ or an option is negative.
-SolveReport conjugate_gradients(const BlockCsr& matrix, const Preconditioner& preconditioner,
-                                std::span<const double> b, std::span<double> x,
-                                const SolveOptions& options = {});
-
-/// The same with half of the matrix: an iteration reads little more than half as many bytes in a good order.
-/// Rounded differently. The threads share 16 slabs, two or more each.
-SolveReport conjugate_gradients(const HalfBlockCsr& matrix, const Preconditioner& preconditioner,
-                                std::span<const double> b, std::span<double> x,
-                                const SolveOptions& options = {});
-
-/// The same with the matrix in single precision, all vectors and sums in double: an iteration reads about
-/// half as many bytes. Solves the system of the rounded matrix, whose solution differs by up to 6e-8 times
-/// the condition number.
-SolveReport conjugate_gradients(const BlockCsrOf<float>& matrix, const Preconditioner& preconditioner,
+///
+/// `Matrix` is BlockCsrOf or HalfBlockCsrOf, which differ in how they round; of double, or of float. In float
+/// an iteration reads about half as many bytes, and the system that is solved is that of the rounded matrix,
+/// whose solution differs by up to 6e-8 times the condition number; vectors and sums are in double. With half
+/// of the matrix an iteration reads little more than half as many bytes in a good order, and threads share 16
+/// slabs, two or more each.
+template <class Matrix>
+SolveReport conjugate_gradients(const Matrix& matrix, const Preconditioner& preconditioner,
                                 std::span<const double> b, std::span<double> x,
                                 const SolveOptions& options = {});
 
 /// Solves A x = b to the same residual as conjugate_gradients(matrix, …), while its iterations read
-/// `rounded`, the same matrix in single precision: while the residual of A itself is too large, it solves for
-/// a correction in the same way (iterative refinement, Wilkinson 1963). Reports the iterations of all
-/// corrections. Measured in docs/benchmarks.md.
-SolveReport refined_conjugate_gradients(const BlockCsr& matrix, const BlockCsrOf<float>& rounded,
+/// `rounded`, the same matrix in single precision, BlockCsrOf<float> or HalfBlockCsrOf<float>: while the
+/// residual of A itself is too large, it solves for a correction in the same way (iterative refinement,
+/// Wilkinson 1963). Reports the iterations of all corrections. Measured in docs/benchmarks.md.
+template <class Rounded>
+SolveReport refined_conjugate_gradients(const BlockCsr& matrix, const Rounded& rounded,
                                         const Preconditioner& preconditioner, std::span<const double> b,
                                         std::span<double> x, const SolveOptions& options = {});
 
