@@ -15,10 +15,12 @@ import sys
 
 PROGRESS = re.compile(r"^#(\d+)[:\t ].*?cov: (\d+) ft: (\d+)", re.MULTILINE)
 SECONDS = re.compile(r"^(?:Done \d+ runs in (\d+) second|INFO: fuzzed for (\d+) seconds|#\d+:.* time: (\d+)s)", re.MULTILINE)
-FRAME = re.compile(r"^\s*#\d+ 0x[0-9a-f]+ (?:in (\S+).*?)?\(?(/[^\s:()]+)", re.MULTILINE)
+FRAME = re.compile(r"^\s*#\d+ 0x[0-9a-f]+ +(?:in (\S+).*?)?\(?(/[^\s:()]+)", re.MULTILINE)
 LIBRARIES = ("libhdf5", "libnetcdf", "libcgns", "libmed", "libz.", "libsz", "libaec", "libxml", "libcurl")
-# files of the sanitizers and the fuzzing engine, and the functions of the C library that they stand in for
-RUNTIME = re.compile(r"compiler-rt|sanitizer|fuzzer|libc\.so|libstdc\+\+|/csu/|/nptl/|/raise|/abort")
+# files of the sanitizers, the fuzzing engine and the C library, and functions of theirs where files are not told
+RUNTIME = re.compile(r"compiler-rt|sanitizer|libFuzzer|libc\.so|libstdc\+\+|/csu/|/nptl/|/sysdeps/|/raise|/abort")
+RUNTIME_FUNCTION = re.compile(r"fuzzer::|__(asan|lsan|ubsan|sanitizer|interceptor)|(malloc|calloc|realloc|free|abort|raise|operator|"
+                              r"mem(cpy|move|set|cmp|chr)|str(n?len|n?cpy|n?cmp|chr|dup))\b")
 
 
 def progress(family, build):
@@ -38,10 +40,10 @@ def progress(family, build):
 
 def is_of_a_library(report):
     """Whether the first function in a report that is no sanitizer's lies in a library that reads files for us."""
-    for _, path in FRAME.findall(report):
+    for function, path in FRAME.findall(report):
         if any(name in os.path.basename(path) for name in LIBRARIES):
             return True
-        if not RUNTIME.search(path):
+        if not RUNTIME.search(path) and not RUNTIME_FUNCTION.match(function):
             return False
     return False
 
