@@ -345,6 +345,34 @@ BROKEN = {
 }
 
 
+def test_arrays_that_share_a_dataset_keep_their_values(command, tmp_path):
+    """A dataset that an array of points and one of cells name goes apart where they move differently; one that two
+    arrays of points name stays one."""
+    points, _, _ = box(2)
+    edges = numpy.stack([numpy.arange(27), numpy.random.default_rng(3).permutation(27)], -1)
+    edges = edges[edges[:, 0] != edges[:, 1]]
+    edges = numpy.concatenate([edges, [[0, 1]] * (27 - len(edges))])
+    values = numpy.arange(27, dtype="int32") ** 2
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["points"], file["edges"], file["values"] = points, edges.astype("int32"), values
+    shared = item("a.h5", "/values", (27,), "Int", 4)
+    (tmp_path / "a.xdmf").write_text(xdmf(
+        '<Grid Name="g" GridType="Uniform">' + topology("a.h5", "/edges", "Polyline", (27, 2)) + '<Geometry GeometryType="XYZ">'
+        + item("a.h5", "/points", (27, 3)) + "</Geometry>" + attribute("of points", "Node", shared)
+        + attribute("again", "Node", shared) + attribute("of cells", "Cell", shared) + "</Grid>"))
+    vertices, cells = order(command, tmp_path / "a.xdmf", tmp_path / "b.xdmf")
+    named = {element.get("Name"): element.find("DataItem").text.strip().split(":")
+             for element in ElementTree.parse(tmp_path / "b.xdmf").iter("Attribute")}
+    assert named["of points"] == named["again"] == ["b.h5", "/values"]
+    with h5py.File(tmp_path / "b.h5") as file:
+        numpy.testing.assert_array_equal(file[named["of points"][1]][()][vertices], values)
+        numpy.testing.assert_array_equal(file[named["of cells"][1]][()][cells], values)
+    command.ok("apply", "--inverse", tmp_path / "b.xdmf-maps", tmp_path / "b.xdmf", "-o", tmp_path / "c.xdmf")
+    with h5py.File(tmp_path / "c.h5") as file:
+        for name in named.values():
+            numpy.testing.assert_array_equal(file[name[1]], values)
+
+
 @pytest.mark.parametrize("fault", BROKEN)
 def test_a_fault_of_the_xml_is_one_line(command, tmp_path, fault):
     points, tetrahedra, triangles = box(2)

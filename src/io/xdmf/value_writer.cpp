@@ -40,7 +40,26 @@ std::vector<std::uint64_t> Writer::shape_at(const DataPlace& place, std::size_t 
   return shape;
 }
 
+bool Writer::is_taken(const DataPlace& place, const Values& values) {
+  if (place.format != DataPlace::Format::hdf) return false;
+  Hdf5Output& output = files_.at(place.file);
+  return !output.written.insert(place.dataset).second && output.file->read(place.dataset) != values;
+}
+
+void Writer::put_elsewhere(const DataPlace& place, const Values& values, std::size_t components) {
+  Hdf5Output& output = files_.at(place.file);
+  const std::string dataset = unused_dataset(output, 0, "");
+  std::vector<std::uint64_t> shape{size_of(values) / components};
+  if (components > 1) shape.push_back(components);
+  output.file->write(dataset, values, shape);
+  pugi::xml_node item = items_[place.item];
+  set_shape(item, shape);
+  set_number_type(item, values.index());
+  set_text(item, place.file + ":" + dataset);
+}
+
 void Writer::put(const DataPlace& place, const Values& values, std::size_t components) {
+  if (is_taken(place, values)) return put_elsewhere(place, values, components);
   pugi::xml_node item = items_[place.item];
   const std::vector<std::uint64_t> shape = shape_at(place, size_of(values), components);
   const bool same_type = values.index() == place.alternative;
@@ -60,7 +79,9 @@ void Writer::put(const DataPlace& place, const Values& values, std::size_t compo
 
 void Writer::put_indices(const DataPlace& place, std::span<const Index> indices, std::size_t components) {
   constexpr std::size_t kInt32 = 6;
-  if (place.format != DataPlace::Format::hdf || place.alternative < kInt32) {
+  const bool is_shared =
+      place.format == DataPlace::Format::hdf && files_.at(place.file).written.contains(place.dataset);
+  if (place.format != DataPlace::Format::hdf || place.alternative < kInt32 || is_shared) {
     const Values values = values_as(std::max(place.alternative, kInt32), [&](auto& numbers) {
       using Number = typename std::decay_t<decltype(numbers)>::value_type;
       if constexpr (std::is_integral_v<Number>) {
@@ -71,6 +92,7 @@ void Writer::put_indices(const DataPlace& place, std::span<const Index> indices,
     return put(place, values, components);
   }
   if (layout_.is_made) set_number_type(items_[place.item], place.alternative);
+  files_.at(place.file).written.insert(place.dataset);
   files_.at(place.file).file->write(place.dataset, indices, shape_at(place, indices.size(), components));
   name_dataset(place);
 }

@@ -32,7 +32,8 @@ struct Hdf5Output {
   std::unique_ptr<OutputFile> out;
   std::unique_ptr<hdf5::File> file;
   std::set<std::string> datasets;
-  int next_array = 0;  ///< lowest number that an array without a name of its own may have
+  std::set<std::string> written;  ///< those that have values of the mesh by now
+  int next_array = 0;             ///< lowest number that an array without a name of its own may have
 };
 
 /// See `write` and `write_without_values`.
@@ -63,6 +64,11 @@ class Writer {
   static void set_number_type(pugi::xml_node item, std::size_t alternative);
   /// Returns the shape of values at a place, in rows of so many components: the old one if it fits.
   std::vector<std::uint64_t> shape_at(const DataPlace& place, std::size_t count, std::size_t components);
+  /// Whether another field, such as an array of cells where this is one of vertices, has written other values
+  /// to the dataset of a place. From the first call on, the dataset counts as written.
+  bool is_taken(const DataPlace& place, const Values& values);
+  /// Writes values to a dataset of their own, in rows of so many components.
+  void put_elsewhere(const DataPlace& place, const Values& values, std::size_t components);
   /// Writes values to a place in their own number type: rows of so many components.
   void put(const DataPlace& place, const Values& values, std::size_t components);
   /// Writes indices to a place in the number type that it has, unless that is too narrow.
