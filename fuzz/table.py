@@ -19,7 +19,7 @@ FRAME = re.compile(r"^\s*#\d+ 0x[0-9a-f]+ +(?:in (\S+).*?)?\(?(/[^\s:()]+)", re.
 LIBRARIES = ("libhdf5", "libnetcdf", "libcgns", "libmed", "libz.", "libsz", "libaec", "libxml", "libcurl")
 # files of the sanitizers, the fuzzing engine and the C library, and functions of theirs where files are not told
 RUNTIME = re.compile(r"compiler-rt|sanitizer|libFuzzer|libc\.so|libstdc\+\+|/csu/|/nptl/|/sysdeps/|/raise|/abort")
-RUNTIME_FUNCTION = re.compile(r"fuzzer::|__(asan|lsan|ubsan|sanitizer|interceptor)|(malloc|calloc|realloc|free|abort|raise|operator|"
+RUNTIME_FUNCTION = re.compile(r"fuzzer::|__(asan|lsan|ubsan|sanitizer|interceptor)|operator$|(malloc|calloc|realloc|free|abort|raise|"
                               r"mem(cpy|move|set|cmp|chr)|str(n?len|n?cpy|n?cmp|chr|dup))\b")
 
 

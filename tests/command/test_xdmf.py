@@ -324,27 +324,6 @@ def test_nodes_of_second_order_cells_are_where_vtk_has_them(command, tmp_path, k
         assert sorted(gmsh.points[gmsh.cells[0].data].tolist()) == sorted(points[cells].tolist())
 
 
-BROKEN = {
-    "data file 'c.h5' is missing": ("a.h5:/Mesh/mesh/topology", "c.h5:/Mesh/mesh/topology"),
-    "the dataset '/Mesh/mesh/cells' is missing": ("a.h5:/Mesh/mesh/topology", "a.h5:/Mesh/mesh/cells"),
-    "Dimensions is '48 5'": ('Dimensions="48 4"', 'Dimensions="48 5"'),
-    "selects a part of a dataset": ("/Mesh/mesh/geometry<", "/Mesh/mesh/geometry|0 0|1 1|5 3<"),
-    "is a HyperSlab": ("<DataItem Dimensions", '<DataItem ItemType="HyperSlab" Dimensions'),
-    "is a Function": ("<DataItem Dimensions", '<DataItem ItemType="Function" Function="JOIN($0;$1)" Dimensions'),
-    "3DCoRectMesh', which is structured": ('"Tetrahedron"', '"3DCoRectMesh"'),
-    "names no element of the file": ("/Xdmf/Domain/Grid/Geometry", "/Xdmf/Domain/Grid/Nothing"),
-    "is no XPath": ("/Xdmf/Domain/Grid/Geometry", "/Xdmf/Domain/Grid["),
-    "is on each Face": ('Name="facet_tags" AttributeType="Scalar" Center="Cell"',
-                        'Name="facet_tags" AttributeType="Scalar" Center="Face"'),
-    "a spatial collection holds several meshes": ('"Temporal"', '"Spatial"'),
-    "the XML is malformed": ("</Domain>", ""),
-    "behind '/elsewhere', a link to another file": ("a.h5:/Mesh/mesh/geometry", "a.h5:/elsewhere/mesh/geometry"),
-    "claims 1000000000000 values": ('Dimensions="27 3" NumberType="Float" Precision="8" Format="HDF">a.h5:/Mesh/mesh/geometry',
-                                    'Dimensions="1000000000000" Format="HDF">a.h5:/huge'),
-    "does not hold plain numbers": ("a.h5:/Mesh/mesh/topology", "a.h5:/notes/text"),
-}
-
-
 def test_arrays_that_share_a_dataset_keep_their_values(command, tmp_path):
     """A dataset that an array of points and one of cells name goes apart where they move differently; one that two
     arrays of points name stays one."""
@@ -371,6 +350,27 @@ def test_arrays_that_share_a_dataset_keep_their_values(command, tmp_path):
     with h5py.File(tmp_path / "c.h5") as file:
         for name in named.values():
             numpy.testing.assert_array_equal(file[name[1]], values)
+
+
+BROKEN = {
+    "data file 'c.h5' is missing": ("a.h5:/Mesh/mesh/topology", "c.h5:/Mesh/mesh/topology"),
+    "the dataset '/Mesh/mesh/cells' is missing": ("a.h5:/Mesh/mesh/topology", "a.h5:/Mesh/mesh/cells"),
+    "Dimensions is '48 5'": ('Dimensions="48 4"', 'Dimensions="48 5"'),
+    "selects a part of a dataset": ("/Mesh/mesh/geometry<", "/Mesh/mesh/geometry|0 0|1 1|5 3<"),
+    "is a HyperSlab": ("<DataItem Dimensions", '<DataItem ItemType="HyperSlab" Dimensions'),
+    "is a Function": ("<DataItem Dimensions", '<DataItem ItemType="Function" Function="JOIN($0;$1)" Dimensions'),
+    "3DCoRectMesh', which is structured": ('"Tetrahedron"', '"3DCoRectMesh"'),
+    "names no element of the file": ("/Xdmf/Domain/Grid/Geometry", "/Xdmf/Domain/Grid/Nothing"),
+    "is no XPath": ("/Xdmf/Domain/Grid/Geometry", "/Xdmf/Domain/Grid["),
+    "is on each Face": ('Name="facet_tags" AttributeType="Scalar" Center="Cell"',
+                        'Name="facet_tags" AttributeType="Scalar" Center="Face"'),
+    "a spatial collection holds several meshes": ('"Temporal"', '"Spatial"'),
+    "the XML is malformed": ("</Domain>", ""),
+    "behind '/elsewhere', a link to another file": ("a.h5:/Mesh/mesh/geometry", "a.h5:/elsewhere/mesh/geometry"),
+    "claims 1000000000000 values": ('Dimensions="27 3" NumberType="Float" Precision="8" Format="HDF">a.h5:/Mesh/mesh/geometry',
+                                    'Dimensions="1000000000000" Format="HDF">a.h5:/huge'),
+    "does not hold plain numbers": ("a.h5:/Mesh/mesh/topology", "a.h5:/notes/text"),
+}
 
 
 @pytest.mark.parametrize("fault", BROKEN)

@@ -136,19 +136,14 @@ void Writer::add_attribute(int part, const DataArray& array, const std::string& 
   set_attribute(element, "Center", array.association == Association::vertices ? "Node" : "Cell");
   pugi::xml_node item = element.append_child("DataItem");
   const auto components = static_cast<std::size_t>(array.components);
-  std::vector<std::uint64_t> shape{size_of(values) / components};
-  if (components > 1) shape.push_back(components);
-  set_shape(item, shape);
-  set_number_type(item, values.index());
+  const std::vector<std::uint64_t> shape = describe(item, values, components);
   set_attribute(item, "Format", files_.empty() ? "XML" : "HDF");
   if (files_.empty()) {
     set_text(item, text_of_values(values, components));
     return;
   }
   auto& [old_name, output] = *files_.begin();
-  const std::string dataset = unused_dataset(output, part, name);
-  output.file->write(dataset, values, shape);
-  set_text(item, old_name + ":" + dataset);
+  put_apart(item, old_name, unused_dataset(output, part, name), values, shape);
 }
 
 std::string Writer::unused_dataset(Hdf5Output& output, int part, const std::string& name) {

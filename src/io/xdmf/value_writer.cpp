@@ -11,6 +11,16 @@
 #include <type_traits>
 
 namespace meshorder::xdmf {
+namespace {
+
+/// The shape of so many values in rows of so many components.
+std::vector<std::uint64_t> shape_of(std::size_t count, std::size_t components) {
+  std::vector<std::uint64_t> shape{count / components};
+  if (components > 1) shape.push_back(components);
+  return shape;
+}
+
+}  // namespace
 
 void set_either(pugi::xml_node element, const char* name, const char* other, const std::string& value) {
   set_attribute(element, element.attribute(other) && !element.attribute(name) ? other : name, value);
@@ -32,8 +42,7 @@ std::vector<std::uint64_t> Writer::shape_at(const DataPlace& place, std::size_t 
                                             std::size_t components) {
   std::vector<std::uint64_t> shape = place.shape;
   if (hdf5::DatasetInfo{shape, 0}.size() == count && !layout_.is_made) return shape;
-  shape = {count / components};
-  if (components > 1) shape.push_back(components);
+  shape = shape_of(count, components);
   set_shape(items_[place.item], shape);
   if (place.format == DataPlace::Format::hdf)
     shapes_[files_.at(place.file).name + ":" + place.dataset] = shape;
@@ -46,21 +55,26 @@ bool Writer::is_taken(const DataPlace& place, const Values& values) {
   return !output.written.insert(place.dataset).second && output.file->read(place.dataset) != values;
 }
 
-void Writer::put_elsewhere(const DataPlace& place, const Values& values, std::size_t components) {
-  Hdf5Output& output = files_.at(place.file);
-  const std::string dataset = unused_dataset(output, 0, "");
-  std::vector<std::uint64_t> shape{size_of(values) / components};
-  if (components > 1) shape.push_back(components);
-  output.file->write(dataset, values, shape);
-  pugi::xml_node item = items_[place.item];
+std::vector<std::uint64_t> Writer::describe(pugi::xml_node item, const Values& values,
+                                            std::size_t components) {
+  std::vector<std::uint64_t> shape = shape_of(size_of(values), components);
   set_shape(item, shape);
   set_number_type(item, values.index());
-  set_text(item, place.file + ":" + dataset);
+  return shape;
+}
+
+void Writer::put_apart(pugi::xml_node item, const std::string& file, const std::string& dataset,
+                       const Values& values, const std::vector<std::uint64_t>& shape) {
+  files_.at(file).file->write(dataset, values, shape);
+  set_text(item, file + ":" + dataset);
 }
 
 void Writer::put(const DataPlace& place, const Values& values, std::size_t components) {
-  if (is_taken(place, values)) return put_elsewhere(place, values, components);
   pugi::xml_node item = items_[place.item];
+  if (is_taken(place, values)) {
+    const std::string dataset = unused_dataset(files_.at(place.file), 0, "");
+    return put_apart(item, place.file, dataset, values, describe(item, values, components));
+  }
   const std::vector<std::uint64_t> shape = shape_at(place, size_of(values), components);
   const bool same_type = values.index() == place.alternative;
   if (!same_type || layout_.is_made) set_number_type(item, values.index());

@@ -67,8 +67,14 @@ class Writer {
   /// Whether another field, such as an array of cells where this is one of vertices, has written other values
   /// to the dataset of a place. From the first call on, the dataset counts as written.
   bool is_taken(const DataPlace& place, const Values& values);
-  /// Writes values to a dataset of their own, in rows of so many components.
-  void put_elsewhere(const DataPlace& place, const Values& values, std::size_t components);
+  /// Gives a DataItem the shape, which is returned, and the number type of values in rows of so many
+  /// components.
+  static std::vector<std::uint64_t> describe(pugi::xml_node item, const Values& values,
+                                             std::size_t components);
+  /// Writes values to a dataset that no other field has, and names it in the DataItem. `file`: the name in
+  /// the old XML.
+  void put_apart(pugi::xml_node item, const std::string& file, const std::string& dataset,
+                 const Values& values, const std::vector<std::uint64_t>& shape);
   /// Writes values to a place in their own number type: rows of so many components.
   void put(const DataPlace& place, const Values& values, std::size_t components);
   /// Writes indices to a place in the number type that it has, unless that is too narrow.
