@@ -92,13 +92,21 @@ TEST(LibraryCalls, ReadAndWriteAllFormatsAtOnce) {
 TEST(LibraryCalls, TellTheirProgressAndStopAtOnce) {
   const Mesh mesh = make_grid({.size = 24});
   const Graph graph = vertex_graph(view(mesh).cells, mesh.points.size());
+  // methods that never return, however fast the machine: their calls belong to the call that is stopped
+  std::vector<Registration> registrations;
+  for (const std::string inner : {"minla", "spectral"}) {
+    const auto work = [&graph, inner](const VertexProblem&, const OrderOptions&) -> Permutation {
+      for (;;) (void)order_vertices(graph, inner, {.tolerance = 1e-6});
+    };
+    registrations.push_back(register_vertex_method({.name = "endless-" + inner}, work));
+  }
   std::atomic<int> stopped = 0;
   on_threads(4, [&](int t) {
     for (int turn = 0; turn < 3; ++turn) {
       int calls = 0;
       const RunOfCall run{.threads = 1 + t % 3, .progress = [&](const Progress&) { return ++calls <= turn; }};
       try {
-        (void)order_vertices(graph, t % 2 == 0 ? "minla" : "spectral", {.tolerance = 1e-6, .run = run});
+        (void)order_vertices(graph, t % 2 == 0 ? "endless-minla" : "endless-spectral", {.run = run});
       } catch (const Stopped&) {
         ++stopped;
         EXPECT_EQ(calls, turn + 1);
@@ -106,7 +114,7 @@ TEST(LibraryCalls, TellTheirProgressAndStopAtOnce) {
       (void)order_vertices(graph, "fiedler", {.tolerance = 1e-9, .run = {.threads = 2, .time_limit = 0.01}});
     }
   });
-  EXPECT_GE(stopped, 4);
+  EXPECT_EQ(stopped, 12);
 }
 
 TEST(LibraryCalls, RegisterAndUseMethodsAtOnce) {
