@@ -3,6 +3,7 @@
 import ctypes.util
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -169,22 +170,37 @@ def test_profiles_that_two_types_shared_are_parted(command, by_library):
             assert (numpy.diff(file["PROFILS"][name]["PFL"][()]) > 0).all()
 
 
-def by_meshio(path, chance=numpy.random.default_rng(2)):
+def by_meshio(path, chance=numpy.random.default_rng(2), triangle_count=8):
     """Tetrahedra and triangles with families, groups and fields, as meshio writes them."""
     points = chance.uniform(size=(30, 3))
     tetrahedra = numpy.array([chance.permutation(30)[:4] for _ in range(20)])
     low = points[tetrahedra]
     turned = numpy.linalg.det(low[:, 1:] - low[:, :1]) < 0
     tetrahedra[turned] = tetrahedra[turned][:, [0, 2, 1, 3]]
-    triangles = tetrahedra[:8, :3]
+    triangles = tetrahedra[:triangle_count, :3]
     mesh = meshio.Mesh(points, [("tetra", tetrahedra), ("triangle", triangles)],
                        point_data={"point_tags": chance.integers(0, 3, 30), "heat": chance.uniform(size=30)},
-                       cell_data={"cell_tags": [-chance.integers(0, 3, 20), -chance.integers(0, 3, 8)],
-                                  "flux": [chance.uniform(size=(20, 3)), chance.uniform(size=(8, 3))]})
+                       cell_data={"cell_tags": [-chance.integers(0, 3, 20), -chance.integers(0, 3, triangle_count)],
+                                  "flux": [chance.uniform(size=(20, 3)), chance.uniform(size=(triangle_count, 3))]})
     mesh.point_tags = {1: ["held"], 2: ["held", "hot"]}
     mesh.cell_tags = {-1: ["steel"], -2: ["skin"]}
     meshio.write(path, mesh)
     return mesh
+
+
+def test_datasets_that_two_types_share_are_parted(command):
+    by_meshio(command.folder / "old.med", triangle_count=20)
+
+    def share(file, mesh, step):
+        del step["MAI/TR3/FAM"]
+        step["MAI/TR3/FAM"] = step["MAI/TE4/FAM"]
+        flux, = file["CHA/flux"].values()
+        del flux["MAI.TR3"]
+        flux["MAI.TR3"] = flux["MAI.TE4"]
+
+    change(command.folder / "old.med", share)
+    command.ok("order", "old.med", "-o", "new.med", "--vertices", "scrambled", "--elements", "scrambled")
+    assert_same(Content(command.folder / "new.med"), Content(command.folder / "old.med"))
 
 
 def test_a_file_of_meshio_stays_the_same_mesh_to_it(command):
@@ -304,6 +320,21 @@ def test_other_groups_and_other_meshes_stay(command):
                 if isinstance(item, h5py.Dataset):
                     assert (item[()] == other[name][()]).all()
             old[group].visititems(same)
+
+
+@pytest.mark.parametrize("signature", ["SNOD", "HEAP", "TREE"])
+def test_no_group_that_cannot_be_read_is_taken_for_an_absent_one(command, signature):
+    """What lists the entries of a group, and their names, is damaged in one group after another."""
+    by_meshio(command.folder / "a.med")
+    whole = (command.folder / "a.med").read_bytes()
+    keep = ("--vertices", "original", "--elements", "original")
+    places = [match.start() for match in re.finditer(signature.encode(), whole)]
+    assert len(places) > 10
+    for place in places:
+        (command.folder / "broken.med").write_bytes(whole[:place] + b"none" + whole[place + 4:])
+        done = command.run("order", "broken.med", "-o", "out.med", *keep)
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1), f"byte {place}: {done.stderr}"
+        assert "broken.med" in done.stderr
 
 
 def test_damaged_files_never_crash(command, by_library):

@@ -79,15 +79,19 @@ class CopyWithoutValues {
     if (link.type != H5L_TYPE_HARD) return copy_reference(from, to, name, link);
     H5O_info_t object;
     if (H5Oget_info_by_name(from, name.c_str(), &object, H5P_DEFAULT) < 0) return;
-    if (const auto known = first_paths_.find(object.addr); known != first_paths_.end()) {
+    // datasets that will get values get them by each of their paths
+    const bool is_listed = object.type == H5O_TYPE_DATASET && paths_.contains(path);
+    const bool is_around_listed = object.type == H5O_TYPE_GROUP && has_listed(path);
+    const auto known = first_paths_.find(object.addr);
+    if (known != first_paths_.end() && !is_listed && !is_around_listed) {
       H5Lcreate_hard(target_, known->second.c_str(), to, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
       return;
     }
-    if (object.type == H5O_TYPE_DATASET && paths_.contains(path)) {
+    if (is_listed) {
       const Handle dataset(H5Dopen2(from, name.c_str(), H5P_DEFAULT), H5Dclose);
       const Handle space(H5Dget_space(dataset.id()), H5Sclose);
       (void)empty_copy(dataset.id(), to, name.c_str(), space.id());
-    } else if (object.type == H5O_TYPE_GROUP && has_listed(path)) {
+    } else if (is_around_listed) {
       const Handle old_group(H5Gopen2(from, name.c_str(), H5P_DEFAULT), H5Gclose);
       const Handle creation = creation_of_copy(old_group.id());
       const Handle new_group(H5Gcreate2(to, name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose);

@@ -49,6 +49,17 @@ std::string external_link_on(hid_t file, const std::string& path) {
   }
 }
 
+/// Returns whether an entry of a group leads to an object of this file.
+bool leads_to_object(hid_t group, const std::string& name) {
+  if (H5Lexists(group, name.c_str(), H5P_DEFAULT) <= 0) return false;
+  H5L_info_t link;
+  if (H5Lget_info(group, name.c_str(), &link, H5P_DEFAULT) < 0) return false;
+  if (link.type == H5L_TYPE_HARD) return true;
+  const Unwatched may_lead_nowhere;
+  const Handle access = link_access();
+  return link.type == H5L_TYPE_SOFT && H5Oexists_by_name(group, name.c_str(), access.id()) > 0;
+}
+
 Handle file_access() {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
@@ -166,7 +177,23 @@ std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
 
 Handle File::open_object(const std::string& path) const {
   const Handle access = link_access();
-  return {H5Oopen(file_.id(), path.c_str(), access.id()), H5Oclose};
+  Handle object(H5Oopen(file_.id(), "/", access.id()), H5Oclose);
+  const std::string normal = normal_path(path);
+  for (std::size_t begin = 1; begin < normal.size();) {
+    const std::size_t end = std::min(normal.find('/', begin), normal.size());
+    const std::string name = normal.substr(begin, end - begin);
+    const bool is_there = H5Iget_type(object.id()) == H5I_GROUP && leads_to_object(object.id(), name);
+    if (!is_there) return {};
+    object = Handle(H5Oopen(object.id(), name.c_str(), access.id()), H5Oclose);
+    if (!object.is_open()) return {};
+    begin = end + 1;
+  }
+  return object;
+}
+
+Handle File::open_dataset_if_there(const std::string& path) const {
+  Handle object = open_object(path);
+  return H5Iget_type(object.id()) == H5I_DATASET ? std::move(object) : Handle();
 }
 
 bool File::has(const std::string& path) const {
@@ -203,7 +230,12 @@ void File::move(const std::string& path, const std::string& new_path) {
 
 void File::remove(const std::string& path) {
   const Session session;
-  H5Ldelete(file_.id(), path.c_str(), H5P_DEFAULT);
+  const std::string normal = normal_path(path);
+  const std::size_t slash = normal.rfind('/');
+  const Handle group = open_object(normal.substr(0, slash));
+  const std::string name = normal.substr(slash + 1);
+  if (H5Iget_type(group.id()) != H5I_GROUP || H5Lexists(group.id(), name.c_str(), H5P_DEFAULT) <= 0) return;
+  H5Ldelete(group.id(), name.c_str(), H5P_DEFAULT);
 }
 
 std::string File::without_values(const std::set<std::string>& paths) const {
@@ -241,7 +273,7 @@ void File::close() {
   if (file_.close() < 0) {
     fail("", fmt::format("cannot be written to the end ({})", last_cause()), "is the disk full?");
   }
-  session.require_no_fault(name_);
+  session.require_no_failure(name_);
 }
 
 void write_from(const FilePath& path, const std::string& bytes, const std::function<void(File&)>& fill) {

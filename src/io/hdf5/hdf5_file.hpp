@@ -118,7 +118,8 @@ class File {
   void remove(const std::string& path);
 
   /// Returns the bytes of a copy of this file in which these datasets are there with their types, attributes,
-  /// chunks and filters, but without their values. Everything else is copied.
+  /// chunks and filters, but without their values; one that several of the paths lead to is there for each of
+  /// them. Everything else is copied.
   [[nodiscard]] std::string without_values(const std::set<std::string>& paths) const;
   /// Returns the bytes of a file in memory.
   [[nodiscard]] std::string bytes() const;
@@ -129,6 +130,7 @@ class File {
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
   [[nodiscard]] Handle open_dataset(const std::string& path) const;
   [[nodiscard]] Handle open_object(const std::string& path) const;
+  [[nodiscard]] Handle open_dataset_if_there(const std::string& path) const;
   [[nodiscard]] Handle open_attribute(const std::string& path, const std::string& name) const;
   void put_attribute(const std::string& path, const std::string& name, hid_t space, hid_t type, hid_t memory,
                      const void* value);

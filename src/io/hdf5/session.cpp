@@ -14,11 +14,13 @@
 namespace meshorder::hdf5 {
 namespace {
 
-/// What the system refused since the outermost session began; kept without memory.
+/// What failed since the outermost session began; kept without memory.
 struct Faults {
   int sessions = 0;
+  bool any = false;
   bool memory = false;
   std::array<char, 64> words{};  ///< the system's, of a failed read or write; empty if there was none
+  std::array<char, 64> cause{};  ///< the library's, of the first call that failed
 };
 
 /// Guarded by the library's mutex.
@@ -35,17 +37,27 @@ std::string_view system_words(std::string_view cause) {
   return cause.substr(0, cause.find('\''));
 }
 
-herr_t note_cause(unsigned /*depth*/, const H5E_error2_t* error, void* /*data*/) {
+/// Keeps the beginning of a text.
+template <std::size_t Size>
+void keep(std::string_view text, std::array<char, Size>& into) {
+  into = {};
+  std::copy_n(text.begin(), std::min(text.size(), Size - 1), into.begin());
+}
+
+/// `first`: whether no call has failed before.
+herr_t note_cause(unsigned /*depth*/, const H5E_error2_t* error, void* first) {
   const std::string_view cause = error->desc != nullptr ? error->desc : "";
   if (cause.starts_with("memory allocation failed")) faults.memory = true;
-  const std::string_view words = system_words(cause);
-  if (faults.words.front() == '\0')
-    std::copy_n(words.begin(), std::min(words.size(), faults.words.size() - 1), faults.words.begin());
+  if (faults.words.front() == '\0') keep(system_words(cause), faults.words);
+  // from the function that was called to the one that failed
+  if (*static_cast<const bool*>(first)) keep(cause.substr(0, cause.find('\n')), faults.cause);
   return 0;
 }
 
 herr_t note_failure(hid_t stack, void* /*data*/) {
-  return H5Ewalk2(stack, H5E_WALK_DOWNWARD, note_cause, nullptr);
+  bool first = !faults.any;
+  faults.any = true;
+  return H5Ewalk2(stack, H5E_WALK_DOWNWARD, note_cause, &first);
 }
 
 }  // namespace
@@ -77,6 +89,14 @@ void Session::require_no_fault(const std::string& file) const {
   // not all of the library looks at the result of malloc, and what fails then gives another cause or none
   if (faults.memory || errno == ENOMEM)
     throw InputError(file, "HDF5 had no memory for a part of it", "the file may be damaged");
+}
+
+void Session::require_no_failure(const std::string& file) const {
+  require_no_fault(file);
+  if (!faults.any) return;
+  throw InputError(file,
+                   std::string("HDF5 could not read or write a part of it (") + faults.cause.data() + ")",
+                   "the file may be damaged");
 }
 // NOLINTEND(readability-convert-member-functions-to-static)
 

@@ -9,8 +9,7 @@
 namespace meshorder::hdf5 {
 
 /// Keeps other threads out of libhdf5 and the library quiet as long as it lives. May be nested. Takes note of
-/// calls for which the system had no memory or could not read or write, also where the library, or one on
-/// top of it, does not look at their result.
+/// calls that fail, also where the library, or one on top of it, does not look at their result.
 class Session {
  public:
   Session();
@@ -23,11 +22,35 @@ class Session {
   /// Takes note of failures again after a library on top of libhdf5 has turned that off.
   void watch() const;
 
-  /// Throws InputError if such a call has failed since the outermost session began.
+  /// Throws InputError if the system had no memory for a call or could not read or write since the outermost
+  /// session began.
   void require_no_fault(const std::string& file) const;
+
+  /// Throws InputError if any call has failed since then: for what asks first whether a thing is there, so
+  /// that only damage makes a call fail.
+  void require_no_failure(const std::string& file) const;
 
  private:
   LibraryLock lock_;
+  H5E_auto2_t handler_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// Within a session, takes no note of calls that fail as long as it lives: for questions to which failure is
+/// an answer.
+class Unwatched {
+ public:
+  Unwatched() {
+    H5Eget_auto2(H5E_DEFAULT, &handler_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~Unwatched() { H5Eset_auto2(H5E_DEFAULT, handler_, data_); }
+  Unwatched(const Unwatched&) = delete;
+  Unwatched(Unwatched&&) = delete;
+  Unwatched& operator=(const Unwatched&) = delete;
+  Unwatched& operator=(Unwatched&&) = delete;
+
+ private:
   H5E_auto2_t handler_ = nullptr;
   void* data_ = nullptr;
 };

@@ -106,7 +106,7 @@ std::vector<std::string> File::read_texts(const std::string& path) const {
 
 bool File::has_texts(const std::string& path) const {
   const Session session;
-  const Handle dataset(has(path) ? H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+  const Handle dataset = open_dataset_if_there(path);
   const Handle type(dataset.is_open() ? H5Dget_type(dataset.id()) : -1, H5Tclose);
   return type.is_open() && (H5Tis_variable_str(type.id()) > 0 || width_of_texts(type.id()) > 0);
 }
@@ -121,7 +121,7 @@ void File::write_texts(const std::string& path, std::span<const std::string> tex
     bytes.append(width - std::min(width, text.size()), filling);
   }
   const Handle type = type_of_texts(width);
-  const Handle old(has(path) ? H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+  const Handle old = open_dataset_if_there(path);
   const std::string aside = path + ".old";
   if (old.is_open()) H5Lmove(file_.id(), path.c_str(), file_.id(), aside.c_str(), H5P_DEFAULT, H5P_DEFAULT);
   write(path, type.id(), bytes.data(), texts.size(), {texts.size()});

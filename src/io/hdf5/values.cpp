@@ -84,7 +84,7 @@ DatasetInfo File::info(const std::string& path) const {
 
 std::optional<std::size_t> File::number_type(const std::string& path) const {
   const Session session;
-  const Handle dataset(has(path) ? H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+  const Handle dataset = open_dataset_if_there(path);
   if (!dataset.is_open()) return {};
   const Handle type(H5Dget_type(dataset.id()), H5Tclose);
   const std::size_t alternative = alternative_of(type.id());
@@ -162,7 +162,7 @@ void File::write(const std::string& path, hid_t type, const void* values, std::u
                  const std::vector<std::uint64_t>& shape) {
   const std::vector<hsize_t> dims(shape.begin(), shape.end());
   const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
-  Handle dataset(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
+  Handle dataset = open_dataset_if_there(path);
   if (!dataset.is_open()) {
     const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links.id(), 1);

@@ -496,7 +496,7 @@ Mesh read(const FilePath& path, Notes& notes) {
   read_equivalences(reading);
   note_others(reading);
   reading.layout->file = std::make_shared<const std::string>(reading.file.without_values(reading.taken));
-  session.require_no_fault(path.string());
+  session.require_no_failure(path.string());
   reading.mesh.format_metadata = reading.layout;
   return std::move(reading.mesh);
 }

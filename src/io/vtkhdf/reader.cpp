@@ -420,7 +420,6 @@ class VtkHdfReader {
     }
   }
 
-  hdf5::Session session_;
   hdf5::File file_;
   Notes& notes_;
   Mesh mesh_;
@@ -436,10 +435,18 @@ class VtkHdfReader {
 }  // namespace
 
 std::optional<RawGrid> find_raw(const FilePath& path) {
+  const hdf5::Session session;
   Notes notes;
-  return VtkHdfReader(path, notes).find();
+  std::optional<RawGrid> grid = VtkHdfReader(path, notes).find();
+  session.require_no_failure(path.string());
+  return grid;
 }
 
-Mesh read(const FilePath& path, Notes& notes) { return VtkHdfReader(path, notes).read(); }
+Mesh read(const FilePath& path, Notes& notes) {
+  const hdf5::Session session;
+  Mesh mesh = VtkHdfReader(path, notes).read();
+  session.require_no_failure(path.string());
+  return mesh;
+}
 
 }  // namespace meshorder::vtkhdf

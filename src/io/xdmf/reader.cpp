@@ -427,14 +427,14 @@ std::optional<RawGrid> find_raw(const FilePath& path) {
   const hdf5::Session session;
   Notes notes;
   std::optional<RawGrid> grid = XdmfReader(path, notes).find();
-  session.require_no_fault(path.string());
+  session.require_no_failure(path.string());
   return grid;
 }
 
 Mesh read(const FilePath& path, Notes& notes) {
   const hdf5::Session session;
   Mesh mesh = XdmfReader(path, notes).read();
-  session.require_no_fault(path.string());
+  session.require_no_failure(path.string());
   return mesh;
 }
 
