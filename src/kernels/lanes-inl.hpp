@@ -58,12 +58,31 @@ struct OneLaneOf {
     MESHORDER_UNROLL
     for (int c = 0; c < 3; ++c) forces[Offset{kPaddedStride} * v[0] + c] += f[c];
   }
+
+  /// See RowLanes.
+  static constexpr Index kRegisters = 3;
+  static HWY_INLINE void difference(const Real* positions, Index from, Index to, Value (&row)[kRegisters]) {
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c)
+      row[c] = positions[Offset{kPaddedStride} * to + c] - positions[Offset{kPaddedStride} * from + c];
+  }
+  static HWY_INLINE Value squared_lengths(const Value (&rows)[1][kRegisters]) {
+    return rows[0][0] * rows[0][0] + rows[0][1] * rows[0][1] + rows[0][2] * rows[0][2];
+  }
+  static HWY_INLINE void add(const Value (&row)[kRegisters], Real* forces, Index v) {
+    scatter_add(row, &v, forces);
+  }
+  static HWY_INLINE void subtract(const Value (&row)[kRegisters], Real* forces, Index v) {
+    MESHORDER_UNROLL
+    for (int c = 0; c < 3; ++c) forces[Offset{kPaddedStride} * v + c] -= row[c];
+  }
 };
 
 using OneLane = OneLaneOf<double>;
 
 #if HWY_TARGET == HWY_SCALAR
 using ManyLanes = OneLane;
+using RowLanes = OneLane;
 #else
 /// The arithmetic of as many numbers as a register holds, up to a maximum.
 template <class Real, Index Most>
@@ -217,6 +236,56 @@ struct ManyLanes : LaneArithmetic<double, kBatch> {
       store(hn::ConcatLowerLower(d, odd23, odd01), to + stride);
       store(hn::ConcatUpperUpper(d, even23, even01), to + 2 * stride);
       store(hn::ConcatUpperUpper(d, odd23, odd01), to + 3 * stride);
+    }
+  }
+};
+
+/// Vectors of single vertices, each in one register of x, y, z and the padding, or in two, and numbers of
+/// kCount of them at a time: for kernels that need no more of the vectors than lengths, which spares the
+/// transpositions of ManyLanes.
+struct RowLanes : LaneArithmetic<double, kPaddedStride> {
+  static constexpr Index kRegisters = kPaddedStride / kCount;  ///< of a vector
+
+  /// row = x_to − x_from
+  static HWY_INLINE void difference(const double* positions, Index from, Index to, Value (&row)[kRegisters]) {
+    const Tag d;
+    MESHORDER_UNROLL
+    for (Index r = 0; r < kRegisters; ++r)
+      row[r] = hn::Load(d, at(positions, to) + r * kCount) - hn::Load(d, at(positions, from) + r * kCount);
+  }
+
+  static HWY_INLINE Value squared_lengths(const Value (&rows)[kCount][kRegisters]) {
+    const Tag d;
+    Value squares[kCount];  // lane k: the squares of x and z, or of y and the padding, or of one of these
+    MESHORDER_UNROLL
+    for (Index i = 0; i < kCount; ++i) {
+      squares[i] = rows[i][0] * rows[i][0];
+      if constexpr (kRegisters == 2) squares[i] = mul_add(rows[i][1], rows[i][1], squares[i]);
+    }
+    const Value sums01 =
+        hn::InterleaveLower(d, squares[0], squares[1]) + hn::InterleaveUpper(d, squares[0], squares[1]);
+    if constexpr (kCount == 2) {
+      return sums01;
+    } else {
+      const Value sums23 =
+          hn::InterleaveLower(d, squares[2], squares[3]) + hn::InterleaveUpper(d, squares[2], squares[3]);
+      return hn::ConcatLowerLower(d, sums23, sums01) + hn::ConcatUpperUpper(d, sums23, sums01);
+    }
+  }
+
+  /// The force on vertex v += row
+  static HWY_INLINE void add(const Value (&row)[kRegisters], double* forces, Index v) {
+    MESHORDER_UNROLL
+    for (Index r = 0; r < kRegisters; ++r) add_to(Tag(), row[r], at(forces, v) + r * kCount);
+  }
+
+  /// The force on vertex v −= row
+  static HWY_INLINE void subtract(const Value (&row)[kRegisters], double* forces, Index v) {
+    const Tag d;
+    MESHORDER_UNROLL
+    for (Index r = 0; r < kRegisters; ++r) {
+      double* const place = at(forces, v) + r * kCount;
+      store(hn::Load(d, place) - row[r], place);
     }
   }
 };

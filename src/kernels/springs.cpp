@@ -17,23 +17,21 @@ HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const In
                           double stiffness, const double* positions, double* forces) {
   using Value = typename Lanes::Value;
   const Value k = Lanes::set(stiffness);
-  for (Index lane = 0; lane < kBatch; lane += Lanes::kCount) {
-    Value a[3];
-    Value b[3];
-    Lanes::gather(positions, ends + lane, a);
-    Lanes::gather(positions, ends + kBatch + lane, b);
+  for (Index first = 0; first < kBatch; first += Lanes::kCount) {
+    Value rows[Lanes::kCount][Lanes::kRegisters];
     MESHORDER_UNROLL
-    for (int c = 0; c < 3; ++c) b[c] = b[c] - a[c];
-    const Value length =
-        Lanes::square_root(Lanes::mul_add(b[2], b[2], Lanes::mul_add(b[1], b[1], b[0] * b[0])));
-    const Value scale = Lanes::if_positive(length, k - k * Lanes::load(rest_length + lane) / length);
+    for (Index i = 0; i < Lanes::kCount; ++i)
+      Lanes::difference(positions, ends[first + i], ends[kBatch + first + i], rows[i]);
+    const Value length = Lanes::square_root(Lanes::squared_lengths(rows));
+    alignas(64) double scales[Lanes::kCount];
+    Lanes::store(Lanes::if_positive(length, k - k * Lanes::load(rest_length + first) / length), scales);
     MESHORDER_UNROLL
-    for (int c = 0; c < 3; ++c) {
-      a[c] = scale * b[c];
-      b[c] = Lanes::set(0.0) - a[c];
+    for (Index i = 0; i < Lanes::kCount; ++i) {
+      MESHORDER_UNROLL
+      for (Value& of_row : rows[i]) of_row = Lanes::set(scales[i]) * of_row;
+      Lanes::add(rows[i], forces, targets[first + i]);
+      Lanes::subtract(rows[i], forces, targets[kBatch + first + i]);
     }
-    Lanes::scatter_add(a, targets + lane, forces);
-    Lanes::scatter_add(b, targets + kBatch + lane, forces);
   }
 }
 
@@ -53,7 +51,7 @@ HWY_INLINE void add_forces(const Springs& springs, double stiffness, const doubl
 
 void add_forces_in_batches(const Springs& springs, double stiffness, const double* positions, double* forces,
                            const OwnedBatches* share) {
-  add_forces<ManyLanes>(springs, stiffness, positions, forces, share);
+  add_forces<RowLanes>(springs, stiffness, positions, forces, share);
 }
 
 #if HWY_ONCE

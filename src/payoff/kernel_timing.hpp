@@ -52,9 +52,9 @@ struct Timings {
 
 /// Times every kernel of the prepared orders in interleaved rounds, so that changes of the machine's speed
 /// affect all orders alike: a round takes a sample of every kernel in every order, kernel by kernel, and the
-/// next round begins with the next order. The first run of a sample finds another order's data in the caches
-/// and does not count, unless the kernel takes 0.1 s or more. The first bench is the reference of the
-/// speedups.
+/// next round begins with the next order. The first runs of a sample find another order's data in the caches
+/// and do not count: as many as the reference takes to settle (`runs_to_settle`), none of a kernel that takes
+/// longer than five samples. The first bench is the reference of the speedups.
 Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options = {});
 
 /// The same for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is

@@ -60,6 +60,15 @@ double repeat_difference(const std::vector<double>& samples) {
   return std::max(even, odd) / std::min(even, odd) - 1;
 }
 
+int runs_to_settle(const std::vector<double>& seconds) {
+  constexpr double kSettled = 1.05;
+  if (seconds.size() < 2) return 1;
+  const double best = *std::min_element(seconds.begin(), seconds.end());
+  const auto settled = std::find_if(seconds.begin() + 1, seconds.end(),
+                                    [&](double of_run) { return of_run <= kSettled * best; });
+  return settled == seconds.end() ? 1 : static_cast<int>(settled - seconds.begin());
+}
+
 void SteadinessWatch::tick() {
   const Stopwatch stopwatch;
   [[maybe_unused]] volatile const std::uint64_t result = fixed_arithmetic();

@@ -24,6 +24,11 @@ std::string reason_to_doubt(const Steadiness& steadiness);
 /// two samples.
 double repeat_difference(const std::vector<double>& samples);
 
+/// Returns after how many runs a kernel takes no more than 5 % longer than the fastest of these runs, one
+/// after another, did; at least 1. Processors with a last cache that keeps what the second level has evicted,
+/// and not all of that, take up to six runs until what they use again and again is there.
+int runs_to_settle(const std::vector<double>& seconds);
+
 /// Collects the steadiness of a machine while it is measured.
 class SteadinessWatch {
  public:

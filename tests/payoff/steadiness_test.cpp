@@ -22,6 +22,15 @@ TEST(Steadiness, DifferencesOfRepeatsAreThoseOfTheBestOfEvenAndOddSamples) {
   EXPECT_DOUBLE_EQ(repeat_difference({9, 4, 2, 9, 7, 8}), 1);
 }
 
+TEST(Steadiness, KernelsSettleWhenTheyAreAboutAsFastAsTheyGet) {
+  EXPECT_EQ(runs_to_settle({}), 1);
+  EXPECT_EQ(runs_to_settle({3}), 1);
+  EXPECT_EQ(runs_to_settle({3, 3, 3}), 1);
+  EXPECT_EQ(runs_to_settle({5, 3.1, 3, 3.1}), 1);
+  EXPECT_EQ(runs_to_settle({5.96, 7.29, 7.68, 4.27, 3.21, 2.96, 2.82, 2.77}), 6);
+  EXPECT_EQ(runs_to_settle({1, 3, 3}), 1);
+}
+
 TEST(Steadiness, IsDoubtedForEachSign) {
   EXPECT_THAT(reason_to_doubt({}), IsEmpty());
   EXPECT_THAT(reason_to_doubt({.waiting = 0.04, .pace = 0.09, .repeat = 0.04}), IsEmpty());
