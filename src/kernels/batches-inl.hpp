@@ -102,11 +102,14 @@ HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* ta
 /// Computes all batches, or those of a share, whose boundary batches have targets and blocks of their own.
 template <int D, class Lanes, class Law, class Tangent>
 HWY_INLINE void add_batches(const ElasticPass& pass) {
+  constexpr Offset kAhead = 8;  // batches from a prefetch to its use
   const OwnedBatches* const share = pass.share;
   const Offset count = share ? static_cast<Offset>(share->batches.size()) : pass.rest.batches();
   for (Offset i = 0; i < count; ++i) {
     const Offset batch = share ? share->batches[i] : i;
     const Index* const vertices = vertices_of<D>(pass.rest, batch);
+    fetch_stream<sizeof(Index) * kBatch*(D + 1)>(vertices_of<D>(pass.rest, batch + kAhead));
+    fetch_stream<sizeof(double) * kBatch*(D * (D + 1) / 2 + 1)>(geometry_of<D>(pass.rest, batch + kAhead));
     BatchBlocks blocks;
     if constexpr (!std::is_same_v<Tangent, NoTangent>) blocks = blocks_of<D>(pass, i, count);
     add_batch<D, Lanes, Law, Tangent>(pass, batch, share ? share->targets_of(i, vertices, D + 1) : vertices,

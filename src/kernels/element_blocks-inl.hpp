@@ -9,8 +9,6 @@
 
 #include "kernels/lanes-inl.hpp"
 
-#include <hwy/cache_control.h>
-
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 

@@ -10,6 +10,7 @@
 #include "kernels/positions.hpp"
 #include "kernels/simplices.hpp"
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <cmath>
@@ -21,6 +22,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+
+/// Prefetches `Bytes` of an array that is read from front to back, far enough ahead of their use: beside
+/// gathers from other arrays some processors do not (docs/benchmarks.md, Streams).
+template <Offset Bytes>
+HWY_INLINE void fetch_stream(const void* place) {
+  constexpr Offset kLine = 64;
+  for (Offset at = 0; at < Bytes; at += kLine) hwy::Prefetch(static_cast<const char*>(place) + at);
+}
 
 /// One simplex at a time: the scalar reference.
 template <class Real>

@@ -35,6 +35,19 @@ HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const In
   }
 }
 
+/// Prefetches what the batches after this one read from front to back: the springs, and as these are sorted
+/// by their larger ends, vertices from these on.
+HWY_INLINE void fetch_streams(const double* rest_length, const Index* ends, const double* positions,
+                              const double* forces) {
+  constexpr Offset kBatches = 16;
+  constexpr Offset kVertices = 48;
+  fetch_stream<sizeof(double) * kBatch>(rest_length + kBatches * kBatch);
+  fetch_stream<sizeof(Index) * 2 * kBatch>(ends + kBatches * 2 * kBatch);
+  const Offset vertex = Offset{kPaddedStride} * (ends[kBatch] + kVertices);
+  fetch_stream<sizeof(double) * kPaddedStride>(positions + vertex);
+  fetch_stream<sizeof(double) * kPaddedStride>(forces + vertex);
+}
+
 /// Computes all batches, or those of a share.
 template <class Lanes>
 HWY_INLINE void add_forces(const Springs& springs, double stiffness, const double* positions, double* forces,
@@ -44,8 +57,10 @@ HWY_INLINE void add_forces(const Springs& springs, double stiffness, const doubl
   for (Offset i = 0; i < count; ++i) {
     const Offset batch = share ? share->batches[i] : i;
     const Index* const ends = springs.ends.data() + 2 * kBatch * batch;
-    add_batch<Lanes>(springs.rest_lengths.data() + kBatch * batch, ends,
-                     share ? share->targets_of(i, ends, 2) : ends, stiffness, positions, forces);
+    const double* const rest_length = springs.rest_lengths.data() + kBatch * batch;
+    fetch_streams(rest_length, ends, positions, forces);
+    add_batch<Lanes>(rest_length, ends, share ? share->targets_of(i, ends, 2) : ends, stiffness, positions,
+                     forces);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace meshorder {
@@ -42,43 +43,30 @@ double sample(KernelBench& bench, Kernel kernel, const Plan& plan, bool processo
   return (processor_time ? thread_seconds : seconds) / plan.repeats;
 }
 
-/// A kernel that runs longer than this many samples streams far more than caches keep.
-constexpr double kLong = 5.0;
-
-/// Returns after how many runs a kernel has settled in the caches, 0 for a long one.
-int count_warm_ups(KernelBench& bench, Kernel kernel, double sample_seconds) {
-  constexpr std::size_t kMost = 9;
-  std::vector<double> seconds;
-  while (seconds.size() < kMost) {
-    seconds.push_back(seconds_of_runs(bench, kernel, 1));
-    if (seconds.size() == 2 && seconds.back() >= kLong * sample_seconds) return 0;
-  }
-  return runs_to_settle(seconds);
-}
-
-/// `warm_ups`: after how many runs the kernel has settled in another order.
-Plan plan_samples(KernelBench& bench, Kernel kernel, int warm_ups, double sample_seconds) {
+Plan plan_samples(KernelBench& bench, Kernel kernel, double sample_seconds) {
   constexpr double kMostRepeats = 1e5;
-  bench.run(kernel);
-  const double once = std::max(seconds_of_runs(bench, kernel, 1), 1e-9);
-  return {.repeats = static_cast<int>(std::clamp(std::ceil(sample_seconds / once), 1.0, kMostRepeats)),
-          .warm_ups = once < kLong * sample_seconds ? std::max(warm_ups, 1) : 0};
+  constexpr std::size_t kMostRuns = 12;
+  // a kernel that runs longer than this many samples streams far more than caches keep
+  constexpr double kLong = 5.0;
+  std::vector<double> seconds;
+  double best = std::numeric_limits<double>::infinity();
+  while (seconds.size() < 2 ||
+         (best < kLong * sample_seconds && seconds.size() < kMostRuns && !is_steady(seconds))) {
+    seconds.push_back(std::max(seconds_of_runs(bench, kernel, 1), 1e-9));
+    best = std::min(best, seconds.back());
+  }
+  return {.repeats = static_cast<int>(std::clamp(std::ceil(sample_seconds / best), 1.0, kMostRepeats)),
+          .warm_ups = best < kLong * sample_seconds ? runs_to_settle(seconds) : 0};
 }
 
 std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options,
                                         double budget_seconds, SteadinessWatch& watch) {
-  if (benches.empty()) return {};
   const std::size_t orders = benches.size();
-  std::array<int, kKernels.size()> warm_ups{};
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    poll();
-    warm_ups[k] = count_warm_ups(*benches.front(), kKernels[k], options.sample_seconds);
-  }
   std::vector<std::array<Plan, kKernels.size()>> plans(orders);
   for (std::size_t i = 0; i < orders; ++i) {
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
       poll();
-      plans[i][k] = plan_samples(*benches[i], kKernels[k], warm_ups[k], options.sample_seconds);
+      plans[i][k] = plan_samples(*benches[i], kKernels[k], options.sample_seconds);
     }
   }
   std::vector<Samples> samples(orders);

@@ -24,10 +24,15 @@ std::string reason_to_doubt(const Steadiness& steadiness);
 /// two samples.
 double repeat_difference(const std::vector<double>& samples);
 
-/// Returns after how many runs a kernel takes no more than 5 % longer than the fastest of these runs, one
-/// after another, did; at least 1. Processors with a last cache that keeps what the second level has evicted,
-/// and not all of that, take up to six runs until what they use again and again is there.
+/// Returns after how many runs, one after another, a kernel has settled in the caches: takes no more than 5 %
+/// longer than the fastest of these runs did; at least 1. Processors whose last cache keeps what the second
+/// level has evicted, and not all of that, take up to ten runs until what is used again and again is there,
+/// the second one of which may be slower than the first.
 int runs_to_settle(const std::vector<double>& seconds);
+
+/// Returns whether the last three of at least four runs of a kernel took no more than 5 % longer than the
+/// fastest one: it has settled.
+bool is_steady(const std::vector<double>& seconds);
 
 /// Collects the steadiness of a machine while it is measured.
 class SteadinessWatch {

@@ -409,6 +409,22 @@ def test_values_of_each_type_move_and_keep_it(command, tmp_path):
 
 
 @needs_tools
+def test_blanks_at_the_ends_of_names_and_labels_fill_up_their_places(command, tmp_path):
+    write_rich(tmp_path / "a.cgns")
+    before, told = content(tmp_path / "a.cgns"), command.ok("info", "a.cgns").stdout
+    with h5py.File(tmp_path / "a.cgns", "r+") as file:
+
+        def fill(_, item):
+            if isinstance(item, h5py.Group):
+                for key in ("name", "label"):
+                    item.attrs.create(key, item.attrs[key].ljust(32), dtype="S33")
+
+        file.visititems(fill)
+    assert command.ok("info", "a.cgns").stdout == told
+    command.ok("order", "a.cgns", "-o", "b.cgns", "--vertices", "rcm", "--elements", "min")
+    assert content(tmp_path / "b.cgns") == before
+
+
 def test_adf_stays_adf(command, tmp_path):
     write_rich(tmp_path / "a.cgns", real="float32")
     subprocess.run(["hdf2adf", "a.cgns", "adf.cgns"], cwd=tmp_path, check=True, capture_output=True)

@@ -29,6 +29,12 @@ TEST(Steadiness, KernelsSettleWhenTheyAreAboutAsFastAsTheyGet) {
   EXPECT_EQ(runs_to_settle({5, 3.1, 3, 3.1}), 1);
   EXPECT_EQ(runs_to_settle({5.96, 7.29, 7.68, 4.27, 3.21, 2.96, 2.82, 2.77}), 6);
   EXPECT_EQ(runs_to_settle({1, 3, 3}), 1);
+  EXPECT_FALSE(is_steady({}));
+  EXPECT_FALSE(is_steady({3, 3, 3}));
+  EXPECT_TRUE(is_steady({5, 3, 3.1, 3.1}));
+  EXPECT_FALSE(is_steady({5.96, 7.29, 7.68, 7.5}));
+  EXPECT_FALSE(is_steady({5.96, 7.29, 7.68, 4.27, 3.21, 2.96}));
+  EXPECT_TRUE(is_steady({5.96, 7.29, 7.68, 4.27, 3.21, 2.96, 2.82, 2.82}));
 }
 
 TEST(Steadiness, IsDoubtedForEachSign) {

@@ -45,6 +45,12 @@ Text padded(std::string_view text) {
   return result;
 }
 
+/// Returns a text that CGIO gives, without the blanks that fill up its place in a file.
+std::string without_filling(const Text& text) {
+  const std::string_view whole(text.data());
+  return std::string(whole.substr(0, whole.find_last_not_of(' ') + 1));
+}
+
 /// A folder of our own for one file, removed at the end: CGIO opens files by their paths only.
 class PrivateFolder {
  public:
@@ -133,7 +139,8 @@ class TreeReader {
     if (depth > 0) {
       Text text{};
       file_.check(cgio_get_name(number, id, text.data()), place);
-      node.name = text.data();
+      node.name = without_filling(text);
+      if (node.name.empty()) file_.fail(place + " has a child without a name", "the file may be damaged");
     }
     const std::string path = depth > 0 ? parent + "/" + node.name : std::string();
     if (link > 0) {
@@ -169,8 +176,8 @@ class TreeReader {
     Text type{};
     file_.check(cgio_get_label(number, id, label.data()), path);
     file_.check(cgio_get_data_type(number, id, type.data()), path);
-    node.label = label.data();
-    node.type = type.data();
+    node.label = without_filling(label);
+    node.type = without_filling(type);
     if (node.type == "MT") return;
     const std::size_t width = size_of_type(node.type);
     if (width == 0) {
