@@ -22,6 +22,7 @@
 #include <cmath>
 #include <ctime>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -227,14 +228,15 @@ std::vector<TimedReuse> of_solids(std::span<const TimedReuse> runs) {
   return result;
 }
 
-/// Puts the costs that fit the runs best into a model whose caches are known. Returns how well they do.
-FitQuality fit_all(const Runs& runs, CostModel& model) {
+/// Puts the costs that fit the runs best, with misses of at most `most` ns, into a model whose caches are
+/// known. Returns how well they do.
+FitQuality fit_all(const Runs& runs, double most, CostModel& model) {
   FitQuality quality;
   model.threads = runs.threads;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const FittedCosts fitted = fit_costs(of_solids(runs.timed[k]), model.caches);
+    const FittedCosts fitted = fit_costs(of_solids(runs.timed[k]), model.caches, most);
     model.solid[k] = fitted.costs;
-    model.flat[k] = fit_costs(runs.timed[k], model.caches).costs;
+    model.flat[k] = fit_costs(runs.timed[k], model.caches, most).costs;
     quality.condition[k] = fitted.condition;
     quality.error[k] = fitted.error;
     quality.floor[k] = median(runs.apart[k]);
@@ -245,8 +247,8 @@ FitQuality fit_all(const Runs& runs, CostModel& model) {
 /// As above, for runs on all threads, where costs on one thread are known. Threads that share a product with
 /// the matrix never wait for each other: all its costs change by one factor, which these few runs determine
 /// better than each cost.
-FitQuality fit_all_threads(const Runs& runs, const CostModel& one_thread, CostModel& model) {
-  FitQuality quality = fit_all(runs, model);
+FitQuality fit_all_threads(const Runs& runs, double most, const CostModel& one_thread, CostModel& model) {
+  FitQuality quality = fit_all(runs, most, model);
   constexpr auto kProduct = static_cast<std::size_t>(Kernel::spmv);
   const FittedCosts fitted =
       scale_costs(of_solids(runs.timed[kProduct]), one_thread.solid[kProduct], model.caches);
@@ -259,10 +261,16 @@ FitQuality fit_all_threads(const Runs& runs, const CostModel& one_thread, CostMo
 
 }  // namespace
 
-FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches) {
+FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, double most) {
   const Rows rows = shares_of(runs, caches);
   const std::vector<double> ones(runs.size(), 1.0);
-  const std::vector<double> costs = non_negative_least_squares(rows, ones);
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  const CostRow bounds = as_row({.access = kAny,
+                                 .miss = {most, most, most, most},
+                                 .jump = {most, most, most, most},
+                                 .repeat = kAny,
+                                 .wait = kAny});
+  const std::vector<double> costs = bounded_least_squares(rows, ones, bounds);
   CostRow row;
   std::copy(costs.begin(), costs.end(), row.begin());
   return {.costs = as_costs(row),
@@ -344,10 +352,11 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   time_large(make_calibration_lattice(largest, false, model.caches, 6), since_start, effort.seconds, runs);
   calibration.steadiness = steadiness_of(runs.front().steadiness);
   calibration.all_threads = model;
-  calibration.quality = fit_all(runs.front(), model);
+  const double most = calibration.found.memory_nanoseconds;
+  calibration.quality = fit_all(runs.front(), most, model);
   calibration.all_threads_quality = calibration.threads > 1
-                                        ? fit_all_threads(runs.back(), model, calibration.all_threads)
-                                        : fit_all(runs.back(), calibration.all_threads);
+                                        ? fit_all_threads(runs.back(), most, model, calibration.all_threads)
+                                        : fit_all(runs.back(), most, calibration.all_threads);
   calibration.seconds = since_start.seconds();
   return calibration;
 }

@@ -6,6 +6,7 @@
 #include "payoff/steadiness.hpp"
 
 #include <array>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -77,8 +78,10 @@ struct FittedCosts {
   double error = 0;  ///< see FitQuality
 };
 
-/// Fits the costs of a kernel on a machine with such caches.
-FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches);
+/// Fits the costs of a kernel on a machine with such caches. A miss and a jump cost at most `most` ns each:
+/// what a load costs that waits for the memory. Runs with next to none of them would tell any cost.
+FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches,
+                      double most = std::numeric_limits<double>::infinity());
 
 /// Fits one factor to the runs, by which all of the costs are multiplied.
 FittedCosts scale_costs(std::span<const TimedReuse> runs, const KernelCosts& costs, const Caches& caches);
