@@ -67,6 +67,10 @@ const CostModel& zen5_costs();
 /// 20 MB to be had of L3).
 const CostModel& zen4_costs();
 
+/// Returns costs that `meshorder calibrate` measured on a 2-core Intel Xeon of the Sapphire Rapids family (48 KB
+/// L1, 2 MB L2, 64 MB to be had of L3).
+const CostModel& xeon_costs();
+
 /// Predicts the milliseconds of each run of a repeated kernel on a processor with these caches (see
 /// sizes_that_cost). Use the ratio of two orders of one mesh: the milliseconds are those of the model's
 /// machine. O(levels · bins of the histograms). Throws InvalidArgument without caches.

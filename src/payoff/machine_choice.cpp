@@ -16,7 +16,8 @@
 namespace meshorder {
 namespace {
 
-constexpr std::array kShipped{ShippedMachine{"zen5", zen5_costs}, ShippedMachine{"zen4", zen4_costs}};
+constexpr std::array kShipped{ShippedMachine{"zen5", zen5_costs}, ShippedMachine{"zen4", zen4_costs},
+                              ShippedMachine{"xeon", xeon_costs}};
 constexpr std::string_view kThis = "this";
 
 /// The name itself, or what stands for an empty one.
