@@ -67,8 +67,8 @@ const CostModel& zen5_costs();
 /// 20 MB to be had of L3).
 const CostModel& zen4_costs();
 
-/// Returns costs that `meshorder calibrate` measured on a 2-core Intel Xeon of the Sapphire Rapids family (48 KB
-/// L1, 2 MB L2, 64 MB to be had of L3).
+/// Returns costs that `meshorder calibrate` measured on a 2-core Intel Xeon of the Sapphire Rapids family (48
+/// KB L1, 2 MB L2, 64 MB to be had of L3).
 const CostModel& xeon_costs();
 
 /// Predicts the milliseconds of each run of a repeated kernel on a processor with these caches (see
